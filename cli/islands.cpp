@@ -67,18 +67,21 @@ void add_point_island_option(CLI::App& app, std::uint64_t& points) {
          "--ignore-islands", points,
          "Leave out the clusters of the cloud with less than COUNT points: floating points of a scan. "
          "They have no distance and count for no number; how many they are is reported")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
+      ->transform(whole_number(1, std::int64_t{1} << 40))
       ->type_name("COUNT");
 }
 
 std::optional<std::string> note_on_islands(const std::string& cloud, const sdm::PointDistances& found) {
   if (!found.islands || found.islands->islands == 0) return std::nullopt;
-  const auto& [islands, points, reach] = *found.islands;
-  return fmt::format("{}: {} with {}, {} % of all, left out; islands are at least {} from other points",
-                     cloud, islands == 1 ? "1 island" : fmt::format("{} islands", islands),
-                     points == 1 ? "1 point" : fmt::format("{} points", points),
-                     number(100 * static_cast<double>(points) / static_cast<double>(found.points), 3),
-                     number(reach / (2 * std::sqrt(3.0)), 3));
+  const sdm::PointIslands& all = *found.islands;
+  std::string note =
+      fmt::format("{}: {} with {}, {} % of all, left out", cloud,
+                  all.islands == 1 ? "1 island" : fmt::format("{} islands", all.islands),
+                  all.points == 1 ? "1 point" : fmt::format("{} points", all.points),
+                  number(100 * static_cast<double>(all.points) / static_cast<double>(found.points), 3));
+  return note + (found.counted() > 0
+                     ? fmt::format("; islands are at least {} from other points", number(all.apart, 3))
+                     : "; there are no other points with coordinates");
 }
 
 nlohmann::ordered_json to_json(const sdm::PointIslands& islands, std::uint64_t points) {

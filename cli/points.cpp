@@ -35,10 +35,12 @@ using Json = nlohmann::ordered_json;
 
 // How much of O2 was measured, by up to 2^20 of the points, which may be a doubt.
 void measure_cloud_coverage(const PointsCommand& command, const sdm::Transform& placement,
-                            const sdm::Mesh& o2, PointsOutcome& outcome, ProgressLine& progress) {
+                            const sdm::CloudIslands* islands, const sdm::Mesh& o2, PointsOutcome& outcome,
+                            ProgressLine& progress) {
   constexpr std::size_t kSample = std::size_t{1} << 20;
   progress.step("coverage");
-  sdm::PointSample sample = sdm::sample_points(command.cloud, kSample, {command.text, progress.callback()});
+  sdm::PointSample sample =
+      sdm::sample_points(command.cloud, kSample, {command.text, progress.callback(), islands});
   if (sample.points.empty()) return;
   sdm::transform(sample.points, placement);
   outcome.coverage = sdm::coverage_map(o2, sample.points, reach_of(command.doubts, command.picture.tolerance),
@@ -50,10 +52,13 @@ void measure_cloud_coverage(const PointsCommand& command, const sdm::Transform& 
 
 // The alignment of a sample of the points, after their placement.
 AlignOutcome align_sample(const PointsCommand& command, const sdm::Transform& placement,
-                          const sdm::Sites& sites, const Input& o2, const sdm::Progress& progress) {
+                          const sdm::CloudIslands* islands, const sdm::Sites& sites, const Input& o2,
+                          const sdm::Progress& progress) {
   constexpr std::size_t kSample = 1 << 18;
-  sdm::PointSample sample = sdm::sample_points(command.cloud, kSample, {command.text, progress});
-  if (sample.points.empty()) throw sdm::Error(command.cloud + ": there are no points with coordinates");
+  sdm::PointSample sample = sdm::sample_points(command.cloud, kSample, {command.text, progress, islands});
+  if (sample.points.empty())
+    throw sdm::Error(command.cloud + ": there are no points with coordinates" +
+                     (islands ? " that are of no island" : ""));
   sdm::transform(sample.points, placement);
   for (sdm::Vec3& n : sample.normals) n = placement.normal(n);
   return align_points(sample.points, sample.normals, sites, o2, command.align, progress);
@@ -108,8 +113,7 @@ sdm::PointDistancesOptions measuring_options(const PointsCommand& command, const
           .picture = command.picture,
           .text = command.text,
           .names = o2.names,
-          .table = command.groups.rows,
-          .island_points = command.island_points};
+          .table = command.groups.rows};
 }
 
 // Aligns the points, which changes their placement, and writes alignment.json.
@@ -118,7 +122,7 @@ void align_cloud(PointsCommand& command, const sdm::Sites& sites, const Input& o
                  PointsOutcome& outcome, ProgressLine& progress) {
   progress.step("align");
   command.align.judged = command.picture.tolerance.has_value() || !command.groups.rows.empty();
-  outcome.aligned = align_sample(command, options.placement, sites, o2, progress.callback());
+  outcome.aligned = align_sample(command, options.placement, options.islands, sites, o2, progress.callback());
   options.placement = outcome.aligned->alignment.transform * options.placement;
   write_text(folder / "alignment.json", to_text(to_json(*outcome.aligned, command.picture.units)));
 }
@@ -128,7 +132,7 @@ void judge_doubts(const PointsCommand& command, const sdm::PointDistancesOptions
                   PointsOutcome& outcome, ProgressLine& progress) {
   if (outcome.aligned && command.align.judged) outcome.summary.doubts = doubts_of(*outcome.aligned);
   if (command.doubts.min_coverage)
-    measure_cloud_coverage(command, options.placement, o2.mesh, outcome, progress);
+    measure_cloud_coverage(command, options.placement, options.islands, o2.mesh, outcome, progress);
   sdm::withhold_pass(outcome.summary, command.doubts.accept);
   if (outcome.found.groups && !outcome.summary.doubts.empty() && !command.doubts.accept)
     sdm::withhold_pass(*outcome.found.groups);
@@ -153,6 +157,12 @@ int run(PointsCommand command) {
     const sdm::Sites sites(o2.mesh);
     inspect(o2);
     if (!command.along) check_sign(command.picture.tolerance, sdm::choose_sign(sites, command.map), o2);
+    std::optional<sdm::CloudIslands> islands;
+    if (command.island_points > 0) {
+      islands.emplace(command.cloud, command.island_points,
+                      sdm::CloudIslandsOptions{.text = command.text, .progress = progress.callback()});
+      options.islands = &*islands;
+    }
     outcome.import_ms = watch.lap();
     if (command.align.on) align_cloud(command, sites, o2, out.staging(), options, outcome, progress);
     outcome.align_ms = watch.lap();

@@ -106,10 +106,50 @@ class SDM_API PointReader {
 /// The names of the formats that PointReader supports, for messages and help texts.
 [[nodiscard]] SDM_API std::string point_format_names();
 
+/// The islands of a cloud, as they are after a placement.
+struct PointIslands {
+  std::uint64_t islands = 0, points = 0;
+  double apart = 0;  ///< lower bound of the distance between a point of an island and one of none
+  double reach = 0;  ///< points farther apart are in separate clusters, unless others are between them
+};
+
+/// Options of CloudIslands.
+struct CloudIslandsOptions {
+  TextDialect text{};           ///< of a cloud in text, as of PointReader
+  std::size_t chunk = 1 << 18;  ///< points in memory at a time, greater than 0
+  Progress progress{};
+};
+
+/// The *islands* of a cloud: its clusters of few points. Points are of one cluster if they are in cells of a
+/// grid that touch. These are four times as wide as points would be apart if they were spread evenly over the
+/// box of all but the outermost of them, and at least 1/512 of its diagonal; twice as wide as often as more
+/// than 2^18 cells have points.
+class SDM_API CloudIslands {
+ public:
+  /// Finds the clusters of fewer than `points` points. Throws sdm::Error as PointReader does; Cancelled.
+  /// Cost: reads the file twice; memory for `chunk` points and 2^18 cells.
+  CloudIslands(const std::filesystem::path& cloud, std::uint64_t points,
+               const CloudIslandsOptions& options = {});
+  ~CloudIslands();
+  CloudIslands(CloudIslands&&) noexcept;
+  CloudIslands& operator=(CloudIslands&&) noexcept;
+
+  /// Whether a point of the file, as it is in it, is of an island; not of one that is not finite.
+  [[nodiscard]] bool contains(const Vec3& point) const;
+  /// What is found, with bounds after a placement that is not singular: equal to the lengths in the grid for
+  /// similarities.
+  [[nodiscard]] PointIslands found(const Transform& placement = {}) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
 /// Options of sample_points().
 struct PointSampleOptions {
   TextDialect text{};  ///< of a cloud in text, as of PointReader
   Progress progress{};
+  const CloudIslands* islands = nullptr;  ///< of this cloud: their points are left out
 };
 /// A pseudorandom sample of at most `most` of the finite points of a file, each with the same probability.
 struct PointSample {
@@ -132,17 +172,8 @@ struct PointDistancesOptions {
   TextDialect text{};                  ///< of a cloud in text, as of PointReader
   std::span<const FaceNames> names{};  ///< of the faces of O2
   std::span<const GroupTolerance> table{};  ///< tolerances of these names
-  /// Clusters of fewer points are *islands*, which have no value and count for nothing but their number; 0:
-  /// there are none. Points are of one cluster if they are in cells of a grid that touch. These are four
-  /// times as wide as points would be apart if they were spread evenly over the box of all but the outermost
-  /// of them, and at least 1/512 of its diagonal. Finding them reads the cloud twice more.
-  std::uint64_t island_points = 0;
-};
-
-/// The islands of a cloud.
-struct PointIslands {
-  std::uint64_t islands = 0, points = 0;
-  double reach = 0;  ///< points farther apart are in separate clusters, unless others are between them
+  /// Of this cloud: their points have no value and count for nothing but their number.
+  const CloudIslands* islands = nullptr;
 };
 
 /// The distance of a point and the place of that point in the file, from 0.

@@ -199,8 +199,13 @@ void bind_points(nb::module_& module) {
           check_table(table, kinds);
         }
         options.names = kinds, options.table = table;
-        options.island_points = static_cast<std::uint64_t>(integer_of(island_points, "island_points", 0));
+        const auto least = static_cast<std::uint64_t>(integer_of(island_points, "island_points", 0));
         run(progress, [&](const Progress& report) {
+          std::optional<CloudIslands> islands;
+          if (least > 0) {
+            islands.emplace(from, least, CloudIslandsOptions{.text = options.text, .progress = report});
+            options.islands = &*islands;
+          }
           options.map.progress = report;
           result = measure_points(from, to.get(), ply, options);
         });

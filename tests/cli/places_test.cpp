@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sdm/points.h>
 
 #include <cmath>
 #include <fstream>
@@ -89,7 +90,62 @@ TEST_F(PlacesOutput, IslandsOfACloudCountForNothing) {
   EXPECT_EQ(report["beyond_max_distance"], 0);
   EXPECT_THAT(report["notes"].dump(), HasSubstr("with 60 points"));
   EXPECT_EQ(points(with, {"--tolerance", "0.6"}).code, 3);
-  EXPECT_EQ(points(with, {"--ignore-islands", "0"}).code, 2);
+  for (const char* bad : {"0", "0x10", "-3", "2.5", ""})
+    EXPECT_EQ(points(with, {std::string("--ignore-islands=") + bad}).code, 2) << bad;
+}
+
+// Neither for the alignment nor for the coverage of O2.
+TEST_F(PlacesOutput, IslandsOfACloudAreNotSampled) {
+  const std::string part =
+      write_obj(folder / "part.obj", joined(sphere(3), moved(square(0.5, 0), {0, 0, 9})));
+  std::string scan, islands;
+  for (const Vec3& p : sphere(4).positions) scan += fmt::format("{} {} {}\n", p[0] + 0.02, 1.01 * p[1], p[2]);
+  for (int i = 0; i < 5; ++i) islands += fmt::format("0 0.{} 9.01\n", i);
+  const auto report = [&](const std::string& text, std::vector<std::string> more) {
+    std::ofstream(folder / "scan.xyz") << text;
+    more.insert(more.begin(), {"points", folder / "scan.xyz", part, "-o", out, "--tolerance", "0.2", "--json",
+                               "--min-coverage", "0", "--align"});
+    const Outcome run = run_sdm(more);
+    EXPECT_LE(run.code, 5) << run.err;
+    EXPECT_NE(run.code, 1) << run.err;
+    return Json::parse(run.out);
+  };
+  const Json clean = report(scan, {}), with = report(islands + scan, {"--ignore-islands", "6"}),
+             all = report(islands + scan, {});
+  EXPECT_EQ(with["o1"]["ignored_islands"]["points"], 5);
+  EXPECT_EQ(with["alignment"]["matrix"], clean["alignment"]["matrix"]);
+  EXPECT_EQ(with["coverage"], clean["coverage"]);
+  EXPECT_NE(all["alignment"]["matrix"], clean["alignment"]["matrix"]);
+  EXPECT_GT(all["coverage"]["value"], clean["coverage"]["value"]);
+}
+
+// An uneven placement stretches some lengths more than others.
+TEST_F(PlacesOutput, TheReachOfIslandsHoldsAfterThePlacement) {
+  const std::string file = cloud(60);
+  const auto found = [&](const std::string& placement) {
+    const Json report = Json::parse(
+        points(file, {"--ignore-islands", "10", "--write", "none", "--json", "--transform-o1", placement})
+            .out);
+    EXPECT_EQ(report["o1"]["ignored_islands"]["points"], 60);
+    return report["o1"]["ignored_islands"]["reach"].get<double>();
+  };
+  const PointIslands plain = CloudIslands(file, 10).found();
+  EXPECT_EQ(plain.points, 60u);
+  EXPECT_DOUBLE_EQ(plain.reach, 2 * std::sqrt(3.0) * plain.apart);
+  EXPECT_DOUBLE_EQ(found("scale:2"), 2 * plain.reach);
+  Transform uneven;
+  uneven.rows[0][0] = 10, uneven.rows[2][2] = 0.5;
+  const PointIslands placed = CloudIslands(file, 10).found(uneven);
+  EXPECT_DOUBLE_EQ(placed.reach, 10 * plain.reach);
+  EXPECT_DOUBLE_EQ(placed.apart, 0.5 * plain.apart);
+  // A shear: bounds of its stretches, 1.618 and 0.618.
+  Transform shear;
+  shear.rows[0][1] = 1;
+  const PointIslands sheared = CloudIslands(file, 10).found(shear);
+  EXPECT_GE(sheared.reach, 1.618 * plain.reach);
+  EXPECT_LE(sheared.reach, 1.8 * plain.reach);
+  EXPECT_LE(sheared.apart, 0.6181 * plain.apart);
+  EXPECT_GE(sheared.apart, 0.55 * plain.apart);
 }
 
 // As directions without a measurement in a scan with coordinates of a country are: at 0, 0, 0.

@@ -20,7 +20,6 @@
 #include "io/file/little_endian.h"
 #include "io/image/pictures/color_scale.h"
 #include "io/points/cloud_groups.h"
-#include "io/points/cloud_islands.h"
 #include "io/points/cloud_places.h"
 #include "io/points/measured_rows.h"
 #include "io/points/point_cells.h"
@@ -69,9 +68,9 @@ class Measurement {
 
   PointDistances write(const std::filesystem::path& ply) {
     if (!reader_.count()) count_points();
-    if (options_.island_points > 0) {
-      islands_.emplace(cloud_, options_);
-      result_.islands = islands_->found();
+    if (options_.islands) {
+      result_.islands = options_.islands->found(options_.placement);
+      result_.islands->points = 0;  // counted again, as the file is read
     }
     AtomicFile file(ply);
     write_header(file.stream());
@@ -149,8 +148,8 @@ class Measurement {
 
   void measure(Chunk& chunk) const {
     chunk.island.clear();
-    if (islands_)
-      for (const Vec3& p : chunk.points) chunk.island.push_back(islands_->has(p) ? 1 : 0);
+    if (options_.islands)
+      for (const Vec3& p : chunk.points) chunk.island.push_back(options_.islands->contains(p) ? 1 : 0);
     for (Vec3& p : chunk.points) p = options_.placement(p);
     for (Vec3& n : chunk.normals) n = options_.placement.normal(n);
     // Points without a measurement are replaced by a point of O2, which costs nothing.
@@ -352,7 +351,6 @@ class Measurement {
   PointDistances result_;
   UsualBox usual_;
   summary::SignedSamples signs_;
-  std::optional<CloudIslands> islands_;
   std::optional<CloudGroups> groups_;
   std::uint64_t counted_ = 0;
   Sums sums_;

@@ -143,8 +143,18 @@ bool PointCells::contains(const Vec3& at, int side) const {
   return cells_.contains(cell(at, side));
 }
 
+std::uint64_t PointCells::points() const {
+  std::uint64_t sum = 0;
+  for (const auto& cell : cells_) sum += cell.second.points;
+  return sum;
+}
+
+double PointCells::width() const {
+  return std::ldexp(finest_width_, level_);
+}
+
 double PointCells::reach() const {
-  return 2 * std::sqrt(3.0) * std::ldexp(finest_width_, level_);  // the diagonal of two cells
+  return 2 * std::sqrt(3.0) * width();  // the diagonal of two cells
 }
 
 }  // namespace sdm::io

@@ -55,6 +55,10 @@ class PointCells {
   /// many are left.
   std::size_t keep_below(std::uint64_t points);
   [[nodiscard]] bool contains(const Vec3& at, int side) const;
+  /// Of all cells.
+  [[nodiscard]] std::uint64_t points() const;
+  /// Of a cell: points in separate clusters are at least so far apart.
+  [[nodiscard]] double width() const;
   /// Points farther apart than this are in separate clusters unless others are between them.
   [[nodiscard]] double reach() const;
 

@@ -1,11 +1,11 @@
 #include <sdm/error.h>
 #include <sdm/points.h>
 
-#include <cmath>
 #include <random>
 #include <string>
 
 #include "core/intact.h"
+#include "geometry/vec.h"
 #include "io/mesh/read_polygons.h"
 #include "io/points/cloud_file.h"
 
@@ -68,7 +68,7 @@ PointSample sample_points(const std::filesystem::path& file, std::size_t most,
       throw Cancelled();  // of a number that may not be known
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec3& p = points[i];
-      if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;
+      if (!finite(p) || (options.islands && options.islands->contains(p))) continue;
       // Reservoir sampling, Waterman's algorithm R.
       const std::uint64_t place = seen < most ? seen : random() % (seen + 1);
       ++seen;
