@@ -211,8 +211,8 @@ struct PointDistances {
   double accuracy = 0;  ///< of a distance: that of the engine for the box of O2 and the points
   Box bounds;           ///< of the finite points
 
-  /// All points but those of islands: what fractions of points are of.
-  [[nodiscard]] std::uint64_t counted() const { return points - (islands ? islands->points : 0); }
+  /// All points with coordinates but those of islands: what fractions of points are of.
+  [[nodiscard]] std::uint64_t counted() const { return points - invalid - (islands ? islands->points : 0); }
 };
 
 /// Computes the distance of each point of a file to O2, and writes the points in their order as binary PLY:

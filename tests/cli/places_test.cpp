@@ -119,6 +119,18 @@ TEST_F(PlacesOutput, IslandsOfACloudAreNotSampled) {
   EXPECT_GT(all["coverage"]["value"], clean["coverage"]["value"]);
 }
 
+TEST_F(PlacesOutput, ACloudOfIslandsIsNotDecided) {
+  std::ofstream(folder / "few.xyz") << "1 1 0\n2 2 0\nnan nan nan\n";
+  const Outcome run = points(folder / "few.xyz", {"--tolerance", "0.1", "--ignore-islands", "9", "--json"});
+  EXPECT_EQ(run.code, 4) << run.err;
+  const Json report = Json::parse(run.out);
+  EXPECT_EQ(report["tolerance"]["text"], "no point is left to measure");
+  EXPECT_EQ(report["tolerance"]["exceeded_point_fraction"], 0);
+  EXPECT_THAT(report["notes"].dump(), HasSubstr("left out; there are no other points with coordinates"));
+  EXPECT_THAT(points(folder / "few.xyz", {"--ignore-islands", "9", "--align"}).err,
+              HasSubstr("there are no points with coordinates that are of no island"));
+}
+
 // An uneven placement stretches some lengths more than others.
 TEST_F(PlacesOutput, TheReachOfIslandsHoldsAfterThePlacement) {
   const std::string file = cloud(60);
@@ -146,6 +158,17 @@ TEST_F(PlacesOutput, TheReachOfIslandsHoldsAfterThePlacement) {
   EXPECT_LE(sheared.reach, 1.8 * plain.reach);
   EXPECT_LE(sheared.apart, 0.6181 * plain.apart);
   EXPECT_GE(sheared.apart, 0.55 * plain.apart);
+}
+
+// Points without coordinates are no part of any fraction.
+TEST_F(PlacesOutput, FractionsAreOfThePointsWithCoordinates) {
+  std::ofstream(folder / "some.xyz") << "1 1 0\n2 2 0.3\n3 3 0\n4 4 7\nnan nan nan\nnan 1 1\n";
+  const Outcome run = points(folder / "some.xyz", {"--tolerance", "0.1", "--max-distance", "1", "--json"});
+  EXPECT_EQ(run.code, 3) << run.err;
+  const Json report = Json::parse(run.out);
+  EXPECT_EQ(report["tolerance"]["exceeded_points"], 2);
+  EXPECT_EQ(report["tolerance"]["exceeded_point_fraction"], 0.5);
+  EXPECT_EQ(report["beyond_max_distance_point_fraction"], 0.25);
 }
 
 // As directions without a measurement in a scan with coordinates of a country are: at 0, 0, 0.

@@ -182,7 +182,7 @@ TEST_F(PointsCommand, StatesWhatIsNotDecided) {
   EXPECT_EQ(verdict({"--tolerance", "1"}), std::pair(std::string("NOT DECIDED"), 4));
   EXPECT_EQ(verdict({"--tolerance", "0.9"}), std::pair(std::string("FAIL"), 3));
   EXPECT_THAT(run(with("none.xyz", "nan 0 0\n"), {"--tolerance", "1"}).out,
-              HasSubstr("NOT DECIDED: no point has coordinates"));
+              HasSubstr("NOT DECIDED: no point is left to measure"));
   o2 = write_obj(folder / "open.obj", square(8, 0));
   EXPECT_EQ(verdict({"--tolerance", "-0.1:2.5", "--sign", "winding"}),
             std::pair(std::string("NOT DECIDED"), 4));

@@ -453,6 +453,18 @@ TEST_F(CloudPage, IsUsableByAllAndPrints) {
       passes("says", page(), {"FAIL", "of the points are out of tolerance", "All points of the cloud"}));
 }
 
+// As in the verdict.
+TEST_F(CloudPage, PointsWithoutCoordinatesAreNoneWithoutAValue) {
+  write_cloud(300, 0);
+  std::ofstream(cloud, std::ios::app) << "nan nan nan\n0 0 50\n";
+  measure({"--max-distance", "4"});
+  const std::string text = contents(page());
+  const std::size_t at = text.find("\"area\":{\"lo\":");
+  ASSERT_NE(at, std::string::npos);
+  const Json area = Json::parse(text.substr(at + 7, text.find('}', at) - at - 6));
+  EXPECT_NEAR(area["without_value"], 1.0 / 301, 1e-6) << area;
+}
+
 TEST_F(CloudPage, StatesThePointsOfNoGroup) {
   write_cloud(300, 0);
   std::ofstream(cloud, std::ios::app) << "0 0 50\n";

@@ -9,14 +9,14 @@ namespace sdm {
 Summary summarize(const PointDistances& found, const PointDistancesOptions& options) {
   PictureOptions picture = options.picture;
   picture.accuracy = found.accuracy;
+  const auto counted = static_cast<double>(std::max<std::uint64_t>(found.counted(), 1));
   Summary summary{.units = picture.units,
                   .of_points = true,
                   .sign = found.sign,
                   .measured = found.measured,
                   .distance = found.distance,
                   .beyond_max_distance = found.beyond_max_distance,
-                  .beyond_fraction = static_cast<double>(found.beyond_max_distance) /
-                                     static_cast<double>(std::max<std::uint64_t>(found.counted(), 1)),
+                  .beyond_fraction = static_cast<double>(found.beyond_max_distance) / counted,
                   .without_match = found.without_match,
                   .max_distance = options.map.max_distance,
                   .evidence = {.complete = found.beyond_max_distance + found.without_match == 0,
@@ -40,8 +40,7 @@ Summary summarize(const PointDistances& found, const PointDistancesOptions& opti
   summary.tolerance = CertifiedVerdict{{judgement, *picture.tolerance, {}, 0, {}}};
   if (found.min && summary.evidence.complete) summary.tolerance->largest = found.distance.max_abs;
   summary.exceeding_points = found.beyond_tolerance;
-  summary.exceeding_point_fraction =
-      static_cast<double>(found.beyond_tolerance) / static_cast<double>(found.counted());
+  summary.exceeding_point_fraction = static_cast<double>(found.beyond_tolerance) / counted;
   return summary;
 }
 

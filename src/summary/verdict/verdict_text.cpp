@@ -22,7 +22,7 @@ std::string open_text(const Summary& summary, const std::string& limits) {
   const CertifiedVerdict& verdict = *summary.tolerance;
   switch (verdict.reason) {
     case VerdictReason::nothing_measured:
-      return summary.of_points ? "no point has coordinates" : "nothing was measured";
+      return summary.of_points ? "no point is left to measure" : "nothing was measured";
     case VerdictReason::unknown_accuracy:
       return "the accuracy of the distances is unknown";
     case VerdictReason::estimated_signs:

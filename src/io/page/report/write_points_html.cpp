@@ -103,7 +103,7 @@ Contents contents_of(MeasuredRows& rows, const PointDistances& found) {
   rows.for_each([&](std::uint64_t number, const MeasuredPoint& p) {
     if (finite(p.point)) cells.add({p.distance, p.point, number});
   });
-  sums.add_without_value(static_cast<double>(found.counted() - found.distance.texels));
+  sums.add_without_value(static_cast<double>(found.beyond_max_distance + found.without_match));
   result.picked = result.shown.size();
   result.by_value = sums.fractions();
 
