@@ -1,5 +1,6 @@
 #include "terminal_text.h"
 
+#include <sdm/summary.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <new>
+#include <utility>
 
 #include "help_text.h"
 #include "src/core/printable.h"
@@ -31,18 +33,18 @@ std::size_t characters(std::string_view text) {
 
 // Bold, and green, red or yellow, where the text of a line is a verdict.
 std::string colored(std::string line) {
-  struct Word {
-    std::string_view text, color;
-  };
-  constexpr std::array<Word, 4> kWords{
-      {{"PASS", "32"}, {"FAIL", "31"}, {"NOT DECIDED", "33"}, {"DOUBTFUL", "33"}}};
-  const std::size_t begin = line.starts_with("  ") ? text_column(line) : 0;
-  for (const auto& [word, color] : kWords)
-    if (std::string_view(line).substr(std::min(begin, line.size())).starts_with(word)) {
-      line.insert(begin + word.size(), "\x1b[0m");
-      line.insert(begin, "\x1b[1;" + std::string(color) + "m");
-      break;
-    }
+  constexpr std::array<std::pair<sdm::Verdict, const char*>, 4> kColors{{{sdm::Verdict::pass, "32"},
+                                                                         {sdm::Verdict::fail, "31"},
+                                                                         {sdm::Verdict::not_decided, "33"},
+                                                                         {sdm::Verdict::doubtful, "33"}}};
+  const std::size_t begin = line.starts_with("  ") ? std::min(text_column(line), line.size()) : 0;
+  for (const auto& [verdict, color] : kColors) {
+    const std::string word = sdm::name_of(verdict);
+    if (!std::string_view(line).substr(begin).starts_with(word)) continue;
+    line.insert(begin + word.size(), "\x1b[0m");
+    line.insert(begin, std::string("\x1b[1;") + color + "m");
+    break;
+  }
   return line;
 }
 

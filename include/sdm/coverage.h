@@ -61,6 +61,7 @@ struct CoverageOptions {
 /// The same with the places, for pictures. Cost: that of coverage(), and memory for each piece.
 [[nodiscard]] SDM_API CoverageMap coverage_map(const Mesh& o2, const Sites& measured, double reach,
                                                const CoverageOptions& options = {});
+/// The same for measured points.
 [[nodiscard]] SDM_API CoverageMap coverage_map(const Mesh& o2, std::span<const Vec3> measured, double reach,
                                                const CoverageOptions& options = {});
 
