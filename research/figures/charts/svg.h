@@ -18,7 +18,7 @@ namespace sdm::figures {
 
 inline constexpr io::Rgb kText{28, 30, 34}, kAxisColor{90, 94, 100}, kGridColor{226, 228, 232};
 /// The palette of Okabe and Ito but for its yellow, distinguishable by colour-blind readers.
-inline constexpr io::Rgb kSeriesColors[] = {{0, 114, 178},  {213, 94, 0},  {0, 158, 115}, {204, 121, 167},
+inline constexpr io::Rgb kSeriesColors[] = {{0, 114, 178},  {213, 94, 0},  {0, 158, 115},  {204, 121, 167},
                                             {86, 180, 233}, {230, 159, 0}, {120, 124, 130}};
 
 struct Stroke {

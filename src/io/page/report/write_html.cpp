@@ -61,20 +61,20 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
   PackedArrays arrays, model_arrays, ghost_arrays;
   Json thin;
   AreaByValue area;
-  run_concurrently(
-      {[&] { map_json = add_map(arrays, surface, map, options.largest); },
-       [&] {
-         model = add_model(model_arrays, surface, vertex_distances, options.names, options.largest,
-                           options.triangles);
-       },
-       [&] {
-         if (options.other)
-           ghost = add_ghost(ghost_arrays, *options.other, options.coverage, options.triangles_of_other);
-       },
-       [&] {
-         if (options.thinnest) thin = thinnest(surface, map);
-       },
-       [&] { area = area_by_value(surface, map); }});
+  run_concurrently({[&] { map_json = add_map(arrays, surface, map, options.largest); },
+                    [&] {
+                      model = add_model(model_arrays, surface, vertex_distances, options.names,
+                                        options.largest, options.triangles);
+                    },
+                    [&] {
+                      if (options.other)
+                        ghost = add_ghost(ghost_arrays, *options.other, options.coverage,
+                                          options.triangles_of_other);
+                    },
+                    [&] {
+                      if (options.thinnest) thin = thinnest(surface, map);
+                    },
+                    [&] { area = area_by_value(surface, map); }});
   arrays.add(std::move(model_arrays)), arrays.add(std::move(ghost_arrays));
   page = common_json(options.up);
   page["area"] = add_area(arrays, area);
