@@ -10,7 +10,8 @@ import { unitOf } from './verdict';
 const kCovered: Vec = [150, 172, 190];
 const kMissing: Vec = [222, 105, 20];
 
-const kVertexShader = `
+/// Passes on the point, and as the camera sees it.
+export const kReferenceVertexShader = `
   out vec3 vPoint, vView;
   void main() {
     vPoint = position;
@@ -52,7 +53,7 @@ export function coverageOf({ position, triangle, covered }: Ghost): CoverageObje
     shape.setIndex(new BufferAttribute(Uint32Array.from(corners), 1));
     const material = new ShaderMaterial({
       glslVersion: '300 es',
-      vertexShader: kVertexShader,
+      vertexShader: kReferenceVertexShader,
       fragmentShader: kShader,
       side: DoubleSide,
       uniforms: { cut: { value: [0, 0, 0, 1] }, color: { value: new Vector3(...color).divideScalar(255) } },

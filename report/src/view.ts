@@ -2,21 +2,12 @@
 import { BufferAttribute, BufferGeometry, DoubleSide, Mesh, ShaderMaterial, Vector3 } from 'three';
 import type { Colors, Scale } from './color_scale';
 import { setScale } from './color_uniforms';
-import { coverageOf } from './coverage';
+import { coverageOf, kReferenceVertexShader } from './coverage';
 import type { Ghost, Vec } from './page_data';
 import type { Camera } from './saved';
 import type { Found, HalfSpace, Subject } from './subject';
 import { Viewer } from './viewer';
 
-const kGhostVertexShader = `
-  out vec3 vPoint, vView;
-  void main() {
-    vPoint = position;
-    vec4 view = modelViewMatrix * vec4(position, 1.0);
-    vView = view.xyz;
-    gl_Position = projectionMatrix * view;
-  }
-`;
 const kGhostShader = `
   precision highp float;
   uniform vec4 cut;
@@ -53,7 +44,7 @@ export class View extends Viewer {
     this.look('corner');
     this.ghostMaterial = new ShaderMaterial({
       glslVersion: '300 es',
-      vertexShader: kGhostVertexShader,
+      vertexShader: kReferenceVertexShader,
       fragmentShader: kGhostShader,
       side: DoubleSide,
       transparent: true,
