@@ -31,7 +31,7 @@ struct BodiesCommand : RunOptions {
   std::filesystem::path out, poses;
   sdm::MultiBodyOptions options;
   sdm::AtlasOptions atlas{.resolution = 128};
-  MapFiles map_files;
+  MapFiles map_files{.views = false};
 };
 
 /// The files of a run with any number of bodies.

@@ -153,8 +153,9 @@ int run(MapCommand command) {
 void add_map_command(CLI::App& app) {
   CLI::App* map = app.add_subcommand("map", "Compute the distance from every point of mesh O1 to mesh O2");
   map->footer(fmt::format(
-      "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb (O1 in colours), "
-      "report.html (a page that shows all of it) and report.json.\n"
+      "Writes views.png (O1 from six sides), map.exr (all values), atlas_distance.png, atlas_voronoi.png, "
+      "atlas_direction.png, model.glb (O1 in colours), report.html (a page that shows all of it) and "
+      "report.json.\n"
       "{} An interrupt terminates sdm with its signal.\n\n"
       "Example, two meshes side by side:\n"
       "  sdm map bunny.obj armadillo.off -o out --transform-o1 fit --transform-o2 fit,translate:0.8:0:0",

@@ -16,11 +16,11 @@ struct Kind {
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> kinds{
+      {"views", &MapFiles::views, false, {"views.png"}},
       {"exr", &MapFiles::exr, false, {"map.exr"}},
-      {"png", &MapFiles::png, false, {"distance.png", "voronoi.png", "direction.png"}},
+      {"png", &MapFiles::png, false, {"atlas_distance.png", "atlas_voronoi.png", "atlas_direction.png"}},
       {"glb", &MapFiles::glb, false, {"model.glb"}},
       {"html", &MapFiles::html, true, {"report.html"}},
-      {"views", &MapFiles::views, false, {"views.png"}},
       {"texture", &MapFiles::texture, false, {"distance_texture.png", "distance_texture.json"}},
       {"ply", &MapFiles::ply, true, {"vertices.ply"}},
       {"csv", &MapFiles::csv, true, {"vertices.csv"}},
@@ -75,8 +75,9 @@ void add_write_option(CLI::App& app, MapFiles& files, bool of_one_input) {
     if (possible && (of_one_input || !kind.of_one_input)) choices.emplace_back(kind.name);
   }
   std::string help =
-      "The files of a map to write: exr: map.exr; png: the three pictures; glb: model.glb; views: "
-      "six shaded views of O1 in one picture; texture: the distance as 16-bit grey; ";
+      "The files of a map to write: views: views.png, O1 from six sides; exr: map.exr; png: three pictures "
+      "of "
+      "the atlas; glb: model.glb; texture: the distance as 16-bit grey; ";
   if (files.html) help += "html: report.html; ";
   if (of_one_input)
     help +=
@@ -133,9 +134,9 @@ void write_map_files(const std::filesystem::path& folder, const MapFiles& files,
   if (files.glb)
     work.push_back([&] { sdm::write_glb(folder / "model.glb", surface, map, at_vertices, fixed); });
   if (files.png) {
-    work.push_back([&] { sdm::write_distance_png(folder / "distance.png", surface, map, fixed); });
-    work.push_back([&] { sdm::write_direction_png(folder / "direction.png", surface, map, fixed); });
-    work.push_back([&] { sdm::write_voronoi_png(folder / "voronoi.png", surface, map, fixed); });
+    work.push_back([&] { sdm::write_distance_png(folder / "atlas_distance.png", surface, map, fixed); });
+    work.push_back([&] { sdm::write_direction_png(folder / "atlas_direction.png", surface, map, fixed); });
+    work.push_back([&] { sdm::write_voronoi_png(folder / "atlas_voronoi.png", surface, map, fixed); });
   }
   if (files.views)
     work.push_back(

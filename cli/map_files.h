@@ -13,13 +13,13 @@
 
 /// Which files of a map are written.
 struct MapFiles {
-  bool exr = true;  ///< map.exr
-  bool png = true;  ///< distance.png, voronoi.png and direction.png
-  bool glb = true;  ///< model.glb
+  bool views = true;  ///< views.png
+  bool exr = true;    ///< map.exr
+  bool png = true;    ///< atlas_distance.png, atlas_voronoi.png and atlas_direction.png
+  bool glb = true;    ///< model.glb
   /// report.html: written by the commands that offer it, as it contains their report
   bool html = true;
   bool texture = false;                                     ///< distance_texture.png and .json
-  bool views = false;                                       ///< views.png
   bool ply = false, csv = false, npy = false, vtp = false;  ///< vertices.ply, ...
 
   /// Whether there is a file of the input's vertices.

@@ -132,8 +132,8 @@ void add_self_command(CLI::App& app) {
       app.add_subcommand("self", "Compute the distance from every point of a mesh to the rest of the mesh");
   self->footer(
       "Each face excludes a neighbourhood; distances are measured to all other faces.\n"
-      "Writes map.exr (all values), distance.png, voronoi.png, direction.png, model.glb, report.html and "
-      "report.json.\n\n"
+      "Writes views.png (the mesh from six sides), map.exr (all values), atlas_distance.png, "
+      "atlas_voronoi.png, atlas_direction.png, model.glb, report.html and report.json.\n\n"
       "Example, distances to parts that are at least 5 away along the surface:\n"
       "  sdm self part.stl -o out --geodesic 5 --max-distance 20");
   const auto command = std::make_shared<SelfCommand>();

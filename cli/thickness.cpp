@@ -286,8 +286,9 @@ void add_thickness_command(CLI::App& app) {
   CLI::App* thickness = app.add_subcommand("thickness", "Compute the wall thickness of a closed mesh");
   thickness->footer(
       "Values are exact at the texels, and an estimate for the surface between them.\n"
-      "Writes map.exr (all values), ray.exr (the other method), distance.png, voronoi.png, direction.png, "
-      "model.glb, report.html and report.json.\n" +
+      "Writes views.png (the mesh from six sides), map.exr (all values), ray.exr (the other method), "
+      "atlas_distance.png, atlas_voronoi.png, atlas_direction.png, model.glb, report.html and "
+      "report.json.\n" +
       exit_codes() +
       "\n\n"
       "Example, walls of a casting that must have at least 3 mm:\n"

@@ -151,13 +151,13 @@ SDM_API void write_exr(const std::filesystem::path& file, const Surface& surface
 SDM_API void write_npy(const std::filesystem::path& file, std::uint32_t resolution,
                        std::span<const std::uint32_t> values);
 
-/// distance.png: the colour-mapped distance, with a legend of range and units.
+/// atlas_distance.png: the colour-mapped distance, with a legend of range and units.
 SDM_API void write_distance_png(const std::filesystem::path& file, const Surface& surface,
                                 const DistanceMap& map, const PictureOptions& options = {});
-/// voronoi.png: one colour per closest site.
+/// atlas_voronoi.png: one colour per closest site.
 SDM_API void write_voronoi_png(const std::filesystem::path& file, const Surface& surface,
                                const DistanceMap& map, const PictureOptions& options = {});
-/// direction.png: the unit vector to O2, (x, y, z) → (r, g, b) by (1 + x)/2.
+/// atlas_direction.png: the unit vector to O2, (x, y, z) → (r, g, b) by (1 + x)/2.
 SDM_API void write_direction_png(const std::filesystem::path& file, const Surface& surface,
                                  const DistanceMap& map, const PictureOptions& options = {});
 

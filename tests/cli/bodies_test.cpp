@@ -135,8 +135,9 @@ TEST_F(BodiesCommand, WritesAMapForEachBody) {
   const MultiBodyQuery expected = in_library({.max_distance = 9});
   for (std::size_t body = 0; body < 3; ++body) {
     const std::string mine = out + "/" + std::to_string(body);
-    EXPECT_EQ(names_in(mine), (std::vector<std::string>{"body.npy", "direction.png", "distance.png",
-                                                        "map.exr", "model.glb", "voronoi.png"}));
+    EXPECT_EQ(names_in(mine),
+              (std::vector<std::string>{"atlas_direction.png", "atlas_distance.png", "atlas_voronoi.png",
+                                        "body.npy", "map.exr", "model.glb"}));
     const NearestMap nearest = expected.nearest_map(body);
     const std::string bytes = contents(mine + "/body.npy");
     ASSERT_EQ(bytes.size(), 128 + 4 * nearest.body.size());

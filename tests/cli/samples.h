@@ -36,9 +36,9 @@ inline std::vector<std::string> names_in(const std::filesystem::path& folder) {
 }
 
 inline const std::vector<std::string> kResults = [] {
-  std::vector<std::string> names{"direction.png", "distance.png", "map.exr",
-                                 "model.glb",     "report.json",  "voronoi.png"};
-  if (can_write_html()) names.insert(names.begin() + 4, "report.html");
+  std::vector<std::string> names{"atlas_direction.png", "atlas_distance.png", "atlas_voronoi.png", "map.exr",
+                                 "model.glb",           "report.json",        "views.png"};
+  if (can_write_html()) names.insert(names.begin() + 5, "report.html");
   return names;
 }();
 

@@ -1,6 +1,8 @@
 #include <sdm/io.h>
 
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "io_write/read_png.h"
 #include "support/made_up_maps.h"
@@ -66,8 +68,19 @@ TEST_F(Pictures, LegendNamesTheUnits) {
 TEST_F(Pictures, VoronoiHasOneColourPerSite) {
   write_voronoi_png(folder / "voronoi.png", surface, map);
   const Pixels pixels = read_png(folder / "voronoi.png");
-  EXPECT_EQ(pixels.width, n);
-  EXPECT_EQ(pixels.height, n);
+  ASSERT_GT(pixels.width, n + 100);
+  ASSERT_GE(pixels.height, n);
+  // The legend shows faces, edges and vertices, and texels without a value.
+  std::set<std::array<std::uint8_t, 3>> swatches;
+  for (std::size_t y = 0; y < pixels.height; ++y)
+    for (std::size_t x = n; x < pixels.width; ++x) {
+      const Rgb c = pixels.at(x, y);
+      swatches.insert({c.r, c.g, c.b});
+    }
+  for (const SiteType type : {SiteType::face, SiteType::edge, SiteType::vertex, SiteType::none}) {
+    const Rgb c = site_color(type, 0);
+    EXPECT_TRUE(swatches.contains({c.r, c.g, c.b}));
+  }
   for_each_texel(pixels, [&](std::size_t texel, Rgb color) {
     const bool missing = map.site_type[texel] == SiteType::none;
     ASSERT_EQ(color, missing ? kNoValue : site_color(map.site_type[texel], map.site[texel]));

@@ -52,8 +52,8 @@ TEST_F(TallAtlas, ExrHasAllRows) {
 }
 
 TEST_F(TallAtlas, PicturesHaveAllRows) {
-  write_voronoi_png(folder / "voronoi.png", surface, map);
-  const Pixels pixels = read_png(folder / "voronoi.png");
+  write_direction_png(folder / "direction.png", surface, map);
+  const Pixels pixels = read_png(folder / "direction.png");
   EXPECT_EQ(pixels.width, kSide);
   EXPECT_EQ(pixels.height, surface.rows());
   write_distance_png(folder / "distance.png", surface, map, {.largest = 64});
@@ -99,12 +99,12 @@ TEST(WideAtlas, FilesHaveItsShape) {
   write_exr(folder / "map.exr", surface, map);
   const auto window = Imf::InputFile((folder / "map.exr").c_str()).header().dataWindow();
   EXPECT_EQ(window.max, Imath::V2i(199, 47));
-  write_voronoi_png(folder / "voronoi.png", surface, map);
-  EXPECT_EQ(read_png(folder / "voronoi.png").width, 200u);
-  EXPECT_EQ(read_png(folder / "voronoi.png").height, 48u);
-  write_voronoi_png(folder / "voronoi.png", surface, map, {.largest = 100});
-  EXPECT_EQ(read_png(folder / "voronoi.png").width, 100u);
-  EXPECT_EQ(read_png(folder / "voronoi.png").height, 24u);
+  write_direction_png(folder / "direction.png", surface, map);
+  EXPECT_EQ(read_png(folder / "direction.png").width, 200u);
+  EXPECT_EQ(read_png(folder / "direction.png").height, 48u);
+  write_direction_png(folder / "direction.png", surface, map, {.largest = 100});
+  EXPECT_EQ(read_png(folder / "direction.png").width, 100u);
+  EXPECT_EQ(read_png(folder / "direction.png").height, 24u);
   write_glb(folder / "model.glb", surface, map, at_vertices(mesh, field));
   tinygltf::Model model;
   std::string error, warning;

@@ -4,6 +4,7 @@
 #include "io/image/pictures/color_scale.h"
 #include "io/image/pictures/legend.h"
 #include "io/image/pictures/png.h"
+#include "io/image/pictures/site_legend.h"
 
 #include <sdm/io.h>
 
@@ -18,16 +19,25 @@ using namespace io;
 
 namespace {
 
-// A picture of the atlas: color(texel) where a face owns the texel, otherwise the background.
+// A picture of the atlas: color(texel) where a face owns the texel, otherwise the background; with a legend
+// beside it.
 template <class Color>
-void write_map_png(const std::filesystem::path& file, const AtlasPicture& picture, Color&& color) {
+void write_map_png(const std::filesystem::path& file, const AtlasPicture& picture, Color&& color,
+                   const Picture& legend = {}) {
   AtomicFile out(file);
-  write_png(out.stream(), picture.width(), picture.height(), [&](std::uint32_t y, std::span<Rgb> pixels) {
-    for (std::uint32_t x = 0; x < picture.width(); ++x) {
-      const std::uint32_t texel = picture.texel(x, y);
-      pixels[x] = texel == kNone ? kBackground : color(texel);
-    }
-  });
+  const std::uint32_t n = picture.width();
+  write_png(out.stream(), n + legend.width, std::max(picture.height(), legend.height),
+            [&](std::uint32_t y, std::span<Rgb> pixels) {
+              const auto map_row = pixels.first(n), legend_row = pixels.subspan(n);
+              std::fill(map_row.begin(), map_row.end(), kBackground);
+              std::fill(legend_row.begin(), legend_row.end(), Rgb{255, 255, 255});
+              if (y < picture.height())
+                for (std::uint32_t x = 0; x < n; ++x)
+                  if (const std::uint32_t texel = picture.texel(x, y); texel != kNone)
+                    map_row[x] = color(texel);
+              if (y < legend.height)
+                std::copy_n(&legend.pixels[std::size_t{y} * legend.width], legend.width, legend_row.begin());
+            });
   out.commit();
 }
 
@@ -37,35 +47,22 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
                         const PictureOptions& options) try {
   const ColorScale scale = color_scale(surface, map, options);
   const AtlasPicture picture(surface, options.largest);
-  const std::uint32_t n = picture.width();
   float least = std::numeric_limits<float>::infinity(), most = -least;
   for (const float d : map.distance)
     if (std::isfinite(d)) least = std::min(least, d), most = std::max(most, d);
-  const Picture legend =
-      draw_legend(scale, legend_text(map, least, most, scale, options.units), picture.height());
-
-  AtomicFile out(file);
-  write_png(out.stream(), n + legend.width, std::max(picture.height(), legend.height),
-            [&](std::uint32_t y, std::span<Rgb> pixels) {
-              const auto map_row = pixels.first(n), legend_row = pixels.subspan(n);
-              std::fill(map_row.begin(), map_row.end(), kBackground);
-              std::fill(legend_row.begin(), legend_row.end(), Rgb{255, 255, 255});
-              if (y < picture.height())
-                for (std::uint32_t x = 0; x < n; ++x)
-                  if (const std::uint32_t texel = picture.texel(x, y); texel != kNone)
-                    map_row[x] = scale(map.distance[texel]);
-              if (y < legend.height)
-                std::copy_n(&legend.pixels[std::size_t{y} * legend.width], legend.width, legend_row.begin());
-            });
-  out.commit();
+  write_map_png(
+      file, picture, [&](std::size_t texel) { return scale(map.distance[texel]); },
+      draw_legend(scale, legend_text(map, least, most, scale, options.units), picture.height()));
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
 }
 
 void write_voronoi_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                        const PictureOptions& options) try {
-  write_map_png(file, AtlasPicture(surface, options.largest),
-                [&](std::size_t texel) { return site_color(map.site_type[texel], map.site[texel]); });
+  const AtlasPicture picture(surface, options.largest);
+  write_map_png(
+      file, picture, [&](std::size_t texel) { return site_color(map.site_type[texel], map.site[texel]); },
+      draw_site_legend(picture.height(), map.beyond_max_distance + map.without_match > 0));
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
 }

@@ -17,6 +17,17 @@ Vec2 flat(const Vec3& p) {
   return {p[0], p[1]};
 }
 
+/// The samples whose centres are from `lo` to `hi`, of `count`: from `first` up to before `second`.
+std::pair<std::uint32_t, std::uint32_t> samples(double lo, double hi, std::uint32_t count) {
+  // Both ends are rounded by a conversion to int, which is one instruction; std::ceil() is a call.
+  const double most = count;
+  const double first = std::clamp(lo - 0.5, -1.0, most), last = std::clamp(hi - 0.5, -1.0, most - 1);
+  const auto begin = std::max(0, static_cast<int>(first) + (first > static_cast<int>(first) ? 1 : 0));
+  const auto end = static_cast<int>(last + 1);  // not negative: rounded down
+  return begin < end ? std::pair(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end))
+                     : std::pair(0u, 0u);
+}
+
 }  // namespace
 
 Vec3 Projection::operator()(const Vec3& point) const {
@@ -47,6 +58,7 @@ void DepthBuffer::draw(std::uint32_t face, const Triangle& triangle) {
   const auto [top, bottom] = std::minmax({p[0][1], p[1][1], p[2][1]});
   const auto [farthest, nearest] = std::minmax({p[0][2], p[1][2], p[2][2]});
   if (!(right > 0 && left < width_ && bottom > 0 && top < height_)) return;  // outside of the picture
+  const auto [first_row, end_row] = samples(top - kMargin, bottom + kMargin, height_);
   const double area = cross(flat(p[1]) - flat(p[0]), flat(p[2]) - flat(p[0]));
   if (area == 0) return;  // seen edge-on
   const double side = area > 0 ? 1 : -1;
@@ -56,26 +68,22 @@ void DepthBuffer::draw(std::uint32_t face, const Triangle& triangle) {
   const double by_x = (a[2] * b[1] - b[2] * a[1]) / area, by_y = (b[2] * a[0] - a[2] * b[0]) / area;
   const double at = p[0][2] - by_x * p[0][0] - by_y * p[0][1];
 
-  // The samples whose centres are from `lo` to `hi`, of `count`: from `first` up to before `end`.
-  const auto samples = [](double lo, double hi, std::uint32_t count) {
-    const double first = std::max(0.0, std::ceil(lo - 0.5)),
-                 last = std::min(count - 1.0, std::floor(hi - 0.5));
-    return first <= last ? std::pair(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last) + 1)
-                         : std::pair(0u, 0u);
-  };
-  const auto [first_row, end_row] = samples(top - kMargin, bottom + kMargin, height_);
+  std::array<double, 3> slope{}, per_row{};  // by how many columns an edge moves from row to row
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 &from = p[k], &to = p[(k + 1) % 3];
+    slope[k] = side * (from[1] - to[1]);
+    if (slope[k] != 0) per_row[k] = (to[0] - from[0]) / (to[1] - from[1]);
+  }
   for (std::uint32_t row = first_row; row < end_row; ++row) {
     // The columns where the row's samples are on the inner side of all three edges.
     const double y = row + 0.5;
     double begin = left - kMargin, end = right + kMargin;
     for (int k = 0; k < 3; ++k) {
-      const Vec3 &from = p[k], &to = p[(k + 1) % 3];
-      const double slope = side * (from[1] - to[1]);
-      const double rest = side * ((to[0] - from[0]) * (y - from[1]) + (to[1] - from[1]) * from[0]);
-      if (slope > 0)
-        begin = std::max(begin, -rest / slope - kMargin);
-      else if (slope < 0)
-        end = std::min(end, -rest / slope + kMargin);
+      const double column = p[k][0] + per_row[k] * (y - p[k][1]);
+      if (slope[k] > 0)
+        begin = std::max(begin, column - kMargin);
+      else if (slope[k] < 0)
+        end = std::min(end, column + kMargin);
     }
     const auto [first, last] = samples(begin, end, width_);
     for (std::uint32_t column = first; column < last; ++column) {

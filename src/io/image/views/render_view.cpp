@@ -69,12 +69,18 @@ Rgb color_at(const ViewScene& scene, std::uint32_t face, const Vec3& weights) {
     for (int k = 0; k < 3; ++k) place = place + weights[k] * corners[k];
     const auto width = static_cast<int>(surface.resolution()), height = static_cast<int>(surface.rows());
     const int x = static_cast<int>(place[0]), y = static_cast<int>(place[1]);
+    const auto is_of_chart = [&](std::size_t texel) {
+      return owners[texel] != kNone && charts[owners[texel]] == charts[face];
+    };
+    if (x >= 0 && x < width && y >= 0 && y < height)
+      if (const std::size_t own = std::size_t(y) * std::size_t(width) + std::size_t(x); is_of_chart(own))
+        return scene.colors[own];
     double nearest = std::numeric_limits<double>::infinity();
     std::optional<std::size_t> found;
     for (int row = std::max(0, y - 1); row <= std::min(height - 1, y + 1); ++row)
       for (int column = std::max(0, x - 1); column <= std::min(width - 1, x + 1); ++column) {
         const std::size_t texel = std::size_t(row) * std::size_t(width) + std::size_t(column);
-        if (owners[texel] == kNone || charts[owners[texel]] != charts[face]) continue;
+        if (!is_of_chart(texel)) continue;
         const double away = std::max(std::abs(column + 0.5 - place[0]), std::abs(row + 0.5 - place[1]));
         if (away < nearest) nearest = away, found = texel;
       }
@@ -121,7 +127,17 @@ class Renderer {
     return std::size_t{kSamples} * y * part_.width() + std::size_t{kSamples} * x;
   }
 
+  [[nodiscard]] bool is_background(std::uint32_t x, std::uint32_t y) const {
+    for (std::uint32_t row = 0; row < kSamples; ++row)
+      for (std::uint32_t column = 0; column < kSamples; ++column) {
+        const std::size_t sample = sample_at(x, y) + std::size_t{row} * part_.width() + column;
+        if (part_.face(sample) != kNone || (ghost_ && ghost_->face(sample) != kNone)) return false;
+      }
+    return true;
+  }
+
   [[nodiscard]] Rgb pixel(std::uint32_t x, std::uint32_t y) const {
+    if (is_background(x, y)) return kViewBackground;
     Color sum{}, last{};
     std::size_t last_sample = 0;
     bool any = false;

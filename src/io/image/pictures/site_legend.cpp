@@ -1,0 +1,50 @@
+#include "io/image/pictures/site_legend.h"
+
+#include <sdm/map.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "io/image/pictures/canvas.h"
+#include "io/image/pictures/color_scale.h"
+
+namespace sdm::io {
+namespace {
+
+// Lengths for 1024 rows; the drawing is scaled as a whole.
+constexpr double kLegendWidth = 232, kLegendHeight = 300, kEdge = 24, kSwatch = 22, kRow = 60;
+constexpr std::uint32_t kSwatches = 6;
+
+}  // namespace
+
+Picture draw_site_legend(std::uint32_t rows, bool has_missing) {
+  Canvas canvas(kLegendWidth, kLegendHeight, std::clamp(rows / 1024.0, 0.6, 4.0));
+  cairo_t* cairo = canvas.cairo();
+  double y = 40;
+  const auto text = [&](const std::string& line, double size, bool bold) {
+    canvas.set_color(kInk);
+    canvas.text(kEdge, y, line, size, kLegendWidth - 1.5 * kEdge, bold);
+  };
+  text("Closest site of O2", 19, true);
+  const auto swatch = [&](double x, Rgb color) {
+    canvas.set_color(color);
+    cairo_rectangle(cairo, x, y + 8, kSwatch, kSwatch);
+    cairo_fill(cairo);
+  };
+  for (const auto& [type, name] :
+       {std::pair(SiteType::face, "faces: pale"), std::pair(SiteType::edge, "edges: saturated"),
+        std::pair(SiteType::vertex, "vertices: dark")}) {
+    y += type == SiteType::face ? 34 : kRow;
+    text(name, 15, false);
+    for (std::uint32_t i = 0; i < kSwatches; ++i) swatch(kEdge + i * (kSwatch + 4), site_color(type, i));
+  }
+  if (has_missing) {
+    y += kRow;
+    text("nothing in range", 15, false);
+    swatch(kEdge, kNoValue);
+  }
+  return canvas.picture("the legend");
+}
+
+}  // namespace sdm::io
