@@ -42,8 +42,7 @@ extern "C" void* watch(void*) {
   std::this_thread::sleep_for(kPatience);
   for (int none = 0; !protections.compare_exchange_strong(none, kEnding); none = 0)
     std::this_thread::sleep_for(10ms);
-  // Again while the main thread still adds files; afterwards it can add none.
-  for (int i = 0; i < 3; ++i) OutputFolder::discard_current();
+  OutputFolder::discard_current();
   constexpr std::string_view kMessage = "sdm: error: cancelled\n";
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
   Interrupts::end();

@@ -182,25 +182,42 @@ OutputFolder::OutputFolder(const fs::path& folder, Earlier earlier)
     outer_ = current_;
     current_ = this;
   } catch (...) {
-    remove_traces();
+    remove_traces(staging_);
     throw;
   }
 }
 
 void OutputFolder::discard_current() {
-  for (OutputFolder* folder = current_; folder != nullptr; folder = folder->outer_) folder->remove_traces();
+  for (OutputFolder* folder = current_; folder != nullptr; folder = folder->outer_) folder->discard();
+}
+
+// Other threads still write. Under another name of the staging folder they can add no more files, since only
+// staging() makes folders, which waits; a file that was being opened meanwhile is found by another attempt.
+void OutputFolder::discard() {
+  constexpr int kAttempts = 100;
+  constexpr auto kStep = std::chrono::milliseconds(5);
+  std::error_code error;
+  fs::path ended = staging_;
+  ended += "-ended";
+  fs::rename(staging_, ended, error);
+  if (error) ended = staging_;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    remove_traces(ended);
+    if (!fs::exists(ended, error)) return;
+    std::this_thread::sleep_for(kStep);
+  }
 }
 
 OutputFolder::~OutputFolder() {
   const Interrupts::Protected whole;
   current_ = outer_;
-  remove_traces();
+  remove_traces(staging_);
 }
 
-void OutputFolder::remove_traces() {
+void OutputFolder::remove_traces(const fs::path& staging) {
   reserve_.reset();
   std::error_code ignored;
-  if (!staging_.empty()) remove_staging(staging_);
+  if (!staging.empty()) remove_staging(staging);
   // Folders that contain results are not empty, so they remain.
   for (fs::path made = folder_; made != existing_; made = made.parent_path()) fs::remove(made, ignored);
 }
@@ -223,6 +240,7 @@ void OutputFolder::fill(const std::function<void()>& work, const std::function<v
 }
 
 fs::path OutputFolder::staging(const fs::path& subfolder) {
+  const Interrupts::Protected whole;
   fs::path path = staging_ / kFiles / subfolder;
   create_folder(path);
   return path;

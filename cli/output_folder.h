@@ -30,7 +30,8 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// Removes what the folders in use have written: for a process that must end at once.
+  /// Removes what the folders in use have written, while other threads write: for a process that ends at
+  /// once, after Interrupts admits no more Protected work.
   static void discard_current();
 
   /// Calls `work`, which writes its files below staging(), then moves them to the output folder, replacing
@@ -45,7 +46,8 @@ class OutputFolder {
  private:
   [[nodiscard]] std::string with_final_path(std::string message) const;
   void commit();
-  void remove_traces();
+  void remove_traces(const std::filesystem::path& staging);
+  void discard();
 
   static inline std::atomic<OutputFolder*> current_ = nullptr;  ///< the innermost one in use
 

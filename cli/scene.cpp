@@ -51,7 +51,7 @@ class Recorder {
       sdm::write_ply(folder / sequence_, body.mesh);
     } else if (numbered || body.tears) {
       sequence_ = body.name;
-      fs::create_directories(folder_);
+      fs::create_directory(folder_);  // fails once the staging folder is gone
       numbered_ = true;
     } else {
       sequence_ = body.name + ".ply+" + body.name + ".npy";
