@@ -53,6 +53,9 @@ class DistanceMap(_core.MapChannels):
         super().__init__(core)
         self._core = core
 
+    def __reduce__(self) -> "tuple[type, tuple[_core.Map]]":
+        return type(self), (self._core,)
+
     @property
     def surface(self) -> Surface:
         """The surface on which distances are measured."""
@@ -118,9 +121,9 @@ class DistanceMap(_core.MapChannels):
         """Returns the largest absolute distance of all points of the surface, with bounds: the one-sided Hausdorff distance.
 
         precision: None: bounds from the texels, which are about a texel's size apart; otherwise by branch and bound on the
-        triangles, so that they are at most this far apart, in units of the meshes (0: 1e-6 of the diagonal of both).
+        triangles, so that they are at most this far apart, in units of the meshes.
         The witness is a point of the surface and its closest point. Raises Error as ``bounds`` does, and for a precision
-        that is negative or NaN; Cancelled.
+        that is not positive; Cancelled.
 
         >>> distance = sdm.map(sphere, box, resolution=64).hausdorff()
         >>> distance.lower <= sdm.hausdorff(sphere, box, one_sided=True).value <= distance.upper

@@ -95,6 +95,7 @@ Positions PySites::edit(const MeshEdit& edit) {
   } else {
     sites.edit(edit);
   }
+  first = nullptr;
   ++shape;
   return positions_of(sites.mesh());
 }

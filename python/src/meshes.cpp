@@ -181,7 +181,7 @@ Raises Error if nothing would be left, and for limits out of range.
 
 void bind_meshes(nb::module_& module) {
   nb::class_<PyMesh> type(
-      module, "Mesh",
+      module, "Mesh", nb::is_weak_referenceable(),
       R"(A triangle mesh: any triangle soup, open or closed, manifold or not. It does not change.
 
 Accepts the same forms of a mesh as every function of this package:

@@ -24,4 +24,5 @@ NB_MODULE(_core, module) {
   bind_volume(module);
   bind_points(module);
   bind_scenes(module);
+  bind_pickle();
 }

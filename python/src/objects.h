@@ -34,10 +34,12 @@ struct SitesVersion {
 struct PySites {
   explicit PySites(Mesh mesh)
       : positions(std::make_shared<std::vector<Vec3>>(mesh.positions)),
+        first(positions),
         sites(std::move(mesh)),
         version(std::make_shared<SitesVersion>(SitesVersion{&sites, {}})) {}
 
   Positions positions;  ///< of the present shape; results and arrays keep it
+  Positions first;      ///< of the shape that the tree was built for; null once edited
   Sites sites;
   std::shared_ptr<SitesVersion> version;
   std::uint64_t shape = 0;  ///< the number of refits and edits
@@ -49,10 +51,16 @@ struct PySites {
 };
 
 struct PySurface {
-  PySurface(Mesh mesh, const AtlasOptions& options)
-      : positions(std::make_shared<std::vector<Vec3>>(mesh.positions)), surface(std::move(mesh), options) {}
+  PySurface(Mesh mesh, const AtlasOptions& layout)
+      : positions(std::make_shared<std::vector<Vec3>>(mesh.positions)),
+        first(positions),
+        options(layout),
+        surface(std::move(mesh), layout) {
+    options.progress = {};
+  }
 
-  Positions positions;
+  Positions positions, first;  ///< of the present shape, and of the one that was laid out
+  AtlasOptions options;
   Surface surface;
   std::uint64_t shape = 0, edits = 0;  ///< the numbers of refits and edits, and of edits
   Access access;
@@ -79,6 +87,9 @@ void bind_edit(nb::class_<PySurface>& surface);
 /// A view of positions that keeps them: it does not change with the object.
 [[nodiscard]] nb::object positions_view(const Positions& positions);
 [[nodiscard]] nb::object faces_view(const Mesh& mesh, nb::handle owner);
+
+/// Adds pickling to the types above and to those of proximity.h and map.h, after all are bound.
+void bind_pickle();
 
 void bind_errors(nb::module_& module);
 void bind_meshes(nb::module_& module);

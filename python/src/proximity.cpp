@@ -114,7 +114,7 @@ the same in all frames.)")
 
 void bind_shape(nb::module_& module) {
   nb::class_<PyShape>(
-      module, "Shape",
+      module, "Shape", nb::is_weak_referenceable(),
       R"(A mesh prepared for proximity queries, which any number of bodies can share: a thousand bodies of
 one shape need the memory of one.
 
@@ -128,14 +128,7 @@ atlas. Raises Error for a mesh that cannot be used.
           [](PyShape* self, nb::handle mesh, nb::handle faces, std::optional<std::uint32_t> resolution,
              nb::handle progress) {
             const Mesh value = mesh_of(mesh, faces);
-            run(progress, [&](const Progress& report) {
-              if (resolution) {
-                const AtlasOptions atlas{.resolution = *resolution, .progress = report};
-                new (self) PyShape{Shape(value, atlas)};
-              } else {
-                new (self) PyShape{Shape(value)};
-              }
-            });
+            run(progress, [&](const Progress& report) { new (self) PyShape(value, resolution, report); });
           },
           nb::arg("mesh").none(), nb::arg("faces") = nb::none(), nb::kw_only(),
           nb::arg("resolution") = nb::none(), nb::arg("progress") = nb::none(),
@@ -163,6 +156,10 @@ std::size_t faces_of(const ProximityQuery& query) {
 const char* name_of(Certainty certainty) {
   return certainty == Certainty::exact ? "exact" : certainty == Certainty::bounded ? "bounded" : "estimate";
 }
+
+PyShape::PyShape(const Mesh& mesh, std::optional<std::uint32_t> side, const Progress& progress)
+    : resolution(side),
+      shape(side ? Shape(mesh, {.resolution = *side, .progress = progress}) : Shape(mesh)) {}
 
 Shape shape_of(nb::handle body) {
   if (nb::isinstance<PyShape>(body)) return nb::cast<const PyShape&>(body).shape;

@@ -26,6 +26,9 @@ struct PyContacts {
 
 /// A mesh prepared for proximity queries, as of sdm.Shape.
 struct PyShape {
+  PyShape(const Mesh& mesh, std::optional<std::uint32_t> side, const Progress& progress);
+
+  std::optional<std::uint32_t> resolution;  ///< of the atlas, if it has one
   Shape shape;
 };
 

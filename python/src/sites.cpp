@@ -279,7 +279,7 @@ void bind_views(nb::class_<PySites>& sites) {
 void bind_sites(nb::module_& module) {
   bind_closest_points(module);
   nb::class_<PySites> sites(
-      module, "Sites",
+      module, "Sites", nb::is_weak_referenceable(),
       R"(The object that distances are measured to (O2): the faces, edges and vertices of a mesh,
 prepared for queries.
 

@@ -220,7 +220,7 @@ void bind_arrays(nb::class_<PySurface>& type) {
 
 void bind_surface(nb::module_& module) {
   nb::class_<PySurface> type(
-      module, "Surface",
+      module, "Surface", nb::is_weak_referenceable(),
       R"(The surface on which distances are measured (O1): a mesh laid out in a texture.
 
 mesh, faces: as Mesh.

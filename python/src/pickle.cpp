@@ -1,0 +1,238 @@
+// Pickling and copying: objects are stored by what they were made from, and made again, which gives the same
+// object bit for bit but for memory of earlier queries.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+#include "arrays.h"
+#include "map.h"
+#include "objects.h"
+#include "proximity.h"
+
+namespace sdm::python {
+namespace {
+
+/// A copy of plain values, as bytes.
+template <class Element>
+nb::object packed(const std::vector<Element>& values) {
+  static_assert(std::is_trivially_copyable_v<Element>);
+  return nb::bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Element));
+}
+
+/// The values of packed(). Throws sdm::Error if there is a part of one.
+template <class Element>
+std::vector<Element> unpacked(nb::handle packed) {
+  const auto bytes = nb::cast<nb::bytes>(packed);
+  if (bytes.size() % sizeof(Element) != 0) throw Error("the pickle is damaged");
+  std::vector<Element> values(bytes.size() / sizeof(Element));
+  if (!values.empty()) std::memcpy(values.data(), bytes.c_str(), bytes.size());
+  return values;
+}
+
+nb::tuple state_of(const Mesh& mesh) {
+  return nb::make_tuple(packed(mesh.positions), packed(mesh.triangles), packed(mesh.corner_uvs));
+}
+
+Mesh mesh_from(nb::handle state) {
+  Mesh mesh{.positions = unpacked<Vec3>(state[0]),
+            .triangles = unpacked<Triangle>(state[1]),
+            .corner_uvs = unpacked<std::array<Vec2, 3>>(state[2])};
+  validate(mesh);
+  return mesh;
+}
+
+/// The options of an atlas that its layout depends on.
+nb::tuple state_of(const AtlasOptions& options) {
+  return nb::make_tuple(name_of(options.kind), options.resolution, options.rows, options.max_stretch,
+                        options.gutter);
+}
+
+AtlasOptions atlas_from(nb::handle state) {
+  return {.kind = atlas_of(nb::cast<std::string>(state[0]).c_str()),
+          .resolution = nb::cast<std::uint32_t>(state[1]),
+          .rows = nb::cast<std::optional<std::uint32_t>>(state[2]),
+          .max_stretch = nb::cast<double>(state[3]),
+          .gutter = nb::cast<std::uint32_t>(state[4])};
+}
+
+/// A method that stores the object and one that makes it again from that, without the GIL.
+template <class Object, class State, class Make>
+void bind_state(State state, Make make) {
+  nb::borrow<nb::class_<Object>>(nb::type<Object>())
+      .def("__getstate__", state, nb::sig("def __getstate__(self) -> tuple"))
+      .def(
+          "__setstate__", [make](Object& self, const nb::tuple& from) { make(&self, from); },
+          nb::arg("state"), nb::sig("def __setstate__(self, state: tuple, /) -> None"));
+}
+
+/// The present positions if a refit has changed the first ones, otherwise None.
+nb::object moved(const Positions& first, const Positions& present) {
+  return first == nullptr || first == present ? nb::none() : packed(*present);
+}
+
+Positions moved_from(nb::handle state) {
+  return state.is_none() ? nullptr : std::make_shared<std::vector<Vec3>>(unpacked<Vec3>(state));
+}
+
+/// Refits what an object that was just made holds; the object is gone if that throws.
+template <class Object, class Held>
+void refit_to(Object* object, Held& held, const Positions& positions) {
+  try {
+    held.refit(*positions);
+  } catch (...) {
+    object->~Object();
+    throw;
+  }
+  object->positions = positions;
+}
+
+void bind_surface_state() {
+  bind_state<PySurface>(
+      [](const PySurface& self) {
+        const auto lock = self.access.use();
+        if (self.edits > 0)
+          throw Error("a surface that was edited cannot be pickled or copied; make another one of its mesh");
+        Mesh first = self.surface.mesh();
+        first.positions = *self.first;
+        return nb::make_tuple(state_of(first), state_of(self.options), moved(self.first, self.positions));
+      },
+      [](PySurface* self, const nb::tuple& from) {
+        Mesh mesh = mesh_from(from[0]);
+        const AtlasOptions options = atlas_from(from[1]);
+        const Positions positions = moved_from(from[2]);
+        run_sized(mesh.triangles.size(), [&] {
+          new (self) PySurface(std::move(mesh), options);
+          if (positions) refit_to(self, self->surface, positions);
+        });
+      });
+}
+
+void bind_map_state() {
+  bind_state<PyMap>(
+      [](const PyMap& self) {
+        if (self.exclusion)
+          throw Error("a map of a surface to itself cannot be pickled or copied; compute it again");
+        const auto lock = self.use_surface();
+        const auto sites_lock = self.use_sites();
+        const DistanceMap& map = self.map;
+        nb::object thickness = nb::none(), along = nb::none();
+        if (self.thickness)
+          thickness = nb::make_tuple(self.thickness->first == ThicknessMethod::ball, self.thickness->second);
+        if (self.along) {
+          std::vector<Vec3> direction;
+          if (self.along->direction) direction.push_back(*self.along->direction);
+          along = packed(direction);
+        }
+        return nb::make_tuple(
+            self.surface_object, self.sites_object, self.engine, name_of(self.options.sign),
+            self.options.max_distance, self.options.facing, thickness, along, self.ms, map.resolution,
+            packed(map.distance), packed(map.vector), packed(map.site), packed(map.site_type),
+            nb::make_tuple(name_of(map.sign.method), map.sign.reason),
+            nb::make_tuple(static_cast<int>(map.measured.kind), map.measured.text, map.measured.facing),
+            map.beyond_max_distance, map.without_match, packed(map.unmatched));
+      },
+      [](PyMap* self, const nb::tuple& from) {
+        PyMap made;
+        made.surface_object = from[0], made.sites_object = from[1];
+        made.on = &nb::cast<const PySurface&>(made.surface_object);
+        made.to = &nb::cast<const PySites&>(made.sites_object);
+        made.surface_shape = made.on->shape, made.surface_edits = made.on->edits;
+        made.sites_shape = made.to->shape;
+        made.engine = nb::cast<std::string>(from[2]);
+        if (from[6].is_none() && from[7].is_none()) made.options.engine = engine_of(made.engine.c_str());
+        made.options.sign = sign_of(nb::cast<std::string>(from[3]).c_str());
+        made.options.max_distance = nb::cast<double>(from[4]);
+        made.options.facing = nb::cast<std::optional<double>>(from[5]);
+        if (!from[6].is_none()) {
+          const auto [ball, angle] = nb::cast<std::pair<bool, double>>(from[6]);
+          made.thickness = {ball ? ThicknessMethod::ball : ThicknessMethod::ray, angle};
+        }
+        if (!from[7].is_none()) {
+          const std::vector<Vec3> direction = unpacked<Vec3>(from[7]);
+          made.along.emplace().max_distance = made.options.max_distance;
+          if (!direction.empty()) made.along->direction = direction.front();
+        }
+        made.ms = nb::cast<double>(from[8]);
+        DistanceMap& map = made.map;
+        map.resolution = nb::cast<std::uint32_t>(from[9]);
+        map.distance = unpacked<float>(from[10]), map.vector = unpacked<Vec3f>(from[11]);
+        map.site = unpacked<std::uint32_t>(from[12]), map.site_type = unpacked<SiteType>(from[13]);
+        map.sign = {sign_of(nb::cast<std::string>(from[14][0]).c_str()), nb::cast<std::string>(from[14][1])};
+        map.measured = {static_cast<DistanceKind>(nb::cast<std::uint8_t>(from[15][0])),
+                        nb::cast<std::string>(from[15][1]), nb::cast<std::optional<double>>(from[15][2])};
+        map.beyond_max_distance = nb::cast<std::size_t>(from[16]);
+        map.without_match = nb::cast<std::size_t>(from[17]);
+        map.unmatched = unpacked<std::uint8_t>(from[18]);
+        const std::size_t texels = made.on->surface.texel_faces().size();
+        if (map.resolution != made.on->surface.resolution() || map.distance.size() != texels ||
+            map.vector.size() != texels || map.site.size() != texels || map.site_type.size() != texels)
+          throw Error("the pickle is damaged");
+        new (self) PyMap(std::move(made));
+      });
+}
+
+void bind_number_states() {
+  bind_state<DistanceStatistics>(
+      [](const DistanceStatistics& self) { return nb::make_tuple(packed(std::vector{self})); },
+      [](DistanceStatistics* self, const nb::tuple& from) {
+        const auto numbers = unpacked<DistanceStatistics>(from[0]);
+        if (numbers.size() != 1) throw Error("the pickle is damaged");
+        new (self) DistanceStatistics(numbers.front());
+      });
+  bind_state<BoundedLength>(
+      [](const BoundedLength& self) {
+        std::vector<std::array<Vec3, 2>> witness;
+        if (self.witness) witness.push_back(*self.witness);
+        return nb::make_tuple(self.value, static_cast<int>(self.certainty), self.lower, self.upper,
+                              packed(witness));
+      },
+      [](BoundedLength* self, const nb::tuple& from) {
+        const auto witness = unpacked<std::array<Vec3, 2>>(from[4]);
+        auto* made = new (self) BoundedLength;
+        made->value = nb::cast<double>(from[0]);
+        made->certainty = static_cast<Certainty>(nb::cast<int>(from[1]));
+        made->lower = nb::cast<double>(from[2]), made->upper = nb::cast<double>(from[3]);
+        if (!witness.empty()) made->witness = witness.front();
+      });
+}
+
+}  // namespace
+
+void bind_pickle() {
+  bind_state<PyMesh>([](const PyMesh& self) { return state_of(self.mesh); },
+                     [](PyMesh* self, const nb::tuple& from) { new (self) PyMesh{mesh_from(from)}; });
+  bind_state<PySites>(
+      [](const PySites& self) {
+        const auto lock = self.access.use();
+        // Those of an edited mesh are made for its present shape: distances then agree but for rounding.
+        Mesh first = self.sites.mesh();
+        if (self.first) first.positions = *self.first;
+        return nb::make_tuple(state_of(first), moved(self.first, self.positions));
+      },
+      [](PySites* self, const nb::tuple& from) {
+        Mesh mesh = mesh_from(from[0]);
+        const Positions positions = moved_from(from[1]);
+        run_sized(mesh.triangles.size(), [&] {
+          new (self) PySites(std::move(mesh));
+          if (positions) refit_to(self, self->sites, positions);
+        });
+      });
+  bind_surface_state();
+  bind_map_state();
+  bind_state<PyShape>(
+      [](const PyShape& self) {
+        return nb::make_tuple(state_of(self.shape.sites().mesh()), self.resolution);
+      },
+      [](PyShape* self, const nb::tuple& from) {
+        const Mesh mesh = mesh_from(from[0]);
+        const auto resolution = nb::cast<std::optional<std::uint32_t>>(from[1]);
+        run_sized(mesh.triangles.size(), [&] { new (self) PyShape(mesh, resolution, {}); });
+      });
+  bind_number_states();
+}
+
+}  // namespace sdm::python

@@ -1,0 +1,155 @@
+"""Objects are pickled and copied: the same values bit for bit, in this process and in another one."""
+
+import copy
+import gc
+import pickle
+import weakref
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+
+import meshes
+import numpy as np
+import pytest
+
+import sdm
+
+
+def again(value):
+    """The object after a round trip; copies agree with it."""
+    copied = copy.deepcopy(value)
+    assert type(copied) is type(value)
+    return pickle.loads(pickle.dumps(value))
+
+
+@pytest.fixture
+def pair():
+    return sdm.Mesh(*meshes.sphere(steps=3)), sdm.Mesh(*meshes.box())
+
+
+def test_meshes(pair):
+    textured = sdm.Mesh(*pair[0])
+    for mesh in (*pair, textured):
+        found = again(mesh)
+        assert np.array_equal(found.vertices, mesh.vertices) and np.array_equal(found.faces, mesh.faces)
+
+
+def test_sites_keep_their_present_shape(pair):
+    sites = sdm.Sites(pair[0])
+    points = np.random.default_rng(1).uniform(-2, 2, (500, 3))
+    sites.refit(pair[0].vertices * [1, 2, 3])
+    found = again(sites)
+    expected, answer = sites.closest_points(points), found.closest_points(points)
+    assert np.array_equal(answer.distance, expected.distance)
+    assert np.array_equal(answer.point, expected.point)
+
+
+def test_edited_sites(pair):
+    sites = sdm.Sites(pair[0])
+    sites.edit(removed_faces=[0, 5, 7])
+    points = np.random.default_rng(3).uniform(-2, 2, (500, 3))
+    found = again(sites).closest_points(points)
+    assert np.allclose(found.distance, sites.closest_points(points).distance, rtol=0, atol=1e-12)
+    surface = sdm.Surface(pair[0], resolution=64)
+    surface.edit(removed_faces=[0])
+    with pytest.raises(sdm.Error, match="edited"):
+        pickle.dumps(surface)
+
+
+@pytest.mark.parametrize("options", [{}, {"atlas": "triangles"}, {"precision": 0.05}, {"max_stretch": 2, "gutter": 3}])
+def test_surfaces_keep_layout_and_shape(pair, options):
+    surface = sdm.Surface(pair[0], **({"resolution": 128} | options if "precision" not in options else options))
+    for moved in (False, True):
+        if moved:
+            surface.refit(pair[0].vertices * [1, 2, 3])
+        found = again(surface)
+        assert np.array_equal(found.texel_faces, surface.texel_faces)
+        assert np.array_equal(found.vertices, surface.vertices)
+        assert found.covering_radius() == surface.covering_radius()
+        assert (found.atlas, found.resolution, found.rows) == (surface.atlas, surface.resolution, surface.rows)
+
+
+@pytest.mark.parametrize("options", [{}, {"max_distance": 0.5}, {"engine": "reference", "sign": "none"}, {"facing": 60}])
+def test_maps_keep_every_value(pair, options):
+    distance_map = sdm.map(*pair, resolution=128, **options)
+    found = again(distance_map)
+    for name in ("distance", "vector", "site", "site_type"):
+        assert getattr(found, name).tobytes() == getattr(distance_map, name).tobytes()
+    assert (found.sign, found.sign_reason, found.measured) == (distance_map.sign, distance_map.sign_reason, distance_map.measured)
+    assert found.without_match == distance_map.without_match
+    assert np.array_equal(found.at_vertices(), distance_map.at_vertices(), equal_nan=True)
+    assert found.statistics().p95 == distance_map.statistics().p95
+    if not options.get("facing"):
+        assert found.bounds == distance_map.bounds
+
+
+def test_other_maps(pair):
+    for value in (sdm.thickness(pair[1], resolution=64), sdm.map(*pair, resolution=64, along=(0, 0, 1))):
+        found = again(value)
+        assert found.distance.tobytes() == value.distance.tobytes()
+        assert np.array_equal(found.at_vertices(), value.at_vertices(), equal_nan=True)
+        assert found.check(1).verdict == value.check(1).verdict
+
+
+def test_a_map_and_its_sites_stay_one(pair):
+    surface, sites = sdm.Surface(pair[0], resolution=64), sdm.Sites(pair[1])
+    maps = pickle.loads(pickle.dumps([sdm.map(surface, sites), sdm.map(surface, sites), surface, sites]))
+    assert maps[0].surface is maps[1].surface is maps[2]
+    assert maps[0].sites is maps[3]
+
+
+def test_shapes(pair):
+    for options in ({}, {"resolution": 64}):
+        shape = again(sdm.Shape(pair[0], **options))
+        query = sdm.ProximityQuery(shape, pair[1])
+        assert query.penetration_depth().value == sdm.ProximityQuery(*pair).penetration_depth().value
+
+
+def test_numbers(pair):
+    distance_map = sdm.map(*pair, resolution=64)
+    statistics, distance = distance_map.statistics(), distance_map.hausdorff(1e-6)
+    assert repr(again(statistics)) == repr(statistics) and again(statistics).p01 == statistics.p01
+    found = again(distance)
+    assert (found.value, found.lower, found.upper) == (distance.value, distance.lower, distance.upper)
+    assert np.array_equal(found.witness, distance.witness)
+
+
+def test_what_cannot_be_stored_says_so(pair):
+    surface = sdm.Surface(pair[0], resolution=64)
+    distance_map = sdm.map(surface, pair[1])
+    surface.refit(pair[0].vertices * 2)
+    with pytest.raises(sdm.Error, match="refitted"):
+        pickle.dumps(distance_map)
+    with pytest.raises(sdm.Error, match="compute it again"):
+        pickle.dumps(sdm.self_map(pair[0], resolution=64))
+
+
+def test_damaged_pickles_are_refused(pair):
+    state = sdm.Mesh(*pair[1]).__getstate__()
+    mesh = sdm.Mesh.__new__(sdm.Mesh)
+    with pytest.raises(sdm.Error, match="damaged"):
+        mesh.__setstate__((state[0][:-1], *state[1:]))
+    with pytest.raises(sdm.Error):
+        mesh.__setstate__((state[0][:24], *state[1:]))  # one vertex, many faces
+
+
+def distance_of(sites, points):
+    return sites.closest_points(points).distance
+
+
+@pytest.mark.parametrize("method", ["spawn", "forkserver"])
+def test_other_processes(pair, method):
+    sites = sdm.Sites(pair[0])
+    points = np.random.default_rng(2).uniform(-2, 2, (100, 3))
+    with ProcessPoolExecutor(1, mp_context=get_context(method)) as pool:
+        assert np.array_equal(pool.submit(distance_of, sites, points).result(), distance_of(sites, points))
+
+
+def test_weak_references(pair):
+    for make in (lambda: sdm.Mesh(*pair[0]), lambda: sdm.Sites(pair[0]), lambda: sdm.Surface(pair[0], resolution=64),
+                 lambda: sdm.Shape(pair[0])):  # fmt: skip
+        value = make()
+        reference = weakref.ref(value)
+        assert reference() is value
+        del value
+        gc.collect()
+        assert reference() is None
