@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -40,6 +41,10 @@ class Matching {
   /// Whether there may be an allowed face below a node of B's tree.
   [[nodiscard]] bool may_allow(std::uint32_t face, std::uint32_t node) const {
     return rule_->search.may_allow(node, normal(face));
+  }
+  /// The allowed faces, if they are few: as FacingSearch::few_allowed().
+  [[nodiscard]] std::optional<std::vector<std::uint32_t>> few_allowed(std::uint32_t face) const {
+    return rule_->search.few_allowed(normal(face));
   }
 
   /// Whether a point of a face of A is behind the faces that it is measured to.

@@ -1,7 +1,9 @@
 // The closest point in plain code that is easy to verify: the oracle for all other searches.
 #pragma once
 
+#include <cstdint>
 #include <limits>
+#include <span>
 #include <tuple>
 
 #include "geometry/vec.h"
@@ -20,6 +22,32 @@ constexpr double kSlack = 1e-6;
   return (1 - kSlack) * norm(gap(box, p)) - kSlack;
 }
 
+/// The first of faces by (distance, type, site, face): the result does not depend on the order of offers.
+class FirstClosest {
+ public:
+  FirstClosest(const sites::SitesData& sites, const Vec3& q, double max_distance) : sites_(sites), q_(q) {
+    best_.distance = max_distance;
+  }
+  void offer(std::uint32_t face) {
+    const auto order = [](const ClosestPoint& c) { return std::tuple(c.distance, c.type, c.site, c.face); };
+    const ClosestPoint c = sites::closest_on_face(sites_, face, q_);
+    // The type is none until there is a best one, and follows all others: max_distance itself is near
+    // enough.
+    if (order(c) < order(best_)) best_ = c;
+  }
+  [[nodiscard]] double distance() const { return best_.distance; }
+  [[nodiscard]] ClosestPoint result() const {
+    ClosestPoint result = best_;
+    if (result.type == SiteType::none) result.distance = std::numeric_limits<double>::infinity();
+    return result;
+  }
+
+ private:
+  const sites::SitesData& sites_;
+  const Vec3& q_;
+  ClosestPoint best_;
+};
+
 /// Scalar, double precision, nearest child first over the binary tree; all results are accurate to rounding.
 /// The first of all faces by (distance, type, site, face): the result depends on the faces only, not on the
 /// tree. Of the faces with allows(face), which lie below nodes with may_allow(node).
@@ -27,31 +55,32 @@ template <class MayAllow, class Allows>
 [[nodiscard]] ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& q,
                                              double max_distance, const MayAllow& may_allow,
                                              const Allows& allows) {
-  const auto order = [](const ClosestPoint& c) { return std::tuple(c.distance, c.type, c.site, c.face); };
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const Vec3 unit = sites.frame.to_unit(q);
-  ClosestPoint best;
-  best.distance = max_distance;
+  FirstClosest best(sites, q, max_distance);
   const auto bound = [&](std::uint32_t node, const tree::FloatBox& box) {
     return may_allow(node) ? lower_bound(box, unit) : kNever;
   };
   // A node is visited even if its bound equals the best distance: the first of equally close sites is
   // returned, and O2 may lie at exactly max_distance.
   const auto enter = [&](double least) {
-    return least < kNever && least <= best.distance * sites.frame.scale;
+    return least < kNever && least <= best.distance() * sites.frame.scale;
   };
   const auto visit_leaf = [&](std::uint32_t leaf) {
-    for (const std::uint32_t face : sites.tree.items_of(leaf)) {
-      if (!allows(face)) continue;
-      const ClosestPoint c = sites::closest_on_face(sites, face, q);
-      // The type is none until there is a best one, and follows all others: max_distance itself is near
-      // enough.
-      if (order(c) < order(best)) best = c;
-    }
+    for (const std::uint32_t face : sites.tree.items_of(leaf))
+      if (allows(face)) best.offer(face);
   };
   tree::visit(sites.tree, tree::NearestFirst{bound, enter, visit_leaf});
-  if (best.type == SiteType::none) best.distance = std::numeric_limits<double>::infinity();
-  return best;
+  return best.result();
+}
+
+/// The same of listed faces. Cost: linear in them.
+[[nodiscard]] inline ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& q,
+                                                    double max_distance,
+                                                    std::span<const std::uint32_t> faces) {
+  FirstClosest best(sites, q, max_distance);
+  for (const std::uint32_t face : faces) best.offer(face);
+  return best.result();
 }
 
 /// The same of all faces.

@@ -2,12 +2,15 @@
 
 #include <sdm/error.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "query/closest/reference.h"
+#include "query/facing/normal_tree.h"
 #include "tree/visit.h"
 
 namespace sdm::facing {
@@ -62,16 +65,40 @@ Vec3 FacingSearch::normal_at(const ClosestPoint& closest, const Vec3& normal, st
   return sum;
 }
 
-bool FacingSearch::allows_any(const Vec3& normal) const {
-  bool found = false;
-  tree::visit(sites_.tree, tree::InOrder{[&](const tree::Subtree& below) {
-                                           return !found && may_allow(below.root, normal);
-                                         },
-                                         [&](std::uint32_t leaf) {
-                                           for (const std::uint32_t face : sites_.tree.items_of(leaf))
-                                             found = found || allows(normal, face);
-                                         }});
+std::vector<std::uint32_t> FacingSearch::some_allowed(const Vec3& normal, std::size_t most) const {
+  std::call_once(by_normal_->built, [this] { by_normal_->tree = normal_tree(sites_); });
+  const tree::AabbTree& tree = by_normal_->tree;
+  std::vector<std::uint32_t> found;
+  const auto enter = [&](const tree::Subtree& below) {
+    return found.size() < most && allows(largest_cosine(tree.box(below.root), normal));
+  };
+  const auto leaf = [&](std::uint32_t node) {
+    for (const std::uint32_t face : tree.items_of(node))
+      if (found.size() < most && allows(normal, face)) found.push_back(face);
+  };
+  tree::visit(tree, tree::InOrder{enter, leaf});
   return found;
+}
+
+std::optional<std::vector<std::uint32_t>> FacingSearch::few_allowed(const Vec3& normal) const {
+  constexpr double kFewest = 64;
+  const auto few = static_cast<std::size_t>(
+      std::max(kFewest, std::sqrt(static_cast<double>(sites_.mesh.triangles.size()))));
+  std::vector<std::uint32_t> found = some_allowed(normal, few + 1);
+  return found.size() <= few ? std::optional(std::move(found)) : std::nullopt;
+}
+
+ClosestPoint FacingSearch::closest_allowed(const Vec3& query, const Vec3& normal, double max_distance) const {
+  std::size_t nodes = 0;
+  const auto allowed = [&](std::uint32_t face) { return allows(normal, face); };
+  const ClosestPoint found = closest::reference_closest(
+      sites_, query, max_distance,
+      [&](std::uint32_t node) { return ++nodes <= kManyNodes && may_allow(node, normal); }, allowed);
+  if (nodes <= kManyNodes) return found;
+  if (const auto few = few_allowed(normal))
+    return closest::reference_closest(sites_, query, max_distance, *few);
+  return closest::reference_closest(
+      sites_, query, max_distance, [&](std::uint32_t node) { return may_allow(node, normal); }, allowed);
 }
 
 Match FacingSearch::match(const Vec3& query, const Vec3& normal, double max_distance,
@@ -82,14 +109,12 @@ Match FacingSearch::match(const Vec3& query, const Vec3& normal, double max_dist
   std::uint32_t face = kNone;
   if (closest.type != SiteType::none) outward = normal_at(closest, normal, face);
   if (closest.type != SiteType::none && face == kNone) {
-    result.closest = closest::reference_closest(
-        sites_, query, max_distance, [&](std::uint32_t node) { return may_allow(node, normal); },
-        [&](std::uint32_t f) { return allows(normal, f); });
+    result.closest = closest_allowed(query, normal, max_distance);
     if (result.closest.type != SiteType::none) outward = normal_at(result.closest, normal, face);
   }
   result.closest.face = face;
   if (result.closest.type == SiteType::none)
-    result.unmatched = !allows_any(normal);
+    result.unmatched = some_allowed(normal, 1).empty();
   else
     result.behind = dot(query - result.closest.point, outward) < 0;
   return result;

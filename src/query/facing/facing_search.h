@@ -1,10 +1,15 @@
 // Closest points among the faces that face the same way as the query.
 #pragma once
 
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 #include "query/facing/normal_cones.h"
 #include "sites/sites_data.h"
+#include "tree/aabb_tree.h"
 
 namespace sdm::facing {
 
@@ -34,6 +39,14 @@ class FacingSearch {
     return allows(largest_cosine(cones_[node], normal));
   }
 
+  /// Returns the faces that are allowed for a unit vector, if they are fewer than about the root of all
+  /// faces. A search of the tree, where few leaves have such a face, would visit most of it. Cost: by these
+  /// faces, mostly; the first call builds a tree, O(n log n).
+  [[nodiscard]] std::optional<std::vector<std::uint32_t>> few_allowed(const Vec3& normal) const;
+
+  /// A search that visits more nodes is continued among few_allowed().
+  static constexpr std::size_t kManyNodes = 1024;
+
   /// `normal`: of the query, unit length or 0. `closest`: the closest point of all faces, which is the result
   /// if it lies on an allowed one; none if nothing is within max_distance.
   [[nodiscard]] Match match(const Vec3& query, const Vec3& normal, double max_distance,
@@ -43,14 +56,24 @@ class FacingSearch {
   [[nodiscard]] bool allows(double cosine) const {
     return right_angle_ ? cosine > 0 : cosine >= least_cosine_;
   }
-  [[nodiscard]] bool allows_any(const Vec3& normal) const;
+  /// At most `most` faces that are allowed, wherever they are.
+  [[nodiscard]] std::vector<std::uint32_t> some_allowed(const Vec3& normal, std::size_t most) const;
+  [[nodiscard]] ClosestPoint closest_allowed(const Vec3& query, const Vec3& normal,
+                                             double max_distance) const;
   /// The faces around the site of a point.
   [[nodiscard]] std::span<const std::uint32_t> faces_of(const ClosestPoint& closest) const;
   /// The normal of the allowed faces at a point; `face` becomes the first of them, kNone if there is none.
   [[nodiscard]] Vec3 normal_at(const ClosestPoint& closest, const Vec3& normal, std::uint32_t& face) const;
 
+  /// A tree over the normals, which most searches do without.
+  struct ByNormal {
+    std::once_flag built;
+    tree::AabbTree tree;
+  };
+
   const sites::SitesData& sites_;
   std::vector<Cone> cones_;
+  std::unique_ptr<ByNormal> by_normal_ = std::make_unique<ByNormal>();
   bool right_angle_;
   double least_cosine_;
 };

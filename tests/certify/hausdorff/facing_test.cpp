@@ -4,6 +4,7 @@
 #include <sdm/tolerance_proof.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -170,6 +171,42 @@ TEST(FacingHausdorff, StatesFacesWithoutAMatch) {
   for (std::uint32_t f = 0; f < box.triangles.size(); ++f)
     if (unit_normal(box, f)[2] > 0.9) top.push_back(f);
   EXPECT_EQ(prove_tolerance(box, sites, 100, {.facing = 30, .faces = top}).proof, Proof::inside);
+}
+
+/// n × n squares of 1 / n with noise of their size.
+Mesh rough_terrain(int n) {
+  Mesh terrain = height_field(n);
+  for (Vec3& p : terrain.positions) {
+    const double x = n * p[0], y = n * p[1];
+    p[2] = 0.8 / n * std::sin(7 * x + 131 * y) * std::sin(97 * x * y + 3);
+  }
+  return terrain;
+}
+
+// Most faces of rough terrain have few matches in other terrain turned over, far away, or none: searches of
+// them go over to the matches themselves.
+TEST(FacingHausdorff, OfRoughTerrainTurnedOverEqualsBruteForceAtVertices) {
+  const Mesh terrain = rough_terrain(16);
+  Mesh turned = rough_terrain(64);
+  for (Triangle& t : turned.triangles) std::swap(t[0], t[1]);
+  double largest = 0;
+  std::size_t unmatched = 0;
+  for (std::uint32_t f = 0; f < terrain.triangles.size(); ++f) {
+    const Vec3 normal = unit_normal(terrain, f);
+    std::array<double, 3> d{};
+    const Corners corners = corners_of(terrain, f);
+    for (int k = 0; k < 3; ++k) d[k] = to_allowed(turned, corners[k], normal, 90);
+    if (std::isinf(d[0]))
+      ++unmatched;
+    else
+      largest = std::max({largest, d[0], d[1], d[2]});
+  }
+  ASSERT_GT(unmatched, 5U);
+  ASSERT_LT(unmatched, terrain.triangles.size());
+  const HausdorffDistance found = one_sided_hausdorff(terrain, Sites(turned), {.facing = 90});
+  EXPECT_EQ(found.faces_without_match, unmatched);
+  EXPECT_GE(found.distance.upper, largest - 1e-12);
+  EXPECT_LE(found.distance.lower, largest + 2.0 / 16);
 }
 
 TEST(FacingHausdorff, RejectsWhatItCannotCompute) {
