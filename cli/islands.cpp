@@ -33,6 +33,18 @@ std::optional<sdm::IslandLimits> limits_of(std::string_view text) {
 
 namespace {
 
+// 1 for the vertices that have a face of the mesh, but none of the rest of it.
+std::vector<std::uint8_t> vertices_left(const sdm::Mesh& mesh, const sdm::Mesh& rest) {
+  std::vector<std::uint8_t> left(mesh.positions.size());
+  const auto mark = [&](const sdm::Mesh& faces, std::uint8_t value) {
+    for (const sdm::Triangle& triangle : faces.triangles)
+      if (!sdm::is_removed(triangle))
+        for (const std::uint32_t vertex : triangle) left[vertex] = value;
+  };
+  mark(mesh, 1), mark(rest, 0);
+  return left;
+}
+
 void add_mesh_islands(CLI::App& app, const char* name, const char* help,
                       std::optional<sdm::IslandLimits>& limits) {
   app.add_option_function<std::string>(
@@ -93,6 +105,7 @@ nlohmann::ordered_json to_json(const sdm::PointIslands& islands, std::uint64_t p
 
 sdm::IslandReport ignore_islands(Input& input, const sdm::IslandLimits& limits) try {
   sdm::WithoutIslands rest = sdm::remove_islands(input.mesh, limits);
+  if (rest.islands > 0) input.island_vertices = vertices_left(input.mesh, rest.mesh);
   input.mesh = std::move(rest.mesh);
   for (sdm::FaceNames& kind : input.names) {
     std::vector<std::uint32_t> of_face;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,6 +66,14 @@ std::vector<float> at_vertices_of(const MapCommand& command, const sdm::Mesh& me
   sdm::MapOptions options = command.map;
   options.progress = nullptr;
   return sdm::distances_at_vertices(mesh, sites, options);
+}
+
+/// Takes the values of the vertices of islands away, which stay in files of vertices.
+template <class Value>
+void leave_islands_out(const Input& on, std::vector<Value>& at_vertices, Value none) {
+  if (on.island_vertices.size() != at_vertices.size()) return;
+  for (std::size_t v = 0; v < at_vertices.size(); ++v)
+    if (on.island_vertices[v] != 0) at_vertices[v] = none;
 }
 
 sdm::SummaryOptions summary_options(const MapTask& task, const AtlasPart& part, double accuracy) {
@@ -193,6 +202,7 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
           outcome.embedded = sdm::is_embedded(*task.sites);
         computed.at_vertices = at_vertices_of(command, mesh, *task.sites);
       },
+        leave_islands_out(task.on, computed.at_vertices, std::numeric_limits<float>::quiet_NaN());
       [&] { inspect(task.on), inspect(task.to); },
   });
   if (!command.along)
@@ -206,9 +216,10 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
   outcome.resolution = map.resolution, outcome.rows = map.rows();
   computed.accuracy = sdm::engine_accuracy(sdm::engine_info(*command.map.engine), task.on.mesh, task.to.mesh);
   if (map.sign.method == sdm::SignMethod::side && map.measured.kind == sdm::DistanceKind::closest) {
-    const std::vector<std::uint8_t> at_boundary =
+    std::vector<std::uint8_t> at_boundary =
         sdm::boundary_vertices(mesh, *task.sites, {.max_distance = command.map.max_distance});
     outcome.boundary_vertices = static_cast<std::size_t>(std::ranges::count(at_boundary, 1));
+    leave_islands_out(task.on, at_boundary, std::uint8_t{0});
   }
   outcome.raster = sdm::gl_report(*command.map.engine);
   computed.ms = total.lap();

@@ -21,6 +21,7 @@ struct Input {
   std::optional<sdm::MeshInfo> info{};  ///< once inspected
   std::optional<sdm::WeldReport> weld{};
   std::optional<sdm::IslandReport> islands{};       ///< that were left out
+  std::vector<std::uint8_t> island_vertices{};      ///< 1: of these only; empty: none is
   std::optional<sdm::Tessellation> tessellation{};  ///< of CAD
   std::vector<sdm::FaceNames> names{};
   std::vector<std::string> notes{};             ///< on the file

@@ -8,6 +8,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "cli/samples.h"
 #include "geometry/vec.h"
@@ -105,6 +108,16 @@ TEST_F(IgnoreIslands, IsReported) {
   EXPECT_EQ(report["o1"]["ignored_islands"]["islands"], kSpecks);
   EXPECT_EQ(report["o1"]["ignored_islands"]["triangles"], kSpecks);
   EXPECT_EQ(report["o1"]["triangles"], sphere(4).triangles.size());
+  EXPECT_EQ(report["o1"]["vertices"], sphere(4).positions.size());
+  // The rows of vertices.csv are those of the file; what is left out has no value.
+  std::istringstream csv(contents(folder / "out/vertices.csv"));
+  std::string row;
+  std::vector<std::string> rows;
+  while (std::getline(csv, row)) rows.push_back(row);
+  const std::size_t vertices = sphere(4).positions.size();
+  ASSERT_EQ(rows.size(), 1 + vertices + 3 * kSpecks);
+  for (std::size_t v = 0; v < rows.size() - 1; ++v)
+    EXPECT_EQ(rows[1 + v].ends_with(','), v >= vertices) << rows[1 + v];
   EXPECT_THAT(report["notes"].dump(), HasSubstr("60 islands with 60 faces"));
   EXPECT_THAT(map({"--ignore-islands", "20"}).out, HasSubstr("60 islands with 60 faces"));
   EXPECT_FALSE(Json::parse(map({"--json"}).out)["o1"].contains("ignored_islands"));
