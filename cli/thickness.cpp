@@ -104,6 +104,11 @@ std::optional<sdm::ColorRange> colors_of(const ThicknessCommand& command, const 
                          .range = {0, std::max(d.p99_abs, 2 * *command.least)}};
 }
 
+/// Whether the thickest places matter, and not the thinnest ones.
+bool only_most(const ThicknessCommand& command) {
+  return command.most && !command.least;
+}
+
 Json thickness_json(const ThicknessCommand& command, const sdm::Surface& surface, const sdm::DistanceMap& map,
                     const sdm::Summary& other) {
   const auto given = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
@@ -113,9 +118,14 @@ Json thickness_json(const ThicknessCommand& command, const sdm::Surface& surface
             {"angle", command.thickness.angle},
             {"min", given(command.least)},
             {"max", given(command.most)}};
-  json["thinnest"] = Json::array();
-  for (const std::uint32_t texel : sdm::thinnest_texels(surface, map))
-    json["thinnest"].push_back({{"thickness", map.distance[texel]}, {"point", surface.texel_point(texel)}});
+  const auto listed = [&](const std::vector<std::uint32_t>& texels) {
+    Json list = Json::array();
+    for (const std::uint32_t texel : texels)
+      list.push_back({{"thickness", map.distance[texel]}, {"point", surface.texel_point(texel)}});
+    return list;
+  };
+  if (!only_most(command)) json["thinnest"] = listed(sdm::thinnest_texels(surface, map));
+  if (command.most) json["thickest"] = listed(sdm::thickest_texels(surface, map));
   json["other"] = {{"method", name},
                    {"file", command.files.exr ? Json(name + ".exr") : Json()},
                    {"distance", Json::parse(sdm::summary_json(other))["distance"]}};
@@ -182,12 +192,17 @@ ThicknessResult measure(ThicknessCommand& command, const Input& input, double im
   result.report = Json::parse(
       sdm::report_json({.on = reported(input), .engine = "cpu", .time_ms = times}, surface, result.summary));
   result.report["thickness"] = thickness_json(command, surface, map, of_other);
-  if (result.summary.tolerance)
-    result.report["tolerance"]["text"] = verdict_in_words(command, result.summary);
+  if (result.summary.tolerance) {
+    Json& tolerance = result.report["tolerance"];
+    tolerance["text"] = verdict_in_words(command, result.summary);
+    if (!command.least) tolerance["lower"] = nullptr;
+    if (!command.most) tolerance["upper"] = nullptr;
+  }
   const std::string text = to_text(result.report);
   if (command.files.html)
-    sdm::write_html(folder / "report.html", surface, map, at_vertices, text,
-                    {.up = command.picture.up, .thinnest = true});
+    sdm::write_html(
+        folder / "report.html", surface, map, at_vertices, text,
+        {.up = command.picture.up, .thinnest = !only_most(command), .thickest = only_most(command)});
   write_text(folder / "report.json", text);
   return result;
 }
@@ -216,9 +231,11 @@ std::string thickness_summary(const ThicknessCommand& command, const ThicknessRe
   } else {
     text += fmt::format("  {:<12}min {}   mean {}   max {}{} (exact at the texels)\n", name,
                         number(s.distance.min), number(s.distance.mean), number(s.distance.max), unit);
-    text += fmt::format("              5 % of the area has less than {}, 50 % less than {}{}\n",
+    text += fmt::format("              5 % of the area has up to {}, 50 % up to {}{}\n",
                         number(s.distance.p05), number(s.distance.p50), unit);
-    text += fmt::format("              least at {}\n", place(s.extremes->min.point, size));
+    text += only_most(command)
+                ? fmt::format("              most at {}\n", place(s.extremes->max.point, size))
+                : fmt::format("              least at {}\n", place(s.extremes->min.point, size));
     const Json& other = result.report["thickness"]["other"];
     const auto of_other = [&](const char* key) { return number(other["distance"][key].get<double>()); };
     text += fmt::format("  {:<12}min {}   mean {}   max {}{}\n", other["method"].get<std::string>(),

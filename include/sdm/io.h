@@ -239,7 +239,8 @@ struct HtmlOptions {
   UpAxis up = UpAxis::y;                  ///< the axis of the meshes that points up
   const CoverageMap* coverage = nullptr;  ///< of `other`, on which it is drawn
   std::span<const FaceNames> names{};     ///< of the faces of O1: what a click on a group shows apart
-  bool thinnest = false;                  ///< the list of places is of the least values, not of the largest
+  /// Of wall thickness: the list of places is of the texels of least value, or of largest value.
+  bool thinnest = false, thickest = false;
   // The size of the page, which grows with what it shows:
   std::uint32_t largest = 1024;              ///< the most texels a side, at least 1
   std::size_t triangles = 400'000;           ///< the most of O1; others are shown by a coarser copy

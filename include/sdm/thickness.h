@@ -87,6 +87,10 @@ struct WallEstimate {
 [[nodiscard]] SDM_API std::vector<std::uint32_t> thinnest_texels(const Surface& surface,
                                                                  const DistanceMap& map,
                                                                  std::size_t count = 10);
+/// The same of the largest value.
+[[nodiscard]] SDM_API std::vector<std::uint32_t> thickest_texels(const Surface& surface,
+                                                                 const DistanceMap& map,
+                                                                 std::size_t count = 10);
 
 /// The largest error of a thickness, in units of the mesh: of rounding.
 [[nodiscard]] SDM_API double thickness_accuracy(const Mesh& mesh);

@@ -39,7 +39,7 @@ export function showGroups(report: Report, chosen: GroupName | null = null, show
   const rows = groups.map((g, i) => [
     name(g, i),
     g.kind,
-    limitsText(g, report),
+    limitsText({ lower: g.lower ?? -Infinity, upper: g.upper ?? Infinity }, report),
     make('b', { class: g.verdict.toLowerCase().replace(' ', '-') }, g.verdict),
     value(g.witness && g.witness.distance < (g.lowest ?? Infinity) ? g.witness.distance : g.lowest),
     value(g.witness && g.witness.distance > (g.highest ?? -Infinity) ? g.witness.distance : g.highest),

@@ -9,7 +9,7 @@ import { drawHistogram } from './histogram';
 import { drawLegend } from './legend';
 import { exactText, percent, place } from './numbers';
 import { openPage } from './open_page';
-import { showPlaces } from './places';
+import { onlyThickest, showPlaces } from './places';
 import { PageData, readData, readReport, Report, Vec } from './page_data';
 import { copyOfPage, csvOf, download, pageWith, readSaved, Saved } from './saved';
 import { boxOf, Subject, toFile, toScene } from './subject';
@@ -36,7 +36,7 @@ function showVerdict(report: Report): void {
 /// Words of page.html that differ for clouds.
 function nameSubject(report: Report): void {
   byId('canvas').setAttribute('aria-label', `The part, coloured by ${quantityOf(report)}`);
-  if (report.thickness) byId('worst-title').textContent = 'Thinnest places';
+  if (report.thickness) byId('worst-title').textContent = onlyThickest(report) ? 'Thickest places' : 'Thinnest places';
   else if (report.places?.limits_from === 'tolerance') byId('worst-title').textContent = 'Places out of tolerance';
   if (!isCloud(report)) return;
   byId('part-title').textContent = 'The cloud in 3D';
@@ -284,13 +284,13 @@ class Page {
   }
 
   private showWorst(): void {
-    showPlaces(this.report, this.data.page.thinnest ?? null, this.subject.size, (place) => this.lookAt(this.addPlace(place)));
+    showPlaces(this.report, this.data.page.thinnest ?? this.data.page.thickest ?? null, this.subject.size, (place) => this.lookAt(this.addPlace(place)));
   }
 
-  /// A callout at a place of the list; where it is in the scene.
-  private addPlace(place: { distance: number; point: Vec; group?: string | null }): Vec {
+  /// A callout at a place of the list, if it has a value; where it is in the scene.
+  private addPlace(place: { distance: number | null; point: Vec; group?: string | null }): Vec {
     const at = toScene(this.subject, place.point);
-    if (!this.callouts.all.some((c) => c.point.every((x, k) => x === place.point[k])))
+    if (place.distance !== null && !this.callouts.all.some((c) => c.point.every((x, k) => x === place.point[k])))
       this.callouts.add({ distance: place.distance, point: place.point, at, detail: place.group ?? '' });
     return at;
   }

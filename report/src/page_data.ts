@@ -85,8 +85,8 @@ export interface Report {
     groups: {
       kind: string;
       group: string;
-      lower: number;
-      upper: number;
+      lower: number | null; ///< null: no limit
+      upper: number | null;
       verdict: string;
       certified?: boolean;
       lowest: number | null;
@@ -107,7 +107,7 @@ export interface Report {
 
 /// A region that deviates, by its sample that is farthest beyond the limit.
 export interface Place {
-  distance: number;
+  distance: number | null; ///< null: no value, although a tolerance asks for one
   point: Vec;
   at: 'texel' | 'vertex' | 'point';
   index?: number; ///< of a point of a cloud
@@ -158,6 +158,7 @@ interface PageJson {
   cloud?: Placement & { points: number; picked: number; normals: boolean }; ///< in place of map and model
   ghost?: Placement & { box: { lo: Vec; hi: Vec }; triangles_of_mesh: number };
   thinnest?: Pick<Place, 'distance' | 'point' | 'at'>[]; ///< of wall thickness, in place of the report's places
+  thickest?: Pick<Place, 'distance' | 'point' | 'at'>[]; ///< the same with an upper limit only
   area: { lo: number; hi: number; without_value: number };
   arrays: ArrayIndex;
 }

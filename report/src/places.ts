@@ -21,36 +21,45 @@ function hintOf(report: Report, places: Places): string {
   const total = ({ count: n, points, area, area_fraction: ofArea, point_fraction: ofPoints }: Places['large']) =>
     `${count(n)}, together ${points !== undefined && isCloud(report) ? `${count(points)} points` : `${text(area ?? 0, 3)}${unit}`} (${percent(ofArea ?? ofPoints ?? 0)})`;
   const least = `${text(100 * (places.least_area_fraction ?? places.least_point_fraction ?? 0), 2)}\u00a0%`;
+  const beyond =
+    places.limits_from !== 'tolerance' ? `at or beyond the 99th percentile, ${limitsText(limits, report)}`
+    : places.lower === null && places.upper === null ? 'out of the tolerance of their group'
+    : `out of the tolerance of ${limitsText(limits, report)}${report.group_tolerances ? ', or of that of their group' : ''}`;
   return (
-    `Connected regions ${places.limits_from === 'tolerance' ? 'out of the tolerance of' : 'at or beyond the 99th percentile,'} ${limitsText(limits, report)}: ${total(places.large)}; ` +
+    `Connected regions ${beyond}: ${total(places.large)}; ` +
     `and small ones, below ${least} of the ${whole} each: ${total(places.small)}. ` +
     `Listed are ${places.largest.length < 10 ? 'all' : 'the ten largest'}, small ones last. ${isCloud(report) ? '' : 'Areas are estimates from the samples. '}Choose one to see it.`
   );
 }
 
-/// Fills the list; `thinnest`: the places of a report on wall thickness.
-export function showPlaces(report: Report, thinnest: Listed[] | null, size: number, show: (place: Listed) => void): void {
+/// Whether the largest values matter: of wall thickness with an upper limit only.
+export function onlyThickest({ thickness }: Report): boolean {
+  return typeof thickness?.max === 'number' && typeof thickness.min !== 'number';
+}
+
+/// Fills the list; `walls`: the places of a report on wall thickness.
+export function showPlaces(report: Report, walls: Listed[] | null, size: number, show: (place: Listed) => void): void {
   const signs = isSigned(report);
-  const listed: Listed[] = thinnest ?? report.places?.largest ?? [];
+  const listed: Listed[] = walls ?? report.places?.largest ?? [];
   const grouped = listed.some((p) => p.group);
   const rows = listed.map((p, i) => {
-    const value = `${signedText(p.distance, signs)}${unitOf(report)}`;
+    const value = p.distance === null ? 'no value' : `${signedText(p.distance, signs)}${unitOf(report)}`;
     return [
       String(i + 1),
       make('button', { type: 'button', class: 'link', click: () => show(p), 'aria-label': `Show place ${i + 1}, ${value}` }, value),
       place(p.point, size),
-      ...(thinnest ? [] : [`${extentOf(report, p)}${p.small ? ', small' : ''}`]),
+      ...(walls ? [] : [`${extentOf(report, p)}${p.small ? ', small' : ''}`]),
       ...(grouped ? [p.group ?? ''] : []),
     ];
   });
-  const head = ['', capital(quantityOf(report)), 'Position', ...(thinnest ? [] : ['Extent']), ...(grouped ? ['Group'] : [])];
-  const hint = thinnest
-    ? 'The least values, at texels that are at least 6 % of the part\u2019s size apart. Choose one to see it.'
+  const head = ['', capital(quantityOf(report)), 'Position', ...(walls ? [] : ['Extent']), ...(grouped ? ['Group'] : [])];
+  const hint = walls
+    ? `The ${onlyThickest(report) ? 'largest' : 'least'} values, at texels that are at least 6 % of the part\u2019s size apart. Choose one to see it.`
     : report.places ? hintOf(report, report.places) : '';
   byId('worst-table').replaceChildren(
     rows.length === 0
-      ? make('p', {}, thinnest || report.places ? `No point of the ${isCloud(report) ? 'cloud' : 'part'} has a distance beyond the accuracy.` : 'This report lists no places.')
-      : table(head, rows, thinnest ? 'The thinnest places' : 'The places with the largest distances'),
+      ? make('p', {}, walls || report.places ? `No point of the ${isCloud(report) ? 'cloud' : 'part'} has a distance beyond the accuracy.` : 'This report lists no places.')
+      : table(head, rows, walls ? `The ${onlyThickest(report) ? 'thickest' : 'thinnest'} places` : 'The places with the largest distances'),
     make('p', { class: 'hint' }, hint),
   );
 }

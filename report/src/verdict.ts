@@ -39,14 +39,22 @@ export function limitsOf(report: Report): Limits | null {
   const t = report.tolerance;
   if (!t) return null;
   const value = t.value ?? Number.NaN;
+  // Limits of wall thickness that were not given, for the sliders: none of its values are beyond these.
+  if (report.thickness) {
+    const lower = t.lower ?? 0;
+    return { lower, upper: t.upper ?? Math.max(2 * lower, Number(report.distance?.max ?? 0)) };
+  }
   return { lower: t.lower ?? -value, upper: t.upper ?? value };
 }
 
 export function limitsText({ lower, upper }: Limits, report: Report): string {
   const unit = unitOf(report);
-  const { thickness, tolerance } = report;
-  if (thickness && thickness.max === null && upper === tolerance?.upper) return `at least ${text(lower)}${unit}`;
-  if (thickness && thickness.min === null && lower === tolerance?.lower) return `at most ${text(upper)}${unit}`;
+  const { thickness } = report;
+  const given = thickness ? limitsOf(report) : null;
+  if (thickness && thickness.max === null && upper === given?.upper) return `at least ${text(lower)}${unit}`;
+  if (thickness && thickness.min === null && lower === given?.lower) return `at most ${text(upper)}${unit}`;
+  if (lower === -Infinity) return `at most ${text(upper)}${unit}`;
+  if (upper === Infinity) return `at least ${text(lower)}${unit}`;
   if (lower === -upper) return isSigned(report) ? `±${text(upper)}${unit}` : `${text(upper)}${unit}`;
   return `${text(lower)} to ${text(upper)}${unit}`;
 }

@@ -82,12 +82,28 @@ TEST_F(ThicknessCommandTest, JudgesLimitsByItsTexels) {
   EXPECT_EQ(Json::parse(run(part, {"--min", "0.4", "--json"}).out)["tolerance"]["text"],
             "every texel has at least 0.4; between the texels, an estimate");
   EXPECT_EQ(run(part, {"--max", "6.1"}).code, 0);
+  const Json open_above = Json::parse(run(part, {"--min", "0.4", "--json"}).out);
+  EXPECT_TRUE(open_above["tolerance"]["upper"].is_null());
+  EXPECT_EQ(open_above["tolerance"]["lower"], 0.4);
+  EXPECT_FALSE(open_above["thickness"].contains("thickest"));
   outcome = run(part, {"--min", "0.4", "--max", "5", "--json"});
   EXPECT_EQ(outcome.code, 3);
   const Json report = Json::parse(outcome.out);
   EXPECT_EQ(report["tolerance"]["verdict"], "FAIL");
   EXPECT_EQ(report["tolerance"]["nearest_limit"], "upper");
   EXPECT_EQ(report["thickness"]["max"], 5);
+}
+
+TEST_F(ThicknessCommandTest, AnUpperLimitAloneListsTheThickestPlaces) {
+  const Json report = Json::parse(run(part, {"--max", "5", "--json"}).out);
+  EXPECT_TRUE(report["tolerance"]["lower"].is_null());
+  EXPECT_EQ(report["tolerance"]["upper"], 5);
+  EXPECT_FALSE(report["thickness"].contains("thinnest"));
+  EXPECT_EQ(report["thickness"]["thickest"][0]["thickness"], report["distance"]["max"]);
+  EXPECT_THAT(contents(out + "/report.html"), HasSubstr("\"thickest\":["));
+  const Outcome outcome = run(part, {"--max", "5"});
+  EXPECT_THAT(outcome.out, HasSubstr("              most at ("));
+  EXPECT_THAT(outcome.out, ::testing::Not(HasSubstr("least at")));
 }
 
 TEST_F(ThicknessCommandTest, NamesWhatClosesAnOpenPart) {

@@ -105,15 +105,19 @@ std::vector<float> thickness_at_vertices(const Sites& sites, ThicknessMethod met
   throw out_of_memory("the thickness at vertices");
 }
 
-std::vector<std::uint32_t> thinnest_texels(const Surface& surface, const DistanceMap& map,
-                                           std::size_t count) {
+namespace {
+
+/// The first texels in an order of their values, apart from each other.
+template <class Before>
+std::vector<std::uint32_t> first_texels(const Surface& surface, const DistanceMap& map, std::size_t count,
+                                        const Before& before) {
   if (map.distance.size() != surface.texel_faces().size()) throw Error("the map belongs to another surface");
   constexpr double kApart = 0.06;  // of the diagonal, as the places of pages
   const double apart = kApart * diagonal(bounds(surface.mesh()));
   std::vector<std::uint32_t> texels;
   for (const std::uint32_t texel : surface.sample_texels())
     if (std::isfinite(map.distance[texel])) texels.push_back(texel);
-  std::ranges::stable_sort(texels, {}, [&](std::uint32_t texel) { return map.distance[texel]; });
+  std::ranges::stable_sort(texels, before, [&](std::uint32_t texel) { return map.distance[texel]; });
   std::vector<std::uint32_t> places;
   for (const std::uint32_t texel : texels) {
     if (places.size() >= count) break;
@@ -122,6 +126,18 @@ std::vector<std::uint32_t> thinnest_texels(const Surface& surface, const Distanc
     if (std::ranges::none_of(places, near)) places.push_back(texel);
   }
   return places;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> thinnest_texels(const Surface& surface, const DistanceMap& map,
+                                           std::size_t count) {
+  return first_texels(surface, map, count, std::ranges::less());
+}
+
+std::vector<std::uint32_t> thickest_texels(const Surface& surface, const DistanceMap& map,
+                                           std::size_t count) {
+  return first_texels(surface, map, count, std::ranges::greater());
 }
 
 double thickness_accuracy(const Mesh& mesh) {

@@ -24,9 +24,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json thinnest(const Surface& surface, const DistanceMap& map) {
+Json json_of_texels(const Surface& surface, const DistanceMap& map,
+                    const std::vector<std::uint32_t>& texels) {
   Json json = Json::array();
-  for (const std::uint32_t texel : thinnest_texels(surface, map))
+  for (const std::uint32_t texel : texels)
     json.push_back(
         {{"distance", map.distance[texel]}, {"point", surface.texel_point(texel)}, {"at", "texel"}});
   return json;
@@ -59,7 +60,7 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
 
   Json page, map_json, model, ghost;
   PackedArrays arrays, model_arrays, ghost_arrays;
-  Json thin;
+  Json listed;
   AreaByValue area;
   run_concurrently({[&] { map_json = add_map(arrays, surface, map, options.largest); },
                     [&] {
@@ -72,7 +73,10 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
                                           options.triangles_of_other);
                     },
                     [&] {
-                      if (options.thinnest) thin = thinnest(surface, map);
+                      if (options.thinnest)
+                        listed = json_of_texels(surface, map, thinnest_texels(surface, map));
+                      else if (options.thickest)
+                        listed = json_of_texels(surface, map, thickest_texels(surface, map));
                     },
                     [&] { area = area_by_value(surface, map); }});
   arrays.add(std::move(model_arrays)), arrays.add(std::move(ghost_arrays));
@@ -81,7 +85,7 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
   page["map"] = map_json;
   page["model"] = model;
   if (options.other) page["ghost"] = ghost;
-  if (options.thinnest) page["thinnest"] = thin;
+  if (options.thinnest || options.thickest) page[options.thinnest ? "thinnest" : "thickest"] = listed;
   put_page(out.stream(), kPageHtml.bytes, page, &report, arrays);
   out.commit();
 } catch (const std::bad_alloc&) {
