@@ -55,6 +55,11 @@ struct HausdorffVerdict {
   bool within = true;      // as far as the bounds tell
   bool certified = true;   // by both bounds
   bool unmatched = false;  // not within, as there are faces without a distance
+
+  [[nodiscard]] sdm::Verdict word() const {
+    if (!certified) return sdm::Verdict::not_decided;
+    return within ? sdm::Verdict::pass : sdm::Verdict::fail;
+  }
 };
 
 HausdorffVerdict verdict(const HausdorffAnswer& answer, double tolerance) {
@@ -89,7 +94,7 @@ Json hausdorff_json(const sdm::HausdorffDistance& h) {
   return json;
 }
 
-/// Of a single direction, whose measured mesh may have faces without a match.
+/// The distance of a single direction, whose measured mesh may have faces without a match.
 Json direction_json(const HausdorffCommand& command, const sdm::HausdorffDistance& h) {
   Json json = hausdorff_json(h);
   if (!command.options.facing) return json;
@@ -109,7 +114,7 @@ std::string distance_line(const std::string& what, const sdm::HausdorffDistance&
                      name(d.certainty));
 }
 
-/// The faces that are left out.
+/// States the faces that are left out.
 std::string unmatched_lines(const HausdorffAnswer& answer) {
   std::string text;
   for (std::size_t i = 0; i < answer.directions.size(); ++i) {
@@ -122,11 +127,13 @@ std::string unmatched_lines(const HausdorffAnswer& answer) {
   return text;
 }
 
-std::string tolerance_line(const HausdorffVerdict& v) {
-  if (v.unmatched) return "  tolerance  exceeded: faces without a match have no distance\n";
-  return fmt::format("  tolerance  {}\n", !v.within     ? "exceeded"
-                                          : v.certified ? "met"
-                                                        : "equal to the distance, to the precision");
+std::string tolerance_line(const HausdorffVerdict& v, double tolerance, const std::string& unit) {
+  const std::string limit = number(tolerance) + unit;
+  return fmt::format("  tolerance  {}: {}\n", sdm::name_of(v.word()),
+                     v.unmatched    ? "faces without a match have no distance"
+                     : !v.certified ? fmt::format("the distance is {}, to the precision", limit)
+                     : v.within     ? fmt::format("no point is farther than {}", limit)
+                                    : fmt::format("a point is farther than {}", limit));
 }
 
 std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAnswer& answer) {
@@ -146,7 +153,7 @@ std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAn
     text += distance_line("O2 -> O1", answer.directions[1], unit);
   }
   text += unmatched_lines(answer);
-  if (command.tolerance) text += tolerance_line(verdict(answer, *command.tolerance));
+  if (command.tolerance) text += tolerance_line(verdict(answer, *command.tolerance), *command.tolerance, unit);
   return text;
 }
 
@@ -159,7 +166,10 @@ Json report_of(const HausdorffCommand& command, const InputPair& pair, const Hau
   json["o2_to_o1"] = command.both ? direction_json(command, answer.directions[1]) : Json(nullptr);
   if (command.tolerance) {
     const HausdorffVerdict v = verdict(answer, *command.tolerance);
-    json["tolerance"] = {{"value", *command.tolerance}, {"within", v.within}, {"certified", v.certified}};
+    json["tolerance"] = {{"value", *command.tolerance},
+                         {"verdict", sdm::name_of(v.word())},
+                         {"within", v.within},
+                         {"certified", v.certified}};
   }
   json["notes"] = answer.notes;
   return json;
@@ -179,6 +189,9 @@ int run(const HausdorffCommand& command) {
   HausdorffAnswer answer = decide(sites, pair.o1.mesh, command, progress.callback());
   answer.size = smaller_size(pair);
   answer.notes = notes_on(pair.o1, pair.o2);
+  if (command.tolerance && !command.options.facing)
+    if (auto note = sdm::note_on_walls(sites.back(), *command.tolerance, command.units))
+      answer.notes.push_back(std::move(*note));
   const double query_ms = watch.lap();
 
   const auto report = [&] {
@@ -189,8 +202,7 @@ int run(const HausdorffCommand& command) {
   print(command, report, [&] { return hausdorff_summary(command, answer) + note_lines(answer.notes, 13); });
   const auto& tolerance = command.tolerance;
   if (!tolerance) return kSuccess;
-  const HausdorffVerdict v = verdict(answer, *tolerance);
-  return !v.certified ? kNotDecided : v.within ? kSuccess : kToleranceExceeded;
+  return exit_code(verdict(answer, *tolerance).word());
 }
 
 }  // namespace
@@ -222,7 +234,8 @@ void add_hausdorff_command(CLI::App& app) {
   hausdorff
       ->add_option(
           "--tolerance", c.tolerance,
-          "Exit with code 3 if the distance exceeds T; closer bounds are computed if T is between them")
+          "Judge whether the distance is at most T, by the exit code too; closer bounds are computed if T is "
+          "between them")
       ->check(no_negative_number())
       ->type_name("T");
   hausdorff->add_option("--units", c.units, "Units of the meshes, for printed values")->type_name("NAME");

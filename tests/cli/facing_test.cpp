@@ -120,7 +120,7 @@ TEST_F(FacingJobs, BoundTheLargestDistance) {
   const Outcome both = hausdorff(dent, {"--facing", "--both", "--tolerance", "100"});
   EXPECT_EQ(both.code, 3) << both.err;
   EXPECT_THAT(both.out, HasSubstr("left out: 10 faces of O2"));
-  EXPECT_THAT(both.out, HasSubstr("exceeded: faces without a match have no distance"));
+  EXPECT_THAT(both.out, HasSubstr("FAIL: faces without a match have no distance"));
   const std::string turned = write_obj(folder / "turned.obj", placed(square(1, 0), "rotate:45:0:0"));
   const Outcome none = hausdorff(turned, {"--facing", "10"});
   EXPECT_EQ(none.code, 1);

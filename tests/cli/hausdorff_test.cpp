@@ -78,18 +78,33 @@ TEST_F(HausdorffCommand, ExitsWithThreeWhereTheToleranceIsExceeded) {
     return run_sdm(arguments);
   };
   EXPECT_EQ(run(2 * distance, "").code, 0);
-  EXPECT_THAT(run(2 * distance, "").out, HasSubstr("tolerance  met"));
+  EXPECT_THAT(run(2 * distance, "").out, HasSubstr("tolerance  PASS: no point is farther than "));
   EXPECT_EQ(run(0.5 * distance, "--quiet").code, 3);
-  EXPECT_THAT(run(0.5 * distance, "").out, HasSubstr("tolerance  exceeded"));
+  EXPECT_THAT(run(0.5 * distance, "").out, HasSubstr("tolerance  FAIL: a point is farther than "));
   // Between the bounds of that precision.
   for (const double factor : {0.9999, 1.0001}) {
     const Outcome near = run(factor * distance, "--json");
     const Json json = Json::parse(near.out);
     EXPECT_EQ(json["tolerance"]["within"], factor > 1);
     EXPECT_EQ(json["tolerance"]["certified"], true);
+    EXPECT_EQ(json["tolerance"]["verdict"], factor > 1 ? "PASS" : "FAIL");
     EXPECT_EQ(near.code, factor > 1 ? 0 : 3);
   }
   EXPECT_EQ(run_sdm({"hausdorff", o1, o1, "--tolerance", "0"}).code, 0);
+}
+
+// Beyond half a wall, the closest point is on the other skin.
+TEST_F(HausdorffCommand, ThinWallsAreNoted) {
+  const std::string box = write_obj(folder / "box.obj", cube(1));
+  const std::string note = "of O2's walls are thinner than twice the tolerance";
+  const auto out = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"hausdorff", box, box});
+    return run_sdm(more).out;
+  };
+  EXPECT_THAT(out({"--tolerance", "2"}), HasSubstr(note));
+  EXPECT_THAT(out({"--tolerance", "0.1"}), ::testing::Not(HasSubstr(note)));
+  EXPECT_THAT(out({"--tolerance", "2", "--facing"}), ::testing::Not(HasSubstr(note)));
+  EXPECT_THAT(out({}), ::testing::Not(HasSubstr(note)));
 }
 
 TEST_F(HausdorffCommand, NamesFaults) {
