@@ -70,7 +70,8 @@ from ._core import (
 )
 from ._core import version as __version__
 from ._closest_points import NONE, SiteType, closest_points
-from ._distance_map import DistanceMap, MapBounds, map, self_map, thickness
+from ._distance_map import DistanceMap, MapBounds
+from ._maps import map, self_map, thickness
 
 __all__ = [
     "Alignment",
