@@ -9,12 +9,14 @@
 #include <sdm/mesh.h>
 #include <sdm/surface.h>
 
+#include <limits>
 #include <optional>
 #include <span>
 
 namespace sdm {
 
-/// The distances that are accepted: lo ≤ d ≤ hi, in units of the meshes.
+/// The distances that are accepted: lo ≤ d ≤ hi, in units of the meshes. A limit may be infinite where this
+/// is said.
 struct Tolerance {
   double lo = 0, hi = 0;
 
@@ -25,7 +27,9 @@ struct Tolerance {
   Tolerance(double least, double most) : lo(least), hi(most) {}
 
   /// Whether it tells distances apart that differ by their sign only, which unsigned distances do not have.
-  [[nodiscard]] bool needs_sign() const { return lo < 0 && -lo != hi; }
+  [[nodiscard]] bool needs_sign() const {
+    return lo < 0 && -lo != hi && lo > -std::numeric_limits<double>::infinity();
+  }
   friend bool operator==(const Tolerance&, const Tolerance&) = default;
 };
 

@@ -44,7 +44,7 @@ void report_unmatched(const Mesh& a, const hausdorff::LargestDistance& found, Ha
 }
 
 HausdorffDistance bound_distance(const Mesh& a, const sites::SitesData& b, const HausdorffOptions& options) {
-  const hausdorff::Scale scale = hausdorff::scale_of(a, b);
+  const hausdorff::Scale scale = hausdorff::scale_of(a, bounds(b.mesh));
   const double asked = options.precision.value_or(HausdorffOptions::kPrecision * scale.size);
   std::optional<hausdorff::Matching> matching;
   if (options.facing) matching.emplace(b, *options.facing, facing::outward_normals(a));

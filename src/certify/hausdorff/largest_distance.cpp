@@ -21,12 +21,12 @@ double largest_coordinate(const Box& box) {
 
 }  // namespace
 
-Scale scale_of(const Mesh& a, const sites::SitesData& b) {
-  const Box box = bounds(a);
-  Box both = bounds(b.mesh);
-  extend(both, box);
+Scale scale_of(const Mesh& a, const Box& box) {
+  const Box of_a = bounds(a);
+  Box both = box;
+  extend(both, of_a);
   const double size = diagonal(both);
-  return {size, largest_coordinate(box), kDoubleRounding * std::max(size, largest_coordinate(both))};
+  return {size, largest_coordinate(of_a), kDoubleRounding * std::max(size, largest_coordinate(both))};
 }
 
 LargestDistance largest_distance(const Mesh& a, const sites::SitesData& b, const Scale& scale,

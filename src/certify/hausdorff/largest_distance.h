@@ -20,7 +20,8 @@ struct Scale {
   double precision = 0;   ///< no bounds are closer: 1e-12 of the size and of the largest coordinate of both
 };
 
-[[nodiscard]] Scale scale_of(const Mesh& a, const sites::SitesData& b);
+/// `box`: of B.
+[[nodiscard]] Scale scale_of(const Mesh& a, const Box& box);
 
 /// A question that can be answered before the largest distance is known.
 struct Decision {

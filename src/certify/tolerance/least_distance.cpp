@@ -14,7 +14,7 @@ namespace {
 
 // Lowers `least` by the distance of a face of A.
 void lower_by_face(const sites::SitesData& b, const Corners& corners, std::uint32_t face,
-                   LeastDistance& least) {
+                   const hausdorff::Matching* matching, LeastDistance& least) {
   Box box;
   double size = 1;
   for (const Vec3& corner : corners) {
@@ -23,12 +23,15 @@ void lower_by_face(const sites::SitesData& b, const Corners& corners, std::uint3
     for (const double x : unit) size = std::max(size, std::abs(x));
   }
   const tree::FloatBox around = tree::FloatBox::around(box);
-  const auto bound = [&](const tree::FloatBox& other) {
+  const auto bound = [&](std::uint32_t node, const tree::FloatBox& other) {
+    if (matching != nullptr && !matching->may_allow(face, node))
+      return std::numeric_limits<double>::infinity();
     return (1 - 1e-12) * norm(tree::gap(around, other)) - kFewRoundings * size;
   };
   const auto enter = [&](double distance) { return distance < least.value * b.frame.scale; };
   const auto leaf = [&](std::uint32_t node) {
     for (const std::uint32_t other : b.tree.items_of(node)) {
+      if (matching != nullptr && !matching->allows(face, other)) continue;
       const Corners near = corners_of(b.mesh, other);
       if (!(squared_box_distance(corners, near) < least.value * least.value)) continue;
       const PointPair pair = closest_or_common(corners, near);
@@ -41,7 +44,8 @@ void lower_by_face(const sites::SitesData& b, const Corners& corners, std::uint3
 
 }  // namespace
 
-LeastDistance least_distance(const Mesh& a, const sites::SitesData& b, double most) {
+LeastDistance least_distance(const Mesh& a, const sites::SitesData& b, double most,
+                             const hausdorff::Matching* matching) {
   constexpr std::size_t kBlock = 256;
   const std::size_t blocks = (a.triangles.size() + kBlock - 1) / kBlock;
   std::vector<LeastDistance> found(blocks);
@@ -50,7 +54,7 @@ LeastDistance least_distance(const Mesh& a, const sites::SitesData& b, double mo
       found[i].value = most;
       for (std::size_t f = kBlock * i; f < std::min(kBlock * (i + 1), a.triangles.size()); ++f)
         if (!hausdorff::repeats_corner(a.triangles[f]))
-          lower_by_face(b, corners_of(a, f), static_cast<std::uint32_t>(f), found[i]);
+          lower_by_face(b, corners_of(a, f), static_cast<std::uint32_t>(f), matching, found[i]);
     }
   });
   LeastDistance least{.value = most};

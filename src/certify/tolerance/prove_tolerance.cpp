@@ -65,25 +65,22 @@ ToleranceProof operator&(const ToleranceProof& a, const ToleranceProof& b) {
 /// Answers questions on a surface and O2.
 class Prover {
  public:
-  /// `matching`: null without options.facing.
+  /// `matching`: of the faces of `a`, null without options.facing. `box`: of O2.
   Prover(const Mesh& a, const sites::SitesData& b, SignMethod sign, const ToleranceProofOptions& options,
-         const hausdorff::Matching* matching)
+         const hausdorff::Matching* matching, const Box& box)
       : a_(a),
         b_(b),
         sign_(sign),
         options_(options),
         matching_(matching),
-        scale_(hausdorff::scale_of(a, b)) {}
+        scale_(hausdorff::scale_of(a, box)) {}
 
   ToleranceProof operator()(const Tolerance& tolerance) const {
-    const auto [lo, hi] = tolerance;
+    const double lo = std::max(tolerance.lo, -kFarthest), hi = std::min(tolerance.hi, kFarthest);
     const double least = std::max({lo, -hi, 0.0}), most = std::max(-lo, hi), tight = std::min(-lo, hi);
-    if (matching_ != nullptr) {
-      const bool has_one_limit = lo == -hi || (sign_ == SignMethod::none && lo <= 0);
-      return has_one_limit ? at_most(hi) : by_either_sign(tight, most);
-    }
     if (sign_ == SignMethod::none) return at_least(least, true) & at_most(hi);
-    if (is_estimate(sign_) && lo != -hi) return by_either_sign(tight, most);
+    const bool has_estimate = matching_ != nullptr || is_estimate(sign_);  // of the sign
+    if (has_estimate && lo != -hi) return by_either_sign(tight, most);
     if (tight < 0) {
       const ToleranceProof apart = at_least(least, lo > 0);
       return apart.proof == Proof::inside ? on_side(hi < 0) & at_most(most) : apart;
@@ -92,8 +89,12 @@ class Prover {
   }
 
  private:
+  // In place of a limit that is infinite: no distance is larger.
+  static constexpr double kFarthest = std::numeric_limits<double>::max() / 4;
+
   /// Whether no distance is larger, of the points on one side of O2 or of all.
   ToleranceProof at_most(double limit, std::optional<bool> inside = {}) const {
+    if (limit == kFarthest && matching_ == nullptr) return {.proof = Proof::inside};
     std::optional<Side> side;
     if (inside) side.emplace(b_, *inside);
     const hausdorff::Decision decision{.limit = limit, .forgiven = limit + options_.accuracy};
@@ -122,7 +123,7 @@ class Prover {
   /// Whether no |distance| is smaller; `at_lower`: that is the lower limit.
   ToleranceProof at_least(double limit, bool at_lower) const {
     if (!(limit > 0)) return {.proof = Proof::inside};
-    const tolerance::LeastDistance found = tolerance::least_distance(a_, b_, limit);
+    const tolerance::LeastDistance found = tolerance::least_distance(a_, b_, limit, matching_);
     ToleranceProof result{.at_lower = at_lower};
     if (found.face == kNone || found.value >= limit - scale_.precision) {
       result.proof = Proof::inside;
@@ -193,8 +194,11 @@ class Prover {
 };
 
 void check_question(const Tolerance& tolerance, const ToleranceProofOptions& options) {
-  if (!(std::isfinite(tolerance.lo) && std::isfinite(tolerance.hi) && tolerance.lo <= tolerance.hi))
-    throw Error("the tolerance to prove must be two finite numbers, the smaller one first");
+  const bool has_limit = std::isfinite(tolerance.lo) || std::isfinite(tolerance.hi);
+  if (!(tolerance.lo <= tolerance.hi && has_limit &&
+        tolerance.hi > -std::numeric_limits<double>::infinity() &&
+        tolerance.lo < std::numeric_limits<double>::infinity()))
+    throw Error("the tolerance to prove must be two numbers, the smaller one first, of which one is finite");
   if (!(options.accuracy >= 0)) throw Error("the accuracy of a tolerance's proof must be at least 0");
 }
 
@@ -205,8 +209,7 @@ hausdorff::Matching tolerance::matching_of(const Mesh& surface, const Sites& sit
 }
 
 ToleranceProof tolerance::prove_valid(const Mesh& surface, const Sites& sites, const Tolerance& tolerance,
-                                      const ToleranceProofOptions& options,
-                                      const hausdorff::Matching* known) try {
+                                      const ToleranceProofOptions& options, const Known& known) try {
   check_question(tolerance, options);
   const SignUsed sign = choose_sign(sites, MapOptions{.sign = options.sign, .facing = options.facing});
   if (sign.method == SignMethod::none && tolerance.needs_sign())
@@ -214,9 +217,11 @@ ToleranceProof tolerance::prove_valid(const Mesh& surface, const Sites& sites, c
                     sign.reason + "; choose another sign method or a symmetric tolerance",
                 Remedy::sign_method);
   std::optional<hausdorff::Matching> matching;
-  if (options.facing) matching.emplace(known ? *known : matching_of(surface, sites, *options.facing));
+  if (options.facing)
+    matching.emplace(known.matching ? *known.matching : matching_of(surface, sites, *options.facing));
   const auto prove = [&](const Mesh& mesh) {
-    return Prover(mesh, internals(sites), sign.method, options, matching ? &*matching : nullptr)(tolerance);
+    return Prover(mesh, internals(sites), sign.method, options, matching ? &*matching : nullptr,
+                  known.box)(tolerance);
   };
   if (!options.faces) return prove(surface);
   const Mesh part = part_of(surface, *options.faces);
@@ -235,7 +240,7 @@ ToleranceProof prove_tolerance(const Mesh& surface, const Sites& sites, const To
     mesh::validate_edited(surface);
   else
     validate(surface);
-  return tolerance::prove_valid(surface, sites, tolerance, options);
+  return tolerance::prove_valid(surface, sites, tolerance, options, {bounds(sites.mesh())});
 }
 
 }  // namespace sdm

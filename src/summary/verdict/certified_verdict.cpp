@@ -54,6 +54,7 @@ CertifiedVerdict summary::Certifier::operator()(const ToleranceVerdict& verdict,
   const MeasuredDistance& measured = map_.measured;
   const bool is_facing = measured.kind == DistanceKind::facing && measured.facing;
   if (!is_open(result) || !(is_facing || measured.kind == DistanceKind::closest)) return result;
+  if (!box_) box_ = bounds(sites_.mesh());
   if (is_facing && !matching_) matching_.emplace(tolerance::matching_of(surface_, sites_, *measured.facing));
   result.proof = tolerance::prove_valid(surface_, sites_, verdict.tolerance,
                                         {.sign = map_.sign.method,
@@ -61,7 +62,7 @@ CertifiedVerdict summary::Certifier::operator()(const ToleranceVerdict& verdict,
                                          .facing = measured.facing,
                                          .faces = faces,
                                          .progress = progress_},
-                                        matching_ ? &*matching_ : nullptr);
+                                        {*box_, matching_ ? &*matching_ : nullptr});
   if (!(is_facing && result.proof->depends_on_signs))
     static_cast<Judgement&>(result) = judge(result, *result.proof);
   return result;

@@ -31,7 +31,8 @@ class Certifier {
   const DistanceMap& map_;
   double accuracy_;
   const Progress& progress_;
-  std::optional<hausdorff::Matching> matching_;  // made by the first proof that needs it
+  std::optional<Box> box_;                       // of O2, as the next one made by the first proof
+  std::optional<hausdorff::Matching> matching_;  // if it is needed
 };
 
 }  // namespace sdm::summary

@@ -155,6 +155,28 @@ TEST(FacingHausdorff, FindsADentDeeperThanHalfOfAWall) {
   EXPECT_TRUE(one_sided.depends_on_signs);
 }
 
+// A square over a box, whose lower side faces down: unsigned distances are proven on both sides.
+TEST(FacingHausdorff, ProvesALowerLimitOfUnsignedDistances) {
+  const Sites sites(cube(1));
+  const Mesh over = square(0.5, 1.5);
+  const auto prove = [&](double lo, double hi) {
+    return prove_tolerance(over, sites, {lo, hi}, {.sign = SignMethod::none, .facing = 90});
+  };
+  EXPECT_EQ(prove(0.4, 0.6).proof, Proof::inside);
+  EXPECT_EQ(prove(0.1, 0.45).proof, Proof::outside);
+  const ToleranceProof low = prove(0.55, 0.6);
+  EXPECT_EQ(low.proof, Proof::outside);
+  EXPECT_FALSE(low.depends_on_signs);
+  EXPECT_TRUE(low.at_lower);
+  ASSERT_TRUE(low.witness);
+  EXPECT_NEAR(low.witness->distance, 0.5, 1e-9);
+  Mesh turned = over;
+  for (Triangle& t : turned.triangles) std::swap(t[0], t[1]);
+  EXPECT_EQ(prove_tolerance(turned, sites, {2.4, 2.6}, {.sign = SignMethod::none, .facing = 90}).proof,
+            Proof::inside)
+      << "to the lower side";
+}
+
 TEST(FacingHausdorff, StatesFacesWithoutAMatch) {
   // The side walls of a box have no match in a square that faces upwards.
   const Mesh box = cube(1), ground = square(1, 0);

@@ -234,11 +234,31 @@ TEST(ToleranceProof, EndsAfterTheMostParts) {
   EXPECT_EQ(prove_tolerance(moved(part, {0.01, 0, 0}), sites, {0, 5}).proof, Proof::inside);
 }
 
+// Cubes of 2 and 3 have their faces 0.5 apart: the smaller one is inside.
+TEST(ToleranceProof, OfALimitOnOneSide) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const Mesh small = cube(1), large = cube(1.5);
+  const auto prove = [](const Mesh& a, const Mesh& b, double lo, double hi) {
+    return prove_tolerance(a, Sites(b), Tolerance(lo, hi)).proof;
+  };
+  EXPECT_EQ(prove(small, large, -kNone, 0.1), Proof::inside);
+  EXPECT_EQ(prove(small, large, -0.4, kNone), Proof::outside);
+  EXPECT_EQ(prove(small, large, -0.6, kNone), Proof::inside);
+  EXPECT_EQ(prove(small, large, -kNone, -0.4), Proof::inside);
+  EXPECT_EQ(prove(small, large, -kNone, -0.55), Proof::outside);
+  EXPECT_EQ(prove(large, small, 0.4, kNone), Proof::inside);
+  EXPECT_EQ(prove(large, small, 0.55, kNone), Proof::outside);
+  EXPECT_EQ(prove(square(2, 0.2), square(4, 0), -kNone, 0.3), Proof::inside) << "unsigned";
+  EXPECT_EQ(prove(square(2, 0.2), square(4, 0), -kNone, 0.1), Proof::outside) << "unsigned";
+}
+
 TEST(ToleranceProof, RejectsWhatHasNoMeaning) {
   const Sites sites(cube(1));
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW((void)prove_tolerance(cube(1), sites, Tolerance(1, 0)), Error);
   EXPECT_THROW((void)prove_tolerance(cube(1), sites, Tolerance(kNan)), Error);
+  EXPECT_THROW((void)prove_tolerance(cube(1), sites, Tolerance(std::numeric_limits<double>::infinity())),
+               Error);
   EXPECT_THROW((void)prove_tolerance(cube(1), sites, 1, {.accuracy = -1}), Error);
   EXPECT_THROW((void)prove_tolerance(Mesh(), sites, 1), Error);
 }
