@@ -4,8 +4,9 @@
 #include <sdm/summary.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <utility>
+#include <cstddef>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "format.h"
@@ -71,34 +72,43 @@ std::string no_group(const std::string& name, const Input& mesh) {
   return fmt::format("no face of {} has the name '{}'; {}", mesh.file, name, sdm::known_names(mesh.names));
 }
 
+namespace {
+
+// Of several meshes that could have had it.
+std::string no_group_of(const std::string& name, std::span<const Input* const> meshes) {
+  if (meshes.size() == 1) return no_group(name, *meshes[0]);
+  std::vector<std::string> files, known;
+  for (const Input* mesh : meshes) {
+    files.push_back(mesh->file);
+    known.push_back(fmt::format("of {}, {}", mesh->file, sdm::known_names(mesh->names)));
+  }
+  return fmt::format("no face of {} has the name '{}'; {}", fmt::join(files, " or "), name,
+                     fmt::join(known, "; "));
+}
+
+}  // namespace
+
 void add_tolerance_table_option(CLI::App& app, GroupTolerances& table, const std::string& what) {
-  app.add_option(
-         "--tolerance-table", table.file,
-         what +
-             ": CSV with the header "
-             "group,lower,upper, or JSON with these keys. A group is an object, group, material, face or "
-             "color of its file. Faces of no row are judged by --tolerance only")
+  app.add_option("--tolerance-table", table.file,
+                 what +
+                     ": CSV with the header "
+                     "group,lower,upper, or with semicolons, or JSON with these keys; an empty limit is "
+                     "none. A group is an object, group, material, face or "
+                     "color of its file. Faces of no row are judged by --tolerance only")
       ->check(non_empty())
       ->type_name("FILE");
 }
 
 void check_groups(const GroupTolerances& table, std::initializer_list<const Input*> meshes) {
-  for (const sdm::GroupTolerance& row : table.rows)
-    if (std::ranges::all_of(meshes, [&](const Input* mesh) {
-          return sdm::faces_named(mesh->names, row.group).faces.empty();
-        }))
-      throw sdm::Error(fmt::format("{}: {}", table.file, no_group(row.group, **meshes.begin())));
-}
-
-std::vector<sdm::FaceNames> names_of_part(const std::vector<sdm::FaceNames>& names,
-                                          const std::vector<std::uint32_t>& source_face) {
-  std::vector<sdm::FaceNames> result = names;
-  if (source_face.empty()) return result;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    result[k].of_face.clear();
-    for (const std::uint32_t face : source_face) result[k].of_face.push_back(names[k].of_face[face]);
+  std::vector<bool> known(table.rows.size());
+  for (const Input* mesh : meshes) {
+    const std::vector<sdm::NamedFaces> named = sdm::faces_of_groups(mesh->names, table.rows);
+    for (std::size_t row = 0; row < named.size(); ++row)
+      if (!named[row].faces.empty()) known[row] = true;
   }
-  return result;
+  for (std::size_t row = 0; row < known.size(); ++row)
+    if (!known[row])
+      throw sdm::Error(fmt::format("{}: {}", table.file, no_group_of(table.rows[row].group, meshes)));
 }
 
 Json to_json(const sdm::GroupVerdicts& verdicts, bool of_points) {

@@ -29,10 +29,6 @@ void add_tolerance_table_option(CLI::App& app, GroupTolerances& table,
 /// Throws sdm::Error for a row whose group none of the meshes has, naming groups that they have.
 void check_groups(const GroupTolerances& table, std::initializer_list<const Input*> meshes);
 
-/// The names of the faces of a part of a mesh. `source_face`: of each, its face of the mesh; empty: the same.
-[[nodiscard]] std::vector<sdm::FaceNames> names_of_part(const std::vector<sdm::FaceNames>& names,
-                                                        const std::vector<std::uint32_t>& source_face);
-
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::GroupVerdicts& verdicts, bool of_points = false);
 
 /// One line for each group.

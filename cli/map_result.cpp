@@ -82,6 +82,7 @@ sdm::SummaryOptions summary_options(const MapTask& task, const AtlasPart& part, 
           .max_distance = command.map.max_distance,
           .accuracy = accuracy,
           .tolerance = command.picture.tolerance,
+          .table = command.groups.rows,
           .colormap = command.picture.colormap,
           .range = command.picture.range,
           .bands = command.bands,
@@ -125,7 +126,7 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
   });
   if (!command.groups.rows.empty()) {
     sdm::GroupVerdicts groups = sdm::certify_groups(
-        surface, *task.sites, map, computed.at_vertices, names_of_part(task.on.names, part.source_face),
+        surface, *task.sites, map, computed.at_vertices, sdm::names_of_part(task.on.names, part.source_face),
         command.groups.rows,
         {.accuracy = computed.accuracy, .doubted = !task.doubts.empty() && !command.doubts.accept});
     if (!groups.groups.empty()) outcome.groups = std::move(groups);  // none is of this mesh or tile
@@ -135,7 +136,7 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
 /// The kinds of names that groups with a verdict have.
 std::vector<sdm::FaceNames> judged_names(const MapTask& task, const AtlasPart& part, const Outcome& outcome) {
   if (!outcome.groups) return {};
-  std::vector<sdm::FaceNames> names = names_of_part(task.on.names, part.source_face);
+  std::vector<sdm::FaceNames> names = sdm::names_of_part(task.on.names, part.source_face);
   std::erase_if(names, [&](const sdm::FaceNames& kind) {
     return std::ranges::none_of(outcome.groups->groups,
                                 [&](const sdm::GroupVerdict& g) { return g.kind == kind.kind; });
@@ -201,8 +202,8 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
         if (sdm::choose_sign(*task.sites, command.map).method == sdm::SignMethod::exact)
           outcome.embedded = sdm::is_embedded(*task.sites);
         computed.at_vertices = at_vertices_of(command, mesh, *task.sites);
-      },
         leave_islands_out(task.on, computed.at_vertices, std::numeric_limits<float>::quiet_NaN());
+      },
       [&] { inspect(task.on), inspect(task.to); },
   });
   if (!command.along)
@@ -218,8 +219,8 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
   if (map.sign.method == sdm::SignMethod::side && map.measured.kind == sdm::DistanceKind::closest) {
     std::vector<std::uint8_t> at_boundary =
         sdm::boundary_vertices(mesh, *task.sites, {.max_distance = command.map.max_distance});
-    outcome.boundary_vertices = static_cast<std::size_t>(std::ranges::count(at_boundary, 1));
     leave_islands_out(task.on, at_boundary, std::uint8_t{0});
+    outcome.boundary_vertices = static_cast<std::size_t>(std::ranges::count(at_boundary, 1));
   }
   outcome.raster = sdm::gl_report(*command.map.engine);
   computed.ms = total.lap();

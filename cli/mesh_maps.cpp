@@ -52,6 +52,7 @@ Json MeshMaps::report() const {
 }
 
 MeshMaps measure_mesh(MapTask task, OutputFolder& out, ProgressLine& progress) {
+  task.command.groups.rows = sdm::with_kinds(task.on.names, task.command.groups.rows);
   const MapCommand& command = task.command;
   MeshMaps all{task.on.role, atlas_parts(task.on.mesh, command.layout.atlas)};
   const bool tiled = all.parts.size() > 1;

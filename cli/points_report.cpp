@@ -32,11 +32,21 @@ std::string text_summary(const sdm::TextDialect& text) {
                      text.header_line ? fmt::format(", header in line {}", *text.header_line) : "");
 }
 
+/// The share of the points with coordinates.
+double without_value(const sdm::PointDistances& found) {
+  return static_cast<double>(found.beyond_max_distance + found.without_match) /
+         static_cast<double>(std::max<std::uint64_t>(found.counted(), 1));
+}
+
 std::string tolerance_line(const PointsOutcome& outcome, const std::string& unit) {
   const sdm::Summary& summary = outcome.summary;
   const sdm::CertifiedVerdict& verdict = *summary.tolerance;
   const std::string word = sdm::name_of(verdict.verdict);
   if (verdict.verdict != sdm::Verdict::fail) return word + ": " + sdm::verdict_text(summary);
+  if (verdict.reason == sdm::VerdictReason::without_match ||
+      verdict.reason == sdm::VerdictReason::beyond_max_distance)
+    return fmt::format("{}: {} % of the points have no value, as {}", word,
+                       number(100 * without_value(outcome.found)), sdm::verdict_text(summary));
   const std::string share = fmt::format("{}: {} % of the points are out of it", word,
                                         number(100 * summary.exceeding_point_fraction));
   const std::optional<sdm::Extreme> most = decisive_extreme(summary);

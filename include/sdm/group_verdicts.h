@@ -23,8 +23,19 @@ namespace sdm {
 /// The tolerance of a group, by its name.
 struct GroupTolerance {
   std::string group;
-  Tolerance tolerance{};
+  Tolerance tolerance{};  ///< infinite on a side without a limit
+  std::string kind{};     ///< of the name; empty: the first one of which a face has it
 };
+
+/// Returns the faces of each row, as faces_named() does, of the kind of the row if it has one. Cost: linear
+/// in faces and rows.
+[[nodiscard]] SDM_API std::vector<NamedFaces> faces_of_groups(std::span<const FaceNames> names,
+                                                              std::span<const GroupTolerance> table);
+
+/// Returns the table with the kinds that its names have on a mesh, so that the rows mean the same for each of
+/// its parts. Cost: linear in faces and rows.
+[[nodiscard]] SDM_API std::vector<GroupTolerance> with_kinds(std::span<const FaceNames> names,
+                                                             std::span<const GroupTolerance> table);
 
 /// The verdict on a group.
 struct GroupVerdict {
@@ -76,8 +87,8 @@ struct CertifyGroupsOptions {
 /// and where these are within the tolerance by prove_tolerance() of its faces, so that Verdict::pass holds
 /// for every point of the group. A name of several kinds is that of the first. Faces that no row names are
 /// not judged. Throws sdm::Error for a tolerance that needs a sign if the map is unsigned, and as
-/// certify_tolerance() does. Cost: linear in texels and
-/// faces for all groups together, and for each group that of its proof.
+/// certify_tolerance() does. Cost: linear in texels and faces for all groups together, and for each group
+/// that of its proof.
 [[nodiscard]] SDM_API GroupVerdicts certify_groups(const Surface& surface, const Sites& sites,
                                                    const DistanceMap& map,
                                                    std::span<const float> vertex_distances,
@@ -96,7 +107,8 @@ SDM_API void withhold_pass(GroupVerdicts& verdicts);
 
 /// The verdicts on maps of parts of a surface, such as UDIM tiles, as of one map, in the order of the table:
 /// that on a group is Verdict::fail if that of one of its parts is, and so on, as of all groups; fractions
-/// are weighted by area. Cost: linear.
+/// are weighted by area. Where a name is of several kinds, `table` has those of the whole, as of
+/// with_kinds(). Cost: linear.
 [[nodiscard]] SDM_API GroupVerdicts combined_groups(std::span<const GroupVerdicts> parts,
                                                     std::span<const GroupTolerance> table, bool doubted);
 

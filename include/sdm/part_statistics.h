@@ -39,6 +39,11 @@ struct NamedFaces {
 /// name, as where all of them were left out. Cost: linear in faces.
 [[nodiscard]] SDM_API NamedFaces faces_named(std::span<const FaceNames> names, const std::string& name);
 
+/// Returns the names of the faces of a part of a mesh. `source_face`: of each face of the part, that of the
+/// mesh; empty: the part is the mesh. Cost: linear in faces and kinds of names.
+[[nodiscard]] SDM_API std::vector<FaceNames> names_of_part(std::span<const FaceNames> names,
+                                                           std::span<const std::uint32_t> source_face);
+
 /// Returns the kinds and names of all faces as a clause for messages: "its names are a, b, ..." with the
 /// first 20 of them, or "its faces have no names". Cost: linear in names.
 [[nodiscard]] SDM_API std::string known_names(std::span<const FaceNames> names);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/group_verdicts.h>
 #include <sdm/map.h>
 #include <sdm/part_statistics.h>
 #include <sdm/surface.h>
@@ -19,9 +20,12 @@
 
 namespace sdm {
 
-/// A region whose distances are all beyond the same limit.
+/// A region whose distances are all beyond the limit on the same side, or which has no distances.
 struct Place {
-  double distance = 0;           ///< of all its samples the one that is farthest beyond the limit
+  /// Of all its samples the one that is farthest beyond its limit; NaN where a tolerance asks for values, and
+  /// the samples have none.
+  double distance = 0;
+  Tolerance limits{};            ///< of that sample; infinite where there is none on a side
   Vec3 point{};                  ///< of that sample
   std::uint64_t sample = kNone;  ///< the texel, kNone for a vertex; of a cloud the place in the file, from 0
   std::uint32_t face = kNone;    ///< of the surface, with the sample; of a cloud its closest face of O2
@@ -40,12 +44,14 @@ struct PlaceTotals {
 
 /// The places of a map or a cloud.
 struct Places {
-  Tolerance limits{};         ///< distances out of these belong to places
-  bool by_tolerance = false;  ///< the limits are those of the tolerance; otherwise ±`p99_abs`
+  /// Distances out of these belong to places, but for faces that have limits of their own. Infinite if only
+  /// these are judged.
+  Tolerance limits{};
+  bool by_tolerance = false;  ///< the limits are those of the tolerances; otherwise ±`p99_abs`
   double least_fraction = 0;  ///< of the area or the points: places below it are small
   PlaceTotals large, small;
   /// At most kListed: first those that are not small, then the small ones, by how far they are beyond
-  /// the limit.
+  /// the limit; of each those without a value last, by their extent.
   std::vector<Place> largest;
 
   static constexpr std::size_t kListed = 10;
@@ -53,18 +59,20 @@ struct Places {
 
 /// Options of find_places().
 struct PlacesOptions {
-  std::optional<Tolerance> tolerance{};
-  double accuracy = 0;                 ///< of a distance, as for tolerance_shares(); finite
-  double p99_abs = 0;                  ///< DistanceStatistics::p99_abs of the map
-  std::span<const FaceNames> names{};  ///< of the faces of the surface
+  std::optional<Tolerance> tolerance{};     ///< of all faces
+  std::span<const GroupTolerance> table{};  ///< of the faces with these `names`, in addition
+  double accuracy = 0;                      ///< of a distance, as for tolerance_shares(); finite
+  double p99_abs = 0;                       ///< DistanceStatistics::p99_abs of the map
+  std::span<const FaceNames> names{};       ///< of the faces of the surface
 };
 
-/// Returns the places of a map: connected regions of texels and vertices out of the tolerance by more than
-/// the accuracy, or, without a tolerance or where nothing is out of it, at or beyond the 99th percentile of
-/// |d| and the accuracy. Regions beyond opposite limits are separate. Texels are connected if they are among
-/// the eight around each other in a chart of the atlas, or at the same point of an edge between charts, up to
-/// a texel and a half; vertices with the texels around them. A place is small if its area is less than 1e-5
-/// of that of all texels, or than that of four texels of mean size. Areas are estimates.
+/// Returns the places of a map: connected regions of texels and vertices out of the tolerances of their faces
+/// by more than the accuracy, or without a value; or, without a tolerance or where nothing is out of it, at
+/// or beyond the 99th percentile of |d| and the accuracy. Regions beyond opposite limits are separate. Texels
+/// are connected if they are among the eight around each other in a chart of the atlas, or at the same point
+/// of an edge between charts, up to a texel and a half; vertices with the texels around them. A place is
+/// small if its area is less than 1e-5 of that of all texels, or than that of four texels of mean size. Areas
+/// are estimates.
 ///
 /// `vertex_distances`: the distance at each vertex of surface.mesh(), NaN if it has no value; empty: none.
 /// Throws sdm::Error if the map or the distances belong to another surface. Cost: linear in texels and, where

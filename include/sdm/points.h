@@ -204,7 +204,7 @@ struct PointDistances {
   /// the boundary of an open O2 have no side, and |d|.
   bool beyond_with_either_sign = true;
   std::optional<PointIslands> islands;  ///< if they were looked for
-  std::optional<Places> places;         ///< nothing if no point has a value
+  std::optional<Places> places;         ///< nothing if no point has a value, or has to have one
   /// The verdicts on the groups of options.table: each point with a value is of the groups of its closest
   /// face; those without one are of no group, and fail. Doubts are not considered.
   std::optional<GroupVerdicts> groups;

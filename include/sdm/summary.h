@@ -12,6 +12,7 @@
 #include <sdm/coverage.h>
 #include <sdm/distance_kind.h>
 #include <sdm/doubts.h>
+#include <sdm/group_verdicts.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/part_statistics.h>
@@ -137,6 +138,7 @@ struct SummaryOptions {
   double max_distance = std::numeric_limits<double>::infinity();  ///< that of the map
   double accuracy = 0;  ///< of the engine: engine_accuracy(); infinite if unknown
   std::optional<Tolerance> tolerance{};
+  std::span<const GroupTolerance> table{};  ///< of groups of `names`, for the places
   Colormap colormap = Colormap::automatic;
   std::optional<std::array<double, 2>> range{};  ///< of the colours
   std::optional<ColorRange> colors{};            ///< shared with other maps; in place of the two above
@@ -203,6 +205,13 @@ class SDM_API CombinedSummary {
 /// show. By estimate_walls(), at least 1 % of the area counts. Nothing for a mesh that bounds no solid.
 /// Throws sdm::Error if there is not enough memory. Cost: that of estimate_walls().
 [[nodiscard]] SDM_API std::optional<std::string> note_on_walls(const Sites& sites, const Tolerance& tolerance,
+                                                               const std::string& units);
+
+/// The same of all tolerances together: that of the whole, and those of the rows whose names faces have.
+[[nodiscard]] SDM_API std::optional<std::string> note_on_walls(const Sites& sites,
+                                                               const std::optional<Tolerance>& tolerance,
+                                                               std::span<const FaceNames> names,
+                                                               std::span<const GroupTolerance> table,
                                                                const std::string& units);
 
 /// Withholds a pass because of the doubts of the summary, unless they are accepted.

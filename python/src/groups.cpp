@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -28,6 +29,16 @@ std::string lower(std::string word) {
 
 nb::object tuple_of(const Vec3& p) {
   return nb::make_tuple(p[0], p[1], p[2]);
+}
+
+/// As tolerance_of(), with None for no limit on one side.
+Tolerance group_tolerance_of(nb::handle value, SignMethod sign) {
+  const bool is_pair = nb::isinstance<nb::tuple>(value) || nb::isinstance<nb::list>(value);
+  if (!is_pair || nb::len(value) != 2 || value[0].is_none() == value[1].is_none())
+    return tolerance_of(value, sign);
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  return value[0].is_none() ? Tolerance(-kNoLimit, real_of(value[1]))
+                            : Tolerance(real_of(value[0]), kNoLimit);
 }
 
 void check(const FaceNames& names) {
@@ -86,7 +97,14 @@ sdm.Error: ...
 
 void bind_places(nb::module_& module) {
   nb::class_<Place>(module, "Place", "A region whose distances are all beyond the same limit.")
-      .def_ro("distance", &Place::distance, "Of its samples the one that is farthest beyond the limit.")
+      .def_ro(
+          "distance", &Place::distance,
+          "Of its samples the one that is farthest beyond the limit; NaN where a tolerance asks for values, "
+          "and there are none.")
+      .def_prop_ro(
+          "limits", [](const Place& self) { return nb::make_tuple(self.limits.lo, self.limits.hi); },
+          nb::sig("def limits(self) -> tuple[float, float]"),
+          "The limits of that sample: those of the tolerance, and of its group.")
       .def_prop_ro(
           "point", [](const Place& self) { return tuple_of(self.point); },
           nb::sig("def point(self) -> tuple[float, float, float]"), "Where that is.")
@@ -102,7 +120,10 @@ void bind_places(nb::module_& module) {
   nb::class_<Places>(module, "Places", "Where a map or a cloud deviates most, as regions.")
       .def_prop_ro(
           "limits", [](const Places& self) { return nb::make_tuple(self.limits.lo, self.limits.hi); },
-          nb::sig("def limits(self) -> tuple[float, float]"), "Distances out of these belong to places.")
+          nb::sig("def limits(self) -> tuple[float, float]"),
+          "Distances out of these belong to places, but for groups with a tolerance of their own. Infinite "
+          "if "
+          "only these are judged.")
       .def_ro(
           "by_tolerance", &Places::by_tolerance,
           "The limits are the tolerance; otherwise nothing is out of it, and they are the 99th percentile "
@@ -173,7 +194,8 @@ GroupVerdicts check_groups(const PyMap& self, nb::handle table, nb::handle names
   return result;
 }
 
-Places places(const PyMap& self, nb::handle tolerance, nb::handle names, nb::handle progress) {
+Places places(const PyMap& self, nb::handle tolerance, nb::handle names, nb::handle table,
+              nb::handle progress) {
   std::optional<Tolerance> accepted;
   if (!tolerance.is_none()) accepted = tolerance_of(tolerance, self.map.sign.method);
   const auto lock = self.use_surface();
@@ -181,6 +203,8 @@ Places places(const PyMap& self, nb::handle tolerance, nb::handle names, nb::han
   const Surface& surface = self.on->surface;
   std::vector<FaceNames> kinds;
   if (!names.is_none()) kinds = names_of(names, surface.mesh().triangles.size());
+  std::vector<GroupTolerance> rows;
+  if (!table.is_none()) rows = table_of(table, self.map.sign.method), check_table(rows, kinds);
   Places result;
   run(progress, [&](const Progress& report) {
     std::vector<float> at_vertices;
@@ -188,6 +212,7 @@ Places places(const PyMap& self, nb::handle tolerance, nb::handle names, nb::han
     const double accuracy = self.accuracy();
     result = find_places(surface, self.map, at_vertices,
                          {.tolerance = accepted,
+                          .table = rows,
                           .accuracy = std::isfinite(accuracy) ? accuracy : 0,
                           .p99_abs = statistics(surface, self.map).p99_abs,
                           .names = kinds});
@@ -198,9 +223,10 @@ Places places(const PyMap& self, nb::handle tolerance, nb::handle names, nb::han
 }  // namespace
 
 void check_table(std::span<const GroupTolerance> table, std::span<const FaceNames> names) {
-  for (const GroupTolerance& row : table)
-    if (faces_named(names, row.group).faces.empty())
-      throw Error("no face has the name '" + row.group + "' of the table of tolerances; " +
+  const std::vector<NamedFaces> found = faces_of_groups(names, table);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (found[i].faces.empty())
+      throw Error("no face has the name '" + table[i].group + "' of the table of tolerances; " +
                   known_names(names));
 }
 
@@ -211,7 +237,7 @@ std::vector<GroupTolerance> table_of(nb::handle table, SignMethod sign) {
     std::string group;
     if (!nb::try_cast(name, group) || group.empty())
       throw Error("the names of a table of tolerances must be words that are not empty");
-    rows.push_back({std::move(group), tolerance_of(tolerance, sign)});
+    rows.push_back({std::move(group), group_tolerance_of(tolerance, sign)});
   }
   if (rows.empty()) throw Error("the table of tolerances is empty");
   return rows;
@@ -239,7 +265,7 @@ void bind_groups(nb::module_& module) {
 void bind_map_groups(nb::class_<PyMap>& map) {
   map.def("check_groups", &check_groups, nb::arg("table").none(), nb::arg("names").none(),
           nb::arg("progress").none())
-      .def("places", &places, nb::arg("tolerance").none(), nb::arg("names").none(),
+      .def("places", &places, nb::arg("tolerance").none(), nb::arg("names").none(), nb::arg("table").none(),
            nb::arg("progress").none());
 }
 

@@ -226,13 +226,16 @@ void bind_verdict(nb::module_& module) {
 }  // namespace
 
 Tolerance tolerance_of(nb::handle value, SignMethod sign) {
-  Tolerance tolerance;
-  if (nb::isinstance<nb::tuple>(value) || nb::isinstance<nb::list>(value)) {
-    if (nb::len(value) != 2) throw Error("tolerance must be a number, or the least and the most distance");
-    tolerance = {real_of(value[0]), real_of(value[1])};
-  } else {
-    tolerance = real_of(value);
-  }
+  const auto number = [&](nb::handle limit) {
+    const double result = PyFloat_AsDouble(limit.ptr());
+    if (result != -1 || PyErr_Occurred() == nullptr) return result;
+    PyErr_Clear();
+    throw Error("tolerance must be a number, or the least and the most distance, and not " +
+                std::string(nb::repr(value).c_str()));
+  };
+  const bool is_pair = nb::isinstance<nb::tuple>(value) || nb::isinstance<nb::list>(value);
+  const Tolerance tolerance = is_pair && nb::len(value) == 2 ? Tolerance(number(value[0]), number(value[1]))
+                                                             : Tolerance(number(value));
   if (!(tolerance.lo <= tolerance.hi) || !std::isfinite(tolerance.hi - tolerance.lo))
     throw Error("tolerance must be a finite number that is not negative, or two, the smaller one first");
   if (tolerance.needs_sign() && sign == SignMethod::none)

@@ -73,6 +73,14 @@ def test_places_of_a_map():
     far = m.places()
     assert not far.by_tolerance
     assert far.limits[1] == pytest.approx(m.statistics().p99_abs)
+    of_top = m.places(names=names, tolerance_table={"top": (None, 0.2)})
+    assert of_top.by_tolerance and of_top.limits == (-np.inf, np.inf)
+    assert {p.group for p in of_top.largest} == {"top"} and of_top.largest[0].limits == (-np.inf, 0.2)
+    assert m.check_groups({"top": (None, 0.3), "bottom": (-0.3, None)}, names).verdict == "pass"
+    for call in (m.check, m.places):
+        for wrong in ("x", (1, "x"), (1, 2, 3), [None, None], {}):
+            with pytest.raises(sdm.Error, match="tolerance must be a number, or the least and the most distance, and not "):
+                call(wrong)
 
 
 def test_clouds(tmp_path):
@@ -86,7 +94,8 @@ def test_clouds(tmp_path):
     left, right = found.groups.groups
     assert (left.verdict.verdict, right.verdict.verdict) == ("fail", "pass")
     assert left.points + right.points == 20000
-    assert not found.places.by_tolerance
+    assert found.places.by_tolerance and {p.group for p in found.places.largest} == {"left"}
+    assert found.places.largest[0].limits == (-0.1, 0.1)
     assert (found.groups.beyond_max_distance, found.groups.without_match) == (0, 0)
     options.update(max_distance=1, tolerance_table={"left": 0.6, "right": 0.6})
     found = sdm.measure_points(tmp_path / "cloud.xyz", o2, tmp_path / "out.ply", **options)

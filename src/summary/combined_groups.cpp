@@ -36,7 +36,8 @@ GroupVerdicts combined_groups(std::span<const GroupVerdicts> parts, std::span<co
     std::vector<GroupVerdict> of_row;
     for (const GroupVerdicts& part : parts)
       std::ranges::copy_if(part.groups, std::back_inserter(of_row), [&](const GroupVerdict& g) {
-        return g.group == row.group && g.verdict.tolerance == row.tolerance;
+        return g.group == row.group && g.verdict.tolerance == row.tolerance &&
+               (row.kind.empty() || g.kind == row.kind);
       });
     if (!of_row.empty()) result.groups.push_back(joined(of_row));
   }

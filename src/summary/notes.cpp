@@ -67,6 +67,21 @@ std::optional<std::string> note_on_walls(const Sites& sites, const Tolerance& to
          "faces that face the same way (--facing)";
 }
 
+std::optional<std::string> note_on_walls(const Sites& sites, const std::optional<Tolerance>& tolerance,
+                                         std::span<const FaceNames> names,
+                                         std::span<const GroupTolerance> table, const std::string& units) {
+  double largest = -1;
+  const auto add = [&](const Tolerance& limits) {
+    for (const double limit : {limits.lo, limits.hi})
+      if (std::isfinite(limit)) largest = std::max(largest, std::abs(limit));
+  };
+  if (tolerance) add(*tolerance);
+  const std::vector<NamedFaces> named = faces_of_groups(names, table);
+  for (std::size_t row = 0; row < table.size(); ++row)
+    if (!named[row].faces.empty()) add(table[row].tolerance);
+  return largest < 0 ? std::nullopt : note_on_walls(sites, Tolerance(largest), units);
+}
+
 std::vector<std::string> notes_on(const Box& a, const Box& b) {
   std::vector<std::string> notes;
   if (is_empty(a) || is_empty(b)) return notes;

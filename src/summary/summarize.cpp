@@ -47,8 +47,9 @@ std::vector<std::string> notes_of(const Surface& surface, const Sites& sites, co
   if (const std::size_t texels = surface.overlapping_texels(); texels > 0)
     notes.push_back(std::to_string(texels) +
                     " texels are covered by several faces, and have the value of one of them");
-  if (options.tolerance && summary.measured.kind == DistanceKind::closest)
-    if (auto note = note_on_walls(sites, *options.tolerance, options.units))
+  if (summary.measured.kind == DistanceKind::closest)
+    if (auto note = note_on_walls(sites, options.tolerance, names_of_part(options.names, options.whole_face),
+                                  options.table, options.units))
       notes.push_back(std::move(*note));
   return notes;
 }
@@ -65,25 +66,15 @@ double beyond_fraction(const Surface& surface, const DistanceMap& map) {
   return area_fraction_beyond(surface, matched, std::numeric_limits<double>::infinity());
 }
 
-/// The names of the faces of the surface, which may be a part of the mesh that has them.
-std::vector<FaceNames> names_of(const SummaryOptions& options) {
-  std::vector<FaceNames> names(options.names.begin(), options.names.end());
-  if (options.whole_face.empty()) return names;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    names[k].of_face.clear();
-    for (const std::uint32_t face : options.whole_face)
-      names[k].of_face.push_back(options.names[k].of_face[face]);
-  }
-  return names;
-}
-
 Places places_of(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
                  const DistanceStatistics& distance, const SummaryOptions& options) {
+  const std::vector<FaceNames> names = names_of_part(options.names, options.whole_face);
   return find_places(surface, map, vertex_distances,
                      {.tolerance = options.tolerance,
+                      .table = options.table,
                       .accuracy = std::isfinite(options.accuracy) ? options.accuracy : 0,
                       .p99_abs = distance.p99_abs,
-                      .names = names_of(options)});
+                      .names = names});
 }
 
 }  // namespace

@@ -1,9 +1,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/group_verdicts.h>
+#include <sdm/part_statistics.h>
 #include <sdm/tolerance_table.h>
 
+#include <cstdint>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -128,19 +132,88 @@ TEST_F(GroupTolerancesOption, TablesAreChecked) {
   };
   EXPECT_THAT(fault("name,min,max\na,1,2\n"), HasSubstr("table.csv: a table of tolerances has the header"));
   EXPECT_THAT(fault("group,lower,upper\n"), HasSubstr("has no rows"));
-  EXPECT_THAT(fault("group,lower,upper\na,1,x\n"), HasSubstr("line 2: 'x' is not a number"));
-  EXPECT_THAT(fault("group,lower,upper\n\na,2,1\n"), HasSubstr("line 3: the limits 2 and 1"));
+  EXPECT_THAT(fault("group,lower,upper\na,1,x\n"), HasSubstr("line 2: 'x' is not a finite number"));
+  EXPECT_THAT(fault("group,lower,upper\n\na,2,1\n"),
+              HasSubstr("line 3: the lower limit 2 is above the upper one, 1"));
   EXPECT_THAT(fault("group,lower,upper\na,1\n"), HasSubstr("line 2: has 2 fields"));
   EXPECT_THAT(fault("group,lower,upper\na,1,2\na,1,3\n"), HasSubstr("group a has two rows"));
   EXPECT_THAT(fault("group,lower,upper\n,1,2\n"), HasSubstr("the group has no name"));
-  EXPECT_THAT(fault("group,lower,upper\na,-inf,2\n"), HasSubstr("not finite"));
+  EXPECT_THAT(fault("group,lower,upper\na,-inf,2\n"), HasSubstr("'-inf' is not a finite number"));
   EXPECT_THAT(fault("[{\"group\": \"a\", \"lower\": \"1\", \"upper\": 2}]"), HasSubstr("row 1"));
+  EXPECT_THAT(fault("[{\"group\": \"a\", \"lower\": null}]"), HasSubstr("row 1: group a has no limit"));
+  EXPECT_THAT(fault("group,lower,upper\na,,\n"), HasSubstr("line 2: group a has no limit"));
+  EXPECT_THAT(fault("group,lower,upper\na,-0,1,0,1\n"), HasSubstr("line 2: has 5 fields between ','"));
+  EXPECT_THAT(fault("group;lower;upper\na;-0,1,5;1\n"), HasSubstr("'-0,1,5' is not a finite number"));
   EXPECT_THAT(fault("{}"), HasSubstr("JSON array"));
   EXPECT_THAT(error_of([&] { (void)read_tolerance_table(folder / "none.csv"); }),
               HasSubstr("cannot be read"));
   EXPECT_THAT(error_of([&] { (void)read_tolerance_table(folder.path()); }), HasSubstr("is a folder"));
   EXPECT_THAT(fault(std::string("group,lower,upper\na\0b,1,2\n", 25)), HasSubstr("byte 0"));
   EXPECT_EQ(map("").code, 2) << "an unset variable of a script";
+}
+
+TEST_F(GroupTolerancesOption, TablesOfSpreadsheetsAndOpenSidesAreRead) {
+  const auto rows = [&](const std::string& text) { return read_tolerance_table(table(text)); };
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const std::vector<GroupTolerance> semicolons =
+      rows("group;lower;upper\r\n\"a;b\";-0,1;0.05\r\nc;;0,06\r\n");
+  ASSERT_EQ(semicolons.size(), 2u);
+  EXPECT_EQ(semicolons[0].group, "a;b");
+  EXPECT_EQ(semicolons[0].tolerance, Tolerance(-0.1, 0.05));
+  EXPECT_EQ(semicolons[1].tolerance, Tolerance(-kNone, 0.06));
+  EXPECT_EQ(rows("group,lower,upper\na,-0.1,\n")[0].tolerance, Tolerance(-0.1, kNone));
+  EXPECT_EQ(rows("[{\"group\": \"a\", \"upper\": 0.1}]")[0].tolerance, Tolerance(-kNone, 0.1));
+}
+
+// The top is 0.1 too high.
+TEST_F(GroupTolerancesOption, AnOpenSideAcceptsAnyDistance) {
+  const auto report = [&](const std::string& limits, int code) {
+    const test::Outcome outcome = map(table("group,lower,upper\n\"top, red\"," + limits + "\n"), {"--json"});
+    EXPECT_EQ(outcome.code, code) << limits << outcome.err;
+    return nlohmann::json::parse(outcome.out)["group_tolerances"]["groups"][0];
+  };
+  const nlohmann::json passes = report(",0.01", 0), fails = report("-0.01,", 3);
+  EXPECT_EQ(passes["verdict"], "PASS");
+  EXPECT_TRUE(passes["certified"]);
+  EXPECT_TRUE(passes["lower"].is_null());
+  EXPECT_EQ(fails["verdict"], "FAIL");
+  EXPECT_TRUE(fails["upper"].is_null());
+  EXPECT_THAT(map(table("group,lower,upper\n\"top, red\",,0.2\n")).out,
+              HasSubstr("top, red (group): PASS, at most 0.2"));
+}
+
+TEST_F(GroupTolerancesOption, AGroupOfNeitherMeshIsNamedWithBoth) {
+  const test::Outcome outcome = map(table("group,lower,upper\nlid,-1,1\n"), {"--both"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr(part + " or " + higher + " has the name 'lid'; of " + part));
+}
+
+TEST_F(GroupTolerancesOption, ThinWallsAreNoted) {
+  EXPECT_THAT(map(table("group,lower,upper\nbottom,-0.9,0.9\n")).out,
+              HasSubstr("of O2's walls are thinner than"));
+  EXPECT_THAT(map(table("group,lower,upper\nbottom,-0.2,0.2\n")).out,
+              ::testing::Not(HasSubstr("of O2's walls are thinner than")));
+}
+
+// A tile may have faces of only one of two kinds that share a name.
+TEST(GroupsOfParts, KeepTheKindThatTheirNameHasOnTheWhole) {
+  const std::vector<FaceNames> names{{"group", {"a"}, {0, kNone, kNone}},
+                                     {"material", {"a", "b"}, {kNone, 0, 1}}};
+  const std::vector<GroupTolerance> table{{"a", 1}, {"b", 1}, {"c", 1}};
+  const std::vector<GroupTolerance> of_whole = with_kinds(names, table);
+  EXPECT_EQ(of_whole[0].kind, "group");
+  EXPECT_EQ(of_whole[1].kind, "material");
+  EXPECT_EQ(of_whole[2].kind, "");
+  const std::vector<std::uint32_t> part{1, 2};
+  const std::vector<FaceNames> of_part = names_of_part(names, part);
+  EXPECT_EQ(faces_of_groups(of_part, table)[0].faces, std::vector<std::uint32_t>{0});
+  EXPECT_TRUE(faces_of_groups(of_part, of_whole)[0].faces.empty());
+  EXPECT_EQ(faces_of_groups(of_part, of_whole)[1].faces, std::vector<std::uint32_t>{1});
+  GroupVerdicts first, second;
+  first.groups.push_back({.kind = "group", .group = "a", .verdict = {{{}, 1, {}, 0, {}}, {}}});
+  second.groups.push_back({.kind = "material", .group = "a", .verdict = {{{}, 1, {}, 0, {}}, {}}});
+  second.groups[0].verdict.verdict = Verdict::fail;
+  EXPECT_EQ(combined_groups(std::vector{first, second}, of_whole, false).verdict, Verdict::pass);
 }
 
 }  // namespace

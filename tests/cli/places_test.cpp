@@ -94,6 +94,47 @@ TEST_F(PlacesOutput, IslandsOfACloudCountForNothing) {
     EXPECT_EQ(points(with, {std::string("--ignore-islands=") + bad}).code, 2) << bad;
 }
 
+// A point without a value has no place in the numbers: the line says why it fails.
+TEST_F(PlacesOutput, PointsWithoutAValueAreTheReasonAndAPlace) {
+  const Outcome run = points(cloud(60), {"--tolerance", "0.6", "--max-distance", "1"});
+  EXPECT_EQ(run.code, 3);
+  EXPECT_THAT(run.out,
+              HasSubstr("tolerance FAIL: 0.2991 % of the points have no value, as a point is farther "
+                        "than the maximum distance\n"));
+  EXPECT_THAT(run.out, HasSubstr(" small ones out of tolerance (below "));
+  EXPECT_THAT(run.out, HasSubstr("            no value at ("));
+  const Outcome with_json =
+      points(folder / "cloud.xyz", {"--tolerance", "0.6", "--max-distance", "1", "--json"});
+  const Json places = Json::parse(with_json.out)["places"];
+  EXPECT_EQ(places["small"]["points"], 60);
+  EXPECT_TRUE(places["largest"][0]["distance"].is_null());
+  EXPECT_EQ(
+      points(folder / "cloud.xyz", {"--tolerance", "0.6", "--max-distance", "1", "--ignore-islands", "10"})
+          .code,
+      0)
+      << "islands have no value, and lack none";
+}
+
+TEST_F(PlacesOutput, AreOutOfTheLimitsOfTheirGroups) {
+  std::ofstream(folder / "table.csv") << "group,lower,upper\nleft,-0.6,0.6\nright,-0.1,0.1\n";
+  const Outcome run = points(cloud(0), {"--tolerance-table", folder / "table.csv", "--json"});
+  EXPECT_EQ(run.code, 3) << run.err;
+  const Json places = Json::parse(run.out)["places"];
+  EXPECT_EQ(places["limits_from"], "tolerance");
+  EXPECT_TRUE(places["lower"].is_null());
+  ASSERT_EQ(places["large"]["count"], 1);
+  EXPECT_EQ(places["largest"][0]["group"], "right");
+  EXPECT_EQ(places["largest"][0]["upper"], 0.1);
+  const std::string bumpy = folder / "bumpy.obj";
+  std::ofstream(bumpy) << "v 0 0 0.5\nv 5 0 0\nv 10 0 0.3\nv 0 10 0\nv 5 10 0\nv 10 10 0\n"
+                          "g left\nf 1 2 5 4\ng right\nf 2 3 6 5\n";
+  const Outcome map = run_sdm({"map", bumpy, plate, "-o", out, "--resolution", "64", "--write", "none",
+                               "--tolerance-table", folder / "table.csv"});
+  EXPECT_EQ(map.code, 3) << map.err;
+  EXPECT_THAT(map.out, HasSubstr("places    1 out of tolerance, with "));
+  EXPECT_THAT(map.out, HasSubstr("            0.3 at (10 0 0.3), "));
+}
+
 // Neither for the alignment nor for the coverage of O2.
 TEST_F(PlacesOutput, IslandsOfACloudAreNotSampled) {
   const std::string part =

@@ -142,6 +142,59 @@ TEST(Places, HaveTheGroupOfTheirLargestSample) {
   EXPECT_EQ(places.largest[1].kind, "group");
 }
 
+// The lower half of the sphere may deviate by 4, the upper one by what is accepted of all.
+TEST(Places, AreOutOfTheLimitsOfTheirGroups) {
+  const Surface surface(sphere(3), {.resolution = 256});
+  FaceNames names{"group", {"north", "south"}, {}};
+  for (const Triangle& t : surface.mesh().triangles) {
+    double z = 0;
+    for (const std::uint32_t v : t) z += surface.mesh().positions[v][2];
+    names.of_face.push_back(z > 0 ? 0 : 1);
+  }
+  const Field field = caps_field({{{0, 0, 1}, 0.3, 2}, {{0, 0, -1}, 0.3, 3}, {{0, 1, -1}, 0.1, 5}});
+  const auto find = [&](std::optional<Tolerance> of_all, const std::vector<GroupTolerance>& table) {
+    return find_places(surface, map_of(surface, field), at_vertices(surface.mesh(), field),
+                       {.tolerance = of_all, .table = table, .p99_abs = 3, .names = {&names, 1}});
+  };
+  const Places of_south = find({}, {{"south", Tolerance(4)}});
+  ASSERT_EQ(of_south.large.count, 1u);
+  EXPECT_TRUE(of_south.by_tolerance);
+  EXPECT_EQ(of_south.largest[0].distance, 5);
+  EXPECT_EQ(of_south.largest[0].limits, Tolerance(4));
+  const Places both = find({}, {{"south", Tolerance(4)}, {"north", Tolerance(-1, 0.5)}});
+  ASSERT_EQ(both.large.count, 2u);
+  EXPECT_EQ(both.largest[0].group, "north") << "2 is farther beyond 0.5 than 5 beyond 4";
+  EXPECT_EQ(both.largest[0].limits, Tolerance(-1, 0.5));
+  const Places and_all = find(Tolerance(2.5), {{"south", Tolerance(4)}});
+  ASSERT_EQ(and_all.large.count, 2u) << "that of all judges the faces of groups too";
+  EXPECT_EQ(and_all.limits, Tolerance(2.5));
+  EXPECT_EQ(and_all.largest[1].distance, 3);
+  const Places none = find({}, {{"south", Tolerance(6)}});
+  EXPECT_FALSE(none.by_tolerance);
+  EXPECT_EQ(none.limits, Tolerance(3));
+}
+
+TEST(Places, OfSamplesWithoutAValueAreListedAfterTheOthers) {
+  const Surface surface(sphere(3), {.resolution = 256});
+  const double nan = std::nan("");
+  const Field field = caps_field({{{0, 0, 1}, 0.3, nan}, {{0, 0, -1}, 0.2, nan}, {{1, 0, 0}, 0.1, 3}});
+  const auto find = [&](std::optional<Tolerance> tolerance) {
+    return find_places(surface, map_of(surface, field), at_vertices(surface.mesh(), field),
+                       {.tolerance = tolerance, .p99_abs = 2});
+  };
+  const Places places = find(Tolerance(1));
+  ASSERT_EQ(places.large.count, 3u);
+  EXPECT_EQ(places.largest[0].distance, 3);
+  EXPECT_TRUE(std::isnan(places.largest[1].distance));
+  EXPECT_TRUE(std::isnan(places.largest[2].distance));
+  EXPECT_GT(places.largest[1].area, places.largest[2].area);
+  EXPECT_NEAR(places.largest[1].area, area_of({{0, 0, 1}, 0.3, 0}), 0.1);
+  EXPECT_GT(places.largest[1].point[2], 0.9);
+  EXPECT_TRUE(find(Tolerance(9)).by_tolerance) << "nothing else is out";
+  EXPECT_FALSE(find({}).by_tolerance) << "nothing asks for values";
+  EXPECT_EQ(find({}).large.count, 1u);
+}
+
 TEST(Places, OfPartsAreAddedUp) {
   const Surface surface(sphere(4), {.resolution = 256});
   const Field field = caps_field(kCaps), flat = caps_field({});

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -17,8 +18,10 @@
 namespace sdm {
 namespace {
 
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr const char* kTableNeeded =
-    "a table of tolerances has the header \"group,lower,upper\", or is a JSON array of objects with these "
+    "a table of tolerances has the header \"group,lower,upper\" or \"group;lower;upper\", or is a JSON array "
+    "of objects with these "
     "keys";
 
 std::string_view trimmed(std::string_view text) {
@@ -27,7 +30,7 @@ std::string_view trimmed(std::string_view text) {
                                          : text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
 }
 
-std::vector<std::string> fields_of(std::string_view line) {
+std::vector<std::string> fields_of(std::string_view line, char separator) {
   std::vector<std::string> fields(1);
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -35,7 +38,7 @@ std::vector<std::string> fields_of(std::string_view line) {
       fields.back() += line[i++];
     else if (line[i] == '"')
       quoted = !quoted;
-    else if (line[i] == ',' && !quoted)
+    else if (line[i] == separator && !quoted)
       fields.emplace_back();
     else
       fields.back() += line[i];
@@ -44,17 +47,24 @@ std::vector<std::string> fields_of(std::string_view line) {
   return fields;
 }
 
-double limit_of(const std::string& text, std::size_t line) {
-  const std::optional<double> value = core::parse_number(text);
-  if (!value) throw Error(fmt::format("line {}: '{}' is not a number", line, excerpt(text)));
+/// Where semicolons separate, the decimal mark may be a comma. `none`: what an empty field is.
+double limit_of(const std::string& text, char separator, double none, std::size_t line) {
+  if (text.empty()) return none;
+  std::string number = text;
+  if (separator == ';' && number.find('.') == std::string::npos) std::ranges::replace(number, ',', '.');
+  const std::optional<double> value = core::parse_number(number);
+  if (!value || !std::isfinite(*value))
+    throw Error(fmt::format("line {}: '{}' is not a finite number", line, excerpt(text)));
   return *value;
 }
 
 void add_row(std::vector<GroupTolerance>& table, const std::string& group, double lower, double upper,
              const std::string& place) {
   if (group.empty()) throw Error(place + ": the group has no name");
-  if (!std::isfinite(lower) || !std::isfinite(upper) || lower > upper)
-    throw Error(fmt::format("{}: the limits {} and {} are not finite and in order", place, lower, upper));
+  if (lower == -kNoLimit && upper == kNoLimit)
+    throw Error(fmt::format("{}: group {} has no limit", place, group));
+  if (lower > upper)
+    throw Error(fmt::format("{}: the lower limit {} is above the upper one, {}", place, lower, upper));
   if (std::ranges::any_of(table, [&](const GroupTolerance& row) { return row.group == group; }))
     throw Error(fmt::format("{}: group {} has two rows", place, group));
   table.push_back({group, Tolerance(lower, upper)});
@@ -62,21 +72,23 @@ void add_row(std::vector<GroupTolerance>& table, const std::string& group, doubl
 
 std::vector<GroupTolerance> table_in_csv(std::string_view text) {
   std::vector<GroupTolerance> table;
-  bool header = false;
+  char separator = 0;  // of the header
   for (std::size_t line = 1; !text.empty(); ++line) {
     const std::string_view row = trimmed(text.substr(0, text.find('\n')));
     text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
     if (row.empty()) continue;
-    const std::vector<std::string> fields = fields_of(row);
-    if (!header) {
-      if (fields != std::vector<std::string>{"group", "lower", "upper"}) throw Error(kTableNeeded);
-      header = true;
+    if (separator == 0) {
+      separator = row.find(';') == std::string_view::npos ? ',' : ';';
+      if (fields_of(row, separator) != std::vector<std::string>{"group", "lower", "upper"})
+        throw Error(kTableNeeded);
       continue;
     }
+    const std::vector<std::string> fields = fields_of(row, separator);
     if (fields.size() != 3)
-      throw Error(fmt::format("line {}: has {} fields, not group, lower and upper", line, fields.size()));
-    add_row(table, fields[0], limit_of(fields[1], line), limit_of(fields[2], line),
-            fmt::format("line {}", line));
+      throw Error(fmt::format("line {}: has {} fields between '{}', not group, lower and upper", line,
+                              fields.size(), separator));
+    add_row(table, fields[0], limit_of(fields[1], separator, -kNoLimit, line),
+            limit_of(fields[2], separator, kNoLimit, line), fmt::format("line {}", line));
   }
   return table;
 }
@@ -87,10 +99,17 @@ std::vector<GroupTolerance> table_in_json(std::string_view text) {
   std::vector<GroupTolerance> table;
   for (const auto& row : json) {
     const std::string place = fmt::format("row {}", table.size() + 1);
-    if (!row.is_object() || !row.contains("group") || !row["group"].is_string() || !row.contains("lower") ||
-        !row["lower"].is_number() || !row.contains("upper") || !row["upper"].is_number())
+    const auto is_limit = [&](const char* key) {
+      return !row.contains(key) || row[key].is_null() ||
+             (row[key].is_number() && std::isfinite(row[key].template get<double>()));
+    };
+    if (!row.is_object() || !row.contains("group") || !row["group"].is_string() || !is_limit("lower") ||
+        !is_limit("upper"))
       throw Error(fmt::format("{}: {}", place, kTableNeeded));
-    add_row(table, row["group"].get<std::string>(), row["lower"].get<double>(), row["upper"].get<double>(),
+    const auto limit = [&](const char* key, double none) {
+      return !row.contains(key) || row[key].is_null() ? none : row[key].template get<double>();
+    };
+    add_row(table, row["group"].get<std::string>(), limit("lower", -kNoLimit), limit("upper", kNoLimit),
             place);
   }
   return table;

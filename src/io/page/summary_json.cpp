@@ -136,6 +136,7 @@ Json to_json(const Place& place, bool of_points) {
   json["kind"] = place.kind.empty() ? Json() : Json(place.kind);
   json["group"] = place.group.empty() ? Json() : Json(place.group);
   json["small"] = place.small;
+  json["lower"] = place.limits.lo, json["upper"] = place.limits.hi;
   return json;
 }
 

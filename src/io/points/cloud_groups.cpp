@@ -1,5 +1,7 @@
 #include "io/points/cloud_groups.h"
 
+#include <utility>
+
 #include "map/statistics/tolerance_limits.h"
 
 namespace sdm::io {
@@ -38,6 +40,15 @@ void CloudGroups::count(std::uint32_t face, double d, double accuracy) {
     const map::ToleranceLimits limits(rows_.rows[r].group.tolerance, accuracy);
     found_[r].below += limits.below(d), found_[r].above += limits.above(d);
   });
+}
+
+bool CloudGroups::any_out(double accuracy) const {
+  for (std::size_t r = 0; r < found_.size(); ++r) {
+    const map::ToleranceLimits limits(rows_.rows[r].group.tolerance, accuracy);
+    const auto& [lowest, highest] = std::pair(found_[r].range.lowest, found_[r].range.highest);
+    if (lowest && (limits.below(*lowest) || limits.above(*highest))) return true;
+  }
+  return false;
 }
 
 GroupVerdicts CloudGroups::verdicts(const PointsWithoutGroup& without_group, double accuracy) const {

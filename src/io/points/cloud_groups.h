@@ -24,6 +24,8 @@ class CloudGroups {
   void add(std::uint32_t face, double d, bool has_sign);
   /// Then, each once more, when the accuracy is known.
   void count(std::uint32_t face, double d, double accuracy);
+  /// Whether a point is out of the tolerance of its group.
+  [[nodiscard]] bool any_out(double accuracy) const;
   [[nodiscard]] GroupVerdicts verdicts(const PointsWithoutGroup& without_group, double accuracy) const;
 
  private:

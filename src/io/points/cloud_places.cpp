@@ -1,45 +1,51 @@
 #include "io/points/cloud_places.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "geometry/vec.h"
+
 namespace sdm::io {
-namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
-
-CloudPlaces::CloudPlaces(const PointDistances& found, const std::optional<Tolerance>& tolerance,
+CloudPlaces::CloudPlaces(const PointDistances& found, const PointDistancesOptions& options, bool group_is_out,
                          const Box& usual)
     : found_(found),
-      limits_(tolerance, found.accuracy, found.distance.p99_abs, found.min ? found.min->distance : kInfinity,
-              found.max ? found.max->distance : -kInfinity),
-      cells_(usual, found.points) {}
+      limits_(map::FaceTolerances(options.picture.tolerance, options.names, options.table), found.accuracy,
+              found.distance.p99_abs),
+      cells_(usual, found.points) {
+  if (group_is_out) limits_.take_tolerances();
+  for (const auto& extreme : {found.min, found.max})
+    if (extreme) limits_.look(extreme->distance, kNone);
+  if (found.beyond_max_distance + found.without_match > 0)
+    limits_.look(std::numeric_limits<double>::quiet_NaN(), kNone);
+}
 
 void CloudPlaces::add(const MeasuredPoint& point, std::uint64_t number) {
-  const int side = limits_.side(point.distance);
+  const int side = finite(point.point) ? limits_.side(point.distance, point.face) : 0;
   if (side == 0) return;
-  cells_.add(point.point, side,
-             {.points = 1,
-              .distance = point.distance,
-              .excess = map::excess(point.distance, limits_.limits()),
-              .point = point.point,
-              .number = number,
-              .face = point.face});
+  cells_.add(
+      point.point, side,
+      {.points = 1,
+       .distance = point.distance,
+       .excess = std::isnan(point.distance) ? 0 : map::excess(point.distance, limits_.limits(point.face)),
+       .point = point.point,
+       .number = number,
+       .face = point.face});
 }
 
 Places CloudPlaces::places(std::span<const FaceNames> names) const {
   constexpr double kLeastFraction = 1e-5, kLeastPoints = 4;
   const auto all = static_cast<double>(std::max<std::uint64_t>(found_.counted(), 1));
   Places result;
-  result.limits = limits_.limits(), result.by_tolerance = limits_.by_tolerance();
+  result.limits = limits_.of_all(), result.by_tolerance = limits_.by_tolerance();
   result.least_fraction = std::max(kLeastFraction, kLeastPoints / all);
   std::vector<Place> places;
   for (const CellPoints& cluster : cells_.clusters())
     places.push_back({.distance = cluster.distance,
+                      .limits = limits_.limits(cluster.face),
                       .point = cluster.point,
                       .sample = cluster.number,
                       .face = cluster.face,

@@ -16,12 +16,15 @@ namespace sdm::io {
 /// four.
 class CloudPlaces {
  public:
-  /// `found`: with its extremes, percentiles and accuracy; must outlive this.
-  CloudPlaces(const PointDistances& found, const std::optional<Tolerance>& tolerance, const Box& usual);
+  /// `found`: with its extremes, percentiles and accuracy; must outlive this. `group_is_out`: the distances
+  /// of a group are out of its tolerance.
+  CloudPlaces(const PointDistances& found, const PointDistancesOptions& options, bool group_is_out,
+              const Box& usual);
 
-  /// Each point, by its number in the file.
+  /// Each point that counts, by its number in the file.
   void add(const MeasuredPoint& point, std::uint64_t number);
   /// `names`: of the faces of O2.
+  [[nodiscard]] bool by_tolerance() const { return limits_.by_tolerance(); }
   [[nodiscard]] Places places(std::span<const FaceNames> names) const;
 
  private:

@@ -34,6 +34,7 @@ using namespace io;
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr char kIsland = 1;  // in place of a colour, until points are coloured
 
 /// Points of a cloud, and what is found for them.
 struct Chunk {
@@ -218,7 +219,7 @@ class Measurement {
         for (const double x : chunk.normals[i]) append_little_endian(bytes, static_cast<float>(x));
       append_little_endian(bytes, chunk.distances[i]);
       append_little_endian(bytes, static_cast<std::int32_t>(chunk.faces[i]));
-      bytes.append(3, '\0');
+      bytes.append(3, is_island(chunk, i) ? kIsland : '\0');
     }
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   }
@@ -314,18 +315,19 @@ class Measurement {
     const ColorScale scale = color_scale(fixed_colors(picture, result_.distance));
     const map::ToleranceLimits limits(picture.tolerance.value_or(Tolerance()), result_.accuracy);
     if (picture.tolerance) result_.beyond_tolerance = result_.beyond_max_distance + result_.without_match;
-    CloudPlaces places(result_, picture.tolerance, usual_.box());
+    CloudPlaces places(result_, options_, groups_ && groups_->any_out(result_.accuracy), usual_.box());
     std::uint64_t number = 0;
     std::fstream file(written, std::ios::binary | std::ios::in | std::ios::out);
     for_each_row(file, rows_begin, 0, result_.points, [&](char* row) {
       const auto d = load<float>(row + row_.distance_at());
       const auto face = load<std::int32_t>(row + row_.face_at());
       if (groups_ && !std::isnan(d)) groups_->count(static_cast<std::uint32_t>(face), d, result_.accuracy);
-      places.add({.point = {load<double>(row), load<double>(row + sizeof(double)),
-                            load<double>(row + 2 * sizeof(double))},
-                  .distance = d,
-                  .face = static_cast<std::uint32_t>(face)},
-                 number);
+      if (row[row_.colour_at()] != kIsland)
+        places.add({.point = {load<double>(row), load<double>(row + sizeof(double)),
+                              load<double>(row + 2 * sizeof(double))},
+                    .distance = d,
+                    .face = static_cast<std::uint32_t>(face)},
+                   number);
       ++number;
       const Rgb rgb = std::isnan(d) ? kNoValue : scale(d);
       result_.beyond_tolerance += picture.tolerance && (limits.below(d) || limits.above(d));
@@ -339,7 +341,7 @@ class Measurement {
     if (groups_)
       result_.groups =
           groups_->verdicts({result_.beyond_max_distance, result_.without_match}, result_.accuracy);
-    if (result_.min) result_.places = places.places(options_.names);
+    if (result_.min || places.by_tolerance()) result_.places = places.places(options_.names);
     if (!file) throw Error(cloud_ + ": the colours cannot be written; the disk may be full");
   }
 

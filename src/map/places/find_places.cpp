@@ -11,8 +11,8 @@
 
 #include "core/disjoint_sets.h"
 #include "core/memory.h"
-#include "geometry/vec.h"
 #include "map/places/place_limits.h"
+#include "map/statistics/texel_areas.h"
 
 namespace sdm {
 namespace {
@@ -39,7 +39,7 @@ class PlaceSearch {
         blocks_((width_ / kBlock + 1) * (height_ / kBlock + std::size_t{1})) {
     for (std::uint32_t texel = 0; texel < owners_.size(); ++texel)
       if (owners_[texel] != kNone)
-        if (const int side = limits.side(map.distance[texel]); side != 0) {
+        if (const int side = limits.side(map.distance[texel], owners_[texel]); side != 0) {
           member_of_texel_[texel] = add(texel, side);
           blocks_[block(texel % width_, texel / width_)] = 1;
         }
@@ -78,7 +78,7 @@ class PlaceSearch {
     for (std::uint32_t face = 0; face < triangles.size(); ++face) {
       if (is_removed(triangles[face])) continue;
       for (const std::uint32_t vertex : triangles[face]) {
-        const int side = limits.side(distances[vertex]);
+        const int side = limits.side(distances[vertex], face);
         if (side == 0) continue;
         if (member_of_vertex_.empty()) member_of_vertex_.assign(distances.size(), kNone);
         if (member_of_vertex_[vertex] != kNone) continue;
@@ -222,7 +222,7 @@ class PlaceSearch {
     };
     for (std::size_t i = 0; i <= steps; ++i) {
       const double t = static_cast<double>(i) / static_cast<double>(steps);
-      std::array<std::uint32_t, 3> there{kNone, kNone, kNone};  // one by each side of the limits
+      std::array<std::uint32_t, 4> there{kNone, kNone, kNone, kNone};  // one by each side of the limits
       for_each_near(charts_[a.face], point(a, t), [&](std::uint32_t n) {
         std::uint32_t& of_side = there[sides_[n]];
         if (of_side == kNone) of_side = n;
@@ -245,45 +245,31 @@ class PlaceSearch {
   DisjointSets sets_;
 };
 
-/// The number and the area of all texels, and the least and the largest distance.
+/// The number and the area of all texels.
 struct Whole {
   std::size_t texels = 0;
   double area = 0;
-  double least = std::numeric_limits<double>::infinity(), largest = -least;
 };
 
+/// Looks at all samples for the limits, too.
 Whole whole_of(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
-               std::span<const double> texel_area) {
+               std::span<const double> texel_area, PlaceLimits& limits) {
   Whole whole;
-  const auto add = [&](double d) {
-    if (std::isfinite(d)) whole.least = std::min(whole.least, d), whole.largest = std::max(whole.largest, d);
-  };
   const auto owners = surface.texel_faces();
   for (std::size_t texel = 0; texel < owners.size(); ++texel)
     if (owners[texel] != kNone) {
       ++whole.texels, whole.area += texel_area[owners[texel]];
-      add(map.distance[texel]);
+      limits.look(map.distance[texel], owners[texel]);
     }
   if (!vertex_distances.empty())
-    for (const Triangle& triangle : surface.mesh().triangles)
-      if (!is_removed(triangle))
-        for (const std::uint32_t vertex : triangle) add(vertex_distances[vertex]);
+    for (std::uint32_t face = 0; face < surface.mesh().triangles.size(); ++face)
+      if (const Triangle& triangle = surface.mesh().triangles[face]; !is_removed(triangle))
+        for (const std::uint32_t vertex : triangle) limits.look(vertex_distances[vertex], face);
   return whole;
 }
 
-std::vector<double> areas_of_texels(const Surface& surface) {
-  const auto charts = surface.face_charts();
-  std::vector<double> areas(charts.size());
-  for (std::uint32_t face = 0; face < charts.size(); ++face) {
-    if (charts[face] == kNone) continue;
-    const auto [du, dv] = surface.texel_edges(face);
-    areas[face] = norm(cross(du, dv));
-  }
-  return areas;
-}
-
 std::vector<Place> places_of(PlaceSearch& search, const Surface& surface, const DistanceMap& map,
-                             std::span<const float> vertex_distances, const Tolerance& limits,
+                             std::span<const float> vertex_distances, const PlaceLimits& limits,
                              std::span<const double> texel_area) {
   std::vector<Place> places;
   std::vector<std::uint32_t> place_of(search.size(), kNone);  // of each representative
@@ -293,8 +279,9 @@ std::vector<Place> places_of(PlaceSearch& search, const Surface& surface, const 
     const double d = texel != kNone ? map.distance[texel] : vertex_distances[vertex];
     if (number == kNone) number = static_cast<std::uint32_t>(places.size()), places.emplace_back();
     Place& place = places[number];
-    if (place.face == kNone || map::excess(d, limits) > map::excess(place.distance, limits)) {
-      place.distance = d, place.face = face;
+    if (place.face == kNone ||
+        map::excess(d, limits.limits(face)) > map::excess(place.distance, place.limits)) {
+      place.distance = d, place.face = face, place.limits = limits.limits(face);
       place.sample = texel;
       place.point = texel != kNone ? surface.texel_point(texel) : surface.mesh().positions[vertex];
     }
@@ -312,15 +299,16 @@ Places find_places(const Surface& surface, const DistanceMap& map, std::span<con
   if (!vertex_distances.empty() && vertex_distances.size() != surface.mesh().positions.size())
     throw Error("find_places() needs one distance for each vertex of the surface's mesh");
   constexpr double kLeastFraction = 1e-5, kLeastTexels = 4;
-  const std::vector<double> texel_area = areas_of_texels(surface);
-  const Whole whole = whole_of(surface, map, vertex_distances, texel_area);
-  const PlaceLimits limits(options.tolerance, options.accuracy, options.p99_abs, whole.least, whole.largest);
+  const std::vector<double> texel_area = map::texel_areas(surface);
+  PlaceLimits limits(map::FaceTolerances(options.tolerance, options.names, options.table), options.accuracy,
+                     options.p99_abs);
+  const Whole whole = whole_of(surface, map, vertex_distances, texel_area, limits);
   Places result;
-  result.limits = limits.limits(), result.by_tolerance = limits.by_tolerance();
+  result.limits = limits.of_all(), result.by_tolerance = limits.by_tolerance();
   if (whole.texels == 0) return result;
   result.least_fraction = std::max(kLeastFraction, kLeastTexels / static_cast<double>(whole.texels));
   PlaceSearch search(surface, map, vertex_distances, limits);
-  std::vector<Place> places = places_of(search, surface, map, vertex_distances, result.limits, texel_area);
+  std::vector<Place> places = places_of(search, surface, map, vertex_distances, limits, texel_area);
   for (Place& place : places) place.fraction = whole.area > 0 ? place.area / whole.area : 0;
   rank_places(std::move(places), result);
   for (Place& place : result.largest) name_group(place, options.names);

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <cstdint>
+#include <utility>
 
+#include "map/places/face_tolerances.h"
 #include "map/statistics/tolerance_limits.h"
 
 namespace sdm::map {
@@ -16,33 +18,47 @@ namespace sdm::map {
   return std::max(distance - limits.hi, limits.lo - distance);
 }
 
-/// The limits of the tolerance if the least or the largest distance is out of it, and otherwise ±`p99_abs`.
+/// Which samples belong to places: those that a tolerance refuses, or where it refuses none, those at or
+/// beyond ±`p99_abs`.
 class PlaceLimits {
  public:
-  PlaceLimits(const std::optional<Tolerance>& tolerance, double accuracy, double p99_abs, double least,
-              double largest)
-      : limits_(p99_abs), accuracy_(accuracy) {
-    if (!tolerance) return;
-    const ToleranceLimits limits(*tolerance, accuracy);
-    by_tolerance_ = limits.below(least) || limits.above(largest);
-    if (by_tolerance_) limits_ = *tolerance;
-  }
+  PlaceLimits(FaceTolerances tolerances, double accuracy, double p99_abs)
+      : tolerances_(std::move(tolerances)), of_all_(p99_abs), accuracy_(accuracy) {}
 
-  /// 1 above the upper limit, 2 below the lower one, 0 between them and for what is not finite.
-  [[nodiscard]] int side(double d) const {
-    if (!std::isfinite(d)) return 0;
-    if (by_tolerance_) {
-      const ToleranceLimits limits(limits_, accuracy_);
-      return limits.above(d) ? 1 : limits.below(d) ? 2 : 0;
-    }
-    if (!(std::abs(d) > accuracy_)) return 0;
-    return d >= limits_.hi ? 1 : d <= limits_.lo ? 2 : 0;
+  /// What is known of a sample before side() is asked. `face`: that has it, or kNone.
+  void look(double d, std::uint32_t face) {
+    if (by_tolerance_ || !tolerances_.has_any() || refusal(d, face) == 0) return;
+    take_tolerances();
   }
-  [[nodiscard]] const Tolerance& limits() const { return limits_; }
+  /// Some sample is refused.
+  void take_tolerances() { by_tolerance_ = true, of_all_ = tolerances_.of(kNone); }
+
+  /// 1 above the upper limit, 2 below the lower one, 3 without a value although a tolerance asks for one, 0
+  /// otherwise.
+  [[nodiscard]] int side(double d, std::uint32_t face) const {
+    if (by_tolerance_) return refusal(d, face);
+    if (!std::isfinite(d) || !(std::abs(d) > accuracy_)) return 0;
+    return d >= of_all_.hi ? 1 : d <= of_all_.lo ? 2 : 0;
+  }
+  /// Those of a face.
+  [[nodiscard]] const Tolerance& limits(std::uint32_t face) const {
+    return by_tolerance_ ? tolerances_.of(face) : of_all_;
+  }
+  /// Those of faces that no row of a table names.
+  [[nodiscard]] const Tolerance& of_all() const { return of_all_; }
   [[nodiscard]] bool by_tolerance() const { return by_tolerance_; }
 
  private:
-  Tolerance limits_;
+  [[nodiscard]] int refusal(double d, std::uint32_t face) const {
+    const Tolerance& tolerance = tolerances_.of(face);
+    if (std::isnan(d)) return tolerance == any_distance() && face != kNone ? 0 : 3;
+    if (!std::isfinite(d)) return 0;
+    const ToleranceLimits limits(tolerance, accuracy_);
+    return limits.above(d) ? 1 : limits.below(d) ? 2 : 0;
+  }
+
+  FaceTolerances tolerances_;
+  Tolerance of_all_;
   double accuracy_;
   bool by_tolerance_ = false;
 };

@@ -1,7 +1,9 @@
 #include <sdm/places.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <tuple>
 #include <utility>
 
 #include "map/places/place_limits.h"
@@ -9,10 +11,12 @@
 namespace sdm {
 namespace {
 
-// Of equals the first one stays the first, so that the list depends on nothing else.
+// The first of equals stays the first, so that the list depends on nothing else.
 void list_largest(std::vector<Place> all, Places& result) {
-  std::ranges::stable_sort(all, std::greater(), [&](const Place& place) {
-    return std::pair(!place.small, map::excess(place.distance, result.limits));
+  std::ranges::stable_sort(all, std::greater(), [](const Place& place) {
+    const bool has_value = !std::isnan(place.distance);
+    return std::tuple(!place.small, has_value,
+                      has_value ? map::excess(place.distance, place.limits) : place.fraction);
   });
   all.resize(std::min(all.size(), Places::kListed));
   result.largest = std::move(all);

@@ -1,10 +1,15 @@
 #include <sdm/error.h>
+#include <sdm/group_verdicts.h>
 #include <sdm/part_statistics.h>
 
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "core/disjoint_sets.h"
@@ -106,6 +111,58 @@ NamedFaces faces_named(std::span<const FaceNames> names, const std::string& name
     if (!result.faces.empty()) return result;
   }
   return {};
+}
+
+std::vector<NamedFaces> faces_of_groups(std::span<const FaceNames> names,
+                                        std::span<const GroupTolerance> table) {
+  std::vector<NamedFaces> result(table.size());
+  std::unordered_map<std::string_view, std::vector<std::size_t>> rows_of;
+  for (std::size_t row = 0; row < table.size(); ++row) rows_of[table[row].group].push_back(row);
+  for (const FaceNames& kind : names) {
+    std::vector<std::vector<std::uint32_t>*> faces_of(kind.names.size());
+    std::vector<std::pair<std::size_t, std::size_t>> copies;  // rows of the same name
+    for (std::size_t n = 0; n < kind.names.size(); ++n) {
+      const auto rows = rows_of.find(kind.names[n]);
+      if (rows == rows_of.end()) continue;
+      std::optional<std::size_t> first;
+      for (const std::size_t row : rows->second) {
+        const bool is_asked =
+            table[row].kind.empty() ? result[row].faces.empty() : table[row].kind == kind.kind;
+        if (!is_asked) continue;
+        result[row].kind = kind.kind;
+        if (first)
+          copies.emplace_back(*first, row);
+        else
+          first = row, faces_of[n] = &result[row].faces;
+      }
+    }
+    for (std::uint32_t f = 0; f < kind.of_face.size(); ++f)
+      if (const std::uint32_t n = kind.of_face[f]; n != kNone && faces_of[n] != nullptr)
+        faces_of[n]->push_back(f);
+    for (const auto& [first, row] : copies) result[row] = result[first];
+  }
+  for (NamedFaces& row : result)
+    if (row.faces.empty()) row.kind.clear();
+  return result;
+}
+
+std::vector<GroupTolerance> with_kinds(std::span<const FaceNames> names,
+                                       std::span<const GroupTolerance> table) {
+  std::vector<GroupTolerance> result(table.begin(), table.end());
+  const std::vector<NamedFaces> named = faces_of_groups(names, table);
+  for (std::size_t row = 0; row < result.size(); ++row) result[row].kind = named[row].kind;
+  return result;
+}
+
+std::vector<FaceNames> names_of_part(std::span<const FaceNames> names,
+                                     std::span<const std::uint32_t> source_face) {
+  std::vector<FaceNames> result(names.begin(), names.end());
+  if (source_face.empty()) return result;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    result[k].of_face.clear();
+    for (const std::uint32_t face : source_face) result[k].of_face.push_back(names[k].of_face[face]);
+  }
+  return result;
 }
 
 std::string known_names(std::span<const FaceNames> names) {

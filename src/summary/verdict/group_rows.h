@@ -31,10 +31,10 @@ struct GroupRows {
   std::vector<Layer> layers;
 
   GroupRows(std::span<const FaceNames> names, std::span<const GroupTolerance> table, std::size_t faces) {
-    for (const GroupTolerance& group : table) {
-      NamedFaces named = faces_named(names, group.group);
-      if (named.faces.empty()) continue;
-      Row row{.named = std::move(named), .group = group};
+    std::vector<NamedFaces> named = faces_of_groups(names, table);
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      if (named[i].faces.empty()) continue;
+      Row row{.named = std::move(named[i]), .group = table[i]};
       const auto is_free = [&](const Layer& layer) {
         return std::ranges::all_of(row.named.faces, [&](auto f) { return layer.of_face[f] == kNone; });
       };

@@ -49,6 +49,8 @@ std::string open_text(const Summary& summary, const std::string& limits) {
 
 std::string limits_text(const Tolerance& tolerance, const std::string& units) {
   const auto [lo, hi] = tolerance;
+  if (std::isinf(lo)) return "at most " + with_unit(hi, units);
+  if (std::isinf(hi)) return "at least " + with_unit(lo, units);
   return lo == -hi ? "±" + with_unit(hi, units) : short_text(lo) + " to " + with_unit(hi, units);
 }
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "geometry/vec.h"
+#include "map/statistics/texel_areas.h"
 
 namespace sdm::io {
 namespace {
@@ -20,14 +20,8 @@ std::uint32_t key_of(float value) {
 }
 
 // The area of a texel of each face, relative to the largest, so that sums are finite for meshes of any size.
-std::vector<double> texel_areas(const Surface& surface) {
-  const auto charts = surface.face_charts();
-  std::vector<double> areas(charts.size());
-  for (std::uint32_t face = 0; face < charts.size(); ++face) {
-    if (charts[face] == kNone) continue;
-    const auto [du, dv] = surface.texel_edges(face);
-    areas[face] = norm(cross(du, dv));
-  }
+std::vector<double> relative_texel_areas(const Surface& surface) {
+  std::vector<double> areas = map::texel_areas(surface);
   const double largest = areas.empty() ? 0 : *std::ranges::max_element(areas);
   for (double& area : areas) area = largest > 0 ? area / largest : 0;
   return areas;
@@ -82,7 +76,7 @@ AreaByValue area_by_value(const Surface& surface, const DistanceMap& map) {
     if (const double d = map.distance[texel]; std::isfinite(d)) lo = std::min(lo, d), hi = std::max(hi, d);
   if (lo > hi) lo = hi = 0;
 
-  const std::vector<double> areas = texel_areas(surface);
+  const std::vector<double> areas = relative_texel_areas(surface);
   std::vector<AreaSums> parts(kParts, AreaSums(lo, hi));
   parallel_for(kParts, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t part = begin; part < end; ++part)

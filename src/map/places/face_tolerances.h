@@ -1,0 +1,43 @@
+// The tolerances of the faces of a surface.
+#pragma once
+
+#include <sdm/group_verdicts.h>
+#include <sdm/part_statistics.h>
+#include <sdm/tolerance.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace sdm::map {
+
+/// No limit on either side.
+inline Tolerance any_distance() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {-kInfinity, kInfinity};
+}
+
+/// Of each face what all tolerances accept that it is judged by: that of the whole surface, and those of the
+/// rows of a table that name it.
+class FaceTolerances {
+ public:
+  /// `names`: of the faces. Cost: linear in faces and rows.
+  FaceTolerances(const std::optional<Tolerance>& of_all, std::span<const FaceNames> names,
+                 std::span<const GroupTolerance> table);
+
+  /// any_distance() of a face that no tolerance judges. Of kNone, that of the whole surface.
+  [[nodiscard]] const Tolerance& of(std::uint32_t face) const {
+    return tolerances_[number_.empty() || face == kNone ? 0 : number_[face]];
+  }
+  [[nodiscard]] bool has_any() const { return has_any_; }
+
+ private:
+  std::vector<Tolerance> tolerances_;  ///< the first is that of the whole surface
+  std::vector<std::uint32_t> number_;  ///< of each face its tolerance; empty: all have the first
+  bool has_any_;
+};
+
+}  // namespace sdm::map
