@@ -128,11 +128,11 @@ struct Alignment {
 /// 60°, if enough are left. On a copy of O2, or of a part of it, the steps converge quadratically to
 /// rounding.
 ///
-/// Finds a local optimum: the start should be within some 20° and 10 % of the size. The result does not
-/// depend on the number of threads. Throws sdm::Error when the mesh is unusable (see validate), for options
-/// out of range or of another O2, if options.pose is not a rotation and a translation, if freedoms are locked
-/// and the start is not a pose, if no sample is near the region, or if there is not enough memory; Cancelled.
-/// Cost: linear in the faces of O1, and 10 to 30 closest points for each sample.
+/// Finds a local optimum from some 20° and 10 % of the size, or keeps options.pose if that is closer. The
+/// result does not depend on the number of threads. Throws sdm::Error when the mesh is unusable (see
+/// validate), for options out of range or of another O2, if options.pose is not a rotation and a translation,
+/// if freedoms are locked and the start is not a pose, if no sample is near the region, or if there is not
+/// enough memory; Cancelled. Cost: linear in the faces of O1, and 10 to 30 closest points for each sample.
 [[nodiscard]] SDM_API Alignment align(const Mesh& o1, const Sites& o2, const AlignOptions& options = {});
 
 /// The same for points, of which a pseudorandom subset is used if there are more than options.samples.

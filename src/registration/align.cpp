@@ -116,6 +116,33 @@ Samples relative(Samples samples, const Vec3& centre) {
   return samples;
 }
 
+/// Whether O1 is closer to O2 at `before` than at `after`: by as many of its samples as have a weight there.
+bool is_closer(const Correspondences& before, const Correspondences& after, double cut) {
+  std::size_t used = 0, all = 0;
+  for (std::size_t i = 0; i < after.points.size(); ++i)
+    if (after.is_selected(i)) ++all, used += has_weight(after, i, cut);
+  if (used == 0) return false;
+  const double fraction = static_cast<double>(used) / static_cast<double>(all);
+  return residuals(before, fraction).trimmed_rms < residuals(after, fraction).trimmed_rms;
+}
+
+/// Whether steps from a pose led to larger residuals.
+bool leads_away(const CentredSamples& o1, const Affine& begin, const Fit& fit, const Target& target) {
+  return is_closer(find_correspondences(o1.samples, begin, target),
+                   find_correspondences(o1.samples, fit.pose, target), fit.cut);
+}
+
+/// A pose that was not reached by steps, with the samples that have a weight there.
+Fit fit_at(const Affine& pose, const Fit& steps, const CentredSamples& o1, const Target& target,
+           const LockedMotion* locked) {
+  const Pivot pivot{pose.offset, o1.radius};
+  const Correspondences pairs = find_correspondences(o1.samples, pose, target);
+  const Motions allowed = locked ? locked->allowed(pivot) : Motions(Matrix6::Identity());
+  const Motions motions =
+      determined_motions(thinned(pairs, kThin), target.sites, pivot, kEverything, allowed);
+  return {pose, trimming_cut(pairs, pivot, motions), steps.iterations, steps.converged};
+}
+
 /// The shares of the samples in the region that have a weight, and that fit.
 void add_fractions(const Correspondences& pairs, double cut, double radius, Alignment& result) {
   constexpr double kRounding = 1e-5;  // of single precision, and of text with six digits, of coordinates
@@ -145,15 +172,26 @@ Alignment align_samples(const SampleSource& source, const Sites& o2, const Align
   const CentredSamples fine{relative(given, centre), radius};
   const CentredSamples coarse{relative(source(std::min(kCoarse, options.samples)), centre), radius};
 
-  Fit fit{{start.rows, start(centre)}};
+  const Affine begin{start.rows, start(centre)};
+  Fit fit{begin};
   std::optional<LockedMotion> motion;
   if (!options.freedoms.all()) motion.emplace(options.freedoms, fit.pose);
   LockedMotion* locked = motion ? &*motion : nullptr;
   if (options.start == AlignStart::principal_axes) fit = from_principal_axes(coarse, target, options);
   fit = refine(coarse, fit, target, {options.max_iterations, kCoarseTolerance}, locked);
   check_progress(options, 0.5);
+  const bool may_keep = options.start == AlignStart::pose;
+  // Steps that lead away from O2 without an end, as of a part that is far too large, go on for long.
+  bool kept = may_keep && !fit.converged && leads_away(coarse, begin, fit, target);
   if (!options.region.whole()) target.region = &options.region;
-  fit = refine(fine, fit, target, {options.max_iterations, kTolerance}, locked);
+  if (!kept) {
+    fit = refine(fine, fit, target, {options.max_iterations, kTolerance}, locked);
+    kept = may_keep && leads_away(coarse, begin, fit, target) && leads_away(fine, begin, fit, target);
+  }
+  if (kept) {
+    if (locked) motion.emplace(options.freedoms, begin);
+    fit = fit_at(begin, fit, fine, target, locked);
+  }
   check_progress(options, 1);
 
   const Correspondences before = find_correspondences(coarse.samples, {Affine{}.rows, centre}, target);

@@ -653,5 +653,17 @@ TEST(AlignErrors, FarPointsAreNone) {
   }
 }
 
+// A part in the wrong unit is so far from O2 that steps lead away from it.
+TEST(Align, NeverEndsFartherAwayThanItBegan) {
+  const Mesh o2 = placed(torus(24, 12), "rotate:10:20:30");
+  const Sites sites(o2);
+  for (const char* placement : {"scale:1000", "scale:30", "scale:0.001"}) {
+    SCOPED_TRACE(placement);
+    const Alignment found = align(placed(o2, placement), sites);
+    EXPECT_LE(found.after.trimmed_rms, 1.05 * found.before.trimmed_rms) << "`before` is of fewer samples";
+  }
+  EXPECT_LE(align(placed(o2, "scale:1000"), sites).iterations, 100) << "of the first level only";
+}
+
 }  // namespace
 }  // namespace sdm
