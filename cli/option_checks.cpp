@@ -3,35 +3,19 @@
 #include <sdm/error.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
+#include "src/core/parse_number.h"
 #include "format.h"
 #include "scenes/placement.h"
 
-namespace {
-
-// All of the text as a number in base 10, with or without a sign.
-template <class Number>
-std::optional<Number> parse(std::string_view text) {
-  if (text.starts_with('+')) {
-    text.remove_prefix(1);
-    if (text.starts_with('-')) return std::nullopt;
-  }
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
-
-}  // namespace
-
 std::optional<std::int64_t> parse_whole_number(std::string_view text) {
-  return parse<std::int64_t>(text);
+  return sdm::core::parse_number<std::int64_t>(text);
 }
 
 std::optional<double> parse_number(std::string_view text) {
-  const std::optional<double> value = parse<double>(text);
+  const std::optional<double> value = sdm::core::parse_number(text);
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 

@@ -10,7 +10,7 @@ import { unitOf } from './verdict';
 const kCovered: Vec = [150, 172, 190];
 const kMissing: Vec = [222, 105, 20];
 
-/// Passes on the point, and as the camera sees it.
+/// Passes the point on to the fragments, in the space of the model and in that of the camera.
 export const kReferenceVertexShader = `
   out vec3 vPoint, vView;
   void main() {
@@ -70,7 +70,7 @@ export function coverageOf({ position, triangle, covered }: Ghost): CoverageObje
   return { object, centre, radius, setCut: (cut) => materials.forEach((m) => (m.uniforms.cut.value = cut)) };
 }
 
-/// In place of the colour scale.
+/// Draws the legend of coverage, which takes the place of the colour scale.
 export function drawCoverageLegend(report: Report): void {
   const coverage = report.coverage!;
   const row = (color: Vec, words: string) => make('p', { class: 'missing' }, make('span', { style: `background: ${css(color)}` }), words);
@@ -82,7 +82,7 @@ export function drawCoverageLegend(report: Report): void {
   byId('legend').setAttribute('aria-label', `${percent(coverage.value)} of the reference is covered; the rest is drawn in another colour`);
 }
 
-/// The row of the table of numbers.
+/// Returns the row on coverage for the table of numbers.
 export function coverageRow(report: Report): string[][] {
   const c = report.coverage;
   if (!c) return [];

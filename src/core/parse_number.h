@@ -8,12 +8,13 @@
 namespace sdm::core {
 
 /// Reads all of a text as a number in base 10, with at most one sign; nothing if it is none.
-[[nodiscard]] inline std::optional<double> parse_number(std::string_view text) {
+template <class Number = double>
+[[nodiscard]] std::optional<Number> parse_number(std::string_view text) {
   if (text.starts_with('+')) {
     text.remove_prefix(1);
     if (text.starts_with('-')) return std::nullopt;
   }
-  double value = 0;
+  Number value{};
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   return fault == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }

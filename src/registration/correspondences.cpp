@@ -144,7 +144,7 @@ Correspondences thinned(const Correspondences& pairs, std::size_t most) {
     if (pairs.is_selected(i)) selected.push_back(i);
   const std::size_t count = std::min(most, selected.size());
   if (count < selected.size()) {
-    // Of samples sorted by the directions of their normals, equal steps take the share of each direction.
+    // Equal steps through samples sorted by the directions of their normals take the share of each direction.
     std::vector<std::size_t> cells(pairs.points.size());
     for (const std::size_t i : selected) cells[i] = direction_cell(pairs.normals[i]);
     std::ranges::stable_sort(selected, {}, [&](std::size_t i) { return cells[i]; });

@@ -28,8 +28,8 @@ struct Correspondences {
   std::vector<Vec3> normals;      ///< of the tangent plane, unit length: towards the sample, or of the face
   std::vector<double> distances;  ///< ≥ 0
   std::vector<std::uint32_t> faces;
-  /// 1, but for samples beside O2, on the other side of a wall, or with a closest point outside of the
-  /// region.
+  /// 0 for samples beside O2, on the other side of a wall, or with a closest point outside of the region;
+  /// otherwise 1.
   std::vector<std::uint8_t> usable;
   std::vector<std::uint8_t> selected;  ///< 1 if the closest point is in the region; empty without one
 

@@ -50,7 +50,8 @@ class MatchedFaces {
   MatchedParts found;
 
  private:
-  // What was found at a vertex for a face around it: near the others too, if it is allowed for them.
+  // A face of B that was found at a vertex for a face around it. Other faces around the vertex are near it
+  // too, if it is allowed for them.
   struct Known {
     std::uint32_t vertex = kNone, face = kNone;
   };
@@ -67,7 +68,7 @@ class MatchedFaces {
   }
   [[nodiscard]] double enough() const { return lower_.value + precision_; }
 
-  // Of those that were not searched from, the corner that is farthest from its closest face.
+  // Returns the corner that is farthest from its closest face, of those that were not searched from.
   static std::optional<int> highest_corner(const Part& part, const std::array<bool, 3>& searched) {
     std::optional<int> highest;
     double most = -1;

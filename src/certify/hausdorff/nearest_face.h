@@ -7,7 +7,7 @@
 
 namespace sdm::hausdorff {
 
-/// lower ≤ d(p, B) ≤ upper
+/// Bounds on the distance of a point: lower ≤ d(p, B) ≤ upper.
 struct NearestFace {
   std::uint32_t face = kNone;
   double lower = 0, upper = 0;
@@ -17,7 +17,7 @@ struct NearestFace {
 /// `start` is a face of B: the closer it is, the less of the tree is searched.
 [[nodiscard]] NearestFace nearest_face(const sites::SitesData& sites, const Vec3& p, std::uint32_t start);
 
-/// The same of the faces that a face of A is measured to; kNone and infinite bounds if there is none. `start`
+/// Searches only the faces that a face of A is measured to; kNone and infinite bounds if there is none. `start`
 /// is one of these, or kNone.
 [[nodiscard]] NearestFace nearest_face(const sites::SitesData& sites, const Vec3& p, std::uint32_t start,
                                        const Matching& matching, std::uint32_t face);

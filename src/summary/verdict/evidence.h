@@ -27,7 +27,7 @@ struct FaceGroups {
                                                        std::span<const float> vertex_distances,
                                                        const FaceGroups& groups, double accuracy);
 
-/// Of the texels of a group.
+/// The area of the texels of a group, and its shares.
 struct GroupArea {
   ToleranceShares shares;
   double area = 0;  ///< in squared units of the surface
