@@ -143,17 +143,17 @@ class DistanceMap(_core.MapChannels):
 
     def check_groups(
         self,
-        tolerance_table: "str | os.PathLike[str] | dict[str, float | tuple[float, float]]",
+        tolerance_table: "str | os.PathLike[str] | dict[str, float | tuple[float | None, float | None]]",
         names: "FaceNames | list[FaceNames]",
         *,
         progress: "Progress | None" = None,
     ) -> GroupVerdicts:
         """Returns whether the distances of all points of named groups of the surface are within tolerances of their own.
 
-        tolerance_table: a dict of tolerances, as of check(), by name; or a file with a row group,lower,upper for each, as of
-        ``sdm map --tolerance-table``. names: of the faces of the surface, as of read_face_names(). In the dict, None in place of
-        one of two numbers is no limit on that side. Raises Error as check() does, and for a name that no face has; Cancelled. Cost: linear in texels for all groups together, and a proof for
-        each.
+        tolerance_table: a dict of tolerances, as of check(), by name, where None in place of one of two numbers is no limit
+        on that side; or a file with a row group,lower,upper for each, as of ``sdm map --tolerance-table``. names: of the
+        faces of the surface, as of read_face_names(). Raises Error as check() does, and for a name that no face has;
+        Cancelled. Cost: linear in texels for all groups together, and a proof for each.
 
         >>> halves = sdm.FaceNames('group', ['all'], np.zeros(len(sphere.faces), np.uint32))
         >>> sdm.map(sphere, box, resolution=64).check_groups({'all': 2}, halves).verdict
@@ -166,17 +166,17 @@ class DistanceMap(_core.MapChannels):
         tolerance: "float | tuple[float, float] | None" = None,
         *,
         names: "FaceNames | list[FaceNames] | None" = None,
-        tolerance_table: "str | os.PathLike[str] | dict[str, float | tuple[float, float]] | None" = None,
+        tolerance_table: "str | os.PathLike[str] | dict[str, float | tuple[float | None, float | None]] | None" = None,
         progress: "Progress | None" = None,
     ) -> Places:
         """Returns where the map deviates most: connected regions out of the tolerance, and not single points.
 
         tolerance: as of check(); without one, or where nothing is out of it, regions at or beyond the 99th percentile of the
-        absolute distance. names: of the faces of the surface, for the groups of places. tolerance_table: as of check_groups(): the
-        faces of its groups are judged by it too. Regions without a value, where a tolerance asks for one, have the distance
-        NaN and are listed after the others. Regions below 1e-5 of the area, or
-        four texels, are small: they are listed last, and counted. Raises Error as ``statistics`` does; Cancelled. Cost:
-        linear, and one search per vertex.
+        absolute distance. names: of the faces of the surface, for the groups of places. tolerance_table: as of
+        check_groups(): the faces of its groups are judged by it too. Regions without a value, where a tolerance asks for
+        one, have the distance NaN and are listed after the others. Regions below 1e-5 of the area, or four texels, are
+        small: they are listed last, and counted. Raises Error as ``statistics`` does; Cancelled. Cost: linear, and one
+        search per vertex.
 
         >>> sdm.map(sphere, box, resolution=64).places().by_tolerance
         False

@@ -97,14 +97,14 @@ TEST_F(HausdorffCommand, ExitsWithThreeWhereTheToleranceIsExceeded) {
 TEST_F(HausdorffCommand, ThinWallsAreNoted) {
   const std::string box = write_obj(folder / "box.obj", cube(1));
   const std::string note = "of O2's walls are thinner than twice the tolerance";
-  const auto out = [&](std::vector<std::string> more) {
+  const auto printed = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"hausdorff", box, box});
     return run_sdm(more).out;
   };
-  EXPECT_THAT(out({"--tolerance", "2"}), HasSubstr(note));
-  EXPECT_THAT(out({"--tolerance", "0.1"}), ::testing::Not(HasSubstr(note)));
-  EXPECT_THAT(out({"--tolerance", "2", "--facing"}), ::testing::Not(HasSubstr(note)));
-  EXPECT_THAT(out({}), ::testing::Not(HasSubstr(note)));
+  EXPECT_THAT(printed({"--tolerance", "2"}), HasSubstr(note));
+  EXPECT_THAT(printed({"--tolerance", "0.1"}), ::testing::Not(HasSubstr(note)));
+  EXPECT_THAT(printed({"--tolerance", "2", "--facing"}), ::testing::Not(HasSubstr(note)));
+  EXPECT_THAT(printed({}), ::testing::Not(HasSubstr(note)));
 }
 
 TEST_F(HausdorffCommand, NamesFaults) {
