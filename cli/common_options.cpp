@@ -113,9 +113,12 @@ void add_sign_option(CLI::App& app, sdm::SignMethod& sign) {
 
 void add_color_options(CLI::App& app, sdm::PictureOptions& picture) {
   add_choice<sdm::Colormap>(app, "--colormap", picture.colormap,
-                            "Colormap; auto: diverging if distances have both signs, otherwise viridis",
+                            "Colormap; sequential: viridis from 0 to one side, and reds to the other one; "
+                            "auto: viridis if no distance is negative, sequential if little is on one "
+                            "side of 0, otherwise diverging",
                             {{"auto", sdm::Colormap::automatic},
                              {"viridis", sdm::Colormap::viridis},
+                             {"sequential", sdm::Colormap::sequential},
                              {"diverging", sdm::Colormap::diverging},
                              {"paper2006", sdm::Colormap::paper2006}});
   app.add_option_function<std::vector<double>>(
@@ -125,7 +128,7 @@ void add_color_options(CLI::App& app, sdm::PictureOptions& picture) {
            picture.range = {range[0], range[1]};
          },
          "The distances at the ends of the colour scale; by default up to the 99th percentile of "
-         "|distance|, to both sides of 0 if distances have both signs")
+         "|distance|, rounded, to both sides of 0 if distances have both signs")
       ->expected(2)
       ->check(any_number())
       ->type_name("LO HI");

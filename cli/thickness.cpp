@@ -100,8 +100,7 @@ std::string verdict_in_words(const ThicknessCommand& command, const sdm::Summary
 std::optional<sdm::ColorRange> colors_of(const ThicknessCommand& command, const sdm::DistanceStatistics& d) {
   const bool bands = command.picture.colormap == sdm::Colormap::automatic && command.least;
   if (!bands || command.most || command.picture.range || d.texels == 0) return std::nullopt;
-  return sdm::ColorRange{.colormap = sdm::Colormap::automatic,
-                         .range = {0, std::max(d.p99_abs, 2 * *command.least)}};
+  return sdm::color_range({.tolerance = sdm::Tolerance(*command.least, *command.least)}, d);
 }
 
 /// Whether the thickest places matter, and not the thinnest ones.

@@ -36,10 +36,14 @@ namespace sdm {
 
 /// Colour scales for distances.
 enum class Colormap {
-  automatic,  ///< diverging if there are both signs, otherwise viridis; with a tolerance, bands
+  /// With a tolerance, bands; otherwise viridis if no distance is negative, sequential if less than 5 % of
+  /// the area is on one side of 0, or nothing farther than a tenth of the 99th percentile of |distance|,
+  /// and diverging if neither.
+  automatic,
   viridis,
-  diverging,  ///< blue (negative) – white – red (positive), centred on zero
-  paper2006,  ///< red (near) to green (far), as in the paper's figures
+  sequential,  ///< viridis from 0 to the end of the one side, reds for the other one
+  diverging,   ///< blue (negative) – white – red (positive), centred on zero
+  paper2006,   ///< red (near) to green (far), as in the paper's figures
 };
 
 /// What a user chose of the colours, and what they depend on.
@@ -59,12 +63,17 @@ struct ColorRange {
 
 /// Returns the colours of a map with these statistics, by the rule for all files. The range ends at the 99th
 /// percentile of |distance| (of the area, or of the points), so that a few outliers do not take the colours
-/// from the rest: −p99 to p99 if the colormap is diverging, otherwise the range of the distances cut at ±p99;
-/// with a tolerance, well beyond its limits. If the percentile is within the accuracy, it ends at the largest
-/// |distance|. Throws sdm::Error unless a range is finite and increasing and a tolerance too. Cost: O(1).
+/// from the rest: −p99 to p99 if the colormap is diverging, otherwise the range of the distances cut at ±p99,
+/// from 0 unless all are beyond the half of it; if the colormap is sequential, the side of less area has at
+/// most half of the length of the other one; with a tolerance, well beyond its limits. If the percentile is
+/// within the accuracy, it ends at the largest |distance|. The ends are then rounded outwards, to multiples
+/// of a step of 1, 2 or 5 times a power of ten that the range has at most ten of. Throws sdm::Error unless a
+/// range is finite and increasing and a tolerance too. Cost: O(1).
 [[nodiscard]] SDM_API ColorRange color_range(const ColorChoice& choice, const DistanceStatistics& distances);
 
-/// Returns colours that suit two maps: the union of their ranges, diverging if one of them is.
+/// Returns colours that suit two maps: the union of their ranges. If one of them is sequential or diverging,
+/// it is diverging if the shorter side of 0 is more than half as long as the other one, and sequential
+/// otherwise.
 [[nodiscard]] SDM_API ColorRange widest(const ColorRange& a, const ColorRange& b);
 
 /// The parts of a surface of one kind: components, or the groups that its file names.

@@ -258,10 +258,10 @@ class DistanceMap(_core.MapChannels):
         .ply .csv .npy .vtp  the distance of each vertex, in the order of the vertices; in .ply and .vtp with the faces
         ===================  ======================================================================================
 
-        The options are those of the colours. colormap: 'automatic' (diverging if there are both signs, else viridis),
-        'viridis', 'diverging' or 'paper2006'. range: of the colours; by default from the map. tolerance: bands, green
-        within ±tolerance, or from the first to the second number. units: shown in the legend ('mm', ...); they scale a
-        .glb to metres. size: the most pixels a side of pictures and textures. up: 'y' or 'z', the axis that points up in a
+        The options are those of the colours. colormap: 'automatic' (viridis if no distance is negative, 'sequential'
+        if less than 5 % of the area is on one side of 0, else 'diverging'), one of these, or 'paper2006'. range: of the
+        colours; by default from the map, rounded. tolerance: bands, green within ±tolerance, or from the first to the
+        second number. units: shown in the legend ('mm', ...); they scale a .glb to metres. size: the most pixels a side of pictures and textures. up: 'y' or 'z', the axis that points up in a
         .html. The complete file appears, or none. Raises Error, naming the file and the fault.
         """
         name = os.fsdecode(file)
@@ -328,7 +328,7 @@ class DistanceMap(_core.MapChannels):
 
         ax: axes to draw into, three-dimensional ones for a surface; None: of a new figure. kind: 'surface': O1, each face
         in the colour of the mean distance of its vertices; 'atlas': the texels. cmap: a colour map of matplotlib; by
-        default diverging if there are both signs, else viridis. units: shown beside the colours.
+        default as in save(). units: shown beside the colours.
         """
         from . import _plot
 

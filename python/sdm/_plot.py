@@ -10,10 +10,17 @@ from ._core import Error
 def _colours(distance_map: Any, cmap: "str | None") -> tuple:
     """A colour map and its range, which is that of all pictures of the map."""
     from matplotlib import colormaps
-    from matplotlib.colors import Normalize
+    from matplotlib.colors import ListedColormap, Normalize
 
     name, low, high = distance_map._core.colors()
-    return colormaps[cmap or ("RdBu_r" if name == "diverging" else "viridis")], Normalize(low, high)
+    if cmap or name != "sequential":
+        return colormaps[cmap or ("RdBu_r" if name == "diverging" else "viridis")], Normalize(low, high)
+    up = high >= -low  # the longer side
+    values = np.linspace(low, high, 1024) * (1 if up else -1)
+    longer, shorter = (high, -low) if up else (-low, high)
+    reds = colormaps["Reds"](0.45 + 0.55 * np.clip(-values / (shorter or 1), 0, 1))
+    viridis = colormaps["viridis"](np.clip(values / longer, 0, 1))
+    return ListedColormap(np.where(values[:, None] < 0, reds, viridis)), Normalize(low, high)
 
 
 def plot(distance_map: Any, ax: Any, kind: str, cmap: "str | None", units: str) -> Any:

@@ -189,10 +189,11 @@ void write_page(const PyMap& self, nb::handle file, const VertexDistances& at_ve
 }  // namespace
 
 Colormap colormap_of(const std::string& name) {
-  for (const Colormap colormap :
-       {Colormap::automatic, Colormap::viridis, Colormap::diverging, Colormap::paper2006})
+  for (const Colormap colormap : {Colormap::automatic, Colormap::viridis, Colormap::sequential,
+                                  Colormap::diverging, Colormap::paper2006})
     if (name == sdm::name_of(colormap)) return colormap;
-  throw Error("colormap must be one of automatic, viridis, diverging, paper2006, not '" + name + "'");
+  throw Error("colormap must be one of automatic, viridis, sequential, diverging, paper2006, not '" + name +
+              "'");
 }
 
 std::optional<std::array<double, 2>> range_of(const std::optional<std::pair<double, double>>& range) {

@@ -1,6 +1,7 @@
 """One pair, run once: stdout, report.json, the page, the picture and Python agree on every number, verdict and colour."""
 
 import json
+import math
 import os
 import re
 import subprocess
@@ -111,6 +112,14 @@ def rounded(value, digits):
     return float(f"{value:.{digits}g}")
 
 
+def stated(told, value):
+    """A distance with the decimals of the page: one more than the error bound leaves certain, of 3 to 5 digits."""
+    largest = max(abs(told.json["extremes"][end]["distance"]) for end in ("min", "max"))
+    first = math.floor(math.log10(largest))
+    decimals = 1 - math.floor(math.log10(told.json["error_bound"]))
+    return float(f"{value:.{max(0, min(max(decimals, 2 - first), 4 - first))}f}")
+
+
 def first_number(text):
     return float(re.search(r"[-+]?\d[\d.]*(e-?\d+)?", plain(text))[0])
 
@@ -138,7 +147,7 @@ def test_groups(told):
         assert (name, kind, verdict) == (group["group"], group["kind"], group["verdict"])
         assert (limits, proof) == ("±0.02 mm", "certified") and group["certified"]
         measured = [group["lowest"], group["highest"]]
-        shown = [0 if abs(x) <= accuracy else rounded(x, 4) for x in measured]
+        shown = [0 if abs(x) <= accuracy else stated(told, x) for x in measured]
         assert [first_number(least), first_number(most)] == shown
         share = 100 * group["exceeded_area_fraction"]
         assert first_number(outside) == pytest.approx(share, rel=5e-3)
@@ -165,12 +174,12 @@ def test_numbers(told):
                          ("Standard deviation", d["stddev"]), ("Median", d["p50"]), ("95 % of the area is closer than", d["p95_abs"]),
                          ("99 % of the area is closer than", d["p99_abs"]), ("Largest (most outside)", extremes["max"]["distance"]),
                          ("Smallest (most inside)", extremes["min"]["distance"])]:  # fmt: skip
-        expected = 0 if "(" in label and abs(value) <= told.json["accuracy"] else rounded(value, 4)
+        expected = 0 if "(" in label and abs(value) <= told.json["accuracy"] else stated(told, value)
         assert first_number(rows[label]) == expected and rows[label].endswith("\u00a0mm"), label
     assert int(plain(rows["Measured points"]).replace(" ", "")) == told.json["texels_with_value"] == told.map.statistics().texels
     assert f"Alignment: {told.json['alignment']['text']}." in told.page["inputs-table"]
     largest = max(extremes["max"]["distance"], -extremes["min"]["distance"])
-    assert abs(first_number(told.page["worst"][0][1])) == rounded(largest, 4)
+    assert abs(first_number(told.page["worst"][0][1])) == stated(told, largest)
     in_command = json.loads(json.dumps(told.json))
     for place in in_command["places"]["largest"]:
         place["kind"] = place["group"] = None  # arrays have no names of groups
@@ -190,6 +199,9 @@ def test_colours(told):
     scale, colors = told.page["scale"], told.json["colors"]
     assert (scale["mode"], [scale["lo"], scale["hi"]]) == (colors["map"], colors["range"])
     assert (scale["lower"], scale["upper"]) == told.tolerance
+    labels = [float(x) for x in re.findall(r"-?\d[\d.]*", plain(told.page["legend"]))]
+    assert [min(labels), max(labels)] == colors["range"]
+    assert {rounded(x, 4) for x in told.tolerance} <= set(labels)
     there = told.page["map"]
     distance = np.array(there["distance"], float).reshape(there["height"], there["width"])
     np.testing.assert_array_equal(distance.astype(np.float32), told.map.distance)

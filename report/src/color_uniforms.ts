@@ -21,15 +21,16 @@ export function colorUniforms(colors: Colors): Uniforms {
     stopCount: { value: colors.viridis.length },
     above: { value: triple(colors.above) },
     below: { value: triple(colors.below) },
-    within: { value: triple(colors.within)[0] },
+    opposite: { value: triple(colors.opposite) },
+    within: { value: triple(colors.within) },
     noValue: { value: triple(colors.no_value)[0] },
   };
 }
 
 export function setScale(uniforms: Uniforms, scale: Scale, colors: Colors): void {
-  uniforms.mode.value = scale.mode === 'tolerance' ? 2 : scale.mode === 'diverging' ? 1 : 0;
+  uniforms.mode.value = { viridis: 0, paper2006: 0, diverging: 1, tolerance: 2, sequential: 3 }[scale.mode];
   for (const key of ['lo', 'hi', 'lower', 'upper', 'accuracy'] as const) uniforms[key].value = scale[key];
-  const stops = colors[scale.mode === 'tolerance' ? 'viridis' : scale.mode];
+  const stops = colors[scale.mode === 'tolerance' || scale.mode === 'sequential' ? 'viridis' : scale.mode];
   uniforms.stopCount.value = stops.length;
   uniforms.stops.value = triple(Array.from({ length: kStops }, (_, i) => stops[Math.min(i, stops.length - 1)]));
 }

@@ -1,7 +1,7 @@
 // Numbers as text.
 import type { Vec } from './page_data';
 
-const kMinus = '\u2212';
+export const kMinus = '\u2212';
 
 /// A number to some digits, without a long tail of zeros: 0.0123, 1.5, 12300, 1.2e-7.
 export function text(value: number | null | undefined, digits = 4): string {
@@ -57,18 +57,45 @@ export function count(value: number): string {
   return value.toLocaleString('en-US').replace(/,/g, '\u202f');
 }
 
-/// Positions of round numbers between lo and hi, about as many as asked for.
-export function ticks(lo: number, hi: number, about: number): number[] {
-  const raw = (hi - lo) / about;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = power * ([1, 2, 5, 10].find((s) => s * power >= raw) ?? 10);
+/// The least of 1, 2, 5 and 10 times a power of ten that is not smaller than a number; and multiples of it, the
+/// nearest to decimal numbers, as those of src/summary/round_step.h.
+function roundStep(least: number): (n: number) => number {
+  const exponent = Math.floor(Math.log10(least));
+  const power = 10 ** Math.abs(exponent);
+  const multiple = (digit: number) => (n: number) => (exponent < 0 ? (n * digit) / power : n * digit * power);
+  return multiple([1, 2, 5].find((digit) => least <= multiple(digit)(1) * (1 + 1e-12)) ?? 10);
+}
+
+/// Round numbers between lo and hi, at most one more than `steps`.
+export function ticks(lo: number, hi: number, steps: number): number[] {
+  const multiple = roundStep((hi - lo) / steps);
+  const step = multiple(1);
+  const first = Math.ceil(lo / step - 1e-9);
   const result: number[] = [];
-  for (let i = Math.ceil(lo / step - 1e-9); i * step <= hi + 1e-9 * step; ++i) result.push(i * step);
+  for (let i = 0; i <= 2 * steps && multiple(first + i) <= hi + 1e-9 * step; ++i) result.push(multiple(first + i) || 0);
   return result;
 }
 
-/// A tick's label, to the digits of the step between ticks.
+/// The label of a tick: short, but distinct from those of its neighbours, `step` away. That of pictures, by tick_label()
+/// of src/io/image/pictures/ticks.h.
 export function tickText(value: number, step: number): string {
-  if (Math.abs(value) < step * 1e-6) return '0';
-  return text(value, Math.max(1, Math.ceil(Math.log10(Math.abs(value) / step) + 1.01)));
+  const size = Math.max(Math.abs(value), step);
+  const short =
+    size >= 1e6 || size < 1e-4
+      ? value.toExponential(Math.min(15, Math.max(0, Math.floor(Math.log10(size)) - Math.floor(Math.log10(step)))))
+      : value.toFixed(Math.min(15, Math.max(0, -Math.floor(Math.log10(step) + 1e-9))));
+  return asPrinted(short);
+}
+
+/// A number with four significant digits, as value_label() of that file.
+export function valueLabel(value: number): string {
+  if (value === 0) return '0';
+  const scientific = value.toExponential(3);
+  const exponent = Number(scientific.split('e')[1]);
+  return asPrinted(trimmed(exponent < -4 || exponent >= 4 ? scientific : value.toFixed(3 - exponent)));
+}
+
+/// As C++ prints it, with a minus sign: exponents have a sign and two digits.
+function asPrinted(number: string): string {
+  return number.replace(/^-/, kMinus).replace(/e([+-])(\d)$/, 'e$10$2');
 }

@@ -1,11 +1,10 @@
 // What the page contains beside the text of report.json: the part with its values.
 import type { AreaByValue } from './area_by_value';
 import type { ArrayIndex } from './arrays';
+import type { Colors } from './color_scale';
 import type { Place, Vec } from './report_json';
 
 export * from './report_json';
-
-type Color = Vec;
 
 export interface Placement {
   origin: Vec;
@@ -23,7 +22,7 @@ interface ChannelJson {
 export interface PageJson {
   version: string;
   up: 'y' | 'z';
-  colors: Record<'viridis' | 'diverging' | 'paper2006' | 'within' | 'above' | 'below' | 'no_value', Color[]>;
+  colors: Colors;
   map?: { width: number; height: number; step: number; channels?: ChannelJson[] };
   model?: Placement & { triangles_of_mesh: number; names?: { kind: string; names: string[] }[] };
   cloud?: Placement & { points: number; picked: number; normals: boolean }; ///< in place of map and model

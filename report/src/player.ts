@@ -102,6 +102,7 @@ class Player {
     };
     const modes: [Mode, string][] = [
       ['viridis', 'Viridis'],
+      ['sequential', 'From zero, the other side in red'],
       ['diverging', 'Blue, white, red'],
       ['paper2006', 'Red to green'],
     ];
@@ -116,7 +117,7 @@ class Player {
         const valid = range.value !== '' && hi > 0 && hi > (this.scale.mode === 'tolerance' ? this.scale.upper : 0);
         range.setAttribute('aria-invalid', String(!valid));
         if (!valid) return;
-        this.scale = { ...this.scale, hi, lo: page.scale.lo < 0 ? -hi : Math.min(page.scale.lo, hi / 2) };
+        this.scale = { ...this.scale, hi, lo: page.scale.mode === 'sequential' ? (page.scale.lo / page.scale.hi) * hi : page.scale.lo < 0 ? -hi : Math.min(page.scale.lo, hi / 2) };
         this.recolour();
       },
     });

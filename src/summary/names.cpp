@@ -48,6 +48,8 @@ const char* name_of(Colormap colormap) {
       return "automatic";
     case Colormap::viridis:
       return "viridis";
+    case Colormap::sequential:
+      return "sequential";
     case Colormap::diverging:
       return "diverging";
     case Colormap::paper2006:

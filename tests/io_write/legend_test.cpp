@@ -34,6 +34,34 @@ TEST(Ticks, AreRoundNumbersWithinTheRange) {
   }
 }
 
+TEST(Legend, NamesTheEndsAndTheLimits) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> exponent(-9, 9), part(0.1, 1);
+  for (int i = 0; i < 500; ++i) {
+    const double size = std::pow(10, exponent(random)), reach = size * part(random);
+    const Tolerance tolerance(-0.4 * reach * part(random), 0.4 * reach * part(random));
+    const DistanceStatistics d{
+        .texels = 9, .min = -reach, .max = reach, .p05 = -1, .p95 = 1, .p99_abs = reach};
+    const ColorScale scale = color_scale(fixed_colors({.tolerance = tolerance}, d));
+    const std::vector<ScaleLabel> labels = scale_labels(scale);
+    ASSERT_GE(labels.size(), 5u);
+    ASSERT_LE(labels.size(), 13u);
+    EXPECT_EQ(labels.front().value, scale.lo);
+    EXPECT_EQ(labels.back().value, scale.hi);
+    std::vector<double> limits;
+    for (std::size_t k = 0; k < labels.size(); ++k) {
+      if (labels[k].is_limit) limits.push_back(labels[k].value);
+      if (k == 0) continue;
+      EXPECT_LT(labels[k - 1].value, labels[k].value);
+      EXPECT_NE(labels[k - 1].text, labels[k].text);
+    }
+    EXPECT_EQ(limits, (std::vector<double>{tolerance.lo, tolerance.hi}));
+  }
+  const std::vector<ScaleLabel> labels = scale_labels({.map = Colormap::viridis, .lo = 0, .hi = 0.137});
+  EXPECT_EQ(labels.front().text, "0.00");
+  EXPECT_EQ(labels.back().text, "0.137");
+}
+
 TEST(Legend, ShowsTheColoursFromTopToBottom) {
   const auto close = [](Rgb a, Rgb b) {
     return std::abs(a.r - b.r) < 9 && std::abs(a.g - b.g) < 9 && std::abs(a.b - b.b) < 9;

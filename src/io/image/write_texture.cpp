@@ -19,9 +19,16 @@ using namespace io;
 PictureOptions texture_range(const PictureOptions& options, const DistanceStatistics& distances) {
   PictureOptions plain = options;
   plain.tolerance = {};
-  DistanceStatistics all = distances;  // a texture is data: no outlier is cut off
-  if (all.texels > 0) all.p99_abs = std::max(std::abs(all.min), std::abs(all.max));
-  return fixed_colors(plain, all);
+  if (options.range) return fixed_colors(plain, distances);
+  // A texture is data: no outlier is cut off, and nothing is rounded.
+  double lo = distances.texels > 0 ? distances.min : 0, hi = distances.texels > 0 ? distances.max : 0;
+  if (std::max(std::abs(lo), std::abs(hi)) <= options.accuracy) lo = 0, hi = options.accuracy;
+  if (plain.colormap == Colormap::automatic)
+    plain.colormap = lo < 0 && hi > 0 ? Colormap::diverging : Colormap::viridis;
+  if (plain.colormap == Colormap::diverging) hi = std::max(std::abs(lo), std::abs(hi)), lo = -hi;
+  if (!(lo < hi)) hi = lo + (lo != 0 ? std::abs(lo) : 1);
+  plain.range = {lo, hi};
+  return plain;
 }
 
 TextureRange write_distance_texture(const std::filesystem::path& file, const Surface& surface,

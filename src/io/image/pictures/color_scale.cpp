@@ -56,6 +56,21 @@ double fraction(double x, double from, double to) {
   return to > from ? (x - from) / (to - from) : 1;
 }
 
+// How far a distance within the tolerance is on its way to the nearest limit, from 0 (at distance 0, or in
+// the middle of a tolerance without it) to 1. A limit beyond the scale, such as the upper one of a wall of
+// any thickness, is none.
+double closeness(const ColorScale& scale, double d) {
+  const auto [lower, upper] = *scale.tolerance;
+  if (lower <= 0 && upper >= 0) return d == 0 ? 0 : d > 0 ? fraction(d, 0, upper) : fraction(-d, 0, -lower);
+  const double half = (std::min(upper, scale.hi) - std::max(lower, scale.lo)) / 2;
+  return half > 0 ? 1 - std::min(d - lower, upper - d) / half : 1;
+}
+
+Rgb within(const ColorScale& scale, double d) {
+  const double step = std::floor(kWithin.size() * closeness(scale, d));
+  return kWithin[static_cast<std::size_t>(std::clamp(step, 0.0, kWithin.size() - 1.0))];
+}
+
 // `hue` in [0, 1).
 Rgb hsl(float hue, float saturation, float lightness) {
   const float chroma = saturation * std::min(lightness, 1 - lightness);
@@ -87,7 +102,13 @@ Rgb ColorScale::operator()(double distance) const {
     if (distance > tolerance->hi + accuracy) return gradient(kAbove, fraction(distance, tolerance->hi, hi));
     if (distance < tolerance->lo - accuracy)
       return gradient(kBelow, fraction(-distance, -tolerance->lo, -lo));
-    return kWithin;
+    return within(*this, distance);
+  }
+  if (map == Colormap::sequential) {
+    const bool up = hi >= -lo;  // the longer side
+    const double d = up ? distance : -distance;
+    if (d < -accuracy) return gradient(kOpposite, fraction(-d, 0, up ? -lo : hi));
+    return gradient(kViridis, fraction(d, std::max(0.0, up ? lo : -hi), up ? hi : -lo));
   }
   if (map == Colormap::diverging)
     return gradient(kDiverging, 0.5 + 0.5 * distance / std::max(std::abs(lo), std::abs(hi)));

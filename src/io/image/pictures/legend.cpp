@@ -2,9 +2,11 @@
 
 #include "io/image/pictures/canvas.h"
 #include "io/image/pictures/ticks.h"
+#include "summary/round_step.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sdm::io {
 namespace {
@@ -12,6 +14,7 @@ namespace {
 // Lengths for a resolution of 1024; the drawing is scaled as a whole.
 constexpr double kWidth = 232, kMargin = 24, kBarWidth = 30, kBarTop = 84, kMaxHeight = 1024;
 constexpr double kMinHeight = 460;
+constexpr double kApart = 0.06;  // numbers beside the bar, of its length
 constexpr double kTitleSize = 19, kTextSize = 15, kLine = 23;
 
 // Shrinks long text to fit the picture.
@@ -41,28 +44,56 @@ void draw_bar(Canvas& canvas, const ColorScale& scale, double top, double bottom
   cairo_rectangle(cairo, kMargin, top, kBarWidth, bottom - top);
   cairo_stroke(cairo);
 
-  const auto values = ticks(scale.lo, scale.hi, 10);
-  const double step = values.size() > 1 ? values[1] - values[0] : scale.hi - scale.lo;
-  for (const double value : values) {
+  for (const auto& [value, text, is_limit] : scale_labels(scale)) {
     const double y = height_of(value);
+    if (is_limit) {
+      canvas.set_color(kInk);
+      canvas.line(kMargin, y, kMargin + kBarWidth, y);
+      cairo_new_path(cairo);
+    }
     canvas.set_color(kLineColor);
     cairo_move_to(cairo, kMargin + kBarWidth, y);
     cairo_line_to(cairo, kMargin + kBarWidth + 7, y);
     cairo_stroke(cairo);
     canvas.set_color(kInk);
-    write_text(canvas, kMargin + kBarWidth + 13, y + 0.36 * kTextSize, tick_label(value, step), kTextSize);
+    write_text(canvas, kMargin + kBarWidth + 13, y + 0.36 * kTextSize, text, kTextSize, is_limit);
   }
 }
 
 }  // namespace
 
+std::vector<ScaleLabel> scale_labels(const ColorScale& scale) {
+  const auto [lo, hi] = std::pair(scale.lo, scale.hi);
+  const std::vector<double> round = ticks(lo, hi, kScaleSteps);
+  const double step = round.size() > 1 ? round[1] - round[0] : hi - lo;
+  std::vector<ScaleLabel> labels;
+  // What is named first keeps its neighbours away; a limit is at least a line.
+  const auto add = [&](double value, bool is_limit) {
+    const bool close = std::ranges::any_of(
+        labels, [&](const ScaleLabel& l) { return std::abs(l.value - value) < kApart * (hi - lo); });
+    if (close && !is_limit) return;
+    const double steps = value / step;
+    const bool is_round = std::abs(steps - std::round(steps)) < 1e-6;
+    labels.push_back({value, close ? "" : is_round ? tick_label(value, step) : value_label(value), is_limit});
+  };
+  add(lo, false), add(hi, false);
+  if (scale.tolerance)
+    for (const double limit : {scale.tolerance->lo, scale.tolerance->hi})
+      if (limit > lo && limit < hi) add(limit, true);
+  for (const double value : round) add(value, false);
+  std::ranges::sort(labels, {}, &ScaleLabel::value);
+  return labels;
+}
+
 LegendText legend_text(const DistanceMap& map, double least, double most, const ColorScale& scale,
                        const std::string& units) {
   LegendText text{"Distance", units, {}, map.beyond_max_distance + map.without_match > 0};
   if (least <= most) text.notes = {"min  " + value_label(least), "max  " + value_label(most)};
-  if (const auto& t = scale.tolerance)
+  if (const auto& t = scale.tolerance) {
     text.notes.push_back(t->lo == -t->hi ? "green: within \u00b1" + value_label(t->hi)
                                          : "green: " + value_label(t->lo) + " to " + value_label(t->hi));
+    text.notes.emplace_back("darker: nearer a limit");
+  }
   text.notes.push_back(map.sign.method == SignMethod::none   ? "unsigned"
                        : map.sign.method == SignMethod::side ? "negative: behind"
                                                              : "negative: inside");

@@ -12,6 +12,17 @@
 
 namespace sdm::io {
 
+/// A number beside the bar of a legend.
+struct ScaleLabel {
+  double value = 0;
+  std::string text;       ///< empty for a limit next to another number
+  bool is_limit = false;  ///< of the tolerance, and inside of the bar
+};
+
+/// The numbers beside the bar, from the lowest: both ends, the limits of a tolerance, and round ones that are
+/// not close to these. Those of the pages are the same.
+[[nodiscard]] std::vector<ScaleLabel> scale_labels(const ColorScale& scale);
+
 struct LegendText {
   std::string title, units;
   std::vector<std::string> notes;  ///< one per line, below the bar

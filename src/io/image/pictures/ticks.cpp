@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "summary/round_step.h"
+
 namespace sdm::io {
 namespace {
 
@@ -17,20 +19,13 @@ std::string with_minus_sign(std::string number) {
 }  // namespace
 
 std::vector<double> ticks(double lo, double hi, int count) {
-  const double rough = (hi - lo) / count;
-  const double decade = std::pow(10, std::floor(std::log10(rough)));
-  double step = 10 * decade;
-  for (const double round : {1.0, 2.0, 5.0})
-    if (rough <= round * decade) {
-      step = round * decade;
-      break;
-    }
+  const RoundStep step((hi - lo) / count);
   std::vector<double> result;
   // Multiplied rather than accumulated: far from zero, adding a step may not change a value.
-  const double first = std::ceil(lo / step - 1e-9);
+  const double first = std::ceil(lo / step.size() - 1e-9);
   for (int i = 0; i <= 2 * count; ++i) {
-    const double value = (first + i) * step;
-    if (value > hi + 1e-9 * step) break;
+    const double value = step.multiple(first + i);
+    if (value > hi + 1e-9 * step.size()) break;
     result.push_back(value == 0 ? 0 : value);
   }
   return result;

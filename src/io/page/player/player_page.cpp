@@ -1,6 +1,7 @@
 #include "io/page/player/player_page.h"
 
 #include <sdm/error.h>
+#include <sdm/summary.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +24,7 @@ constexpr std::uint32_t kNoDistance = 65535;  // others are from 0 to 65534
 
 const char* mode_of(const ColorScale& scale) {
   if (scale.tolerance) return "tolerance";
-  if (scale.map == Colormap::diverging) return "diverging";
-  return scale.map == Colormap::paper2006 ? "paper2006" : "viridis";
+  return name_of(scale.map);
 }
 
 Json scale_json(const ColorScale& scale) {

@@ -29,19 +29,23 @@ constexpr std::size_t kMostCoordinates = 8'000'000;  // of all frames
 DistanceStatistics pooled(const std::vector<PlayerFrame>& frames) {
   DistanceStatistics s;
   s.min = std::numeric_limits<double>::infinity(), s.max = -s.min;
-  std::vector<float> magnitudes;
+  std::vector<float> values, magnitudes;
   for (const PlayerFrame& frame : frames)
     for (const auto& distances : frame.distances)
       for (const float d : distances) {
         if (!std::isfinite(d)) continue;
         s.min = std::min<double>(s.min, d), s.max = std::max<double>(s.max, d);
-        magnitudes.push_back(std::abs(d));
+        values.push_back(d), magnitudes.push_back(std::abs(d));
       }
   s.texels = magnitudes.size();
   if (magnitudes.empty()) return {};
-  const auto place = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(magnitudes.size() - 1));
-  std::ranges::nth_element(magnitudes, magnitudes.begin() + place);
-  s.p99_abs = magnitudes[static_cast<std::size_t>(place)];
+  const auto percentile = [](std::vector<float>& of, double share) {
+    const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(of.size() - 1));
+    std::ranges::nth_element(of, of.begin() + place);
+    return of[static_cast<std::size_t>(place)];
+  };
+  s.p05 = percentile(values, 0.05), s.p95 = percentile(values, 0.95),
+  s.p99_abs = percentile(magnitudes, 0.99);
   return s;
 }
 

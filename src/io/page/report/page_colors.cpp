@@ -17,7 +17,8 @@ Json colors_json() {
   return {{"viridis", list(colors_of(Colormap::viridis))},
           {"diverging", list(colors_of(Colormap::diverging))},
           {"paper2006", list(colors_of(Colormap::paper2006))},
-          {"within", list({&kWithin, 1})},
+          {"opposite", list(kOpposite)},
+          {"within", list(kWithin)},
           {"above", list(kAbove)},
           {"below", list(kBelow)},
           {"no_value", list({&kNoValue, 1})}};
