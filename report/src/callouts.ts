@@ -1,6 +1,6 @@
 // Labels at points of the part that stay, with their values.
 import { byId, make, makeSvg } from './dom';
-import { place, signedText } from './numbers';
+import { place } from './numbers';
 import type { Vec } from './page_data';
 import type { View } from './view';
 
@@ -27,21 +27,21 @@ export class Callouts {
 
   constructor(
     private readonly view: View,
-    private readonly unit: string,
-    private readonly isSigned: boolean,
+    private readonly valueText: (distance: number) => string, // with its unit
+    private readonly unit: string, // after a position
     private readonly size: number, // of the part
     private readonly show: (at: Vec) => void,
   ) {}
 
   add(callout: Callout): void {
     const number = ++this.count;
-    const value = `${signedText(callout.distance, this.isSigned)}${this.unit}`;
+    const value = this.valueText(callout.distance);
     const remove = () => this.remove(number);
     const item = make(
       'li',
       { value: number },
       make('button', { type: 'button', class: 'link', click: () => this.show(callout.at), 'aria-label': `Show callout ${number}, ${value}` }, value),
-      ` at (${place(callout.point, this.size)})${callout.detail ? `, ${callout.detail}` : ''} `,
+      ` at ${place(callout.point, this.size)}${this.unit}${callout.detail ? `, ${callout.detail}` : ''} `,
       make('button', { type: 'button', class: 'remove', click: remove, 'aria-label': `Remove callout ${number}` }, '×'),
     );
     const label = make('div', { class: 'callout' }, make('b', {}, String(number)), ` ${value}`);
@@ -50,7 +50,7 @@ export class Callouts {
     byId('labels').append(label);
     byId('leaders').append(line, dot);
     byId('callout-list').append(item);
-    byId('callouts').hidden = false;
+    byId('callouts').classList.remove('empty');
     this.placed.push({ ...callout, number, hidden: false, label, dot, line, item });
     this.update();
   }
@@ -65,7 +65,7 @@ export class Callouts {
     if (index < 0) return;
     const [callout] = this.placed.splice(index, 1);
     for (const element of [callout.label, callout.dot, callout.line, callout.item]) element.remove();
-    byId('callouts').hidden = this.placed.length === 0;
+    byId('callouts').classList.toggle('empty', this.placed.length === 0);
     this.view.canvas.focus();
   }
 
@@ -74,6 +74,8 @@ export class Callouts {
     const { clientWidth, clientHeight } = this.view.canvas;
     for (const c of this.placed) {
       const { x, y, behind } = this.view.place(c.at);
+      const isCutAway = this.view.isCutAway(c.at);
+      c.item.classList.toggle('cut-away', isCutAway);
       const right = x < clientWidth * 0.6;
       const lx = Math.min(Math.max(x + (right ? 26 : -26), 4), clientWidth - 4);
       const ly = Math.min(Math.max(y - 30, 14), clientHeight - 14);
@@ -85,7 +87,7 @@ export class Callouts {
       c.line.setAttribute('x2', String(lx));
       c.line.setAttribute('y2', String(ly));
       for (const element of [c.label, c.dot, c.line]) {
-        element.classList.toggle('outside', behind);
+        element.classList.toggle('outside', behind || isCutAway);
         element.classList.toggle('behind', c.hidden);
       }
     }

@@ -76,6 +76,7 @@ export class Cloud implements Subject {
   readonly hi: Vec;
   readonly uniforms: Uniforms;
   readonly object: Points;
+  readonly isClosed = false;
   private readonly spacing: number;
 
   constructor(private readonly data: CloudData, colors: Colors) {

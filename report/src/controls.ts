@@ -3,7 +3,7 @@ import type { Mode, Scale } from './color_scale';
 import { byId, make } from './dom';
 import { text } from './numbers';
 import type { AreaByValue } from './area_by_value';
-import type { Report } from './page_data';
+import type { Report, Vec } from './page_data';
 import { isSigned, limitsOf } from './verdict';
 
 export interface State {
@@ -13,6 +13,7 @@ export interface State {
   group?: { kind: string; group: string } | null; ///< alone in colours
   coverage: boolean; ///< of the reference, in place of the part
   width: number; ///< of the points of a cloud, relative to the usual one
+  logarithmic?: boolean; ///< the heights of the histogram
 }
 
 const kSteps = 1000;
@@ -26,6 +27,7 @@ interface SliderOptions {
   toSlider: (value: number) => number;
   isValid: (value: number) => boolean;
   set: (value: number) => void;
+  round?: (value: number) => number; ///< of a value by the slider; default: to four digits
 }
 
 /// A slider and a field for the same number.
@@ -62,7 +64,7 @@ class Slider {
 
   // Fields show what a person would type.
   private rounded(value: number): number {
-    return Number(value.toPrecision(4));
+    return this.options.round ? this.options.round(value) : Number(value.toPrecision(4));
   }
 
   private changed(value: number, by: HTMLInputElement): void {
@@ -75,7 +77,7 @@ class Slider {
 
   show(value: number, except?: HTMLInputElement): void {
     if (except !== this.range) this.range.value = String(Math.round(kSteps * this.options.toSlider(value)));
-    if (except !== this.field) this.field.value = String(Number(value.toPrecision(6)));
+    if (except !== this.field) this.field.value = String(this.options.round ? this.options.round(value) : Number(value.toPrecision(6)));
     this.range.setAttribute('aria-valuetext', `${text(value)} ${this.options.unit}`);
   }
 }
@@ -89,6 +91,7 @@ export function makeControls(
   hasCoverage: boolean,
   ghostShown: boolean,
   isCloud: boolean,
+  box: [Vec, Vec], // in the units of the files
   saved: State | null,
   onChange: (state: State) => void,
   look: (side: string) => void,
@@ -128,10 +131,18 @@ export function makeControls(
   };
   const positive = (x: number) => Number.isFinite(x) && x > 0;
   const reach = () => Math.max(Math.abs(state.scale.lo), Math.abs(state.scale.hi));
+  /// The range up to `x`: on both sides, or of a sequential scale the shorter one as far as it was, relative to the longer one.
+  const setReach = (x: number) => {
+    const { scale } = state;
+    const shorter = Math.min(0.5, Math.max(0, Math.min(-scale.lo, scale.hi)) / reach());
+    if (scale.mode !== 'sequential') [scale.lo, scale.hi] = [signs || scale.mode === 'diverging' ? -x : 0, x];
+    else if (scale.hi >= -scale.lo) [scale.lo, scale.hi] = [-shorter * x, x];
+    else [scale.lo, scale.hi] = [-x, shorter * x];
+  };
   const sliders = {
     reach: new Slider({
       id: 'range', label: signs ? 'Colours up to ±' : 'Colours up to', unit, value: reach(), ...cubic, isValid: positive,
-      set: (x) => { state.scale.hi = x; state.scale.lo = signs || state.scale.mode === 'diverging' ? -x : 0; changed(); },
+      set: (x) => { setReach(x); changed(); },
     }),
     lo: new Slider({
       id: 'range-lo', label: 'Colours from', unit, value: state.scale.lo, ...linear, isValid: (x) => x < state.scale.hi,
@@ -172,7 +183,7 @@ export function makeControls(
 
   const showSliders = () => {
     const { mode } = state.scale;
-    const symmetric = mode === 'diverging' || mode === 'tolerance';
+    const symmetric = mode === 'diverging' || mode === 'tolerance' || mode === 'sequential';
     sliders.reach.element.hidden = !symmetric;
     sliders.lo.element.hidden = sliders.hi.element.hidden = symmetric;
     sliders.reach.show(reach());
@@ -182,6 +193,7 @@ export function makeControls(
   const modes: [string, string][] = [
     ['tolerance', 'Tolerance bands'],
     ['diverging', 'Blue – white – red, about zero'],
+    ['sequential', 'From zero, the other side in red'],
     ['viridis', 'Viridis'],
   ];
   if (startMode === 'paper2006') modes.push(['paper2006', 'Red – yellow – green']);
@@ -191,6 +203,11 @@ export function makeControls(
     if (value === 'tolerance') {
       state.scale.hi = Math.max(reach(), 2 * state.scale.upper);
       state.scale.lo = signs ? Math.min(-reach(), 2 * state.scale.lower) : 0;
+    }
+    if (value === 'sequential') {
+      const up = (typeof report.distance?.p50 === 'number' ? report.distance.p50 : most) >= 0;
+      const x = reach();
+      [state.scale.lo, state.scale.hi] = up ? [-0.5 * Math.min(x, Math.max(0, -least)), x] : [-x, 0.5 * Math.min(x, Math.max(0, most))];
     }
     if (value === 'viridis') (state.scale.lo = Math.max(least, -reach())), (state.scale.hi = Math.min(most, reach()));
     if (!(state.scale.lo < state.scale.hi)) [state.scale.lo, state.scale.hi] = [lo, hi];
@@ -202,15 +219,22 @@ export function makeControls(
     (value) => {
       state.section.axis = value === '' ? null : (Number(value) as 0 | 1 | 2);
       sectionDetails.hidden = value === '';
+      sectionAt.show(sectionValue());
       changed();
     },
   );
-  const sectionRange = make('input', {
-    type: 'range', id: 'section-at', min: 0, max: kSteps, value: kSteps / 2,
-    input: () => { state.section.at = Number(sectionRange.value) / kSteps; changed(); },
+  // Along the box, of which the ends are excluded: a plane there cuts nothing.
+  const along = () => [0, 1].map((end) => box[end][state.section.axis ?? 0]);
+  const sectionValue = () => along()[0] + state.section.at * (along()[1] - along()[0]);
+  const sectionAt = new Slider({
+    id: 'section-at', label: 'Section at', unit, value: sectionValue(), isValid: (x) => x >= along()[0] && x <= along()[1],
+    toValue: (t) => along()[0] + t * (along()[1] - along()[0]),
+    toSlider: (x) => (along()[1] > along()[0] ? (x - along()[0]) / (along()[1] - along()[0]) : 0.5),
+    round: (x) => Number(x.toFixed(Math.min(15, Math.max(0, 4 - Math.floor(Math.log10(along()[1] - along()[0] || 1)))))),
+    set: (x) => { state.section.at = along()[1] > along()[0] ? (x - along()[0]) / (along()[1] - along()[0]) : 0.5; changed(); },
   });
   const [flipRow, flipBox] = check('section-flip', 'Other side', false, (value) => { state.section.flipped = value; changed(); });
-  const sectionDetails = make('div', { class: 'slider', hidden: true }, make('label', { for: 'section-at' }, 'Section at'), sectionRange, flipRow);
+  const sectionDetails = make('div', { hidden: true }, sectionAt.element, flipRow, make('p', { id: 'section-words', class: 'hint' }));
   const [ghostRow, ghostBox] = check('ghost', 'Show the reference as a ghost', ghostShown, (value) => { state.ghost = value; changed(); });
   const [coverageRow, coverageBox] = check('coverage', 'Show where the reference was measured, without the part', false, (value) => { state.coverage = value; changed(); });
   const widthRange = make('input', {
@@ -227,7 +251,7 @@ export function makeControls(
     const { scale, section, ghost, coverage, width } = state;
     modeSelect.value = scale.mode;
     sectionSelect.value = section.axis === null ? '' : String(section.axis);
-    sectionRange.value = String(kSteps * section.at);
+    sectionAt.show(sectionValue());
     flipBox.checked = section.flipped;
     sectionDetails.hidden = section.axis === null;
     ghostBox.checked = ghost;
@@ -253,6 +277,7 @@ export function makeControls(
     sliders.reach.element, sliders.lo.element, sliders.hi.element,
     ...(oneTolerance ? [sliders.tolerance.element] : [sliders.lower.element, sliders.upper.element]),
     make('p', { id: 'what-if', role: 'status', 'aria-live': 'polite' }),
+    ...(report.group_tolerances ? [make('p', { id: 'table-limits', class: 'hint' }, 'This tolerance is for the whole part. The groups keep the limits of their table.')] : []),
     viewRow, sectionRow, sectionDetails, ...(isCloud ? [widthRow] : []), ...(hasGhost ? [ghostRow] : []), ...(hasCoverage ? [coverageRow] : []),
     resetButton,
   );

@@ -29,7 +29,21 @@ export function byId(id: string): HTMLElement {
   return document.getElementById(id)!;
 }
 
-export function table(head: string[], rows: (Node | string)[][], caption: string): HTMLElement {
+/// A table; of more rows than `most`, the first ones, with a button that shows all of them.
+export function table(head: string[], rows: (Node | string)[][], caption: string, most = Infinity): HTMLElement {
+  const made = rows.map(([first, ...rest]) =>
+    make('tr', {}, make('th', { scope: 'row' }, first), ...rest.map((cell) => make('td', {}, cell))),
+  );
+  const hidden = made.length > most + 1 ? made.slice(most) : [];
+  for (const row of hidden) row.hidden = true;
+  const button = make('button', {
+    type: 'button',
+    class: 'show-all',
+    click: () => {
+      for (const row of hidden) row.hidden = false;
+      button.remove();
+    },
+  }, `Show all ${made.length} rows`);
   return make(
     'div',
     { class: 'scroll' },
@@ -38,13 +52,8 @@ export function table(head: string[], rows: (Node | string)[][], caption: string
       {},
       make('caption', { class: 'hidden' }, caption),
       make('thead', {}, make('tr', {}, ...head.map((text) => make('th', { scope: 'col' }, text)))),
-      make(
-        'tbody',
-        {},
-        ...rows.map(([first, ...rest]) =>
-          make('tr', {}, make('th', { scope: 'row' }, first), ...rest.map((cell) => make('td', {}, cell))),
-        ),
-      ),
+      make('tbody', {}, ...made),
     ),
+    ...(hidden.length > 0 ? [button] : []),
   );
 }

@@ -1,7 +1,8 @@
 // The verdicts on the groups of a table of tolerances.
 import { byId, make, table } from './dom';
-import { percent, signedText, text } from './numbers';
+import { percent, text } from './numbers';
 import type { Report } from './page_data';
+import { distanceText } from './precision';
 import { isCloud, isSigned, limitsText, unitOf, wholeOf } from './verdict';
 import { capital, quantityOf } from './words';
 
@@ -25,13 +26,13 @@ export function showGroups(report: Report, chosen: GroupName | null = null, show
   const unit = unitOf(report);
   // A distance below the accuracy may as well be 0.
   const value = (x: number | null) =>
-    x === null ? 'none' : `${Math.abs(x) <= (report.accuracy ?? 0) ? '0' : signedText(x, isSigned(report))}${unit}`;
+    x === null ? 'none' : `${distanceText(Math.abs(x) <= (report.accuracy ?? 0) ? 0 : x, report, isSigned(report))}${unit}`;
   const name = (g: Row, i: number): Node | string => {
     if (!show) return g.group;
     const pressed = chosen?.kind === g.kind && chosen.group === g.group;
     const click = () => {
       show(pressed ? null : { kind: g.kind, group: g.group });
-      byId('part').scrollIntoView({ block: 'nearest' });
+      byId('view').scrollIntoView({ block: 'nearest' }); // all of it: the section may be higher than the window
       byId('groups-table').querySelectorAll('button')[i].focus({ preventScroll: true }); // the table is made again
     };
     return make('button', { type: 'button', class: 'link', 'aria-pressed': String(pressed), click }, g.group);

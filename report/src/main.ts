@@ -11,12 +11,14 @@ import { exactText, percent, place } from './numbers';
 import { openPage } from './open_page';
 import { onlyThickest, showPlaces } from './places';
 import { PageData, readReport, Report, Vec } from './page_data';
+import { distanceText } from './precision';
 import { readData } from './read_page';
 import { copyOfPage, csvOf, download, pageWith, readSaved, Saved } from './saved';
+import { SectionView } from './section_view';
 import { boxOf, Subject, toFile, toScene } from './subject';
 import { Surface } from './surface';
 import { inputsOf, showFields, showInputs, showMethod, showMore, showNumbers, showOmissions, titleOf } from './tables';
-import { isCloud, isSigned, limitsText, outsideOf, unitOf, verdictFor, verdictOf, wholeOf } from './verdict';
+import { isCloud, isSigned, limitsText, outsideOf, realLimits, unitOf, verdictFor, verdictOf, wholeOf } from './verdict';
 import { View } from './view';
 import { capital, quantityOf } from './words';
 
@@ -44,15 +46,25 @@ function nameSubject(report: Report): void {
   byId('histogram-title').textContent = 'How the points are distributed';
 }
 
+/// What the lines of a section are.
+function sectionWords(factor: number | null, hasProfile: boolean): string {
+  if (!hasProfile) return factor === null ? '' : 'Dark line: the reference.';
+  if (factor === null) return 'The thick line is the profile of the part in the colours of its values.';
+  const gap = factor > 1 ? `${factor} times as long as the gap to the reference` : 'as long as the gap to the reference';
+  return `Thick line in colours: the part. Dark line: the reference. Thin lines towards it: ${gap} in this plane. Orange: only the part; blue: only the reference.`;
+}
+
 class Page {
   private readonly subject: Subject;
   private readonly cloud: Cloud | null;
   private readonly view: View;
+  private readonly section: SectionView;
   private readonly callouts: Callouts;
   private readonly signs: boolean;
   private readonly unit: string;
   private state: State;
   private highlighted: GroupName | null | undefined;
+  private cutAxis: State['section']['axis'] = null; // of the section that is shown
 
   constructor(
     private readonly report: Report,
@@ -66,8 +78,9 @@ class Page {
     const { measured } = inputsOf(report);
     this.cloud = cloud && new Cloud(cloud, page.colors);
     this.subject = this.cloud ?? new Surface(surface!.model, surface!.map, page.colors, measured?.closed ?? false, this.unit);
-    this.view = new View(byId('view'), this.subject, ghost, page.up, () => this.callouts?.update());
-    this.callouts = new Callouts(this.view, this.unit, this.signs, this.subject.size, (at) => this.lookAt(at));
+    this.section = this.makeSection();
+    this.view = new View(byId('view'), this.subject, ghost, this.section, page.up, () => this.callouts?.update());
+    this.callouts = new Callouts(this.view, (d) => this.valueText(d), this.unit, this.subject.size, (at) => this.lookAt(at));
     const ghostShown = this.apart();
     this.state = makeControls(
       report,
@@ -76,10 +89,12 @@ class Page {
       data.ghost?.covered != null,
       ghostShown,
       data.cloud !== null,
+      [toFile(this.subject, this.subject.lo), toFile(this.subject, this.subject.hi)],
       saved?.state ?? null,
       (state) => this.apply(state),
       (side) => this.view.look(side),
     );
+    this.cutAxis = this.state.section.axis;
     this.apply(this.state);
     this.listen();
     this.showWorst();
@@ -91,6 +106,14 @@ class Page {
     }
     for (const callout of saved.callouts) this.callouts.add(callout);
     this.view.pose = saved.camera;
+  }
+
+  private makeSection(): SectionView {
+    const { ghost } = this.data;
+    const { reference } = inputsOf(this.report);
+    const part = this.subject instanceof Surface ? this.subject.cuttable : null;
+    const other = ghost && !ghost.isBox ? { ...ghost, isClosed: reference?.closed ?? false } : null;
+    return new SectionView(part, other, this.subject.size);
   }
 
   /// The reference beside the part is in the picture; the worst place of a part that does not pass faces the viewer.
@@ -147,6 +170,7 @@ class Page {
     this.view.setCoverage(state.coverage);
     this.showGroup(state);
     this.cloud?.setWidth(state.width);
+    this.turnSection(section);
     if (section.axis === null) {
       this.view.setCut(null);
     } else {
@@ -155,12 +179,23 @@ class Page {
       const normal: Vec = [0, 0, 0];
       normal[section.axis] = sign;
       this.view.setCut({ normal, offset: sign * (least + section.at * (most - least)) });
+      byId('section-words').textContent = sectionWords(this.section.factor, this.subject instanceof Surface);
     }
     const hasGaps = (this.report.beyond_max_distance ?? 0) > 0 || (this.report.without_match ?? 0) > 0 || ((this.report.texels_without_value as number) ?? 0) > 0;
     if (state.coverage) drawCoverageLegend(this.report);
     else drawLegend(scale, colors, quantityOf(this.report), this.report.units ?? '', hasGaps);
     this.drawHistogram();
     this.showWhatIf(state);
+  }
+
+  /// The cut surface of a section that is new faces the viewer.
+  private turnSection(section: State['section']): void {
+    if (section.axis !== null && section.axis !== this.cutAxis) {
+      const { position, target } = this.view.pose;
+      section.flipped = position[section.axis] < target[section.axis];
+      (byId('section-flip') as HTMLInputElement).checked = section.flipped;
+    }
+    this.cutAxis = section.axis;
   }
 
   private showGroup(state: State): void {
@@ -173,12 +208,21 @@ class Page {
     showGroups(this.report, chosen, (group) => {
       state.group = group;
       this.apply(state);
+      const middle = group && subject.middleOf(group);
+      if (middle) this.view.lookFrom(middle);
     });
   }
 
   private drawHistogram(): void {
-    const { scale } = this.state;
-    drawHistogram(this.data.area, wholeOf(this.report), scale, this.data.page.colors, scale, this.report.units ?? '');
+    const { scale, logarithmic = false } = this.state;
+    (byId('logarithmic') as HTMLInputElement).checked = logarithmic;
+    drawHistogram(this.data.area, scale, this.data.page.colors, {
+      whole: wholeOf(this.report),
+      quantity: quantityOf(this.report),
+      unit: this.report.units ?? '',
+      limits: realLimits(scale, this.report),
+      logarithmic,
+    });
   }
 
   private showWhatIf({ scale }: State): void {
@@ -228,6 +272,10 @@ class Page {
     window.addEventListener('beforeprint', () => print(true));
     window.addEventListener('afterprint', () => print(false));
     new ResizeObserver(() => this.drawHistogram()).observe(byId('histogram-chart'));
+    byId('logarithmic').addEventListener('change', (event) => {
+      this.state.logarithmic = (event.target as HTMLInputElement).checked;
+      this.drawHistogram();
+    });
   }
 
   private key(event: KeyboardEvent): void {
@@ -264,12 +312,18 @@ class Page {
     }
     const row = (label: string, text: string, id: string) =>
       make('div', {}, make('dt', {}, label), make('dd', { id }, text));
-    const distance = Number.isNaN(found.distance) ? 'none in range' : `${exactText(found.distance)}${this.unit}`;
+    const isNone = Number.isNaN(found.distance);
     values.replaceChildren(
-      row(capital(quantityOf(this.report)), distance, 'probe-distance'),
-      row('Position', place(toFile(this.subject, found.at), this.subject.size), 'probe-position'),
+      row(capital(quantityOf(this.report)), isNone ? 'none in range' : this.valueText(found.distance), 'probe-distance'),
+      row('Position', place(toFile(this.subject, found.at), this.subject.size) + this.unit, 'probe-position'),
+      ...(isNone ? [] : [row('Not rounded', exactText(found.distance) + this.unit, 'probe-exact')]),
       ...found.rows.map(([label, text, id]) => row(label, text, id)),
     );
+  }
+
+  /// A distance as the tables of the page state it.
+  private valueText(distance: number): string {
+    return distanceText(distance, this.report, this.signs) + this.unit;
   }
 
   private addCallout(x: number, y: number): void {
@@ -280,8 +334,13 @@ class Page {
   }
 
   private lookAt(at: Vec): void {
+    if (this.view.isCutAway(at)) {
+      const section = byId('section') as HTMLSelectElement;
+      section.value = '';
+      section.dispatchEvent(new Event('change'));
+    }
     this.view.look({ point: at, normal: this.subject.normalNear(at) });
-    byId('part').scrollIntoView({ block: 'nearest' });
+    byId('view').scrollIntoView({ block: 'nearest' });
   }
 
   private showWorst(): void {

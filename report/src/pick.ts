@@ -57,7 +57,7 @@ const kReach = 4;
 
 /// The value at a point of a triangle: that of its texel, or of the nearest texel of the same chart, or, where
 /// a chart is too thin to own one, of the nearest corner.
-export function valueAt(model: Model, map: TexelMap, { triangle, weights }: Hit): Value {
+export function valueAt(model: Model, map: TexelMap, { triangle, weights }: Pick<Hit, 'triangle' | 'weights'>): Value {
   const corners = [0, 1, 2].map((k) => model.triangle[3 * triangle + k]);
   if (model.place && model.chart) {
     const chart = model.chart[triangle];

@@ -1,7 +1,8 @@
 // The list of the places that deviate most.
 import { byId, make, table } from './dom';
-import { count, percent, place, signedText, text } from './numbers';
+import { count, percent, place, text } from './numbers';
 import type { Place, Places, Report } from './page_data';
+import { distanceText } from './precision';
 import { isCloud, isSigned, limitsText, unitOf } from './verdict';
 import { capital, quantityOf } from './words';
 
@@ -43,7 +44,7 @@ export function showPlaces(report: Report, walls: Listed[] | null, size: number,
   const listed: Listed[] = walls ?? report.places?.largest ?? [];
   const grouped = listed.some((p) => p.group);
   const rows = listed.map((p, i) => {
-    const value = p.distance === null ? 'no value' : `${signedText(p.distance, signs)}${unitOf(report)}`;
+    const value = p.distance === null ? 'no value' : `${distanceText(p.distance, report, signs)}${unitOf(report)}`;
     return [
       String(i + 1),
       make('button', { type: 'button', class: 'link', click: () => show(p), 'aria-label': `Show place ${i + 1}, ${value}` }, value),
@@ -52,7 +53,7 @@ export function showPlaces(report: Report, walls: Listed[] | null, size: number,
       ...(grouped ? [p.group ?? ''] : []),
     ];
   });
-  const head = ['', capital(quantityOf(report)), 'Position', ...(walls ? [] : ['Extent']), ...(grouped ? ['Group'] : [])];
+  const head = ['', capital(quantityOf(report)), report.units ? `Position in ${report.units}` : 'Position', ...(walls ? [] : ['Extent']), ...(grouped ? ['Group'] : [])];
   const hint = walls
     ? `The ${onlyThickest(report) ? 'largest' : 'least'} values, at texels that are at least 6 % of the part\u2019s size apart. Choose one to see it.`
     : report.places ? hintOf(report, report.places) : '';

@@ -26,6 +26,7 @@ export interface Subject {
   readonly hi: Vec;
   readonly uniforms: Uniforms; ///< those of color_uniforms.ts and `cut`
   readonly object: Object3D;
+  readonly isClosed: boolean; ///< has an inside, which a cut opens
 
   /// Called before each picture.
   prepare(viewer: Viewer): void;

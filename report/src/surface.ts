@@ -5,7 +5,9 @@ import { colorUniforms, Uniforms } from './color_uniforms';
 import type { Colors } from './color_scale';
 import { exactText } from './numbers';
 import type { Channel, Model, TexelMap, Vec } from './page_data';
-import { firstHit, Hit, pointOf, valueAt } from './pick';
+import { firstHit, pointOf, valueAt } from './pick';
+import type { Hit } from './pick';
+import type { CutPart } from './section_view';
 import { boxOf, Found, HalfSpace, nearest, Subject } from './subject';
 import { filledValues, kNoValue } from './value_texture';
 import type { Viewer } from './viewer';
@@ -102,7 +104,7 @@ export class Surface implements Subject {
     private readonly model: Model,
     private readonly map: TexelMap,
     colors: Colors,
-    isClosed: boolean,
+    readonly isClosed: boolean,
     private readonly unit: string,
   ) {
     ({ centre: this.centre, size: this.size } = model);
@@ -145,6 +147,27 @@ export class Surface implements Subject {
     this.rest = meshOf(others, true);
     this.rest.visible = false;
     this.object.add(this.rest);
+  }
+
+  /// What a section is made of.
+  get cuttable(): CutPart {
+    const { model, map, isClosed } = this;
+    return { position: model.position, triangle: model.triangle, isClosed, valueAt: (triangle, weights) => valueAt(model, map, { triangle, weights }).distance };
+  }
+
+  /// A vertex in the middle of the triangles of a group, if they are known.
+  middleOf({ kind, group }: { kind: string; group: string }): Vec | null {
+    const named = this.model.names.find((n) => n.kind === kind);
+    const number = named ? named.names.indexOf(group) + 1 : 0;
+    if (number === 0) return null;
+    const { triangle, position } = this.model;
+    const corners: number[] = [];
+    named!.ofTriangle.forEach((n, t) => n === number && corners.push(...triangle.subarray(3 * t, 3 * t + 3)));
+    const of = (v: number) => Array.from(position.subarray(3 * v, 3 * v + 3)) as Vec;
+    const mean = corners.reduce((sum, v) => sum.map((x, k) => x + of(v)[k] / corners.length) as Vec, [0, 0, 0] as Vec);
+    const away = (v: number) => Math.hypot(...of(v).map((x, k) => x - mean[k]));
+    const best = corners.reduce((nearest, v) => (away(v) < away(nearest) ? v : nearest), corners[0]);
+    return corners.length > 0 ? of(best) : null;
   }
 
   /// Whether the triangles of a group are known.

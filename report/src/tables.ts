@@ -1,8 +1,9 @@
 // The text of the page: numbers, inputs and method.
 import { byId, make, table } from './dom';
 import { coverageRow } from './coverage';
-import { count, percent, signedText, text } from './numbers';
+import { count, percent, text } from './numbers';
 import { Input, PageData, Report, reportText } from './page_data';
+import { distanceText } from './precision';
 import { isCloud, isSigned, unitOf } from './verdict';
 import { capital, endsOf, isThickness, quantityOf } from './words';
 
@@ -49,7 +50,7 @@ export function showNumbers(report: Report): void {
   const value = (key: string) => (typeof d[key] === 'number' ? (d[key] as number) : null);
   const add = (label: string, key: string, kind: string, withSign = false) => {
     const x = value(key);
-    if (x !== null) rows.push([label, `${signedText(x, withSign && signs)}${unit}`, kind]);
+    if (x !== null) rows.push([label, `${distanceText(x, report, withSign && signs)}${unit}`, kind]);
   };
   const extremes = report.extremes;
   const ends = endsOf(report);
@@ -58,10 +59,10 @@ export function showNumbers(report: Report): void {
   const compared = signs && !isThickness(report);
   const sampled =
     report.evidence?.samples_only ? 'at the points; an estimate in between'
-    : typeof bound === 'number' ? `measured; at most ${text(bound, 3)}${unit} more in between` : 'measured';
+    : typeof bound === 'number' ? `measured; at most ${distanceText(bound, report)}${unit} more in between` : 'measured';
   // A distance below the accuracy may as well be 0.
   const shown = (x: number) =>
-    Math.abs(x) <= (report.accuracy ?? 0) ? `0${unit}` : `${signedText(x, signs)}${unit}`;
+    `${distanceText(Math.abs(x) <= (report.accuracy ?? 0) ? 0 : x, report, signs)}${unit}`;
   if (extremes?.max)
     rows.push([ends.largest, shown(extremes.max.distance), sampled]);
   else add('Largest', 'max', 'measured', true);
@@ -257,6 +258,7 @@ export function flattened(value: object, prefix = '', lists = false): [string, u
 }
 
 const kMostColumns = 9;
+const kMostRows = 12;
 
 function tableOf(key: string, value: unknown): HTMLElement | null {
   if (Array.isArray(value)) {
@@ -267,6 +269,7 @@ function tableOf(key: string, value: unknown): HTMLElement | null {
       ['', ...columns.map(label)],
       rows.map((row, i) => [String(i + 1), ...columns.map((c) => cell(c, Object.fromEntries(row)[c] ?? null))]),
       label(key),
+      kMostRows,
     );
   }
   const rows = flattened(value as object);

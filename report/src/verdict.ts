@@ -2,6 +2,7 @@
 // the rule of judge() in include/sdm/tolerance.h, on the evidence of the samples.
 import type { Evidence, Report } from './page_data';
 import { percent, text } from './numbers';
+import { distanceText } from './precision';
 import type { AreaByValue } from './area_by_value';
 import { capital, isThickness, quantityOf } from './words';
 
@@ -57,6 +58,17 @@ export function limitsText({ lower, upper }: Limits, report: Report): string {
   if (upper === Infinity) return `at least ${text(lower)}${unit}`;
   if (lower === -upper) return isSigned(report) ? `±${text(upper)}${unit}` : `${text(upper)}${unit}`;
   return `${text(lower)} to ${text(upper)}${unit}`;
+}
+
+/// The limits that a distance can exceed, infinite for none: not a negative one of what is never negative, nor the
+/// greatest possible thickness.
+export function realLimits(limits: Limits, report: Report): Limits {
+  const { thickness, tolerance } = report;
+  const neverNegative = !isSigned(report) || thickness !== undefined;
+  return {
+    lower: (neverNegative && limits.lower <= 0) || (thickness?.min === null && limits.lower === tolerance?.lower) ? -Infinity : limits.lower,
+    upper: thickness?.max === null && limits.upper === tolerance?.upper ? Infinity : limits.upper,
+  };
 }
 
 /// The judgement of judge(), number by number.
@@ -143,7 +155,7 @@ function failure(report: Report, limits: Limits): string {
   const most = between ? between.distance : t.nearest_limit === 'lower' ? report.evidence!.lowest : report.evidence!.highest;
   const share =
     outside === null || between ? '' : `, and ${cloud ? '' : 'about '}${percent(outside)} of the ${whole} out of tolerance`;
-  return `A ${quantityOf(report)} of ${text(most)}${unit} was found${between ? ' between the measured points' : ''}, which is out of the tolerance of ${limitsText(limits, report)}${share}.`;
+  return `A ${quantityOf(report)} of ${distanceText(most, report)}${unit} was found${between ? ' between the measured points' : ''}, which is out of the tolerance of ${limitsText(limits, report)}${share}.`;
 }
 
 interface Stated {

@@ -5,6 +5,7 @@ import { setScale } from './color_uniforms';
 import { coverageOf, kReferenceVertexShader } from './coverage';
 import type { Ghost, Vec } from './page_data';
 import type { Camera } from './saved';
+import type { SectionView } from './section_view';
 import type { Found, HalfSpace, Subject } from './subject';
 import { Viewer } from './viewer';
 
@@ -22,6 +23,8 @@ const kGhostShader = `
   }
 `;
 
+const dot = (a: Vec, b: Vec) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
 const kNoCut: HalfSpace = { normal: [0, 0, 0], offset: 1 };
 
 export class View extends Viewer {
@@ -35,11 +38,12 @@ export class View extends Viewer {
     container: HTMLElement,
     private readonly subject: Subject,
     ghost: Ghost | null,
+    private readonly section: SectionView,
     up: 'y' | 'z',
     onChange: () => void,
   ) {
     super(container, up, onChange);
-    this.scene.add(subject.object);
+    this.scene.add(subject.object, section.object);
     this.setShown(subject.lo, subject.hi);
     this.look('corner');
     this.ghostMaterial = new ShaderMaterial({
@@ -68,11 +72,13 @@ export class View extends Viewer {
 
   override drawNow(): void {
     this.subject.prepare(this);
+    this.section?.prepare(this.camera.position.toArray() as Vec);
     super.drawNow();
   }
 
   setScale(scale: Scale, colors: Colors): void {
     setScale(this.subject.uniforms, scale, colors);
+    this.section.setScale(scale, colors);
     this.draw();
   }
 
@@ -81,6 +87,7 @@ export class View extends Viewer {
     const { normal, offset } = cut ?? kNoCut;
     this.subject.uniforms.cut.value = this.ghostMaterial.uniforms.cut.value = [...normal, offset];
     this.coverage?.setCut([...normal, offset]);
+    this.section.show(cut);
     this.draw();
   }
 
@@ -116,7 +123,19 @@ export class View extends Viewer {
 
   /// What is seen at a place of the canvas, in CSS pixels from its upper left corner.
   find(x: number, y: number): Found | null {
-    return this.subject.object.visible ? this.subject.find(this, x, y, this.cut) : null;
+    const found = this.subject.object.visible ? this.subject.find(this, x, y, this.cut) : null;
+    return found && !this.isInside(x, y, found) ? found : null;
+  }
+
+  /// Whether a point is on the side of the plane that is not shown.
+  isCutAway(point: Vec): boolean {
+    const kOnPlane = 1e-4;
+    return this.cut !== null && dot(this.cut.normal, point) > this.cut.offset + kOnPlane;
+  }
+
+  /// Whether the inside of the part is what a ray meets: the cut surface is in front of it.
+  private isInside(x: number, y: number, { normal }: Found): boolean {
+    return this.cut !== null && this.subject.isClosed && dot(this.through(x, y), normal) > 0;
   }
 
   isHidden(point: Vec): boolean {

@@ -25,7 +25,7 @@ export class Viewer {
   constructor(container: HTMLElement, private readonly up: 'y' | 'z', private readonly onChange = () => {}) {
     this.canvas = container.querySelector('canvas')!;
     // The picture is kept for printing.
-    this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, stencil: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
     this.camera.up.set(0, up === 'y' ? 1 : 0, up === 'z' ? 1 : 0);
     this.controls = new OrbitControls(this.camera, this.canvas);
