@@ -187,6 +187,7 @@ export function makeControls(
     sliders.reach.element.hidden = !symmetric;
     sliders.lo.element.hidden = sliders.hi.element.hidden = symmetric;
     sliders.reach.show(reach());
+    sliders.reach.element.querySelector('label')!.textContent = signs && mode !== 'sequential' ? 'Colours up to ±' : 'Colours up to';
     sliders.lo.show(state.scale.lo);
     sliders.hi.show(state.scale.hi);
   };

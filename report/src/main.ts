@@ -47,11 +47,11 @@ function nameSubject(report: Report): void {
 }
 
 /// What the lines of a section are.
-function sectionWords(factor: number | null, hasProfile: boolean): string {
-  if (!hasProfile) return factor === null ? '' : 'Dark line: the reference.';
-  if (factor === null) return 'The thick line is the profile of the part in the colours of its values.';
-  const gap = factor > 1 ? `${factor} times as long as the gap to the reference` : 'as long as the gap to the reference';
-  return `Thick line in colours: the part. Dark line: the reference. Thin lines towards it: ${gap} in this plane. Orange: only the part; blue: only the reference.`;
+function sectionWords({ part, other, factor }: SectionView): string {
+  if (!part) return other ? 'Dark line: the reference.' : '';
+  if (!other) return 'The thick line is the profile of the part in the colours of its values.';
+  const gap = `${factor > 1 ? `${factor} times ` : ''}as long as the gap to the reference`;
+  return `Thick line in colours: the part. Dark line: the reference. Thin lines towards it: ${gap} in this plane. ${other.isClosed && part.isClosed ? 'Orange: only the part; blue: only the reference.' : ''}`.trim();
 }
 
 class Page {
@@ -179,7 +179,7 @@ class Page {
       const normal: Vec = [0, 0, 0];
       normal[section.axis] = sign;
       this.view.setCut({ normal, offset: sign * (least + section.at * (most - least)) });
-      byId('section-words').textContent = sectionWords(this.section.factor, this.subject instanceof Surface);
+      byId('section-words').textContent = sectionWords(this.section);
     }
     const hasGaps = (this.report.beyond_max_distance ?? 0) > 0 || (this.report.without_match ?? 0) > 0 || ((this.report.texels_without_value as number) ?? 0) > 0;
     if (state.coverage) drawCoverageLegend(this.report);

@@ -120,7 +120,7 @@ export class SectionView {
   private largest = 0; // distance of the scale
 
   /// `part` is null for clouds, `other` if the reference is not in the page; `size` of a unit of the scene.
-  constructor(private readonly part: CutPart | null, private readonly other: Cuttable | null, private readonly size: number) {
+  constructor(readonly part: CutPart | null, readonly other: Cuttable | null, private readonly size: number) {
     this.caps = new Caps([part?.isClosed ?? false, other?.isClosed ?? false]);
     this.object.add(this.caps.object, this.gap, this.profile, this.reference);
     this.object.visible = false;
@@ -145,9 +145,9 @@ export class SectionView {
     if (this.cut) this.recolour();
   }
 
-  /// How much larger than it is the gap is drawn; null if there is none.
-  get factor(): number | null {
-    return this.part && this.other ? gapFactor(this.largest / this.size, 2) : null;
+  /// How much larger than it is the gap is drawn.
+  get factor(): number {
+    return gapFactor(this.largest / this.size, 2);
   }
 
   /// Before each picture: what is in the plane hides the rest for an eye in front of it, and is hidden behind it.
@@ -161,7 +161,7 @@ export class SectionView {
     const draw = (mesh: LineSegments2, points: ProfilePoint[]) =>
       setLines(mesh, Float32Array.from(points.flatMap(({ at }) => at)), points.flatMap(({ distance }) => this.color(distance)));
     draw(this.profile, this.points);
-    draw(this.gap, this.factor === null ? [] : gapLines(this.points, this.otherProfile, kSpacing, this.factor, kLongestGap));
+    draw(this.gap, gapLines(this.points, this.otherProfile, kSpacing, this.factor, kLongestGap));
   }
 }
 
