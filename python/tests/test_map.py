@@ -418,6 +418,24 @@ def test_plots(distance_map):
     matplotlib.pyplot.close("all")
 
 
+def test_plots_the_short_side_of_zero_in_red():
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    # A ball that is 0.1 deep in a block.
+    balls, block = meshes.sphere(center=(0, 0, 1.9), steps=4), meshes.box((-4, -4, -2), (4, 4, 1))
+    found = sdm.map(balls, block, resolution=128)
+    name, low, high = found._core.colors()
+    assert (name, low, high) == ("sequential", -0.2, 2.0)
+    picture = found.plot(kind="atlas").images[0]
+    assert (picture.norm.vmin, picture.norm.vmax) == (low, high)
+    for value in (-0.09, -0.02):
+        red, green, blue, _ = picture.cmap(picture.norm(value))
+        assert red > 0.5 and red > 0.25 + max(green, blue)
+    np.testing.assert_allclose(picture.cmap(picture.norm(0.001)), matplotlib.colormaps["viridis"](0.0), atol=0.02)
+    np.testing.assert_allclose(picture.cmap(picture.norm(2.0)), matplotlib.colormaps["viridis"](1.0), atol=0.02)
+    matplotlib.pyplot.close("all")
+
+
 def test_facing_finds_the_skin_that_faces_the_texel():
     plate = np.array([[x, y, z] for z in (-0.5, 0.0) for y in (-5, 5) for x in (-5, 5)], float)
     quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]

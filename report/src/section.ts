@@ -31,10 +31,12 @@ export function profileOf({ position: p, triangle: t }: Triangles, { normal: n, 
     for (let k = 0; k < 3; ++k) ends.push(p[from + k] + s * (p[to + k] - p[from + k]));
   };
   for (let i = 0; i < t.length; i += 3) {
-    const corners = [3 * t[i], 3 * t[i + 1], 3 * t[i + 2]];
-    const isAbove = corners.map((v) => above(v) > 0);
-    if (isAbove[0] === isAbove[1] && isAbove[1] === isAbove[2]) continue;
-    for (let k = 0; k < 3; ++k) if (isAbove[k] !== isAbove[(k + 1) % 3]) add(corners[k], corners[(k + 1) % 3]);
+    const [a, b, c] = [3 * t[i], 3 * t[i + 1], 3 * t[i + 2]];
+    const [aboveA, aboveB, aboveC] = [above(a) > 0, above(b) > 0, above(c) > 0];
+    if (aboveA === aboveB && aboveB === aboveC) continue;
+    if (aboveA !== aboveB) add(a, b);
+    if (aboveB !== aboveC) add(b, c);
+    if (aboveC !== aboveA) add(c, a);
     cut.push(i / 3);
   }
   return { ends: Float32Array.from(ends), triangle: Uint32Array.from(cut) };
@@ -96,11 +98,13 @@ function nearestOf({ ends }: Profile, to: Vec): Vec | null {
   let best: Vec | null = null;
   let least = Infinity;
   for (let i = 0; i < ends.length; i += 6) {
-    const u = [ends[i + 3] - ends[i], ends[i + 4] - ends[i + 1], ends[i + 5] - ends[i + 2]];
-    const p = [to[0] - ends[i], to[1] - ends[i + 1], to[2] - ends[i + 2]];
-    const s = Math.min(1, Math.max(0, dot(p, u) / (dot(u, u) || 1)));
-    const away = (p[0] - s * u[0]) ** 2 + (p[1] - s * u[1]) ** 2 + (p[2] - s * u[2]) ** 2;
-    if (away < least) [least, best] = [away, [ends[i] + s * u[0], ends[i + 1] + s * u[1], ends[i + 2] + s * u[2]]];
+    const ux = ends[i + 3] - ends[i], uy = ends[i + 4] - ends[i + 1], uz = ends[i + 5] - ends[i + 2];
+    const px = to[0] - ends[i], py = to[1] - ends[i + 1], pz = to[2] - ends[i + 2];
+    const s = Math.min(1, Math.max(0, (px * ux + py * uy + pz * uz) / (ux * ux + uy * uy + uz * uz || 1)));
+    const away = (px - s * ux) ** 2 + (py - s * uy) ** 2 + (pz - s * uz) ** 2;
+    if (away >= least) continue;
+    least = away;
+    best = [ends[i] + s * ux, ends[i + 1] + s * uy, ends[i + 2] + s * uz];
   }
   return best;
 }
