@@ -48,6 +48,8 @@ const kShader = `
   }
 `;
 
+const kCoarse = 4000; // points, while something moves
+
 // How far from a disc the cursor may be.
 const kReach = 5;
 
@@ -78,6 +80,9 @@ export class Cloud implements Subject {
   readonly object: Points;
   readonly isClosed = false;
   private readonly spacing: number;
+  private readonly stride: number; // of the points that are drawn while something moves
+  private readonly few: BufferAttribute | null;
+  private factor = 1;
 
   constructor(private readonly data: CloudData, colors: Colors) {
     ({ centre: this.centre, size: this.size, lo: this.lo, hi: this.hi } = data);
@@ -99,11 +104,25 @@ export class Cloud implements Subject {
       new ShaderMaterial({ glslVersion: '300 es', vertexShader: kVertexShader, fragmentShader: kShader, uniforms: this.uniforms }),
     );
     this.object.frustumCulled = false;
+    const points = data.distance.length;
+    this.stride = Math.max(1, Math.ceil(points / kCoarse));
+    this.few = this.stride === 1 ? null : new BufferAttribute(Uint32Array.from({ length: Math.floor(points / this.stride) }, (_, i) => i * this.stride), 1);
+  }
+
+  /// Some of the points, with larger discs that overlap less.
+  setCoarse(coarse: boolean): void {
+    this.object.geometry.setIndex(coarse ? this.few : null);
+    this.uniforms.width.value = (coarse && this.few ? 0.6 * Math.sqrt(this.stride) : 1) * this.width();
+  }
+
+  private width(): number {
+    return 2.8 * this.factor * this.spacing;
   }
 
   /// The size of the discs: at 1, those of a surface that is covered evenly by random points touch.
   setWidth(factor: number): void {
-    this.uniforms.width.value = 2.8 * factor * this.spacing;
+    this.factor = factor;
+    this.uniforms.width.value = this.width();
   }
 
   prepare(viewer: Viewer): void {
@@ -137,7 +156,7 @@ export class Cloud implements Subject {
     const v = viewer.camera.matrixWorldInverse.elements;
     const { clientWidth, clientHeight } = viewer.canvas;
     const scale = this.uniforms.pixelsPerUnit.value as number;
-    const width = this.uniforms.width.value as number;
+    const width = this.width();
     let [front, depth] = [-1, Infinity];
     let [near, least] = [-1, kReach];
     for (let i = 0; i < p.length; i += 3) {

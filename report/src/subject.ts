@@ -30,6 +30,8 @@ export interface Subject {
 
   /// Called before each picture.
   prepare(viewer: Viewer): void;
+  /// Whether less is drawn, while something moves and pictures take long. What is found stays.
+  setCoarse(coarse: boolean): void;
   find(viewer: Viewer, x: number, y: number, cut: HalfSpace | null): Found | null;
   /// Whether something is in front of a point.
   isHidden(viewer: Viewer, point: Vec, cut: HalfSpace | null): boolean;

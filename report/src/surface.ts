@@ -1,5 +1,6 @@
 // A measured surface: its triangles with the texels of the map.
 import { BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, Mesh, RedFormat, ShaderMaterial, Vector3 } from 'three';
+import { CoarseWhileMoving } from './coarse_copy';
 import { kColorShader } from './color_scale';
 import { colorUniforms, Uniforms } from './color_uniforms';
 import type { Colors } from './color_scale';
@@ -77,6 +78,8 @@ const kPartShader = `
   }
 `;
 
+const kCoarse = 9000; // triangles, while something moves
+
 const kSites = ['vertex', 'edge', 'face'];
 
 function siteText(site: number): string {
@@ -99,6 +102,8 @@ export class Surface implements Subject {
   readonly uniforms: Uniforms;
   readonly object: Mesh;
   private readonly rest: Mesh; // the triangles that are not highlighted
+  private readonly coarse: CoarseWhileMoving[];
+  private readonly showBacks: boolean;
 
   constructor(
     private readonly model: Model,
@@ -111,12 +116,13 @@ export class Surface implements Subject {
     ({ lo: this.lo, hi: this.hi } = boxOf(model.position));
     const texture = new DataTexture(filledValues(map, model), map.width, map.height, RedFormat, FloatType);
     texture.needsUpdate = true;
+    // The folds of a coarser copy are not the inside of the part.
+    this.showBacks = !isClosed || model.place === null;
     this.uniforms = {
       ...colorUniforms(colors),
       values: { value: texture },
       byVertex: { value: model.place === null },
-      // The folds of a coarser copy are not the inside of the part.
-      showBacks: { value: !isClosed || model.place === null },
+      showBacks: { value: this.showBacks },
       cut: { value: [0, 0, 0, 1] },
       cutColor: { value: new Vector3(0.72, 0.72, 0.74) },
     };
@@ -147,6 +153,7 @@ export class Surface implements Subject {
     this.rest = meshOf(others, true);
     this.rest.visible = false;
     this.object.add(this.rest);
+    this.coarse = [this.object, this.rest].map((mesh) => new CoarseWhileMoving(mesh, kCoarse));
   }
 
   /// What a section is made of.
@@ -177,6 +184,7 @@ export class Surface implements Subject {
 
   /// Shows all but the triangles of a group in grey; null: all in colours.
   highlight(group: { kind: string; group: string } | null): void {
+    this.setCoarse(false);
     const { triangle } = this.model;
     const named = group && this.model.names.find((n) => n.kind === group.kind);
     const number = named ? named.names.indexOf(group.group) + 1 : 0;
@@ -192,6 +200,13 @@ export class Surface implements Subject {
   }
 
   prepare(): void {}
+
+  setCoarse(coarse: boolean): void {
+    for (const mesh of this.coarse) mesh.show(coarse);
+    const isCopy = coarse && this.model.triangle.length > 3 * kCoarse;
+    this.uniforms.byVertex.value = isCopy || this.model.place === null;
+    this.uniforms.showBacks.value = isCopy || this.showBacks;
+  }
 
   find(viewer: Viewer, x: number, y: number, cut: HalfSpace | null): Found | null {
     const { model, map } = this;

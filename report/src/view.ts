@@ -1,5 +1,6 @@
 // The part in 3D, with the reference as a ghost.
 import { BufferAttribute, BufferGeometry, DoubleSide, Mesh, ShaderMaterial, Vector3 } from 'three';
+import { CoarseWhileMoving } from './coarse_copy';
 import type { Colors, Scale } from './color_scale';
 import { setScale } from './color_uniforms';
 import { coverageOf, kReferenceVertexShader } from './coverage';
@@ -24,6 +25,7 @@ const kGhostShader = `
 `;
 
 const dot = (a: Vec, b: Vec) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const kCoarseGhost = 5000; // triangles, while something moves
 
 const kNoCut: HalfSpace = { normal: [0, 0, 0], offset: 1 };
 
@@ -31,6 +33,7 @@ export class View extends Viewer {
   private readonly ghostMaterial: ShaderMaterial;
   private readonly ghost: Mesh | null = null;
   private readonly coverage: ReturnType<typeof coverageOf> = null;
+  private readonly coarse: CoarseWhileMoving[] = []; // the meshes of the reference
   private before: Camera | null = null; // the view of the part, while the reference is shown
   private cut: HalfSpace | null = null;
 
@@ -68,12 +71,14 @@ export class View extends Viewer {
     this.scene.add(this.ghost);
     this.coverage = coverageOf(ghost);
     if (this.coverage) this.scene.add(this.coverage.object);
+    for (const mesh of [this.ghost, ...((this.coverage?.object.children ?? []) as Mesh[])]) this.coarse.push(new CoarseWhileMoving(mesh, kCoarseGhost));
   }
 
-  override drawNow(): void {
+  protected override setCoarse(coarse: boolean): void {
+    this.subject.setCoarse(coarse);
+    for (const mesh of this.coarse) mesh.show(coarse);
     this.subject.prepare(this);
     this.section?.prepare(this.camera.position.toArray() as Vec);
-    super.drawNow();
   }
 
   setScale(scale: Scale, colors: Colors): void {

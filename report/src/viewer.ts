@@ -1,6 +1,7 @@
 // A canvas with a scene, and a camera that turns around it.
 import { PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { Pace } from './pace';
 import type { Vec } from './page_data';
 import type { Camera } from './saved';
 
@@ -17,6 +18,8 @@ export class Viewer {
   readonly scene = new Scene();
   private readonly renderer: WebGLRenderer;
   private readonly controls: OrbitControls;
+  private readonly pace: Pace;
+  private readonly finest = Math.min(2, window.devicePixelRatio); // pixel ratio
   private scheduled = false;
   private radius = 1; // of what is shown
   private shown: { lo: Vec; hi: Vec } | null = null; // its box; without one, all of the ball is framed
@@ -26,7 +29,8 @@ export class Viewer {
     this.canvas = container.querySelector('canvas')!;
     // The picture is kept for printing.
     this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, stencil: true, alpha: true, preserveDrawingBuffer: true });
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.renderer.setPixelRatio(this.finest);
+    this.pace = new Pace(this.renderer.getContext() as WebGL2RenderingContext, () => this.draw(false), () => this.prepareCoarse());
     this.camera.up.set(0, up === 'y' ? 1 : 0, up === 'z' ? 1 : 0);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.zoomToCursor = true;
@@ -46,15 +50,43 @@ export class Viewer {
     this.draw();
   }
 
-  /// Draws a picture soon, one for any number of calls.
-  draw(): void {
+  /// Draws a picture soon, one for any number of calls: where pictures take long a coarse one, which is fine again when
+  /// nothing `changes` for a while.
+  draw(changes = true): void {
+    if (changes) this.pace.change();
     if (this.scheduled) return;
     this.scheduled = true;
-    requestAnimationFrame(() => this.drawNow());
+    const frame = () => {
+      if (this.pace.busy) {
+        requestAnimationFrame(frame);
+        return;
+      }
+      this.drawNow(this.pace.moving);
+      this.pace.drawn();
+    };
+    requestAnimationFrame(frame);
   }
 
-  drawNow(): void {
+  /// Whether the picture is fine, and of the last change.
+  get atRest(): boolean {
+    return !this.scheduled && !this.pace.moving && !this.pace.busy;
+  }
+
+  /// Draws less of what is in the scene, or all of it.
+  protected setCoarse(_coarse: boolean): void {}
+
+  // Makes what coarse pictures need, so that the first one of a motion does not wait for it.
+  private prepareCoarse(): void {
+    this.setCoarse(true);
+    this.setCoarse(this.pace.moving);
+  }
+
+  drawNow(coarse = false): void {
     this.scheduled = false;
+    const ratio = coarse ? this.finest * this.pace.ratio : this.finest;
+    if (ratio !== this.pixelRatio) this.renderer.setPixelRatio(ratio);
+    this.canvas.parentElement!.classList.toggle('moving', coarse);
+    this.setCoarse(coarse);
     const away = this.camera.position.length();
     const toTarget = this.camera.position.distanceTo(this.controls.target);
     this.camera.near = Math.max(1e-4, Math.min(Math.max((away - 4) / 2, away / 1000), toTarget / 10));

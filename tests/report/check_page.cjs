@@ -5,7 +5,7 @@ const { existsSync, readFileSync, writeFileSync } = require('fs');
 const { createRequire } = require('module');
 const { delimiter, join } = require('path');
 const { pathToFileURL } = require('url');
-const { plain } = require('./checks/support.cjs');
+const { pictureOf, plain, settled } = require('./checks/support.cjs');
 const { chromium } = createRequire(process.cwd() + '/')('playwright-core');
 
 const [check, file, ...rest] = process.argv.slice(2);
@@ -176,8 +176,8 @@ const checks = {
     }
     assert.strictEqual(new Set(cursors).size, 3, 'the cursor follows the frame');
 
-    const picture = () => page.locator('#canvas').screenshot();
-    const settle = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    const picture = () => pictureOf(page);
+    const settle = () => settled(page);
     await frame(0);
     await settle();
     const first = await picture();

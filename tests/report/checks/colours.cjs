@@ -4,11 +4,11 @@ const { writeFileSync } = require('fs');
 const { createRequire } = require('module');
 const { join } = require('path');
 const { pathToFileURL } = require('url');
-const { plain } = require('./support.cjs');
+const { pictureOf, plain, settled } = require('./support.cjs');
 
 module.exports = {
   async recolours(page) {
-    const picture = () => page.locator('#canvas').screenshot();
+    const picture = () => pictureOf(page);
     const legend = () => page.innerHTML('#legend');
     const chart = () => page.innerHTML('#histogram-chart svg');
     const setField = async (id, value) => {
@@ -104,7 +104,7 @@ module.exports = {
     );
     await page.selectOption('#side', 'top');
     await page.click('#coverage');
-    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    await settled(page);
     near(
       await page.evaluate(() => {
         const canvas = document.getElementById('canvas');
@@ -131,7 +131,7 @@ module.exports = {
 
   // A group that is chosen is alone in colours, also in the saved page, until it is chosen again.
   async highlights(page, saved) {
-    const settle = (of) => of.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    const settle = (of) => settled(of);
     const greys = (of) =>
       of.evaluate(() => {
         const canvas = document.getElementById('canvas');

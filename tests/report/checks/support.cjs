@@ -43,7 +43,15 @@ async function hitsFrom(page, side, pixels) {
   }, pixels);
 }
 
-/// Two pictures later, when what was changed is seen.
-const settled = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+/// Waits for the fine picture of the last change.
+async function settled(page) {
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await page.waitForFunction(() => (window.sdmPage ?? window.sdmPlayer).view.atRest);
+}
+/// The picture on the canvas, when it is fine.
+async function pictureOf(page) {
+  await settled(page);
+  return page.locator('#canvas').screenshot();
+}
 
-module.exports = { numbers, plain, plyRows, hitsFrom, settled };
+module.exports = { numbers, plain, plyRows, hitsFrom, pictureOf, settled };
