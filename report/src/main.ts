@@ -7,11 +7,13 @@ import { byId, make } from './dom';
 import { GroupName, showGroups } from './group_table';
 import { drawHistogram } from './histogram';
 import { drawLegend } from './legend';
+import { showMade } from './made';
 import { exactText, percent, place } from './numbers';
 import { openPage } from './open_page';
 import { onlyThickest, showPlaces } from './places';
 import { PageData, readReport, Report, Vec } from './page_data';
 import { distanceText } from './precision';
+import { printPicture } from './print';
 import { readData } from './read_page';
 import { copyOfPage, csvOf, download, pageWith, readSaved, Saved } from './saved';
 import { SectionView } from './section_view';
@@ -99,6 +101,7 @@ class Page {
     this.listen();
     this.showWorst();
     showOmissions(report, data);
+    showMade([report.o1, report.o2, report.mesh], page);
     this.addSaveButtons();
     if (!saved) {
       this.openOnEvidence(ghostShown);
@@ -261,16 +264,7 @@ class Page {
     canvas.addEventListener('keydown', (event) => this.key(event));
     canvas.addEventListener('focus', () => byId('view').classList.toggle('keyboard', canvas.matches(':focus-visible')));
     canvas.addEventListener('blur', () => byId('view').classList.remove('keyboard'));
-    const print = (on: boolean) => {
-      byId('view').classList.toggle('printing', on);
-      this.view.resize();
-      this.view.drawNow();
-      // Browsers print the canvas as it was before, at the size that it has now: an image of it is what they print.
-      document.getElementById('printed')?.remove();
-      if (on) byId('canvas').after(make('img', { id: 'printed', alt: '', src: this.view.canvas.toDataURL() }));
-    };
-    window.addEventListener('beforeprint', () => print(true));
-    window.addEventListener('afterprint', () => print(false));
+    printPicture(this.view);
     new ResizeObserver(() => this.drawHistogram()).observe(byId('histogram-chart'));
     byId('logarithmic').addEventListener('change', (event) => {
       this.state.logarithmic = (event.target as HTMLInputElement).checked;

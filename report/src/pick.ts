@@ -9,7 +9,7 @@ export interface Hit {
 }
 
 /// The first hit of a ray with the visible part of the model. Cost: linear; 5 ms for 300,000 triangles.
-export function firstHit(model: Model, origin: Vec, direction: Vec, cut: HalfSpace | null): Hit | null {
+export function firstHit(model: Pick<Model, 'position' | 'triangle'>, origin: Vec, direction: Vec, cut: HalfSpace | null): Hit | null {
   const { position: p, triangle: t } = model;
   const [ox, oy, oz] = origin;
   const [dx, dy, dz] = direction;

@@ -2,42 +2,78 @@
 import type { Mode, Scale } from './color_scale';
 import { byId, make } from './dom';
 import { drawLegend } from './legend';
-import { count } from './numbers';
+import { showMade } from './made';
+import { count, signedText } from './numbers';
 import { openPage } from './open_page';
 import { Chart } from './player_charts';
 import { distancesOf, placeFrame, PlayerData, readPlayer } from './player_data';
 import { encloses, PlayerView } from './player_view';
+import { Mark, Worst, worstOf } from './player_worst';
+import { printPicture } from './print';
 
 const kSpeeds: [string, number][] = [
-  ['5 a second', 5],
-  ['15 a second', 15],
-  ['30 a second', 30],
-  ['60 a second', 60],
+  ['5 frames a second', 5],
+  ['15 frames a second', 15],
+  ['30 frames a second', 30],
+  ['60 frames a second', 60],
 ];
 
 class Player {
   private frame = 0; // among those in the page
   private playing = false;
+  private isNear = false; // the view is of the worst frame alone, and not the user's
   private perSecond = 30;
   private scale: Scale;
   private readonly time = byId('time') as HTMLInputElement;
   private readonly play = byId('play') as HTMLButtonElement;
   private readonly charts: Chart[];
+  private readonly view: PlayerView;
+  private readonly worst: Worst | null;
+  private readonly mark: Mark | null;
 
-  constructor(private readonly data: PlayerData, private readonly view: PlayerView) {
+  constructor(private readonly data: PlayerData) {
     const { page } = data;
+    this.view = new PlayerView(byId('view'), data, () => this.mark?.update());
+    this.worst = worstOf(data);
+    const text = this.worst && `${signedText(this.worst.distance, true, 3)}${page.units ? `\u00a0${page.units}` : ''} at a vertex`;
+    this.mark = text === null ? null : new Mark(this.view, text);
     this.scale = { ...page.scale };
     this.time.max = String(page.shown.length - 1);
     this.time.addEventListener('input', () => this.show(Number(this.time.value)));
     this.play.addEventListener('click', () => this.toggle());
     document.addEventListener('keydown', (event) => this.key(event));
-    const charts = byId('charts');
     const pick = (place: number) => this.show(this.nearest(place));
-    this.charts = page.panels.map((panel) => new Chart(panel, page.added, charts.clientWidth, pick));
-    charts.replaceChildren(...this.charts.map(({ element }) => element));
+    // O1 and O2 in titles are the bodies.
+    const named = (title: string) => title.replace(/\bO([12])\b/g, (_, which: string) => nameOf(data, Number(which) - 1));
+    this.charts = page.panels.map((panel) => new Chart({ ...panel, title: named(panel.title) }, page.added, page.units, pick));
+    byId('charts').replaceChildren(...this.charts.map(({ element }) => element));
+    const drawCharts = () => this.charts.forEach((chart) => chart.draw(chart.element.clientWidth));
+    drawCharts();
+    new ResizeObserver(drawCharts).observe(byId('charts'));
+    const kOnPaper = 336; // pixels of a chart, of which there are two in a row
+    window.addEventListener('beforeprint', () => this.charts.forEach((chart) => chart.draw(kOnPaper)));
+    window.addEventListener('afterprint', drawCharts);
+    printPicture(this.view);
+    for (const type of ['pointerdown', 'wheel']) this.view.canvas.addEventListener(type, () => (this.isNear = false), { passive: true });
     this.makeForm();
     this.recolour();
     this.show(0);
+    this.showWorst();
+  }
+
+  /// Shows the frame of the worst place, with this in front.
+  private showWorst(): void {
+    if (!this.worst) return;
+    this.show(this.worst.frame);
+    this.isNear = true;
+    if (this.view.lookFrom(this.worst)) return;
+    // It is inside of the other body.
+    const select = byId(`style${1 - this.worst.body}`) as HTMLSelectElement;
+    if (select.value === 'solid') {
+      select.value = 'ghost';
+      select.dispatchEvent(new Event('change'));
+    }
+    this.view.lookFrom(this.worst);
   }
 
   /// The frame of the page that is nearest to a place among all frames.
@@ -52,8 +88,14 @@ class Player {
     this.view.show(this.frame);
     this.time.value = String(this.frame);
     this.time.setAttribute('aria-valuetext', `frame ${page.added[place]}`);
-    byId('frame').textContent = `frame ${page.added[place]} of ${page.added[page.added.length - 1]}`;
+    byId('frame').textContent = `frame ${page.added[place]} (${page.added[0]} to ${page.added[page.added.length - 1]})`;
+    this.mark?.show(this.worst && this.frame === this.worst.frame ? this.view.at(this.worst) : null);
     for (const chart of this.charts) chart.show(place);
+  }
+
+  private lookAtAll(): void {
+    this.isNear = false;
+    this.view.lookAtAll();
   }
 
   private toggle(): void {
@@ -61,6 +103,7 @@ class Player {
     this.play.textContent = this.playing ? 'Stop' : 'Play';
     this.play.setAttribute('aria-pressed', String(this.playing));
     if (!this.playing) return;
+    if (this.isNear) this.lookAtAll();
     if (this.frame === this.data.page.shown.length - 1) this.show(0);
     const begin = performance.now();
     const first = this.frame;
@@ -134,16 +177,19 @@ class Player {
         this.recolour();
       }),
       make('div', { class: 'choice' }, make('label', { for: 'range' }, 'Colours up to'), make('span', { class: 'field' }, range, page.units)),
-      ...page.names.map((name, which) =>
-        choice(`style${which}`, name.split('/').pop()!, styles, startStyles[which], (style) =>
+      ...page.names.map((_, which) => nameOf(this.data, which)).map((name, which) =>
+        choice(`style${which}`, name, styles, startStyles[which], (style) =>
           this.view.setStyle(which, style as 'solid' | 'ghost' | 'hidden'),
         ),
       ),
-      choice('speed', 'Frames', kSpeeds.map(([name, n]) => [String(n), name]), '30', (speed) => {
+      choice('speed', 'Speed', kSpeeds.map(([name, n]) => [String(n), name]), '30', (speed) => {
         this.perSecond = Number(speed);
         if (this.playing) this.toggle(), this.toggle();
       }),
-      make('button', { type: 'button', id: 'reset', click: () => this.view.look('corner') }, 'Look at all of it'),
+      ...(this.worst
+        ? [make('button', { type: 'button', id: 'to-worst', click: () => this.showWorst() }, `Show the ${this.worst.isLeast ? 'least' : 'largest'} distance`)]
+        : []),
+      make('button', { type: 'button', id: 'reset', click: () => this.lookAtAll() }, 'Look at all frames'),
     );
     byId('form').addEventListener('submit', (event) => event.preventDefault());
   }
@@ -166,19 +212,26 @@ class Player {
   }
 }
 
+/// The files of a body, without their folders.
+function nameOf(data: PlayerData, which: number): string {
+  const files = data.page.names[which].split('+').map((file) => file.split(/[\\/]/).filter(Boolean).pop() ?? file);
+  return files.join('+');
+}
+
 function describe(data: PlayerData): void {
-  const { names, added, shown, stride, bodies } = data.page;
-  const [o1, o2] = names.map((name) => name.split('/').pop());
+  const { added, shown, stride, bodies } = data.page;
+  const [o1, o2] = [nameOf(data, 0), nameOf(data, 1)];
   byId('title').textContent = document.title = `${o1} and ${o2} over time`;
   const coloured = bodies[1].coloured ? 'each coloured by its distance to the other' : `${o1} coloured by its distance to ${o2}`;
   const thinned = stride > 1 ? `, of which ${count(shown.length)}, one of ${stride}, are in this page` : '';
   byId('sentence').textContent =
-    `${count(added.length)} frames${thinned}; ${coloured}, with one scale for all frames. ` +
+    `${count(added.length)} frames, ${added[0]} to ${added[added.length - 1]}${thinned}; ${coloured}, with one scale for all frames. ` +
     'Colours are those of vertices, between which they are interpolated.';
 }
 
 void openPage('sdmPlayer', 'bodies', 'Is WebGL 2 on in this browser?', async () => {
   const data = await readPlayer();
   describe(data);
-  return new Player(data, new PlayerView(byId('view'), data));
+  showMade([0, 1].map((which) => ({ file: nameOf(data, which) })), data.page);
+  return new Player(data);
 });

@@ -3,8 +3,8 @@ import { make, makeSvg } from './dom';
 import { text, ticks, tickText } from './numbers';
 import type { Panel } from './player_data';
 
-const kHeight = 128;
-const kLeft = 58;
+const kHeight = 132;
+const kLeft = 72;
 const kTop = 10;
 const kBottom = 24;
 const kStyles = ['first', 'second', 'third']; // of curves: colour and dashes
@@ -18,19 +18,22 @@ function swatch(i: number): SVGElement {
 
 export class Chart {
   readonly element: HTMLElement;
-  private readonly cursor: SVGElement;
-  private readonly readout: HTMLElement;
-  private readonly width: number;
+  private readonly title: string;
+  private readonly unit: string; // after numbers
+  private readonly svg = makeSvg('svg', { 'aria-hidden': 'true' });
+  private readonly cursor = makeSvg('line', { class: 'cursor', y1: kTop, y2: kHeight - kBottom });
+  private readonly readout = make('span', { class: 'readout' });
+  private width = 0;
+  private shown = 0; // a place among the frames
 
-  /// `pick` is called with a place among `frames` when the chart is clicked.
-  constructor(private readonly panel: Panel, private readonly frames: number[], width: number, pick: (place: number) => void) {
-    this.width = Math.max(260, width);
-    const svg = makeSvg('svg', { viewBox: `0 0 ${this.width} ${kHeight}`, 'aria-hidden': 'true' });
-    this.drawAxes(svg);
-    panel.curves.forEach((curve, i) => svg.append(this.path(curve.values, kStyles[i % kStyles.length])));
-    this.cursor = makeSvg('line', { class: 'cursor', y1: kTop, y2: kHeight - kBottom });
-    svg.append(this.cursor);
-    this.readout = make('span', { class: 'readout' });
+  /// `pick` is called with a place among `frames` when the chart is clicked. A title that ends with the units in
+  /// brackets is of lengths.
+  constructor(private readonly panel: Panel, private readonly frames: number[], units: string, pick: (place: number) => void) {
+    const end = ` (${units})`;
+    const isLength = units !== '' && panel.title.endsWith(end);
+    this.title = isLength ? panel.title.slice(0, -end.length) : panel.title;
+    this.unit = isLength ? `\u00a0${units}` : '';
+    const { svg } = this;
     const picked = (event: Event) => {
       const { left, width: shown } = svg.getBoundingClientRect();
       const x = (((event as PointerEvent).clientX - left) / shown) * this.width;
@@ -46,22 +49,58 @@ export class Chart {
     });
     this.element = make(
       'div',
-      { class: 'chart', role: 'img', 'aria-label': `${panel.title} over the frames: ${this.range()}` },
-      make('h3', {}, panel.title, ' ', this.readout),
+      { class: 'chart', role: 'img', 'aria-label': `${this.title} over the frames: ${this.range()}` },
+      make('h3', {}, this.title, ' ', this.readout),
       svg,
     );
   }
 
+  /// Draws the chart that wide, in pixels.
+  draw(width: number): void {
+    if (width === this.width || width <= 0) return;
+    this.width = width;
+    const { svg, panel } = this;
+    svg.setAttribute('viewBox', `0 0 ${width} ${kHeight}`);
+    svg.replaceChildren();
+    this.shadeNegative();
+    this.drawAxes();
+    panel.curves.forEach((curve, i) => svg.append(this.path(curve.values, kStyles[i % kStyles.length])));
+    svg.append(this.cursor);
+    this.show(this.shown);
+  }
+
   show(place: number): void {
+    this.shown = place;
     const x = this.x(place);
     this.cursor.setAttribute('x1', String(x));
     this.cursor.setAttribute('x2', String(x));
     const { curves } = this.panel;
     this.readout.replaceChildren(
       ...curves.map(({ name, values }, i) =>
-        make('span', {}, ...(curves.length > 1 ? [swatch(i), ` ${name} `] : []), text(values[place])),
+        make('span', {}, ...(curves.length > 1 ? [swatch(i), ` ${name} `] : []), `${text(values[place])}${values[place] === null ? '' : this.unit}`),
       ),
+      ...(this.hasSigns() ? [make('span', {}, make('span', { class: 'negative', 'aria-hidden': 'true' }), 'negative')] : []),
     );
+  }
+
+  private hasSigns(): boolean {
+    const values = this.values();
+    return values.some((v) => v < 0) && values.some((v) => v > 0);
+  }
+
+  // Frames with a negative value: on the axis it may be too small to be seen.
+  private shadeNegative(): void {
+    if (!this.hasSigns()) return;
+    const isNegative = (place: number) => this.panel.curves.some(({ values }) => (values[place] ?? 0) < 0);
+    const half = (this.x(1) - this.x(0)) / 2;
+    for (let place = 0; place < this.frames.length; ++place) {
+      if (!isNegative(place)) continue;
+      const from = place;
+      while (place + 1 < this.frames.length && isNegative(place + 1)) ++place;
+      const left = Math.max(kLeft, this.x(from) - half);
+      const right = Math.min(this.width - 8, this.x(place) + half);
+      this.svg.append(makeSvg('rect', { class: 'negative', x: left, y: kTop, width: right - left, height: kHeight - kTop - kBottom }));
+    }
   }
 
   private values(): number[] {
@@ -70,7 +109,7 @@ export class Chart {
 
   private range(): string {
     const values = this.values();
-    return values.length === 0 ? 'no values' : `from ${text(Math.min(...values))} to ${text(Math.max(...values))}`;
+    return values.length === 0 ? 'no values' : `from ${text(Math.min(...values))} to ${text(Math.max(...values))}${this.unit}`;
   }
 
   private ends(): [number, number] {
@@ -92,14 +131,17 @@ export class Chart {
     return kTop + (1 - (value - lo) / (hi - lo)) * (kHeight - kTop - kBottom);
   }
 
-  private drawAxes(svg: SVGElement): void {
+  private drawAxes(): void {
+    const { svg } = this;
     const [lo, hi] = this.ends();
-    const marks = ticks(lo, hi, 4);
+    const marks = ticks(lo, hi, 3);
     const step = marks.length > 1 ? marks[1] - marks[0] : hi - lo;
     for (const mark of marks) {
       svg.append(makeSvg('line', { class: 'grid', x1: kLeft, x2: this.width - 8, y1: this.y(mark), y2: this.y(mark) }));
-      svg.append(makeSvg('text', { x: kLeft - 6, y: this.y(mark) + 4, 'text-anchor': 'end' }, tickText(mark, step)));
+      svg.append(makeSvg('text', { x: kLeft - 6, y: this.y(mark) + 4, 'text-anchor': 'end' }, `${tickText(mark, step)}${this.unit}`));
     }
+    if (lo < 0 && hi > 0) svg.append(makeSvg('line', { class: 'axis', x1: kLeft, x2: this.width - 8, y1: this.y(0), y2: this.y(0) }));
+    svg.append(makeSvg('text', { x: kLeft - 6, y: kHeight - 6, 'text-anchor': 'end' }, 'frame'));
     const last = this.frames.length - 1;
     const places = ticks(0, Math.max(1, last), Math.max(2, this.width / 90)).filter((p) => Number.isInteger(p) && p <= last);
     for (const place of places)

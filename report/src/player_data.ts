@@ -14,6 +14,8 @@ export interface Panel {
 }
 
 interface PlayerJson {
+  version: string;
+  date?: string;
   up: 'y' | 'z';
   units: string;
   names: [string, string];

@@ -3,7 +3,9 @@ import { BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Mesh, Sh
 import { Colors, kColorShader, Scale } from './color_scale';
 import { colorUniforms, setScale } from './color_uniforms';
 import type { Vec } from './page_data';
+import { firstHit } from './pick';
 import { distancesOf, placeFrame, PlayerData } from './player_data';
+import type { Worst } from './player_worst';
 import { kNoValue } from './value_texture';
 import { Viewer } from './viewer';
 
@@ -50,10 +52,24 @@ export class PlayerView extends Viewer {
   private readonly middle: Vec;
   private readonly size: number;
 
-  constructor(container: HTMLElement, private readonly data: PlayerData) {
-    super(container, data.page.up);
-    [this.middle, this.size] = extent(data);
+  constructor(container: HTMLElement, private readonly data: PlayerData, onChange: () => void) {
+    super(container, data.page.up, onChange);
+    const box = extent(data, null);
+    this.middle = box.lo.map((x, k) => (x + box.hi[k]) / 2) as Vec;
+    this.size = diagonal(box) / 2 || 1;
     this.bodies = data.bodies.map((_, which) => this.makeBody(which));
+    this.lookAtAll();
+  }
+
+  /// Shows the places of the bodies in all frames.
+  lookAtAll(): void {
+    this.frameBox(extent(this.data, null));
+    this.look('corner');
+  }
+
+  private frameBox({ lo, hi }: Bounds): void {
+    const inScene = (corner: Vec) => corner.map((x, k) => (x - this.middle[k]) / this.size) as Vec;
+    this.setShown(inScene(lo), inScene(hi));
   }
 
   private makeBody(which: number): Drawn {
@@ -97,6 +113,41 @@ export class PlayerView extends Viewer {
     this.draw();
   }
 
+  /// Where a vertex is in the frame that is shown.
+  at({ body, vertex }: Worst): Vec {
+    return Array.from((this.bodies[body].position.array as Float32Array).subarray(3 * vertex, 3 * vertex + 3)) as Vec;
+  }
+
+  /// Shows the frame of the worst place, which is the one that is shown, from where this is seen. Returns whether there is
+  /// such a side.
+  lookFrom(worst: Worst): boolean {
+    this.frameBox(extent(this.data, worst.frame));
+    const at = this.at(worst);
+    const normals = this.bodies[worst.body].mesh.geometry.getAttribute('normal').array;
+    const normal = Array.from(normals.subarray(3 * worst.vertex, 3 * worst.vertex + 3)) as Vec;
+    const from: Parameters<Viewer['look']>[0][] = ['corner', { normal }, 'front', 'right', 'back', 'left', 'top', 'bottom'];
+    const free = from.find((side) => {
+      this.look(side);
+      return !this.isHidden(at);
+    });
+    if (free === undefined) this.look('corner');
+    return free !== undefined;
+  }
+
+  // Whether a body that is drawn solid is in front of a point.
+  private isHidden(at: Vec): boolean {
+    const from = this.camera.position;
+    const to = new Vector3(...at).sub(from);
+    const away = to.length();
+    const direction = to.normalize().toArray() as Vec;
+    return this.bodies.some(({ mesh, position }, which) => {
+      if (!mesh.visible || (mesh.material as ShaderMaterial).transparent) return false;
+      const model = { position: position.array as Float32Array, triangle: this.data.bodies[which].triangles };
+      const hit = firstHit(model, from.toArray() as Vec, direction, null);
+      return hit !== null && hit.distance < away - 0.01;
+    });
+  }
+
   setScale(scale: Scale, colors: Colors): void {
     for (const { mesh } of this.bodies) setScale((mesh.material as ShaderMaterial).uniforms, scale, colors);
     this.draw();
@@ -120,14 +171,16 @@ interface Bounds {
   hi: Vec;
 }
 
-function bounds(data: PlayerData, bodies: number[], frames: 'all' | 'first'): Bounds {
+/// Of some bodies in a frame of the page; null: in all frames.
+function bounds(data: PlayerData, bodies: number[], frame: number | null): Bounds {
   const lo: Vec = [Infinity, Infinity, Infinity];
   const hi: Vec = [-Infinity, -Infinity, -Infinity];
   const { origin, step } = data.page;
   for (const which of bodies) {
-    const { positions, vertices } = data.bodies[which];
-    const count = frames === 'all' ? positions.length : 3 * vertices;
-    for (let i = 0; i < count; ++i) {
+    const { positions, vertices, moves } = data.bodies[which];
+    const first = frame === null || !moves ? 0 : 3 * vertices * frame;
+    const end = frame === null ? positions.length : first + 3 * vertices;
+    for (let i = first; i < end; ++i) {
       const x = origin[i % 3] + step * positions[i];
       lo[i % 3] = Math.min(lo[i % 3], x);
       hi[i % 3] = Math.max(hi[i % 3], x);
@@ -138,20 +191,20 @@ function bounds(data: PlayerData, bodies: number[], frames: 'all' | 'first'): Bo
 
 const diagonal = ({ lo, hi }: Bounds) => Math.hypot(...lo.map((x, k) => hi[k] - x));
 
-/// The middle and half of the diagonal of the box of all frames, without a body at rest that is much larger, such as a floor.
-function extent(data: PlayerData): [Vec, number] {
+/// The box of a frame, or of all, without a body at rest that is much larger, such as a floor.
+function extent(data: PlayerData, frame: number | null): Bounds {
   const moving = [0, 1].filter((which) => data.bodies[which].moves);
-  let box = bounds(data, [0, 1], 'all');
+  let box = bounds(data, [0, 1], frame);
   if (moving.length > 0) {
-    const inner = bounds(data, moving, 'all');
+    const inner = bounds(data, moving, frame);
     if (diagonal(box) > 3 * diagonal(inner)) box = inner;
   }
-  return [box.lo.map((x, k) => (x + box.hi[k]) / 2) as Vec, diagonal(box) / 2 || 1];
+  return box;
 }
 
 /// Whether a body has the other one in its box in the first frame, and would hide it.
 export function encloses(data: PlayerData, which: number): boolean {
-  const outer = bounds(data, [which], 'first');
-  const inner = bounds(data, [1 - which], 'first');
+  const outer = bounds(data, [which], 0);
+  const inner = bounds(data, [1 - which], 0);
   return outer.lo.every((x, k) => x < inner.lo[k] && outer.hi[k] > inner.hi[k]);
 }

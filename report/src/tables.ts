@@ -1,6 +1,7 @@
 // The text of the page: numbers, inputs and method.
 import { byId, make, table } from './dom';
 import { coverageRow } from './coverage';
+import { folded, inWords, kInWords } from './more';
 import { count, percent, text } from './numbers';
 import { Input, PageData, Report, reportText } from './page_data';
 import { distanceText } from './precision';
@@ -232,6 +233,8 @@ function isScalar(value: unknown): boolean {
 }
 
 function cell(key: string, value: unknown): string {
+  if (typeof value === 'boolean') return value ? 'yes' : 'no';
+  if (value === '') return 'none';
   if (value === null) return key === 'lower' || key === 'upper' ? 'no limit' : 'none';
   if (typeof value === 'number') {
     if (/fraction/.test(key)) return percent(value);
@@ -276,19 +279,27 @@ function tableOf(key: string, value: unknown): HTMLElement | null {
   return rows.length === 0 ? null : table(['', 'Value'], rows.map(([path, x]) => [label(path), cell(path, x)]), label(key));
 }
 
-/// Every key of the report that the page does not know, as far as it can be a table; and the text itself.
+/// What is left of the report: in words, or else by a table of each key, of which those that the page does not know are
+/// open; and the text itself.
 export function showMore(report: Report): void {
-  const out: Node[] = [];
-  const add = (title: string, value: unknown) => {
-    const content = tableOf(title, value);
-    if (content) out.push(make('h3', {}, label(title)), content);
-  };
-  for (const [key, value] of Object.entries(report)) {
-    if (kShown.has(key) || isScalar(value)) continue;
+  const tablesOf = (key: string, value: unknown): Node[] => {
+    const out: Node[] = [];
+    const add = (title: string, x: unknown) => {
+      const content = tableOf(title, x);
+      if (content) out.push(make('h3', {}, label(title)), content);
+    };
     add(key, value);
-    if (!Array.isArray(value))
+    if (value !== null && !Array.isArray(value))
       for (const [inner, x] of Object.entries(value as object)) if (Array.isArray(x) && x.some((y) => !isScalar(y))) add(`${key}: ${inner}`, x);
-  }
-  out.push(make('details', {}, make('summary', {}, 'report.json'), make('pre', { tabindex: '0' }, reportText())));
-  byId('more-tables').replaceChildren(...out);
+    return out;
+  };
+  const tables = Object.entries(report).filter(([key, value]) => !isScalar(value) && !kShown.has(key));
+  const known = tables.filter(([key]) => kInWords.includes(key)).flatMap(([key, value]) => tablesOf(key, value));
+  const other = tables.filter(([key]) => !kInWords.includes(key)).flatMap(([key, value]) => tablesOf(key, value));
+  byId('more-tables').replaceChildren(
+    make('div', { class: 'in-words' }, ...inWords(report)),
+    ...other,
+    ...folded('All numbers of these as tables', known),
+    ...folded('report.json, as programs read it', [make('pre', { tabindex: '0' }, reportText())]),
+  );
 }

@@ -1,5 +1,5 @@
 // A canvas with a scene, and a camera that turns around it.
-import { PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
+import { PerspectiveCamera, Scene, TOUCH, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { Pace } from './pace';
 import type { Vec } from './page_data';
@@ -34,10 +34,19 @@ export class Viewer {
     this.camera.up.set(0, up === 'y' ? 1 : 0, up === 'z' ? 1 : 0);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.zoomToCursor = true;
+    this.scrollByOneFinger();
     this.controls.addEventListener('change', () => this.draw());
     new ResizeObserver(() => this.resize()).observe(container);
     this.resize();
     this.look('corner');
+  }
+
+  // One finger scrolls the page; two turn the view and zoom.
+  private scrollByOneFinger(): void {
+    this.controls.touches = { ONE: null, TWO: TOUCH.DOLLY_ROTATE };
+    this.canvas.style.touchAction = 'pan-y';
+    for (const type of ['touchstart', 'touchmove'] as const)
+      this.canvas.addEventListener(type, (event) => event.touches.length > 1 && event.cancelable && event.preventDefault(), { passive: false });
   }
 
   /// Fits the picture to its place.

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -41,6 +42,46 @@ TEST_F(Looks, MovesInCoarsePicturesWhereFineOnesTakeLong) {
   o1 = write_obj(folder / "fine.obj", ring(96));
   run({"map", o1, o2, "--write", "html", "--resolution", "256", "--tolerance", "3"});
   EXPECT_TRUE(looks("drags", page(), {"9000"}));
+}
+
+TEST_F(Looks, ShowsAMapAtAllSizesAndOnPaper) {
+  run({"map", o1, o2, "--write", "html", "--resolution", "128", "--tolerance", "2.3", "--units", "mm", "--up",
+       "z", "--align", "--align-free", "x,y"});
+  EXPECT_TRUE(looks("looks", page()));
+  EXPECT_TRUE(looks("touches", page()));
+  EXPECT_TRUE(looks("prints", page(),
+                    {folder / "map.pdf", "2", "Measured on", "part.obj, plane.obj", "Alignment", "Hausdorff",
+                     "Bands of distance", "-Display", "-report.json"}));
+}
+
+TEST_F(Looks, ShowsPointsThicknessAndSelfDistancesAtAllSizes) {
+  std::ofstream cloud(folder / "cloud.xyz");
+  for (int i = 0; i < 3000; ++i) {
+    const double u = 0.1 * i, v = 0.37 * i, r = 1 + 0.4 * std::cos(v);
+    cloud << fmt::format("{:.7} {:.7} {:.7}\n", r * std::cos(u), r * std::sin(u), 0.4 * std::sin(v));
+  }
+  cloud.close();
+  run({"points", folder / "cloud.xyz", o2, "--tolerance", "2.3", "--units", "mm"});
+  EXPECT_TRUE(looks("looks", page()));
+  run({"thickness", o1, "--write", "html", "--resolution", "64", "--min", "0.1", "--units", "mm"});
+  EXPECT_TRUE(looks("looks", page()));
+  run({"self", o1, "--write", "html", "--resolution", "64", "--geodesic", "0.5"});
+  EXPECT_TRUE(looks("looks", page()));
+}
+
+// The square sinks towards the torus and through its middle.
+TEST_F(Looks, ShowsAPlayerAtAllSizesAndOnPaper) {
+  const std::filesystem::path moving = folder / "moving";
+  std::filesystem::create_directory(moving);
+  for (int i = 0; i < 6; ++i) write_obj(moving / fmt::format("{}.obj", i), square(8, 1 - 0.2 * i));
+  run({"sequence", o1, moving, "--resolution", "64", "--player", "--both", "--up", "z", "--units", "mm"});
+  const std::string player = out + "/player.html";
+  EXPECT_TRUE(looks("looks", player));
+  EXPECT_TRUE(looks("touches", player));
+  EXPECT_TRUE(looks("opens", player, {"5", "part.obj", "moving"}));
+  EXPECT_TRUE(looks(
+      "prints", player,
+      {folder / "player.pdf", "1", "Measured on", "Over time", "frame 5 (0 to 5)", "-Play", "-Display"}));
 }
 
 }  // namespace

@@ -1,8 +1,12 @@
 #include "io/page/report/page_file.h"
 
+#include <fmt/chrono.h>
 #include <sdm/version.h>
 
 #include <bit>
+#include <charconv>
+#include <chrono>
+#include <cstdlib>
 #include <span>
 #include <vector>
 
@@ -21,6 +25,16 @@ std::vector<std::uint32_t> bits_of(std::span<const float> values) {
   return bits;
 }
 
+/// The time in UTC, or that of SOURCE_DATE_EPOCH, for builds that repeat to the byte.
+std::string date() {
+  std::int64_t seconds =
+      std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()).time_since_epoch().count();
+  if (const char* fixed = std::getenv("SOURCE_DATE_EPOCH"))
+    std::from_chars(fixed, fixed + std::string_view(fixed).size(), seconds);
+  const std::chrono::sys_seconds time{std::chrono::seconds(seconds)};
+  return fmt::format("{:%Y-%m-%dT%H:%MZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(time)));
+}
+
 }  // namespace
 
 Json add_area(PackedArrays& arrays, const AreaByValue& area) {
@@ -31,7 +45,10 @@ Json add_area(PackedArrays& arrays, const AreaByValue& area) {
 }
 
 Json common_json(UpAxis up) {
-  return {{"version", kVersion}, {"up", up == UpAxis::z ? "z" : "y"}, {"colors", colors_json()}};
+  return {{"version", kVersion},
+          {"date", date()},
+          {"up", up == UpAxis::z ? "z" : "y"},
+          {"colors", colors_json()}};
 }
 
 void put_page(std::ostream& out, std::string_view html, Json& page, const std::string* report,
