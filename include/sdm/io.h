@@ -242,7 +242,7 @@ struct HtmlOptions {
   /// Of wall thickness: the list of places is of the texels of least value, or of largest value.
   bool thinnest = false, thickest = false;
   // The size of the page, which grows with what it shows:
-  std::uint32_t largest = 1024;              ///< the most texels a side, at least 1
+  std::uint32_t largest = 1024;              ///< the most texels a side; half from 200,000 triangles on
   std::size_t triangles = 400'000;           ///< the most of O1; others are shown by a coarser copy
   std::size_t triangles_of_other = 300'000;  ///< the most of O2; others are shown by their box
 };

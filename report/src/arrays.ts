@@ -6,10 +6,18 @@ export interface ArrayIndex {
 
 export type Arrays = Map<string, Uint32Array>;
 
-export function bytesOfBase64(text: string): Uint8Array<ArrayBuffer> {
-  const binary = atob(text);
-  const bytes = new Uint8Array(binary.length);
-  for (let i = 0; i < bytes.length; ++i) bytes[i] = binary.charCodeAt(i);
+/// The bytes of base85() of packed_arrays.h, with zeros up to a multiple of four.
+export function bytesOfBase85(text: string): Uint8Array<ArrayBuffer> {
+  const bytes = new Uint8Array((text.length / 5) * 4);
+  const view = new DataView(bytes.buffer);
+  for (let i = 0, at = 0; i < text.length; i += 5, at += 4) {
+    let group = 0;
+    for (let k = 0; k < 5; ++k) {
+      const code = text.charCodeAt(i + k);
+      group = group * 85 + code - (code > 60 ? 36 : 35);
+    }
+    view.setUint32(at, group);
+  }
   return bytes;
 }
 
@@ -19,7 +27,7 @@ async function inflated(bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
 }
 
 export async function unpacked(index: ArrayIndex, text: string): Promise<Arrays> {
-  const all = bytesOfBase64(text.trim());
+  const all = bytesOfBase85(text.trim());
   const arrays: Arrays = new Map();
   const work: Promise<void>[] = [];
   let at = 0;
@@ -82,4 +90,62 @@ export function cornersOfCodes(codes: Uint32Array): Uint32Array {
     if (code === 0) ++next;
   }
   return codes;
+}
+
+const kNone = 0xffffffff;
+
+/// From which vertices the numbers of each one are guessed, three each: guesses_of() of face_walk.h.
+export function guessesOf(triangle: Uint32Array): Uint32Array {
+  let vertices = 0;
+  for (const v of triangle) vertices = Math.max(vertices, v + 1);
+  const guesses = new Uint32Array(3 * vertices);
+  const last = new Uint32Array(vertices).fill(kNone); // the first corner of the last triangle before this one
+  const opposite = (first: number, a: number, b: number): number => {
+    let other = kNone;
+    let found = 0;
+    for (let k = first; k < first + 3; ++k)
+      if (triangle[k] === a || triangle[k] === b) ++found;
+      else other = triangle[k];
+    return found === 2 ? other : kNone;
+  };
+  let next = 0;
+  for (let f = 0; f < triangle.length; f += 3) {
+    for (let k = f; k < f + 3; ++k) {
+      const v = triangle[k];
+      if (v !== next) continue;
+      ++next;
+      const others = [triangle[f], triangle[f + 1], triangle[f + 2]].filter((u) => u < v);
+      let guess = others.length === 0 ? [v - 1, v - 1, v - 1] : [others[0], others[0], others[0]];
+      if (others.length === 2)
+        for (const u of others) {
+          const c = last[u] === kNone ? kNone : opposite(last[u], others[0], others[1]);
+          if (c === kNone) continue;
+          guess = [others[0], others[1], c];
+          break;
+        }
+      guesses.set(guess, 3 * v); // -1 becomes kNone
+    }
+    for (let k = f; k < f + 3; ++k) last[triangle[k]] = f;
+  }
+  return guesses;
+}
+
+/// The numbers at vertices, `stride` each, from what is left of them after the guesses, in place.
+export function unguessed(numbers: Uint32Array, stride: number, guesses: Uint32Array): Uint32Array {
+  for (let i = 0; i < numbers.length; ++i) {
+    const k = i % stride;
+    const g = 3 * ((i - k) / stride);
+    const guess = guesses[g] === kNone ? 0 : numbers[guesses[g] * stride + k] + numbers[guesses[g + 1] * stride + k] - numbers[guesses[g + 2] * stride + k];
+    numbers[i] = unzigzag(numbers[i]) + guess;
+  }
+  return numbers;
+}
+
+/// The same of numbers of two bytes, of which each is guessed from that of one vertex.
+export function unguessedBytes(numbers: Uint32Array, guesses: Uint32Array): Uint32Array {
+  for (let v = 0; v < numbers.length; ++v) {
+    const from = guesses[3 * v] === kNone ? 0 : numbers[guesses[3 * v]];
+    numbers[v] = ((numbers[v] + from) & 255) | ((((numbers[v] >> 8) + (from >> 8)) & 255) << 8);
+  }
+  return numbers;
 }

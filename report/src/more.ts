@@ -2,11 +2,11 @@
 import { make, table } from './dom';
 import { count, percent, place, text } from './numbers';
 import type { Report, Vec } from './page_data';
-import { isSigned, limitsOf, limitsText, unitOf, wholeOf } from './verdict';
+import { isSigned, limitsOf, unitOf, wholeOf } from './verdict';
 import { isThickness, quantityOf } from './words';
 
 /// The keys of the report that are shown in words.
-export const kInWords = ['alignment', 'hausdorff', 'bands', 'separation', 'doubts'];
+export const kInWords = ['alignment', 'hausdorff', 'bands', 'separation', 'exclusion', 'thickness', 'doubts'];
 
 interface Residual {
   rms: number;
@@ -39,7 +39,7 @@ interface Bounds {
   point?: Vec | null;
 }
 
-export interface Band {
+interface Band {
   lower: number | null;
   upper: number | null;
   area_fraction: number;
@@ -107,12 +107,29 @@ function separation(report: Report): Node[] {
   const s = report.separation as { value?: number; witness?: [Vec, Vec] | Vec[] | null } | null | undefined;
   if (!s || typeof s.value !== 'number') return [];
   const [a, b] = s.witness ?? [];
+  const { rings, geodesic } = (report.exclusion ?? {}) as { rings?: number | null; geodesic?: number | null };
   const size = Math.max(...(a ?? [0]).map(Math.abs), 1e-300);
   return [
     make('h3', {}, 'Separation'),
     words(
       `The part comes as near to itself as ${text(s.value)}${unitOf(report)}, neighbours along the surface aside: exact, of all points.`,
+      typeof geodesic === 'number' && `Neighbours are what is nearer than ${text(geodesic)}${unitOf(report)} along the surface.`,
+      typeof geodesic !== 'number' && typeof rings === 'number' && `Neighbours of a face are those within ${rings === 1 ? 'one ring' : `${rings} rings`} of faces around it.`,
       a && b && `There, (${place(a, size)}) is opposite of (${place(b, size)}).`,
+    ),
+  ];
+}
+
+/// What the method of wall thickness says that is not shown.
+function otherThickness(report: Report): Node[] {
+  const other = (report.thickness as { other?: { method: string; distance: Record<string, number | null>; file: string | null } | null } | undefined)?.other;
+  if (!other) return [];
+  const unit = unitOf(report);
+  return [
+    make('h3', {}, 'By the other method'),
+    words(
+      `By ${other.method === 'ray' ? 'a ray along the normal' : other.method === 'ball' ? 'the largest ball inside' : other.method}, the thickness is from ${text(other.distance.min)} to ${text(other.distance.max)}${unit}, ${text(other.distance.mean)}${unit} on average: estimates from the samples.`,
+      other.file && `All values are in ${other.file}.`,
     ),
   ];
 }
@@ -124,17 +141,22 @@ function sideOf({ lower, upper }: Band, limits: { lower: number; upper: number }
 }
 
 /// The bands as one bar, and as a list with the same marks.
-export function bandsBar(report: Report): Node[] {
+function bandsBar(report: Report): Node[] {
   const bands = (report.bands as Band[] | undefined) ?? [];
   if (bands.length === 0) return [];
   const limits = limitsOf(report) ?? { lower: 0, upper: Infinity };
   const unit = unitOf(report);
   const what = quantityOf(report);
+  const within = bands.findIndex((band) => sideOf(band, limits) === 'within');
+  const zero = bands.findIndex(({ lower, upper }) => lower !== null && lower <= 0 && (upper === null || upper > 0));
+  const middle = zero >= 0 ? zero : within; // lighter than its neighbours
   const named = bands.map((band, i) => {
     const { lower, upper } = band;
     const label =
-      lower === null ? `below ${text(upper)}${unit}` : upper === null ? `above ${text(lower)}${unit}` : limitsText({ lower, upper }, report);
-    return { share: band.area_fraction, label, mark: `${sideOf(band, limits)}${i % 2 ? ' odd' : ''}` };
+      lower === null ? `below ${text(upper)}${unit}`
+      : upper === null ? `above ${text(lower)}${unit}`
+      : lower === -upper ? `±${text(upper)}${unit}` : `${text(lower)} to ${text(upper)}${unit}`;
+    return { share: band.area_fraction, label, mark: `${sideOf(band, limits)}${(i - middle) % 2 ? ' odd' : ''}` };
   });
   const whole = wholeOf(report);
   const sum = Math.max(1, named.reduce((total, { share }) => total + share, 0));
@@ -150,7 +172,7 @@ export function bandsBar(report: Report): Node[] {
 
 /// What the page says of them, in the order of interest.
 export function inWords(report: Report): Node[] {
-  return [...alignment(report), ...hausdorff(report), ...separation(report), ...bandsBar(report)];
+  return [...alignment(report), ...hausdorff(report), ...separation(report), ...otherThickness(report), ...bandsBar(report)];
 }
 
 /// Folded away, with a word of what is inside.

@@ -225,7 +225,7 @@ function describe(data: PlayerData): void {
   const coloured = bodies[1].coloured ? 'each coloured by its distance to the other' : `${o1} coloured by its distance to ${o2}`;
   const thinned = stride > 1 ? `, of which ${count(shown.length)}, one of ${stride}, are in this page` : '';
   byId('sentence').textContent =
-    `${count(added.length)} frames, ${added[0]} to ${added[added.length - 1]}${thinned}; ${coloured}, with one scale for all frames. ` +
+    `${count(added.length)} frames${thinned}, numbered ${added[0]} to ${added[added.length - 1]}; ${coloured}, with one scale for all frames. ` +
     'Colours are those of vertices, between which they are interpolated.';
 }
 

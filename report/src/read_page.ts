@@ -1,6 +1,6 @@
 // Reads the data of the page: arrays of numbers, packed by src/io/page/report.
 import { AreaByValue } from './area_by_value';
-import { Arrays, cornersOfCodes, floatsOfOrdered, summed, unpacked, unzigzag } from './arrays';
+import { Arrays, cornersOfCodes, floatsOfOrdered, guessesOf, summed, unguessed, unguessedBytes, unpacked, unzigzag } from './arrays';
 import type { CloudData, Ghost, Model, PageData, PageJson, Placement, TexelMap, Vec } from './page_data';
 
 function textOf(id: string): string {
@@ -85,7 +85,9 @@ function largestIn(steps: Uint32Array): Vec {
 
 function readModel(page: PageJson, arrays: Arrays): Model {
   const placement = page.model!;
-  const steps = summed(arrays.get('position')!, 3);
+  const triangle = cornersOfCodes(arrays.get('triangle')!);
+  const guesses = guessesOf(triangle);
+  const steps = unguessed(arrays.get('position')!, 3, guesses);
   const extent = largestIn(steps).map((x) => x * placement.step);
   const centre = placement.origin.map((x, k) => x + extent[k] / 2) as Vec;
   const size = Math.hypot(...extent) / 2 || 1;
@@ -95,10 +97,10 @@ function readModel(page: PageJson, arrays: Arrays): Model {
     centre,
     size,
     position: toCentre(steps, placement, centre, size),
-    normal: unfoldedNormals(arrays.get('normal')!),
-    distance: floatsOfOrdered(summed(arrays.get('vertex_distance')!)),
-    triangle: cornersOfCodes(arrays.get('triangle')!),
-    place: places ? Float32Array.from(summed(places, 2), (x) => x / 64) : null,
+    normal: unfoldedNormals(unguessedBytes(arrays.get('normal')!, guesses)),
+    distance: floatsOfOrdered(unguessed(arrays.get('vertex_distance')!, 1, guesses)),
+    triangle,
+    place: places ? Float32Array.from(unguessed(places, 2, guesses), (x) => x / 64) : null,
     chart: charts ? summed(charts) : null,
     names: (placement.names ?? []).map((kind, k) => ({ ...kind, ofTriangle: summed(arrays.get(`triangle_name_${k}`)!) })),
     trianglesOfMesh: placement.triangles_of_mesh,
@@ -152,14 +154,16 @@ function readGhost(page: PageJson, arrays: Arrays, { centre, size }: { centre: V
   const ghost = page.ghost;
   if (!ghost) return null;
   const steps = arrays.get('ghost_position');
-  if (steps)
+  if (steps) {
+    const triangle = cornersOfCodes(arrays.get('ghost_triangle')!);
     return {
-      position: toCentre(summed(steps, 3), ghost, centre, size),
-      triangle: cornersOfCodes(arrays.get('ghost_triangle')!),
+      position: toCentre(unguessed(steps, 3, guessesOf(triangle)), ghost, centre, size),
+      triangle,
       covered: arrays.get('ghost_covered') ?? null,
       trianglesOfMesh: ghost.triangles_of_mesh,
       isBox: false,
     };
+  }
   const ends = [ghost.box.lo, ghost.box.hi];
   const position = new Float32Array(24);
   for (let corner = 0; corner < 8; ++corner)

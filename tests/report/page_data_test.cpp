@@ -8,9 +8,11 @@
 #include <bit>
 #include <cmath>
 #include <map>
+#include <random>
 
 #include "geometry/vec.h"
 #include "io/page/report/area_by_value.h"
+#include "io/page/report/face_walk.h"
 #include "io/page/report/fewer_vertices.h"
 #include "io/page/report/largest_by_cell.h"
 #include "io/page/report/packed_arrays.h"
@@ -111,15 +113,61 @@ TEST(FewerVertices, EndForFlatAndEmptyMeshes) {
   EXPECT_EQ(fewer_vertices(square(1, 0), std::vector<float>(4, std::nanf("")), 1).mesh.triangles.size(), 0u);
 }
 
-TEST(Base64, MatchesTheStandardsExamples) {
-  const auto of = [](std::string_view text) {
-    return base64({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  };
-  EXPECT_EQ(of(""), "");
-  EXPECT_EQ(of("f"), "Zg==");
-  EXPECT_EQ(of("fo"), "Zm8=");
-  EXPECT_EQ(of("foo"), "Zm9v");
-  EXPECT_EQ(of("foobar"), "Zm9vYmFy");
+TEST(Base85, IsOfDigitsThatEndNoElement) {
+  const auto of = [](std::vector<std::uint8_t> bytes) { return base85(bytes); };
+  EXPECT_EQ(of({}), "");
+  EXPECT_EQ(of({0, 0, 0, 1}), "####$");
+  EXPECT_EQ(of({0, 0, 0, 25}), "####=");  // the digit 25 would be <
+  EXPECT_EQ(of({1}), of({1, 0, 0, 0}));
+  EXPECT_EQ(of({255, 255, 255, 255}), "v:Z/#");
+  std::vector<std::uint8_t> all;
+  std::mt19937 random(1);
+  for (int i = 0; i < 4000; ++i) all.push_back(static_cast<std::uint8_t>(random()));
+  const std::string text = base85(all);
+  EXPECT_EQ(text.size(), 5000u);
+  EXPECT_EQ(text.find('<'), std::string::npos);
+}
+
+/// The corners of each triangle, the smallest first, as they turn.
+std::vector<Triangle> as_they_turn(std::vector<Triangle> triangles) {
+  for (Triangle& t : triangles) std::ranges::rotate(t, std::ranges::min_element(t));
+  std::ranges::sort(triangles);
+  return triangles;
+}
+
+TEST(FaceWalk, HasEveryTriangleOnceBesideOneBefore) {
+  Mesh mesh = ring(20);
+  const std::size_t closed = mesh.triangles.size();
+  for (const Triangle& t : square(2, 1).triangles) {  // another component
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  mesh.positions.resize(mesh.positions.size() + 4);
+  std::ranges::shuffle(mesh.triangles.begin(), mesh.triangles.begin() + static_cast<std::ptrdiff_t>(closed),
+                       std::mt19937(2));
+  const FaceWalk walk = walk_over(mesh.triangles, mesh.positions.size());
+  std::vector<Triangle> given;
+  for (std::size_t i = 0; i < walk.triangles.size(); ++i) {
+    Triangle t = walk.triangles[i];
+    for (std::uint32_t& v : t) v = walk.vertex[v];
+    given.push_back(t);
+    EXPECT_EQ(as_they_turn({t}), as_they_turn({mesh.triangles[walk.from[i]]}));
+  }
+  EXPECT_EQ(as_they_turn(given), as_they_turn(mesh.triangles));
+
+  std::uint32_t next = 0;
+  std::size_t beside = 0;
+  const auto guesses = guesses_of(walk.triangles);
+  ASSERT_EQ(guesses.size(), walk.vertex.size());
+  for (const Triangle& t : walk.triangles)
+    for (const std::uint32_t v : t) {
+      ASSERT_LE(v, next);
+      if (v < next) continue;
+      ++next;
+      for (const std::uint32_t from : guesses[v]) EXPECT_TRUE(from < v || (v == 0 && from == kNone));
+      beside += guesses[v][0] != guesses[v][1] ? 1 : 0;
+    }
+  EXPECT_GT(beside, guesses.size() - 8) << "most numbers are guessed over an edge";
 }
 
 }  // namespace

@@ -342,7 +342,7 @@ TEST_F(Page, ShowsWhatItDoesNotKnow) {
   const std::string file = folder / "report.html";
   write_html(file, surface, map_of(surface, field), at_vertices(surface.mesh(), field), report.dump());
   EXPECT_TRUE(
-      passes("says", file, {"New numbers", "1.5", "25 %", "Bands", "no limit", "50 %", "one of each 2 × 2"}));
+      passes("says", file, {"New numbers", "1.5", "25 %", "Bands", "below 1", "50 %", "one of each 2 × 2"}));
 }
 
 TEST_F(Page, IsAsSmallAsAskedFor) {

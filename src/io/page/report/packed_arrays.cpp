@@ -1,5 +1,7 @@
 #include "io/page/report/packed_arrays.h"
 
+#include <sdm/types.h>
+
 #include <algorithm>
 #include <iterator>
 #include <utility>
@@ -35,6 +37,17 @@ void PackedArrays::add_differences(std::string_view name, std::span<const std::u
   add(name, std::move(differences));
 }
 
+void PackedArrays::add_guessed(std::string_view name, std::span<const std::uint32_t> numbers,
+                               std::size_t stride, std::span<const std::array<std::uint32_t, 3>> guesses) {
+  std::vector<std::uint32_t> differences(numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto& [a, b, c] = guesses[i / stride];
+    const auto at = [&](std::size_t vertex) { return numbers[vertex * stride + i % stride]; };
+    differences[i] = zigzag(numbers[i] - (a == kNone ? 0 : at(a) + at(b) - at(c)));
+  }
+  add(name, std::move(differences));
+}
+
 void PackedArrays::add(PackedArrays&& other) {
   std::ranges::move(other.arrays_, std::back_inserter(arrays_));
 }
@@ -57,20 +70,19 @@ void PackedArrays::compress() {
       all.insert(all.end(), bytes.begin(), bytes.end());
     }
   }
-  text_ = base64(all);
+  text_ = base85(all);
 }
 
-std::string base64(std::span<const std::uint8_t> bytes) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text((bytes.size() + 2) / 3 * 4, '=');
+std::string base85(std::span<const std::uint8_t> bytes) {
+  std::string text((bytes.size() + 3) / 4 * 5, '#');
   char* to = text.data();
-  for (std::size_t i = 0; i < bytes.size(); i += 3, to += 4) {
-    const auto at = [&](std::size_t k) { return k < bytes.size() ? std::uint32_t{bytes[k]} : 0u; };
-    const std::uint32_t group = at(i) << 16 | at(i + 1) << 8 | at(i + 2);
-    to[0] = kDigits[group >> 18];
-    to[1] = kDigits[group >> 12 & 63];
-    if (i + 1 < bytes.size()) to[2] = kDigits[group >> 6 & 63];
-    if (i + 2 < bytes.size()) to[3] = kDigits[group & 63];
+  for (std::size_t i = 0; i < bytes.size(); i += 4, to += 5) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 4; ++k) group = group << 8 | (i + k < bytes.size() ? bytes[i + k] : 0u);
+    for (int digit = 4; digit >= 0; --digit, group /= 85) {
+      const std::uint32_t c = '#' + group % 85;
+      to[digit] = static_cast<char>(c < '<' ? c : c + 1);
+    }
   }
   return text;
 }

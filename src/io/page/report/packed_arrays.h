@@ -1,6 +1,7 @@
 // Arrays of numbers in a form that compresses well, as text.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -21,6 +22,11 @@ class PackedArrays {
   /// (0 before the first), as an unsigned number whose last bit is the sign.
   void add_differences(std::string_view name, std::span<const std::uint32_t> numbers, std::size_t stride = 1);
 
+  /// Adds what is left of numbers at vertices, `stride` each, after the guesses of guesses_of(), as
+  /// differences.
+  void add_guessed(std::string_view name, std::span<const std::uint32_t> numbers, std::size_t stride,
+                   std::span<const std::array<std::uint32_t, 3>> guesses);
+
   /// Adds the arrays of another object.
   void add(PackedArrays&& other);
 
@@ -29,7 +35,7 @@ class PackedArrays {
   /// The `count` of each array and the lengths of its four compressed planes, `bytes`, 0 for a plane of
   /// zeros; planes follow each other in the order of the arrays. After compress().
   [[nodiscard]] const nlohmann::ordered_json& index() const { return index_; }
-  /// The planes in base64. After compress().
+  /// The planes as text. After compress().
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
@@ -47,6 +53,9 @@ class PackedArrays {
   return (difference << 1) ^ (difference >> 31 ? 0xFFFFFFFFu : 0u);
 }
 
-[[nodiscard]] std::string base64(std::span<const std::uint8_t> bytes);
+/// Bytes as text, five characters for each four as digits to base 85, the first of the highest value: those
+/// from # to x but <, with which an element of a page could end. The bytes of the last group are filled up
+/// with zeros.
+[[nodiscard]] std::string base85(std::span<const std::uint8_t> bytes);
 
 }  // namespace sdm::io

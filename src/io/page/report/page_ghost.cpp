@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "io/page/report/face_walk.h"
 #include "io/page/report/page_numbers.h"
 
 namespace sdm::io {
@@ -16,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Triangles whose vertices are numbered in the order of their first use.
+/// Triangles with the vertices that they have in common.
 class GhostTriangles {
  public:
   GhostTriangles(const Mesh& mesh, const Steps& steps)
@@ -38,9 +39,17 @@ class GhostTriangles {
       triangle[k] = at->second;
     }
   }
-  void put(PackedArrays& arrays) const {
-    arrays.add_differences("ghost_position", position_, 3);
-    arrays.add("ghost_triangle", corner_codes(triangles_));
+  /// `covered`: of each triangle, or nothing.
+  void put(PackedArrays& arrays, std::span<const std::uint32_t> covered) const {
+    const FaceWalk walk = walk_over(triangles_, position_.size() / 3);
+    std::vector<std::uint32_t> position, of_walk;
+    for (const std::uint32_t v : walk.vertex)
+      for (int k = 0; k < 3; ++k) position.push_back(position_[3 * v + k]);
+    arrays.add("ghost_triangle", corner_codes(walk.triangles));
+    arrays.add_guessed("ghost_position", position, 3, guesses_of(walk.triangles));
+    if (covered.empty()) return;
+    for (const std::uint32_t f : walk.from) of_walk.push_back(covered[f]);
+    arrays.add("ghost_covered", std::move(of_walk));
   }
 
  private:
@@ -90,14 +99,15 @@ Json add_ghost(PackedArrays& arrays, const Mesh& mesh, const CoverageMap* covera
   json["triangles_of_mesh"] = visible;
   if (visible > most) return json;
   GhostTriangles triangles(mesh, steps);
+  std::vector<std::uint32_t> covered;
   if (coverage) {
     const bool with_pieces = visible + coverage->pieces.size() <= most;
-    arrays.add("ghost_covered", add_covered(triangles, mesh, *coverage, with_pieces));
+    covered = add_covered(triangles, mesh, *coverage, with_pieces);
   } else {
     for (const Triangle& face : mesh.triangles)
       if (is_visible(face)) triangles.add(face);
   }
-  triangles.put(arrays);
+  triangles.put(arrays, covered);
   return json;
 }
 

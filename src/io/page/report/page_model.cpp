@@ -14,6 +14,7 @@
 #include "io/image/pictures/atlas_picture.h"
 #include "io/mesh/model/model_vertices.h"
 #include "io/mesh/model/shading_normals.h"
+#include "io/page/report/face_walk.h"
 #include "io/page/report/fewer_vertices.h"
 #include "io/page/report/page_channels.h"
 #include "io/page/report/page_numbers.h"
@@ -59,19 +60,33 @@ std::vector<std::uint32_t> faces_by_chart(const Surface& surface) {
   return faces;
 }
 
-void add_vertices(PackedArrays& arrays, const Mesh& mesh, const ShadingNormals& normals,
-                  std::span<const std::uint32_t> vertices, const Steps& steps,
-                  std::span<const float> vertex_distances) {
+// Normals as what is left of each byte after that of the vertex which a number is guessed from.
+std::vector<std::uint32_t> guessed_normals(std::span<const std::uint32_t> normals,
+                                           std::span<const std::array<std::uint32_t, 3>> guesses) {
+  std::vector<std::uint32_t> result(normals.begin(), normals.end());
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    const std::uint32_t from = guesses[v][0] == kNone ? 0 : normals[guesses[v][0]];
+    result[v] = ((normals[v] - from) & 0xFF) | ((((normals[v] >> 8) - (from >> 8)) & 0xFF) << 8);
+  }
+  return result;
+}
+
+// Adds the triangles of a walk, and its vertices; `normal_of`: of each vertex before the walk.
+void add_walk(PackedArrays& arrays, const FaceWalk& walk, const Mesh& mesh, const ShadingNormals& normals,
+              std::span<const std::uint32_t> normal_of, const Steps& steps,
+              std::span<const float> vertex_distances) {
   std::vector<std::uint32_t> position, normal, distance;
-  for (const std::uint32_t n : vertices) {
-    const std::uint32_t vertex = normals.vertex[n];
+  for (const std::uint32_t v : walk.vertex) {
+    const std::uint32_t n = normal_of[v], vertex = normals.vertex[n];
     for (int k = 0; k < 3; ++k) position.push_back(steps(mesh.positions[vertex], k));
     normal.push_back(octahedral(normals.normals[n]));
     distance.push_back(ordered(vertex_distances[vertex]));
   }
-  arrays.add_differences("position", position, 3);
-  arrays.add("normal", std::move(normal));
-  arrays.add_differences("vertex_distance", distance);
+  const auto guesses = guesses_of(walk.triangles);
+  arrays.add("triangle", corner_codes(walk.triangles));
+  arrays.add_guessed("position", position, 3, guesses);
+  arrays.add("normal", guessed_normals(normal, guesses));
+  arrays.add_guessed("vertex_distance", distance, 1, guesses);
 }
 
 }  // namespace
@@ -133,25 +148,27 @@ Json add_model(PackedArrays& arrays, const Surface& surface, std::span<const flo
     std::vector<std::uint32_t> normal_of(fewer.mesh.positions.size(), kNone);
     for (std::uint32_t n = 0; n < normals.vertex.size(); ++n)
       if (normal_of[normals.vertex[n]] == kNone) normal_of[normals.vertex[n]] = n;
-    add_vertices(arrays, fewer.mesh, normals, normal_of, steps, fewer.distances);
-    arrays.add("triangle", corner_codes(fewer.mesh.triangles));
+    const FaceWalk walk = walk_over(fewer.mesh.triangles, fewer.mesh.positions.size());
+    add_walk(arrays, walk, fewer.mesh, normals, normal_of, steps, fewer.distances);
     return json;
   }
   const ShadingNormals normals = shading_normals(mesh);
   const ModelVertices vertices = model_vertices(surface, normals, faces);
-  add_vertices(arrays, mesh, normals, vertices.normal, steps, vertex_distances);
+  const FaceWalk walk = walk_over(vertices.triangles, vertices.normal.size());
+  add_walk(arrays, walk, mesh, normals, vertices.normal, steps, vertex_distances);
   const double scale = kStepsPerTexel / AtlasPicture(surface, largest).step();
   std::vector<std::uint32_t> place;
-  for (const Vec2& p : vertices.place)
-    for (const double x : p) place.push_back(static_cast<std::uint32_t>(std::max(0.0, scale * x + 0.5)));
-  arrays.add_differences("place", place, 2);
-  arrays.add("triangle", corner_codes(vertices.triangles));
+  for (const std::uint32_t v : walk.vertex)
+    for (const double x : vertices.place[v])
+      place.push_back(static_cast<std::uint32_t>(std::max(0.0, scale * x + 0.5)));
+  arrays.add_guessed("place", place, 2, guesses_of(walk.triangles));
   std::vector<std::uint32_t> charts;
-  for (const std::uint32_t face : faces) charts.push_back(surface.face_charts()[face] + 1);
+  for (const std::uint32_t f : walk.from) charts.push_back(surface.face_charts()[faces[f]] + 1);
   arrays.add_differences("triangle_chart", charts);
   for (std::size_t k = 0; k < names.size(); ++k) {
     std::vector<std::uint32_t> numbers;
-    for (const std::uint32_t face : faces) numbers.push_back(names[k].of_face[face] + 1);  // kNone + 1 is 0
+    for (const std::uint32_t f : walk.from)
+      numbers.push_back(names[k].of_face[faces[f]] + 1);  // kNone + 1 is 0
     arrays.add_differences("triangle_name_" + std::to_string(k), numbers);
     json["names"].push_back({{"kind", names[k].kind}, {"names", names[k].names}});
   }

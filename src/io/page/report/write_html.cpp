@@ -3,6 +3,7 @@
 #include <sdm/thickness.h>
 #include <sdm/threads.h>
 
+#include <algorithm>
 #include <new>
 #include <string>
 #include <utility>
@@ -23,6 +24,9 @@ using namespace io;
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// From so many triangles on, a page has a quarter of the texels: their values would take more than the part.
+constexpr std::size_t kManyTriangles = 200'000;
 
 Json json_of_texels(const Surface& surface, const DistanceMap& map,
                     const std::vector<std::uint32_t>& texels) {
@@ -58,27 +62,30 @@ void write_html(const std::filesystem::path& file, const Surface& surface, const
   check_meshes_of(file, surface, options);
   AtomicFile out(file);
 
+  const std::uint32_t largest = surface.mesh().triangles.size() < kManyTriangles
+                                    ? options.largest
+                                    : std::max<std::uint32_t>(1, options.largest / 2);
   Json page, map_json, model, ghost;
   PackedArrays arrays, model_arrays, ghost_arrays;
   Json listed;
   AreaByValue area;
-  run_concurrently({[&] { map_json = add_map(arrays, surface, map, options.largest); },
-                    [&] {
-                      model = add_model(model_arrays, surface, vertex_distances, options.names,
-                                        options.largest, options.triangles);
-                    },
-                    [&] {
-                      if (options.other)
-                        ghost = add_ghost(ghost_arrays, *options.other, options.coverage,
-                                          options.triangles_of_other);
-                    },
-                    [&] {
-                      if (options.thinnest)
-                        listed = json_of_texels(surface, map, thinnest_texels(surface, map));
-                      else if (options.thickest)
-                        listed = json_of_texels(surface, map, thickest_texels(surface, map));
-                    },
-                    [&] { area = area_by_value(surface, map); }});
+  run_concurrently(
+      {[&] { map_json = add_map(arrays, surface, map, largest); },
+       [&] {
+         model =
+             add_model(model_arrays, surface, vertex_distances, options.names, largest, options.triangles);
+       },
+       [&] {
+         if (options.other)
+           ghost = add_ghost(ghost_arrays, *options.other, options.coverage, options.triangles_of_other);
+       },
+       [&] {
+         if (options.thinnest)
+           listed = json_of_texels(surface, map, thinnest_texels(surface, map));
+         else if (options.thickest)
+           listed = json_of_texels(surface, map, thickest_texels(surface, map));
+       },
+       [&] { area = area_by_value(surface, map); }});
   arrays.add(std::move(model_arrays)), arrays.add(std::move(ghost_arrays));
   page = common_json(options.up);
   page["area"] = add_area(arrays, area);
