@@ -78,7 +78,7 @@ const kPartShader = `
   }
 `;
 
-const kCoarse = 9000; // triangles, while something moves
+const kCoarse = 6000; // triangles, while something moves
 
 const kSites = ['vertex', 'edge', 'face'];
 

@@ -25,7 +25,7 @@ const kGhostShader = `
 `;
 
 const dot = (a: Vec, b: Vec) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const kCoarseGhost = 5000; // triangles, while something moves
+const kCoarseGhost = 4000; // triangles, while something moves
 
 const kNoCut: HalfSpace = { normal: [0, 0, 0], offset: 1 };
 

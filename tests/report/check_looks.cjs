@@ -305,7 +305,8 @@ const checks = {
     for (const move of [drag, slide]) {
       await pace(1000);
       const place = () => page.evaluate(() => window.sdmPage.inspect(...window.sdmPage.middle()));
-      const coarse = (await move()).pop();
+      const seen = await move();
+      const coarse = seen.find((picture) => picture.moving) ?? seen[0];
       const under = await place();
       assert(coarse.moving && coarse.width <= fine.width / 2, `${coarse.width} pixels of ${fine.width}`);
       assert(coarse.elements > 100 && coarse.elements <= Number(most), `${coarse.elements} of ${fine.elements} are drawn`);

@@ -41,7 +41,7 @@ struct Looks : ::testing::Test {
 TEST_F(Looks, MovesInCoarsePicturesWhereFineOnesTakeLong) {
   o1 = write_obj(folder / "fine.obj", ring(96));
   run({"map", o1, o2, "--write", "html", "--resolution", "256", "--tolerance", "3"});
-  EXPECT_TRUE(looks("drags", page(), {"9000"}));
+  EXPECT_TRUE(looks("drags", page(), {"6000"}));
 }
 
 TEST_F(Looks, ShowsAMapAtAllSizesAndOnPaper) {
