@@ -1,11 +1,13 @@
-// Crowds of deforming bodies: all near pairs in each frame, compared with the distances of the same pairs by
-// FCL's dynamic AABB tree. A repetition is a frame, whose separations are compared.
+// Crowds of bodies: all near pairs in each frame, compared with the distances of the same pairs by FCL's
+// dynamic AABB tree. A repetition is a frame, whose separations are compared.
 //
 //   build/dev/bench/bodies [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
 //
-// Our frame is a refit of all bodies and pairs(): separation, collision and penetration depth. FCL's frame is
-// a refit of all bodies and the separations; FCL uses one thread. The rigid bodies share ten shapes and are
-// moved by poses; FCL moves all vertices of theirs. The last case is a frame of the scene `crowd`.
+// Our frame is a refit of all bodies and separations(). FCL's frame is a refit of all bodies and the
+// separations; FCL uses one thread. The rigid bodies share ten shapes and are moved by poses; FCL moves all
+// vertices of theirs. In the cases `world`, rigid bodies touch like those of a pile, all or one of them
+// moves, and a frame is separations() and contacts(); in those named `depths`, it is penetration_depths().
+// The last case is a frame of the scene `crowd`.
 #include <sdm/multi_body_query.h>
 #include <sdm/threads.h>
 
@@ -121,7 +123,7 @@ class Crowd {
 };
 
 // FCL rounds moved vertices differently, and returns -1 for surfaces that intersect.
-bool agree(std::span<const PairProximity> ours, std::span<const FclCrowd::Pair> fcl, double max_distance) {
+bool agree(std::span<const PairSeparation> ours, std::span<const FclCrowd::Pair> fcl, double max_distance) {
   constexpr double kTolerance = 1e-6;
   auto pair = ours.begin();
   for (const FclCrowd::Pair& theirs : fcl) {
@@ -152,10 +154,11 @@ class Frames {
     if (frame < 0) return;
     ours_ms_.push_back(our_time);
     fcl_ms_.push_back(fcl_time);
-    verified_ &= agree(query.pairs(), expected, max_distance_);
+    const std::span<const PairSeparation> found = query.separations(max_distance_);
+    verified_ &= agree(found, expected, max_distance_);
     candidates_ += query.candidate_pairs();
-    pairs_ += query.pairs().size();
-    for (const PairProximity& pair : query.pairs()) colliding_ += pair.colliding;
+    pairs_ += found.size();
+    colliding_ += query.colliding().size();
   }
 
   [[nodiscard]] Outcome outcome() const {
@@ -185,7 +188,7 @@ Outcome deforming(const Trial& trial, std::size_t size, double max_distance) {
   const ThreadLimit limit(trial.threads);
   Crowd crowd(size);
   const std::vector<Mesh> meshes = crowd.meshes();
-  MultiBodyQuery query(meshes, {.max_distance = max_distance});
+  MultiBodyQuery query(meshes);
   FclCrowd fcl(meshes);
   std::vector<std::span<const Vec3>> positions(size);
   Frames frames(trial, max_distance);
@@ -196,7 +199,7 @@ Outcome deforming(const Trial& trial, std::size_t size, double max_distance) {
         frame,
         [&]() -> MultiBodyQuery& {
           query.refit(positions);
-          (void)query.pairs();
+          (void)query.separations(max_distance);
           return query;
         },
         [&] {
@@ -220,7 +223,7 @@ Outcome rigid(const Trial& trial, std::size_t size, double max_distance) {
     bodies.push_back(shapes[b % kShapes]);
     meshes.push_back(shape_meshes[b % kShapes]);
   }
-  MultiBodyQuery query(std::move(bodies), {.max_distance = max_distance});
+  MultiBodyQuery query(std::move(bodies));
   FclCrowd fcl(meshes);
   Frames frames(trial, max_distance);
   for (int frame = -Frames::kWarmUp; frame < trial.repetitions; ++frame) {
@@ -229,7 +232,7 @@ Outcome rigid(const Trial& trial, std::size_t size, double max_distance) {
         frame,
         [&]() -> MultiBodyQuery& {
           query.set_poses(poses);
-          (void)query.pairs();
+          (void)query.separations(max_distance);
           return query;
         },
         [&] {
@@ -240,6 +243,79 @@ Outcome rigid(const Trial& trial, std::size_t size, double max_distance) {
   return frames.outcome();
 }
 
+/// Bodies of ten shapes on a lattice, each turned by some angle, which shake so that neighbours touch.
+class Pile {
+ public:
+  explicit Pile(std::size_t size) : side_(static_cast<std::size_t>(std::cbrt(size) + 0.5)) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::vector<Shape> shapes;
+    for (const Mesh& mesh : Crowd(kShapes).waves()) shapes.emplace_back(mesh);
+    for (std::size_t b = 0; b < size; ++b) {
+      bodies_.push_back(shapes[b % kShapes]);
+      turns_.push_back({180 * uniform(random), 180 * uniform(random), 180 * uniform(random)});
+    }
+  }
+  [[nodiscard]] const std::vector<Shape>& bodies() const { return bodies_; }
+  [[nodiscard]] Transform pose(std::size_t body, int frame) const {
+    constexpr double kApart = 1.06, kShake = 0.01;  // widths of a ball without waves
+    const auto at = [](std::size_t i) { return kApart * static_cast<double>(i); };
+    const double phase = static_cast<double>(body) + 0.5 * frame;
+    return Transform::translation({at(body % side_) + kShake * std::sin(phase), at(body / side_ % side_),
+                                   at(body / side_ / side_) + kShake * std::cos(phase)}) *
+           Transform::rotation(turns_[body] + Vec3{0.1 * frame, 0, 0});
+  }
+
+ private:
+  static constexpr std::size_t kShapes = 10;
+
+  std::size_t side_;
+  std::vector<Shape> bodies_;
+  std::vector<Vec3> turns_;
+};
+
+// Frames of a pile of which all bodies move, or one: what is computed again equals a new world's answers.
+Outcome pile(const Trial& trial, std::size_t size, bool all, bool depths) {
+  constexpr double kNear = 0.02;
+  const ThreadLimit limit(trial.threads);
+  const Pile pile(size);
+  const MultiBodyOptions options{.contact_margin = 0.001};
+  MultiBodyQuery query(pile.bodies(), options);
+  std::vector<Transform> poses;
+  for (std::size_t b = 0; b < size; ++b) poses.push_back(pile.pose(b, 0));
+  query.set_poses(poses);
+  const auto answer = [&](MultiBodyQuery& asked) {
+    if (depths) return std::array{asked.penetration_depths().size(), std::size_t{0}};
+    std::size_t contacts = 0;
+    for (const PairContacts& pair : asked.contacts()) contacts += pair.contacts.size();
+    return std::array{asked.separations(kNear).size(), contacts};
+  };
+  std::array<std::size_t, 2> found = answer(query);
+  std::vector<double> times;
+  for (int frame = 1; frame <= trial.repetitions; ++frame) {
+    const std::size_t mover = (7919 * static_cast<std::size_t>(frame)) % size;
+    for (std::size_t b = 0; b < size; ++b)
+      if (all || b == mover) poses[b] = pile.pose(b, frame);
+    Stopwatch watch;
+    if (all)
+      query.set_poses(poses);
+    else
+      query.set_pose(mover, poses[mover]);
+    found = answer(query);
+    times.push_back(watch.lap());
+  }
+  MultiBodyQuery anew(pile.bodies(), options);
+  anew.set_poses(poses);
+  const bool verified = answer(anew) == found;
+  return {
+      .verified = verified,
+      .rows = {{"frame",
+                {{"mean_ms", mean(times)}, {"median_ms", median(times)}, {"p99_ms", quantile(times, 0.99)}}}},
+      .counts = {{"colliding", static_cast<double>(query.colliding().size())},
+                 {depths ? "depths" : "pairs", static_cast<double>(found[0])},
+                 {"contacts", static_cast<double>(found[1])}}};
+}
+
 // The scene `crowd`: each of its agents steers by its map to all others.
 Outcome agents(const Trial& trial) {
   const ThreadLimit limit(trial.threads);
@@ -247,7 +323,7 @@ Outcome agents(const Trial& trial) {
   std::vector<Mesh> meshes;
   for (const scenes::Scene::Body& body : scene.bodies())
     if (body.moves) meshes.push_back(body.mesh);
-  MultiBodyQuery query(meshes, {.max_distance = 0.5});
+  MultiBodyQuery query(meshes);
   std::vector<std::span<const Vec3>> positions(meshes.size());
   std::vector<double> times;
   std::size_t pairs = 0, colliding = 0;
@@ -257,8 +333,8 @@ Outcome agents(const Trial& trial) {
     times.push_back(watch.lap());
     for (std::size_t b = 0; b < positions.size(); ++b) positions[b] = scene.bodies()[b].mesh.positions;
     query.refit(positions);
-    pairs += query.pairs().size();
-    for (const PairProximity& pair : query.pairs()) colliding += pair.colliding;
+    pairs += query.separations(0.5).size();
+    colliding += query.colliding().size();
   }
   return {
       .verified = colliding == 0,
@@ -288,6 +364,15 @@ std::vector<Case> cases() {
   for (const std::size_t size : {100u, 1000u, 10000u})
     add("rigid", size, "rigid, pairs nearer than half a body's width", size < 10000 ? 50 : 5,
         [=](const Trial& trial) { return rigid(trial, size, kNear); });
+  for (const std::size_t size : {1000u, 10000u}) {
+    const int repetitions = size < 10000 ? 100 : 20;
+    add("world", size, "that touch: separations and contacts, all move", size < 10000 ? 50 : 5,
+        [=](const Trial& trial) { return pile(trial, size, true, false); });
+    add("world-one", size, "that touch: separations and contacts, one moves", repetitions,
+        [=](const Trial& trial) { return pile(trial, size, false, false); });
+  }
+  add("world-depths", 1000, "that touch: depths, all move", 50,
+      [=](const Trial& trial) { return pile(trial, 1000, true, true); });
   result.push_back({.name = "agents-100",
                     .description = "the scene `crowd`: maps of 100 agents to each other, and their steps",
                     .run = agents,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -30,6 +31,7 @@ struct BodiesCommand : RunOptions {
   std::string units;
   std::filesystem::path out, poses;
   sdm::MultiBodyOptions options;
+  double max_distance = std::numeric_limits<double>::infinity();
   sdm::AtlasOptions atlas{.resolution = 128};
   MapFiles map_files{.views = false};
 };
@@ -51,11 +53,11 @@ std::vector<std::filesystem::path> earlier_files(const std::filesystem::path& ou
 void write_maps(const BodiesCommand& command, const sdm::MultiBodyQuery& bodies, OutputFolder& out) {
   sdm::NearestMap nearest;
   for (std::size_t body = 0; body < bodies.size(); ++body) {
-    bodies.nearest_map(body, nearest);
+    bodies.nearest_map(body, command.max_distance, nearest);
     const std::filesystem::path folder = out.staging(fmt::to_string(body));
     std::vector<float> at_vertices;
     if (command.map_files.glb || command.map_files.views)
-      at_vertices = sdm::nearest_distances_at_vertices(bodies, body, command.options.max_distance);
+      at_vertices = sdm::nearest_distances_at_vertices(bodies, body, command.max_distance);
     const sdm::PictureOptions picture{.units = command.units};
     write_map_files(folder, command.map_files, bodies.surface(body), nearest.map, at_vertices, nullptr,
                     picture, sdm::fixed_colors(picture, sdm::statistics(bodies.surface(body), nearest.map)));
@@ -64,28 +66,30 @@ void write_maps(const BodiesCommand& command, const sdm::MultiBodyQuery& bodies,
 }
 
 nlohmann::ordered_json report_of(const BodiesCommand& command, const std::vector<Input>& inputs,
-                                 sdm::MultiBodyQuery& bodies) {
+                                 sdm::MultiBodyQuery& bodies, std::span<const PairResults> pairs) {
   nlohmann::ordered_json report;
   report["version"] = sdm::kVersion;
   report["bodies"] = nlohmann::ordered_json::array();
   for (const Input& input : inputs) report["bodies"].push_back(to_json(input));
   report["units"] = command.units;
   if (!command.out.empty()) report["resolution"] = command.atlas.resolution;
-  report["max_distance"] = command.options.max_distance;  // null: no limit
+  report["max_distance"] = command.max_distance;  // null: no limit
   report["pairs"] = nlohmann::ordered_json::array();
-  for (const sdm::PairProximity& pair : bodies.pairs()) report["pairs"].push_back(to_json(pair));
+  for (const PairResults& pair : pairs) report["pairs"].push_back(to_json(pair));
   report["candidate_pairs"] = bodies.candidate_pairs();
-  report["contacts"] = nlohmann::ordered_json::array();
-  for (const sdm::BodyContact& contact : bodies.contacts()) report["contacts"].push_back(to_json(contact));
+  report["contacts"] = to_json(bodies.contacts());
   return report;
 }
 
-std::string bodies_summary(const BodiesCommand& command, sdm::MultiBodyQuery& bodies, const Notes& notes) {
+std::string bodies_summary(const BodiesCommand& command, sdm::MultiBodyQuery& bodies,
+                           std::span<const PairResults> pairs, const Notes& notes) {
   std::string text;
   for (std::size_t body = 0; body < bodies.size(); ++body)
     text += fmt::format("  {}  {}\n", body, command.files[body]);
-  text += "\n" + table(bodies.pairs());
-  text += fmt::format("\n  contacts  {}\n", bodies.contacts().size());
+  text += "\n" + table(pairs);
+  std::size_t contacts = 0;
+  for (const sdm::PairContacts& pair : bodies.contacts()) contacts += pair.contacts.size();
+  text += fmt::format("\n  contacts  {}\n", contacts);
   if (!notes.empty()) text += "\n" + note_lines(notes, 12);
   if (!command.units.empty()) text += fmt::format("\n  lengths in {}\n", command.units);
   if (!command.out.empty())
@@ -151,7 +155,8 @@ void run(BodiesCommand command) {
   std::vector<sdm::Transform> set;
   for (std::size_t body = 0; body < bodies.size(); ++body) set.push_back(bodies.pose(body));
   const Notes notes = notes_on(inputs, set);
-  nlohmann::ordered_json report = report_of(command, inputs, bodies);
+  const std::vector<PairResults> pairs = results_of(bodies, command.max_distance);
+  nlohmann::ordered_json report = report_of(command, inputs, bodies, pairs);
   report["notes"] = notes;
   report["time_ms"] = {{"import", import_ms}, {"build", build_ms}, {"query", watch.lap()}};
 
@@ -163,7 +168,7 @@ void run(BodiesCommand command) {
       write_text(out->staging() / "report.json", to_text(report));
     });
   print(
-      command, [&] { return report; }, [&] { return bodies_summary(command, bodies, notes); });
+      command, [&] { return report; }, [&] { return bodies_summary(command, bodies, pairs, notes); });
 }
 
 void add_options(CLI::App& app, BodiesCommand& c) {
@@ -174,7 +179,7 @@ void add_options(CLI::App& app, BodiesCommand& c) {
   add_output_option(app, c.out)
       ->required(false)
       ->description("Output folder for the map of each body to all others, created if missing");
-  app.add_option("--max-distance", c.options.max_distance, "Omit pairs, and texels, farther apart than D")
+  app.add_option("--max-distance", c.max_distance, "Omit pairs, and texels, farther apart than D")
       ->check(positive_number())
       ->type_name("D");
   add_proximity_options(app, c.units, c.options.contact_margin, c.options.depth_precision);

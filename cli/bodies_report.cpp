@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "format.h"
@@ -19,31 +20,54 @@ std::string words(const sdm::BoundedLength& length) {
   return fmt::format("{} ({})", number(length.value), name(length.certainty));
 }
 
-Row row(const sdm::PairProximity& pair) {
-  return {fmt::to_string(pair.first), fmt::to_string(pair.second),
-          fmt::format("{} ({})", pair.colliding ? "yes" : "no", name(sdm::Certainty::exact)),
-          words(pair.separation), pair.penetration_depth ? words(*pair.penetration_depth) : "none: no solid"};
+Row row(const PairResults& pair) {
+  return {fmt::to_string(pair.separation.first), fmt::to_string(pair.separation.second),
+          fmt::format("{} ({})", pair.separation.colliding ? "yes" : "no", name(sdm::Certainty::exact)),
+          words(pair.separation.separation),
+          pair.penetration_depth ? words(*pair.penetration_depth) : "none: no solid"};
+}
+
+bool solid(const sdm::Sites& sites) {
+  return sites.closed() && sites.orientable();
 }
 
 }  // namespace
 
-Json to_json(const sdm::PairProximity& pair) {
-  return {{"first", pair.first},
-          {"second", pair.second},
-          {"separation", to_json(pair.separation)},
-          {"colliding", collision_json(pair.colliding)},
+std::vector<PairResults> results_of(sdm::MultiBodyQuery& bodies, double max_distance) {
+  const std::span<const sdm::PairDepth> depths = bodies.penetration_depths();
+  auto depth = depths.begin();
+  std::vector<PairResults> results;
+  for (const sdm::PairSeparation& pair : bodies.separations(max_distance)) {
+    PairResults& result = results.emplace_back(PairResults{.separation = pair});
+    if (!solid(bodies.sites(pair.first)) && !solid(bodies.sites(pair.second))) continue;
+    result.penetration_depth = pair.colliding ? (depth++)->penetration_depth
+                                              : sdm::BoundedLength{{.certainty = sdm::Certainty::exact}};
+  }
+  return results;
+}
+
+Json to_json(const PairResults& pair) {
+  return {{"first", pair.separation.first},
+          {"second", pair.separation.second},
+          {"separation", to_json(pair.separation.separation)},
+          {"colliding", collision_json(pair.separation.colliding)},
           {"penetration_depth", pair.penetration_depth ? to_json(*pair.penetration_depth) : Json(nullptr)}};
 }
 
-Json to_json(const sdm::BodyContact& contact) {
-  Json json{{"first", contact.first}, {"second", contact.second}};
-  json.update(to_json(contact.contact));
-  return json;
+Json to_json(std::span<const sdm::PairContacts> pairs) {
+  Json contacts = Json::array();
+  for (const sdm::PairContacts& pair : pairs)
+    for (const sdm::Contact& contact : pair.contacts) {
+      Json json{{"first", pair.first}, {"second", pair.second}};
+      json.update(to_json(contact));
+      contacts.push_back(std::move(json));
+    }
+  return contacts;
 }
 
-std::string table(std::span<const sdm::PairProximity> pairs) {
+std::string table(std::span<const PairResults> pairs) {
   std::vector<Row> rows{{"first", "second", "colliding", "separation", "depth"}};
-  for (const sdm::PairProximity& pair : pairs) rows.push_back(row(pair));
+  for (const PairResults& pair : pairs) rows.push_back(row(pair));
   std::array<std::size_t, std::tuple_size_v<Row>> widths{};
   for (const Row& cells : rows)
     for (std::size_t c = 0; c < cells.size(); ++c) widths[c] = std::max(widths[c], cells[c].size());

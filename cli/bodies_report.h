@@ -4,11 +4,23 @@
 #include <sdm/multi_body_query.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::PairProximity& pair);
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::BodyContact& contact);
+/// The results for a pair of bodies.
+struct PairResults {
+  sdm::PairSeparation separation{};
+  std::optional<sdm::BoundedLength> penetration_depth{};  ///< none if neither body is a solid
+};
+
+/// Those of all pairs that collide or whose separation is at most `max_distance`.
+[[nodiscard]] std::vector<PairResults> results_of(sdm::MultiBodyQuery& bodies, double max_distance);
+
+[[nodiscard]] nlohmann::ordered_json to_json(const PairResults& pair);
+/// An array of all contacts of all pairs.
+[[nodiscard]] nlohmann::ordered_json to_json(std::span<const sdm::PairContacts> pairs);
 
 /// A table with one line per pair, below a heading.
-[[nodiscard]] std::string table(std::span<const sdm::PairProximity> pairs);
+[[nodiscard]] std::string table(std::span<const PairResults> pairs);

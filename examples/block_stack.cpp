@@ -102,8 +102,10 @@ int main() {
   bodies.back() = {.centre = {0, 0, -0.5}, .inverse_mass = 0, .inverse_inertia = 0};
 
   sdm::MultiBodyQuery query(shapes, {.contact_margin = kMargin});
+  query.set_filter(kBlocks, {.fixed = true});  // the floor
   std::vector<sdm::Transform> poses(bodies.size());
-  std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint64_t>, std::array<double, 3>> impulses;
+  using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint64_t>;  // of a contact: bodies and id
+  std::map<Key, std::array<double, 3>> impulses;
   for (int frame = 1; frame <= kFrames; ++frame) {
     for (Body& body : bodies)
       if (body.inverse_mass > 0) {
@@ -114,29 +116,30 @@ int main() {
     query.set_poses(poses);
 
     std::vector<Constraint> constraints;
-    for (const auto& [first, second, c] : query.contacts()) {
+    std::vector<Key> keys;
+    for (const auto& [first, second, contacts] : query.contacts()) {
       Body &a = bodies[first], &b = bodies[second];
-      const Vec3 other = std::abs(c.normal[0]) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-      Vec3 across = cross(c.normal, other);
-      across = normalized(across);
-      const double gap = -c.depth;  // below 0: pushed out, a fifth of it in each frame
-      constraints.push_back({&a,
-                             &b,
-                             {c.normal, across, cross(c.normal, across)},
-                             c.point1 - a.centre,
-                             c.point2 - b.centre,
-                             gap > 0 ? gap / kTime : 0.2 * std::min(gap + kSlop, 0.0) / kTime});
-      const auto before = impulses.find({first, second, c.id});
-      if (before == impulses.end()) continue;
-      for (int k = 0; k < 3; ++k) constraints.back().apply(k, before->second[k]);
+      for (const sdm::Contact& c : contacts) {
+        const Vec3 other = std::abs(c.normal[0]) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+        Vec3 across = cross(c.normal, other);
+        across = normalized(across);
+        const double gap = -c.depth;  // below 0: pushed out, a fifth of it in each frame
+        constraints.push_back({&a,
+                               &b,
+                               {c.normal, across, cross(c.normal, across)},
+                               c.point1 - a.centre,
+                               c.point2 - b.centre,
+                               gap > 0 ? gap / kTime : 0.2 * std::min(gap + kSlop, 0.0) / kTime});
+        keys.emplace_back(first, second, c.id);
+        const auto before = impulses.find(keys.back());
+        if (before == impulses.end()) continue;
+        for (int k = 0; k < 3; ++k) constraints.back().apply(k, before->second[k]);
+      }
     }
     for (int i = 0; i < kIterations; ++i)
       for (Constraint& constraint : constraints) constraint.solve();
     impulses.clear();
-    for (std::size_t i = 0; i < constraints.size(); ++i) {
-      const auto& [first, second, c] = query.contacts()[i];
-      impulses[{first, second, c.id}] = constraints[i].impulse;
-    }
+    for (std::size_t i = 0; i < constraints.size(); ++i) impulses[keys[i]] = constraints[i].impulse;
     for (Body& body : bodies) body.move(kTime);
 
     if (frame % 100 != 0) continue;

@@ -30,9 +30,9 @@ sdm::Mesh disc() {
 
 int main() {
   constexpr std::size_t kDiscs = 30;
-  constexpr double kCircle = 5, kTime = 1.0 / 60, kSpeed = 1;
+  constexpr double kCircle = 5, kNear = 1, kTime = 1.0 / 60, kSpeed = 1;
   const sdm::Shape shape(disc(), {.resolution = 32});  // with an atlas, for maps
-  sdm::MultiBodyQuery query(std::vector<sdm::Shape>(kDiscs, shape), {.max_distance = 1});
+  sdm::MultiBodyQuery query(std::vector<sdm::Shape>(kDiscs, shape));
   std::vector<Vec3> places, goals;
   for (std::size_t i = 0; i < kDiscs; ++i) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(i) / kDiscs, to = angle + 2.8;
@@ -47,7 +47,7 @@ int main() {
     for (std::size_t i = 0; i < kDiscs; ++i) poses[i] = sdm::Transform::translation(places[i]);
     query.set_poses(poses);
     std::vector<double> separation(kDiscs, 1);
-    for (const sdm::PairProximity& pair : query.pairs())
+    for (const sdm::PairSeparation& pair : query.separations(kNear))
       for (const std::uint32_t i : {pair.first, pair.second})
         separation[i] = std::min(separation[i], pair.separation.value);
 
@@ -56,7 +56,7 @@ int main() {
       const double dx = goals[i][0] - places[i][0], dy = goals[i][1] - places[i][1],
                    left = std::hypot(dx, dy);
       double x = dx / std::max(left, 1.0), y = dy / std::max(left, 1.0);
-      query.nearest_map(i, nearest);
+      query.nearest_map(i, kNear, nearest);
       for (const std::uint32_t texel : shape.surface().sample_texels()) {
         if (nearest.body[texel] == sdm::kNone) continue;
         const auto& [vx, vy, vz] = nearest.map.vector[texel];

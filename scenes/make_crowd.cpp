@@ -100,8 +100,7 @@ class Crowd : public Simulation {
   explicit Crowd(std::vector<Scene::Body>& bodies)
       : figure_(figure()),
         shape_(figure_, {.resolution = kResolution}),
-        query_(all(shape_, kSight)),
-        near_(all(shape_, kNear)) {
+        query_(std::vector<Shape>(kAgents, shape_)) {
     for (std::size_t i = 0; i < kAgents; ++i) {
       const double angle = 2 * std::numbers::pi * static_cast<double>(i) / kAgents;
       Agent& agent = agents_.emplace_back();
@@ -120,14 +119,14 @@ class Crowd : public Simulation {
 
   void advance(std::vector<Scene::Body>& bodies) override {
     for (std::size_t i = 0; i < kAgents; ++i) poses_[i] = agents_[i].pose();
-    query_.set_poses(poses_), near_.set_poses(poses_);
+    query_.set_poses(poses_);
     separations_.assign(kAgents, kNear);
-    for (const PairProximity& pair : near_.pairs())
+    for (const PairSeparation& pair : query_.separations(kNear))
       for (const std::uint32_t i : {pair.first, pair.second})
         separations_[i] = std::min(separations_[i], pair.separation.value);
     parallel_for(kAgents, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        query_.nearest_map(i, maps_[i]);
+        query_.nearest_map(i, kSight, maps_[i]);
         next_[i] = advanced(agents_[i], maps_[i], separations_[i]);
       }
     });
@@ -136,9 +135,6 @@ class Crowd : public Simulation {
   }
 
  private:
-  static MultiBodyQuery all(const Shape& shape, double max_distance) {
-    return MultiBodyQuery(std::vector<Shape>(kAgents, shape), {.max_distance = max_distance});
-  }
   static Vec3 on_ground(double x, double y) { return {x, y, height_at(x, y)}; }
 
   // The agent after a time step, given the map of its body to the others and its separation from them.
@@ -215,7 +211,7 @@ class Crowd : public Simulation {
   Mesh figure_;
   double widest_ = 0;  // distance of a point of the figure from its axis
   Shape shape_;
-  MultiBodyQuery query_, near_;  // for maps, for separations
+  MultiBodyQuery query_;
   std::vector<double> separations_;
   std::vector<Agent> agents_, next_;
   std::vector<Transform> poses_;

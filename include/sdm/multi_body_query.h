@@ -17,24 +17,40 @@ namespace sdm {
 
 /// Options of a MultiBodyQuery.
 struct MultiBodyOptions {
-  /// Greater than 0, in units of the meshes. Pairs farther apart than this are not reported.
-  double max_distance = std::numeric_limits<double>::infinity();
   std::optional<double> depth_precision{};  ///< as that of ProximityOptions
   double contact_margin = 0;                ///< as that of ProximityOptions
 };
 
-/// The results of ProximityQuery for one pair: O1 is `first`, O2 is `second`.
-struct PairProximity {
+/// Which pairs a body takes part in. Two bodies are a pair if at most one of them is fixed, and each one's
+/// mask contains a group of the other.
+struct BodyFilter {
+  bool fixed = false;        ///< it may still be moved, as a door is
+  std::uint32_t groups = 1;  ///< a bit for each group that the body belongs to
+  std::uint32_t mask = ~0u;  ///< a bit for each group that it meets
+};
+
+/// Two bodies that collide.
+struct BodyPair {
+  std::uint32_t first = kNone, second = kNone;  ///< first < second
+};
+
+/// ProximityQuery::separation() and colliding() of a pair: O1 is `first`, O2 is `second`.
+struct PairSeparation {
   std::uint32_t first = kNone, second = kNone;  ///< first < second
   BoundedLength separation{};
   bool colliding = false;
-  std::optional<BoundedLength> penetration_depth{};
 };
 
-/// A contact of two bodies, as reported by ProximityQuery: O1 is `first`, O2 is `second`.
-struct BodyContact {
+/// ProximityQuery::penetration_depth() of a pair that collides: O1 is `first`, O2 is `second`.
+struct PairDepth {
   std::uint32_t first = kNone, second = kNone;  ///< first < second
-  Contact contact{};
+  BoundedLength penetration_depth{};
+};
+
+/// ProximityQuery::contacts() of a pair: O1 is `first`, O2 is `second`.
+struct PairContacts {
+  std::uint32_t first = kNone, second = kNone;  ///< first < second
+  std::span<const Contact> contacts{};          ///< at least one
 };
 
 /// The distance map of one body to all others.
@@ -50,12 +66,15 @@ struct NearestMap {
 /// Proximity of bodies that move and deform, each against all others, for simulation loops. A body is a shape
 /// in a pose, as in ProximityQuery; many bodies can share a shape.
 ///
+/// Each call computes what it returns, and no more, for the pairs of which a body has moved since the last
+/// call. Two bodies that did not move keep their answers, which cost a pass over the list of near pairs.
+///
 /// Threads: an object is used by one thread at a time, but for const functions, which may run concurrently;
 /// objects that share shapes may be used concurrently.
 class SDM_API MultiBodyQuery {
  public:
   /// Builds the sites of every body; any number of bodies is allowed, including 0. Throws sdm::Error as Sites
-  /// does, naming the body, and for a maximum distance that is not positive. Cost: that of all sites.
+  /// does, naming the body, and for options that are out of range. Cost: that of all sites.
   explicit MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options = {});
   /// The same for shapes that are there already, or that have an atlas, for maps. Cost: constant for each.
   explicit MultiBodyQuery(std::vector<Shape> shapes, const MultiBodyOptions& options = {});
@@ -67,7 +86,8 @@ class SDM_API MultiBodyQuery {
   [[nodiscard]] std::size_t size() const;
 
   /// Sets the pose of a body, as ProximityQuery::set_pose does. Throws sdm::Error, and changes nothing, also
-  /// for a body that does not exist. Cost: constant.
+  /// for a body that does not exist. A body that is given the pose that it was given last, to the bit,
+  /// does not move. Cost: constant.
   void set_pose(std::size_t body, const Transform& pose);
   /// The same for all bodies: one pose per body.
   void set_poses(std::span<const Transform> poses);
@@ -82,30 +102,47 @@ class SDM_API MultiBodyQuery {
   /// The same for all bodies, on all cores: one entry per body; an empty one leaves the body unchanged.
   void refit(std::span<const std::span<const Vec3>> positions);
 
-  /// Returns all pairs that collide or whose separation is at most max_distance. Sorted by first, then by
-  /// second body. The results of a pair are those of ProximityQuery. Computed by the first call after a body
-  /// has moved, and valid until one moves again. Throws sdm::Error if there is not enough memory, as
-  /// contacts() does; the next call then computes them. Neither this nor refit() allocates memory once the
-  /// bodies have been through similar poses, unless a solid intersects itself. Cost: a sweep over the boxes
-  /// of the bodies, then that of ProximityQuery for each candidate pair, the pairs distributed over all
-  /// cores.
-  [[nodiscard]] std::span<const PairProximity> pairs();
-  /// Returns the contacts of all pairs, those of each pair as by ProximityQuery::contacts, sorted by first,
-  /// then by second body. Computed by the first call after a body has moved, and valid until one moves again.
-  /// Cost: a sweep over the boxes of the bodies, then that of ProximityQuery::contacts for each pair whose
-  /// boxes are within the margin.
-  [[nodiscard]] std::span<const BodyContact> contacts();
-  /// The number of pairs whose boxes were within max_distance of each other when pairs() was last computed.
+  /// Sets which pairs a body takes part in. Throws sdm::Error for a body that does not exist. Cost: that of
+  /// the next sweep over all bodies.
+  void set_filter(std::size_t body, const BodyFilter& filter);
+  /// The filter of a body. Throws sdm::Error for a body that does not exist.
+  [[nodiscard]] BodyFilter filter(std::size_t body) const;
+  /// Leaves out a pair, as of two links that a joint connects. Throws sdm::Error for a body that does not
+  /// exist, and for a body and itself. Cost: linear in the pairs left out, and that of the next sweep.
+  void exclude_pair(std::size_t a, std::size_t b);
+  /// Takes that back.
+  void include_pair(std::size_t a, std::size_t b);
+
+  // The answers of a pair are those of ProximityQuery, to the bit. Lists are sorted by first, then by second
+  // body, and valid until a body moves or the same call is made again. If a call throws, as there is not
+  // enough memory, the next one computes the answers. Neither the calls nor refit() allocate memory once the
+  // bodies have been through similar poses, unless a solid intersects itself. Cost of each: the pairs near
+  // the bodies that have moved, by a sweep over the boxes if many have, and of these pairs that of the call
+  // of ProximityQuery, the pairs distributed over all cores.
+
+  /// Returns the pairs that collide.
+  [[nodiscard]] std::span<const BodyPair> colliding();
+  /// Returns the pairs that collide or whose separation is at most `max_distance`, > 0. Throws sdm::Error for
+  /// any other.
+  [[nodiscard]] std::span<const PairSeparation> separations(
+      double max_distance = std::numeric_limits<double>::infinity());
+  /// Returns the depths of the pairs that collide and of which one is a solid.
+  [[nodiscard]] std::span<const PairDepth> penetration_depths();
+  /// Returns the pairs that have contacts, within MultiBodyOptions::contact_margin.
+  [[nodiscard]] std::span<const PairContacts> contacts();
+  /// The number of pairs whose boxes were within `max_distance` of each other in the last call of
+  /// separations().
   [[nodiscard]] std::size_t candidate_pairs() const;
 
-  /// Returns the distances from the texels of a body to the nearest other body; texels with none within
-  /// max_distance have no value. Throws sdm::Error for a body that does not exist or has no atlas, or if
-  /// there is not enough memory. Cost: that of compute_map to each body whose box is nearer than the
-  /// distances found so far, all cores.
-  [[nodiscard]] NearestMap nearest_map(std::size_t body) const;
+  /// Returns the distances from the texels of a body to the nearest other body, whatever their filters;
+  /// texels with none within `max_distance`, > 0, have no value. Throws sdm::Error for any other distance,
+  /// for a body that does not exist or has no atlas, or if there is not enough memory. Cost: that of
+  /// compute_map to each body whose box is nearer than the distances found so far, all cores.
+  [[nodiscard]] NearestMap nearest_map(std::size_t body,
+                                       double max_distance = std::numeric_limits<double>::infinity()) const;
   /// The same, into `nearest`, whose memory is reused where possible. If it throws, the values of `nearest`
   /// are unspecified.
-  void nearest_map(std::size_t body, NearestMap& nearest) const;
+  void nearest_map(std::size_t body, double max_distance, NearestMap& nearest) const;
 
   /// The atlas and the sites of a body, in the frame of its mesh, without the pose. Both throw sdm::Error for
   /// a body that does not exist, surface() also for one without an atlas.

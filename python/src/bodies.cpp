@@ -18,9 +18,14 @@ struct PyMultiBodyQuery {
   Access access;
 };
 
-struct PyPairs {
-  std::vector<PairProximity> pairs;
-  LazyArray bodies, separation, witness, colliding, depth, depth_bounds;
+struct PySeparations {
+  std::vector<PairSeparation> pairs;
+  LazyArray bodies, separation, witness, colliding;
+};
+
+struct PyPenetrationDepths {
+  std::vector<PairDepth> pairs;
+  LazyArray bodies, depth, depth_bounds;
 };
 
 struct PyNearestMap {
@@ -39,27 +44,27 @@ std::array<double, 2> bounds_of(const BoundedLength& length) {
   return {length.lower, length.upper};
 }
 
-void bind_pairs(nb::module_& module) {
-  using P = PyPairs;
-  const auto pair_column = [](LazyArray P::*array, auto get) {
-    return [array, get](P& self) { return (self.*array).get([&] { return column(self.pairs, get); }); };
-  };
-  nb::class_<P>(module, "Pairs",
-                "The pairs of near bodies as arrays with one row each, sorted by first, then second body.")
-      .def_prop_ro("bodies",
-                   pair_column(&P::bodies,
-                               [](const PairProximity& p) {
-                                 return std::array{p.first, p.second};
-                               }),
+template <class Pairs, class Get>
+auto pair_column(LazyArray Pairs::*array, Get get) {
+  return [array, get](Pairs& self) { return (self.*array).get([&] { return column(self.pairs, get); }); };
+}
+
+constexpr auto kBodiesOfPair = [](const auto& pair) { return std::array{pair.first, pair.second}; };
+
+void bind_separations(nb::module_& module) {
+  using P = PySeparations;
+  nb::class_<P>(module, "Separations",
+                "The near pairs of bodies as arrays with one row each, sorted by first, then second body.")
+      .def_prop_ro("bodies", pair_column(&P::bodies, kBodiesOfPair),
                    nb::sig("def bodies(self) -> numpy.ndarray"),
                    "The indices of O1 and O2, (n, 2) uint32, the smaller one first.")
       .def_prop_ro("separation",
-                   pair_column(&P::separation, [](const PairProximity& p) { return p.separation.value; }),
+                   pair_column(&P::separation, [](const PairSeparation& p) { return p.separation.value; }),
                    nb::sig("def separation(self) -> numpy.ndarray"),
                    "The smallest distances of their surfaces, (n,) float64; exact.")
       .def_prop_ro("witness",
                    pair_column(&P::witness,
-                               [](const PairProximity& p) {
+                               [](const PairSeparation& p) {
                                  constexpr Vec3 none{kNan, kNan, kNan};
                                  return p.separation.witness.value_or(std::array{none, none});
                                }),
@@ -76,23 +81,31 @@ void bind_pairs(nb::module_& module) {
             });
           },
           nb::sig("def colliding(self) -> numpy.ndarray"), "Whether they collide, (n,) bool; exact.")
-      .def_prop_ro(
-          "penetration_depth",
-          pair_column(
-              &P::depth,
-              [](const PairProximity& p) { return p.penetration_depth ? p.penetration_depth->value : kNan; }),
-          nb::sig("def penetration_depth(self) -> numpy.ndarray"),
-          "The penetration depths, (n,) float64: 0 if they do not collide, NaN if neither is a solid.")
+      .def("__len__", [](const P& self) { return self.pairs.size(); })
+      .def("__repr__",
+           [](const P& self) { return nb::str("sdm.Separations({})").format(self.pairs.size()); });
+}
+
+void bind_penetration_depths(nb::module_& module) {
+  using P = PyPenetrationDepths;
+  nb::class_<P>(module, "PenetrationDepths",
+                "The pairs of bodies that collide, and of which one is a solid, as arrays with one row each, "
+                "sorted by first, then second body.")
+      .def_prop_ro("bodies", pair_column(&P::bodies, kBodiesOfPair),
+                   nb::sig("def bodies(self) -> numpy.ndarray"),
+                   "The indices of O1 and O2, (n, 2) uint32, the smaller one first.")
+      .def_prop_ro("penetration_depth",
+                   pair_column(&P::depth, [](const PairDepth& p) { return p.penetration_depth.value; }),
+                   nb::sig("def penetration_depth(self) -> numpy.ndarray"),
+                   "The penetration depths, (n,) float64; within their bounds.")
       .def_prop_ro(
           "penetration_depth_bounds",
-          pair_column(&P::depth_bounds,
-                      [](const PairProximity& p) {
-                        return p.penetration_depth ? bounds_of(*p.penetration_depth) : std::array{kNan, kNan};
-                      }),
+          pair_column(&P::depth_bounds, [](const PairDepth& p) { return bounds_of(p.penetration_depth); }),
           nb::sig("def penetration_depth_bounds(self) -> numpy.ndarray"),
           "Lower and upper bounds on the penetration depths, (n, 2) float64.")
       .def("__len__", [](const P& self) { return self.pairs.size(); })
-      .def("__repr__", [](const P& self) { return nb::str("sdm.Pairs({})").format(self.pairs.size()); });
+      .def("__repr__",
+           [](const P& self) { return nb::str("sdm.PenetrationDepths({})").format(self.pairs.size()); });
 }
 
 void bind_nearest_map(nb::module_& module) {
@@ -178,19 +191,15 @@ void bind_motion(nb::class_<PyMultiBodyQuery>& query) {
   query
       .def(
           "__init__",
-          [](PyMultiBodyQuery* self, nb::handle bodies, double max_distance,
-             std::optional<double> depth_precision, double contact_margin) {
-            new (self) PyMultiBodyQuery{query_of(bodies, {.max_distance = max_distance,
-                                                          .depth_precision = depth_precision,
-                                                          .contact_margin = contact_margin}),
-                                        {}};
+          [](PyMultiBodyQuery* self, nb::handle bodies, std::optional<double> depth_precision,
+             double contact_margin) {
+            new (self) PyMultiBodyQuery{
+                query_of(bodies, {.depth_precision = depth_precision, .contact_margin = contact_margin}), {}};
           },
-          nb::arg("bodies").none(), nb::kw_only(),
-          nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
-          nb::arg("depth_precision") = nb::none(), nb::arg("contact_margin") = 0.0,
-          nb::sig(
-              "def __init__(self, bodies: collections.abc.Iterable[object], *, max_distance: float = ..., "
-              "depth_precision: float | None = None, contact_margin: float = 0.0) -> None"))
+          nb::arg("bodies").none(), nb::kw_only(), nb::arg("depth_precision") = nb::none(),
+          nb::arg("contact_margin") = 0.0,
+          nb::sig("def __init__(self, bodies: collections.abc.Iterable[object], *, depth_precision: float | "
+                  "None = None, contact_margin: float = 0.0) -> None"))
       .def("__len__", [](const PyMultiBodyQuery& self) { return self.query.size(); })
       .def(
           "set_pose",
@@ -235,21 +244,84 @@ and changes nothing, for a body that does not exist or whose Shape is shared, an
 or coordinates that are not finite. Cost: linear.)");
 }
 
+void bind_filters(nb::class_<PyMultiBodyQuery>& query) {
+  query
+      .def(
+          "set_filter",
+          [](PyMultiBodyQuery& self, std::int64_t body, bool fixed, std::uint32_t groups,
+             std::uint32_t mask) {
+            const auto lock = self.access.change();
+            self.query.set_filter(index_of(body), {.fixed = fixed, .groups = groups, .mask = mask});
+          },
+          nb::arg("body"), nb::kw_only(), nb::arg("fixed") = false, nb::arg("groups") = 1u,
+          nb::arg("mask") = ~0u,
+          nb::sig("def set_filter(self, body: int, *, fixed: bool = False, groups: int = 1, mask: int = "
+                  "0xFFFFFFFF) -> None"),
+          R"(Sets which pairs a body takes part in: two bodies are a pair if at most one of them is fixed, and
+each one's mask contains a group of the other; both have a bit for each group. A fixed body may still be
+moved.)")
+      .def(
+          "exclude_pair",
+          [](PyMultiBodyQuery& self, std::int64_t a, std::int64_t b) {
+            const auto lock = self.access.change();
+            self.query.exclude_pair(index_of(a), index_of(b));
+          },
+          nb::arg("a"), nb::arg("b"), nb::sig("def exclude_pair(self, a: int, b: int) -> None"),
+          "Leaves out a pair, as of two links that a joint connects.")
+      .def(
+          "include_pair",
+          [](PyMultiBodyQuery& self, std::int64_t a, std::int64_t b) {
+            const auto lock = self.access.change();
+            self.query.include_pair(index_of(a), index_of(b));
+          },
+          nb::arg("a"), nb::arg("b"), nb::sig("def include_pair(self, a: int, b: int) -> None"),
+          "Takes exclude_pair() back.");
+}
+
 void bind_answers(nb::class_<PyMultiBodyQuery>& query) {
   query
       .def(
-          "pairs",
+          "colliding",
           [](PyMultiBodyQuery& self) {
             const auto lock = self.access.change();
-            auto result = std::make_unique<PyPairs>();
+            std::vector<BodyPair> pairs;
             run_sized(faces_of(self.query), [&] {
-              const auto pairs = self.query.pairs();
+              const auto found = self.query.colliding();
+              pairs.assign(found.begin(), found.end());
+            });
+            return column(pairs, kBodiesOfPair);
+          },
+          nb::sig("def colliding(self) -> numpy.ndarray"),
+          "Returns the pairs that collide, (n, 2) uint32, the smaller index first; exact.")
+      .def(
+          "separations",
+          [](PyMultiBodyQuery& self, double max_distance) {
+            const auto lock = self.access.change();
+            auto result = std::make_unique<PySeparations>();
+            run_sized(faces_of(self.query), [&] {
+              const auto pairs = self.query.separations(max_distance);
+              result->pairs.assign(pairs.begin(), pairs.end());
+            });
+            return result.release();
+          },
+          nb::rv_policy::take_ownership, nb::kw_only(),
+          nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
+          nb::sig("def separations(self, *, max_distance: float = ...) -> Separations"),
+          R"(Returns the pairs that collide or whose separation is at most max_distance, > 0, in units of the
+meshes.)")
+      .def(
+          "penetration_depths",
+          [](PyMultiBodyQuery& self) {
+            const auto lock = self.access.change();
+            auto result = std::make_unique<PyPenetrationDepths>();
+            run_sized(faces_of(self.query), [&] {
+              const auto pairs = self.query.penetration_depths();
               result->pairs.assign(pairs.begin(), pairs.end());
             });
             return result.release();
           },
           nb::rv_policy::take_ownership,
-          "Returns all pairs that collide or whose separation is at most max_distance.")
+          "Returns the depths of the pairs that collide and of which one is a solid.")
       .def(
           "contacts",
           [](PyMultiBodyQuery& self) {
@@ -257,9 +329,9 @@ void bind_answers(nb::class_<PyMultiBodyQuery>& query) {
             auto result = std::make_unique<PyContacts>();
             result->has_bodies = true;
             run_sized(faces_of(self.query), [&] {
-              for (const BodyContact& contact : self.query.contacts()) {
-                result->contacts.push_back(contact.contact);
-                result->bodies.push_back({contact.first, contact.second});
+              for (const PairContacts& pair : self.query.contacts()) {
+                result->contacts.insert(result->contacts.end(), pair.contacts.begin(), pair.contacts.end());
+                result->bodies.insert(result->bodies.end(), pair.contacts.size(), {pair.first, pair.second});
               }
             });
             return result.release();
@@ -272,15 +344,18 @@ void bind_nearest(nb::class_<PyMultiBodyQuery>& query) {
   query
       .def(
           "nearest_map",
-          [](const PyMultiBodyQuery& self, std::int64_t body) {
+          [](const PyMultiBodyQuery& self, std::int64_t body, double max_distance) {
             const auto lock = self.access.use();
             auto result = std::make_unique<PyNearestMap>();
-            run_sized(faces_of(self.query), [&] { self.query.nearest_map(index_of(body), result->nearest); });
+            run_sized(faces_of(self.query),
+                      [&] { self.query.nearest_map(index_of(body), max_distance, result->nearest); });
             return result.release();
           },
-          nb::rv_policy::take_ownership, nb::arg("body"),
+          nb::rv_policy::take_ownership, nb::arg("body"), nb::kw_only(),
+          nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
+          nb::sig("def nearest_map(self, body: int, *, max_distance: float = ...) -> NearestMap"),
           R"(Returns the distances from the texels of a body to the nearest other body; texels with none
-within max_distance have no value. Raises Error for a body that does not exist, or whose Shape has no
+within max_distance, > 0, have no value. Raises Error for a body that does not exist, or whose Shape has no
 resolution.)")
       .def(
           "distances_at_vertices",
@@ -306,26 +381,28 @@ signed as in nearest_map(); NaN where none is within max_distance.)")
 }  // namespace
 
 void bind_bodies(nb::module_& module) {
-  bind_pairs(module);
+  bind_separations(module);
+  bind_penetration_depths(module);
   bind_nearest_map(module);
   nb::class_<PyMultiBodyQuery> query(module, "MultiBodyQuery",
                                      R"(Proximity of bodies that move and deform, each against all others.
 
 bodies: each any form of a mesh (see Mesh), or a Shape, which many bodies can share.
-max_distance: > 0, in units of the meshes. Pairs farther apart are not reported.
 depth_precision, contact_margin: as of ProximityQuery.
 
-A call raises Error while another thread uses the object.
+Each call computes what it returns, and no more, for the pairs of which a body has moved since the last call:
+the answers of ProximityQuery, to the bit. A call raises Error while another thread uses the object.
 
 >>> shape = sdm.Shape(box)
->>> query = sdm.MultiBodyQuery([shape] * 3, max_distance=1.5)
+>>> query = sdm.MultiBodyQuery([shape] * 3)
 >>> poses = np.tile(np.eye(4), (3, 1, 1))
 >>> poses[:, 0, 3] = [0, 2, 4]
 >>> query.set_poses(poses)
->>> query.pairs().bodies
+>>> query.separations(max_distance=1.5).bodies
 array([[0, 1],
        [1, 2]], dtype=uint32))");
   bind_motion(query);
+  bind_filters(query);
   bind_answers(query);
   bind_nearest(query);
 }

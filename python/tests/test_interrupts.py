@@ -48,8 +48,8 @@ CALLS = {
         "query.contacts()",
     ),
     "bodies": (
-        "query = sdm.MultiBodyQuery([rings(8, 60), (ring(60)[0] + 0.1, ring(60)[1])], max_distance=0.2)",
-        "query.pairs()",
+        "query = sdm.MultiBodyQuery([rings(8, 60), (ring(60)[0] + 0.1, ring(60)[1])])",
+        "query.penetration_depths()",
     ),
     "covering_radius": (
         "surface = sdm.Surface(ring(100), resolution=1024)",

@@ -76,23 +76,39 @@ def test_refit_and_shared_shapes():
 
 def test_many_bodies():
     shape = sdm.Shape(meshes.box(), resolution=64)
-    query = sdm.MultiBodyQuery([shape, shape, meshes.sphere(radius=0.5), shape], max_distance=1.2)
+    query = sdm.MultiBodyQuery([shape, shape, meshes.sphere(radius=0.5), shape])
     assert len(query) == 4
     query.set_poses([shift(0, 0, 0), shift(2, 0, 0), shift(4, 0.5, 0.5), shift(2.4, 0.5, 0)])
-    pairs = query.pairs()
+    pairs = query.separations(max_distance=1.2)
     assert pairs.bodies.tolist() == [[0, 1], [1, 2], [1, 3], [2, 3]]
     np.testing.assert_allclose(pairs.separation, [1, 0.5, 0, 0.1], atol=1e-2)
     assert pairs.colliding.tolist() == [False, False, True, False] and pairs.witness.shape == (4, 2, 3)
     single = sdm.ProximityQuery(shape, shape)
     single.set_pose(0, query.pose(1))
     single.set_pose(1, query.pose(3))
-    assert pairs.penetration_depth[2] == single.penetration_depth().value
-    bounds = pairs.penetration_depth_bounds
-    assert (bounds[:, 0] <= pairs.penetration_depth).all() and (pairs.penetration_depth <= bounds[:, 1]).all()
+    assert query.colliding().tolist() == [[1, 3]]
+    depths = query.penetration_depths()
+    assert depths.bodies.tolist() == [[1, 3]] and depths.penetration_depth[0] == single.penetration_depth().value
+    bounds = depths.penetration_depth_bounds
+    assert (bounds[:, 0] <= depths.penetration_depth).all() and (depths.penetration_depth <= bounds[:, 1]).all()
     contacts = query.contacts()
     assert contacts.bodies.shape == (len(contacts), 2) and [1, 3] in contacts.bodies.tolist()
 
-    nearest = query.nearest_map(0)
+    query.exclude_pair(3, 1)
+    assert len(query.colliding()) == len(query.contacts()) == 0
+    query.include_pair(1, 3)
+    query.set_filter(1, groups=4)
+    query.set_filter(3, mask=3)
+    assert len(query.colliding()) == 0
+    query.set_filter(3, mask=4)
+    assert query.colliding().tolist() == [[1, 3]] and query.separations(max_distance=1.2).bodies.tolist() == [[0, 1], [1, 2], [1, 3]]
+    query.set_filter(1, fixed=True)
+    query.set_filter(3, fixed=True)
+    assert len(query.colliding()) == 0
+    query.set_filter(1)
+    query.set_filter(3)
+
+    nearest = query.nearest_map(0, max_distance=1.2)
     assert nearest.distance.shape == nearest.body.shape == nearest.valid.shape == (64, 64)
     assert nearest.vector.shape == (64, 64, 3)
     assert set(np.unique(nearest.body)) == {1, sdm.NONE}
@@ -102,15 +118,16 @@ def test_many_bodies():
     for bad in (lambda: query.set_pose(4, np.eye(4)), lambda: query.set_poses([np.eye(4)]), lambda: query.nearest_map(2),
                 lambda: query.nearest_map(9), lambda: query.refit(0, meshes.box()[0]), lambda: query.refit(2, [[0, 0, 0]]), lambda: query.refit(2, None), lambda: query.refit(2, np.empty((0, 3))),
                 lambda: query.pose(-1),
-                lambda: sdm.MultiBodyQuery([shape], max_distance=-1)):  # fmt: skip
+                lambda: query.separations(max_distance=0), lambda: query.nearest_map(0, max_distance=-1), lambda: query.set_filter(4),
+                lambda: query.exclude_pair(0, 0), lambda: query.include_pair(0, -1)):  # fmt: skip
         with pytest.raises(sdm.Error):
             bad()
     with pytest.raises(sdm.Error, match="body 1"):
         sdm.MultiBodyQuery([shape, (meshes.box()[0], meshes.box()[1] + 1)])
     empty = sdm.MultiBodyQuery([])
-    assert len(empty) == 0 and empty.pairs().bodies.shape == (0, 2) and len(empty.contacts()) == 0
+    assert len(empty) == 0 and empty.separations().bodies.shape == (0, 2) and len(empty.contacts()) == 0
     query.refit(2, meshes.sphere(radius=0.25)[0])
-    assert query.pairs().separation[1] == pytest.approx(0.75, abs=1e-2)
+    assert query.separations(max_distance=1.2).separation[1] == pytest.approx(0.75, abs=1e-2)
 
 
 def test_self_proximity():
@@ -180,7 +197,7 @@ def use():
     arrays += [m.distance, m.position, m.valid, m.face, m.at_vertices(), m.bounds, m.statistics()]
     shape = sdm.Shape(meshes.box(), resolution=64)
     query = sdm.MultiBodyQuery([shape, shape], contact_margin=1)
-    arrays += [query.pairs().separation, query.contacts().point1, query.nearest_map(0).distance]
+    arrays += [query.separations().separation, query.penetration_depths().bodies, query.contacts().point1, query.nearest_map(0).distance]
     for wrong in (lambda: sdm.Sites(3), lambda: sdm.map(1, 2), lambda: sites.closest_points(3)):
         try:
             wrong()

@@ -25,7 +25,7 @@ struct ProximityQuery::Impl {
     for (const shape::PosedBody& body : bodies) body.body().require_intact();
   }
   // The faces that were closest before are most likely near the closest ones now.
-  void begin() { answers.begin(bodies[0], bodies[1], answers.closest_faces()); }
+  void begin() { answers.begin(bodies[0], bodies[1], {.closest_faces = answers.known().closest_faces}); }
   void begin_anew() { answers.begin(bodies[0], bodies[1]); }
 };
 

@@ -23,7 +23,7 @@ class MovingPair {
 
   void set_time(double time) {
     for (int body = 0; body < 2; ++body) bodies_[body].set_pose(motions_[body]->at(time));
-    answers_.begin(bodies_[0], bodies_[1], answers_.closest_faces());
+    answers_.begin(bodies_[0], bodies_[1], {.closest_faces = answers_.known().closest_faces});
   }
   double separation() { return answers_.separation().value; }
   bool colliding() { return answers_.colliding(); }
@@ -31,7 +31,8 @@ class MovingPair {
   /// What there is to know at this time.
   TimeOfContact found(double time) {
     const BoundedLength& separation = answers_.separation();
-    TimeOfContact found{.time = time, .separation = separation.value, .faces = answers_.closest_faces()};
+    TimeOfContact found{
+        .time = time, .separation = separation.value, .faces = answers_.known().closest_faces};
     found.witness = *separation.witness;
     if (separation.value > 0) found.normal = normalized(found.witness[0] - found.witness[1]);
     return found;

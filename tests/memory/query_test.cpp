@@ -105,12 +105,11 @@ std::unique_ptr<MultiBodyQuery> bodies() {
   const AtlasOptions atlas{.resolution = 16};
   std::vector<Shape> shapes{Shape(first_mesh(), atlas), Shape(second_mesh()),
                             Shape(moved(cube(0.3), {3, 0, 0}))};
-  return std::make_unique<MultiBodyQuery>(std::move(shapes),
-                                          MultiBodyOptions{.max_distance = 4, .contact_margin = 0.1});
+  return std::make_unique<MultiBodyQuery>(std::move(shapes), MultiBodyOptions{.contact_margin = 0.1});
 }
 std::unique_ptr<MultiBodyQuery> bodies_with_answers() {
   auto query = bodies();
-  (void)query->pairs();
+  (void)query->separations(4), (void)query->penetration_depths();
   (void)query->contacts();
   return query;
 }
@@ -119,24 +118,32 @@ const Calls<MultiBodyQuery> kBodies{
     [](MultiBodyQuery& q) { return numbers_of(q.size()); },
     [](MultiBodyQuery& q) {
       Numbers numbers;
-      for (const PairProximity& pair : q.pairs()) {
+      for (const PairSeparation& pair : q.separations(4))
         numbers.add(pair.first, pair.second, pair.colliding, pair.separation.value);
-        numbers.add(pair.penetration_depth.has_value());
-        if (pair.penetration_depth) numbers.add(pair.penetration_depth->lower, pair.penetration_depth->upper);
-      }
       numbers.add(q.candidate_pairs());
       return numbers;
     },
     [](MultiBodyQuery& q) {
       Numbers numbers;
-      for (const BodyContact& contact : q.contacts()) {
-        numbers.add(contact.first, contact.second);
-        add_contact(numbers, contact.contact);
+      for (const PairDepth& pair : q.penetration_depths())
+        numbers.add(pair.first, pair.second, pair.penetration_depth.lower, pair.penetration_depth.upper);
+      return numbers;
+    },
+    [](MultiBodyQuery& q) {
+      Numbers numbers;
+      for (const BodyPair& pair : q.colliding()) numbers.add(pair.first, pair.second);
+      return numbers;
+    },
+    [](MultiBodyQuery& q) {
+      Numbers numbers;
+      for (const PairContacts& pair : q.contacts()) {
+        numbers.add(pair.first, pair.second);
+        for (const Contact& contact : pair.contacts) add_contact(numbers, contact);
       }
       return numbers;
     },
     [](MultiBodyQuery& q) {
-      const NearestMap nearest = q.nearest_map(0);
+      const NearestMap nearest = q.nearest_map(0, 4);
       return numbers_of(nearest.body, nearest.map.distance);
     },
     [](MultiBodyQuery& q) { return numbers_of(nearest_distances_at_vertices(q, 1, 9)); },

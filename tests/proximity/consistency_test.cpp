@@ -211,14 +211,15 @@ void check(const Body& a, const Body& b) {
   }
 
   MultiBodyQuery bodies(with_atlases(std::vector{a.mesh, b.mesh}, kResolution));
-  ASSERT_EQ(bodies.pairs().size(), 1u);
-  const PairProximity& pair = bodies.pairs()[0];
+  ASSERT_EQ(bodies.separations().size(), 1u);
+  const PairSeparation& pair = bodies.separations()[0];
   ASSERT_EQ(pair.colliding, collide);
   ASSERT_EQ(pair.separation.value, separation.value);
-  ASSERT_EQ(pair.penetration_depth.has_value(), depth.has_value());
-  if (depth) {
-    ASSERT_EQ(pair.penetration_depth->value, depth->value);
-    ASSERT_EQ(pair.penetration_depth->upper, depth->upper);
+  ASSERT_EQ(bodies.colliding().size(), collide ? 1u : 0u);
+  ASSERT_EQ(bodies.penetration_depths().size(), collide && depth ? 1u : 0u);
+  for (const PairDepth& pair_depth : bodies.penetration_depths()) {
+    ASSERT_EQ(pair_depth.penetration_depth.value, depth->value);
+    ASSERT_EQ(pair_depth.penetration_depth.upper, depth->upper);
   }
   expect_nearest_maps(a, b, bodies);
   expect_self_proximity(a, b, intersect, separation.value, tolerance);

@@ -83,10 +83,6 @@ std::vector<Mesh> crowd() {
           moved(sphere(2), {40, 3, 2})};
 }
 
-MultiBodyOptions options(double max_distance = kAny) {
-  return {.max_distance = max_distance};
-}
-
 void expect_same(const BoundedLength& a, const BoundedLength& b) {
   EXPECT_EQ(a.value, b.value);
   EXPECT_EQ(a.certainty, b.certainty);
@@ -95,46 +91,77 @@ void expect_same(const BoundedLength& a, const BoundedLength& b) {
   EXPECT_EQ(a.witness, b.witness);
 }
 
-void expect_same(const PairProximity& a, const PairProximity& b) {
+/// What ProximityQuery and MultiBodyQuery say of a pair; no depth where the pair does not collide.
+struct PairAnswer {
+  std::uint32_t first, second;
+  BoundedLength separation;
+  bool colliding;
+  std::optional<BoundedLength> penetration_depth;
+};
+
+/// Of all pairs within a distance; fails if the calls contradict each other.
+std::vector<PairAnswer> answers_of(MultiBodyQuery& bodies, double max_distance) {
+  const auto of = [](const auto& pair) { return std::pair(pair.first, pair.second); };
+  std::vector<PairAnswer> answers;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> colliding, listed;
+  for (const PairSeparation& pair : bodies.separations(max_distance)) {
+    answers.push_back({pair.first, pair.second, pair.separation, pair.colliding, {}});
+    if (pair.colliding) colliding.push_back(of(pair));
+  }
+  for (const BodyPair& pair : bodies.colliding()) listed.push_back(of(pair));
+  EXPECT_EQ(colliding, listed);
+  for (const PairDepth& pair : bodies.penetration_depths()) {
+    const auto same = std::ranges::find_if(answers, [&](const PairAnswer& a) { return of(a) == of(pair); });
+    if (same == answers.end() || !same->colliding) {
+      ADD_FAILURE() << pair.first << ' ' << pair.second << " have a depth, but do not collide";
+      continue;
+    }
+    same->penetration_depth = pair.penetration_depth;
+  }
+  return answers;
+}
+
+void expect_same(const PairAnswer& a, const PairAnswer& b) {
   expect_same(a.separation, b.separation);
   EXPECT_EQ(a.colliding, b.colliding);
   ASSERT_EQ(a.penetration_depth.has_value(), b.penetration_depth.has_value());
   if (a.penetration_depth) expect_same(*a.penetration_depth, *b.penetration_depth);
 }
 
-PairProximity by_query(const std::vector<Mesh>& meshes, std::uint32_t a, std::uint32_t b) {
+PairAnswer by_query(const std::vector<Mesh>& meshes, std::uint32_t a, std::uint32_t b) {
   ProximityQuery query(meshes[a], meshes[b]);
-  return {a, b, query.separation(), query.colliding(), query.penetration_depth()};
+  return {a, b, query.separation(), query.colliding(),
+          query.colliding() ? query.penetration_depth() : std::nullopt};
 }
 
 TEST(MultiBodyQuery, AgreesWithPairQueries) {
   const std::vector<Mesh> meshes = crowd();
-  std::vector<PairProximity> expected;
+  std::vector<PairAnswer> expected;
   for (std::uint32_t a = 0; a < meshes.size(); ++a)
     for (std::uint32_t b = a + 1; b < meshes.size(); ++b) expected.push_back(by_query(meshes, a, b));
   std::size_t colliding = 0;
   for (const double max_distance : {kAny, 2.0, 0.3, 0.01}) {
     SCOPED_TRACE(max_distance);
-    MultiBodyQuery bodies(meshes, options(max_distance));
+    MultiBodyQuery bodies(meshes);
+    const std::vector<PairAnswer> found = answers_of(bodies, max_distance);
     std::set<std::pair<std::uint32_t, std::uint32_t>> reported;
-    for (const PairProximity& pair : bodies.pairs()) {
+    for (const PairAnswer& pair : found) {
       const auto same = std::ranges::find_if(
-          expected, [&](const PairProximity& p) { return p.first == pair.first && p.second == pair.second; });
+          expected, [&](const PairAnswer& p) { return p.first == pair.first && p.second == pair.second; });
       ASSERT_NE(same, expected.end());
       expect_same(pair, *same);
       EXPECT_TRUE(reported.emplace(pair.first, pair.second).second);
     }
-    EXPECT_TRUE(std::ranges::is_sorted(bodies.pairs(), {},
-                                       [](const PairProximity& p) { return std::pair(p.first, p.second); }));
+    EXPECT_TRUE(
+        std::ranges::is_sorted(found, {}, [](const PairAnswer& p) { return std::pair(p.first, p.second); }));
     EXPECT_LE(reported.size(), bodies.candidate_pairs());
-    for (const PairProximity& pair : expected) {
+    for (const PairAnswer& pair : expected) {
       const bool within = pair.separation.lower <= max_distance || pair.colliding;
       EXPECT_EQ(reported.contains({pair.first, pair.second}), within) << pair.first << ' ' << pair.second;
     }
     // One body far inside another is nearer to its surface than nothing, but collides.
     EXPECT_TRUE(reported.contains({2, 3}));
-    colliding = static_cast<std::size_t>(
-        std::ranges::count_if(bodies.pairs(), [](const PairProximity& p) { return p.colliding; }));
+    colliding = bodies.colliding().size();
   }
   EXPECT_GE(colliding, 3u);
 }
@@ -142,12 +169,12 @@ TEST(MultiBodyQuery, AgreesWithPairQueries) {
 // By FCL and by all pairs of triangles.
 TEST(MultiBodyQuery, AgreesWithFclAndBruteForce) {
   const std::vector<Mesh> meshes = crowd();
-  MultiBodyQuery bodies(meshes, options());
-  ASSERT_EQ(bodies.pairs().size(), meshes.size() * (meshes.size() - 1) / 2);
+  MultiBodyQuery bodies(meshes);
+  const std::span<const PairSeparation> separations = bodies.separations();
+  ASSERT_EQ(separations.size(), meshes.size() * (meshes.size() - 1) / 2);
   const Affine in_place;
   int apart = 0;
-  for (std::size_t i = 0; i < bodies.pairs().size(); ++i) {
-    const PairProximity& pair = bodies.pairs()[i];
+  for (const PairSeparation& pair : separations) {
     const Mesh &a = meshes[pair.first], &b = meshes[pair.second];
     SCOPED_TRACE(std::to_string(pair.first) + ' ' + std::to_string(pair.second));
     const double tolerance = 1e-6 * scene_diagonal(a, b);
@@ -168,11 +195,11 @@ TEST(MultiBodyQuery, AgreesWithFclAndBruteForce) {
 TEST(MultiBodyQuery, MapsAreTheMinimumOfSingleMaps) {
   const std::vector<Mesh> meshes = crowd();
   for (const double max_distance : {kAny, 1.0}) {
-    const MultiBodyQuery bodies(with_atlases(meshes, 64), options(max_distance));
+    const MultiBodyQuery bodies(with_atlases(meshes, 64));
     for (std::uint32_t on = 0; on < meshes.size(); ++on) {
       SCOPED_TRACE(on);
       const Surface& surface = bodies.surface(on);
-      const NearestMap nearest = bodies.nearest_map(on);
+      const NearestMap nearest = bodies.nearest_map(on, max_distance);
       std::vector<DistanceMap> single(meshes.size());
       for (std::uint32_t to = 0; to < meshes.size(); ++to)
         if (to != on) single[to] = compute_map(surface, bodies.sites(to), {.max_distance = max_distance});
@@ -214,8 +241,8 @@ TEST(MultiBodyQuery, MapsNameTheLowestOfEquidistantBodies) {
   const Mesh right = moved(cube(), {4, 0, 0});
   const std::vector<Mesh> meshes{right, joined(right, moved(cube(), {0, 9, 0})), cube(),
                                  moved(cube(), {-6, 0, 0})};
-  const MultiBodyQuery bodies(with_atlases(meshes, 64), options(2.5));
-  const NearestMap nearest = bodies.nearest_map(2);
+  const MultiBodyQuery bodies(with_atlases(meshes, 64));
+  const NearestMap nearest = bodies.nearest_map(2, 2.5);
   std::size_t to_right = 0;
   for (const std::uint32_t body : nearest.body) {
     EXPECT_TRUE(body == 0 || body == kNone) << body;
@@ -231,15 +258,16 @@ TEST(MultiBodyQuery, DoesNotDependOnTheOrder) {
   std::vector<Mesh> shuffled;
   shuffled.reserve(order.size());
   for (const std::uint32_t i : order) shuffled.push_back(meshes[i]);
-  MultiBodyQuery bodies(with_atlases(meshes, 64), options(3)), others(with_atlases(shuffled, 64), options(3));
-  ASSERT_EQ(bodies.pairs().size(), others.pairs().size());
-  for (const PairProximity& pair : others.pairs()) {
+  MultiBodyQuery bodies(with_atlases(meshes, 64)), others(with_atlases(shuffled, 64));
+  const std::vector<PairAnswer> found = answers_of(bodies, 3), found_by_others = answers_of(others, 3);
+  ASSERT_EQ(found.size(), found_by_others.size());
+  for (const PairAnswer& pair : found_by_others) {
     const std::uint32_t first = order[pair.first], second = order[pair.second];
     const std::uint32_t a = std::min(first, second), b = std::max(first, second);
     SCOPED_TRACE(std::to_string(a) + ' ' + std::to_string(b));
-    const auto same = std::ranges::find_if(
-        bodies.pairs(), [&](const PairProximity& p) { return p.first == a && p.second == b; });
-    ASSERT_NE(same, bodies.pairs().end());
+    const auto same =
+        std::ranges::find_if(found, [&](const PairAnswer& p) { return p.first == a && p.second == b; });
+    ASSERT_NE(same, found.end());
     EXPECT_NEAR(pair.separation.value, same->separation.value, 1e-12);
     EXPECT_NEAR(pair.separation.lower, same->separation.lower, 1e-12);
     EXPECT_EQ(pair.colliding, same->colliding);
@@ -249,7 +277,7 @@ TEST(MultiBodyQuery, DoesNotDependOnTheOrder) {
     }
   }
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const NearestMap a = others.nearest_map(i), b = bodies.nearest_map(order[i]);
+    const NearestMap a = others.nearest_map(i, 3), b = bodies.nearest_map(order[i], 3);
     for (std::size_t texel = 0; texel < a.body.size(); ++texel)
       ASSERT_EQ(a.body[texel] == kNone ? kNone : order[a.body[texel]], b.body[texel]);
   }
@@ -257,35 +285,34 @@ TEST(MultiBodyQuery, DoesNotDependOnTheOrder) {
 
 TEST(MultiBodyQuery, RefitsForAnyThreadCount) {
   std::vector<Mesh> meshes = crowd();
-  MultiBodyQuery bodies(meshes, options(2));
-  const auto copy = [&] { return std::vector(bodies.pairs().begin(), bodies.pairs().end()); };
-  const auto expect_all_same = [](const std::vector<PairProximity>& a, const std::vector<PairProximity>& b) {
+  MultiBodyQuery bodies(meshes);
+  const auto expect_all_same = [](const std::vector<PairAnswer>& a, const std::vector<PairAnswer>& b) {
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t i = 0; i < a.size(); ++i) {
       ASSERT_EQ(std::pair(a[i].first, a[i].second), std::pair(b[i].first, b[i].second));
       expect_same(a[i], b[i]);
     }
   };
-  const std::vector<PairProximity> first = copy();
+  const std::vector<PairAnswer> first = answers_of(bodies, 2);
   for (std::size_t i = 0; i < meshes.size(); ++i) bodies.refit(i, meshes[i].positions);
-  expect_all_same(copy(), first);
+  expect_all_same(answers_of(bodies, 2), first);
 
   // All at once, or one after another.
   const Mesh away = moved(meshes[1], {0, 30, 0}), back = moved(meshes[7], {-36, -3, -2});
   std::vector<std::span<const Vec3>> positions(meshes.size());
   positions[1] = away.positions, positions[7] = back.positions;
   bodies.refit(positions);
-  MultiBodyQuery others(meshes, options(2));
+  MultiBodyQuery others(meshes);
   others.refit(7, back.positions);
   others.refit(1, away.positions);
-  const std::vector<PairProximity> now = copy();
+  const std::vector<PairAnswer> now = answers_of(bodies, 2);
   {
     const ThreadLimit alone(1);
-    expect_all_same({others.pairs().begin(), others.pairs().end()}, now);
+    expect_all_same(answers_of(others, 2), now);
   }
   const auto involved = [&](std::uint32_t body) {
     return std::ranges::count_if(now,
-                                 [&](const PairProximity& p) { return p.first == body || p.second == body; });
+                                 [&](const PairAnswer& p) { return p.first == body || p.second == body; });
   };
   EXPECT_EQ(involved(1), 0);
   EXPECT_GT(involved(7), 0);
@@ -294,7 +321,7 @@ TEST(MultiBodyQuery, RefitsForAnyThreadCount) {
 TEST(MultiBodyQuery, AllocatesNothingAfterTheFirstFrames) {
   const ThreadLimit alone(1);  // threads that join later allocate memory of their own
   const std::vector<Mesh> meshes = crowd();
-  MultiBodyQuery bodies(meshes, options(1));
+  MultiBodyQuery bodies(meshes);
   std::array<std::vector<std::vector<Vec3>>, 2> frames;
   for (std::size_t f = 0; f < 2; ++f)
     for (std::size_t i = 0; i < meshes.size(); ++i)
@@ -303,55 +330,62 @@ TEST(MultiBodyQuery, AllocatesNothingAfterTheFirstFrames) {
     const std::size_t before = allocations();
     for (const auto& frame : frames) {
       for (std::size_t i = 0; i < meshes.size(); ++i) bodies.refit(i, frame[i]);
-      (void)bodies.pairs();
+      (void)bodies.separations(1), (void)bodies.penetration_depths(), (void)bodies.colliding();
     }
     return allocations() - before;
   };
   EXPECT_GT(taken(), 0u);
+  (void)taken();  // now each search starts with the closest faces of the frame before
   EXPECT_EQ(taken(), 0u);
 }
 
 TEST(MultiBodyQuery, AcceptsFewBodies) {
   MultiBodyQuery none(std::vector<Mesh>{});
   EXPECT_EQ(none.size(), 0u);
-  EXPECT_TRUE(none.pairs().empty());
+  EXPECT_TRUE(none.separations().empty());
   EXPECT_THROW((void)none.nearest_map(0), Error);
 
-  MultiBodyQuery one(with_atlases(std::vector{cube()}, 64), options());
-  EXPECT_TRUE(one.pairs().empty());
+  MultiBodyQuery one(with_atlases(std::vector{cube()}, 64));
+  EXPECT_TRUE(one.separations().empty());
   const NearestMap nearest = one.nearest_map(0);
   EXPECT_EQ(nearest.map.beyond_max_distance, one.surface(0).sample_texels().size());
   EXPECT_THAT(nearest.body, testing::Each(kNone));
   EXPECT_THAT(nearest.map.site_type, testing::Each(SiteType::none));
 
-  MultiBodyQuery two(with_atlases(std::vector{cube(), moved(cube(), {5, 0, 0})}, 64), options(2));
-  EXPECT_TRUE(two.pairs().empty());
+  MultiBodyQuery two(with_atlases(std::vector{cube(), moved(cube(), {5, 0, 0})}, 64));
+  EXPECT_TRUE(two.separations(2).empty());
   EXPECT_EQ(two.candidate_pairs(), 0u);
-  EXPECT_EQ(two.nearest_map(0).map.beyond_max_distance, two.surface(0).sample_texels().size());
+  EXPECT_EQ(two.nearest_map(0, 2).map.beyond_max_distance, two.surface(0).sample_texels().size());
   two.refit(1, moved(cube(), {3.5, 0, 0}).positions);
-  ASSERT_EQ(two.pairs().size(), 1u);
-  EXPECT_NEAR(two.pairs()[0].separation.value, 1.5, 1e-6);
+  ASSERT_EQ(two.separations(2).size(), 1u);
+  EXPECT_NEAR(two.separations(2)[0].separation.value, 1.5, 1e-6);
 }
 
 TEST(MultiBodyQuery, RejectsMismatchedInput) {
   const std::vector<Mesh> meshes{cube(), moved(cube(), {3, 0, 0})};
-  MultiBodyQuery bodies(meshes, options());
-  const BoundedLength before = bodies.pairs()[0].separation;
+  MultiBodyQuery bodies(meshes);
+  const BoundedLength before = bodies.separations()[0].separation;
   const std::vector<Vec3> few(3), nan(8, Vec3{std::nan(""), 0, 0}), good = moved(cube(), {9, 0, 0}).positions;
   EXPECT_THROW(bodies.refit(2, good), Error);
   EXPECT_THROW(bodies.refit(0, few), Error);
   EXPECT_THROW(bodies.refit(1, nan), Error);
   EXPECT_THROW(bodies.refit(std::vector<std::span<const Vec3>>{good}), Error);
   EXPECT_THROW(bodies.refit(std::vector<std::span<const Vec3>>{good, nan}), Error);
-  expect_same(bodies.pairs()[0].separation, before);
+  expect_same(bodies.separations()[0].separation, before);
   EXPECT_THROW((void)bodies.surface(2), Error);
   EXPECT_THROW((void)bodies.surface(1), Error);  // no atlas
   EXPECT_THROW((void)bodies.nearest_map(1), Error);
   EXPECT_THROW((void)bodies.sites(2), Error);
-  EXPECT_THROW(MultiBodyQuery(meshes, options(0)), Error);
-  EXPECT_THROW(MultiBodyQuery(meshes, options(std::nan(""))), Error);
+  for (const double wrong : {0.0, -1.0, std::nan("")}) {
+    EXPECT_THROW((void)bodies.separations(wrong), Error);
+    EXPECT_THROW((void)bodies.nearest_map(0, wrong), Error);
+  }
+  EXPECT_THROW(bodies.set_filter(2, {}), Error);
+  EXPECT_THROW((void)bodies.filter(2), Error);
+  EXPECT_THROW(bodies.exclude_pair(0, 2), Error);
+  EXPECT_THROW(bodies.include_pair(1, 1), Error);
   try {
-    MultiBodyQuery broken(std::vector<Mesh>{cube(), {}}, options());
+    MultiBodyQuery broken(std::vector<Mesh>{cube(), {}});
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), "body 1: there are no triangles");

@@ -37,7 +37,8 @@ int Sweep::sort(std::span<const Box> boxes) {
   return axis;
 }
 
-std::span<const Sweep::Pair> Sweep::near_pairs(std::span<const Box> boxes, double reach) {
+std::span<const Sweep::Pair> Sweep::near_pairs(std::span<const Box> boxes, double reach,
+                                               const Filter& filter) {
   pairs_.clear();
   if (boxes.empty()) return pairs_;
   const int axis = sort(boxes);
@@ -51,7 +52,7 @@ std::span<const Sweep::Pair> Sweep::near_pairs(std::span<const Box> boxes, doubl
       bool far = false;
       for (int k = 0; k < 3; ++k)
         far |= (other.lo[k] - box.hi[k] > surely_far) | (box.lo[k] - other.hi[k] > surely_far);
-      if (!far && box_distance(box, other) <= reach)
+      if (!far && box_distance(box, other) <= reach && (!filter || filter(order_[i], order_[j])))
         pairs_.push_back({std::min(order_[i], order_[j]), std::max(order_[i], order_[j])});
     }
   }

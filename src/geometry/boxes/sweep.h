@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,10 +16,14 @@ class Sweep {
  public:
   using Pair = std::array<std::uint32_t, 2>;
 
-  /// All pairs {a, b}, a < b, of boxes whose distance is at most `reach`, in lexicographic order; valid until
-  /// the next call. Cost: O(n log n), plus linear in the pairs that are at most `reach` apart along one axis,
-  /// the one along which the boxes are spread most.
-  std::span<const Pair> near_pairs(std::span<const Box> boxes, double reach);
+  /// Which pairs are asked for, by their numbers.
+  using Filter = std::function<bool(std::uint32_t, std::uint32_t)>;
+
+  /// All pairs {a, b}, a < b, that pass the filter, of boxes whose distance is at most `reach`, in
+  /// lexicographic order; valid until the next call. An empty filter lets all pass. Cost: O(n log n), plus
+  /// linear in the pairs that are at most `reach` apart along one axis, the one along which the boxes are
+  /// spread most.
+  std::span<const Pair> near_pairs(std::span<const Box> boxes, double reach, const Filter& filter = {});
 
  private:
   /// Sorts the boxes by their lower ends along that axis, into order_ and sorted_, and returns it.

@@ -2,9 +2,8 @@
 #include <sdm/multi_body_query.h>
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
-#include <mutex>
+#include <cstring>
+#include <memory>
 #include <new>
 #include <string>
 #include <utility>
@@ -13,7 +12,9 @@
 #include "core/intact.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/boxes/sweep.h"
+#include "core/pool.h"
+#include "proximity/bodies/contact_store.h"
+#include "proximity/bodies/near_pairs.h"
 #include "proximity/bodies/nearest_body.h"
 #include "proximity/pair/pair_answers.h"
 #include "query/shape/posed_body.h"
@@ -22,9 +23,12 @@ namespace sdm {
 namespace {
 
 const MultiBodyOptions& checked(const MultiBodyOptions& options) {
-  if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
   pair::check_options(options.contact_margin, options.depth_precision);
   return options;
+}
+
+void check_distance(double max_distance) {
+  if (!(max_distance > 0)) throw Error("the maximum distance must be greater than 0");
 }
 
 // Adds the body to the messages of errors thrown by `work`.
@@ -46,61 +50,38 @@ std::vector<Shape> shapes_of(std::span<const Mesh> meshes) {
   return shapes;
 }
 
-// A pool of the memory for pairs measured concurrently: one entry for each thread.
-class AnswersPool {
- public:
-  explicit AnswersPool(const MultiBodyOptions& options)
-      : contact_margin_(options.contact_margin), depth_precision_(options.depth_precision) {}
-
-  std::unique_ptr<pair::PairAnswers> take() {
-    const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<pair::PairAnswers>(contact_margin_, depth_precision_);
-    std::unique_ptr<pair::PairAnswers> answers = std::move(idle_.back());
-    idle_.pop_back();
-    return answers;
-  }
-  void give_back(std::unique_ptr<pair::PairAnswers> answers) {
-    const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(answers));
-  }
-
- private:
-  double contact_margin_;
-  std::optional<double> depth_precision_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<pair::PairAnswers>> idle_;
-};
+// Calls `work`, whose errors of memory become sdm::Error.
+template <class Work>
+decltype(auto) with_memory_of_bodies(const Work& work) try {
+  return work();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a query of many bodies");
+}
 
 }  // namespace
 
 struct MultiBodyQuery::Impl {
   MultiBodyOptions options;
   std::vector<shape::PosedBody> bodies;
+  std::vector<Transform> given_poses;
   Intact intact{"a MultiBodyQuery object"};  // every call but construction requires it first
-  AnswersPool pool;
-  Sweep sweep;
-  std::vector<Box> boxes;
+  Pool<pair::PairAnswers> pool;
+  bodies::NearPairs near;
+  std::vector<std::size_t> unknown;  // the pairs of `near` that a call computes
 
-  struct ClosestFaces {
-    Sweep::Pair pair{};
-    pair::FacePair faces = pair::kNoFaces;
-  };
-  std::vector<ClosestFaces> hints, closest_faces;  // sorted by pair: of the last search, of this one
-
-  // Results since a body last moved.
-  bool pairs_found = false, contacts_found = false;
+  // What the calls have returned.
+  std::vector<BodyPair> colliding;
+  std::vector<PairSeparation> separations;
   std::size_t candidates = 0;
-  std::vector<PairProximity> pairs;
-  std::vector<std::vector<BodyContact>> contacts_of;  // each candidate pair
-  std::vector<BodyContact> contacts;
+  std::vector<PairDepth> depths;
+  std::vector<PairContacts> contacts;
+  bodies::ContactStore stored_contacts;
 
   Impl(std::vector<Shape> shapes, const MultiBodyOptions& asked)
-      : options(asked), pool(asked), boxes(shapes.size()) {
+      : options(asked), given_poses(shapes.size()), near(shapes.size()) {
     bodies.reserve(shapes.size());
     for (Shape& shape : shapes) bodies.emplace_back(std::move(shape));
   }
-
-  void moved() { pairs_found = contacts_found = false; }
 
   [[nodiscard]] std::size_t checked(std::size_t body) const {
     intact.require();
@@ -108,6 +89,11 @@ struct MultiBodyQuery::Impl {
       throw Error("there is no body " + std::to_string(body) + " among " + std::to_string(bodies.size()) +
                   "; they are numbered from 0");
     return body;
+  }
+  [[nodiscard]] Sweep::Pair checked_pair(std::size_t a, std::size_t b) const {
+    if (checked(a) == checked(b))
+      throw Error("body " + std::to_string(a) + " and itself are no pair; give two bodies");
+    return {static_cast<std::uint32_t>(std::min(a, b)), static_cast<std::uint32_t>(std::max(a, b))};
   }
   void check_count(std::size_t count, const char* what) const {
     intact.require();
@@ -119,61 +105,97 @@ struct MultiBodyQuery::Impl {
     on_behalf_of(body, [&] { bodies[body].check_refit(positions); });
   }
 
-  // Calls find(i, answers) for the i-th pair, on all cores.
-  template <class Find>
-  void for_near_pairs(std::span<const Sweep::Pair> near, const Find& find) {
-    closest_faces.resize(near.size());
-    const auto measure = [&](std::size_t begin, std::size_t end) {
-      std::unique_ptr<pair::PairAnswers> answers = pool.take();
-      for (std::size_t i = begin; i < end; ++i) {
-        answers->begin(bodies[near[i][0]], bodies[near[i][1]], hint(near[i]));
-        find(i, *answers);
-        closest_faces[i] = {near[i], answers->closest_faces()};
+  // To the bit: 0 and −0 may give other signs of zeros.
+  [[nodiscard]] bool has_pose(std::size_t body, const Transform& pose) const {
+    return std::memcmp(&given_poses[body], &pose, sizeof pose) == 0;
+  }
+  void set_pose(std::size_t body, const Transform& pose) {
+    if (has_pose(body, pose)) return;
+    on_behalf_of(body, [&] { bodies[body].set_pose(pose); });
+    given_poses[body] = pose;
+    near.moved(body);
+  }
+
+  // Calls compute(answers, i) for the pairs within `reach` that is_unknown(pair), on all cores, where i
+  // counts them; and keeps what is then known.
+  template <class IsUnknown, class Compute>
+  void complete(double reach, const IsUnknown& is_unknown, const Compute& compute) {
+    near.follow(bodies, reach);
+    unknown.clear();
+    const std::span<bodies::NearPair> pairs = near.list();
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      if (pairs[i].gap <= reach && is_unknown(pairs[i])) unknown.push_back(i);
+    const auto compute_some = [&](std::size_t begin, std::size_t end) {
+      std::unique_ptr<pair::PairAnswers> answers = pool.take([&] {
+        return std::make_unique<pair::PairAnswers>(options.contact_margin, options.depth_precision);
+      });
+      for (std::size_t u = begin; u < end; ++u) {
+        bodies::NearPair& pair = pairs[unknown[u]];
+        bodies::PairState& state = near.state(pair);
+        answers->begin(bodies[pair.pair[0]], bodies[pair.pair[1]], state.known);
+        compute(*answers, u);
+        state.known = answers->known();
+        pair.set(state.known);
       }
       pool.give_back(std::move(answers));
     };
-    parallel_for(near.size(), 1, measure);
-    std::swap(closest_faces, hints);
-  }
-  // The faces of a pair that were closest when it was last searched.
-  [[nodiscard]] pair::FacePair hint(const Sweep::Pair& pair) const {
-    const auto found = std::ranges::lower_bound(hints, pair, {}, &ClosestFaces::pair);
-    return found != hints.end() && found->pair == pair ? found->faces : pair::kNoFaces;
-  }
-  std::span<const Sweep::Pair> near_pairs(double reach) {
-    std::ranges::transform(bodies, boxes.begin(), &shape::PosedBody::tight_box);
-    return sweep.near_pairs(boxes, reach);
+    parallel_for(unknown.size(), 1, compute_some);
   }
 
-  void find_pairs() {
-    const std::span<const Sweep::Pair> near = near_pairs(options.max_distance);
-    pairs.resize(near.size());
-    for_near_pairs(near, [&](std::size_t i, pair::PairAnswers& answers) {
-      if (!answers.within(options.max_distance)) {
-        pairs[i].first = kNone;
-        return;
-      }
-      pairs[i] = {.first = near[i][0],
-                  .second = near[i][1],
-                  .separation = answers.separation(),
-                  .colliding = answers.colliding(),
-                  .penetration_depth = answers.penetration_depth()};
+  void find_colliding() {
+    complete(
+        0, [](const bodies::NearPair& pair) { return !pair.collision_known; },
+        [](pair::PairAnswers& answers, std::size_t) { (void)answers.colliding(); });
+    colliding.clear();
+    for (const bodies::NearPair& pair : near.list())
+      if (pair.colliding) colliding.push_back({pair.pair[0], pair.pair[1]});
+  }
+
+  void find_separations(double max_distance) {
+    const auto is_unknown = [&](const bodies::NearPair& pair) {
+      return !pair.collision_known ||
+             !(pair.separation_known || (pair.apart >= max_distance && !pair.colliding));
+    };
+    complete(max_distance, is_unknown, [&](pair::PairAnswers& answers, std::size_t) {
+      if (answers.within(max_distance)) (void)answers.separation(), (void)answers.colliding();
     });
-    std::erase_if(pairs, [](const PairProximity& pair) { return pair.first == kNone; });
-    candidates = near.size();
+    separations.clear();
+    candidates = 0;
+    for (const bodies::NearPair& pair : near.list()) {
+      if (pair.gap > max_distance) continue;
+      ++candidates;
+      if (pair.colliding || (pair.separation_known && pair.apart <= max_distance))
+        separations.push_back(
+            {pair.pair[0], pair.pair[1], *near.state(pair).known.separation, pair.colliding});
+    }
+  }
+
+  void find_depths() {
+    const auto is_unknown = [](const bodies::NearPair& pair) {
+      return !pair.collision_known || (pair.colliding && !pair.depth_known);
+    };
+    complete(0, is_unknown, [](pair::PairAnswers& answers, std::size_t) {
+      if (answers.colliding()) (void)answers.penetration_depth();
+    });
+    depths.clear();
+    for (const bodies::NearPair& pair : near.list()) {
+      if (!pair.colliding) continue;
+      if (const std::optional<BoundedLength>& depth = *near.state(pair).known.depth)
+        depths.push_back({pair.pair[0], pair.pair[1], *depth});
+    }
   }
 
   void find_contacts() {
-    const std::span<const Sweep::Pair> near = near_pairs(options.contact_margin);
-    if (contacts_of.size() < near.size()) contacts_of.resize(near.size());
-    for_near_pairs(near, [&](std::size_t i, pair::PairAnswers& answers) {
-      contacts_of[i].clear();
-      for (const Contact& contact : answers.contacts())
-        contacts_of[i].push_back({near[i][0], near[i][1], contact});
-    });
+    near.follow(bodies, options.contact_margin);
+    stored_contacts.begin(near.list().size());
+    complete(
+        options.contact_margin, [](const bodies::NearPair& pair) { return !pair.contacts_known; },
+        [&](pair::PairAnswers& answers, std::size_t u) { stored_contacts.found(u, answers.contacts()); });
+    stored_contacts.store(near, unknown);
     contacts.clear();
-    for (const std::vector<BodyContact>& of_pair : std::span(contacts_of).first(near.size()))
-      contacts.insert(contacts.end(), of_pair.begin(), of_pair.end());
+    for (const bodies::NearPair& pair : near.list())
+      if (pair.touching)
+        contacts.push_back({pair.pair[0], pair.pair[1], stored_contacts.of(near.state(pair))});
   }
 };
 
@@ -194,62 +216,82 @@ std::size_t MultiBodyQuery::size() const {
 }
 
 void MultiBodyQuery::set_pose(std::size_t body, const Transform& pose) {
-  on_behalf_of(impl_->checked(body), [&] { impl_->bodies[body].set_pose(pose); });
-  impl_->moved();
+  impl_->set_pose(impl_->checked(body), pose);
 }
 
 void MultiBodyQuery::set_poses(std::span<const Transform> poses) {
   impl_->check_count(poses.size(), "poses");
   for (std::size_t b = 0; b < size(); ++b)
-    on_behalf_of(b, [&] { (void)impl_->bodies[b].checked_pose(poses[b]); });
-  for (std::size_t b = 0; b < size(); ++b) impl_->bodies[b].set_pose(poses[b]);
-  impl_->moved();
+    if (!impl_->has_pose(b, poses[b]))
+      on_behalf_of(b, [&] { (void)impl_->bodies[b].checked_pose(poses[b]); });
+  for (std::size_t b = 0; b < size(); ++b) impl_->set_pose(b, poses[b]);
 }
 
 Transform MultiBodyQuery::pose(std::size_t body) const {
   return impl_->bodies[impl_->checked(body)].pose().transform();
 }
 
-void MultiBodyQuery::refit(std::size_t body, std::span<const Vec3> positions) try {
+void MultiBodyQuery::refit(std::size_t body, std::span<const Vec3> positions) {
   const Uncancellable whole;
   impl_->check(impl_->checked(body), positions);
-  impl_->moved();
-  impl_->intact.change([&] { impl_->bodies[body].refit(positions); });
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("a query of many bodies");
+  impl_->near.moved(body);
+  with_memory_of_bodies([&] { impl_->intact.change([&] { impl_->bodies[body].refit(positions); }); });
 }
 
-void MultiBodyQuery::refit(std::span<const std::span<const Vec3>> positions) try {
+void MultiBodyQuery::refit(std::span<const std::span<const Vec3>> positions) {
   const Uncancellable whole;
   impl_->check_count(positions.size(), "positions");
   for (std::size_t b = 0; b < size(); ++b)
     if (!positions[b].empty()) impl_->check(b, positions[b]);
-  impl_->moved();
+  for (std::size_t b = 0; b < size(); ++b)
+    if (!positions[b].empty()) impl_->near.moved(b);
   const auto refit = [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b)
       if (!positions[b].empty()) impl_->bodies[b].refit(positions[b]);
   };
-  impl_->intact.change([&] { parallel_for(positions.size(), 1, refit); });
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("a query of many bodies");
+  with_memory_of_bodies([&] { impl_->intact.change([&] { parallel_for(positions.size(), 1, refit); }); });
 }
 
-std::span<const PairProximity> MultiBodyQuery::pairs() try {
-  impl_->intact.require();
-  if (!impl_->pairs_found) impl_->find_pairs();
-  impl_->pairs_found = true;
-  return impl_->pairs;
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("a query of many bodies");
+void MultiBodyQuery::set_filter(std::size_t body, const BodyFilter& filter) {
+  impl_->near.change_filter()[impl_->checked(body)] = filter;
 }
 
-std::span<const BodyContact> MultiBodyQuery::contacts() try {
+BodyFilter MultiBodyQuery::filter(std::size_t body) const {
+  return impl_->near.filter()[impl_->checked(body)];
+}
+
+void MultiBodyQuery::exclude_pair(std::size_t a, std::size_t b) {
+  const Sweep::Pair pair = impl_->checked_pair(a, b);
+  with_memory_of_bodies([&] { impl_->near.change_filter().exclude(pair); });
+}
+
+void MultiBodyQuery::include_pair(std::size_t a, std::size_t b) {
+  impl_->near.change_filter().include(impl_->checked_pair(a, b));
+}
+
+std::span<const BodyPair> MultiBodyQuery::colliding() {
   impl_->intact.require();
-  if (!impl_->contacts_found) impl_->find_contacts();
-  impl_->contacts_found = true;
+  with_memory_of_bodies([&] { impl_->find_colliding(); });
+  return impl_->colliding;
+}
+
+std::span<const PairSeparation> MultiBodyQuery::separations(double max_distance) {
+  impl_->intact.require();
+  check_distance(max_distance);
+  with_memory_of_bodies([&] { impl_->find_separations(max_distance); });
+  return impl_->separations;
+}
+
+std::span<const PairDepth> MultiBodyQuery::penetration_depths() {
+  impl_->intact.require();
+  with_memory_of_bodies([&] { impl_->find_depths(); });
+  return impl_->depths;
+}
+
+std::span<const PairContacts> MultiBodyQuery::contacts() {
+  impl_->intact.require();
+  with_memory_of_bodies([&] { impl_->find_contacts(); });
   return impl_->contacts;
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("a query of many bodies");
 }
 
 std::size_t MultiBodyQuery::candidate_pairs() const {
@@ -257,17 +299,18 @@ std::size_t MultiBodyQuery::candidate_pairs() const {
   return impl_->candidates;
 }
 
-NearestMap MultiBodyQuery::nearest_map(std::size_t body) const try {
+NearestMap MultiBodyQuery::nearest_map(std::size_t body, double max_distance) const try {
   NearestMap nearest;
-  nearest_map(body, nearest);
+  nearest_map(body, max_distance, nearest);
   return nearest;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a map of the nearest bodies");
 }
 
-void MultiBodyQuery::nearest_map(std::size_t body, NearestMap& nearest) const try {
+void MultiBodyQuery::nearest_map(std::size_t body, double max_distance, NearestMap& nearest) const try {
+  check_distance(max_distance);
   on_behalf_of(impl_->checked(body),
-               [&] { bodies::map_nearest(impl_->bodies, body, impl_->options.max_distance, nearest); });
+               [&] { bodies::map_nearest(impl_->bodies, body, max_distance, nearest); });
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a map of the nearest bodies");
 }

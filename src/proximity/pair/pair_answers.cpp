@@ -28,9 +28,10 @@ void check_options(double contact_margin, const std::optional<double>& depth_pre
     fail("a precision of the depth", *depth_precision, "a length above 0");
 }
 
-void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const FacePair& hint) {
+void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const KnownAnswers& known) {
   bodies_ = {&o1, &o2};
-  results_ = {.closest_faces = hint};
+  known_ = known;
+  contacts_.reset();
   for (int b = 0; b < 2; ++b) {
     const mesh::Similarity &from = bodies_[b]->pose(), &to = bodies_[1 - b]->pose();
     to_other_[b] = {inverse(to.map) * from.map, from.scale / to.scale};
@@ -41,35 +42,46 @@ void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, 
 }
 
 const BoundedLength& PairAnswers::separation() {
-  if (!results_.separation) find_closest(kNoLimit);
-  return *results_.separation;
+  if (!known_.separation) find_closest(kNoLimit);
+  return *known_.separation;
 }
 
 bool PairAnswers::colliding() {
-  if (!results_.colliding)
-    results_.colliding = box_distance(bodies_[0]->box(), bodies_[1]->box()) == 0 &&
-                         (surfaces_intersect() || pairs::one_contains_part_of_other(meshes()));
-  return *results_.colliding;
+  if (!known_.colliding)
+    known_.colliding = box_distance(bodies_[0]->box(), bodies_[1]->box()) == 0 &&
+                       (surfaces_intersect() || pairs::one_contains_part_of_other(meshes()));
+  return *known_.colliding;
 }
 
 const std::optional<BoundedLength>& PairAnswers::penetration_depth() {
-  if (!results_.depth) results_.depth = depth();
-  return *results_.depth;
+  if (!known_.depth) known_.depth = depth();
+  return *known_.depth;
 }
 
 std::span<const Contact> PairAnswers::contacts() {
-  if (!results_.contacts && !within(contact_margin_)) results_.contacts = std::span<const Contact>();
-  if (!results_.contacts)
-    results_.contacts = contact_finder_.find(bodies_, meshes(), to_other_, contact_margin_, precision_);
-  return *results_.contacts;
+  if (!contacts_ && !within(contact_margin_)) contacts_ = std::span<const Contact>();
+  if (!contacts_) contacts_ = contact_finder_.find(bodies_, meshes(), to_other_, contact_margin_, precision_);
+  return *contacts_;
+}
+
+bool PairAnswers::surfaces_within(double distance) {
+  if (!known_.separation && known_.beyond < distance) {
+    if (boxes_or_balls_apart(distance))
+      known_.beyond = distance, known_.intersecting = known_.colliding = false;
+    else if (distance > 0 && !find_closest(distance))
+      known_.beyond = distance, known_.intersecting = false;
+  }
+  return known_.separation && known_.separation->value <= distance;
 }
 
 bool PairAnswers::within(double distance) {
-  if (box_distance(bodies_[0]->box(), bodies_[1]->box()) > distance) return false;
+  return surfaces_within(distance) || colliding();
+}
+
+bool PairAnswers::boxes_or_balls_apart(double distance) const {
+  if (box_distance(bodies_[0]->box(), bodies_[1]->box()) > distance) return true;
   const shape::Ball &ball1 = bodies_[0]->ball(), &ball2 = bodies_[1]->ball();
-  if (norm(ball2.centre - ball1.centre) > distance + ball1.radius + ball2.radius) return false;
-  if (distance > 0 && !results_.separation && !find_closest(distance)) results_.intersecting = false;
-  return (results_.separation && results_.separation->value <= distance) || colliding();
+  return norm(ball2.centre - ball1.centre) > distance + ball1.radius + ball2.radius;
 }
 
 pairs::MeshPair PairAnswers::meshes() const {
@@ -77,25 +89,24 @@ pairs::MeshPair PairAnswers::meshes() const {
   return {internals(o1.sites()), internals(o2.sites()), to_other_[1].map, {&o1.cylinders(), &o2.cylinders()}};
 }
 
-// Computes results_.separation if it is at most `bound`, and returns whether it is.
+// Computes known_.separation if it is at most `bound`, and returns whether it is.
 bool PairAnswers::find_closest(double bound) {
   const mesh::Similarity& pose = bodies_[0]->pose();
   const pairs::Separation c =
-      pairs::find_closest(meshes(), bound / pose.scale, workspace_, results_.closest_faces);
+      pairs::find_closest(meshes(), bound / pose.scale, workspace_, known_.closest_faces);
   if (c.face1 == kNone) return false;
-  results_.intersecting = c.intersecting;
-  results_.closest_faces = {c.face1, c.face2};
+  known_.intersecting = c.intersecting;
+  known_.closest_faces = {c.face1, c.face2};
   const double distance = pose.scale * c.distance;
-  results_.separation = {
+  known_.separation = {
       {.value = distance, .certainty = Certainty::exact, .lower = distance, .upper = distance},
       std::array{pose.map(c.point1), pose.map(c.point2)}};
   return true;
 }
 
 bool PairAnswers::surfaces_intersect() {
-  if (!results_.intersecting)
-    results_.intersecting = pairs::find_intersection(meshes(), workspace_).intersecting;
-  return *results_.intersecting;
+  if (!known_.intersecting) known_.intersecting = pairs::find_intersection(meshes(), workspace_).intersecting;
+  return *known_.intersecting;
 }
 
 std::optional<BoundedLength> PairAnswers::depth() {

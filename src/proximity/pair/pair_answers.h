@@ -19,6 +19,17 @@ void check_options(double contact_margin, const std::optional<double>& depth_pre
 
 using pairs::FacePair, pairs::kNoFaces;
 
+/// What is known of two bodies in their poses.
+struct KnownAnswers {
+  /// The closest faces, or faces that intersect, if the separation is known; otherwise a hint.
+  FacePair closest_faces = kNoFaces;
+  double beyond = -1;                  ///< the surfaces are farther apart than this
+  std::optional<bool> intersecting{};  ///< the surfaces
+  std::optional<bool> colliding{};
+  std::optional<BoundedLength> separation{};
+  std::optional<std::optional<BoundedLength>> depth{};
+};
+
 /// Results as documented at ProximityQuery, each computed on first use. Memory is reused from pair to pair;
 /// results do not depend on earlier pairs.
 ///
@@ -33,14 +44,16 @@ class PairAnswers {
   /// Sets the bodies to which the results refer. They must outlive this object and remain unchanged until the
   /// next call.
   ///
-  /// `hint`: faces of O1 and O2 that were closest when the bodies were in a similar pose; they change how
-  /// long results take, not the results.
-  void begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const FacePair& hint = kNoFaces);
+  /// `known`: what known() returned for the bodies as they are, or only closest_faces, of a similar pose.
+  /// These change how long results take, not the results.
+  void begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const KnownAnswers& known = {});
 
+  /// Whether the surfaces are at most this far apart, > 0; the separation is then known.
+  [[nodiscard]] bool surfaces_within(double distance);
   /// Whether the bodies collide or their surfaces are at most this far apart.
   [[nodiscard]] bool within(double distance);
-  /// The closest faces, or faces that intersect, if the separation was computed; otherwise the hint.
-  [[nodiscard]] const FacePair& closest_faces() const { return results_.closest_faces; }
+  /// What has been computed so far, but for the contacts.
+  [[nodiscard]] const KnownAnswers& known() const { return known_; }
 
   [[nodiscard]] const BoundedLength& separation();
   [[nodiscard]] bool colliding();
@@ -49,6 +62,7 @@ class PairAnswers {
 
  private:
   [[nodiscard]] pairs::MeshPair meshes() const;
+  [[nodiscard]] bool boxes_or_balls_apart(double distance) const;
   bool find_closest(double bound);
   [[nodiscard]] bool surfaces_intersect();
   [[nodiscard]] std::optional<BoundedLength> depth();
@@ -62,16 +76,8 @@ class PairAnswers {
   pairs::PairWorkspace workspace_;
   depth::DepthSearch depth_search_;
 
-  /// What is known of the current bodies.
-  struct Results {
-    FacePair closest_faces = kNoFaces;
-    std::optional<bool> intersecting{};  ///< the surfaces
-    std::optional<BoundedLength> separation{};
-    std::optional<std::optional<BoundedLength>> depth{};
-    std::optional<bool> colliding{};
-    std::optional<std::span<const Contact>> contacts{};
-  };
-  Results results_;
+  KnownAnswers known_;
+  std::optional<std::span<const Contact>> contacts_;
 };
 
 }  // namespace sdm::pair

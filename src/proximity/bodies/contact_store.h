@@ -1,0 +1,42 @@
+// The contacts of all pairs of bodies.
+#pragma once
+
+#include <sdm/proximity_query.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "proximity/bodies/near_pairs.h"
+
+namespace sdm::bodies {
+
+/// Contacts of pairs, which stay in their place while others are found again: a motion of few bodies costs
+/// the contacts of few pairs. Reuses its memory.
+class ContactStore {
+ public:
+  /// Before contacts of at most `pairs` pairs are found.
+  void begin(std::size_t pairs) {
+    if (found_.size() < pairs) found_.resize(pairs);
+  }
+  /// Keeps those of the u-th pair until they are stored. Concurrently for different pairs.
+  void found(std::size_t u, std::span<const Contact> contacts) {
+    found_[u].assign(contacts.begin(), contacts.end());
+  }
+  /// Stores those of near.list()[unknown[u]] for each u, and forgets those of pairs that are not near any
+  /// more. If it throws, nothing has changed.
+  void store(NearPairs& near, std::span<const std::size_t> unknown);
+
+  /// Valid until the next call of store().
+  [[nodiscard]] std::span<const Contact> of(const PairState& pair) const {
+    return std::span(contacts_).subspan(pair.first_contact, pair.contacts);
+  }
+
+ private:
+  void keep_only_near(NearPairs& near);
+
+  std::vector<std::vector<Contact>> found_;
+  std::vector<Contact> contacts_, next_;  ///< with those of former pairs and poses between them
+};
+
+}  // namespace sdm::bodies

@@ -1,0 +1,124 @@
+// The pairs of bodies that are near each other, and what is known of each.
+#pragma once
+
+#include <sdm/multi_body_query.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/boxes/sweep.h"
+#include "proximity/pair/pair_answers.h"
+#include "query/shape/posed_body.h"
+
+namespace sdm::bodies {
+
+/// Which pairs of bodies are asked for.
+class PairFilter {
+ public:
+  explicit PairFilter(std::size_t bodies) : of_(bodies) {}
+
+  BodyFilter& operator[](std::size_t body) { return of_[body]; }
+  const BodyFilter& operator[](std::size_t body) const { return of_[body]; }
+  void exclude(const Sweep::Pair& pair);
+  void include(const Sweep::Pair& pair);
+
+  [[nodiscard]] bool operator()(std::uint32_t a, std::uint32_t b) const;
+
+ private:
+  std::vector<BodyFilter> of_;
+  std::vector<Sweep::Pair> excluded_;  ///< sorted
+};
+
+/// The bodies that have moved since the list of pairs was last brought up to date.
+class MovedBodies {
+ public:
+  /// At first, all.
+  explicit MovedBodies(std::size_t bodies);
+
+  void add(std::size_t body) noexcept {
+    if (!flags_[body]) flags_[body] = 1, list_.push_back(static_cast<std::uint32_t>(body));
+  }
+  void clear() noexcept;
+  [[nodiscard]] std::span<const std::uint32_t> list() const { return list_; }
+  [[nodiscard]] bool contains(std::uint32_t body) const { return flags_[body] != 0; }
+  [[nodiscard]] bool any_of(const Sweep::Pair& pair) const { return contains(pair[0]) || contains(pair[1]); }
+
+ private:
+  std::vector<std::uint32_t> list_;  // with room for all, so that add() allocates nothing
+  std::vector<std::uint8_t> flags_;
+};
+
+/// What is known of a pair of bodies as long as neither moves.
+struct PairState {
+  pair::KnownAnswers known{};
+  std::size_t first_contact = 0, contacts = 0;  ///< a range of the ContactStore
+};
+
+/// A pair of bodies. What decides whether a call has to look at its state is here: passes over the list of
+/// all pairs read little memory.
+struct NearPair {
+  Sweep::Pair pair{};
+  std::uint32_t state = 0;  ///< its number
+  bool collision_known = false, colliding = false, depth_known = false;
+  bool separation_known = false;
+  bool contacts_known = false, touching = false;  ///< touching: it has contacts
+  double gap = 0;                                 ///< between the boxes, rounded down
+  double apart = -1;  ///< the separation if it is known, otherwise what it exceeds
+
+  void set(const pair::KnownAnswers& known) {
+    collision_known = known.colliding.has_value();
+    colliding = known.colliding.value_or(false);
+    depth_known = known.depth.has_value();
+    separation_known = known.separation.has_value();
+    apart = known.separation ? known.separation->value : known.beyond;
+  }
+};
+
+/// The list of near pairs. It follows the bodies that have moved, and keeps the states of the other pairs.
+class NearPairs {
+ public:
+  explicit NearPairs(std::size_t bodies) : boxes_(bodies), filter_(bodies), moved_(bodies) {}
+
+  void moved(std::size_t body) noexcept;
+  [[nodiscard]] const PairFilter& filter() const { return filter_; }
+  /// For a change; all pairs are looked for again.
+  PairFilter& change_filter() {
+    complete_ = false;
+    return filter_;
+  }
+
+  /// Brings the list up to date: then it has all pairs whose boxes are at most `reach` apart, and perhaps
+  /// some that are farther. If there is not enough memory, it throws, and all is unknown.
+  void follow(std::span<const shape::PosedBody> bodies, double reach);
+
+  /// The pairs, in lexicographic order.
+  [[nodiscard]] std::span<NearPair> list() { return list_; }
+  PairState& state(const NearPair& pair) { return states_[pair.state]; }
+
+ private:
+  /// How far apart pairs are asked for. Several calls follow each motion, in any order: the list has what the
+  /// farthest of them needs.
+  struct Reach {
+    double since_motion = 0, before = 0;  ///< the largest ones asked for since the last motion, and before it
+    double listed = -1;                   ///< of the list
+  };
+
+  void find_near_moved(double reach);
+  void adopt(std::span<const Sweep::Pair> found);
+  [[nodiscard]] std::uint32_t new_state();
+  void forget() noexcept;
+
+  std::vector<Box> boxes_;
+  PairFilter filter_;
+  MovedBodies moved_;
+  Reach reach_;
+  bool complete_ = false;  ///< the list has all pairs that were near before the bodies moved
+  Sweep sweep_;
+  std::vector<Sweep::Pair> found_, near_moved_;
+  std::vector<NearPair> list_, next_;  ///< sorted
+  std::vector<PairState> states_;
+  std::vector<std::uint32_t> unused_;  ///< states of no pair
+};
+
+}  // namespace sdm::bodies
