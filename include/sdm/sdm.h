@@ -29,6 +29,7 @@
 #include <sdm/multi_body_query.h>
 #include <sdm/part_statistics.h>
 #include <sdm/places.h>
+#include <sdm/pose_query.h>
 #include <sdm/progress.h>
 #include <sdm/proximity_query.h>
 #include <sdm/rays.h>

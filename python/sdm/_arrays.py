@@ -75,6 +75,17 @@ def motion(poses: Any, name: str) -> np.ndarray:
     return _floats(numbers, name, (2, 4, 4))
 
 
+def poses(array: Any, name: str) -> np.ndarray:
+    """Matrices, or positions and quaternions."""
+    numbers = numpy_of(array, name)
+    if numbers.shape == (0,):  # a list without poses
+        return np.empty((0, 4, 4))
+    rows = (None, 7) if numbers.ndim == 2 and numbers.shape[1] == 7 else (None, 4, 4)
+    if rows == (None, 4, 4) and (numbers.ndim != 3 or numbers.shape[1:] != (4, 4)):
+        raise Error(f"{name} must have the shape (n, 4, 4) or (n, 7), not {_shape(numbers.shape)}")
+    return _floats(numbers, name, rows)
+
+
 def lengths(array: Any, name: str, count: int) -> np.ndarray:
     """One number for each of ``count`` items, from as many or from one for all."""
     numbers = numpy_of(array, name)

@@ -104,11 +104,15 @@ std::vector<std::array<Vec2, 3>> corner_uvs(nb::handle array) {
 
 namespace {
 
+void require_affine(const Transform& pose, const char* name) {
+  if (pose.rows[3] != std::array<double, 4>{0, 0, 0, 1})
+    throw Error(std::string(name) + " must be an affine matrix: its last row is not (0, 0, 0, 1)");
+}
+
 Transform affine(const double* numbers, const char* name) {
   Transform result;
   std::memcpy(result.rows.data(), numbers, sizeof(result.rows));
-  if (result.rows[3] != std::array<double, 4>{0, 0, 0, 1})
-    throw Error(std::string(name) + " must be an affine matrix: its last row is not (0, 0, 0, 1)");
+  require_affine(result, name);
   return result;
 }
 
@@ -120,6 +124,32 @@ Transform transform(nb::handle matrix, const char* name) {
   if (!may_be_used(matrix) || !nb::try_cast(matrix, numbers, false))
     numbers = nb::cast<Matrix>(converted("matrix", matrix, name));
   return affine(numbers.data(), name);
+}
+
+Poses::Poses(nb::handle array, const char* name) {
+  static_assert(sizeof(Transform) == 16 * sizeof(double));
+  nb::object numbers;
+  if (!may_be_used(array) || !nb::try_cast(array, array_, false)) {
+    numbers = converted("poses", array, name);
+    if (nb::cast<std::size_t>(numbers.attr("ndim")) == 3) array_ = nb::cast<decltype(array_)>(numbers);
+  }
+  if (array_.is_valid()) {
+    poses_ = {reinterpret_cast<const Transform*>(array_.data()), array_.shape(0)};
+    for (const Transform& pose : poses_) require_affine(pose, name);
+    return;
+  }
+  using Rows = nb::ndarray<const double, nb::shape<-1, 7>, nb::c_contig, nb::device::cpu>;
+  const auto rows = nb::cast<Rows>(numbers);
+  for (std::size_t i = 0; i < rows.shape(0); ++i) {
+    const double* n = rows.data() + 7 * i;
+    try {
+      of_quaternions_.push_back(Transform::translation({n[0], n[1], n[2]}) *
+                                Transform::quaternion({n[3], n[4], n[5], n[6]}));
+    } catch (const Error& error) {
+      throw Error(std::string(name) + " " + std::to_string(i) + ": " + error.what());
+    }
+  }
+  poses_ = of_quaternions_;
 }
 
 std::array<Transform, 2> motion(nb::handle poses, const char* name) {

@@ -67,6 +67,19 @@ class Lengths {
 [[nodiscard]] std::vector<std::array<Vec2, 3>> corner_uvs(nb::handle array);
 /// Reads a 4 × 4 matrix whose last row is (0, 0, 0, 1).
 [[nodiscard]] Transform transform(nb::handle matrix, const char* name);
+/// n poses: n such matrices, or n × 7 numbers, each a position x y z and a quaternion w x y z of any length.
+class Poses {
+ public:
+  /// Throws sdm::Error for any other array, and for a quaternion that is zero or not finite.
+  Poses(nb::handle array, const char* name);
+
+  [[nodiscard]] std::span<const Transform> get() const { return poses_; }
+
+ private:
+  nb::ndarray<const double, nb::shape<-1, 4, 4>, nb::c_contig, nb::device::cpu> array_;
+  std::vector<Transform> of_quaternions_;
+  std::span<const Transform> poses_;
+};
 /// Reads two such matrices, or one for both; None: the identity.
 [[nodiscard]] std::array<Transform, 2> motion(nb::handle poses, const char* name);
 [[nodiscard]] nb::object matrix(const Transform& transform);

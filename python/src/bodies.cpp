@@ -214,13 +214,13 @@ void bind_motion(nb::class_<PyMultiBodyQuery>& query) {
       .def(
           "set_poses",
           [](PyMultiBodyQuery& self, nb::handle poses) {
-            std::vector<Transform> transforms;
-            for (const nb::handle pose : nb::iter(poses)) transforms.push_back(transform(pose, "pose"));
+            const Poses all(poses, "poses");
             const auto lock = self.access.change();
-            self.query.set_poses(transforms);
+            self.query.set_poses(all.get());
           },
           nb::arg("poses").none(), nb::sig("def set_poses(self, poses: object) -> None"),
-          "Sets the poses of all bodies, (n, 4, 4) numbers.")
+          R"(Sets the poses of all bodies: (n, 4, 4) numbers, or (n, 7), each a position x y z and a quaternion
+w x y z of any length.)")
       .def(
           "pose",
           [](const PyMultiBodyQuery& self, std::int64_t body) {

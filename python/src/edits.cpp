@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "arrays.h"
-#include "objects.h"
+#include "proximity.h"
 
 namespace sdm::python {
 namespace {
@@ -140,6 +140,36 @@ faces.
 >>> surface.edit(removed_faces=[0])
 >>> bool((surface.texel_faces == 0).any())
 False)");
+}
+
+void bind_edit(nb::class_<PyProximityQuery>& query) {
+  query.def(
+      "edit",
+      [](PyProximityQuery& self, int body, nb::handle removed_faces, nb::handle reconnected_faces,
+         nb::handle moved_vertices, nb::handle added_vertices, nb::handle added_faces,
+         nb::handle added_corner_uvs) {
+        const MeshEdit edit = edit_of({removed_faces, reconnected_faces, moved_vertices, added_vertices,
+                                       added_faces, added_corner_uvs});
+        const auto lock = self.access.change();
+        run_short([&] { self.query.edit(body, edit); });
+      },
+      nb::arg("body"), nb::kw_only(), nb::arg("removed_faces") = nb::none(),
+      nb::arg("reconnected_faces") = nb::none(), nb::arg("moved_vertices") = nb::none(),
+      nb::arg("added_vertices") = nb::none(), nb::arg("added_faces") = nb::none(),
+      nb::arg("added_corner_uvs") = nb::none(),
+      nb::sig("def edit(self, body: int, *, removed_faces: object = None, reconnected_faces: tuple[object, "
+              "object] | None = None, moved_vertices: tuple[object, object] | None = None, added_vertices: "
+              "object = None, added_faces: object = None, added_corner_uvs: object = None) -> None"),
+      R"(Changes the mesh of a body, 0 or 1, in its frame, and keeps the numbers of all faces and vertices that
+stay. The other arguments are those of Sites.edit(). All results are those of the edited mesh, to the bit; the
+ids of contacts may change. Raises Error, and changes nothing, as Sites.edit() does, and for a body whose Shape
+is shared. Cost: that of new Sites.
+
+>>> query = sdm.ProximityQuery(box, box)
+>>> query.set_pose(1, [[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+>>> query.edit(1, added_vertices=[[-1, 0, 0], [-1, 1, 0], [-1, 0, 1]], added_faces=[[8, 9, 10]])
+>>> query.separation()
+sdm.BoundedLength(1, exact))");
 }
 
 }  // namespace sdm::python

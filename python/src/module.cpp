@@ -20,6 +20,7 @@ NB_MODULE(_core, module) {
   bind_proximity(module);
   bind_bodies(module);
   bind_alignments(module);
+  bind_poses(module);
   bind_surfaces(module);
   bind_time_of_contact(module);
   bind_volume(module);

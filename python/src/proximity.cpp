@@ -10,11 +10,6 @@
 namespace sdm::python {
 namespace {
 
-struct PyProximityQuery {
-  ProximityQuery query;
-  Access access;
-};
-
 int checked(int body) {
   if (body != 0 && body != 1)
     throw Error("there is no body " + std::to_string(body) + "; the bodies are 0 and 1");
@@ -289,6 +284,7 @@ sdm.BoundedLength(2, exact)
 >>> query.colliding()
 False)");
   bind_motion(query);
+  bind_edit(query);
   bind_answers(query);
   bind_self_proximity(module);
 }

@@ -24,6 +24,11 @@ struct PyContacts {
   LazyArray point1, point2, normal, depth, patch, faces, barycentric, id, body;
 };
 
+struct PyProximityQuery {
+  ProximityQuery query;
+  Access access;
+};
+
 /// A mesh prepared for proximity queries, as of sdm.Shape.
 struct PyShape {
   PyShape(const Mesh& mesh, std::optional<std::uint32_t> side, const Progress& progress);
@@ -52,6 +57,8 @@ class OptionalPoints {
   std::optional<Points> points_;
 };
 
+/// Adds the method edit().
+void bind_edit(nb::class_<PyProximityQuery>& query);
 void bind_self_proximity(nb::module_& module);
 
 }  // namespace sdm::python

@@ -130,6 +130,64 @@ def test_many_bodies():
     assert query.separations(max_distance=1.2).separation[1] == pytest.approx(0.75, abs=1e-2)
 
 
+def test_many_poses():
+    gripper, part = sdm.Shape(meshes.box()), sdm.Shape(meshes.sphere(radius=0.5))
+    random = np.random.default_rng(4)
+    rows = np.concatenate([random.uniform(-1.2, 1.2, (60, 3)), random.normal(size=(60, 4))], axis=1)
+    query = sdm.PoseQuery(gripper, [part, meshes.box()])
+    query.set_pose(1, shift(2, 0, 0))
+    w, x, y, z = (rows[:, 3:] / np.linalg.norm(rows[:, 3:], axis=1, keepdims=True)).T
+    matrices = np.tile(np.eye(4), (60, 1, 1))
+    matrices[:, :3, 0] = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)], axis=1)
+    matrices[:, :3, 1] = np.stack([2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)], axis=1)
+    matrices[:, :3, 2] = np.stack([2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)], axis=1)
+    matrices[:, :3, 3] = rows[:, :3]
+    np.testing.assert_allclose(query.separations(rows), query.separations(matrices), atol=1e-12)
+
+    pairs = [sdm.ProximityQuery(gripper, part), sdm.ProximityQuery(gripper, meshes.box())]
+    pairs[1].set_pose(1, shift(2, 0, 0))
+    hits, separations, depths = query.colliding(matrices), query.separations(matrices, max_distance=0.5), query.penetration_depths(matrices)
+    assert hits.shape == (60,) and hits.dtype == bool and 5 < hits.sum() < 55 and depths.shape == (60, 2)
+    for i, matrix in enumerate(matrices):
+        for pair in pairs:
+            pair.set_pose(0, matrix)
+        assert hits[i] == any(pair.colliding() for pair in pairs)
+        least = min(pair.separation().value for pair in pairs)
+        assert separations[i] == (least if least <= 0.5 else np.inf)
+        found = [pair.penetration_depth() for pair in pairs]
+        assert depths[i].tolist() == [max(d.lower for d in found), max(d.upper for d in found)]
+    alone = sdm.PoseQuery(gripper, part)
+    assert alone.colliding(matrices.astype(np.float32)[::2]).shape == (30,)
+    assert alone.colliding([]).shape == (0,) and alone.colliding(list(matrices[:2])).shape == (2,)
+    for bad in (lambda: query.colliding(np.zeros((2, 7))), lambda: query.colliding(np.eye(4)), lambda: query.colliding(np.zeros((2, 6))),
+                lambda: query.colliding(2 * [np.diag([1, 2, 1, 1])]), lambda: query.separations(rows, max_distance=0), lambda: query.set_pose(2, np.eye(4)),
+                lambda: query.set_pose(-1, np.eye(4)), lambda: sdm.PoseQuery(gripper, part, depth_precision=-1)):  # fmt: skip
+        with pytest.raises(sdm.Error):
+            bad()
+    with pytest.raises(sdm.Error, match="pose 1: "):
+        query.colliding([np.eye(4), np.diag([1, 2, 1, 1])])
+
+    world = sdm.MultiBodyQuery([gripper, part])
+    world.set_poses(rows[:2])
+    np.testing.assert_allclose(world.pose(1), matrices[1], atol=1e-15)
+
+
+def test_an_edited_body():
+    vertices, faces = meshes.box()
+    query = sdm.ProximityQuery((vertices, faces), (vertices, faces))
+    query.set_pose(1, shift(3, 0, 0))
+    query.edit(1, moved_vertices=(np.arange(len(vertices)), vertices * [2, 1, 1] - [1, 0, 0]))
+    anew = sdm.ProximityQuery((vertices, faces), (vertices * [2, 1, 1] - [1, 0, 0], faces))
+    anew.set_pose(1, shift(3, 0, 0))
+    assert query.separation().value == anew.separation().value != 2
+    shape = sdm.Shape(vertices, faces)
+    shared = sdm.ProximityQuery(shape, shape)
+    for bad in (lambda: query.edit(2, removed_faces=[0]), lambda: query.edit(0, removed_faces=[99]), lambda: shared.edit(0, removed_faces=[0])):
+        with pytest.raises(sdm.Error):
+            bad()
+    assert query.separation().value == anew.separation().value
+
+
 def test_self_proximity():
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
     vertices = np.concatenate([square, square + [0, 0, 0.1]])

@@ -1,0 +1,185 @@
+#include <sdm/error.h>
+#include <sdm/pose_query.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <new>
+#include <string>
+#include <utility>
+
+#include "core/cancellation.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/pool.h"
+#include "proximity/pair/pair_answers.h"
+#include "query/shape/posed_body.h"
+
+namespace sdm {
+namespace {
+
+// The shape in one pose after another; each thread has one of its own.
+class PosedShape {
+ public:
+  PosedShape(const Shape& shape, std::size_t obstacles, const std::optional<double>& depth_precision)
+      : body_(shape), answers_(0, depth_precision), hints_(obstacles, pair::kNoFaces) {}
+
+  // A pose, and what moved since the last one.
+  void begin(const Transform& pose) { body_.set_pose(pose); }
+
+  // The obstacle that was hit last is likely to be hit again.
+  bool colliding(std::span<const shape::PosedBody> obstacles) {
+    if (last_hit_ < obstacles.size() && hits(obstacles, last_hit_)) return true;
+    for (std::size_t i = 0; i < obstacles.size(); ++i)
+      if (i != last_hit_ && hits(obstacles, i)) {
+        last_hit_ = i;
+        return true;
+      }
+    return false;
+  }
+
+  double separation(std::span<const shape::PosedBody> obstacles, double max_distance) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < obstacles.size() && least > 0; ++i) {
+      answers_.begin(body_, obstacles[i], {.closest_faces = hints_[i]});
+      if (answers_.surfaces_within(std::min(max_distance, least)))
+        least = std::min(least, answers_.separation().value);
+      hints_[i] = answers_.known().closest_faces;
+    }
+    return least;
+  }
+
+  BoundedNumber depth(std::span<const shape::PosedBody> obstacles) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    BoundedNumber largest{.value = kNan, .certainty = Certainty::exact, .lower = kNan, .upper = kNan};
+    for (const shape::PosedBody& obstacle : obstacles) {
+      answers_.begin(body_, obstacle);
+      const std::optional<BoundedLength>& depth = answers_.penetration_depth();
+      if (!depth) continue;
+      largest.value = std::fmax(largest.value, depth->value);
+      largest.lower = std::fmax(largest.lower, depth->lower);
+      largest.upper = std::fmax(largest.upper, depth->upper);
+      if (depth->certainty != Certainty::exact) largest.certainty = depth->certainty;
+    }
+    return largest;
+  }
+
+ private:
+  bool hits(std::span<const shape::PosedBody> obstacles, std::size_t i) {
+    answers_.begin(body_, obstacles[i]);
+    return answers_.colliding();
+  }
+
+  shape::PosedBody body_;
+  pair::PairAnswers answers_;
+  std::vector<pair::FacePair> hints_;  // the closest faces of the last pose, for each obstacle
+  std::size_t last_hit_ = 0;
+};
+
+// Calls `work`, whose errors of memory become sdm::Error.
+template <class Work>
+decltype(auto) with_memory_of_poses(const Work& work) try {
+  return work();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a query of many poses");
+}
+
+const PoseQueryOptions& checked(const PoseQueryOptions& options) {
+  pair::check_options(0, options.depth_precision);
+  return options;
+}
+
+}  // namespace
+
+struct PoseQuery::Impl {
+  Shape shape;
+  std::vector<shape::PosedBody> obstacles;
+  PoseQueryOptions options;
+  Pool<PosedShape> pool;
+
+  Impl(Shape of, std::vector<Shape> others, const PoseQueryOptions& asked)
+      : shape(std::move(of)), options(asked) {
+    obstacles.reserve(others.size());
+    for (Shape& other : others) obstacles.emplace_back(std::move(other));
+  }
+
+  // results[i] = find(shape in poses[i]), on all cores.
+  template <class Result, class Find>
+  void for_each(std::span<const Transform> poses, std::span<Result> results, const Find& find) {
+    if (results.size() != poses.size())
+      throw Error("there are " + std::to_string(poses.size()) + " poses, but room for " +
+                  std::to_string(results.size()) + " results; give one for each pose");
+    const auto find_some = [&](std::size_t begin, std::size_t end) {
+      std::unique_ptr<PosedShape> posed = pool.take(
+          [&] { return std::make_unique<PosedShape>(shape, obstacles.size(), options.depth_precision); });
+      for (std::size_t i = begin; i < end; ++i) {
+        try {
+          posed->begin(poses[i]);
+        } catch (const Cancelled&) {
+          throw;
+        } catch (const Error& error) {
+          throw Error("pose " + std::to_string(i) + ": " + error.what(), error.remedy());
+        }
+        results[i] = find(*posed);
+      }
+      pool.give_back(std::move(posed));
+    };
+    constexpr std::size_t kGrain = 8;
+    with_memory_of_poses([&] { parallel_for(poses.size(), kGrain, find_some); });
+  }
+};
+
+PoseQuery::PoseQuery(Shape shape, std::vector<Shape> obstacles, const PoseQueryOptions& options)
+    : impl_(with_memory_of_poses([&] {
+        return std::make_unique<Impl>(std::move(shape), std::move(obstacles), checked(options));
+      })) {}
+PoseQuery::PoseQuery(Shape shape, Shape obstacle, const PoseQueryOptions& options)
+    : PoseQuery(std::move(shape), with_memory_of_poses([&] { return std::vector{std::move(obstacle)}; }),
+                options) {}
+PoseQuery::~PoseQuery() = default;
+PoseQuery::PoseQuery(PoseQuery&&) noexcept = default;
+PoseQuery& PoseQuery::operator=(PoseQuery&&) noexcept = default;
+
+void PoseQuery::set_pose(std::size_t obstacle, const Transform& pose) {
+  if (obstacle >= impl_->obstacles.size())
+    throw Error("there is no obstacle " + std::to_string(obstacle) + " among " +
+                std::to_string(impl_->obstacles.size()) + "; they are numbered from 0");
+  impl_->obstacles[obstacle].set_pose(pose);
+}
+
+std::vector<std::uint8_t> PoseQuery::colliding(std::span<const Transform> poses) {
+  auto results = with_memory_of_poses([&] { return std::vector<std::uint8_t>(poses.size()); });
+  colliding(poses, results);
+  return results;
+}
+
+void PoseQuery::colliding(std::span<const Transform> poses, std::span<std::uint8_t> results) {
+  impl_->for_each(poses, results, [&](PosedShape& posed) -> std::uint8_t {
+    return posed.colliding(impl_->obstacles) ? 1 : 0;
+  });
+}
+
+std::vector<double> PoseQuery::separations(std::span<const Transform> poses, double max_distance) {
+  auto results = with_memory_of_poses([&] { return std::vector<double>(poses.size()); });
+  separations(poses, max_distance, results);
+  return results;
+}
+
+void PoseQuery::separations(std::span<const Transform> poses, double max_distance,
+                            std::span<double> results) {
+  if (!(max_distance > 0)) throw Error("the maximum distance must be greater than 0");
+  impl_->for_each(poses, results,
+                  [&](PosedShape& posed) { return posed.separation(impl_->obstacles, max_distance); });
+}
+
+std::vector<BoundedNumber> PoseQuery::penetration_depths(std::span<const Transform> poses) {
+  auto results = with_memory_of_poses([&] { return std::vector<BoundedNumber>(poses.size()); });
+  penetration_depths(poses, results);
+  return results;
+}
+
+void PoseQuery::penetration_depths(std::span<const Transform> poses, std::span<BoundedNumber> results) {
+  impl_->for_each(poses, results, [&](PosedShape& posed) { return posed.depth(impl_->obstacles); });
+}
+
+}  // namespace sdm
