@@ -32,6 +32,9 @@ struct SDM_API Transform {
   /// the linear part, so that it stays perpendicular to the surface, and on its outside under a reflection
   /// too. 0 if the map is singular, or `n` is 0 or not finite.
   [[nodiscard]] Vec3 normal(const Vec3& n) const;
+  /// The map that takes M p back to p: by the cofactors, so that the rotations and translations of poses are
+  /// inverted to rounding. Throws sdm::Error if the map is singular or an entry of the inverse is not finite.
+  [[nodiscard]] Transform inverse() const;
   /// The determinant of the linear part; negative for a reflection.
   [[nodiscard]] double determinant() const;
   /// The sign of the determinant, without rounding: −1 for a reflection, 0 for a singular map.

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "geometry/affine.h"
 #include "geometry/predicates.h"
 #include "geometry/vec.h"
 
@@ -92,6 +93,24 @@ Vec3 Transform::normal(const Vec3& n) const {
   const int least = std::ranges::min(exponent);
   for (int k = 0; k < 3; ++k) result[k] = side * std::ldexp(result[k], least - exponent[k]);
   return normalized(scaled(result, -largest_exponent(result)));
+}
+
+Transform Transform::inverse() const {
+  Affine map;
+  for (int i = 0; i < 3; ++i) {
+    map.rows[i] = {rows[i][0], rows[i][1], rows[i][2]};
+    map.offset[i] = rows[i][3];
+  }
+  const Affine back = core::inverse(map);
+  Transform result;
+  bool is_finite = orientation() != 0 && finite(back.offset);
+  for (int i = 0; i < 3; ++i) {
+    is_finite = is_finite && finite(back.rows[i]);
+    for (int j = 0; j < 3; ++j) result.rows[i][j] = back.rows[i][j];
+    result.rows[i][3] = back.offset[i];
+  }
+  if (!is_finite) throw Error("a transform that is singular, or nearly so, has no inverse");
+  return result;
 }
 
 double Transform::determinant() const {

@@ -50,6 +50,22 @@ TEST(Transform, ProductsApplyTheRightFactorFirst) {
   EXPECT_EQ((a * b).rows[3], (std::array<double, 4>{0, 0, 0, 1}));
 }
 
+TEST(Transform, InversesLeadBack) {
+  const Transform pose = Transform::translation({3, -2, 1}) * Transform::rotation({20, -70, 130});
+  Transform skewed = pose * Transform::scaling(0.01);
+  skewed.rows[0][1] += 0.5, skewed.rows[2][0] = -skewed.rows[2][0];
+  for (const Transform& map : {Transform(), pose, skewed, Transform::scaling(-4)})
+    for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{1, 2, 3}, Vec3{-7, 0.5, 2}})
+      for (const Vec3& back : {map.inverse()(map(p)), map(map.inverse()(p))})
+        for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(back[k], p[k], 1e-11);
+  EXPECT_EQ(Transform::translation({3, -2, 1}).inverse().rows, Transform::translation({-3, 2, -1}).rows);
+  Transform flat;
+  flat.rows[1] = flat.rows[0];
+  EXPECT_THROW((void)flat.inverse(), Error);
+  EXPECT_THROW((void)Transform::scaling(0).inverse(), Error);
+  EXPECT_THROW((void)Transform::scaling(std::nan("")).inverse(), Error);
+}
+
 TEST(Transform, FitMakesTheLongestSideOneAndCentresIt) {
   Mesh mesh = test::torus(16, 12);
   for (Vec3& p : mesh.positions) p = {7 * p[0] + 5, 3 * p[1] - 8, p[2] + 40};
