@@ -12,10 +12,10 @@
 #include "core/intact.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/pool.h"
 #include "proximity/bodies/contact_store.h"
 #include "proximity/bodies/near_pairs.h"
 #include "proximity/bodies/nearest_body.h"
+#include "proximity/bodies/pool.h"
 #include "proximity/pair/pair_answers.h"
 #include "query/shape/posed_body.h"
 
@@ -65,7 +65,7 @@ struct MultiBodyQuery::Impl {
   std::vector<shape::PosedBody> bodies;
   std::vector<Transform> given_poses;
   Intact intact{"a MultiBodyQuery object"};  // every call but construction requires it first
-  Pool<pair::PairAnswers> pool;
+  bodies::Pool<pair::PairAnswers> pool;
   bodies::NearPairs near;
   std::vector<std::size_t> unknown;  // the pairs of `near` that a call computes
 

@@ -11,7 +11,7 @@
 #include "core/cancellation.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/pool.h"
+#include "proximity/bodies/pool.h"
 #include "proximity/pair/pair_answers.h"
 #include "query/shape/posed_body.h"
 
@@ -95,7 +95,7 @@ struct PoseQuery::Impl {
   Shape shape;
   std::vector<shape::PosedBody> obstacles;
   PoseQueryOptions options;
-  Pool<PosedShape> pool;
+  bodies::Pool<PosedShape> pool;
 
   Impl(Shape of, std::vector<Shape> others, const PoseQueryOptions& asked)
       : shape(std::move(of)), options(asked) {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace sdm::core {
+namespace sdm::bodies {
 
 /// The memory of concurrent work: one object for each thread that has been at work at the same time.
 template <class Object>
@@ -31,8 +31,4 @@ class Pool {
   std::vector<std::unique_ptr<Object>> idle_;
 };
 
-}  // namespace sdm::core
-
-namespace sdm {
-using namespace core;  // used unqualified in every folder
-}
+}  // namespace sdm::bodies
