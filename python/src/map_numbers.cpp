@@ -226,16 +226,20 @@ void bind_verdict(nb::module_& module) {
 }  // namespace
 
 Tolerance tolerance_of(nb::handle value, SignMethod sign) {
+  const auto fault = [&] {
+    return "tolerance must be a number, or the least and the most distance, and not " +
+           std::string(nb::repr(value).c_str());
+  };
   const auto number = [&](nb::handle limit) {
     const double result = PyFloat_AsDouble(limit.ptr());
     if (result != -1 || PyErr_Occurred() == nullptr) return result;
     PyErr_Clear();
-    throw Error("tolerance must be a number, or the least and the most distance, and not " +
-                std::string(nb::repr(value).c_str()));
+    throw nb::type_error(fault().c_str());
   };
   const bool is_pair = nb::isinstance<nb::tuple>(value) || nb::isinstance<nb::list>(value);
-  const Tolerance tolerance = is_pair && nb::len(value) == 2 ? Tolerance(number(value[0]), number(value[1]))
-                                                             : Tolerance(number(value));
+  if (is_pair && nb::len(value) != 2) throw Error(fault());
+  const Tolerance tolerance =
+      is_pair ? Tolerance(number(value[0]), number(value[1])) : Tolerance(number(value));
   if (!(tolerance.lo <= tolerance.hi) || !std::isfinite(tolerance.hi - tolerance.lo))
     throw Error("tolerance must be a finite number that is not negative, or two, the smaller one first");
   if (tolerance.needs_sign() && sign == SignMethod::none)

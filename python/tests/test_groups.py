@@ -79,7 +79,8 @@ def test_places_of_a_map():
     assert m.check_groups({"top": (None, 0.3), "bottom": (-0.3, None)}, names).verdict == "pass"
     for call in (m.check, m.places):
         for wrong in ("x", (1, "x"), (1, 2, 3), [None, None], {}):
-            with pytest.raises(sdm.Error, match="tolerance must be a number, or the least and the most distance, and not "):
+            fault = sdm.Error if wrong == (1, 2, 3) else TypeError
+            with pytest.raises(fault, match="tolerance must be a number, or the least and the most distance, and not "):
                 call(wrong)
 
 
