@@ -54,8 +54,9 @@ function faultsOfTexts(least) {
   };
   const boxes = [];
   const check = (element, text, all) => {
-    // Of a wide table that is folded away and scrolls, what is in the page.
-    const rects = element.closest('details :is(.scroll, pre)') ? all.filter((r) => r.right <= innerWidth) : all;
+    // Of a list or table that scrolls, what is seen.
+    const scrolls = element.closest('.scroll, pre, ol, #callouts')?.getBoundingClientRect();
+    const rects = scrolls ? all.filter((r) => r.bottom <= scrolls.bottom + 1 && r.top >= scrolls.top - 1 && r.right <= scrolls.right + 1) : all;
     if (rects.length === 0) return;
     const what = `"${text.trim().slice(0, 40)}"`;
     const style = getComputedStyle(element);
