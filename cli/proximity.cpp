@@ -60,7 +60,8 @@ void run(const PairCommand& command, const AlignCommand& align) {
 
 void add_proximity_command(CLI::App& app) {
   CLI::App* proximity = app.add_subcommand(
-      "proximity", "Compute separation, collision, penetration depth and contacts of two meshes");
+      "proximity",
+      "Compute separation, collision, penetration depth, contacts and the way apart of two meshes");
   proximity->footer(
       "Every number is marked as exact or bounded, with its bounds.\n\n"
       "Example, two meshes in contact:\n"

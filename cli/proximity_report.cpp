@@ -27,6 +27,14 @@ Json to_json(const sdm::Contact& contact) {
           {"id", contact.id}};
 }
 
+Json to_json(const sdm::SeparatingTranslation& found) {
+  return {{"value", found.value},
+          {"kind", name(found.certainty)},
+          {"lower", found.lower},
+          {"upper", found.upper},
+          {"translation", found.translation}};
+}
+
 Json collision_json(bool colliding) {
   return {{"value", colliding}, {"kind", name(sdm::Certainty::exact)}};
 }
@@ -51,7 +59,7 @@ std::string direction(const sdm::Vec3& v) {
   return fmt::format("({} {} {})", number(v[0]), number(v[1]), number(v[2]));
 }
 
-std::string words(const sdm::BoundedLength& length, const std::string& unit) {
+std::string words(const sdm::BoundedNumber& length, const std::string& unit) {
   const std::string bounds =
       length.certainty == sdm::Certainty::bounded
           ? fmt::format("   between {} and {}", number(length.lower), number(length.upper))
@@ -77,6 +85,7 @@ Json to_json(sdm::ProximityQuery& query) {
     json["penetration_depth"] = nullptr;
     json["no_penetration_depth"] = no_solid(query);
   }
+  json["separating_translation"] = to_json(query.separating_translation());
   json["contacts"] = Json::array();
   for (const sdm::Contact& contact : query.contacts()) json["contacts"].push_back(to_json(contact));
   json["patches"] = patch_count(query.contacts());
@@ -92,6 +101,11 @@ std::string summary(sdm::ProximityQuery& query, const std::string& units, double
     text += "  depth      " + words(*depth, unit) + between(*depth, size);
   else
     text += fmt::format("  depth      none: {}\n", no_solid(query));
+  if (query.colliding()) {
+    const sdm::SeparatingTranslation& found = query.separating_translation();
+    text += "  to leave   " + words(found, unit);
+    text += fmt::format("            moving O1 by {}\n", direction(found.translation));
+  }
   const std::span<const sdm::Contact> contacts = query.contacts();
   if (contacts.empty()) return text + "  contacts   0\n";
   const std::size_t patches = patch_count(contacts);

@@ -8,6 +8,7 @@
 
 [[nodiscard]] const char* name(sdm::Certainty kind);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedLength& length);
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::SeparatingTranslation& found);
 /// The result of ProximityQuery::colliding(), which is exact.
 [[nodiscard]] nlohmann::ordered_json collision_json(bool colliding);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::Contact& contact);

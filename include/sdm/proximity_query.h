@@ -38,6 +38,12 @@ struct Contact {
   std::uint64_t id = 0;
 };
 
+/// How far a body must be moved to leave another one: see ProximityQuery::separating_translation().
+struct SeparatingTranslation : BoundedNumber {
+  /// Of O1, |translation| = value = upper, to rounding. After it the bodies do not collide.
+  Vec3 translation{};
+};
+
 /// Options of a ProximityQuery.
 struct ProximityOptions {
   /// The bounds on the penetration depth are at most this far apart, by default kDepthPrecision of the
@@ -114,6 +120,22 @@ class SDM_API ProximityQuery {
   /// (ProximityOptions::depth_precision), with a witness at the depth `value`. Empty if neither body is a
   /// solid.
   [[nodiscard]] const std::optional<BoundedLength>& penetration_depth();
+  /// The length of the shortest translation of O1 after which the bodies do not collide, or the infimum of
+  /// such lengths: 0, exact, if they do not collide. It is not a path: rings that are linked, but do not
+  /// touch, have 0, and the translation out of a closed box leads through its wall.
+  ///
+  /// penetration_depth() is that of a point, this that of the bodies: where the whole of a surface is pushed
+  /// out, not its deepest point alone. So it is at least as large.
+  ///
+  /// `upper` is the length of a translation that was verified: set_pose(0, Transform::translation(t) *
+  /// pose(0)) makes colliding() false. Of two convex solids (see docs/proximity.md) the result is exact, to
+  /// 1e-6 of the diagonal of both bodies' box, as `upper` − `lower` is then. For others, `lower` bounds all
+  /// translations, by the depths of points of either body and by balls inside of them; it is 0 if neither
+  /// body is a solid. Cost: of convex solids, a few hundred searches for extreme vertices. Of others,
+  /// penetration_depth(), some hundred collision tests and separations, and at most 4000 searches for a
+  /// closest point; at the first call for a shape also some 600 for the balls in it. Single-threaded but for
+  /// penetration_depth().
+  [[nodiscard]] const SeparatingTranslation& separating_translation();
   /// The contacts of both bodies: none, at the cost of colliding(), if they are farther apart than the
   /// margin. Otherwise one for
   ///  - each vertex that lies inside the other body or within the margin of its surface. Of vertices within

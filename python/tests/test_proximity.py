@@ -55,6 +55,23 @@ def test_contacts_and_depth():
         np.testing.assert_allclose(np.einsum("nk,nkx->nx", contacts.barycentric[:, side], corners), points, atol=1e-12)
 
 
+def test_separating_translation():
+    query = sdm.ProximityQuery(meshes.box(), meshes.box())
+    query.set_pose(0, shift(0.1, 0.2, 0.75))
+    found = query.separating_translation()
+    assert isinstance(found, sdm.SeparatingTranslation) and found.certainty == "exact"
+    assert float(found) == found.value == found.upper == pytest.approx(0.25, abs=1e-9)
+    assert found.lower == pytest.approx(0.25, abs=1e-9)
+    np.testing.assert_allclose(found.translation, [0, 0, 0.25], atol=1e-9)
+    assert repr(found).startswith("sdm.SeparatingTranslation(0.25")
+    query.set_pose(0, shift(*found.translation) @ query.pose(0))
+    assert not query.colliding() and query.separating_translation().value == 0
+    # Of the deepest point, and of the bodies: a small box in the middle of a large one.
+    vertices, faces = meshes.box()
+    nested = sdm.ProximityQuery((0.2 * (vertices - 0.5), faces), (vertices - 0.5, faces))
+    assert nested.penetration_depth().upper < 0.51 < nested.separating_translation().value == pytest.approx(0.6)
+
+
 def test_refit_and_shared_shapes():
     vertices, faces = meshes.box()
     query = sdm.ProximityQuery((vertices, faces), (vertices + [3, 0, 0], faces))

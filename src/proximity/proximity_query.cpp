@@ -7,6 +7,7 @@
 #include "core/cancellation.h"
 #include "core/memory.h"
 #include "proximity/pair/pair_answers.h"
+#include "proximity/separate/separating_translation.h"
 #include "query/shape/posed_body.h"
 
 namespace sdm {
@@ -14,6 +15,7 @@ namespace sdm {
 struct ProximityQuery::Impl {
   std::array<shape::PosedBody, 2> bodies;
   pair::PairAnswers answers;
+  std::optional<SeparatingTranslation> separating_translation{};
 
   Impl(Shape o1, Shape o2, const ProximityOptions& options)
       : bodies{shape::PosedBody(std::move(o1)), shape::PosedBody(std::move(o2))},
@@ -25,8 +27,14 @@ struct ProximityQuery::Impl {
     for (const shape::PosedBody& body : bodies) body.body().require_intact();
   }
   // The faces that were closest before are most likely near the closest ones now.
-  void begin() { answers.begin(bodies[0], bodies[1], {.closest_faces = answers.known().closest_faces}); }
-  void begin_anew() { answers.begin(bodies[0], bodies[1]); }
+  void begin() { begin({.closest_faces = answers.known().closest_faces}); }
+  void begin_anew() { begin({}); }
+
+ private:
+  void begin(const pair::KnownAnswers& known) {
+    answers.begin(bodies[0], bodies[1], known);
+    separating_translation.reset();
+  }
 };
 
 namespace {
@@ -118,6 +126,15 @@ const std::optional<BoundedLength>& ProximityQuery::penetration_depth() {
   impl_->require_intact();
   return with_memory(
       [&]() -> const std::optional<BoundedLength>& { return impl_->answers.penetration_depth(); });
+}
+const SeparatingTranslation& ProximityQuery::separating_translation() {
+  impl_->require_intact();
+  return with_memory([&]() -> const SeparatingTranslation& {
+    if (!impl_->separating_translation)
+      impl_->separating_translation =
+          separate::separating_translation(impl_->bodies[0], impl_->bodies[1], impl_->answers);
+    return *impl_->separating_translation;
+  });
 }
 std::span<const Contact> ProximityQuery::contacts() {
   impl_->require_intact();

@@ -14,6 +14,7 @@ namespace sdm::test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Json = nlohmann::json;
 
 struct ProximityCommand : ::testing::Test, TwoTori {};
@@ -32,6 +33,12 @@ TEST_F(ProximityCommand, PrintsTheAnswersOfTheLibrary) {
   ASSERT_TRUE(query.penetration_depth());
   EXPECT_EQ(json["penetration_depth"]["value"], query.penetration_depth()->value);
   EXPECT_EQ(json["penetration_depth"]["witness"][0], (*query.penetration_depth()->witness)[0]);
+  const SeparatingTranslation& out = query.separating_translation();
+  EXPECT_EQ(json["separating_translation"]["value"], out.value);
+  EXPECT_EQ(json["separating_translation"]["lower"], out.lower);
+  EXPECT_EQ(json["separating_translation"]["upper"], out.upper);
+  EXPECT_EQ(json["separating_translation"]["kind"], "bounded");
+  EXPECT_EQ(json["separating_translation"]["translation"], out.translation);
   ASSERT_EQ(json["contacts"].size(), query.contacts().size());
   EXPECT_GT(json["contacts"].size(), 0u);
   for (std::size_t i = 0; i < query.contacts().size(); ++i) {
@@ -50,10 +57,13 @@ TEST_F(ProximityCommand, SaysWhatNumbersAreWorth) {
   EXPECT_EQ(run.code, 0);
   EXPECT_THAT(run.out, HasSubstr("colliding  yes (exact)"));
   EXPECT_THAT(run.out, HasSubstr("(bounded)")) << "the depth";
+  EXPECT_THAT(run.out, HasSubstr("  to leave   "));
+  EXPECT_THAT(run.out, HasSubstr("            moving O1 by ("));
   EXPECT_THAT(run.out, HasSubstr("contacts"));
   run = run_sdm({"proximity", o1, o2, "--transform-o2", "translate:9:0:0"});
   EXPECT_THAT(run.out, HasSubstr("colliding  no (exact)"));
   EXPECT_THAT(run.out, HasSubstr("contacts   0"));
+  EXPECT_THAT(run.out, Not(HasSubstr("to leave")));
 }
 
 TEST_F(ProximityCommand, AsksTheTrianglesThemselves) {

@@ -7,6 +7,7 @@
 
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
+#include "query/shape/convexity.h"
 
 namespace sdm::shape {
 namespace {
@@ -82,11 +83,25 @@ void Body::require_boundary() const {
   std::call_once(boundary_->built, [this] { boundary_->value.emplace(internals(sites_), inside_->sides()); });
 }
 
+double Body::convexity_deficit() const {
+  std::call_once(convexity_->built,
+                 [this] { convexity_->value = shape::convexity_deficit(internals(sites_), *inside_); });
+  return *convexity_->value;
+}
+
+const InnerBalls& Body::inner_balls() const {
+  std::call_once(inner_balls_->built,
+                 [this] { inner_balls_->value = shape::inner_balls(internals(sites_), *inside_); });
+  return *inner_balls_->value;
+}
+
 void Body::follow_positions() {
   cylinders_ = {};
   box_ = bounds(sites_.mesh());
   ball_ = ball_about(0.5 * (box_.lo + box_.hi), internals(sites_));
   if (boundary_->value) boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
+  if (convexity_->value) convexity_ = std::make_unique<Lazy<double>>();
+  if (inner_balls_->value) inner_balls_ = std::make_unique<Lazy<InnerBalls>>();
   if (inside_)
     inside_->refit();
   else

@@ -14,6 +14,7 @@
 #include "query/inside/inside.h"
 #include "query/inside/solid_boundary.h"
 #include "query/shape/contact_parts.h"
+#include "query/shape/inner_balls.h"
 #include "query/shape/node_ball.h"
 #include "sites/bounding_cylinders.h"
 
@@ -50,6 +51,11 @@ class Body {
   /// The boundary of the solid. Requires a call of require_boundary().
   [[nodiscard]] const inside::SolidBoundary& boundary() const { return *boundary_->value; }
 
+  /// See convexity_deficit(). Thread-safe; computed by the first call.
+  [[nodiscard]] double convexity_deficit() const;
+  /// Balls inside and points of the surface. Thread-safe; computed by the first call.
+  [[nodiscard]] const InnerBalls& inner_balls() const;
+
   /// Around the nodes of the tree; none after a refit, for which they would take longer than a few searches
   /// save.
   [[nodiscard]] const sites::CylinderTree& cylinders() const { return cylinders_; }
@@ -76,6 +82,8 @@ class Body {
     std::optional<Value> value;
   };
   std::unique_ptr<Lazy<inside::SolidBoundary>> boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
+  std::unique_ptr<Lazy<double>> convexity_ = std::make_unique<Lazy<double>>();
+  std::unique_ptr<Lazy<InnerBalls>> inner_balls_ = std::make_unique<Lazy<InnerBalls>>();
 };
 
 }  // namespace sdm::shape

@@ -1,0 +1,33 @@
+// The shortest way out of the difference of two convex bodies.
+#pragma once
+
+#include <functional>
+
+#include "geometry/vec.h"
+
+namespace sdm::separate {
+
+/// In the direction u, |u| = 1: a point of O1 with the largest u·x, and one of O2 with the least.
+struct SupportPair {
+  Vec3 x1{}, x2{};
+  [[nodiscard]] Vec3 difference() const { return x1 - x2; }
+};
+using Support = std::function<SupportPair(const Vec3&)>;
+
+/// Moving O1 by −upper · direction separates the convex hulls of both bodies; nothing shorter than `lower`
+/// does.
+struct ConvexExit {
+  double lower = 0, upper = 0;
+  Vec3 direction{};
+};
+
+/// The hulls overlap after all translations inside of their difference, so the exit is the least height
+/// h(u) = max of u·(x1 − x2) over all directions u. A polytope of points of the difference is expanded at its
+/// face nearest to the origin (van den Bergen 2001): its distance bounds h from below, and h of its normal
+/// from above. Which faces a new point sees is decided exactly, so that the polytope is the hull of its
+/// points however flat it is. Bounds differ by at most 1e-10 · size, unless the difference has tens of
+/// thousands of faces that are equally near. `size`: of both bodies. The upper bound is negative if the hulls
+/// are apart.
+[[nodiscard]] ConvexExit exit_of_hulls(const Support& support, double size);
+
+}  // namespace sdm::separate

@@ -1,0 +1,45 @@
+// Short translations after which two bodies do not collide.
+#pragma once
+
+#include <vector>
+
+#include "geometry/vec.h"
+#include "proximity/separate/moved_pair.h"
+
+namespace sdm::separate {
+
+/// Looks for translations without a collision that are ever shorter. Each one found is verified by the exact
+/// test; that none is shorter is not said.
+class FreeTranslations {
+ public:
+  /// `first`: a translation without a collision. `size`: of both bodies.
+  FreeTranslations(MovedPair& pair, const Vec3& first, double size)
+      : pair_(pair), best_(first), size_(size) {}
+
+  [[nodiscard]] const Vec3& best() const { return best_; }
+  [[nodiscard]] double length() const { return norm(best_); }
+
+  /// Tries a few translations in a direction, |u| = 1, from the shortest on; descends from the first without
+  /// a collision.
+  void try_direction(const Vec3& u, double shortest);
+  /// Whether there is no collision after the translation. If so, descends from it.
+  bool try_translation(const Vec3& t);
+  /// Descends from the best one.
+  void improve() { descend(best_); }
+
+ private:
+  /// The half-space n·t ≥ least.
+  struct Plane {
+    Vec3 n{};
+    double least = 0;
+  };
+  void descend(Vec3 t);
+  [[nodiscard]] double free_step(const Vec3& t, const Vec3& step, double separation);
+
+  MovedPair& pair_;
+  Vec3 best_;
+  double size_;
+  std::vector<Plane> planes_;
+};
+
+}  // namespace sdm::separate

@@ -1,0 +1,51 @@
+// Two bodies, the first of which is translated.
+#pragma once
+
+#include <optional>
+
+#include "proximity/pair/pair_answers.h"
+#include "query/shape/posed_body.h"
+
+namespace sdm::separate {
+
+class MovedPair {
+ public:
+  MovedPair(const shape::PosedBody& o1, const shape::PosedBody& o2)
+      : pose_(o1.pose().transform()), moved_(o1), o2_(o2) {}
+
+  /// Whether the bodies collide after a translation of O1; exact.
+  [[nodiscard]] bool collide(const Vec3& translation) {
+    move(translation);
+    return answers_.colliding();
+  }
+  /// The closest points after a translation without a collision.
+  [[nodiscard]] const BoundedLength& separation(const Vec3& translation) {
+    move(translation);
+    return answers_.separation();
+  }
+  /// The penetration depth after a translation, to `precision`; 0 if it cannot be found.
+  [[nodiscard]] const std::optional<BoundedLength>& depth(const Vec3& translation) {
+    move(translation);
+    return answers_.penetration_depth();
+  }
+  /// How many translations were tried.
+  [[nodiscard]] std::size_t tries() const { return tries_; }
+
+ private:
+  void move(const Vec3& translation) {
+    if (translation == at_) return;
+    at_ = translation;
+    ++tries_;
+    moved_.set_pose(Transform::translation(translation) * pose_);
+    answers_.begin(moved_, o2_, answers_.closest_faces());
+  }
+
+  Transform pose_;
+  shape::PosedBody moved_;
+  const shape::PosedBody& o2_;
+  pair::PairAnswers answers_{0, std::nullopt};
+  std::optional<Vec3> at_{};
+  std::size_t tries_ = 0;
+};
+
+}  // namespace sdm::separate

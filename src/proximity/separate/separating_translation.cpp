@@ -1,0 +1,123 @@
+#include "proximity/separate/separating_translation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "geometry/vec.h"
+#include "proximity/separate/difference_hull.h"
+#include "proximity/separate/free_translations.h"
+#include "proximity/separate/moved_pair.h"
+#include "proximity/separate/overlap_cover.h"
+#include "query/shape/convexity.h"
+#include "query/shape/extreme_vertex.h"
+
+namespace sdm::separate {
+namespace {
+
+constexpr double kExact = 1e-6;      // of the size: bounds that are as close are exact
+constexpr double kClose = 0.98;      // ratio of bounds at which a search ends
+constexpr double kEnough = 0.85;     // the same, of the search for a cover
+constexpr double kLeastGap = 1e-12;  // of the size, beyond a translation after which bodies touch
+
+// The point of a body that is farthest along u, in space.
+Vec3 farthest(const shape::PosedBody& body, const Vec3& u) {
+  const auto& rows = body.pose().map.rows;
+  const Vec3 local = normalized(u[0] * rows[0] + u[1] * rows[1] + u[2] * rows[2]);
+  return body.pose().map(shape::extreme_vertex(internals(body.body().sites()), local).point);
+}
+
+// Directions along the axes of a cube, and its diagonals.
+template <class Work>
+void for_each_direction(const Work& work) {
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z)
+        if (x != 0 || y != 0 || z != 0) work(normalized(Vec3{1.0 * x, 1.0 * y, 1.0 * z}));
+}
+
+class TranslationSearch {
+ public:
+  TranslationSearch(const shape::PosedBody& o1, const shape::PosedBody& o2, pair::PairAnswers& answers)
+      : o1_(o1), o2_(o2), answers_(answers), pair_(o1, o2) {
+    Box box = o1.box();
+    extend(box, o2.box());
+    size_ = diagonal(box);
+  }
+
+  SeparatingTranslation find() {
+    const ConvexExit exit = exit_of_hulls(
+        [&](const Vec3& u) {
+          return SupportPair{farthest(o1_, u), farthest(o2_, -u)};
+        },
+        size_);
+    const Vec3 out = beyond(-std::max(0.0, exit.upper) * exit.direction, -exit.direction);
+    // Of what falls short of its hull a little, the hull scaled about a point is inside.
+    const double short1 = o1_.body().convexity_deficit(), short2 = o2_.body().convexity_deficit();
+    if (std::max(short1, short2) <= shape::kNearlyConvex)
+      return result(exit.lower - short1 * diagonal(o1_.box()) - short2 * diagonal(o2_.box()), out);
+    double lower = 0;
+    const Vec3 translation = search(out, lower);
+    return result(lower, translation);
+  }
+
+ private:
+  // A translation without a collision, by a little more than one after which the bodies touch at most.
+  Vec3 beyond(const Vec3& translation, const Vec3& u) {
+    for (double gap = kLeastGap; gap < 1; gap *= 10) {
+      const Vec3 t = translation + gap * size_ * u;
+      if (!pair_.collide(t)) return t;
+    }
+    return translation + size_ * u;
+  }
+
+  SeparatingTranslation result(double lower, const Vec3& translation) const {
+    SeparatingTranslation found;
+    found.translation = translation;
+    found.value = found.upper = norm(translation);
+    found.lower = std::clamp(lower, 0.0, found.upper);
+    found.certainty = found.upper - found.lower <= kExact * size_ ? Certainty::exact : Certainty::bounded;
+    return found;
+  }
+
+  Vec3 search(const Vec3& out, double& lower) {
+    FreeTranslations free(pair_, out, size_);
+    free.improve();
+    OverlapCover cover(o1_, o2_, kExact * size_);
+    lower = use_depth(free, cover);
+    if (lower < kClose * free.length()) lower = std::max(lower, cover.bound_at_origin());
+    if (lower < kClose * free.length())
+      for_each_direction([&](const Vec3& u) { free.try_direction(u, std::max(lower, 0.3 * free.length())); });
+    if (lower < kClose * free.length()) lower = std::max(lower, cover.cover(free, pair_, kEnough));
+    return free.best();
+  }
+
+  // The deepest point is still in the other body after all translations that are shorter than its depth; the
+  // way out from there is tried for the bodies.
+  double use_depth(FreeTranslations& free, OverlapCover& cover) {
+    const std::optional<BoundedLength>& depth = answers_.penetration_depth();
+    if (!depth || !depth->witness) return 0;
+    const auto& [p1, p2] = *depth->witness;
+    const Vec3 out = p2 - p1;
+    for (int body = 0; body < 2; ++body)
+      if ((body == 0 ? o2_ : o1_).body().solid()) cover.add_deep_point(body, (*depth->witness)[body]);
+    if (depth->value > 0)
+      for (const double sign : {1.0, -1.0}) free.try_direction((sign / norm(out)) * out, depth->lower);
+    return depth->lower;
+  }
+
+  const shape::PosedBody &o1_, &o2_;
+  pair::PairAnswers& answers_;
+  MovedPair pair_;
+  double size_ = 0;
+};
+
+}  // namespace
+
+SeparatingTranslation separating_translation(const shape::PosedBody& o1, const shape::PosedBody& o2,
+                                             pair::PairAnswers& answers) {
+  if (!answers.colliding()) return {{.certainty = Certainty::exact}};
+  return TranslationSearch(o1, o2, answers).find();
+}
+
+}  // namespace sdm::separate

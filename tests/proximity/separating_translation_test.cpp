@@ -1,0 +1,293 @@
+// Separating translations against brute force over all directions that can be the shortest, CGAL's Minkowski
+// sums, and closed forms.
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "query/shape/body.h"
+#include "support/meshes.h"
+#include "support/minkowski_oracle.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+Mesh cuboid(const Vec3& lo, const Vec3& hi) {
+  Mesh mesh = cube();
+  for (Vec3& p : mesh.positions)
+    for (int k = 0; k < 3; ++k) p[k] = p[k] < 0 ? lo[k] : hi[k];
+  return mesh;
+}
+
+// An L of two unit cubes' width, from one outline, so that it does not intersect itself.
+Mesh angle_bracket() {
+  const std::array<Vec2, 6> outline{{{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}};
+  Mesh mesh;
+  for (const double z : {0.0, 1.0})
+    for (const Vec2& p : outline) mesh.positions.push_back({p[0], p[1], z});
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    const std::uint32_t j = (i + 1) % 6;
+    mesh.triangles.push_back({i, j, j + 6});
+    mesh.triangles.push_back({i, j + 6, i + 6});
+  }
+  for (const auto& [a, b, c] :
+       std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}}) {
+    mesh.triangles.push_back({a, c, b});
+    mesh.triangles.push_back({a + 6, b + 6, c + 6});
+  }
+  return mesh;
+}
+
+Transform random_placement(std::mt19937& random, double reach) {
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> offset(-reach, reach);
+  return Transform::translation({offset(random), offset(random), offset(random)}) *
+         Transform::quaternion({normal(random), normal(random), normal(random), normal(random)});
+}
+
+// The least height of the difference of two convex bodies over the normals of its faces: those of either
+// body, and across an edge of each.
+double least_height(const Mesh& a, const Mesh& b) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto try_normal = [&](const Vec3& n) {
+    const double length = norm(n);
+    if (!(length > 1e-12)) return;
+    for (const double sign : {1 / length, -1 / length}) {
+      double far = -std::numeric_limits<double>::infinity(), near = -far;
+      for (const Vec3& p : a.positions) far = std::max(far, dot(sign * n, p));
+      for (const Vec3& p : b.positions) near = std::min(near, dot(sign * n, p));
+      least = std::min(least, far - near);
+    }
+  };
+  std::vector<Vec3> edges[2];
+  for (int m = 0; m < 2; ++m)
+    for (const auto& t : (m == 0 ? a : b).triangles) {
+      const std::vector<Vec3>& p = (m == 0 ? a : b).positions;
+      try_normal(cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]));
+      for (int k = 0; k < 3; ++k)
+        if (t[k] < t[(k + 1) % 3]) edges[m].push_back(p[t[(k + 1) % 3]] - p[t[k]]);
+    }
+  for (const Vec3& e : edges[0])
+    for (const Vec3& f : edges[1]) try_normal(cross(e, f));
+  return least;
+}
+
+double size_of(const Mesh& a, const Mesh& b) {
+  Box box = bounds(a);
+  extend(box, bounds(b));
+  return diagonal(box);
+}
+
+// What holds of any two bodies.
+void expect_valid(ProximityQuery& query) {
+  const SeparatingTranslation found = query.separating_translation();
+  ASSERT_LE(found.lower, found.upper);
+  EXPECT_EQ(found.value, found.upper);
+  EXPECT_DOUBLE_EQ(norm(found.translation), found.value);
+  const bool colliding = query.colliding();
+  if (const auto& depth = query.penetration_depth()) {
+    EXPECT_GE(found.upper, depth->lower);
+  }
+  if (!colliding) {
+    EXPECT_EQ(found.value, 0);
+    EXPECT_EQ(found.certainty, Certainty::exact);
+    return;
+  }
+  const Transform pose = query.pose(0);
+  query.set_pose(0, Transform::translation(found.translation) * pose);
+  EXPECT_FALSE(query.colliding());
+  EXPECT_EQ(query.separating_translation().value, 0);
+  query.set_pose(0, pose);
+  EXPECT_EQ(query.separating_translation().translation, found.translation) << "the same at any time";
+}
+
+TEST(SeparatingTranslation, OfConvexBodiesIsExact) {
+  const std::array bodies{cube(), tetrahedron(), sphere(0), sphere(1),
+                          cuboid({-2, -0.1, -0.5}, {2, 0.1, 0.5})};
+  std::mt19937 random(38);
+  int deep = 0;
+  for (int i = 0; i < 300; ++i) {
+    Mesh a = bodies[i % bodies.size()], b = bodies[i / bodies.size() % bodies.size()];
+    // A tenth has parallel faces and edges, or all in common.
+    if (i % 10 != 0) transform(a, random_placement(random, 0.5));
+    if (i % 20 != 0) transform(b, random_placement(random, 0.5));
+    ProximityQuery query(a, b);
+    expect_valid(query);
+    if (!query.colliding()) continue;
+    ++deep;
+    const SeparatingTranslation& found = query.separating_translation();
+    EXPECT_EQ(found.certainty, Certainty::exact);
+    EXPECT_NEAR(found.value, least_height(a, b), 1e-9 * size_of(a, b)) << i;
+    EXPECT_NEAR(found.lower, found.value, 1e-9 * size_of(a, b)) << i;
+  }
+  EXPECT_GT(deep, 200);
+}
+
+TEST(SeparatingTranslation, HasClosedForms) {
+  const auto expect = [](const Mesh& a, const Mesh& b, double value, double tolerance) {
+    ProximityQuery query(a, b);
+    expect_valid(query);
+    EXPECT_LE(query.separating_translation().lower, value + tolerance);
+    EXPECT_GE(query.separating_translation().upper, value - tolerance);
+    EXPECT_NEAR(query.separating_translation().value, value, tolerance);
+  };
+  expect(cube(), cube(), 2, 1e-9);
+  expect(cube(), moved(cube(), {1.7, 0.4, 0}), 0.3, 1e-9);
+  expect(cube(), cube(0.2), 1.2, 1e-9);
+  // The inscribed balls of the two bodies are 0.7 % smaller than the sphere.
+  expect(sphere(3), moved(sphere(3), {0, 0.3, 0.4}), 1.5, 0.03);
+  expect(sphere(3), sphere(3), 2, 0.03);
+  expect(cube(), moved(cube(), {2.5, 0, 0}), 0, 0);
+  // An L in an L: up through the thickness, or along both sides, 1 each.
+  expect(angle_bracket(), moved(angle_bracket(), {0.5, 0.5, 0}), std::sqrt(0.5), 2e-3);
+}
+
+TEST(SeparatingTranslation, OfRingsThatAreLinkedIsZero) {
+  // Radii 2 and 0.2, through each other's centre.
+  Mesh thin = ring(24);
+  for (Vec3& p : thin.positions) {
+    const double around = std::hypot(p[0], p[1]), angle = std::atan2(p[1], p[0]);
+    const double radius = 1 + 0.5 * (around - 1);
+    p = {radius * std::cos(angle), radius * std::sin(angle), 0.5 * p[2]};
+  }
+  Mesh other = thin;
+  transform(other, Transform::translation({1, 0, 0}) * Transform::rotation({90, 0, 0}));
+  ProximityQuery query(thin, other);
+  ASSERT_FALSE(query.colliding());
+  EXPECT_GT(query.separation().value, 0.1);
+  EXPECT_EQ(query.separating_translation().value, 0);
+  EXPECT_EQ(query.separating_translation().certainty, Certainty::exact);
+}
+
+TEST(SeparatingTranslation, OfSolidsAgreesWithMinkowskiSums) {
+  const Mesh loop = ring(5), bracket = angle_bracket();
+  const std::array<std::array<Mesh, 2>, 4> pairs{
+      {{bracket, cube(0.6)}, {bracket, bracket}, {loop, tetrahedron()}, {loop, cube(0.4)}}};
+  std::mt19937 random(4);
+  for (const auto& [a, b] : pairs) {
+    for (int i = 0; i < 2; ++i) {
+      Mesh first = a, second = b;
+      const Vec3 middle = centre(bounds(a));
+      for (Vec3& p : first.positions) p = p - middle + Vec3{0.5, 0.2, 0.1};
+      transform(second, random_placement(random, 0.4));
+      ProximityQuery query(first, second);
+      expect_valid(query);
+      if (!query.colliding()) continue;
+      const double truth = oracle::separating_distance(first, second);
+      const SeparatingTranslation& found = query.separating_translation();
+      const double rounding = 1e-6 * size_of(first, second);
+      EXPECT_LE(found.lower, truth + rounding);
+      EXPECT_GE(found.upper, truth - rounding);
+      EXPECT_LE(found.upper, 1.3 * truth);
+    }
+  }
+}
+
+// Ten pairs of non-convex bodies, overlapping by little and by much.
+TEST(SeparatingTranslation, OfOtherBodiesHasCloseBounds) {
+  const std::array names{"bunny.obj", "elephant.off", "cow.off", "hand.off", "knot1.off"};
+  std::mt19937 random(1);
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < 10; ++i) {
+    const Shape a(load(names[i % 5], "fit")), b(load(names[(i + 1 + i / 5) % 5], "fit"));
+    ProximityQuery query(a, b);
+    for (int k = 0; k < 4; ++k) {
+      query.set_pose(0, Transform::translation({0.1 * k, 0.03, 0.1 * k}));
+      query.set_pose(1, random_placement(random, 0.1));
+      expect_valid(query);
+      if (!query.colliding()) continue;
+      const SeparatingTranslation& found = query.separating_translation();
+      ASSERT_GT(found.lower, 0);
+      ratios.push_back(found.upper / found.lower);
+    }
+  }
+  ASSERT_GT(ratios.size(), 30u);
+  std::ranges::sort(ratios);
+  EXPECT_LE(ratios[ratios.size() / 2], 1.4);
+}
+
+TEST(SeparatingTranslation, OfOpenSurfacesIsVerified) {
+  ProximityQuery query(square(2, 0), placed(square(2, 0), "rotate:80:0:10"));
+  ASSERT_TRUE(query.colliding());
+  expect_valid(query);
+  EXPECT_EQ(query.separating_translation().lower, 0);
+  EXPECT_GT(query.separating_translation().upper, 0);
+  ProximityQuery in_solid(square(0.5, 0.2), cube());
+  expect_valid(in_solid);
+  EXPECT_NEAR(in_solid.separating_translation().value, 0.8, 1e-3);
+  EXPECT_GT(in_solid.separating_translation().lower, 0.7);
+}
+
+TEST(SeparatingTranslation, FollowsScaledPoses) {
+  const Shape box(cube());
+  ProximityQuery query(box, box);
+  query.set_pose(0, Transform::translation({100, 0, 0}) * Transform::scaling(3));
+  query.set_pose(1, Transform::translation({103, 0.5, 0}) * Transform::scaling(0.5));
+  expect_valid(query);
+  EXPECT_NEAR(query.separating_translation().value, 0.5, 1e-9);
+  EXPECT_NEAR(query.separating_translation().translation[0], -0.5, 1e-9);
+}
+
+TEST(SeparatingTranslation, DoesNotKeepAShapeFromDeforming) {
+  const Mesh box = cube();
+  ProximityQuery query(box, moved(box, {0.5, 0, 0}));
+  EXPECT_NEAR(query.separating_translation().value, 1.5, 1e-9);
+  query.refit(moved(box, {0.2, 0, 0}).positions, {});
+  EXPECT_NEAR(query.separating_translation().value, 1.7, 1e-9);
+  // A dent makes it another body.
+  Mesh dented = sphere(2);
+  ProximityQuery balls(dented, sphere(2));
+  EXPECT_EQ(balls.separating_translation().certainty, Certainty::exact);
+  dented.positions[20] = 0.2 * dented.positions[20];
+  balls.refit(dented.positions, {});
+  expect_valid(balls);
+  EXPECT_GT(internals(Shape(dented))->convexity_deficit(), 1e-3);
+}
+
+TEST(Convexity, IsDecidedExactly) {
+  const auto deficit = [](const Mesh& mesh) { return internals(Shape(mesh))->convexity_deficit(); };
+  const auto convex = [&](const Mesh& mesh) { return deficit(mesh) == 0; };
+  EXPECT_TRUE(convex(cube()));
+  EXPECT_TRUE(convex(tetrahedron()));
+  EXPECT_TRUE(convex(sphere(3)));
+  EXPECT_TRUE(convex(moved(cube(), {1e6, -1e6, 3})));
+  EXPECT_TRUE(convex(flipped(cube())));
+  EXPECT_FALSE(convex(ring(12)));
+  EXPECT_FALSE(convex(angle_bracket()));
+  EXPECT_FALSE(convex(joined(cube(), moved(cube(), {5, 0, 0}))));
+  EXPECT_FALSE(convex(single_triangle()));
+  EXPECT_FALSE(convex(square(1, 0)));
+  // Half of a side, cut at a point of its plane, and at one that is nearest to it on either side: a hill
+  // beside the other half is not convex either.
+  for (const double height : {1.0, std::nextafter(1.0, 2.0), std::nextafter(1.0, 0.0)}) {
+    Mesh cut = cube();
+    const std::size_t top =
+        static_cast<std::size_t>(std::ranges::find_if(cut.triangles,
+                                                      [&](const auto& t) {
+                                                        return std::ranges::all_of(t, [&](auto v) {
+                                                          return cut.positions[v][2] == 1;
+                                                        });
+                                                      }) -
+                                 cut.triangles.begin());
+    const auto [a, b, c] = cut.triangles[top];
+    const auto added = static_cast<std::uint32_t>(cut.positions.size());
+    Vec3 middle = (1.0 / 4) * cut.positions[a] + (1.0 / 4) * cut.positions[b] + (1.0 / 2) * cut.positions[c];
+    middle[2] = height;
+    cut.positions.push_back(middle);
+    cut.triangles[top] = {a, b, added};
+    cut.triangles.push_back({b, c, added});
+    cut.triangles.push_back({c, a, added});
+    EXPECT_EQ(convex(cut), height == 1) << height;
+    EXPECT_LE(deficit(cut), 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace sdm::test
