@@ -72,6 +72,9 @@ struct ProximityOptions {
 /// Functions of one body take its number, 0 or 1, and throw sdm::Error for any other.
 class SDM_API ProximityQuery {
  public:
+  /// The id of the contact of separating_contacts() along the separating translation.
+  static constexpr std::uint64_t kExitContact = ~std::uint64_t{0};
+
   /// Throws sdm::Error as Sites does, and for options that are out of range. Cost: that of the sites of both
   /// bodies.
   ProximityQuery(const Mesh& o1, const Mesh& o2, const ProximityOptions& options = {});
@@ -166,6 +169,23 @@ class SDM_API ProximityQuery {
   /// the boxes of the faces at their vertices and edges intersect: a connected contact region is never
   /// divided. Uses all cores; the result does not depend on how many.
   [[nodiscard]] std::span<const Contact> contacts();
+
+  /// Contacts along which the bodies leave each other, for solvers: where they overlap by much, contacts()
+  /// are of single points, and may push in all directions. These are contacts after moving O1 by the
+  /// translation t of separating_translation(), moved back by it: that of the closest points then, with the
+  /// normal t / |t| and the id kExitContact, and those of contacts() there, with the ids of contacts().
+  ///  - point1 is on O1 and point2 on O2, and `on` says where.
+  ///  - depth = normal · (point2 − point1) ≤ separating_translation().upper, to rounding: how far O1 must be
+  ///    moved along the normal until this contact only touches. |point2 − point1| may be more. Contacts with
+  ///    a depth of at most minus the margin are left out.
+  /// So t satisfies all of them: normal · t ≥ depth. A step that moves O1 along one normal by what is left of
+  /// its depth brings it no farther from t, and so does a projected Gauss–Seidel method over all of them.
+  /// Bodies in the same place have contacts, too, in directions that are always the same.
+  ///
+  /// If the bodies do not collide, these are contacts(). `most_per_patch` ≥ 1: so many contacts of each patch
+  /// are kept, the deepest one and those that are farthest apart. Sorted as contacts(). Cost: that of
+  /// separating_translation() and of contacts(). The span is valid until the next call.
+  [[nodiscard]] std::span<const Contact> separating_contacts(std::optional<std::size_t> most_per_patch = {});
 
   /// O1 for 0, O2 for 1; in the frames of their meshes, without the poses. surface() throws sdm::Error if the
   /// shape has no atlas.

@@ -301,6 +301,35 @@ if neither body is a solid. penetration_depth() is that of the deepest point, an
 -0.05)");
 }
 
+void bind_separating_contacts(nb::class_<PyProximityQuery>& query) {
+  query.def(
+      "separating_contacts",
+      [](PyProximityQuery& self, std::optional<std::size_t> most_per_patch) {
+        const auto lock = self.access.change();
+        auto result = std::make_unique<PyContacts>();
+        run_sized(faces_of(self.query), [&] {
+          const auto contacts = self.query.separating_contacts(most_per_patch);
+          result->contacts.assign(contacts.begin(), contacts.end());
+        });
+        return result.release();
+      },
+      nb::kw_only(), nb::arg("most_per_patch") = nb::none(), nb::rv_policy::take_ownership,
+      nb::sig("def separating_contacts(self, *, most_per_patch: int | None = None) -> Contacts"),
+      R"(Returns contacts along which the bodies leave each other, for solvers: where they overlap by much,
+contacts() are of single points, and may push in all directions. These are the contacts after the
+separating_translation() of O1, moved back by it: depth = normal · (point2 - point1), how far O1 must be
+moved along the normal until this contact only touches, at most separating_translation().upper. If the bodies
+do not collide, they are contacts().
+
+most_per_patch: so many contacts of each patch are kept, ≥ 1: the deepest one and those farthest apart.
+
+>>> query = sdm.ProximityQuery(box, box)
+>>> query.set_pose(0, [[1, 0, 0, 0.75], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+>>> contacts = query.separating_contacts(most_per_patch=4)
+>>> float(contacts.depth.max().round(6)), float(contacts.normal[:, 0].min().round(6))
+(0.25, 1.0))");
+}
+
 void bind_proximity(nb::module_& module) {
   bind_lengths(module);
   bind_separating_translation(module);
@@ -329,6 +358,7 @@ False)");
   bind_motion(query);
   bind_edit(query);
   bind_answers(query);
+  bind_separating_contacts(query);
   bind_self_proximity(module);
 }
 

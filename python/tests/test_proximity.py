@@ -72,6 +72,25 @@ def test_separating_translation():
     assert nested.penetration_depth().upper < 0.51 < nested.separating_translation().value == pytest.approx(0.6)
 
 
+def test_separating_contacts():
+    query = sdm.ProximityQuery(meshes.box(), meshes.box())
+    query.set_pose(0, shift(0.1, 0.2, 0.75))
+    contacts = query.separating_contacts()
+    out = query.separating_translation()
+    assert len(contacts) >= 4 and contacts.bodies is None
+    np.testing.assert_allclose(contacts.normal, np.tile([0, 0, 1.0], (len(contacts), 1)), atol=1e-6)
+    np.testing.assert_allclose(contacts.depth, 0.25, atol=1e-6)
+    np.testing.assert_allclose(np.einsum("nk,nk->n", contacts.normal, contacts.point2 - contacts.point1), contacts.depth, atol=1e-9)
+    assert (contacts.depth <= out.upper + 1e-9).all()
+    few = query.separating_contacts(most_per_patch=2)
+    assert set(few.id.tolist()) < set(contacts.id.tolist()) and np.bincount(few.patch).max() <= 2
+    # In the same place there is a way out as well.
+    query.set_pose(0, shift(0, 0, 0))
+    assert query.separating_contacts().depth.max() == pytest.approx(1, abs=1e-6)
+    with pytest.raises(sdm.Error, match="use 1 or more"):
+        query.separating_contacts(most_per_patch=0)
+
+
 def test_refit_and_shared_shapes():
     vertices, faces = meshes.box()
     query = sdm.ProximityQuery((vertices, faces), (vertices + [3, 0, 0], faces))

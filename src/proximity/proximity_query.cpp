@@ -3,10 +3,12 @@
 
 #include <new>
 #include <string>
+#include <vector>
 
 #include "core/cancellation.h"
 #include "core/memory.h"
 #include "proximity/pair/pair_answers.h"
+#include "proximity/separate/separating_contacts.h"
 #include "proximity/separate/separating_translation.h"
 #include "query/shape/posed_body.h"
 
@@ -15,11 +17,14 @@ namespace sdm {
 struct ProximityQuery::Impl {
   std::array<shape::PosedBody, 2> bodies;
   pair::PairAnswers answers;
+  double contact_margin;
   std::optional<SeparatingTranslation> separating_translation{};
+  std::vector<Contact> separating_contacts{};
 
   Impl(Shape o1, Shape o2, const ProximityOptions& options)
       : bodies{shape::PosedBody(std::move(o1)), shape::PosedBody(std::move(o2))},
-        answers(options.contact_margin, options.depth_precision) {
+        answers(options.contact_margin, options.depth_precision),
+        contact_margin(options.contact_margin) {
     begin();
   }
   // Every call but construction begins with this.
@@ -139,6 +144,21 @@ const SeparatingTranslation& ProximityQuery::separating_translation() {
 std::span<const Contact> ProximityQuery::contacts() {
   impl_->require_intact();
   return with_memory([&] { return impl_->answers.contacts(); });
+}
+std::span<const Contact> ProximityQuery::separating_contacts(std::optional<std::size_t> most_per_patch) {
+  if (most_per_patch == 0) throw Error("0 contacts of each patch are too few; use 1 or more");
+  const SeparatingTranslation& out = separating_translation();
+  return with_memory([&]() -> std::span<const Contact> {
+    std::vector<Contact>& contacts = impl_->separating_contacts;
+    if (impl_->answers.colliding()) {
+      contacts = separate::contacts_after(impl_->bodies[0], impl_->bodies[1], out, impl_->contact_margin);
+    } else {
+      const std::span<const Contact> apart = impl_->answers.contacts();
+      contacts.assign(apart.begin(), apart.end());
+    }
+    if (most_per_patch) separate::keep_per_patch(contacts, *most_per_patch);
+    return contacts;
+  });
 }
 
 const Surface& ProximityQuery::surface(int body) const {

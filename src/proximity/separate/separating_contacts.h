@@ -1,0 +1,22 @@
+// Contacts along which two overlapping bodies leave each other.
+#pragma once
+
+#include <sdm/proximity_query.h>
+
+#include <span>
+#include <vector>
+
+#include "proximity/pair/pair_answers.h"
+#include "query/shape/posed_body.h"
+
+namespace sdm::separate {
+
+/// As ProximityQuery::separating_contacts(), of bodies that collide and leave each other by `out`.
+[[nodiscard]] std::vector<Contact> contacts_after(const shape::PosedBody& o1, const shape::PosedBody& o2,
+                                                  const SeparatingTranslation& out, double contact_margin);
+
+/// Keeps at most so many contacts of each patch: the deepest, then always the one that is farthest from those
+/// that are kept. Contacts are sorted by patch and depth, before and after.
+void keep_per_patch(std::vector<Contact>& contacts, std::size_t most);
+
+}  // namespace sdm::separate
