@@ -41,6 +41,7 @@ set(order
   volume
   proximity/contacts
   proximity/pair
+  proximity/separate
   proximity/motion
   proximity/bodies
   proximity/self

@@ -11,49 +11,61 @@
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 #include "query/closest/closest_points.h"
+#include "tree/visit.h"
 
 namespace sdm::shape {
 namespace {
 
 constexpr double kNormalError = 4e-16;  // of a normal, relative to the ratio of sides to height
 
-// How far vertices are above the plane through three corners, counter-clockwise from above.
+constexpr int kLanes = tree::WideTree::kWidth;
+
+// How far vertices are above a plane; the policy of its search of the tree.
 class VerticesAbove {
  public:
   explicit VerticesAbove(const sites::SitesData& sites) : sites_(sites) {}
 
-  // A bound on the largest height, 0 if there is none, exactly; stops above `enough`.
+  // A bound on the largest height above the plane through three corners, counter-clockwise from above: 0 if
+  // there is none, exactly. Stops above `enough`.
   double height(const Corners& plane, double enough) {
-    const UnitFrame& frame = sites_.frame;
-    const Vec3 a = frame.to_unit(plane[0]);
-    double height = 0;
-    const Vec3 normal = normalized(cross(frame.to_unit(plane[1]) - a, frame.to_unit(plane[2]) - a));
-    open_.assign(1, 0);
-    while (!open_.empty()) {
-      const std::uint32_t node = open_.back();
-      open_.pop_back();
-      const tree::AabbTree::Node& n = sites_.tree.nodes[node];
-      // A normal that is too short to be computed excludes nothing.
-      double most = normal == Vec3{} ? 1 : kSingleRounding - dot(normal, a);
-      for (int k = 0; k < 3; ++k) most += normal[k] * (normal[k] > 0 ? n.box.hi[k] : n.box.lo[k]);
-      if (most < 0) continue;
-      if (!n.leaf()) {
-        open_.push_back(n.right);
-        open_.push_back(node + 1);
-        continue;
-      }
-      for (const std::uint32_t face : sites_.tree.items_of(node))
-        for (const std::uint32_t vertex : sites_.mesh.triangles[face])
-          if (const Vec3& p = sites_.mesh.positions[vertex]; orientation(plane[0], plane[1], plane[2], p) > 0)
-            height = std::max(height, bound(plane, p));
-      if (height > enough) break;
+    const Vec3 a = sites_.frame.to_unit(plane[0]), u = sites_.frame.to_unit(plane[1]) - a,
+               v = sites_.frame.to_unit(plane[2]) - a;
+    const double sides = std::max({squared_norm(u), squared_norm(v), squared_norm(v - u)});
+    Vec3 normal = cross(u, v);
+    // The normal of a needle, which is not reliable, excludes nothing.
+    normal = kNormalError * sides < kSingleRounding * norm(normal) ? normalized(normal) : Vec3{};
+    for (int k = 0; k < 3; ++k) normal_[k] = static_cast<float>(normal[k]);
+    plane_ = plane, height_ = 0, enough_ = enough;
+    least_ = static_cast<float>(dot(normal, a) - 4 * kSingleRounding);
+    tree::visit(sites_.wide, open_, *this);
+    return height_;
+  }
+
+  // The farthest first.
+  static bool before(float first, float second) { return first >= second; }
+  [[nodiscard]] bool enter(const tree::OpenNode& open) const {
+    return height_ <= enough_ && (open.child == 0 || open.bound >= least_);
+  }
+  std::uint32_t bound(const tree::OpenNode&, const tree::WideTree::Node& node, float (&most)[kLanes]) const {
+    for (float& x : most) x = 0;
+    for (int k = 0; k < 3; ++k) {
+      const float* far = normal_[k] > 0 ? node.hi[k] : node.lo[k];
+      for (int i = 0; i < kLanes; ++i) most[i] += normal_[k] * far[i];
     }
-    return height;
+    return (1u << node.count) - 1;
+  }
+  void leaf(const tree::OpenNode& open) {
+    const std::uint32_t leaf = open.leaf_number();
+    for (std::uint32_t i = sites_.regions.leaves[leaf]; i < sites_.regions.leaves[leaf + 1]; ++i)
+      for (const std::uint32_t vertex : sites_.mesh.triangles[sites_.regions.owners[i].face])
+        if (const Vec3& p = sites_.mesh.positions[vertex];
+            orientation(plane_[0], plane_[1], plane_[2], p) > 0)
+          height_ = std::max(height_, bound_on_height(plane_, p));
   }
 
  private:
   // On the height of a point above the plane.
-  static double bound(const Corners& plane, const Vec3& p) {
+  static double bound_on_height(const Corners& plane, const Vec3& p) {
     const Vec3 u = plane[1] - plane[0], v = plane[2] - plane[0], normal = cross(u, v), x = p - plane[0];
     const double area = norm(normal);
     if (!(area > 0)) return std::numeric_limits<double>::infinity();
@@ -62,7 +74,10 @@ class VerticesAbove {
   }
 
   const sites::SitesData& sites_;
-  std::vector<std::uint32_t> open_;  // nodes
+  Corners plane_{};
+  float normal_[3] = {}, least_ = 0;
+  double height_ = 0, enough_ = 0;
+  std::vector<tree::OpenNode> open_;
 };
 
 // Whether the corners are on one line: exactly, as one of four points that are in no plane is beside any
