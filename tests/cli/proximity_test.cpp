@@ -33,12 +33,12 @@ TEST_F(ProximityCommand, PrintsTheAnswersOfTheLibrary) {
   ASSERT_TRUE(query.penetration_depth());
   EXPECT_EQ(json["penetration_depth"]["value"], query.penetration_depth()->value);
   EXPECT_EQ(json["penetration_depth"]["witness"][0], (*query.penetration_depth()->witness)[0]);
-  const SeparatingTranslation& out = query.separating_translation();
-  EXPECT_EQ(json["separating_translation"]["value"], out.value);
-  EXPECT_EQ(json["separating_translation"]["lower"], out.lower);
-  EXPECT_EQ(json["separating_translation"]["upper"], out.upper);
+  const SeparatingTranslation& leaving = query.separating_translation();
+  EXPECT_EQ(json["separating_translation"]["value"], leaving.value);
+  EXPECT_EQ(json["separating_translation"]["lower"], leaving.lower);
+  EXPECT_EQ(json["separating_translation"]["upper"], leaving.upper);
   EXPECT_EQ(json["separating_translation"]["kind"], "bounded");
-  EXPECT_EQ(json["separating_translation"]["translation"], out.translation);
+  EXPECT_EQ(json["separating_translation"]["translation"], leaving.translation);
   ASSERT_EQ(json["contacts"].size(), query.contacts().size());
   EXPECT_GT(json["contacts"].size(), 0u);
   for (std::size_t i = 0; i < query.contacts().size(); ++i) {
