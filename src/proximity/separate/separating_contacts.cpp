@@ -67,9 +67,9 @@ std::vector<Contact> contacts_after(const shape::PosedBody& o1, const shape::Pos
   pair::PairAnswers answers(
       contact_margin + apart.separation().value + kGapOfTranslation * out.value + kGapOfSize * diagonal(box),
       std::nullopt);
-  answers.begin(moved, o2, apart.closest_faces());
-  std::vector<Contact> contacts{
-      exit_contact({&moved, &o2}, apart.closest_faces(), *apart.separation().witness, t)};
+  const pairs::FacePair closest = apart.known().closest_faces;
+  answers.begin(moved, o2, {.closest_faces = closest});
+  std::vector<Contact> contacts{exit_contact({&moved, &o2}, closest, *apart.separation().witness, t)};
   for (Contact c : answers.contacts()) {
     c.depth += dot(c.normal, t);
     c.point1 = c.point1 - t;
