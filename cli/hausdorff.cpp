@@ -153,7 +153,8 @@ std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAn
     text += distance_line("O2 -> O1", answer.directions[1], unit);
   }
   text += unmatched_lines(answer);
-  if (command.tolerance) text += tolerance_line(verdict(answer, *command.tolerance), *command.tolerance, unit);
+  if (command.tolerance)
+    text += tolerance_line(verdict(answer, *command.tolerance), *command.tolerance, unit);
   return text;
 }
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string_view>
 
-#include "src/core/parse_number.h"
 #include "format.h"
 #include "scenes/placement.h"
+#include "src/core/parse_number.h"
 
 std::optional<std::int64_t> parse_whole_number(std::string_view text) {
   return sdm::core::parse_number<std::int64_t>(text);

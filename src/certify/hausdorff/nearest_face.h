@@ -17,8 +17,8 @@ struct NearestFace {
 /// `start` is a face of B: the closer it is, the less of the tree is searched.
 [[nodiscard]] NearestFace nearest_face(const sites::SitesData& sites, const Vec3& p, std::uint32_t start);
 
-/// Searches only the faces that a face of A is measured to; kNone and infinite bounds if there is none. `start`
-/// is one of these, or kNone.
+/// Searches only the faces that a face of A is measured to; kNone and infinite bounds if there is none.
+/// `start` is one of these, or kNone.
 [[nodiscard]] NearestFace nearest_face(const sites::SitesData& sites, const Vec3& p, std::uint32_t start,
                                        const Matching& matching, std::uint32_t face);
 
