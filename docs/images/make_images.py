@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Makes the pictures of the front page: make_images.py MESHES, the folder of CGAL's data/meshes."""
+"""Makes the pictures of the front page: make_images.py MESHES, the folder of CGAL's data/meshes; with `sdm` and
+`chromium` on the path."""
 
 import contextlib
 import runpy
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -77,7 +79,22 @@ def inspection_card() -> None:
         legend=False)  # fmt: skip
 
 
+def report_page() -> None:
+    """The report of docs/inspection.md, as a browser shows it."""
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        subprocess.run(["sdm", "scene", "scan", "--mesh", str(MESHES / "fandisk.off"), "-o", "made"], check=True)
+        subprocess.run(
+            ["sdm", "map", "made/scan.ply", "made/part.ply", "--align", "--tolerance", "0.01", "--units", "cm", "--up", "z",
+             "--write", "html", "-o", "out"])  # fmt: skip
+        subprocess.run(
+            ["chromium", "--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+             "--hide-scrollbars", "--force-device-scale-factor=1", "--window-size=1280,800", "--timeout=12000",
+             f"--screenshot={FOLDER / 'report.png'}", Path("out/report.html").absolute().as_uri()],
+            check=True)  # fmt: skip
+
+
 bunny_and_armadillo()
+report_page()
 inspection_card()
 python_card()
 proximity_card()

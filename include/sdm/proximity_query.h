@@ -40,7 +40,7 @@ struct Contact {
 
 /// How far a body must be moved to leave another one: see ProximityQuery::separating_translation().
 struct SeparatingTranslation : BoundedNumber {
-  /// Of O1, |translation| = value = upper, to rounding. After it the bodies do not collide.
+  /// The translation of O1; |translation| = value = upper, to rounding. After it the bodies do not collide.
   Vec3 translation{};
 };
 

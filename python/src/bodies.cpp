@@ -28,11 +28,6 @@ struct PyPenetrationDepths {
   LazyArray bodies, depth, depth_bounds;
 };
 
-struct PyNearestMap {
-  NearestMap nearest;
-  LazyArray valid;
-};
-
 // The query throws for one that is too large.
 std::size_t index_of(std::int64_t body) {
   if (body < 0) throw Error("there is no body " + std::to_string(body));
@@ -106,63 +101,6 @@ void bind_penetration_depths(nb::module_& module) {
       .def("__len__", [](const P& self) { return self.pairs.size(); })
       .def("__repr__",
            [](const P& self) { return nb::str("sdm.PenetrationDepths({})").format(self.pairs.size()); });
-}
-
-void bind_nearest_map(nb::module_& module) {
-  using M = PyNearestMap;
-  nb::class_<M>(module, "NearestMap",
-                "The distances from the texels of a body to the nearest other body. Arrays are read-only, "
-                "with row 0 at "
-                "the top.")
-      .def_prop_ro(
-          "distance",
-          [](nb::handle self) {
-            const NearestMap& n = nb::cast<const M&>(self).nearest;
-            return texels_of<float>(n.map.distance, n.map, self);
-          },
-          nb::sig("def distance(self) -> numpy.ndarray"),
-          "(H, W) float32, negative inside the other body if that is a solid; NaN where there is no value.")
-      .def_prop_ro(
-          "vector",
-          [](nb::handle self) {
-            const NearestMap& n = nb::cast<const M&>(self).nearest;
-            return texels_of<float>(n.map.vector, n.map, self);
-          },
-          nb::sig("def vector(self) -> numpy.ndarray"),
-          "From the texel to the closest point, (H, W, 3) float32.")
-      .def_prop_ro(
-          "site",
-          [](nb::handle self) {
-            const NearestMap& n = nb::cast<const M&>(self).nearest;
-            return texels_of<std::uint32_t>(n.map.site, n.map, self);
-          },
-          nb::sig("def site(self) -> numpy.ndarray"),
-          "The closest site of the other body, (H, W) uint32, or NONE.")
-      .def_prop_ro(
-          "site_type",
-          [](nb::handle self) {
-            const NearestMap& n = nb::cast<const M&>(self).nearest;
-            return texels_of<std::uint8_t>(n.map.site_type, n.map, self);
-          },
-          nb::sig("def site_type(self) -> numpy.ndarray"), "Its SiteType, (H, W) uint8.")
-      .def_prop_ro(
-          "body",
-          [](nb::handle self) {
-            const NearestMap& n = nb::cast<const M&>(self).nearest;
-            return texels_of<std::uint32_t>(n.body, n.map, self);
-          },
-          nb::sig("def body(self) -> numpy.ndarray"), "The index of the other body, (H, W) uint32, or NONE.")
-      .def_prop_ro(
-          "valid",
-          [](M& self) {
-            return self.valid.get([&] {
-              const auto& bodies = self.nearest.body;
-              std::vector<std::uint8_t> flags(bodies.size());
-              for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = bodies[i] != kNone;
-              return array_of<bool>(std::move(flags), {self.nearest.map.rows(), self.nearest.map.resolution});
-            });
-          },
-          nb::sig("def valid(self) -> numpy.ndarray"), "Whether a texel has a value, (H, W) bool.");
 }
 
 MultiBodyQuery query_of(nb::handle bodies, const MultiBodyOptions& options) {

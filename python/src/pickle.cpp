@@ -111,6 +111,64 @@ void bind_surface_state() {
       });
 }
 
+nb::tuple state_of(const DistanceMap& map) {
+  return nb::make_tuple(
+      map.resolution, packed(map.distance), packed(map.vector), packed(map.site), packed(map.site_type),
+      nb::make_tuple(name_of(map.sign.method), map.sign.reason),
+      nb::make_tuple(static_cast<int>(map.measured.kind), map.measured.text, map.measured.facing),
+      map.beyond_max_distance, map.without_match, packed(map.unmatched));
+}
+
+DistanceMap map_from(nb::handle state, const Surface& surface) {
+  DistanceMap map;
+  map.resolution = nb::cast<std::uint32_t>(state[0]);
+  map.distance = unpacked<float>(state[1]), map.vector = unpacked<Vec3f>(state[2]);
+  map.site = unpacked<std::uint32_t>(state[3]), map.site_type = unpacked<SiteType>(state[4]);
+  map.sign = {sign_of(nb::cast<std::string>(state[5][0]).c_str()), nb::cast<std::string>(state[5][1])};
+  map.measured = {static_cast<DistanceKind>(nb::cast<std::uint8_t>(state[6][0])),
+                  nb::cast<std::string>(state[6][1]), nb::cast<std::optional<double>>(state[6][2])};
+  map.beyond_max_distance = nb::cast<std::size_t>(state[7]);
+  map.without_match = nb::cast<std::size_t>(state[8]);
+  map.unmatched = unpacked<std::uint8_t>(state[9]);
+  const std::size_t texels = surface.texel_faces().size();
+  if (map.resolution != surface.resolution() || map.distance.size() != texels ||
+      map.vector.size() != texels || map.site.size() != texels || map.site_type.size() != texels)
+    throw Error("the pickle is damaged");
+  return map;
+}
+
+/// What the distances of a map are to: options, and the rules of maps that are not to the closest point.
+nb::tuple rule_of(const PyMap& self) {
+  nb::object thickness = nb::none(), along = nb::none();
+  if (self.thickness)
+    thickness = nb::make_tuple(self.thickness->first == ThicknessMethod::ball, self.thickness->second);
+  if (self.along) {
+    std::vector<Vec3> direction;
+    if (self.along->direction) direction.push_back(*self.along->direction);
+    along = packed(direction);
+  }
+  return nb::make_tuple(self.engine, name_of(self.options.sign), self.options.max_distance,
+                        self.options.facing, thickness, along);
+}
+
+void take_rule(PyMap& self, nb::handle rule) {
+  self.engine = nb::cast<std::string>(rule[0]);
+  self.options.sign = sign_of(nb::cast<std::string>(rule[1]).c_str());
+  self.options.max_distance = nb::cast<double>(rule[2]);
+  self.options.facing = nb::cast<std::optional<double>>(rule[3]);
+  const nb::object thickness = rule[4], along = rule[5];
+  if (!thickness.is_none()) {
+    const auto [ball, angle] = nb::cast<std::pair<bool, double>>(thickness);
+    self.thickness = {ball ? ThicknessMethod::ball : ThicknessMethod::ray, angle};
+  } else if (!along.is_none()) {
+    const std::vector<Vec3> direction = unpacked<Vec3>(along);
+    self.along.emplace().max_distance = self.options.max_distance;
+    if (!direction.empty()) self.along->direction = direction.front();
+  } else {
+    self.options.engine = engine_of(self.engine.c_str());
+  }
+}
+
 void bind_map_state() {
   bind_state<PyMap>(
       [](const PyMap& self) {
@@ -118,22 +176,8 @@ void bind_map_state() {
           throw Error("a map of a surface to itself cannot be pickled or copied; compute it again");
         const auto lock = self.use_surface();
         const auto sites_lock = self.use_sites();
-        const DistanceMap& map = self.map;
-        nb::object thickness = nb::none(), along = nb::none();
-        if (self.thickness)
-          thickness = nb::make_tuple(self.thickness->first == ThicknessMethod::ball, self.thickness->second);
-        if (self.along) {
-          std::vector<Vec3> direction;
-          if (self.along->direction) direction.push_back(*self.along->direction);
-          along = packed(direction);
-        }
-        return nb::make_tuple(
-            self.surface_object, self.sites_object, self.engine, name_of(self.options.sign),
-            self.options.max_distance, self.options.facing, thickness, along, self.ms, map.resolution,
-            packed(map.distance), packed(map.vector), packed(map.site), packed(map.site_type),
-            nb::make_tuple(name_of(map.sign.method), map.sign.reason),
-            nb::make_tuple(static_cast<int>(map.measured.kind), map.measured.text, map.measured.facing),
-            map.beyond_max_distance, map.without_match, packed(map.unmatched));
+        return nb::make_tuple(self.surface_object, self.sites_object, rule_of(self), state_of(self.map),
+                              self.ms);
       },
       [](PyMap* self, const nb::tuple& from) {
         PyMap made;
@@ -142,35 +186,9 @@ void bind_map_state() {
         made.to = &nb::cast<const PySites&>(made.sites_object);
         made.surface_shape = made.on->shape, made.surface_edits = made.on->edits;
         made.sites_shape = made.to->shape;
-        made.engine = nb::cast<std::string>(from[2]);
-        if (from[6].is_none() && from[7].is_none()) made.options.engine = engine_of(made.engine.c_str());
-        made.options.sign = sign_of(nb::cast<std::string>(from[3]).c_str());
-        made.options.max_distance = nb::cast<double>(from[4]);
-        made.options.facing = nb::cast<std::optional<double>>(from[5]);
-        if (!from[6].is_none()) {
-          const auto [ball, angle] = nb::cast<std::pair<bool, double>>(from[6]);
-          made.thickness = {ball ? ThicknessMethod::ball : ThicknessMethod::ray, angle};
-        }
-        if (!from[7].is_none()) {
-          const std::vector<Vec3> direction = unpacked<Vec3>(from[7]);
-          made.along.emplace().max_distance = made.options.max_distance;
-          if (!direction.empty()) made.along->direction = direction.front();
-        }
-        made.ms = nb::cast<double>(from[8]);
-        DistanceMap& map = made.map;
-        map.resolution = nb::cast<std::uint32_t>(from[9]);
-        map.distance = unpacked<float>(from[10]), map.vector = unpacked<Vec3f>(from[11]);
-        map.site = unpacked<std::uint32_t>(from[12]), map.site_type = unpacked<SiteType>(from[13]);
-        map.sign = {sign_of(nb::cast<std::string>(from[14][0]).c_str()), nb::cast<std::string>(from[14][1])};
-        map.measured = {static_cast<DistanceKind>(nb::cast<std::uint8_t>(from[15][0])),
-                        nb::cast<std::string>(from[15][1]), nb::cast<std::optional<double>>(from[15][2])};
-        map.beyond_max_distance = nb::cast<std::size_t>(from[16]);
-        map.without_match = nb::cast<std::size_t>(from[17]);
-        map.unmatched = unpacked<std::uint8_t>(from[18]);
-        const std::size_t texels = made.on->surface.texel_faces().size();
-        if (map.resolution != made.on->surface.resolution() || map.distance.size() != texels ||
-            map.vector.size() != texels || map.site.size() != texels || map.site_type.size() != texels)
-          throw Error("the pickle is damaged");
+        take_rule(made, from[2]);
+        made.map = map_from(from[3], made.on->surface);
+        made.ms = nb::cast<double>(from[4]);
         new (self) PyMap(std::move(made));
       });
 }

@@ -57,8 +57,14 @@ class OptionalPoints {
   std::optional<Points> points_;
 };
 
+struct PyNearestMap {
+  NearestMap nearest;
+  LazyArray valid;
+};
+
 /// Adds the method edit().
 void bind_edit(nb::class_<PyProximityQuery>& query);
 void bind_self_proximity(nb::module_& module);
+void bind_nearest_map(nb::module_& module);
 
 }  // namespace sdm::python

@@ -67,6 +67,7 @@ class Told:
         self.faces_a_side = write_box(o1, BUMP)
         write_box(o2, 0)
         np.savetxt(folder / "placement.txt", placement(), fmt="%.17g")
+        self.table, self.names = table, sdm.read_face_names(o1)
         table.write_text("group,lower,upper\ntop,-0.02,0.02\nsides,-0.02,0.02\n")
         command = [os.environ["SDM_COMMAND"], "map", o1, o2, "-o", self.out, "--resolution", str(RESOLUTION), "--align",
                    "--transform-o1", f"matrix:{folder / 'placement.txt'}",
@@ -180,13 +181,20 @@ def test_numbers(told):
     assert f"Alignment: {told.json['alignment']['text']}." in told.page["inputs-table"]
     largest = max(extremes["max"]["distance"], -extremes["min"]["distance"])
     assert abs(first_number(told.page["worst"][0][1])) == stated(told, largest)
-    in_command = json.loads(json.dumps(told.json))
-    for place in in_command["places"]["largest"]:
-        place["kind"] = place["group"] = None  # arrays have no names of groups
     for key, value in told.python.items():
-        if key not in ("o1", "o2", "time_ms", "groups"):
-            assert value == in_command[key], key
+        if key not in ("o1", "o2", "time_ms", "groups", "places"):
+            assert value == told.json[key], key
     assert set(told.json) - set(told.python) == {"alignment", "group_tolerances"}
+
+
+def test_places(told):
+    places, in_command = told.map.places(told.tolerance, names=told.names, tolerance_table=told.table), told.json["places"]
+    assert (places.count, places.fraction) == (in_command["large"]["count"], in_command["large"]["area_fraction"])
+    assert places.by_tolerance == (in_command["limits_from"] == "tolerance")
+    assert len(places.largest) == len(in_command["largest"])
+    for place, expected in zip(places.largest, in_command["largest"]):
+        assert (place.distance, place.area, place.group) == (expected["distance"], expected["area"], expected["group"] or "")
+        np.testing.assert_array_equal(place.point, expected["point"])
 
 
 def test_alignment(told):

@@ -94,7 +94,7 @@ export function cornersOfCodes(codes: Uint32Array): Uint32Array {
 
 const kNone = 0xffffffff;
 
-/// From which vertices the numbers of each one are guessed, three each: guesses_of() of face_walk.h.
+/// The vertices from which the numbers of each one are guessed, three each: guesses_of() of face_walk.h.
 export function guessesOf(triangle: Uint32Array): Uint32Array {
   let vertices = 0;
   for (const v of triangle) vertices = Math.max(vertices, v + 1);

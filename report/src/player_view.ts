@@ -171,7 +171,7 @@ interface Bounds {
   hi: Vec;
 }
 
-/// Of some bodies in a frame of the page; null: in all frames.
+/// The bounds of some bodies in a frame of the page; null: in all frames.
 function bounds(data: PlayerData, bodies: number[], frame: number | null): Bounds {
   const lo: Vec = [Infinity, Infinity, Infinity];
   const hi: Vec = [-Infinity, -Infinity, -Infinity];

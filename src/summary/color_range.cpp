@@ -38,7 +38,7 @@ Colormap automatic(const Distances& d) {
   return d.few_below || d.few_above ? Colormap::sequential : Colormap::diverging;
 }
 
-// From the end of the longer side to that of the shorter one.
+// The range from the end of the longer side to that of the shorter one.
 std::array<double, 2> sequential(const Distances& d) {
   const bool up = d.few_below == d.few_above ? d.most >= -d.least : d.few_below && d.most > 0;
   const double longer = std::min(d.reach, up ? d.most : -d.least);

@@ -13,7 +13,8 @@ void ContactStore::store(NearPairs& near, std::span<const std::size_t> unknown) 
     if (pair.touching) count += near.state(pair).contacts;
   std::size_t more = 0;
   for (std::size_t u = 0; u < unknown.size(); ++u) more += found_[u].size();
-  // At most half of the contacts are out of use: their removal costs a constant time for each that was added.
+  // Contacts out of use are removed once they are half of all, which costs a constant time for each that was
+  // added.
   const std::size_t most = 2 * (count + more);
   reserve_for(contacts_, most), reserve_for(next_, most);
   if (contacts_.size() + more > most) keep_only_near(near);

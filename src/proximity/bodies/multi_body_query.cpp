@@ -105,7 +105,7 @@ struct MultiBodyQuery::Impl {
     on_behalf_of(body, [&] { bodies[body].check_refit(positions); });
   }
 
-  // To the bit: 0 and −0 may give other signs of zeros.
+  // Compares bits, since 0 and −0 may give zeros of other signs.
   [[nodiscard]] bool has_pose(std::size_t body, const Transform& pose) const {
     return std::memcmp(&given_poses[body], &pose, sizeof pose) == 0;
   }

@@ -33,7 +33,7 @@ class PairFilter {
 /// The bodies that have moved since the list of pairs was last brought up to date.
 class MovedBodies {
  public:
-  /// At first, all.
+  /// All bodies have moved at first.
   explicit MovedBodies(std::size_t bodies);
 
   void add(std::size_t body) noexcept {
@@ -82,7 +82,7 @@ class NearPairs {
 
   void moved(std::size_t body) noexcept;
   [[nodiscard]] const PairFilter& filter() const { return filter_; }
-  /// For a change; all pairs are looked for again.
+  /// The filter, to be changed; all pairs are looked for again.
   PairFilter& change_filter() {
     complete_ = false;
     return filter_;

@@ -52,7 +52,7 @@ class TranslationSearch {
         },
         size_);
     const Vec3 out = beyond(-std::max(0.0, exit.upper) * exit.direction, -exit.direction);
-    // Of what falls short of its hull a little, the hull scaled about a point is inside.
+    // A body that falls short of its hull a little contains the hull scaled about a point.
     const double short1 = o1_.body().convexity_deficit(), short2 = o2_.body().convexity_deficit();
     if (std::max(short1, short2) <= shape::kNearlyConvex)
       return result(exit.lower - short1 * diagonal(o1_.box()) - short2 * diagonal(o2_.box()), out);

@@ -56,7 +56,7 @@ class FacingSearch {
   [[nodiscard]] bool allows(double cosine) const {
     return right_angle_ ? cosine > 0 : cosine >= least_cosine_;
   }
-  /// At most `most` faces that are allowed, wherever they are.
+  /// Allowed faces, wherever they are, `most` at the most.
   [[nodiscard]] std::vector<std::uint32_t> some_allowed(const Vec3& normal, std::size_t most) const;
   [[nodiscard]] ClosestPoint closest_allowed(const Vec3& query, const Vec3& normal,
                                              double max_distance) const;

@@ -28,7 +28,7 @@ struct Cone {
   constexpr double kRounding = 1e-5;  // of single precision, and more
   const double c = n[0] * cone.axis[0] + n[1] * cone.axis[1] + n[2] * cone.axis[2];
   if (c >= cone.cosine) return 1 + kRounding;
-  // With φ = arccos c and the angle θ of the cone: cos(φ − θ).
+  // cos(φ − θ), with φ = arccos c and the angle θ of the cone.
   const double s = std::sqrt(std::max(0.0, 1 - c * c));
   return c * cone.cosine + s * cone.sine + kRounding;
 }

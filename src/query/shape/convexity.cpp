@@ -64,7 +64,7 @@ class VerticesAbove {
   }
 
  private:
-  // On the height of a point above the plane.
+  // An upper bound on the height of a point above the plane.
   static double bound_on_height(const Corners& plane, const Vec3& p) {
     const Vec3 u = plane[1] - plane[0], v = plane[2] - plane[0], normal = cross(u, v), x = p - plane[0];
     const double area = norm(normal);

@@ -18,7 +18,7 @@ namespace sdm::shape {
 /// Cost: of a convex mesh, O(n log n); of others, that of a few faces as a rule.
 [[nodiscard]] double convexity_deficit(const sites::SitesData& sites, const inside::InsideTest& inside);
 
-/// Of coordinates in single precision.
+/// The deficit that the rounding of coordinates to single precision causes.
 inline constexpr double kNearlyConvex = 2.5e-7;
 
 }  // namespace sdm::shape

@@ -25,7 +25,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// From so many triangles on, a page has a quarter of the texels: their values would take more than the part.
+// A page of so many triangles has a quarter of the texels, whose values would take more than the part.
 constexpr std::size_t kManyTriangles = 200'000;
 
 Json json_of_texels(const Surface& surface, const DistanceMap& map,
