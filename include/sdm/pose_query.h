@@ -61,8 +61,9 @@ class SDM_API PoseQuery {
   /// The same, into `results`.
   void separations(std::span<const Transform> poses, double max_distance, std::span<double> results);
 
-  /// Returns the largest penetration depth of the shape and any obstacle for each pose: exactly 0 without a
-  /// collision, otherwise bounded; all numbers are NaN if neither the shape nor an obstacle is a solid.
+  /// Returns the largest penetration depth of the shape and any obstacle for each pose, of the pairs of which
+  /// one is a solid: exactly 0 without a collision, otherwise bounded; all numbers are NaN if there is no
+  /// such pair.
   [[nodiscard]] std::vector<BoundedNumber> penetration_depths(std::span<const Transform> poses);
   /// The same, into `results`.
   void penetration_depths(std::span<const Transform> poses, std::span<BoundedNumber> results);

@@ -4,8 +4,11 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <type_traits>
+#include <typeinfo>
 #include <utility>
 
 #include "arrays.h"
@@ -15,6 +18,14 @@
 
 namespace sdm::python {
 namespace {
+
+constexpr const char* kDamaged = "the pickle is damaged, or of another version of sdm";
+
+/// The items of a tuple of `count`. Throws sdm::Error for anything else.
+nb::tuple items(nb::handle state, std::size_t count) {
+  if (!nb::isinstance<nb::tuple>(state) || nb::len(state) != count) throw Error(kDamaged);
+  return nb::borrow<nb::tuple>(state);
+}
 
 /// A copy of plain values, as bytes.
 template <class Element>
@@ -27,7 +38,7 @@ nb::object packed(const std::vector<Element>& values) {
 template <class Element>
 std::vector<Element> unpacked(nb::handle packed) {
   const auto bytes = nb::cast<nb::bytes>(packed);
-  if (bytes.size() % sizeof(Element) != 0) throw Error("the pickle is damaged");
+  if (bytes.size() % sizeof(Element) != 0) throw Error(kDamaged);
   std::vector<Element> values(bytes.size() / sizeof(Element));
   if (!values.empty()) std::memcpy(values.data(), bytes.c_str(), bytes.size());
   return values;
@@ -37,7 +48,8 @@ nb::tuple state_of(const Mesh& mesh) {
   return nb::make_tuple(packed(mesh.positions), packed(mesh.triangles), packed(mesh.corner_uvs));
 }
 
-Mesh mesh_from(nb::handle state) {
+Mesh mesh_from(nb::handle packed) {
+  const nb::tuple state = items(packed, 3);
   Mesh mesh{.positions = unpacked<Vec3>(state[0]),
             .triangles = unpacked<Triangle>(state[1]),
             .corner_uvs = unpacked<std::array<Vec2, 3>>(state[2])};
@@ -51,7 +63,8 @@ nb::tuple state_of(const AtlasOptions& options) {
                         options.gutter);
 }
 
-AtlasOptions atlas_from(nb::handle state) {
+AtlasOptions atlas_from(nb::handle packed) {
+  const nb::tuple state = items(packed, 5);
   return {.kind = atlas_of(nb::cast<std::string>(state[0]).c_str()),
           .resolution = nb::cast<std::uint32_t>(state[1]),
           .rows = nb::cast<std::optional<std::uint32_t>>(state[2]),
@@ -59,13 +72,20 @@ AtlasOptions atlas_from(nb::handle state) {
           .gutter = nb::cast<std::uint32_t>(state[4])};
 }
 
-/// A method that stores the object and one that makes it again from that, without the GIL.
+/// A method that stores the object as a tuple of `count`, and one that makes it again from that.
 template <class Object, class State, class Make>
-void bind_state(State state, Make make) {
+void bind_state(std::size_t count, State state, Make make) {
   nb::borrow<nb::class_<Object>>(nb::type<Object>())
       .def("__getstate__", state, nb::sig("def __getstate__(self) -> tuple"))
       .def(
-          "__setstate__", [make](Object& self, const nb::tuple& from) { make(&self, from); },
+          "__setstate__",
+          [count, make](Object& self, const nb::tuple& from) {
+            try {
+              make(&self, items(from, count));
+            } catch (const std::bad_cast&) {
+              throw Error(kDamaged);
+            }
+          },
           nb::arg("state"), nb::sig("def __setstate__(self, state: tuple, /) -> None"));
 }
 
@@ -92,6 +112,7 @@ void refit_to(Object* object, Held& held, const Positions& positions) {
 
 void bind_surface_state() {
   bind_state<PySurface>(
+      3,
       [](const PySurface& self) {
         const auto lock = self.access.use();
         if (self.edits > 0)
@@ -111,6 +132,14 @@ void bind_surface_state() {
       });
 }
 
+/// An enumerator from 0 to the last one.
+template <class Enum>
+Enum enumerator(nb::handle number, Enum last) {
+  const int value = nb::cast<int>(number);
+  if (value < 0 || value > static_cast<int>(last)) throw Error(kDamaged);
+  return static_cast<Enum>(value);
+}
+
 nb::tuple state_of(const DistanceMap& map) {
   return nb::make_tuple(
       map.resolution, packed(map.distance), packed(map.vector), packed(map.site), packed(map.site_type),
@@ -119,21 +148,29 @@ nb::tuple state_of(const DistanceMap& map) {
       map.beyond_max_distance, map.without_match, packed(map.unmatched));
 }
 
-DistanceMap map_from(nb::handle state, const Surface& surface) {
+DistanceMap map_from(nb::handle packed, const Surface& surface, const Sites& sites) {
+  const nb::tuple state = items(packed, 10), sign = items(state[5], 2), measured = items(state[6], 3);
   DistanceMap map;
   map.resolution = nb::cast<std::uint32_t>(state[0]);
   map.distance = unpacked<float>(state[1]), map.vector = unpacked<Vec3f>(state[2]);
   map.site = unpacked<std::uint32_t>(state[3]), map.site_type = unpacked<SiteType>(state[4]);
-  map.sign = {sign_of(nb::cast<std::string>(state[5][0]).c_str()), nb::cast<std::string>(state[5][1])};
-  map.measured = {static_cast<DistanceKind>(nb::cast<std::uint8_t>(state[6][0])),
-                  nb::cast<std::string>(state[6][1]), nb::cast<std::optional<double>>(state[6][2])};
+  map.sign = {sign_of(nb::cast<std::string>(sign[0]).c_str()), nb::cast<std::string>(sign[1])};
+  map.measured = {enumerator<DistanceKind>(measured[0], DistanceKind::thickness),
+                  nb::cast<std::string>(measured[1]), nb::cast<std::optional<double>>(measured[2])};
   map.beyond_max_distance = nb::cast<std::size_t>(state[7]);
   map.without_match = nb::cast<std::size_t>(state[8]);
   map.unmatched = unpacked<std::uint8_t>(state[9]);
   const std::size_t texels = surface.texel_faces().size();
   if (map.resolution != surface.resolution() || map.distance.size() != texels ||
-      map.vector.size() != texels || map.site.size() != texels || map.site_type.size() != texels)
-    throw Error("the pickle is damaged");
+      map.vector.size() != texels || map.site.size() != texels || map.site_type.size() != texels ||
+      (!map.unmatched.empty() && map.unmatched.size() != texels))
+    throw Error(kDamaged);
+  const std::array counts{sites.mesh().positions.size(), sites.edges().size(), sites.mesh().triangles.size()};
+  for (std::size_t i = 0; i < texels; ++i) {
+    const auto type = static_cast<std::size_t>(map.site_type[i]);
+    if (map.site_type[i] != SiteType::none && (type >= counts.size() || map.site[i] >= counts[type]))
+      throw Error(kDamaged);
+  }
   return map;
 }
 
@@ -151,7 +188,8 @@ nb::tuple rule_of(const PyMap& self) {
                         self.options.facing, thickness, along);
 }
 
-void take_rule(PyMap& self, nb::handle rule) {
+void take_rule(PyMap& self, nb::handle packed) {
+  const nb::tuple rule = items(packed, 6);
   self.engine = nb::cast<std::string>(rule[0]);
   self.options.sign = sign_of(nb::cast<std::string>(rule[1]).c_str());
   self.options.max_distance = nb::cast<double>(rule[2]);
@@ -171,6 +209,7 @@ void take_rule(PyMap& self, nb::handle rule) {
 
 void bind_map_state() {
   bind_state<PyMap>(
+      5,
       [](const PyMap& self) {
         if (self.exclusion)
           throw Error("a map of a surface to itself cannot be pickled or copied; compute it again");
@@ -187,7 +226,7 @@ void bind_map_state() {
         made.surface_shape = made.on->shape, made.surface_edits = made.on->edits;
         made.sites_shape = made.to->shape;
         take_rule(made, from[2]);
-        made.map = map_from(from[3], made.on->surface);
+        made.map = map_from(from[3], made.on->surface, made.to->sites);
         made.ms = nb::cast<double>(from[4]);
         new (self) PyMap(std::move(made));
       });
@@ -195,13 +234,14 @@ void bind_map_state() {
 
 void bind_number_states() {
   bind_state<DistanceStatistics>(
-      [](const DistanceStatistics& self) { return nb::make_tuple(packed(std::vector{self})); },
+      1, [](const DistanceStatistics& self) { return nb::make_tuple(packed(std::vector{self})); },
       [](DistanceStatistics* self, const nb::tuple& from) {
         const auto numbers = unpacked<DistanceStatistics>(from[0]);
-        if (numbers.size() != 1) throw Error("the pickle is damaged");
+        if (numbers.size() != 1) throw Error(kDamaged);
         new (self) DistanceStatistics(numbers.front());
       });
   bind_state<BoundedLength>(
+      5,
       [](const BoundedLength& self) {
         std::vector<std::array<Vec3, 2>> witness;
         if (self.witness) witness.push_back(*self.witness);
@@ -210,10 +250,13 @@ void bind_number_states() {
       },
       [](BoundedLength* self, const nb::tuple& from) {
         const auto witness = unpacked<std::array<Vec3, 2>>(from[4]);
+        const auto certainty = enumerator<Certainty>(from[1], Certainty::estimate);
+        const std::array numbers{nb::cast<double>(from[0]), nb::cast<double>(from[2]),
+                                 nb::cast<double>(from[3])};
         auto* made = new (self) BoundedLength;
-        made->value = nb::cast<double>(from[0]);
-        made->certainty = static_cast<Certainty>(nb::cast<int>(from[1]));
-        made->lower = nb::cast<double>(from[2]), made->upper = nb::cast<double>(from[3]);
+        made->value = numbers[0];
+        made->certainty = certainty;
+        made->lower = numbers[1], made->upper = numbers[2];
         if (!witness.empty()) made->witness = witness.front();
       });
 }
@@ -221,9 +264,11 @@ void bind_number_states() {
 }  // namespace
 
 void bind_pickle() {
-  bind_state<PyMesh>([](const PyMesh& self) { return state_of(self.mesh); },
-                     [](PyMesh* self, const nb::tuple& from) { new (self) PyMesh{mesh_from(from)}; });
+  bind_state<PyMesh>(
+      3, [](const PyMesh& self) { return state_of(self.mesh); },
+      [](PyMesh* self, const nb::tuple& from) { new (self) PyMesh{mesh_from(from)}; });
   bind_state<PySites>(
+      2,
       [](const PySites& self) {
         const auto lock = self.access.use();
         // Those of an edited mesh are made for its present shape: distances then agree but for rounding.
@@ -242,6 +287,7 @@ void bind_pickle() {
   bind_surface_state();
   bind_map_state();
   bind_state<PyShape>(
+      2,
       [](const PyShape& self) {
         return nb::make_tuple(state_of(self.shape.sites().mesh()), self.resolution);
       },

@@ -22,7 +22,7 @@ struct PyPoseQuery {
   Access access;
 };
 
-// One shape, or an iterable of shapes; a pair of arrays is one mesh.
+// One shape, or a list of shapes; a pair of arrays is one mesh.
 std::vector<Shape> obstacles_of(nb::handle obstacles) {
   std::vector<Shape> shapes;
   if (!nb::isinstance<nb::list>(obstacles)) {
@@ -80,7 +80,7 @@ exact, 0 if they intersect; infinite if it is more than max_distance, > 0. A sma
           },
           nb::arg("poses").none(), nb::sig("def penetration_depths(self, poses: object) -> numpy.ndarray"),
           R"(Returns lower and upper bounds on the largest penetration depth of the shape and any obstacle,
-(n, 2) float64: both 0 without a collision, NaN if neither the shape nor an obstacle is a solid.)");
+(n, 2) float64, of the pairs of which one is a solid: both 0 without a collision; NaN if there is no such pair.)");
 }
 
 }  // namespace
@@ -94,8 +94,8 @@ depth_precision: as of ProximityQuery.
 
 Poses are (n, 4, 4) numbers, matrices as of ProximityQuery.set_pose(), or (n, 7): each a position x y z and a
 quaternion w x y z of any length. The answers are those of ProximityQuery for the shape and each obstacle, on all
-cores; consecutive poses that are near each other take less time. Raises Error for a pose that is not rigid, and
-names it; and while another thread uses the object.
+cores; consecutive poses that are near each other take less time. Raises Error for a pose that is
+no rotation with a uniform scale and a translation, and while another thread uses the object.
 
 >>> query = sdm.PoseQuery(box, [box])
 >>> query.colliding([[0.5, 0, 0, 1, 0, 0, 0], [3, 0, 0, 1, 0, 0, 0]])

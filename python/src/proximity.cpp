@@ -90,12 +90,13 @@ first, and by decreasing depth within a patch; those of many bodies first by pai
       .def_prop_ro("normal", contact_column(&PyContacts::normal, [](const Contact& c) { return c.normal; }),
                    nb::sig("def normal(self) -> numpy.ndarray"),
                    R"(Unit vectors along which moving O1 separates it from O2, (n, 3) float64:
-(point2 - point1) / depth; where depth is 0, O2's outward normal.)")
+(point2 - point1) / depth; where depth is 0, O2's outward normal. Those of separating_contacts() have their
+own direction and depth, see there.)")
       .def_prop_ro(
           "depth", contact_column(&PyContacts::depth, [](const Contact& c) { return c.depth; }),
           nb::sig("def depth(self) -> numpy.ndarray"),
           R"(±|point2 - point1|, (n,) float64; positive if the point in contact is inside the other body.
-At most penetration_depth().upper.)")
+At most penetration_depth().upper; of separating_contacts(), at most separating_translation().upper.)")
       .def_prop_ro(
           "patch", contact_column(&PyContacts::patch, [](const Contact& c) { return c.patch; }),
           nb::sig("def patch(self) -> numpy.ndarray"),

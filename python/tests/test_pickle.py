@@ -132,6 +132,23 @@ def test_damaged_pickles_are_refused(pair):
         mesh.__setstate__((state[0][:24], *state[1:]))  # one vertex, many faces
 
 
+# Regression: the items of a state were used without a check, which ended the process.
+def test_states_of_another_length_or_type_are_refused(pair):
+    distance_map = sdm.map(*pair, resolution=64)
+    for value in (sdm.Mesh(*pair[1]), sdm.Sites(pair[1]), sdm.Surface(pair[1], resolution=64), sdm.Shape(pair[1]),
+                  distance_map._core, distance_map.statistics(), distance_map.hausdorff()):  # fmt: skip
+        state = value.__getstate__()
+        for wrong in ((), state[:-1], (*state, None), tuple(None for _ in state)):
+            made = type(value).__new__(type(value))
+            with pytest.raises((sdm.Error, TypeError)):
+                made.__setstate__(wrong)
+    surface, sites, rule, values, ms = distance_map._core.__getstate__()
+    for i, wrong in ((4, b"\x09" * len(values[4])), (9, b"\x01"), (1, values[1][:-4]), (5, ("none",)), (6, (77, "", None))):
+        made = type(distance_map._core).__new__(type(distance_map._core))
+        with pytest.raises(sdm.Error, match="damaged"):
+            made.__setstate__((surface, sites, rule, (*values[:i], wrong, *values[i + 1 :]), ms))
+
+
 def distance_of(sites, points):
     return sites.closest_points(points).distance
 

@@ -253,7 +253,8 @@ void MultiBodyQuery::refit(std::span<const std::span<const Vec3>> positions) {
 }
 
 void MultiBodyQuery::set_filter(std::size_t body, const BodyFilter& filter) {
-  impl_->near.change_filter()[impl_->checked(body)] = filter;
+  const std::size_t number = impl_->checked(body);
+  impl_->near.change_filter()[number] = filter;
 }
 
 BodyFilter MultiBodyQuery::filter(std::size_t body) const {
@@ -266,7 +267,8 @@ void MultiBodyQuery::exclude_pair(std::size_t a, std::size_t b) {
 }
 
 void MultiBodyQuery::include_pair(std::size_t a, std::size_t b) {
-  impl_->near.change_filter().include(impl_->checked_pair(a, b));
+  const Sweep::Pair pair = impl_->checked_pair(a, b);
+  impl_->near.change_filter().include(pair);
 }
 
 std::span<const BodyPair> MultiBodyQuery::colliding() {

@@ -14,7 +14,7 @@
 
 namespace sdm::pair {
 
-/// Throws sdm::Error unless both are finite and at least 0.
+/// Throws sdm::Error unless the margin is finite and at least 0, and the precision finite and above 0.
 void check_options(double contact_margin, const std::optional<double>& depth_precision);
 
 using pairs::FacePair, pairs::kNoFaces;

@@ -3,8 +3,11 @@
 #include <sdm/map.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdlib>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "io/image/pictures/canvas.h"
 #include "io/image/pictures/color_scale.h"
@@ -14,7 +17,21 @@ namespace {
 
 // Lengths for 1024 rows; the drawing is scaled as a whole.
 constexpr double kLegendWidth = 232, kLegendHeight = 300, kEdge = 24, kSwatch = 22, kRow = 60;
-constexpr std::uint32_t kSwatches = 6;
+constexpr std::size_t kSwatches = 6;
+constexpr int kApart = 90;  // of the sum of differences of red, green and blue
+
+/// Colours of sites of a type, the first one and others that differ from each other.
+std::vector<Rgb> examples(SiteType type) {
+  std::vector<Rgb> colors;
+  for (std::uint32_t site = 0; colors.size() < kSwatches && site < 1000; ++site) {
+    const Rgb c = site_color(type, site);
+    if (std::ranges::all_of(colors, [&](const Rgb& other) {
+          return std::abs(c.r - other.r) + std::abs(c.g - other.g) + std::abs(c.b - other.b) >= kApart;
+        }))
+      colors.push_back(c);
+  }
+  return colors;
+}
 
 }  // namespace
 
@@ -26,7 +43,7 @@ Picture draw_site_legend(std::uint32_t rows, bool has_missing) {
     canvas.set_color(kInk);
     canvas.text(kEdge, y, line, size, kLegendWidth - 1.5 * kEdge, bold);
   };
-  text("Closest site of O2", 19, true);
+  text("Closest site", 19, true);
   const auto swatch = [&](double x, Rgb color) {
     canvas.set_color(color);
     cairo_rectangle(cairo, x, y + 8, kSwatch, kSwatch);
@@ -37,7 +54,8 @@ Picture draw_site_legend(std::uint32_t rows, bool has_missing) {
         std::pair(SiteType::vertex, "vertices: dark")}) {
     y += type == SiteType::face ? 34 : kRow;
     text(name, 15, false);
-    for (std::uint32_t i = 0; i < kSwatches; ++i) swatch(kEdge + i * (kSwatch + 4), site_color(type, i));
+    double x = kEdge;
+    for (const Rgb color : examples(type)) swatch(x, color), x += kSwatch + 4;
   }
   if (has_missing) {
     y += kRow;
