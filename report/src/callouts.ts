@@ -72,12 +72,14 @@ export class Callouts {
   /// After each picture: labels follow the points; soon after the last one, those behind the part fade.
   update(): void {
     const { clientWidth, clientHeight } = this.view.canvas;
+    const most = byId('legend').offsetLeft - 4; // labels are beside the legend
     for (const c of this.placed) {
       const { x, y, behind } = this.view.place(c.at);
       const isCutAway = this.view.isCutAway(c.at);
       c.item.classList.toggle('cut-away', isCutAway);
-      const right = x < clientWidth * 0.6;
-      const lx = Math.min(Math.max(x + (right ? 26 : -26), 4), clientWidth - 4);
+      const width = c.label.offsetWidth;
+      const right = x < clientWidth * 0.6 && x + 26 + width <= most;
+      const lx = right ? Math.max(x + 26, 4) : Math.max(Math.min(x - 26, most), width + 4);
       const ly = Math.min(Math.max(y - 30, 14), clientHeight - 14);
       c.label.style.transform = `translate(${lx}px, ${ly}px) translate(${right ? '0' : '-100%'}, -50%)`;
       c.dot.setAttribute('cx', String(x));

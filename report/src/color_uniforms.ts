@@ -29,7 +29,8 @@ export function colorUniforms(colors: Colors): Uniforms {
 
 export function setScale(uniforms: Uniforms, scale: Scale, colors: Colors): void {
   uniforms.mode.value = { viridis: 0, paper2006: 0, diverging: 1, tolerance: 2, sequential: 3 }[scale.mode];
-  for (const key of ['lo', 'hi', 'lower', 'upper', 'accuracy'] as const) uniforms[key].value = scale[key];
+  const kMost = 1e38; // shaders cannot rely on infinity
+  for (const key of ['lo', 'hi', 'lower', 'upper', 'accuracy'] as const) uniforms[key].value = Math.min(kMost, Math.max(-kMost, scale[key]));
   const stops = colors[scale.mode === 'tolerance' || scale.mode === 'sequential' ? 'viridis' : scale.mode];
   uniforms.stopCount.value = stops.length;
   uniforms.stops.value = triple(Array.from({ length: kStops }, (_, i) => stops[Math.min(i, stops.length - 1)]));

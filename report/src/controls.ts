@@ -4,7 +4,7 @@ import { byId, make } from './dom';
 import { text } from './numbers';
 import type { AreaByValue } from './area_by_value';
 import type { Report, Vec } from './page_data';
-import { isSigned, limitsOf } from './verdict';
+import { canJudge, isLimited, isSigned, limitsOf } from './verdict';
 
 export interface State {
   scale: Scale;
@@ -28,6 +28,7 @@ interface SliderOptions {
   isValid: (value: number) => boolean;
   set: (value: number) => void;
   round?: (value: number) => number; ///< of a value by the slider; default: to four digits
+  clear?: () => void; ///< the field may be empty: then the value is infinite
 }
 
 /// A slider and a field for the same number.
@@ -69,21 +70,51 @@ class Slider {
 
   private changed(value: number, by: HTMLInputElement): void {
     const valid = by.value !== '' && this.options.isValid(value);
-    this.field.setAttribute('aria-invalid', String(!valid));
+    const clear = by.value === '' && !by.validity.badInput ? this.options.clear : undefined;
+    this.field.setAttribute('aria-invalid', String(!valid && !clear));
+    if (clear) clear();
     if (!valid) return;
     this.show(value, by);
     this.options.set(value);
   }
 
+  enable(enabled: boolean): void {
+    this.range.disabled = this.field.disabled = !enabled;
+  }
+
   show(value: number, except?: HTMLInputElement): void {
     if (except !== this.range) this.range.value = String(Math.round(kSteps * this.options.toSlider(value)));
+    if (!Number.isFinite(value)) {
+      this.field.value = '';
+      this.range.setAttribute('aria-valuetext', 'not set');
+      return;
+    }
     if (except !== this.field) this.field.value = String(this.options.round ? this.options.round(value) : Number(value.toPrecision(6)));
     this.range.setAttribute('aria-valuetext', `${text(value)} ${this.options.unit}`);
   }
 }
+/// The settings that a page opens with.
+export function startOf(report: Report, area: AreaByValue, ghostShown: boolean): State {
+  const [least, most] = [report.extremes?.min?.distance ?? area.lo, report.extremes?.max?.distance ?? area.hi];
+  const largest = Math.max(Math.abs(least), Math.abs(most)) || 1;
+  const [lo, hi] = report.colors?.range ?? [least < 0 ? -largest : least, Math.max(most, least + largest * 1e-6)];
+  return {
+    scale: {
+      mode: (report.colors?.map ?? (least < 0 && most > 0 ? 'diverging' : 'viridis')) as Mode,
+      lo,
+      hi: hi > lo ? hi : lo + 1,
+      ...(limitsOf(report) ?? { lower: -Infinity, upper: Infinity }),
+      accuracy: report.accuracy ?? 0,
+    },
+    section: { axis: null, at: 0.5, flipped: false },
+    ghost: ghostShown,
+    coverage: false,
+    width: 1,
+  };
+}
 
-
-/// Fills the form, as it was `saved` if it was. `onChange` is called after each change; `look` with the name of a side.
+/// Fills the form, as it was `saved` if it was. `onChange` is called after each change; `look` with the name of a side, none
+/// for the view that the page opened with.
 export function makeControls(
   report: Report,
   area: AreaByValue,
@@ -94,40 +125,32 @@ export function makeControls(
   box: [Vec, Vec], // in the units of the files
   saved: State | null,
   onChange: (state: State) => void,
-  look: (side: string) => void,
+  look: (side?: string) => void,
 ): State {
   const unit = report.units ?? '';
   const signs = isSigned(report);
-  const p99 = typeof report.distance?.p99_abs === 'number' ? (report.distance.p99_abs as number) : 0;
   const [least, most] = [report.extremes?.min?.distance ?? area.lo, report.extremes?.max?.distance ?? area.hi];
   const largest = Math.max(Math.abs(least), Math.abs(most)) || 1;
   const limits = limitsOf(report);
-  const [lo, hi] = report.colors?.range ?? [least < 0 ? -largest : least, Math.max(most, least + largest * 1e-6)];
-  const startMode = (report.colors?.map ?? (least < 0 && most > 0 ? 'diverging' : 'viridis')) as Mode;
-  const start = (): State => ({
-    scale: {
-      mode: startMode,
-      lo,
-      hi: hi > lo ? hi : lo + 1,
-      lower: limits?.lower ?? -(p99 || largest),
-      upper: limits?.upper ?? (p99 || largest),
-      accuracy: report.accuracy ?? 0,
-    },
-    section: { axis: null, at: 0.5, flipped: false },
-    ghost: ghostShown,
-    coverage: false,
-    width: 1,
-  });
+  const start = () => startOf(report, area, ghostShown);
   let state = start();
+  const { mode: startMode, lo, hi } = state.scale;
 
-  const changed = () => onChange(state);
-  const top = 1.2 * Math.max(largest, Math.abs(lo), Math.abs(hi), Math.abs(state.scale.upper), Math.abs(state.scale.lower));
+  const changed = () => {
+    allowBands();
+    onChange(state);
+  };
+  const top = 1.2 * Math.max(largest, ...[lo, hi, state.scale.upper, state.scale.lower].filter(Number.isFinite).map(Math.abs));
   // Cubic, so that small numbers can be set although a single outlier is far away.
   const cubic = { toValue: (t: number) => top * t ** 3, toSlider: (x: number) => Math.cbrt(Math.min(1, Math.max(0, x / top))) };
   const [from, to] = [Math.min(least, lo), Math.max(most, hi)];
   const linear = {
     toValue: (t: number) => from + t * (to - from),
     toSlider: (x: number) => Math.min(1, Math.max(0, (x - from) / (to - from || 1))),
+  };
+  const bothSides = report.thickness ? cubic : {
+    toValue: (t: number) => top * (2 * t - 1) ** 3,
+    toSlider: (x: number) => (1 + Math.cbrt(Math.min(1, Math.max(-1, x / top)))) / 2,
   };
   const positive = (x: number) => Number.isFinite(x) && x > 0;
   const reach = () => Math.max(Math.abs(state.scale.lo), Math.abs(state.scale.hi));
@@ -156,19 +179,20 @@ export function makeControls(
       id: 'tolerance', label: signs ? 'Tolerance ±' : 'Tolerance', unit, value: state.scale.upper, ...cubic,
       isValid: (x) => Number.isFinite(x) && x >= 0,
       set: (x) => { state.scale.upper = x; state.scale.lower = -x; changed(); },
+      clear: limits ? undefined : () => { state.scale.upper = Infinity; state.scale.lower = -Infinity; changed(); },
     }),
     lower: new Slider({
-      id: 'tolerance-lower', label: 'Lower limit', unit, value: state.scale.lower,
-      toValue: (t) => top * (2 * t - 1) ** 3, toSlider: (x) => (1 + Math.cbrt(Math.min(1, Math.max(-1, x / top)))) / 2,
+      id: 'tolerance-lower', label: 'Lower limit', unit, value: state.scale.lower, ...bothSides,
       isValid: (x) => x <= state.scale.upper, set: (x) => { state.scale.lower = x; changed(); },
+      clear: Number.isFinite(limits?.lower) ? undefined : () => { state.scale.lower = -Infinity; changed(); },
     }),
     upper: new Slider({
-      id: 'tolerance-upper', label: 'Upper limit', unit, value: state.scale.upper,
-      toValue: (t) => top * (2 * t - 1) ** 3, toSlider: (x) => (1 + Math.cbrt(Math.min(1, Math.max(-1, x / top)))) / 2,
+      id: 'tolerance-upper', label: 'Upper limit', unit, value: state.scale.upper, ...bothSides,
       isValid: (x) => x >= state.scale.lower, set: (x) => { state.scale.upper = x; changed(); },
+      clear: Number.isFinite(limits?.upper) ? undefined : () => { state.scale.upper = Infinity; changed(); },
     }),
   };
-  const oneTolerance = !limits || limits.lower === -limits.upper;
+  const oneTolerance = limits ? limits.lower === -limits.upper : !report.thickness;
 
   const select = (id: string, label: string, options: [string, string][], value: string, set: (value: string) => void) => {
     const element = make('select', { id, change: () => set(element.value) });
@@ -202,8 +226,9 @@ export function makeControls(
     state.scale.mode = value as Mode;
     if (value === 'diverging') state.scale.hi = reach(), (state.scale.lo = -state.scale.hi);
     if (value === 'tolerance') {
-      state.scale.hi = Math.max(reach(), 2 * state.scale.upper);
-      state.scale.lo = signs ? Math.min(-reach(), 2 * state.scale.lower) : 0;
+      const { lower, upper } = state.scale;
+      state.scale.hi = Math.max(reach(), Number.isFinite(upper) ? 2 * upper : 0);
+      state.scale.lo = signs ? Math.min(-reach(), Number.isFinite(lower) ? 2 * lower : 0) : 0;
     }
     if (value === 'sequential') {
       const up = (typeof report.distance?.p50 === 'number' ? report.distance.p50 : most) >= 0;
@@ -215,6 +240,14 @@ export function makeControls(
     showSliders();
     changed();
   });
+  // Bands need limits.
+  const allowBands = () => {
+    const allowed = isLimited(state.scale);
+    modeSelect.options[0].disabled = !allowed;
+    if (allowed || state.scale.mode !== 'tolerance') return;
+    modeSelect.value = 'diverging';
+    modeSelect.dispatchEvent(new Event('change'));
+  };
   const [sectionRow, sectionSelect] = select(
     'section', 'Section', [['', 'None'], ['0', 'Across x'], ['1', 'Across y'], ['2', 'Across z']], '',
     (value) => {
@@ -237,7 +270,12 @@ export function makeControls(
   const [flipRow, flipBox] = check('section-flip', 'Other side', false, (value) => { state.section.flipped = value; changed(); });
   const sectionDetails = make('div', { hidden: true }, sectionAt.element, flipRow, make('p', { id: 'section-words', class: 'hint' }));
   const [ghostRow, ghostBox] = check('ghost', 'Show the reference as a ghost', ghostShown, (value) => { state.ghost = value; changed(); });
-  const [coverageRow, coverageBox] = check('coverage', 'Show where the reference was measured, without the part', false, (value) => { state.coverage = value; changed(); });
+  const [coverageRow, coverageBox] = check('coverage', 'Show where the reference was measured, without the part', false, (value) => { state.coverage = value; enableColours(); changed(); });
+  // In the picture of coverage there are no colours of distances.
+  const enableColours = () => {
+    modeSelect.disabled = state.coverage;
+    for (const slider of Object.values(sliders)) slider.enable(!state.coverage);
+  };
   const widthRange = make('input', {
     type: 'range', id: 'width', min: 0, max: kSteps, value: kSteps / 2,
     input: () => { state.width = 4 ** (Number(widthRange.value) / (kSteps / 2) - 1); changed(); },
@@ -261,6 +299,8 @@ export function makeControls(
     for (const slider of [sliders.tolerance, sliders.upper]) slider.show(scale.upper);
     sliders.lower.show(scale.lower);
     showSliders();
+    allowBands();
+    enableColours();
   };
   const resetButton = make('button', {
     type: 'button',
@@ -269,15 +309,15 @@ export function makeControls(
       state = start();
       showState();
       changed();
-      look('corner');
+      look();
     },
   }, 'Reset');
+  const limitSliders = oneTolerance ? [sliders.tolerance] : [sliders.lower, sliders.upper];
 
   byId('form').replaceChildren(
     modeRow,
     sliders.reach.element, sliders.lo.element, sliders.hi.element,
-    ...(oneTolerance ? [sliders.tolerance.element] : [sliders.lower.element, sliders.upper.element]),
-    make('p', { id: 'what-if', role: 'status', 'aria-live': 'polite' }),
+    ...(limits || canJudge(report) ? [...limitSliders.map(({ element }) => element), make('p', { id: 'what-if', role: 'status', 'aria-live': 'polite' })] : []),
     ...(report.group_tolerances ? [make('p', { id: 'table-limits', class: 'hint' }, 'This tolerance is for the whole part. The groups keep the limits of their table.')] : []),
     viewRow, sectionRow, sectionDetails, ...(isCloud ? [widthRow] : []), ...(hasGhost ? [ghostRow] : []), ...(hasCoverage ? [coverageRow] : []),
     resetButton,

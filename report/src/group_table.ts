@@ -39,9 +39,9 @@ export function showGroups(report: Report, chosen: GroupName | null = null, show
   };
   const rows = groups.map((g, i) => [
     name(g, i),
+    make('b', { class: g.verdict.toLowerCase().replace(' ', '-') }, g.verdict),
     g.kind,
     limitsText({ lower: g.lower ?? -Infinity, upper: g.upper ?? Infinity }, report),
-    make('b', { class: g.verdict.toLowerCase().replace(' ', '-') }, g.verdict),
     value(g.witness && g.witness.distance < (g.lowest ?? Infinity) ? g.witness.distance : g.lowest),
     value(g.witness && g.witness.distance > (g.highest ?? -Infinity) ? g.witness.distance : g.highest),
     percent(g.exceeded_area_fraction ?? g.exceeded_point_fraction ?? 0),
@@ -49,7 +49,7 @@ export function showGroups(report: Report, chosen: GroupName | null = null, show
   ]);
   const what = capital(quantityOf(report));
   byId('groups-table').replaceChildren(
-    table(['Group', 'Named as', 'Limits', 'Verdict', `Least ${quantityOf(report)}`, `Largest ${quantityOf(report)}`, `${capital(wholeOf(report))} out of tolerance`, 'Kind'], rows, `${what} by group`),
+    table(['Group', 'Verdict', 'Named as', 'Limits', `Least ${quantityOf(report)}`, `Largest ${quantityOf(report)}`, `${capital(wholeOf(report))} out of tolerance`, 'Kind'], rows, `${what} by group`),
     make('p', { class: 'hint' }, `${show ? 'Choose a group to see it alone in colours. ' : ''}Of all groups: ${report.group_tolerances!.verdict}. ${isCloud(report) ? 'A point is of the groups of its closest face.' : 'Shares are estimates from the samples of each group.'} The verdict at the top is the worse one of those of the part and of its groups.`),
   );
 }

@@ -4,7 +4,10 @@ import { byId, make, makeSvg } from './dom';
 import { ends } from './legend';
 import { percent, text, ticks, tickText } from './numbers';
 import type { AreaByValue } from './area_by_value';
-import type { Limits } from './verdict';
+import type { Report } from './page_data';
+import { distanceText } from './precision';
+import { isSigned, Limits, realLimits, unitOf, wholeOf } from './verdict';
+import { capital, quantityOf } from './words';
 
 const kBins = 48;
 const kHeight = 236;
@@ -15,14 +18,6 @@ const kBottom = 50;
 const kFloor = kHeight - kBottom;
 const kLeastBar = 1.5; // pixels of a bin that is not empty
 const kMostEmpty = 4; // lengths of the range of values that the chart may have, to reach a limit
-
-export interface HistogramOptions {
-  whole: 'area' | 'points';
-  quantity: string; ///< what is measured
-  unit: string;
-  limits: Limits; ///< infinite for none
-  logarithmic: boolean;
-}
 
 /// The distances at the ends of the chart: what has values in the colours of the scale, and limits that are not far
 /// from it.
@@ -70,8 +65,8 @@ function limitMarks({ lower, upper }: Limits, [lo, hi]: [number, number], x: (d:
 }
 
 /// Fills the chart, as wide as its place is.
-export function drawHistogram(area: AreaByValue, scale: Scale, colors: Colors, options: HistogramOptions): void {
-  const { whole, quantity, unit, limits, logarithmic } = options;
+export function drawHistogram(report: Report, area: AreaByValue, scale: Scale, colors: Colors, logarithmic: boolean): void {
+  const [whole, quantity, unit, limits] = [wholeOf(report), quantityOf(report), report.units ?? '', realLimits(scale, report)];
   const plotWidth = Math.max(280, byId('histogram-chart').clientWidth || 640);
   const [lo, hi] = rangeOf(area, scale, limits);
   const width = (hi - lo) / kBins;
@@ -107,22 +102,25 @@ export function drawHistogram(area: AreaByValue, scale: Scale, colors: Colors, o
   svg.append(makeSvg('line', { class: 'axis', x1: kLeft, x2: plotWidth - kRight, y1: kFloor, y2: kFloor }));
   svg.append(makeSvg('text', { x: (kLeft + plotWidth - kRight) / 2, y: kFloor + 38, 'text-anchor': 'middle' }, unit ? `${quantity} in ${unit}` : quantity));
 
-  const sentence = sentenceOf(area, [lo, hi], options);
+  const sentence = sentenceOf(report, area, [lo, hi], logarithmic);
   byId('histogram-chart').replaceChildren(
     make('div', { role: 'img', class: 'chart', 'aria-label': `Histogram of the ${whole} by ${quantity}. ${sentence}` }, svg),
     make('p', { class: 'hint' }, sentence),
   );
 }
 
-function sentenceOf(area: AreaByValue, [lo, hi]: [number, number], { whole, unit, logarithmic }: HistogramOptions): string {
+/// The range of the values, and what is not in the chart.
+function sentenceOf(report: Report, area: AreaByValue, [lo, hi]: [number, number], logarithmic: boolean): string {
   const below = area.upTo(lo - ((hi - lo) / kBins) * 1e-9);
   const without = area.withoutValue;
   const above = Math.max(0, 1 - without - area.upTo(hi));
+  const whole = wholeOf(report);
+  const [min, max] = (['min', 'max'] as const).map((end) => report.extremes?.[end]?.distance ?? (report.distance?.[end] as number | null));
+  const shown = (d: number) => distanceText(d, report, isSigned(report));
+  const beside = [below > 0 && `${percent(below)} below the chart`, above > 0 && `${percent(above)} above it`, without > 0 && `${percent(without)} without a value`].filter(Boolean);
   return (
-    `${percent(Math.max(0, 1 - without - below - above))} of the ${whole} ${whole === 'area' ? 'is' : 'are'} between ${text(lo)} and ${text(hi)}${unit ? ` ${unit}` : ''}` +
-    (below > 0 ? `, ${percent(below)} below` : '') +
-    (above > 0 ? `, ${percent(above)} above` : '') +
-    (without > 0 ? `, ${percent(without)} without a value` : '') +
+    (typeof min === 'number' && typeof max === 'number' ? `${capital(quantityOf(report))} from ${shown(min)} to ${shown(max)}${unitOf(report)}` : 'No values') +
+    (beside.length > 0 ? `; of the ${whole}, ${beside.join(', ')}` : '') +
     (logarithmic ? '. Each line of the grid is ten times the one below it' : '') +
     (whole === 'area' ? '. Areas are estimates from the samples.' : '. All points of the cloud were counted.')
   );

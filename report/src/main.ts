@@ -8,19 +8,20 @@ import { GroupName, showGroups } from './group_table';
 import { drawHistogram } from './histogram';
 import { drawLegend } from './legend';
 import { showMade } from './made';
-import { exactText, percent, place } from './numbers';
+import { exactText, place } from './numbers';
 import { openPage } from './open_page';
-import { onlyThickest, showPlaces } from './places';
+import { Listed, listedPlaces, onlyThickest, showPlaces } from './places';
 import { PageData, readReport, Report, Vec } from './page_data';
 import { distanceText } from './precision';
 import { printPicture } from './print';
 import { readData } from './read_page';
 import { copyOfPage, csvOf, download, pageWith, readSaved, Saved } from './saved';
 import { SectionView } from './section_view';
+import { showWithoutPicture } from './without_picture';
 import { boxOf, Subject, toFile, toScene } from './subject';
 import { Surface } from './surface';
 import { inputsOf, showFields, showInputs, showMethod, showMore, showNumbers, showOmissions, titleOf } from './tables';
-import { isCloud, isSigned, limitsText, outsideOf, realLimits, unitOf, verdictFor, verdictOf, wholeOf } from './verdict';
+import { isCloud, isSigned, outsideOf, unitOf, verdictOf, whatIf } from './verdict';
 import { View } from './view';
 import { capital, quantityOf } from './words';
 
@@ -51,9 +52,10 @@ function nameSubject(report: Report): void {
 /// What the lines of a section are.
 function sectionWords({ part, other, factor }: SectionView): string {
   if (!part) return other ? 'Dark line: the reference.' : '';
-  if (!other) return 'The thick line is the profile of the part in the colours of its values.';
+  const inside = part.isClosed ? ' Grey: inside of the part.' : '';
+  if (!other) return `The thick line is the profile of the part in the colours of its values.${inside}`;
   const gap = `${factor > 1 ? `${factor} times ` : ''}as long as the gap to the reference`;
-  return `Thick line in colours: the part. Dark line: the reference. Thin lines towards it: ${gap} in this plane. ${other.isClosed && part.isClosed ? 'Orange: only the part; blue: only the reference.' : ''}`.trim();
+  return `Thick line in colours: the part. Dark line: the reference. Thin lines towards it: ${gap} in this plane.${other.isClosed && part.isClosed ? ' Orange: only the part; blue: only the reference; grey: both.' : inside}`;
 }
 
 class Page {
@@ -62,6 +64,7 @@ class Page {
   private readonly view: View;
   private readonly section: SectionView;
   private readonly callouts: Callouts;
+  private readonly first: Listed | undefined; // place of the list, of a part that is judged
   private readonly signs: boolean;
   private readonly unit: string;
   private state: State;
@@ -77,6 +80,7 @@ class Page {
     this.signs = isSigned(report);
     this.unit = unitOf(report);
     const { page, surface, cloud, ghost } = data;
+    this.first = verdictOf(report).verdict === 'MEASURED' ? undefined : listedPlaces(report, page)[0];
     const { measured } = inputsOf(report);
     this.cloud = cloud && new Cloud(cloud, page.colors);
     this.subject = this.cloud ?? new Surface(surface!.model, surface!.map, page.colors, measured?.closed ?? false, this.unit);
@@ -94,7 +98,7 @@ class Page {
       [toFile(this.subject, this.subject.lo), toFile(this.subject, this.subject.hi)],
       saved?.state ?? null,
       (state) => this.apply(state),
-      (side) => this.view.look(side),
+      (side) => (side ? this.view.look(side) : this.lookAtFirst()),
     );
     this.cutAxis = this.state.section.axis;
     this.apply(this.state);
@@ -103,8 +107,10 @@ class Page {
     showOmissions(report, data);
     showMade([report.o1, report.o2, report.mesh], page);
     this.addSaveButtons();
+    this.showBoth(ghostShown);
     if (!saved) {
-      this.openOnEvidence(ghostShown);
+      if (this.first?.distance) this.addPlace(this.first);
+      this.lookAtFirst();
       return;
     }
     for (const callout of saved.callouts) this.callouts.add(callout);
@@ -119,21 +125,20 @@ class Page {
     return new SectionView(part, other, this.subject.size);
   }
 
-  /// The reference beside the part is in the picture; the worst place of a part that does not pass faces the viewer.
-  private openOnEvidence(ghostShown: boolean): void {
+  /// The reference beside the part is in the picture.
+  private showBoth(ghostShown: boolean): void {
     const { ghost } = this.data;
-    if (ghost && ghostShown) {
-      const { lo, hi } = boxOf(ghost.position);
-      const both = { lo: lo.map((x, k) => Math.min(x, this.subject.lo[k])) as Vec, hi: hi.map((x, k) => Math.max(x, this.subject.hi[k])) as Vec };
-      const kMost = 5; // half diagonals of the part: with a larger box, the part would be too small
-      if (Math.hypot(...both.hi.map((x, k) => x - both.lo[k])) <= kMost) this.view.setShown(both.lo, both.hi);
-      this.view.look('corner');
-    }
-    const { verdict } = verdictOf(this.report);
-    const worst = this.report.places?.largest?.[0];
-    if (!worst || (verdict !== 'FAIL' && verdict !== 'NOT DECIDED')) return;
-    const at = this.addPlace(worst);
-    this.view.lookFrom(at);
+    if (!ghost || !ghostShown) return;
+    const { lo, hi } = boxOf(ghost.position);
+    const both = { lo: lo.map((x, k) => Math.min(x, this.subject.lo[k])) as Vec, hi: hi.map((x, k) => Math.max(x, this.subject.hi[k])) as Vec };
+    const kMost = 5; // half diagonals of the part: with a larger box, the part would be too small
+    if (Math.hypot(...both.hi.map((x, k) => x - both.lo[k])) <= kMost) this.view.setShown(both.lo, both.hi);
+  }
+
+  /// The view that the page opens with: of a part that is judged, the first place of the list faces the viewer.
+  private lookAtFirst(): void {
+    this.view.look('corner');
+    if (this.first) this.view.lookFrom(toScene(this.subject, this.first.point));
   }
 
   /// The page as it is shown, in one file.
@@ -219,23 +224,12 @@ class Page {
   private drawHistogram(): void {
     const { scale, logarithmic = false } = this.state;
     (byId('logarithmic') as HTMLInputElement).checked = logarithmic;
-    drawHistogram(this.data.area, scale, this.data.page.colors, {
-      whole: wholeOf(this.report),
-      quantity: quantityOf(this.report),
-      unit: this.report.units ?? '',
-      limits: realLimits(scale, this.report),
-      logarithmic,
-    });
+    drawHistogram(this.report, this.data.area, scale, this.data.page.colors, logarithmic);
   }
 
   private showWhatIf({ scale }: State): void {
-    const outside = outsideOf(this.report, scale, this.data.area);
-    const verdict = verdictFor(this.report, scale);
-    byId('what-if').replaceChildren(
-      `With ${limitsText(scale, this.report)}: `,
-      make('b', {}, verdict ?? 'The accuracy of this map is unknown, so no tolerance can be checked.'),
-      verdict === null ? '' : isCloud(this.report) ? `. ${percent(outside)} of the points are out of it.` : `. About ${percent(outside)} of the area is out of it.`,
-    );
+    const [before, verdict, after] = whatIf(this.report, scale, outsideOf(this.report, scale, this.data.area));
+    document.getElementById('what-if')?.replaceChildren(before, make('b', {}, verdict), after);
   }
 
   private listen(): void {
@@ -282,7 +276,7 @@ class Page {
       '+': () => this.view.zoom(0.85),
       '=': () => this.view.zoom(0.85),
       '-': () => this.view.zoom(1 / 0.85),
-      Home: () => this.view.look('corner'),
+      Home: () => this.lookAtFirst(),
       Enter: () => this.addCallout(...this.middle()),
     };
     const action = actions[event.key];
@@ -338,7 +332,7 @@ class Page {
   }
 
   private showWorst(): void {
-    showPlaces(this.report, this.data.page.thinnest ?? this.data.page.thickest ?? null, this.subject.size, (place) => this.lookAt(this.addPlace(place)));
+    showPlaces(this.report, this.data.page, this.subject.size, (place) => this.lookAt(this.addPlace(place)));
   }
 
   /// A callout at a place of the list, if it has a value; where it is in the scene.
@@ -374,4 +368,12 @@ showInputs(report);
 showMethod(report);
 showGroups(report);
 showMore(report);
-void openPage('sdmPage', 'part', 'The numbers are complete.', async () => new Page(report, await readData(), copy, saved));
+void openPage('sdmPage', 'part', 'The numbers are complete.', async () => {
+  const data = await readData();
+  try {
+    return new Page(report, data, copy, saved);
+  } catch (error) {
+    showWithoutPicture(report, data);
+    throw error;
+  }
+});

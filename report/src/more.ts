@@ -61,6 +61,23 @@ function freedomWords(freedoms: Freedom[], unit: string): string {
   return `${locked > 0 ? 'All other motions' : 'All six motions'} are determined by the surfaces.${error}${lockedWords}`;
 }
 
+/// What the alignment did, and how well it fits.
+export function alignmentWords(report: Report): Node[] {
+  const a = report.alignment as AlignmentJson | undefined;
+  if (!a) return [];
+  const unit = unitOf(report);
+  const names = report.measured_on === 'o2' ? ['the reference', 'the part'] : ['the part', 'the reference'];
+  // Its residuals are named in a sentence.
+  const done = a.text.replace(/; residual rms .*?\(.*?\)/, '').replace(/\bO([12])\b/g, (_, n) => names[n - 1]);
+  const from = (key: keyof Residual) => `from ${text(a.before?.[key], 3)} to ${text(a.after?.[key], 3)}${unit}`;
+  return [
+    words(
+      `Alignment: ${done}.`,
+      a.before && a.after && `The root mean square distance went ${from('trimmed_rms')} for the samples that fit, and ${from('rms')} for all samples: estimates.`,
+    ),
+  ];
+}
+
 function alignment(report: Report): Node[] {
   const a = report.alignment as AlignmentJson | undefined;
   if (!a) return [];
@@ -70,7 +87,6 @@ function alignment(report: Report): Node[] {
     make('h3', {}, 'Alignment'),
     words(
       'Before anything was measured, the part was placed on the reference.',
-      a.before && a.after && `The root mean square of the distances of its samples went from ${text(a.before.rms, 3)}${unit} to ${text(a.after.rms, 3)}${unit}; of those that fit, to ${text(a.after.trimmed_rms, 3)}${unit}. These are estimates.`,
       fitted && typeof a.fraction_used === 'number' && typeof a.samples === 'number' && `${percent(a.fraction_used)} of ${count(a.samples)} samples fit; dents and outliers did not count.`,
       fitted && a.converged === false && 'It did not settle: another start may fit better.',
       a.degrees_of_freedom && freedomWords(a.degrees_of_freedom, unit),

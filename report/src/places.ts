@@ -1,12 +1,12 @@
 // The list of the places that deviate most.
 import { byId, make, table } from './dom';
 import { count, percent, place, text } from './numbers';
-import type { Place, Places, Report } from './page_data';
+import type { PageJson, Place, Places, Report } from './page_data';
 import { distanceText } from './precision';
 import { isCloud, isSigned, limitsText, unitOf } from './verdict';
 import { capital, quantityOf } from './words';
 
-type Listed = Pick<Place, 'distance' | 'point' | 'at'> & Partial<Place>;
+export type Listed = Pick<Place, 'distance' | 'point' | 'at'> & Partial<Place>;
 
 function extentOf(report: Report, p: Listed): string {
   if (p.points !== undefined) return p.points === 1 ? '1 point' : `${count(p.points)} points`;
@@ -29,7 +29,7 @@ function hintOf(report: Report, places: Places): string {
   return (
     `Connected regions ${beyond}: ${total(places.large)}; ` +
     `and small ones, below ${least} of the ${whole} each: ${total(places.small)}. ` +
-    `Listed are ${places.largest.length < 10 ? 'all' : 'the ten largest'}, small ones last. ${isCloud(report) ? '' : 'Areas are estimates from the samples. '}Choose one to see it.`
+    `Listed are ${places.largest.length < 10 ? 'all' : 'the ten largest'}, small ones last. ${isCloud(report) ? '' : 'Areas are estimates from the samples. '}`
   );
 }
 
@@ -38,16 +38,25 @@ export function onlyThickest({ thickness }: Report): boolean {
   return typeof thickness?.max === 'number' && typeof thickness.min !== 'number';
 }
 
-/// Fills the list; `walls`: the places of a report on wall thickness.
-export function showPlaces(report: Report, walls: Listed[] | null, size: number, show: (place: Listed) => void): void {
+/// The places of a report on wall thickness.
+const wallsOf = ({ thinnest, thickest }: PageJson): Listed[] | null => thinnest ?? thickest ?? null;
+
+/// The places of the list, the worst one first.
+export function listedPlaces(report: Report, page: PageJson): Listed[] {
+  return wallsOf(page) ?? report.places?.largest ?? [];
+}
+
+/// Fills the list; without `show` the places cannot be seen.
+export function showPlaces(report: Report, page: PageJson, size: number, show?: (place: Listed) => void): void {
   const signs = isSigned(report);
-  const listed: Listed[] = walls ?? report.places?.largest ?? [];
+  const walls = wallsOf(page);
+  const listed = listedPlaces(report, page);
   const grouped = listed.some((p) => p.group);
   const rows = listed.map((p, i) => {
     const value = p.distance === null ? 'no value' : `${distanceText(p.distance, report, signs)}${unitOf(report)}`;
     return [
       String(i + 1),
-      make('button', { type: 'button', class: 'link', click: () => show(p), 'aria-label': `Show place ${i + 1}, ${value}` }, value),
+      show ? make('button', { type: 'button', class: 'link', click: () => show(p), 'aria-label': `Show place ${i + 1}, ${value}` }, value) : value,
       place(p.point, size),
       ...(walls ? [] : [`${extentOf(report, p)}${p.small ? ', small' : ''}`]),
       ...(grouped ? [p.group ?? ''] : []),
@@ -55,12 +64,12 @@ export function showPlaces(report: Report, walls: Listed[] | null, size: number,
   });
   const head = ['', capital(quantityOf(report)), report.units ? `Position in ${report.units}` : 'Position', ...(walls ? [] : ['Extent']), ...(grouped ? ['Group'] : [])];
   const hint = walls
-    ? `The ${onlyThickest(report) ? 'largest' : 'least'} values, at texels that are at least 6 % of the part\u2019s size apart. Choose one to see it.`
+    ? `The ${onlyThickest(report) ? 'largest' : 'least'} values, at texels that are at least 6 % of the part\u2019s size apart. `
     : report.places ? hintOf(report, report.places) : '';
   byId('worst-table').replaceChildren(
     rows.length === 0
       ? make('p', {}, walls || report.places ? `No point of the ${isCloud(report) ? 'cloud' : 'part'} has a distance beyond the accuracy.` : 'This report lists no places.')
       : table(head, rows, walls ? `The ${onlyThickest(report) ? 'thickest' : 'thinnest'} places` : 'The places with the largest distances'),
-    make('p', { class: 'hint' }, hint),
+    make('p', { class: 'hint' }, hint + (hint && show ? 'Choose one to see it.' : '')),
   );
 }

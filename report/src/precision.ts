@@ -17,12 +17,12 @@ function decimalsOf(report: Report): number | null {
   return Math.max(0, Math.min(Math.max(wanted, kLeastDigits - 1 - first), kMostDigits - 1 - first));
 }
 
-/// A distance as all parts of the page state it, without a unit.
+/// A distance as all parts of the page state it, without a unit; what these decimals would round to zero has three digits.
 export function distanceText(value: number | null | undefined, report: Report, withSign = false): string {
   const decimals = decimalsOf(report);
   if (value === null || value === undefined || !Number.isFinite(value) || decimals === null)
     return signedText(value ?? Number.NaN, withSign);
   const short = value.toFixed(decimals);
-  if (Number(short) === 0) return short.replace('-', '');
+  if (Number(short) === 0) return value === 0 ? short.replace('-', '') : signedText(value, withSign, 3);
   return (withSign && value > 0 ? '+' : '') + short.replace('-', kMinus);
 }

@@ -26,7 +26,13 @@ export function copyOfPage(): HTMLElement {
 /// The settings in the page, if it was saved.
 export function readSaved(): Saved | null {
   const text = document.getElementById(kId)?.textContent;
-  return text ? (JSON.parse(text) as Saved) : null;
+  if (!text) return null;
+  const saved = JSON.parse(text) as Saved;
+  // JSON has no infinite numbers: null is no limit.
+  const { scale } = saved.state;
+  scale.lower ??= -Infinity;
+  scale.upper ??= Infinity;
+  return saved;
 }
 
 /// The text of a page that opens with the settings.

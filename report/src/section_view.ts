@@ -121,7 +121,9 @@ export class SectionView {
 
   /// `part` is null for clouds, `other` if the reference is not in the page; `size` of a unit of the scene.
   constructor(readonly part: CutPart | null, readonly other: Cuttable | null, private readonly size: number) {
-    this.caps = new Caps([part?.isClosed ?? false, other?.isClosed ?? false]);
+    // Without an inside of the part, none of the reference is known to be where the part is not.
+    const filled = part?.isClosed ?? false;
+    this.caps = new Caps([filled, filled && (other?.isClosed ?? false)]);
     this.object.add(this.caps.object, this.gap, this.profile, this.reference);
     this.object.visible = false;
   }

@@ -1,7 +1,7 @@
 // The text of the page: numbers, inputs and method.
 import { byId, make, table } from './dom';
 import { coverageRow } from './coverage';
-import { folded, inWords, kInWords } from './more';
+import { alignmentWords, folded, inWords, kInWords } from './more';
 import { count, percent, text } from './numbers';
 import { Input, PageData, Report, reportText } from './page_data';
 import { distanceText } from './precision';
@@ -58,17 +58,17 @@ export function showNumbers(report: Report): void {
   const bound = report.error_bound;
   const cloud = isCloud(report);
   const compared = signs && !isThickness(report);
-  const sampled =
+  const sampled = (by: number, how: 'more' | 'less') =>
     report.evidence?.samples_only ? 'at the points; an estimate in between'
-    : typeof bound === 'number' ? `measured; at most ${distanceText(bound, report)}${unit} more in between` : 'measured';
+    : by > 0 ? `measured; at most ${distanceText(by, report)}${unit} ${how} in between` : 'measured';
   // A distance below the accuracy may as well be 0.
   const shown = (x: number) =>
     `${distanceText(Math.abs(x) <= (report.accuracy ?? 0) ? 0 : x, report, signs)}${unit}`;
   if (extremes?.max)
-    rows.push([ends.largest, shown(extremes.max.distance), sampled]);
+    rows.push([ends.largest, shown(extremes.max.distance), sampled(bound ?? 0, 'more')]);
   else add('Largest', 'max', 'measured', true);
   if (extremes?.min)
-    rows.push([ends.smallest, shown(extremes.min.distance), sampled.replace('more', 'less')]);
+    rows.push([ends.smallest, shown(extremes.min.distance), sampled(Math.min(bound ?? 0, signs ? Infinity : extremes.min.distance), 'less')]);
   else add('Smallest', 'min', 'measured', true);
   const estimate = cloud ? 'of all points' : 'estimate over the area';
   const share = cloud ? 'points are' : 'area is';
@@ -120,7 +120,7 @@ export function showInputs(report: Report): void {
       ],
       'The inputs',
     ),
-    ...(report.alignment ? [make('p', {}, `Alignment: ${report.alignment.text}.`)] : []),
+    ...alignmentWords(report),
   );
 }
 

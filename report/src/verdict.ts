@@ -9,8 +9,8 @@ import { capital, isThickness, quantityOf } from './words';
 export type Verdict = 'PASS' | 'FAIL' | 'NOT DECIDED' | 'DOUBTFUL' | 'MEASURED';
 
 export interface Limits {
-  lower: number;
-  upper: number;
+  lower: number; ///< -infinite without one
+  upper: number; ///< infinite without one
 }
 
 export interface Judgement {
@@ -39,36 +39,26 @@ export function unitOf(report: Report): string {
 export function limitsOf(report: Report): Limits | null {
   const t = report.tolerance;
   if (!t) return null;
-  const value = t.value ?? Number.NaN;
-  // Limits of wall thickness that were not given, for the sliders: none of its values are beyond these.
-  if (report.thickness) {
-    const lower = t.lower ?? 0;
-    return { lower, upper: t.upper ?? Math.max(2 * lower, Number(report.distance?.max ?? 0)) };
-  }
+  const value = t.value ?? Infinity;
   return { lower: t.lower ?? -value, upper: t.upper ?? value };
+}
+
+/// Whether there is a limit.
+export function isLimited({ lower, upper }: Limits): boolean {
+  return Number.isFinite(lower) || Number.isFinite(upper);
 }
 
 export function limitsText({ lower, upper }: Limits, report: Report): string {
   const unit = unitOf(report);
-  const { thickness } = report;
-  const given = thickness ? limitsOf(report) : null;
-  if (thickness && thickness.max === null && upper === given?.upper) return `at least ${text(lower)}${unit}`;
-  if (thickness && thickness.min === null && lower === given?.lower) return `at most ${text(upper)}${unit}`;
   if (lower === -Infinity) return `at most ${text(upper)}${unit}`;
   if (upper === Infinity) return `at least ${text(lower)}${unit}`;
   if (lower === -upper) return isSigned(report) ? `±${text(upper)}${unit}` : `${text(upper)}${unit}`;
   return `${text(lower)} to ${text(upper)}${unit}`;
 }
 
-/// The limits that a distance can exceed, infinite for none: not a negative one of what is never negative, nor the
-/// greatest possible thickness.
-export function realLimits(limits: Limits, report: Report): Limits {
-  const { thickness, tolerance } = report;
-  const neverNegative = !isSigned(report) || thickness !== undefined;
-  return {
-    lower: (neverNegative && limits.lower <= 0) || (thickness?.min === null && limits.lower === tolerance?.lower) ? -Infinity : limits.lower,
-    upper: thickness?.max === null && limits.upper === tolerance?.upper ? Infinity : limits.upper,
-  };
+/// The limits that a distance can exceed, infinite for none: not a negative one of what is never negative.
+export function realLimits({ lower, upper }: Limits, report: Report): Limits {
+  return { lower: lower <= 0 && (!isSigned(report) || report.thickness !== undefined) ? -Infinity : lower, upper };
 }
 
 /// The judgement of judge(), number by number.
@@ -104,23 +94,47 @@ export function judge(evidence: Evidence, limits: Limits): Judgement {
   return { ...result, verdict: 'NOT DECIDED', reason };
 }
 
+/// Whether limits can be judged.
+export function canJudge({ evidence }: Report): boolean {
+  return evidence !== undefined && evidence.accuracy !== null;
+}
+
+/// Whether the limits are those that the report judges.
+function isJudged(report: Report, { lower, upper }: Limits): boolean {
+  const judged = limitsOf(report);
+  return judged !== null && judged.lower === lower && judged.upper === upper;
+}
+
 /// The verdict with these limits: that of the report for the limits in it, otherwise by the rule.
 export function verdictFor(report: Report, limits: Limits): Verdict | null {
   const { tolerance, evidence } = report;
-  if (!evidence || evidence.accuracy === null) return null;
-  const judged = limitsOf(report);
-  if (tolerance?.verdict && judged && judged.lower === limits.lower && judged.upper === limits.upper)
-    return tolerance.verdict as Verdict;
-  return judge(evidence, limits).verdict;
+  if (!evidence || !canJudge(report)) return null;
+  return tolerance?.verdict && isJudged(report, limits) ? (tolerance.verdict as Verdict) : judge(evidence, limits).verdict;
 }
 
 /// The fraction of the area, or of the points, that is out of limits: as the report says, and for other limits by the
 /// distribution, whose bins make it an estimate.
 export function outsideOf(report: Report, limits: Limits & { accuracy: number }, area: AreaByValue): number {
-  const judged = limitsOf(report);
   const stated = report.tolerance?.exceeded_area_fraction ?? report.tolerance?.exceeded_point_fraction;
-  if (stated !== undefined && judged && judged.lower === limits.lower && judged.upper === limits.upper) return stated;
+  if (stated !== undefined && isJudged(report, limits)) return stated;
   return Math.max(0, 1 - area.within(limits.lower - limits.accuracy, limits.upper + limits.accuracy));
+}
+
+/// What the sliders ask: the verdict with their limits, of which `outside` is out, as words before it, itself, and words
+/// after it.
+export function whatIf(report: Report, limits: Limits, outside: number): [string, string, string] {
+  if (!isLimited(limits)) return ['Set a tolerance to see what its verdict would be.', '', ''];
+  const verdict = verdictFor(report, limits);
+  const given = isJudged(report, limits);
+  const text = limitsText(limits, report);
+  if (verdict === null) return [`With ${text}: `, '', 'The accuracy of this map is unknown, so no tolerance can be checked.'];
+  const cloud = isCloud(report);
+  const share =
+    verdict !== 'FAIL' || outside <= 0 ? `No ${cloud ? 'point' : 'sample'} is out of it.`
+    : cloud ? `${percent(outside)} of the points are out of it.`
+    : `About ${percent(outside)} of the area is out of it.`;
+  const open = verdict === 'NOT DECIDED' && !given ? ' Samples alone do not decide this: the command does, with this tolerance.' : '';
+  return given ? [`With ${text}: `, verdict, `. ${share}${open}`] : ['Would be ', verdict, ` with ${text}. ${share}${open}`];
 }
 
 /// A clause as a sentence.
@@ -130,9 +144,9 @@ function sentence(clause: string): string {
 
 /// What is said where nothing is judged.
 function unjudged(report: Report): string {
-  if (isThickness(report)) return 'No limits were given (--min, --max), so nothing was judged. The slider below shows what would be.';
+  if (isThickness(report)) return 'No limits were given (--min, --max), so nothing was judged.';
   if (!report.evidence) return 'Nothing was judged.';
-  return 'No tolerance was given (--tolerance), so nothing was judged. The slider below shows what would be.';
+  return 'No tolerance was given (--tolerance), so nothing was judged.';
 }
 
 /// Why the verdict is FAIL.

@@ -28,7 +28,9 @@ export class Viewer {
   constructor(container: HTMLElement, private readonly up: 'y' | 'z', private readonly onChange = () => {}) {
     this.canvas = container.querySelector('canvas')!;
     // The picture is kept for printing.
-    this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, stencil: true, alpha: true, preserveDrawingBuffer: true });
+    const context = this.canvas.getContext('webgl2', { antialias: true, stencil: true, alpha: true, preserveDrawingBuffer: true });
+    if (!context) throw new Error('this browser has no WebGL 2, or it is switched off');
+    this.renderer = new WebGLRenderer({ canvas: this.canvas, context });
     this.renderer.setPixelRatio(this.finest);
     this.pace = new Pace(this.renderer.getContext() as WebGL2RenderingContext, () => this.draw(false), () => this.prepareCoarse());
     this.camera.up.set(0, up === 'y' ? 1 : 0, up === 'z' ? 1 : 0);

@@ -156,6 +156,8 @@ const checks = {
     await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
     const found = await page.evaluate(faultsOfTexts, 12);
     assert(found.length === 0, `on paper:\n${found.slice(0, 12).join('\n')}`);
+    const shadow = await page.evaluate(() => [...document.querySelectorAll('#legend .tick')].map((t) => getComputedStyle(t).textShadow));
+    assert(shadow.every((s) => s === 'none'), 'numbers of the legend are blurred on paper');
   },
 
   // A player opens on the frame of its worst place, with this in front of all that is solid, in the middle of the picture;

@@ -126,7 +126,10 @@ TEST_F(Page, SaysHowThePartWasAligned) {
   const Json report = map({"--resolution", "64", "--align", "--units", "mm"});
   const auto words = report["alignment"]["text"].get<std::string>();
   EXPECT_THAT(words, HasSubstr("and moved it by 0.05 mm"));
-  EXPECT_TRUE(passes("says", page(), {"Alignment: " + words, "the alignment\tnothing"}));
+  EXPECT_THAT(words, HasSubstr("residual rms"));
+  EXPECT_TRUE(passes("says", page(),
+                     {"Alignment: turned the part by", "mm for the samples that fit, and from", "!->",
+                      "!turned O1", "!residual rms", "the alignment\tnothing"}));
 }
 
 // The exit code is that of the worse one.
@@ -172,7 +175,7 @@ TEST_F(Page, StatesTheVerdictOfEachGroup) {
   map({"--resolution", "64", "--tolerance-table", table, "--units", "mm"});
   EXPECT_TRUE(passes("highlights", page(), {folder / "saved.html"}));
   EXPECT_TRUE(passes("says", page(),
-                     {"Verdicts by group", "ring\tgroup\t0 to 1 mm\tFAIL\t", "\t2.40", "\tcertified"}));
+                     {"Verdicts by group", "ring\tFAIL\tgroup\t0 to 1 mm\t", "\t2.40", "\tcertified"}));
 }
 
 TEST_F(Page, NamesWhatIsMeasured) {
@@ -242,6 +245,22 @@ TEST_F(Page, StatesOneFractionOutOfTolerance) {
 TEST_F(Page, OpensOnTheWorstPlace) {
   map({"--tolerance", "2.3"});
   EXPECT_TRUE(passes("opens", page()));
+}
+
+TEST_F(Page, OpensOnTheLargestDistanceOfAPartThatPasses) {
+  map({"--tolerance", "3"});
+  EXPECT_TRUE(passes("opens", page()));
+  EXPECT_TRUE(passes("resets", page()));
+}
+
+TEST_F(Page, OpensOnTheThinnestPlace) {
+  for (const char* least : {"1", "0.001"}) {
+    const Outcome run =
+        run_sdm({"thickness", o1, "-o", out, "--write", "html", "--resolution", "128", "--min", least});
+    ASSERT_TRUE(run.code == 0 || run.code == 3) << run.err;
+    EXPECT_TRUE(passes("opens", page(), {"0.2"})) << least;  // thickness jumps at edges of faces
+    EXPECT_TRUE(passes("wallLimits", page(), {least, ""})) << least;
+  }
 }
 
 TEST_F(Page, ListsThePlacesOfTheReport) {
@@ -321,6 +340,7 @@ TEST_F(Page, ShowsSelfDistances) {
       run_sdm({"self", o1, "-o", out, "--resolution", "64", "--write", "html", "--geodesic", "0.5"});
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_TRUE(passes("says", page(), {"distance to itself", "MEASURED"}));
+  EXPECT_TRUE(passes("withoutTolerance", page()));
 }
 
 // Keys that the page does not know become tables; a large map is shown by some of its texels.

@@ -137,6 +137,49 @@ TEST_F(Page, SectionsAreFilled) {
   EXPECT_TRUE(passes("cutsBoth", page()));
 }
 
+TEST_F(Page, SectionsOfOpenPartsAreNotFilled) {
+  Mesh open = sphere(4);
+  open.triangles.pop_back();
+  o1 = write_obj(folder / "a.obj", open), o2 = write_obj(folder / "b.obj", sphere(4));
+  map({"--resolution", "128", "--up", "z"});
+  EXPECT_TRUE(passes("cutsOpen", page()));
+  std::ofstream cloud(folder / "cloud.xyz");
+  for (const Vec3& p : open.positions) cloud << fmt::format("{} {} {}\n", p[0], p[1], p[2]);
+  cloud.close();
+  const Outcome points = run_sdm({"points", folder / "cloud.xyz", o2, "-o", out, "--up", "z"});
+  ASSERT_EQ(points.code, 0) << points.err;
+  EXPECT_TRUE(passes("cutsOpen", page()));
+}
+
+TEST_F(Page, NothingIsJudgedBeforeThereIsATolerance) {
+  map({"--resolution", "64"});
+  EXPECT_TRUE(passes("unjudged", page()));
+  EXPECT_TRUE(passes("rounds", page()));
+  const Outcome walls = run_sdm({"thickness", o1, "-o", out, "--resolution", "64"});
+  ASSERT_EQ(walls.code, 0) << walls.err;
+  EXPECT_TRUE(passes("wallLimits", page(), {"", ""}));
+}
+
+// The plane goes through the middle of the torus.
+TEST_F(Page, DistancesWithoutSignsAreNeverNegative) {
+  o2 = write_obj(folder / "middle.obj", square(8, 0.001));
+  map({"--resolution", "64", "--sign", "none"});
+  EXPECT_TRUE(passes("leastOfAll", page()));
+}
+
+TEST_F(Page, SaysSoWhereNoPictureCanBeDrawn) {
+  map({"--resolution", "64", "--tolerance", "2.3"});
+  EXPECT_TRUE(passes("withoutWebgl", page()));
+}
+
+TEST_F(Page, CanBeReadInNarrowWindows) {
+  const std::string text = contents(o1), table = folder / "table.csv";
+  std::ofstream(o1) << "g ring\n" << text;
+  std::ofstream(table) << "group,lower,upper\nring,0,1\n";
+  map({"--resolution", "64", "--tolerance", "2.3", "--tolerance-table", table, "--units", "mm"});
+  EXPECT_TRUE(passes("narrow", page()));
+}
+
 TEST_F(Page, SectionsHideCallouts) {
   o1 = write_obj(folder / "a.obj", sphere(4)),
   o2 = write_obj(folder / "b.obj", moved(sphere(4), {0.1, 0, 0}));

@@ -25,6 +25,7 @@ module.exports = {
     await expectChange('the colormap');
     await setField('range', '0.5');
     await expectChange('the range');
+    await setField('tolerance', '2');
     await page.selectOption('#mode', 'tolerance');
     await expectChange('bands');
     await setField('tolerance', '0.1');
@@ -104,6 +105,7 @@ module.exports = {
     );
     await page.selectOption('#side', 'top');
     await page.click('#coverage');
+    for (const id of ['#mode', '#range', '#tolerance']) assert(await page.isDisabled(id), `${id} changes nothing`);
     await settled(page);
     near(
       await page.evaluate(() => {
@@ -127,6 +129,7 @@ module.exports = {
     if (picture) await page.screenshot({ path: picture });
     await page.click('#reset');
     assert.ok(!(await page.innerText('#legend')).includes('covered'));
+    for (const id of ['#mode', '#range', '#tolerance']) assert(await page.isEnabled(id), id);
   },
 
   // A group that is chosen is alone in colours, also in the saved page, until it is chosen again.

@@ -44,6 +44,7 @@ module.exports = {
     await settled(page);
     for (const x of [-1, 1]) assert(near(await colorAt(page, [x, 0, 0]), kBoth), `no cut surface at ${x}: ${await colorAt(page, [x, 0, 0])}`);
     for (const x of [-1.2, -0.8, 0.85, 1.15]) assert(near(await colorAt(page, [x, 0, 0.1]), kBoth), `no cut surface at ${x}`);
+    assert.match(await page.textContent('#section-words'), /Grey: inside of the part/);
     const hole = await colorAt(page, [0, 0, 0]);
     assert(!near(hole, kBoth), `the hole is filled: ${hole}`);
     // The profile is in the colours of the distances, which are those of the legend.
@@ -77,11 +78,22 @@ module.exports = {
     }
     const line = await colorAt(page, [0.5, 0, 1]);
     assert(Math.max(...line.slice(0, 3)) < 90, `no profile of the reference: ${line}`);
-    assert.match(await page.textContent('#section-words'), /as long as the gap/);
+    assert.match(await page.textContent('#section-words'), /as long as the gap.*Orange: .*blue: .*grey: both/);
     // Only one half of the page's part is there, whichever is chosen.
     await page.click('#section-flip');
     await settled(page);
     assert(!near(await colorAt(page, [0.25, 0, 0.02]), kBoth));
+  },
+
+  // An open scan, or a cloud, of a ball around 0: nothing says where the part is not.
+  async cutsOpen(page) {
+    await cutAt(page, 1, 0, 'front');
+    for (const x of [-0.5, 0.1, 0.5]) {
+      const found = await colorAt(page, [x, 0, 0.02]);
+      for (const fill of [kBoth, kPart, kReference]) assert(!near(found, fill), `${found} at ${x}`);
+    }
+    assert.match(await page.textContent('#section-words'), /[Dd]ark line: the reference\./);
+    assert.doesNotMatch(await page.textContent('#section-words'), /blue|[Gg]rey/);
   },
 
   // A callout that is cut away is hidden until it is asked for, which removes the section.

@@ -62,9 +62,11 @@ module.exports = {
     assert.ok((await page.textContent('#fields')).includes('4711, "left"'));
   },
 
-  // Opens, and says these words; any words if none are given.
+  // Opens, and says these words, but not those after a "!"; any words if none are given.
   async says(page, ...words) {
     const text = plain(await page.innerText('body'));
-    for (const word of words) assert(text.includes(word), `no "${word}" in: ${text}`);
+    for (const word of words)
+      if (word.startsWith('!')) assert(!text.includes(word.slice(1)), `"${word.slice(1)}" in: ${text}`);
+      else assert(text.includes(word), `no "${word}" in: ${text}`);
   },
 };
