@@ -358,7 +358,8 @@ def test_doubts():
     assert sdm.alignment_doubts(part, part, sdm.align(part, part)) == []
     in_metres = (0.001 * part[0], part[1])
     doubts = sdm.alignment_doubts(in_metres, part, sdm.align(in_metres, part))
-    assert doubts[0].reason == "other unit" and "--units-o1 m" in doubts[0].remedy and doubts[0].text
+    assert doubts[0].reason == "other unit" and "--transform-o1 scale:1000," in doubts[0].remedy
+    assert "1000 times as large" in doubts[0].text
 
 
 def test_self_maps():

@@ -29,12 +29,16 @@ Doubt unit_doubt(const OtherUnit& unit) {
       *std::ranges::min_element(kNames, {}, [&](const UnitNames& n) { return std::abs(n.factor - ratio); });
   const std::string o1 = grows ? names.larger : names.smaller, o2 = grows ? names.smaller : names.larger;
   constexpr double kLeastShown = 1e-5;
+  constexpr int kExact = 15;  // digits: ratios of units are decimal numbers, or their inverses
   const std::string misfit = unit.misfit < kLeastShown ? "less than 0.001" : digits_of(100 * unit.misfit, 2);
   return {DoubtReason::other_unit,
           "O1 fits O2 far better " + digits_of(ratio, 4) + " times as " + (grows ? "large" : "small") +
               ", as if it was in " + o1 + " and O2 in " + o2 + " (to " + misfit +
               " % of its size, instead of " + digits_of(100 * unit.misfit_as_given, 2) + " %)",
-          "--units-o1 " + o1 + " --units-o2 " + o2 + " converts it"};
+          // Not --units-o1 and --units-o2: these also scale O2 where --units names another unit, so that a
+          // tolerance would mean another length than in this run.
+          "--transform-o1 scale:" + digits_of(unit.factor, kExact) +
+              ", after the steps it already has, converts O1 alone"};
 }
 
 Doubt mirror_doubt(const MirroredFit& fit) {

@@ -52,13 +52,37 @@ TEST_P(UnitMistakes, AreWithheld) {
     const Outcome withheld = map(small, o2, {"--align", "--tolerance", "30"});
     EXPECT_EQ(withheld.code, 5) << withheld.out << withheld.err;
     EXPECT_THAT(withheld.out, HasSubstr("tolerance DOUBTFUL: every point of the surface is within"));
-    EXPECT_THAT(withheld.out, HasSubstr("--units-o1 " + unit + " --units-o2 mm"));
+    EXPECT_THAT(withheld.out, HasSubstr(fmt::format("--transform-o1 scale:{},", factor)));
     const Outcome mended =
         map(small, o2, {"--align", "--tolerance", "1", "--units-o1", unit, "--units-o2", "mm"});
     EXPECT_EQ(mended.code, 0) << mended.out << mended.err;
     const Outcome large = map(scan_of(part, factor), o2, {"--align", "--tolerance", "30"});
     EXPECT_TRUE(large.code == 3 || large.code == 5) << large.out << large.err;
   }
+}
+
+// The remedy, done: the same verdict as if there had been no mistake. --units is not what the doubt guesses.
+TEST_P(UnitMistakes, AreMendedByTheRemedyThatIsPrinted) {
+  const Mesh part = load(GetParam(), "fit,scale:100");
+  const std::string o2 = write_obj(folder / "part.obj", part);
+  const std::vector<std::string> options{"--align", "--units", "cm", "--tolerance", "1", "--json"};
+  const Mesh defective = joined(part, moved(cube(1.2), part.positions[0]));
+  for (const auto& [scan, verdict] : {std::pair(&part, 0), std::pair(&defective, 3)})
+    for (const auto& [factor, unit] : kUnits) {
+      SCOPED_TRACE(fmt::format("{}, code {}", unit, verdict));
+      const std::string small = scan_of(*scan, 1 / factor);
+      const Outcome mistaken = map(small, o2, options);
+      EXPECT_TRUE(mistaken.code == 3 || mistaken.code == 5) << mistaken.out << mistaken.err;
+      const Json doubts = Json::parse(mistaken.out)["doubts"];
+      ASSERT_FALSE(doubts.empty());
+      const std::string remedy = doubts[0]["remedy"];
+      std::vector<std::string> mended = options;
+      mended.emplace_back("--transform-o1");
+      mended.push_back(remedy.substr(remedy.find("scale:"), remedy.find(',') - remedy.find("scale:")));
+      const Outcome again = map(small, o2, mended);
+      EXPECT_EQ(again.code, verdict) << remedy << again.out << again.err;
+      EXPECT_EQ(Json::parse(again.out)["o2"]["transform"], "");
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Parts, UnitMistakes, ::testing::Values("fandisk.off", "cow.off", "elephant.off"));
