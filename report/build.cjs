@@ -15,7 +15,7 @@ function bundle(file) {
     charset: 'utf8',
     legalComments: 'inline',
   });
-  return outputFiles[0].text.trim();
+  return outputFiles[0].text.trim().replace(/\n[\t ]+/g, '\n'); // shaders are indented
 }
 
 // Functions as the replacements: in a string, $& and the like have a meaning.
