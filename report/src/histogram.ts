@@ -117,7 +117,7 @@ function sentenceOf(report: Report, area: AreaByValue, [lo, hi]: [number, number
   const whole = wholeOf(report);
   const [min, max] = (['min', 'max'] as const).map((end) => report.extremes?.[end]?.distance ?? (report.distance?.[end] as number | null));
   const shown = (d: number) => distanceText(d, report, isSigned(report));
-  const beside = [below > 0 && `${percent(below)} below the chart`, above > 0 && `${percent(above)} above it`, without > 0 && `${percent(without)} without a value`].filter(Boolean);
+  const beside = [below > 0 && `${percent(below)} below the chart`, above > 0 && `${percent(above)} above the chart`, without > 0 && `${percent(without)} without a value`].filter(Boolean);
   return (
     (typeof min === 'number' && typeof max === 'number' ? `${capital(quantityOf(report))} from ${shown(min)} to ${shown(max)}${unitOf(report)}` : 'No values') +
     (beside.length > 0 ? `; of the ${whole}, ${beside.join(', ')}` : '') +

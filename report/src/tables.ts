@@ -61,9 +61,9 @@ export function showNumbers(report: Report): void {
   const sampled = (by: number, how: 'more' | 'less') =>
     report.evidence?.samples_only ? 'at the points; an estimate in between'
     : by > 0 ? `measured; at most ${distanceText(by, report)}${unit} ${how} in between` : 'measured';
-  // A distance below the accuracy may as well be 0.
+  // A distance below the accuracy may as well be 0; a wall is not.
   const shown = (x: number) =>
-    `${distanceText(Math.abs(x) <= (report.accuracy ?? 0) ? 0 : x, report, signs)}${unit}`;
+    `${distanceText(!isThickness(report) && Math.abs(x) <= (report.accuracy ?? 0) ? 0 : x, report, signs)}${unit}`;
   if (extremes?.max)
     rows.push([ends.largest, shown(extremes.max.distance), sampled(bound ?? 0, 'more')]);
   else add('Largest', 'max', 'measured', true);
