@@ -114,11 +114,12 @@ def rounded(value, digits):
 
 
 def stated(told, value):
-    """A distance with the decimals of the page: one more than the error bound leaves certain, of 3 to 5 digits."""
+    """A distance with the decimals of the page: one more than the error bound leaves certain, of 3 to 5 digits; with three
+    digits where these decimals would round it to zero."""
     largest = max(abs(told.json["extremes"][end]["distance"]) for end in ("min", "max"))
     first = math.floor(math.log10(largest))
     decimals = 1 - math.floor(math.log10(told.json["error_bound"]))
-    return float(f"{value:.{max(0, min(max(decimals, 2 - first), 4 - first))}f}")
+    return float(f"{value:.{max(0, min(max(decimals, 2 - first), 4 - first))}f}") or rounded(value, 3)
 
 
 def first_number(text):
