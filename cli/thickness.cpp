@@ -20,7 +20,7 @@
 #include "unit_options.h"
 #include "weld.h"
 
-#include <algorithm>
+#include <limits>
 #include <map>
 #include <memory>
 
@@ -65,11 +65,11 @@ std::string text_of_method(const ThicknessCommand& command) {
       number(command.thickness.angle));
 }
 
-/// The limits. No thickness exceeds the diagonal of the part, which the lower limit may.
-std::optional<sdm::Tolerance> limits_of(const ThicknessCommand& command, double diagonal) {
+/// The limits, infinite where none was given.
+std::optional<sdm::Tolerance> limits_of(const ThicknessCommand& command) {
   if (!command.least && !command.most) return std::nullopt;
-  return sdm::Tolerance(command.least.value_or(0),
-                        command.most.value_or(std::max(diagonal, 2 * command.least.value_or(0))));
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  return sdm::Tolerance(command.least.value_or(-kNone), command.most.value_or(kNone));
 }
 
 /// The limits in words, without one that was not given.
@@ -94,13 +94,6 @@ std::string verdict_in_words(const ThicknessCommand& command, const sdm::Summary
                          limits_in_words(command), number(summary.evidence.accuracy, 2),
                          unit_suffix(summary.units));
   }
-}
-
-/// Without an upper limit, the colours end where the thickness does, and not at the diagonal.
-std::optional<sdm::ColorRange> colors_of(const ThicknessCommand& command, const sdm::DistanceStatistics& d) {
-  const bool bands = command.picture.colormap == sdm::Colormap::automatic && command.least;
-  if (!bands || command.most || command.picture.range || d.texels == 0) return std::nullopt;
-  return sdm::color_range({.tolerance = sdm::Tolerance(*command.least, *command.least)}, d);
 }
 
 /// Whether the thickest places matter, and not the thinnest ones.
@@ -172,7 +165,6 @@ ThicknessResult measure(ThicknessCommand& command, const Input& input, double im
                               .tolerance = command.picture.tolerance,
                               .colormap = command.picture.colormap,
                               .range = command.picture.range,
-                              .colors = colors_of(command, distance),
                               .names = input.names};
   const sdm::Summary of_other =
       sdm::summarize_thickness(surface, other, {.accuracy = command.picture.accuracy});
@@ -194,8 +186,6 @@ ThicknessResult measure(ThicknessCommand& command, const Input& input, double im
   if (result.summary.tolerance) {
     Json& tolerance = result.report["tolerance"];
     tolerance["text"] = verdict_in_words(command, result.summary);
-    if (!command.least) tolerance["lower"] = nullptr;
-    if (!command.most) tolerance["upper"] = nullptr;
   }
   const std::string text = to_text(result.report);
   if (command.files.html)
@@ -258,7 +248,7 @@ int run(ThicknessCommand command) {
   check_closed(input, "wall thickness");
   const double size = size_of(sdm::bounds(input.mesh));
   command.picture.accuracy = sdm::thickness_accuracy(input.mesh);
-  command.picture.tolerance = limits_of(command, size);
+  command.picture.tolerance = limits_of(command);
   ThicknessResult result;
   out.fill([&] { result = measure(command, input, part.import_ms, out.staging(), progress); });
 

@@ -68,7 +68,7 @@ struct ColorRange {
 /// most half of the length of the other one; with a tolerance, well beyond its limits. If the percentile is
 /// within the accuracy, it ends at the largest |distance|. The ends are then rounded outwards, to multiples
 /// of a step of 1, 2 or 5 times a power of ten that the range has at most ten of. Throws sdm::Error unless a
-/// range is finite and increasing and a tolerance too. Cost: O(1).
+/// range is finite and increasing and a tolerance too, of which one limit may be infinite: none. Cost: O(1).
 [[nodiscard]] SDM_API ColorRange color_range(const ColorChoice& choice, const DistanceStatistics& distances);
 
 /// Returns colours that suit two maps: the union of their ranges. If one of them is sequential or diverging,
@@ -99,7 +99,7 @@ struct Distribution {
 
 /// Returns the edges of the bands around a tolerance: the limits and their halves and doubles on either side
 /// of zero; for a tolerance that does not contain zero, the limits, their middle, and as far again beyond
-/// them. Those below zero are omitted if distances are unsigned.
+/// them; of one finite limit, it, its half and its double. Those below zero are omitted if unsigned.
 [[nodiscard]] SDM_API std::vector<double> default_bands(const Tolerance& tolerance, bool is_signed);
 
 /// Returns the extreme with the larger |distance|.

@@ -9,7 +9,7 @@ export interface Scale {
   mode: Mode;
   lo: number; ///< lo < hi; colours are constant outside
   hi: number;
-  lower: number; ///< the tolerance: lower ≤ d ≤ upper
+  lower: number; ///< the tolerance: lower ≤ d ≤ upper; one of them infinite if there is but one limit
   upper: number;
   accuracy: number; ///< distances that exceed the tolerance, or 0, by less are within it
 }
@@ -25,11 +25,12 @@ function fraction(x: number, from: number, to: number): number {
   return to > from ? (x - from) / (to - from) : 1;
 }
 
-/// How far a distance within the tolerance is on its way to the nearest limit, from 0 to 1.
+/// How far a distance within the tolerance is on its way to the nearest limit, from 0 to 1. No limit: the end of the
+/// scale is the farthest from the other one.
 function closeness({ lower, upper, lo, hi }: Scale, d: number): number {
   if (lower <= 0 && upper >= 0) return d === 0 ? 0 : d > 0 ? fraction(d, 0, upper) : fraction(-d, 0, -lower);
-  const half = (Math.min(upper, hi) - Math.max(lower, lo)) / 2;
-  return half > 0 ? 1 - Math.min(d - lower, upper - d) / half : 1;
+  const room = upper === Infinity ? hi - lower : lower === -Infinity ? upper - lo : (Math.min(upper, hi) - Math.max(lower, lo)) / 2;
+  return room > 0 ? 1 - Math.min(d - lower, upper - d) / room : 1;
 }
 
 export function colorOf(scale: Scale, colors: Colors, distance: number): Vec {
@@ -61,7 +62,7 @@ export function css(color: Vec): string {
 /// The same in GLSL, for a distance that is finite.
 export const kColorShader = `
   uniform int mode; // 0 viridis or the like, 1 diverging, 2 tolerance, 3 sequential
-  uniform float lo, hi, lower, upper, accuracy;
+  uniform float lo, hi, lower, upper, accuracy; // lower -1e38 or upper 1e38: no limit
   uniform vec3 stops[11], above[3], below[3], opposite[3], within[4], noValue;
   uniform int stopCount;
 
@@ -78,7 +79,7 @@ export const kColorShader = `
 
   float closeness(float d) {
     if (lower <= 0.0 && upper >= 0.0) return d == 0.0 ? 0.0 : d > 0.0 ? fractionOf(d, 0.0, upper) : fractionOf(-d, 0.0, -lower);
-    float room = (min(upper, hi) - max(lower, lo)) / 2.0;
+    float room = upper > 1e37 ? hi - lower : lower < -1e37 ? upper - lo : (min(upper, hi) - max(lower, lo)) / 2.0;
     return room > 0.0 ? 1.0 - min(d - lower, upper - d) / room : 1.0;
   }
   vec3 sequentialOf(float x) {

@@ -46,6 +46,11 @@ std::array<double, 2> sequential(const Distances& d) {
   return up ? std::array{-shorter, longer} : std::array{-longer, shorter};
 }
 
+/// The limits, both the only one if there is but one.
+Tolerance finite(const Tolerance& t) {
+  return {std::isfinite(t.lo) ? t.lo : t.hi, std::isfinite(t.hi) ? t.hi : t.lo};
+}
+
 std::array<double, 2> banded(const Distances& d, const Tolerance& tolerance) {
   const double margin = std::max(std::abs(tolerance.lo), std::abs(tolerance.hi));
   return {d.least < 0 ? std::min(std::max(d.least, -d.reach), tolerance.lo - margin) : 0,
@@ -73,8 +78,9 @@ std::array<double, 2> rounded(std::array<double, 2> range) {
 
 ColorRange color_range(const ColorChoice& choice, const DistanceStatistics& distances) {
   if (const auto& t = choice.tolerance;
-      t && !(std::isfinite(t->lo) && std::isfinite(t->hi) && t->lo <= t->hi))
-    throw Error("the tolerance of the picture must be two finite numbers, the smaller one first");
+      t && !(t->lo <= t->hi && std::isfinite(finite(*t).lo) && std::isfinite(finite(*t).hi)))
+    throw Error(
+        "the tolerance of the picture must be two numbers, the smaller one first, one of them finite");
   if (choice.range && !(std::isfinite((*choice.range)[0]) && std::isfinite((*choice.range)[1]) &&
                         (*choice.range)[0] < (*choice.range)[1]))
     throw Error("the range of the colours must be two finite numbers, the smaller one first");
@@ -93,7 +99,7 @@ ColorRange color_range(const ColorChoice& choice, const DistanceStatistics& dist
     return result;
   }
   if (bands)
-    result.range = rounded(banded(d, *choice.tolerance));
+    result.range = rounded(banded(d, finite(*choice.tolerance)));
   else if (result.colormap == Colormap::sequential)
     result.range = rounded(sequential(d));
   else if (result.colormap == Colormap::diverging)

@@ -17,8 +17,9 @@ DistanceHistogram histogram(const Surface& surface, const DistanceMap& map, cons
   double lo = std::max(d.min, -d.p99_abs), hi = std::min(d.max, d.p99_abs);
   if (tolerance) {
     const bool is_signed = map.sign.method != SignMethod::none;
-    lo = std::min(lo, is_signed ? tolerance->lo : std::max(0.0, tolerance->lo));
-    hi = std::max(hi, tolerance->hi);
+    if (std::isfinite(tolerance->lo))
+      lo = std::min(lo, is_signed ? tolerance->lo : std::max(0.0, tolerance->lo));
+    if (std::isfinite(tolerance->hi)) hi = std::max(hi, tolerance->hi);
   }
   if (!(lo < hi)) {  // a single value, or all values beyond the percentile on one side
     lo = std::min(d.min, lo), hi = std::max(d.max, hi);
@@ -87,6 +88,19 @@ std::vector<PartTable> part_tables(const Surface& surface, const DistanceMap& ma
   return tables;
 }
 
+/// The middle of a tolerance, infinite if a limit is.
+double centre_of(const std::optional<Tolerance>& tolerance) {
+  if (!tolerance) return 0;
+  const auto [lo, hi] = *tolerance;
+  return std::isinf(lo) ? lo : lo + (hi - lo) / 2;
+}
+
+/// The edges of bands on both sides of a limit that is the only one.
+std::vector<double> edges_around(double limit) {
+  if (limit == 0) return {limit};
+  return limit > 0 ? std::vector{limit / 2, limit, 2 * limit} : std::vector{2 * limit, limit, limit / 2};
+}
+
 }  // namespace
 
 Distribution distribution_of(const Surface& surface, const DistanceMap& map,
@@ -98,8 +112,8 @@ Distribution distribution_of(const Surface& surface, const DistanceMap& map,
   std::vector<double> edges = options.bands;
   if (edges.empty() && tolerance) edges = default_bands(*tolerance, map.sign.method != SignMethod::none);
   if (!edges.empty()) {
-    const double centre = tolerance ? tolerance->lo + (tolerance->hi - tolerance->lo) / 2 : 0;
-    result.bands = distance_bands(surface, map, edges, {.accuracy = accuracy, .centre = centre});
+    result.bands =
+        distance_bands(surface, map, edges, {.accuracy = accuracy, .centre = centre_of(tolerance)});
   }
   result.parts = part_tables(surface, map, options, accuracy);
   return result;
@@ -110,7 +124,10 @@ Distribution distribution_of(const Surface& surface, const DistanceMap& map,
 std::vector<double> default_bands(const Tolerance& tolerance, bool is_signed) {
   const auto [lo, hi] = tolerance;
   std::vector<double> edges;
-  if (lo <= 0 && hi >= 0)
+  if (std::isinf(lo) || std::isinf(hi)) {
+    if (const double limit = std::isinf(lo) ? hi : lo; std::isfinite(limit))
+      edges = summary::edges_around(limit);
+  } else if (lo <= 0 && hi >= 0)
     edges = {2 * lo, lo, lo / 2, hi / 2, hi, 2 * hi};
   else
     edges = {2 * lo - hi, lo, (lo + hi) / 2, hi, 2 * hi - lo};

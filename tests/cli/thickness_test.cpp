@@ -106,6 +106,22 @@ TEST_F(ThicknessCommandTest, AnUpperLimitAloneListsTheThickestPlaces) {
   EXPECT_THAT(outcome.out, ::testing::Not(HasSubstr("least at")));
 }
 
+// Bands around the limit that was given, and none around one that was not.
+TEST_F(ThicknessCommandTest, BandsAreThoseOfTheLimitsThatWereGiven) {
+  const auto edges = [&](const std::vector<std::string>& limits) {
+    std::vector<std::string> options{"--json", "--write", "none"};
+    options.insert(options.end(), limits.begin(), limits.end());
+    std::vector<double> result;
+    const Json report = Json::parse(run(part, options).out);
+    for (const Json& band : report["bands"])
+      if (!band["upper"].is_null()) result.push_back(band["upper"]);
+    return result;
+  };
+  EXPECT_EQ(edges({"--min", "0.25"}), (std::vector{0.125, 0.25, 0.5}));
+  EXPECT_EQ(edges({"--max", "5"}), (std::vector{2.5, 5.0, 10.0}));
+  EXPECT_EQ(edges({"--min", "0.25", "--max", "0.75"}), (std::vector{0.25, 0.5, 0.75, 1.25}));
+}
+
 TEST_F(ThicknessCommandTest, NamesWhatClosesAnOpenPart) {
   Outcome outcome = run(open);
   EXPECT_EQ(outcome.code, 1);

@@ -2,10 +2,12 @@
 
 #include "io/image/pictures/ticks.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace sdm {
@@ -60,6 +62,41 @@ TEST(Legend, NamesTheEndsAndTheLimits) {
   const std::vector<ScaleLabel> labels = scale_labels({.map = Colormap::viridis, .lo = 0, .hi = 0.137});
   EXPECT_EQ(labels.front().text, "0.00");
   EXPECT_EQ(labels.back().text, "0.137");
+}
+
+// What has no limit on a side names none there, and darkens towards the other one only.
+TEST(Legend, NamesTheOnlyLimit) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const DistanceStatistics d{.texels = 9, .min = 0.05, .max = 0.73, .p05 = 0.1, .p95 = 0.7, .p99_abs = 0.73};
+  DistanceMap map;
+  map.measured.kind = DistanceKind::thickness;
+  const auto scale_of = [&](const Tolerance& tolerance) {
+    return color_scale(fixed_colors({.tolerance = tolerance}, d));
+  };
+  const ColorScale least = scale_of({0.1, kInfinity}), most = scale_of({-kInfinity, 0.4});
+  const LegendText of_least = legend_text(map, 0.05, 0.73, least, "mm"),
+                   of_most = legend_text(map, 0.05, 0.73, most, "mm");
+  EXPECT_EQ(of_least.title, "Thickness");
+  EXPECT_THAT(of_least.notes, ::testing::IsSupersetOf({"green: at least 0.1", "darker: nearer the limit"}));
+  EXPECT_THAT(of_most.notes, ::testing::Contains("green: at most 0.4"));
+  EXPECT_THAT(of_least.notes, ::testing::Not(::testing::Contains("unsigned")));
+  EXPECT_THAT(legend_text({}, 0, 1, scale_of({-0.4, 0.4}), "").notes,
+              ::testing::IsSupersetOf({"green: within \u00b10.4", "darker: nearer a limit", "unsigned"}));
+  for (const ColorScale* scale : {&least, &most}) {
+    std::vector<double> limits;
+    for (const ScaleLabel& label : scale_labels(*scale))
+      if (label.is_limit) limits.push_back(label.value);
+    EXPECT_EQ(limits, std::vector{scale == &least ? 0.1 : 0.4});
+  }
+  EXPECT_EQ(least.hi, 0.8);
+  EXPECT_EQ(least(0.1), kWithin.back());
+  EXPECT_EQ(least(0.8), kWithin.front());
+  EXPECT_EQ(least(5), kWithin.front());
+  EXPECT_EQ(most(0.4), kWithin.back());
+  EXPECT_EQ(most(0.01), kWithin.front());
+  for (int i = 11; i < 80; ++i) EXPECT_GE(least(0.01 * i + 0.01).g, least(0.01 * i).g) << i;
+  for (int i = 1; i < 39; ++i) EXPECT_LE(most(0.01 * i + 0.01).g, most(0.01 * i).g) << i;
+  EXPECT_THROW(scale_of({-kInfinity, kInfinity}), Error);
 }
 
 TEST(Legend, ShowsTheColoursFromTopToBottom) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <random>
 
 #include "io/image/pictures/color_scale.h"
@@ -56,6 +57,9 @@ TEST_F(Page, ScalesAreThoseOfPictures) {
       const double lower = scale.lo + 0.3 * (scale.hi - scale.lo),
                    upper = lower + 0.2 * (scale.hi - scale.lo);
       scale.map = Colormap::viridis, scale.tolerance = Tolerance(lower, upper), mode = "tolerance";
+      constexpr double kInfinity = std::numeric_limits<double>::infinity();
+      if (i % 15 == 5) scale.tolerance->lo = -kInfinity;
+      if (i % 15 == 10) scale.tolerance->hi = kInfinity;
     }
     const Tolerance tolerance = scale.tolerance.value_or(Tolerance(0, 0));
     Json labels = Json::array(), distances = Json::array(), colors = Json::array();

@@ -57,13 +57,14 @@ double fraction(double x, double from, double to) {
 }
 
 // How far a distance within the tolerance is on its way to the nearest limit, from 0 (at distance 0, or in
-// the middle of a tolerance without it) to 1. A limit beyond the scale, such as the upper one of a wall of
-// any thickness, is none.
+// the middle of a tolerance without it, or at the end of the scale where there is no limit) to 1.
 double closeness(const ColorScale& scale, double d) {
   const auto [lower, upper] = *scale.tolerance;
   if (lower <= 0 && upper >= 0) return d == 0 ? 0 : d > 0 ? fraction(d, 0, upper) : fraction(-d, 0, -lower);
-  const double half = (std::min(upper, scale.hi) - std::max(lower, scale.lo)) / 2;
-  return half > 0 ? 1 - std::min(d - lower, upper - d) / half : 1;
+  const double room = std::isinf(upper)   ? scale.hi - lower
+                      : std::isinf(lower) ? upper - scale.lo
+                                          : (std::min(upper, scale.hi) - std::max(lower, scale.lo)) / 2;
+  return room > 0 ? 1 - std::min(d - lower, upper - d) / room : 1;
 }
 
 Rgb within(const ColorScale& scale, double d) {

@@ -60,6 +60,13 @@ void draw_bar(Canvas& canvas, const ColorScale& scale, double top, double bottom
   }
 }
 
+std::string limits_note(const Tolerance& t) {
+  if (std::isinf(t.hi)) return "green: at least " + value_label(t.lo);
+  if (std::isinf(t.lo)) return "green: at most " + value_label(t.hi);
+  return t.lo == -t.hi ? "green: within \u00b1" + value_label(t.hi)
+                       : "green: " + value_label(t.lo) + " to " + value_label(t.hi);
+}
+
 }  // namespace
 
 std::vector<ScaleLabel> scale_labels(const ColorScale& scale) {
@@ -87,16 +94,19 @@ std::vector<ScaleLabel> scale_labels(const ColorScale& scale) {
 
 LegendText legend_text(const DistanceMap& map, double least, double most, const ColorScale& scale,
                        const std::string& units) {
-  LegendText text{"Distance", units, {}, map.beyond_max_distance + map.without_match > 0};
+  const bool thickness = map.measured.kind == DistanceKind::thickness;
+  LegendText text{
+      thickness ? "Thickness" : "Distance", units, {}, map.beyond_max_distance + map.without_match > 0};
   if (least <= most) text.notes = {"min  " + value_label(least), "max  " + value_label(most)};
   if (const auto& t = scale.tolerance) {
-    text.notes.push_back(t->lo == -t->hi ? "green: within \u00b1" + value_label(t->hi)
-                                         : "green: " + value_label(t->lo) + " to " + value_label(t->hi));
-    text.notes.emplace_back("darker: nearer a limit");
+    text.notes.push_back(limits_note(*t));
+    text.notes.emplace_back(std::isinf(t->lo) || std::isinf(t->hi) ? "darker: nearer the limit"
+                                                                   : "darker: nearer a limit");
   }
-  text.notes.push_back(map.sign.method == SignMethod::none   ? "unsigned"
-                       : map.sign.method == SignMethod::side ? "negative: behind"
-                                                             : "negative: inside");
+  if (!thickness)
+    text.notes.push_back(map.sign.method == SignMethod::none   ? "unsigned"
+                         : map.sign.method == SignMethod::side ? "negative: behind"
+                                                               : "negative: inside");
   // An empty line otherwise: pictures of a sequence have bars of one length.
   text.notes.emplace_back(least < scale.lo || most > scale.hi ? "beyond: as the ends" : "");
   return text;
