@@ -174,6 +174,11 @@ void add_choices(Json& json, const AlignOutcome& outcome) {
 
 namespace {
 
+/// Names, which may be several words, in quotation marks if there are several of them.
+std::string names_in_words(const std::vector<std::string>& names) {
+  return names.size() == 1 ? names[0] : fmt::format("\"{}\"", fmt::join(names, "\", \""));
+}
+
 /// What was done, in clauses.
 std::vector<std::string> in_words(const AlignOutcome& outcome, const std::string& units) {
   const sdm::Alignment& a = outcome.alignment;
@@ -187,7 +192,7 @@ std::vector<std::string> in_words(const AlignOutcome& outcome, const std::string
   const AlignCommand& command = outcome.command;
   if (!command.points_321.empty()) words.push_back("by the six points of " + command.points_321);
   if (!command.region.empty())
-    words.push_back(fmt::format("on {} ({} samples)", fmt::join(command.region, ", "), a.samples));
+    words.push_back(fmt::format("on {} ({} samples)", names_in_words(command.region), a.samples));
   if (!command.freedoms.all())
     words.push_back(
         fmt::format("by {} only; the rest is locked", fmt::join(names_of(command.freedoms), ", ")));

@@ -154,7 +154,8 @@ void run(BodiesCommand command) {
   progress.step("queries");
   std::vector<sdm::Transform> set;
   for (std::size_t body = 0; body < bodies.size(); ++body) set.push_back(bodies.pose(body));
-  const Notes notes = notes_on(inputs, set);
+  Notes notes = notes_on(inputs, set);
+  if (auto note = note_on_unit(command.units)) notes.push_back(std::move(*note));
   const std::vector<PairResults> pairs = results_of(bodies, command.max_distance);
   nlohmann::ordered_json report = report_of(command, inputs, bodies, pairs);
   report["notes"] = notes;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <vector>
 
 /// The shortest form with at most this many significant digits.
 [[nodiscard]] inline std::string number(double value, int digits = 5) {
@@ -41,15 +42,17 @@
   return units.empty() ? std::string() : fmt::format(" {}", units);
 }
 
-/// How long a command took, the files of its report, and last, to be opened, the page if there is one; the
-/// texts begin in the given column. `page_folder`: that of the page, if it is another.
+/// How long a command took, the files of its report, and last, to be opened, the pages if there are any; the
+/// texts begin in the given column. `page_folders`: those of the pages, if they are others.
 [[nodiscard]] inline std::string result_lines(std::size_t column, double ms, const std::string& folder,
-                                              const std::string& files, std::string page_folder = {}) {
+                                              const std::string& files,
+                                              std::vector<std::string> page_folders = {}) {
   const std::size_t width = column - 2;
   std::string text = fmt::format("  {:<{}}{} s\n  {:<{}}{}/: {}report.json\n", "time", width,
                                  number(std::round(ms) / 1000, 6), "results", width, folder, files);
-  if (page_folder.empty()) page_folder = folder;
+  if (page_folders.empty()) page_folders.push_back(folder);
   if (files.find("report.html") != std::string::npos)
-    text += fmt::format("  {:<{}}{}/report.html\n", "page", width, page_folder);
+    for (const std::string& page_folder : page_folders)
+      text += fmt::format("  {:<{}}{}/report.html\n", "page", width, page_folder);
   return text;
 }

@@ -190,6 +190,7 @@ int run(const HausdorffCommand& command) {
   HausdorffAnswer answer = decide(sites, pair.o1.mesh, command, progress.callback());
   answer.size = smaller_size(pair);
   answer.notes = notes_on(pair.o1, pair.o2);
+  if (auto note = note_on_unit(command.units)) answer.notes.push_back(std::move(*note));
   if (command.tolerance && !command.options.facing)
     if (auto note = sdm::note_on_walls(sites.back(), *command.tolerance, command.units))
       answer.notes.push_back(std::move(*note));

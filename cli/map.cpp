@@ -73,6 +73,18 @@ Json report_of(const std::vector<MeshMaps>& meshes) {
   return {{"o1", meshes[0].report()}, {"o2", meshes[1].report()}};
 }
 
+/// Of each mesh the folder with its page, or with that of its first tile.
+std::vector<std::string> page_folders(const MapCommand& command, const std::vector<MeshMaps>& meshes) {
+  std::vector<std::string> folders;
+  for (const MeshMaps& mesh : meshes) {
+    std::filesystem::path folder = command.output.folder;
+    if (command.both) folder /= mesh.role;
+    if (const auto& tile = mesh.parts.front().udim) folder /= std::to_string(*tile);
+    folders.push_back(folder.string());
+  }
+  return folders;
+}
+
 std::string text_of(const MapCommand& command, const std::vector<MeshMaps>& meshes, const InputPair& pair,
                     const std::optional<AlignOutcome>& aligned, double ms) {
   std::string text;
@@ -89,10 +101,7 @@ std::string text_of(const MapCommand& command, const std::vector<MeshMaps>& mesh
                   tiles.empty() ? "" : fmt::format("/{{{}}}", fmt::join(tiles, ",")));
   const std::string files =
       (aligned && !command.both ? kAlignmentFile + std::string(" ") : "") + listed(command.output.files);
-  std::filesystem::path page = command.output.folder;
-  if (command.both) page /= "o1";
-  if (!tiles.empty()) page /= std::to_string(tiles.front());
-  return text + result_lines(12, ms, folder, files, page.string());
+  return text + result_lines(12, ms, folder, files, page_folders(command, meshes));
 }
 
 /// Returns the exit code.

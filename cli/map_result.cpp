@@ -147,6 +147,7 @@ std::vector<sdm::FaceNames> judged_names(const MapTask& task, const AtlasPart& p
 /// What users probably did not intend, and what a summary does not know of.
 Notes all_notes(const MapTask& task, const AtlasPart& part, const sdm::Summary& summary) {
   Notes all = file_notes(task.on, task.to);
+  if (auto note = note_on_unit(task.command.picture.units)) all.push_back(std::move(*note));
   std::ranges::copy(summary.notes, std::back_inserter(all));
   if (const auto note = note_on_welding(summary.sign, task.command.map.sign, task.to)) all.push_back(*note);
   std::ranges::copy(part.notes, std::back_inserter(all));

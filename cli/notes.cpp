@@ -1,6 +1,7 @@
 #include "notes.h"
 
 #include <fmt/format.h>
+#include <sdm/units.h>
 
 #include <algorithm>
 #include <array>
@@ -53,6 +54,11 @@ std::optional<std::string> note_on_precision(const std::string& file, std::span<
       "{}: coordinates in single precision are {} apart so far from the origin, {} of its size; export it in "
       "double precision, or near the origin",
       file, number(step, 2), number(step / size, 2));
+}
+
+std::optional<std::string> note_on_unit(const std::string& units) {
+  if (units.empty() || sdm::metres_per(units)) return std::nullopt;
+  return fmt::format("the unit {} is not known: it is only a label", units);
 }
 
 Notes file_notes(const Input& o1, const Input& o2) {

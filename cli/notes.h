@@ -19,6 +19,9 @@ using Notes = std::vector<std::string>;
 [[nodiscard]] std::optional<std::string> note_on_precision(const std::string& file,
                                                            std::span<const sdm::Vec3> positions, double size);
 
+/// A unit that is not known is only a label: nothing is converted, and a wrong one is not noticed.
+[[nodiscard]] std::optional<std::string> note_on_unit(const std::string& units);
+
 /// Notes on the files of both inputs.
 [[nodiscard]] Notes file_notes(const Input& o1, const Input& o2);
 

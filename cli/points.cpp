@@ -80,6 +80,7 @@ void add_notes(const PointsCommand& command, const Input& o2, const sdm::Sites& 
   const sdm::Box& box = outcome.found.bounds;
   if (const auto note = precision_note(command, box)) all.push_back(*note);
   std::ranges::copy(o2.notes, std::back_inserter(all));
+  if (auto note = note_on_unit(command.picture.units)) all.push_back(std::move(*note));
   if (const auto note = note_on_islands(command.cloud, outcome.found)) all.push_back(*note);
   if (const auto note = note_on_welding(outcome.found.sign, command.map.sign, o2)) all.push_back(*note);
   std::ranges::copy(sdm::notes_on(box, sdm::bounds(o2.mesh)), std::back_inserter(all));

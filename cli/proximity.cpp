@@ -33,6 +33,7 @@ void run(const PairCommand& command, const AlignCommand& align) {
   if (align.on)
     aligned = align_mesh(pair.o1.mesh, sdm::Sites(pair.o2.mesh), pair.o2, align, progress.callback());
   Notes all_notes = notes_on(pair.o1, pair.o2);
+  if (auto note = note_on_unit(command.units)) all_notes.push_back(std::move(*note));
   if (aligned) std::ranges::copy(notes(*aligned), std::back_inserter(all_notes));
   Stopwatch watch;
   sdm::ProximityQuery query(pair.o1.mesh, pair.o2.mesh, command.options);

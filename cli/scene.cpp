@@ -196,7 +196,8 @@ void add_scene_command(CLI::App& app) {
     const bool scan = command->kind == kScan;
     if (scene->count("--mesh") > 0 && command->kind != "bunnies" && !scan)
       throw CLI::ValidationError("--mesh", "requires the scene bunnies or scan");
-    if (scan && command->mesh.empty()) throw CLI::ValidationError("--mesh", "is the part of the scene scan");
+    if (scan && command->mesh.empty())
+      throw CLI::ValidationError("scene scan needs --mesh FILE, the part: a closed mesh with a flat place");
     if (scene->count("--triangles") > 0 && !scan)
       throw CLI::ValidationError("--triangles", "requires the scene scan");
     for (const char* option : {"--frames", "--format"})

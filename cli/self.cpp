@@ -55,6 +55,7 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
                                               .colormap = command.picture.colormap,
                                               .range = command.picture.range});
   summary.notes = input.notes;
+  if (auto note = note_on_unit(command.picture.units)) summary.notes.push_back(std::move(*note));
   const sdm::PictureOptions fixed = sdm::fixed_colors(command.picture, *summary.colors);
   sdm::run_concurrently({[&] {
                            write_map_files(folder, command.files, surface, map, at_vertices, nullptr,

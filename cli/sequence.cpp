@@ -20,6 +20,7 @@
 #include "notes.h"
 #include "output_folder.h"
 #include "progress_line.h"
+#include "report.h"
 #include "sequence_body.h"
 #include "sequence_checkpoint.h"
 #include "sequence_colors.h"
@@ -48,13 +49,15 @@ std::array<Body, 2> open_bodies(const SequenceCommand& command) {
   return {open_body(command, 0), open_body(command, 1)};
 }
 
-Notes notes_on_bodies(const std::array<Body, 2>& bodies, const std::array<sdm::Mesh, 2>& first) {
+Notes notes_on_bodies(const SequenceCommand& command, const std::array<Body, 2>& bodies,
+                      const std::array<sdm::Mesh, 2>& first) {
   Notes notes;
   for (int b = 0; b < 2; ++b)
     if (const auto note =
             note_on_precision(bodies[b].input(), first[b].positions, size_of(sdm::bounds(first[b]))))
       notes.push_back(*note);
   std::ranges::copy(sdm::notes_on(sdm::bounds(first[0]), sdm::bounds(first[1])), std::back_inserter(notes));
+  if (auto note = note_on_unit(command.pair.units)) notes.push_back(std::move(*note));
   return notes;
 }
 
@@ -81,10 +84,21 @@ std::array<sdm::AtlasOptions, 2> layouts(const SequenceCommand& command, const C
   return atlases;
 }
 
+/// The verdict on all frames; a pass without a tolerance.
+sdm::Verdict verdict_of(const std::vector<Frame>& frames) {
+  sdm::Verdict verdict = sdm::Verdict::pass;
+  for (const Frame& frame : frames) verdict = worse(verdict, frame.verdict());
+  return verdict;
+}
+
 std::string sequence_summary(const SequenceCommand& command, const FrameLoop& loop,
                              const SequenceFiles& files, const Notes& notes) {
   constexpr std::size_t kColumn = 13;
-  return fmt::format("{}, {}\n{}{}  results    {}/: {}\n{}", command.pair.o1, command.pair.o2,
+  const std::optional<sdm::Verdict> verdict = command.picture.tolerance && !loop.frames().empty()
+                                                  ? std::optional(verdict_of(loop.frames()))
+                                                  : std::nullopt;
+  return fmt::format("{}{}{}  results    {}/: {}\n{}",
+                     heading(fmt::format("{}, {}", command.pair.o1, command.pair.o2), verdict),
                      summary(loop.frames(), loop.bad(), command.pair.units), note_lines(notes, kColumn),
                      command.out.string(), files.listed(), note_lines(files.notes(), kColumn));
 }
@@ -119,7 +133,7 @@ int run(SequenceCommand command) {
   const std::size_t count = common_frames(bodies[0], bodies[1]);
   const auto engine = make_engine(command.engine, {}, command.atlas);
   const std::array<sdm::Mesh, 2> first{bodies[0].mesh(), bodies[1].mesh()};
-  const Notes notes = notes_on_bodies(bodies, first);
+  const Notes notes = notes_on_bodies(command, bodies, first);
   checkpoint.begin({hash_of(first[0]), hash_of(first[1])}, {command.pair.o1, command.pair.o2}, count);
   choose_colors(command, count, progress);
   SequenceFiles files(command, out, first);
@@ -141,9 +155,7 @@ int run(SequenceCommand command) {
       });
   if (!command.pair.json && !command.pair.quiet) std::cout << sequence_summary(command, loop, files, notes);
   check_end(end, loop, checkpoint.finished(), count, command.out.string());
-  sdm::Verdict verdict = sdm::Verdict::pass;
-  for (const Frame& frame : loop.frames()) verdict = worse(verdict, frame.verdict());
-  return exit_code(verdict);
+  return exit_code(verdict_of(loop.frames()));
 }
 
 }  // namespace

@@ -171,6 +171,7 @@ ThicknessResult measure(ThicknessCommand& command, const Input& input, double im
   options.distance = &distance;
   ThicknessResult result{sdm::summarize_thickness(surface, map, options), {}};
   result.summary.notes = input.notes;
+  if (auto note = note_on_unit(command.picture.units)) result.summary.notes.push_back(std::move(*note));
   write_files(command, input, surface, maps, at_vertices,
               sdm::fixed_colors(command.picture, *result.summary.colors), folder);
   const double export_ms = watch.lap();

@@ -52,6 +52,7 @@ VolumeOutcome compute(const FieldCommand& command, Input& o2, const sdm::Progres
   Stopwatch watch;
   VolumeOutcome outcome;
   o2 = load_input("o2", command.o2, command.transform_o2);
+  if (auto note = note_on_unit(command.units)) o2.notes.push_back(std::move(*note));
   if (command.json) inspect(o2);
   outcome.import_ms = watch.lap();
   const sdm::Grid grid = grid_of(command, o2.mesh, {});

@@ -11,7 +11,13 @@
 namespace sdm {
 namespace {
 
+/// At most this many significant digits; below a million without an exponent.
 std::string text_of(double number, int digits) {
+  constexpr double kLong = 1e6;
+  if (std::abs(number) >= std::pow(10, digits) && std::abs(number) < kLong) {
+    const double unit = std::pow(10, std::floor(std::log10(std::abs(number))) + 1 - digits);
+    return std::to_string(std::lround(unit * std::round(number / unit)));
+  }
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.*g", digits, number);
   return text.data();

@@ -86,6 +86,16 @@ TEST_F(AlignOption, BothMapsAreOfTheAlignedMesh) {
   EXPECT_TRUE(std::filesystem::exists(out + "/alignment.json"));
 }
 
+TEST_F(AlignOption, BothPagesAreNamed) {
+  const Outcome run = map({"--align", "--both", "--write", "html"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  for (const char* role : {"o1", "o2"}) {
+    const std::string page = out + "/" + role + "/report.html";
+    EXPECT_THAT(run.out, HasSubstr(page + "\n"));
+    EXPECT_TRUE(std::filesystem::exists(page));
+  }
+}
+
 TEST_F(AlignOption, FromPrincipalAxes) {
   o1 = write_obj(folder / "turned.obj", placed(mesh, "rotate:40:100:-70,translate:9:8:7"));
   const Outcome far = map({"--align"});
@@ -178,6 +188,8 @@ TEST_F(AlignOption, OnGroupsAndBoxes) {
   ASSERT_EQ(alignment["groups"].size(), 2u);
   EXPECT_GE(alignment["groups"][0]["rms"], alignment["groups"][1]["rms"]);
   EXPECT_THAT(map({"--align"}).out, HasSubstr("group datum: residual rms"));
+  EXPECT_THAT(map({"--align", "--align-on", "datum"}).out, HasSubstr("on datum ("));
+  EXPECT_THAT(alignment["text"].get<std::string>(), HasSubstr(R"(on "datum", "box:-2,-2,-2,0,2,2" ()"));
   const Outcome unknown = map({"--align", "--align-on", "datums"});
   EXPECT_EQ(unknown.code, 1);
   EXPECT_THAT(unknown.err, HasSubstr("has the name 'datums'; its names are datum, rest"));

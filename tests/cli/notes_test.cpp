@@ -83,6 +83,23 @@ TEST_F(Notes, AreAbsentWhereSizesAndPlacesAgree) {
   expect_notes({"points", cloud(1), other, "--write", "none", "-o", out}, none);
 }
 
+TEST_F(Notes, AUnitThatIsNotKnownIsALabel) {
+  const std::string mm = box("mm.obj", 1), other = box("other.obj", 1.3, {5, 0, 0});
+  std::vector<std::vector<std::string>> all = commands(mm, other);
+  for (const char* command : {"self", "thickness"})
+    all.push_back({command, mm, "--resolution", "32", "--write", "none", "-o", out});
+  all.push_back({"points", cloud(1), mm, "--write", "none", "-o", out});
+  all.push_back({"volume", mm, "--grid", "8", "8", "8", "-o", folder / "field.npy"});
+  for (const auto& [unit, matcher] :
+       {std::pair<const char*, ::testing::Matcher<const std::string&>>(
+            "furlong", HasSubstr("the unit furlong is not known: it is only a label")),
+        {"mm", Not(HasSubstr("is not known"))}})
+    for (std::vector<std::string> command : all) {
+      command.insert(command.end(), {"--units", unit});
+      expect_notes(command, matcher);
+    }
+}
+
 TEST_F(Notes, EveryUnitHasItsTolerance) {
   const std::string mm = box("mm.obj", 1);
   const auto note = [&](double times) {
@@ -95,7 +112,9 @@ TEST_F(Notes, EveryUnitHasItsTolerance) {
   EXPECT_THAT(note(99), HasSubstr("about 100 times the other; centimetres and metres?"));
   EXPECT_THAT(note(1 / 310.0), HasSubstr("about 304.8 times the other; millimetres and feet?"));
   EXPECT_THAT(note(1040), HasSubstr("millimetres and metres?"));
-  EXPECT_THAT(note(5e4), HasSubstr("about 5e+04 times the other; are both in the same units?"));
+  EXPECT_THAT(note(5e4), HasSubstr("about 50000 times the other; are both in the same units?"));
+  EXPECT_THAT(note(1123), HasSubstr("about 1100 times the other;"));
+  EXPECT_THAT(note(2e7), HasSubstr("about 2e+07 times the other;"));
   for (const double times : {1.0, 5.0, 12.0, 20.0, 60.0, 200.0, 500.0}) EXPECT_EQ(note(times), "") << times;
 }
 

@@ -103,6 +103,10 @@ TEST_F(SceneCommand, WrongUsageEndsWithTwo) {
     EXPECT_NE(run.err, "");
     EXPECT_EQ(run.out, "");
   }
+  const Outcome no_part = run_sdm({"scene", "scan", "-o", out});
+  EXPECT_EQ(no_part.code, 2);
+  EXPECT_THAT(no_part.err,
+              HasSubstr("scene scan needs --mesh FILE, the part: a closed mesh with a flat place"));
   EXPECT_THAT(run_sdm({"scene", "--help"}).out, HasSubstr("Example"));
   EXPECT_TRUE(folder.empty());
 }

@@ -79,6 +79,7 @@ TEST_F(SequenceCommand, FollowsTheBodies) {
   }
   EXPECT_GT(all[6]["penetration_depth"]["value"], 0.1);
   EXPECT_THAT(run.out, HasSubstr("frames     12"));
+  EXPECT_THAT(run.out, ::testing::StartsWith(moving)) << "no verdict without a tolerance";
 }
 
 TEST_F(SequenceCommand, MeasuresBothBodies) {
@@ -86,6 +87,7 @@ TEST_F(SequenceCommand, MeasuresBothBodies) {
       run_sdm({"sequence", moving, o2, "-o", out, "--resolution", "256", "--atlas", "triangles", "--both",
                "--maps", "5", "--tolerance", "3", "--colormap", "viridis"});
   ASSERT_EQ(run.code, 3) << run.err;
+  EXPECT_THAT(run.out, ::testing::StartsWith("FAIL: " + moving));
   EXPECT_THAT(run.out, HasSubstr("tolerance  O1: FAIL in "));
   EXPECT_EQ(names_in(out + "/maps").size(), 12u);
   EXPECT_TRUE(std::filesystem::exists(out + "/maps/0005_o2.exr"));
