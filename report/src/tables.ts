@@ -173,7 +173,7 @@ export function showMethod(report: Report): void {
         `${count(report.boundary_texels)} points are nearest to an open edge of the reference: they may lie beside the part of the surface that it covers.`,
       ),
     );
-  for (const note of report.notes ?? []) out.push(make('p', { class: 'note' }, `Note: ${note}.`));
+  for (const note of report.notes ?? []) out.push(make('p', { class: 'note' }, `Note: ${note}${note.endsWith('?') ? '' : '.'}`));
   const total = report.time_ms?.total;
   out.push(
     sentence(

@@ -208,7 +208,8 @@ function ofGroups(report: Report): Stated | null {
   const verdict = table.verdict as Verdict;
   const some = table.groups.filter((g) => g.verdict === verdict).map((g) => g.group);
   const kMost = 5;
-  const names = some.slice(0, kMost).join(', ') + (some.length > kMost ? ' and others' : '');
+  const quoted = some.length > 1 ? some.map((name) => `“${name}”`) : some; // a name may be several words
+  const names = quoted.slice(0, kMost).join(', ') + (some.length > kMost ? ' and others' : '');
   const count = `${some.length} of ${table.groups.length} groups`;
   const words: Partial<Record<Verdict, string>> = {
     FAIL: [...(some.length > 0 ? [`${count} of the table of tolerances fail: ${names}.`] : []), ...withoutGroup(report)].join(' '),
