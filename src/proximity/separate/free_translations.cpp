@@ -13,6 +13,11 @@ constexpr std::size_t kMostPlanes = 8;
 constexpr double kSettled = 1e-3;   // of the length, of a step that is not worth it
 constexpr double kMargin = 1e-4;    // of the length, from the planes
 constexpr double kTouching = 1e-9;  // of the size, a separation without a direction
+// Shortening of a translation along itself: so often at most, until the separation is this fraction of it;
+// and the fractions that are tested for.
+constexpr int kMostShortened = 64;
+constexpr double kClosed = 1e-4;
+constexpr std::array kShorter{0.97, 0.99, 0.997};
 
 // The point of least norm in the half-spaces, by the method of Hildreth: each multiplier in turn is set to
 // its best value, until all are settled.
@@ -56,24 +61,51 @@ double FreeTranslations::free_step(const Vec3& t, const Vec3& step, double separ
   return std::min(1.0, 0.9 * separation / length);
 }
 
+// A translation that is shorter by less than the separation is free, too. Where the bodies slide along each
+// other, or t leads through a gap between them, shorter ones are found by tests.
+Vec3 FreeTranslations::shortened(Vec3 t) {
+  for (int step = 0; step < kMostShortened; ++step) {
+    const double length = norm(t), gap = pair_.separation(t).value;
+    if (gap > std::max(kClosed * length, kTouching * size_)) {
+      t = std::max(0.0, 1 - 0.99 * gap / length) * t;
+      continue;
+    }
+    const auto shorter =
+        std::ranges::find_if(kShorter, [&](double part) { return !pair_.collide(part * t); });
+    if (shorter == kShorter.end()) break;
+    t = *shorter * t;
+  }
+  return t;
+}
+
+void FreeTranslations::descend(const Vec3& from) {
+  Vec3 t = lowest(from);
+  // One that is longer than the best may be shorter than that along itself.
+  if (!(norm(t) <= length())) {
+    t = ((1 - kSettled) * length() / norm(t)) * t;
+    if (pair_.collide(t)) return;
+  }
+  t = shortened(t);
+  if (!pair_.collide(t)) best_ = t;  // steps by separations are not tested
+}
+
 // The closest points of bodies that are apart give a plane for further translations; that of a convex contact
 // is exact. Steps to the shortest translation within the planes.
-void FreeTranslations::descend(Vec3 t) {
+Vec3 FreeTranslations::lowest(Vec3 t) {
   planes_.clear();
   for (int step = 0; step < kMostSteps; ++step) {
-    if (norm(t) < length()) best_ = t;
     const BoundedLength& separation = pair_.separation(t);
     const double gap = separation.value;
-    if (!(gap > kTouching * size_)) return;
+    if (!(gap > kTouching * size_)) return t;
     const Vec3 n = (1 / gap) * ((*separation.witness)[0] - (*separation.witness)[1]);
     if (planes_.size() == kMostPlanes) planes_.erase(planes_.begin());
     planes_.push_back({n, dot(n, t) - gap + kMargin * norm(t)});
     const Vec3 target = least_in<Plane>(planes_);
-    if (!(norm(target) < (1 - kSettled) * norm(t))) return;
+    if (!(norm(target) < (1 - kSettled) * norm(t))) return t;
     const Vec3 by = target - t;
     t += free_step(t, by, gap) * by;
   }
-  if (norm(t) < length()) best_ = t;
+  return t;
 }
 
 }  // namespace sdm::separate

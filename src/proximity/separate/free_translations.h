@@ -33,7 +33,12 @@ class FreeTranslations {
     Vec3 n{};
     double least = 0;
   };
-  void descend(Vec3 t);
+  /// Descends from a translation without a collision, and takes the result if it is the shortest so far.
+  void descend(const Vec3& from);
+  /// Steps to shorter translations in any direction, as far as that is easy.
+  [[nodiscard]] Vec3 lowest(Vec3 t);
+  /// Shortens a translation without a collision, keeping its direction.
+  [[nodiscard]] Vec3 shortened(Vec3 t);
   [[nodiscard]] double free_step(const Vec3& t, const Vec3& step, double separation);
 
   MovedPair& pair_;

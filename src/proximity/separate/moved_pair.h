@@ -23,7 +23,7 @@ class MovedPair {
     move(translation);
     return answers_.separation();
   }
-  /// The penetration depth after a translation, to `precision`; 0 if it cannot be found.
+  /// The penetration depth after a translation; empty if neither body is a solid.
   [[nodiscard]] const std::optional<BoundedLength>& depth(const Vec3& translation) {
     move(translation);
     return answers_.penetration_depth();

@@ -73,7 +73,7 @@ class TranslationSearch {
 
   SeparatingTranslation result(double lower, const Vec3& translation) const {
     SeparatingTranslation found;
-    found.translation = translation;
+    found.translation = translation + Vec3{};  // no −0
     found.value = found.upper = norm(translation);
     found.lower = std::clamp(lower, 0.0, found.upper);
     found.certainty = found.upper - found.lower <= kExact * size_ ? Certainty::exact : Certainty::bounded;
