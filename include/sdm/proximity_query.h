@@ -175,9 +175,11 @@ class SDM_API ProximityQuery {
   /// translation t of separating_translation(), moved back by it: that of the closest points then, with the
   /// normal t / |t| and the id kExitContact, and those of contacts() there, with the ids of contacts().
   ///  - point1 is on O1 and point2 on O2, and `on` says where.
-  ///  - depth = normal · (point2 − point1) ≤ separating_translation().upper, to rounding: how far O1 must be
-  ///    moved along the normal until this contact only touches. |point2 − point1| may be more. Contacts with
-  ///    a depth of at most minus the margin are left out.
+  ///  - depth = normal · (point2 − point1), to rounding: how far O1 must be moved along the normal until this
+  ///    contact only touches; |point2 − point1| may be more. It is at most normal · t, and so at most
+  ///    separating_translation().upper, even if the points are farther apart: those of kExitContact may be on
+  ///    a wall beyond the one that O1 leaves by. Contacts with a depth of at most minus the margin are left
+  ///    out.
   /// So t satisfies all of them: normal · t ≥ depth. A step that moves O1 along one normal by what is left of
   /// its depth brings it no farther from t, and so does a projected Gauss–Seidel method over all of them.
   /// Bodies in the same place have contacts, too, in directions that are always the same.

@@ -319,8 +319,9 @@ void bind_separating_contacts(nb::class_<PyProximityQuery>& query) {
       R"(Returns contacts along which the bodies leave each other, for solvers: where they overlap by much,
 contacts() are of single points, and may push in all directions. These are the contacts after the
 separating_translation() of O1, moved back by it: depth = normal · (point2 - point1), how far O1 must be
-moved along the normal until this contact only touches, at most separating_translation().upper. If the bodies
-do not collide, they are contacts().
+moved along the normal until this contact only touches, but at most separating_translation().upper, even if
+the points of the contact along the translation are farther apart. If the bodies do not collide, they are
+contacts().
 
 most_per_patch: so many contacts of each patch are kept, ≥ 1: the deepest one and those farthest apart.
 

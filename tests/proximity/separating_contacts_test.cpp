@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "proximity/separate/separating_contacts.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 
@@ -39,7 +40,8 @@ void expect_contacts_of(ProximityQuery& query) {
   std::set<std::uint64_t> ids;
   for (const Contact& c : contacts) {
     EXPECT_NEAR(norm(c.normal), 1, 1e-9);
-    EXPECT_NEAR(c.depth, dot(c.normal, c.point2 - c.point1), 1e-9);
+    for (int k = 0; k < 3; ++k) EXPECT_FALSE(c.normal[k] == 0 && std::signbit(c.normal[k])) << "prints as -0";
+    EXPECT_NEAR(c.depth, std::min(dot(c.normal, c.point2 - c.point1), dot(c.normal, out.translation)), 1e-9);
     EXPECT_LE(c.depth, out.upper + 1e-9);
     EXPECT_LE(c.depth, dot(c.normal, out.translation) + 1e-9);
     ids.insert(c.id);
@@ -115,6 +117,46 @@ TEST(SeparatingContacts, KeepAFewOfAPatch) {
   EXPECT_THROW((void)query.separating_contacts(0), Error);
 }
 
+// Boxes that overlap in [0.4, 1] × [−0.7, 1] × [−0.8, 1] leave each other along x.
+TEST(SeparatingContacts, KeepTheCornersOfAFaceOfABox) {
+  ProximityQuery boxes(cube(), cube());
+  boxes.set_pose(1, Transform::translation({1.4, 0.3, 0.2}));
+  std::set<std::array<double, 2>> corners;
+  for (const Contact& c : boxes.separating_contacts(4))
+    if (c.id != ProximityQuery::kExitContact)
+      corners.insert({std::round(1e6 * c.point2[1]) / 1e6, std::round(1e6 * c.point2[2]) / 1e6});
+  EXPECT_EQ(corners, (std::set<std::array<double, 2>>{{-0.7, -0.8}, {-0.7, 1}, {1, -0.8}, {1, 1}}));
+}
+
+TEST(SeparatingContacts, KeepTheNextDeepestOfAPoint) {
+  std::vector<Contact> contacts(4);
+  for (std::size_t i = 0; i < 4; ++i) contacts[i].depth = 4.0 - static_cast<double>(i);
+  contacts[3].point2 = {1, 0, 0};
+  separate::keep_per_patch(contacts, 3);
+  ASSERT_EQ(contacts.size(), 3u);
+  EXPECT_EQ(contacts[0].depth, 4);
+  EXPECT_EQ(contacts[1].depth, 3) << "at the point of the deepest";
+  EXPECT_EQ(contacts[2].depth, 1) << "at another point";
+}
+
+// A block leaves the thick one of two walls towards the thin one, which is then closer.
+TEST(SeparatingContacts, AreNoDeeperThanTheWayOutAtAFartherWall) {
+  const auto slab = [](double from, double to) {
+    Mesh mesh = cube();
+    for (Vec3& p : mesh.positions) p[0] = p[0] < 0 ? from : to;
+    return mesh;
+  };
+  const shape::PosedBody block{Shape(slab(-0.01, 0.37))}, walls{Shape(joined(slab(-1, 0), slab(0.388, 0.4)))};
+  SeparatingTranslation out;
+  out.translation = {0.015, 0, 0};
+  out.value = out.upper = 0.015;
+  const std::vector<Contact> contacts = separate::contacts_after(block, walls, out, 0);
+  const auto exit = std::ranges::find(contacts, ProximityQuery::kExitContact, &Contact::id);
+  ASSERT_NE(exit, contacts.end());
+  EXPECT_NEAR(dot(exit->normal, exit->point2 - exit->point1), 0.018, 1e-12);
+  EXPECT_DOUBLE_EQ(exit->depth, 0.015);
+}
+
 TEST(SeparatingContacts, AreThoseOfContactsIfBodiesAreApart) {
   ProximityQuery query(cube(), cube(), {.contact_margin = 0.1});
   query.set_pose(1, Transform::translation({0.2, 0.1, 2.05}));
@@ -133,6 +175,7 @@ void expect_solved(const std::vector<std::array<Shape, 2>>& pairs, int poses, do
     query.set_pose(0, overlapping_pose(random, reach));
     if (!query.colliding()) continue;
     ++overlaps;
+    expect_contacts_of(query);
     const double first = query.separating_translation().upper;
     for (int step = 0; step < 20 && query.colliding(); ++step) {
       const Vec3 by = projected_sweep(query.separating_contacts());
@@ -162,6 +205,16 @@ TEST(SeparatingContacts, SeparateOtherBodiesInTwentySteps) {
   pairs.push_back({Shape(meshes[0]), Shape(meshes[2])});
   pairs.push_back({Shape(meshes[1]), Shape(meshes[1])});
   expect_solved(pairs, 150, 1);
+}
+
+TEST(SeparatingContacts, SeparateOpenSurfacesAndToriInTwentySteps) {
+  Mesh open = cube(0.5);
+  open.triangles.erase(open.triangles.begin(), open.triangles.begin() + 2);
+  const std::array meshes{open, placed(torus(16, 8), "scale:0.3")};
+  std::vector<std::array<Shape, 2>> pairs;
+  for (const Mesh& a : meshes)
+    for (const Mesh& b : meshes) pairs.push_back({Shape(a), Shape(b)});
+  expect_solved(pairs, 120, 0.7);
 }
 
 }  // namespace

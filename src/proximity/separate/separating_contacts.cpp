@@ -34,14 +34,21 @@ void sort_contacts(std::vector<Contact>& contacts) {
     c.patch = number.try_emplace(c.patch, static_cast<std::uint32_t>(number.size())).first->second;
 }
 
+// How far O1 is to go along the normal of a contact of which t is free. The points may be farther apart:
+// those of the exit, on a wall beyond the one that O1 has left by, and those of surfaces that touch after t,
+// whose direction is that of a face.
+double depth_along(const Contact& c, const Vec3& t) {
+  return std::min(dot(c.normal, c.point2 - c.point1), dot(c.normal, t));
+}
+
 // The contact of the closest points after the translation, along it.
 Contact exit_contact(const std::array<const shape::PosedBody*, 2>& bodies, const pairs::FacePair& faces,
                      const std::array<Vec3, 2>& closest, const Vec3& t) {
   Contact exit{.point1 = closest[0] - t,
                .point2 = closest[1],
-               .normal = normalized(t),
+               .normal = normalized(t) + Vec3{},
                .id = ProximityQuery::kExitContact};
-  exit.depth = dot(exit.normal, exit.point2 - exit.point1);
+  exit.depth = depth_along(exit, t);
   for (int body = 0; body < 2; ++body) {
     const Mesh& mesh = internals(bodies[body]->body().sites()).mesh;
     const auto& [a, b, c] = mesh.triangles[faces[body]];
@@ -71,8 +78,9 @@ std::vector<Contact> contacts_after(const shape::PosedBody& o1, const shape::Pos
   answers.begin(moved, o2, {.closest_faces = closest});
   std::vector<Contact> contacts{exit_contact({&moved, &o2}, closest, *apart.separation().witness, t)};
   for (Contact c : answers.contacts()) {
-    c.depth += dot(c.normal, t);
     c.point1 = c.point1 - t;
+    c.normal += Vec3{};  // no −0
+    c.depth = depth_along(c, t);
     c.patch += 1;  // the exit is one by itself
     if (c.depth > -contact_margin) contacts.push_back(c);
   }
@@ -97,7 +105,8 @@ void keep_per_patch(std::vector<Contact>& contacts, std::size_t most) {
         apart[i] =
             std::min(apart[i], squared_norm(contacts[begin + i].point2 - contacts[begin + next].point2));
       next = std::ranges::max_element(apart) - apart.begin();
-      if (apart[next] == 0) break;
+      // The rest is at points that are kept: the next deepest.
+      if (apart[next] == 0) next = std::ranges::find(chosen, false) - chosen.begin();
     }
     for (std::size_t i = 0; i < chosen.size(); ++i)
       if (chosen[i]) kept.push_back(contacts[begin + i]);

@@ -15,8 +15,9 @@ namespace sdm::separate {
 [[nodiscard]] std::vector<Contact> contacts_after(const shape::PosedBody& o1, const shape::PosedBody& o2,
                                                   const SeparatingTranslation& out, double contact_margin);
 
-/// Keeps at most so many contacts of each patch: the deepest, then always the one that is farthest from those
-/// that are kept. Contacts are sorted by patch and depth, before and after.
+/// Keeps so many contacts of each patch, or all if they are no more: the deepest, then always the one that is
+/// farthest from those that are kept, of several the deepest. Contacts are sorted by patch and depth, before
+/// and after.
 void keep_per_patch(std::vector<Contact>& contacts, std::size_t most);
 
 }  // namespace sdm::separate
