@@ -13,6 +13,8 @@
 
 #include "geometry/point_triangle.h"
 #include "geometry/vec.h"
+#include "query/facing/facing_search.h"
+#include "sites/sites_data.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
@@ -225,10 +227,45 @@ TEST(FacingHausdorff, OfRoughTerrainTurnedOverEqualsBruteForceAtVertices) {
   }
   ASSERT_GT(unmatched, 5U);
   ASSERT_LT(unmatched, terrain.triangles.size());
-  const HausdorffDistance found = one_sided_hausdorff(terrain, Sites(turned), {.facing = 90});
+  constexpr double tolerance = 1e-4;
+  const HausdorffDistance found =
+      one_sided_hausdorff(terrain, Sites(turned), {.precision = tolerance, .facing = 90});
   EXPECT_EQ(found.faces_without_match, unmatched);
+  EXPECT_GE(found.distance.lower, largest - tolerance);
   EXPECT_GE(found.distance.upper, largest - 1e-12);
-  EXPECT_LE(found.distance.lower, largest + 2.0 / 16);
+  // Edges are shorter than 2.2 / 16, and points of a face within 0.58 edges of a corner.
+  EXPECT_LE(found.distance.upper, largest + tolerance + 0.58 * 2.2 / 16);
+}
+
+TEST(FacingSearch, ListsTheFewFacesThatAreAllowed) {
+  Mesh turned = rough_terrain(64);
+  for (Triangle& t : turned.triangles) std::swap(t[0], t[1]);
+  const Sites sites(turned);
+  const auto faces = static_cast<std::uint32_t>(turned.triangles.size());
+  const auto few = static_cast<std::size_t>(std::sqrt(faces));
+  ASSERT_GT(few, 64U);
+  const Mesh directions = sphere(3);
+  int listed = 0, none = 0, many = 0;
+  for (const double angle : {20.0, 90.0, 140.0}) {
+    const facing::FacingSearch search(internals(sites), angle);
+    for (const Vec3& normal : directions.positions) {
+      std::vector<std::uint32_t> allowed;
+      for (std::uint32_t f = 0; f < faces; ++f)
+        if (search.allows(normal, f)) allowed.push_back(f);
+      auto found = search.few_allowed(normal);
+      ASSERT_EQ(found.has_value(), allowed.size() <= few);
+      if (!found) {
+        ++many;
+        continue;
+      }
+      ++(allowed.empty() ? none : listed);
+      std::ranges::sort(*found);
+      EXPECT_EQ(*found, allowed);
+    }
+  }
+  EXPECT_GT(listed, 10);
+  EXPECT_GT(none, 10);
+  EXPECT_GT(many, 10);
 }
 
 TEST(FacingHausdorff, RejectsWhatItCannotCompute) {
