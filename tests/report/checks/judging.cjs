@@ -107,7 +107,7 @@ module.exports = {
     await other.waitForSelector('#view.failed');
     const message = await other.textContent('#message');
     assert.match(message, /^The part cannot be shown \(this browser has no WebGL 2, or it is switched off\)\. The numbers are complete\.$/);
-    assert(await other.locator('#histogram-chart .bin').count() > 5, 'no histogram');
+    await other.waitForFunction(() => document.querySelectorAll('#histogram-chart .bin').length > 5);
     for (const id of ['numbers', 'worst']) assert(await other.locator(`#${id}-table tbody tr`).count() > 0, id);
     assert.strictEqual(await other.locator('#worst-table button').count(), 0);
     assert(!(await other.isVisible('#controls')));
