@@ -12,7 +12,8 @@ FaceTolerances::FaceTolerances(const std::optional<Tolerance>& of_all, std::span
   if (table.empty() || names.empty()) return;
   const std::vector<NamedFaces> named = faces_of_groups(names, table);
   number_.assign(names.front().of_face.size(), 0);
-  // The tolerances that a tolerance and a row that is added to it have in common. Faces of several rows are few.
+  // The tolerances that a tolerance and a row that is added to it have in common. Faces of several rows are
+  // few.
   std::map<std::pair<std::uint32_t, std::size_t>, std::uint32_t> joined;
   for (std::size_t row = 0; row < table.size(); ++row)
     for (const std::uint32_t face : named[row].faces) {

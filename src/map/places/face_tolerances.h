@@ -20,8 +20,8 @@ inline Tolerance any_distance() {
   return {-kInfinity, kInfinity};
 }
 
-/// The tolerance of each face: what all those accept that it is judged by, which are that of the whole surface
-/// and those of the rows of a table that name the face.
+/// The tolerance of each face: what all those accept that it is judged by, which are that of the whole
+/// surface and those of the rows of a table that name the face.
 class FaceTolerances {
  public:
   /// `names`: of the faces. Cost: linear in faces and rows.

@@ -7,7 +7,8 @@
 
 namespace sdm::separate {
 
-/// Support points in the direction u, |u| = 1: a point of O1 with the largest u·x, and one of O2 with the least.
+/// Support points in the direction u, |u| = 1: a point of O1 with the largest u·x, and one of O2 with the
+/// least.
 struct SupportPair {
   Vec3 x1{}, x2{};
   [[nodiscard]] Vec3 difference() const { return x1 - x2; }

@@ -18,7 +18,7 @@ namespace {
 // Lengths for 1024 rows; the drawing is scaled as a whole.
 constexpr double kLegendWidth = 232, kLegendHeight = 300, kEdge = 24, kSwatch = 22, kRow = 60;
 constexpr std::size_t kSwatches = 6;
-constexpr int kApart = 90;  // of the sum of differences of red, green and blue
+constexpr int kLeastDifference = 90;  // of the sum of differences of red, green and blue
 
 /// Colours of sites of a type, the first one and others that differ from each other.
 std::vector<Rgb> examples(SiteType type) {
@@ -26,7 +26,8 @@ std::vector<Rgb> examples(SiteType type) {
   for (std::uint32_t site = 0; colors.size() < kSwatches && site < 1000; ++site) {
     const Rgb c = site_color(type, site);
     if (std::ranges::all_of(colors, [&](const Rgb& other) {
-          return std::abs(c.r - other.r) + std::abs(c.g - other.g) + std::abs(c.b - other.b) >= kApart;
+          return std::abs(c.r - other.r) + std::abs(c.g - other.g) + std::abs(c.b - other.b) >=
+                 kLeastDifference;
         }))
       colors.push_back(c);
   }

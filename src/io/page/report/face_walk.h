@@ -22,9 +22,10 @@ struct FaceWalk {
 /// Corners keep their direction of turning. Cost: linear.
 [[nodiscard]] FaceWalk walk_over(std::span<const Triangle> triangles, std::size_t vertices);
 
-/// The vertices from which a number at a vertex is guessed: x[a] + x[b] − x[c], which completes a parallelogram
-/// over an edge of an earlier triangle, or a = b = c; kNone: from none. All are before it. Vertices must be
-/// numbered in the order of their first use. Cost: linear. `guessesOf` of report/src/arrays.ts is the same.
+/// The vertices from which a number at a vertex is guessed: x[a] + x[b] − x[c], which completes a
+/// parallelogram over an edge of an earlier triangle, or a = b = c; kNone: from none. All are before it.
+/// Vertices must be numbered in the order of their first use. Cost: linear. `guessesOf` of
+/// report/src/arrays.ts is the same.
 [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> guesses_of(std::span<const Triangle> triangles);
 
 }  // namespace sdm::io
