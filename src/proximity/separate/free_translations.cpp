@@ -9,13 +9,16 @@ namespace sdm::separate {
 namespace {
 
 constexpr int kMostSteps = 24;
+// Translations that are tried in all: beyond, the bounds stay as far apart as they are. Bodies whose
+// separation takes long, such as needles by the hundred at one point, would take minutes.
+constexpr std::size_t kMostTries = 500;
 constexpr std::size_t kMostPlanes = 8;
 constexpr double kSettled = 1e-3;   // of the length, of a step that is not worth it
 constexpr double kMargin = 1e-4;    // of the length, from the planes
 constexpr double kTouching = 1e-9;  // of the size, a separation without a direction
 // Shortening of a translation along itself: so often at most, until the separation is this fraction of it;
 // and the fractions that are tested for.
-constexpr int kMostShortened = 64;
+constexpr int kMostShortened = 16;
 constexpr double kClosed = 1e-4;
 constexpr std::array kShorter{0.97, 0.99, 0.997};
 
@@ -42,6 +45,7 @@ Vec3 least_in(std::span<const Plane> planes) {
 
 void FreeTranslations::try_direction(const Vec3& u, double shortest) {
   for (const double more : {1.02, 1.25, 1.6, 2.2, 3.2, 5.0, 8.0}) {
+    if (pair_.tries() > kMostTries) return;
     if (!(more * shortest < (1 - kSettled) * length())) return;
     if (try_translation(more * shortest * u)) return;
   }
