@@ -9,8 +9,8 @@ namespace sdm::separate {
 namespace {
 
 constexpr int kMostSteps = 24;
-// Translations that are tried in all: beyond, the bounds stay as far apart as they are. Bodies whose
-// separation takes long, such as needles by the hundred at one point, would take minutes.
+// After so many translations no further direction is tried, and the bounds stay as far apart as they are.
+// Where a separation takes long, as of hundreds of needles at one point, more would take minutes.
 constexpr std::size_t kMostTries = 500;
 constexpr std::size_t kMostPlanes = 8;
 constexpr double kSettled = 1e-3;   // of the length, of a step that is not worth it
