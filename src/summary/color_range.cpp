@@ -85,7 +85,8 @@ ColorRange color_range(const ColorChoice& choice, const DistanceStatistics& dist
                         (*choice.range)[0] < (*choice.range)[1]))
     throw Error("the range of the colours must be two finite numbers, the smaller one first");
 
-  const Distances d = scaled(distances, choice.accuracy);
+  // Where nothing was measured, there is no accuracy either.
+  const Distances d = scaled(distances, std::isfinite(choice.accuracy) ? choice.accuracy : 0);
   ColorRange result{.colormap = choice.colormap, .chosen = choice.range.has_value()};
   const bool bands = choice.colormap == Colormap::automatic && choice.tolerance;
   if (choice.colormap == Colormap::automatic && !bands) result.colormap = automatic(d);

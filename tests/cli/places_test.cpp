@@ -167,6 +167,7 @@ TEST_F(PlacesOutput, ACloudOfIslandsIsNotDecided) {
   const Json report = Json::parse(run.out);
   EXPECT_EQ(report["tolerance"]["text"], "no point is left to measure");
   EXPECT_EQ(report["tolerance"]["exceeded_point_fraction"], 0);
+  EXPECT_EQ(report["colors"]["range"], Json({0.0, 0.2})) << "no accuracy, but limits";
   EXPECT_THAT(report["notes"].dump(), HasSubstr("left out; there are no other points with coordinates"));
   EXPECT_THAT(points(folder / "few.xyz", {"--ignore-islands", "9", "--align"}).err,
               HasSubstr("there are no points with coordinates that are of no island"));
