@@ -8,6 +8,7 @@
 #include "info.h"
 #include "interrupts.h"
 #include "map.h"
+#include "metrics.h"
 #include "output_folder.h"
 #include "points.h"
 #include "proximity.h"
@@ -75,6 +76,7 @@ int run(int argc, char** argv) {
     add_points_command(app);
     add_proximity_command(app);
     add_hausdorff_command(app);
+    add_metrics_command(app);
     add_bodies_command(app);
     add_sequence_command(app);
     add_self_command(app);

@@ -8,12 +8,17 @@ const char* name(sdm::Certainty kind) {
   return kind == sdm::Certainty::exact ? "exact" : kind == sdm::Certainty::bounded ? "bounded" : "estimate";
 }
 
+Json to_json(const sdm::BoundedNumber& number) {
+  return {{"value", number.value},
+          {"kind", name(number.certainty)},
+          {"lower", number.lower},
+          {"upper", number.upper}};
+}
+
 Json to_json(const sdm::BoundedLength& length) {
-  return {{"value", length.value},
-          {"kind", name(length.certainty)},
-          {"lower", length.lower},
-          {"upper", length.upper},
-          {"witness", length.witness ? Json(*length.witness) : Json(nullptr)}};
+  Json json = to_json(static_cast<const sdm::BoundedNumber&>(length));
+  json["witness"] = length.witness ? Json(*length.witness) : Json(nullptr);
+  return json;
 }
 
 Json to_json(const sdm::Contact& contact) {

@@ -7,6 +7,7 @@
 #include <string>
 
 [[nodiscard]] const char* name(sdm::Certainty kind);
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedNumber& number);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedLength& length);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::SeparatingTranslation& found);
 /// The result of ProximityQuery::colliding(), which is exact.

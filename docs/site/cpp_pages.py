@@ -18,7 +18,7 @@ SUBJECTS = {
     "Results of maps": ["channels", "summary", "units", "statistics", "sampling_bound", "tolerance", "tolerance_proof",
                          "certified_verdict", "group_verdicts", "tolerance_table", "coverage", "doubts", "part_statistics", "places", "islands", "combined_statistics", "temporal_maps"],
     "Proximity": ["proximity_query", "shape", "multi_body_query", "pose_query", "self_proximity_query", "thickness", "time_of_contact",
-                  "hausdorff"],
+                  "hausdorff", "metrics"],
     "Other queries": ["align", "fit_check", "unit_check", "rays", "volume"],
     "Errors, progress and threads": ["error", "progress", "cancellation", "threads"],
 }  # fmt: skip

@@ -14,7 +14,7 @@ namespace sdm {
 enum class Certainty {
   exact,    ///< as its query states; for lengths to 1e-6 of the diagonal of the box of all meshes
   bounded,  ///< the true value lies between the given bounds
-  estimate  ///< no guarantee; no query returns it
+  estimate  ///< no guarantee; no query of proximity returns it
 };
 
 /// A number with its bounds.

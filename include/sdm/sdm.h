@@ -26,6 +26,7 @@
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/mesh_edit.h>
+#include <sdm/metrics.h>
 #include <sdm/multi_body_query.h>
 #include <sdm/part_statistics.h>
 #include <sdm/places.h>

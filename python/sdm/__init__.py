@@ -75,10 +75,12 @@ from ._core import version as __version__
 from ._closest_points import NONE, SiteType, closest_points
 from ._distance_map import DistanceMap, MapBounds
 from ._maps import map, self_map, thickness
+from ._metrics import BoundedNumber, SurfaceMetrics, mask_surface, surface_metrics
 
 __all__ = [
     "Alignment",
     "BoundedLength",
+    "BoundedNumber",
     "Cancelled",
     "ClosestPoints",
     "Contacts",
@@ -116,6 +118,7 @@ __all__ = [
     "Sites",
     "SiteType",
     "Surface",
+    "SurfaceMetrics",
     "TimeOfContact",
     "ToleranceVerdict",
     "WeldReport",
@@ -131,6 +134,7 @@ __all__ = [
     "hausdorff",
     "make_scan",
     "map",
+    "mask_surface",
     "measure_points",
     "read",
     "read_face_names",
@@ -138,6 +142,7 @@ __all__ = [
     "remove_islands",
     "scene",
     "self_map",
+    "surface_metrics",
     "thickness",
     "thread_limit",
     "time_of_contact",

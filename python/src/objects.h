@@ -93,6 +93,7 @@ void bind_pickle();
 
 void bind_errors(nb::module_& module);
 void bind_meshes(nb::module_& module);
+void bind_metrics(nb::module_& module);
 void bind_sites(nb::module_& module);
 void bind_surface(nb::module_& module);
 void bind_groups(nb::module_& module);

@@ -31,6 +31,7 @@ const std::vector<LongCommand> kLongCommands{
     {"map_align", {"map", "FINE", "SPHERES", "-o", "OUT", "--resolution", "4096", "--align"}},
     {"points", {"points", "CLOUD", "SPHERES", "-o", "OUT"}},
     {"hausdorff", {"hausdorff", "FINE", "SPHERES", "--precision", "1e-9"}},
+    {"metrics", {"metrics", "FINE", "SPHERES"}},
     {"proximity", {"proximity", "FINE", "SPHERES"}},
     {"bodies", {"bodies", "FINE", "SPHERES", "NEEDLES", "-o", "OUT", "--resolution", "2048"}},
     {"sequence", {"sequence", "FRAMES", "SPHERES", "--maps", "1", "-o", "OUT", "--resolution", "2048"}},

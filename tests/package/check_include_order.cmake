@@ -36,6 +36,7 @@ set(order
   map
   registration
   certify/hausdorff
+  certify/metrics
   certify/tolerance
   certify/depth
   volume

@@ -1,0 +1,211 @@
+#include "metrics.h"
+
+#include <fmt/format.h>
+#include <sdm/io.h>
+#include <sdm/metrics.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "common_options.h"
+#include "exit_codes.h"
+#include "format.h"
+#include "input_pair.h"
+#include "metric_conditions.h"
+#include "notes.h"
+#include "option_checks.h"
+#include "print.h"
+#include "progress_line.h"
+#include "proximity_report.h"
+#include "stopwatch.h"
+#include "unit_options.h"
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct MetricsCommand : PairFiles, RunOptions {
+  std::string units;
+  sdm::MetricsOptions options;
+  std::vector<MetricCondition> conditions;
+};
+
+struct MetricsAnswer {
+  sdm::SurfaceMetrics metrics;
+  std::vector<sdm::NamedMetric> named;
+  std::vector<sdm::Verdict> verdicts;  ///< of the conditions
+  Notes notes;
+
+  [[nodiscard]] sdm::Verdict verdict() const {
+    sdm::Verdict all = sdm::Verdict::pass;
+    for (const sdm::Verdict v : verdicts) all = worse(all, v);
+    return all;
+  }
+};
+
+MetricsAnswer measure_metrics(const InputPair& pair, const MetricsCommand& command,
+                              const sdm::MetricsOptions& options) {
+  MetricsAnswer answer;
+  answer.metrics = sdm::surface_metrics(pair.o1.mesh, pair.o2.mesh, options);
+  answer.named = sdm::named_metrics(answer.metrics, options);
+  for (const MetricCondition& condition : command.conditions)
+    answer.verdicts.push_back(judge(condition, answer.named));
+  return answer;
+}
+
+/// Computes the measures, with closer bounds if a limit is between them.
+MetricsAnswer decide_metrics(const InputPair& pair, const MetricsCommand& command,
+                             const sdm::Progress& progress) {
+  constexpr double kCloser = 0.1;
+  constexpr int kMostTries = 3;
+  sdm::MetricsOptions options = command.options;
+  options.progress = progress;
+  MetricsAnswer answer = measure_metrics(pair, command, options);
+  for (int n = 0; n < kMostTries && answer.verdict() == sdm::Verdict::not_decided; ++n) {
+    const auto& widest = answer.metrics.assd;
+    options.precision = kCloser * options.precision.value_or(
+                                      std::max(widest.upper - widest.lower,
+                                               sdm::MetricsOptions::kRelative * answer.metrics.assd.lower));
+    if (!(*options.precision > 0)) break;
+    options.fraction_precision *= kCloser;
+    answer = measure_metrics(pair, command, options);
+  }
+  return answer;
+}
+
+Json direction_metrics_json(const sdm::DirectedMetrics& m, const sdm::MetricsOptions& options) {
+  Json json{{"area", m.area},
+            {"hausdorff", to_json(m.hausdorff)},
+            {"mean", to_json(m.mean)},
+            {"rms", to_json(m.rms)}};
+  json["percentiles"] = Json::array(), json["within"] = Json::array();
+  for (std::size_t i = 0; i < m.percentiles.size(); ++i) {
+    json["percentiles"].push_back({{"percent", options.percentiles[i]}});
+    json["percentiles"].back().update(to_json(m.percentiles[i]));
+  }
+  for (std::size_t i = 0; i < m.within.size(); ++i) {
+    json["within"].push_back({{"tolerance", options.tolerances[i]}});
+    json["within"].back().update(to_json(m.within[i]));
+  }
+  json["normal_consistency"] = m.normal_consistency;
+  return json;
+}
+
+Json metrics_report(const MetricsCommand& command, const InputPair& pair, const MetricsAnswer& answer) {
+  Json json = report_on(pair, command.units);
+  for (const sdm::NamedMetric& m : answer.named) json["metrics"][m.name] = to_json(m.number);
+  json["o1_to_o2"] = direction_metrics_json(answer.metrics.from[0], command.options);
+  json["o2_to_o1"] = direction_metrics_json(answer.metrics.from[1], command.options);
+  if (!command.conditions.empty()) {
+    json["verdict"] = sdm::name_of(answer.verdict());
+    json["fail_if"] = Json::array();
+    for (std::size_t i = 0; i < command.conditions.size(); ++i)
+      json["fail_if"].push_back(
+          {{"text", command.conditions[i].text}, {"verdict", sdm::name_of(answer.verdicts[i])}});
+  }
+  json["notes"] = answer.notes;
+  return json;
+}
+
+std::string unit_of(const sdm::NamedMetric& metric, const std::string& units) {
+  if (metric.unit == sdm::MetricUnit::fraction || units.empty()) return {};
+  return unit_suffix(metric.unit == sdm::MetricUnit::area ? units + "²" : units);
+}
+
+std::string metrics_summary(const MetricsCommand& command, const MetricsAnswer& answer) {
+  constexpr int kDigits = 6;
+  std::size_t width = 0;
+  for (const sdm::NamedMetric& m : answer.named) width = std::max(width, m.name.size());
+  std::string text = fmt::format("{}, {}\n", command.o1, command.o2);
+  for (std::size_t i = 0; i < command.conditions.size(); ++i)
+    text += fmt::format("  {:<{}}  {}: {}\n", "fail if", width, command.conditions[i].text,
+                        sdm::name_of(answer.verdicts[i]));
+  for (const sdm::NamedMetric& m : answer.named) {
+    const sdm::BoundedNumber& n = m.number;
+    const std::string bounds =
+        n.certainty == sdm::Certainty::bounded
+            ? fmt::format("   between {} and {}", number(n.lower, kDigits), number(n.upper, kDigits))
+            : std::string();
+    text += fmt::format("  {:<{}}  {}{}{} ({})\n", m.name, width, number(n.value, kDigits),
+                        unit_of(m, command.units), bounds, name(n.certainty));
+  }
+  return text;
+}
+
+/// Returns the exit code.
+int run(const MetricsCommand& command) {
+  limit_threads(command.threads);
+  ProgressLine progress(command.quiet);
+  progress.step("import");
+  const InputPair pair = load_pair(command, {.inspects = command.json});
+  Stopwatch watch;
+  MetricsAnswer answer = decide_metrics(pair, command, progress.callback());
+  answer.notes = notes_on(pair.o1, pair.o2);
+  if (auto note = note_on_unit(command.units)) answer.notes.push_back(std::move(*note));
+  const double query_ms = watch.lap();
+  const auto report = [&] {
+    Json json = metrics_report(command, pair, answer);
+    json["time_ms"] = {{"import", pair.import_ms}, {"query", query_ms}};
+    return json;
+  };
+  print(command, report, [&] { return metrics_summary(command, answer) + note_lines(answer.notes, 13); });
+  return exit_code(answer.verdict());
+}
+
+CLI::Option* add_numbers(CLI::App& app, const std::string& name, std::vector<double>& target,
+                         const std::string& description, const CLI::Validator& validator) {
+  return app.add_option(name, target, description)->delimiter(',')->check(validator);
+}
+
+}  // namespace
+
+void add_metrics_command(CLI::App& app) {
+  CLI::App* metrics = app.add_subcommand(
+      "metrics", "Compare two surfaces by average, percentile and tolerance measures, with certified bounds");
+  metrics->footer(fmt::format(
+      "The measures that papers and benchmarks report, of all points of both surfaces, weighted by area: "
+      "nothing is sampled. hd: Hausdorff distance; hd95: its 95th percentile; assd, masd, rmsd: average "
+      "surface distances; chamfer_l1, chamfer_l2; nsd(T): surface Dice; precision(T), recall(T), f_score(T), "
+      "where O2 is the truth; normal_consistency, an estimate.\n"
+      "{}\n\n"
+      "Example:\n"
+      "  sdm metrics prediction.ply truth.ply --tolerance 1 --fail-if 'hd95>2' --fail-if 'nsd(1)<0.95'",
+      exit_codes()));
+  const auto command = std::make_shared<MetricsCommand>();
+  const auto conditions = std::make_shared<std::vector<std::string>>();
+  MetricsCommand& c = *command;
+  add_pair_arguments(*metrics, c,
+                     {fmt::format("The mesh that is compared ({})", sdm::mesh_format_names()),
+                      "The mesh that it is compared with, the truth"});
+  add_pair_transforms(*metrics, c);
+  add_numbers(*metrics, "--percentile", c.options.percentiles,
+              "Percentiles P for hdP, separated by commas; by default 95",
+              number("a number between 0 and 100", [](double p) { return p > 0 && p < 100; }))
+      ->type_name("P,...");
+  add_numbers(*metrics, "--tolerance", c.options.tolerances,
+              "Distances T for nsd(T), precision(T), recall(T) and f_score(T), separated by commas",
+              no_negative_number())
+      ->type_name("T,...");
+  metrics
+      ->add_option("--precision", c.options.precision,
+                   "Bounds of distances at most EPS apart, in units of the meshes; by default 0.2 % of their "
+                   "value; 2e-5 of the diagonal of both at least")
+      ->check(positive_number())
+      ->type_name("EPS");
+  metrics
+      ->add_option("--fail-if", *conditions,
+                   "A condition such as 'hd95>0.5' or 'nsd(1)<0.95', quoted, under which the comparison "
+                   "fails, by the exit code too; several may be given")
+      ->allow_extra_args(false)
+      ->type_name("CONDITION");
+  metrics->add_option("--units", c.units, "Units of the meshes, for printed values")->type_name("NAME");
+  add_run_options(*metrics, c, "JSON instead of a summary");
+  metrics->callback([command, conditions] {
+    check_units(command->units, command->o1, command->transform_o1);
+    check_units(command->units, command->o2, command->transform_o2);
+    for (const std::string& text : *conditions)
+      command->conditions.push_back(parse_metric_condition(text, command->options));
+    if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);
+  });
+}

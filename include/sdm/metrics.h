@@ -1,0 +1,101 @@
+/// Measures that compare two surfaces by the distances of all their points: averages, percentiles, fractions
+/// within tolerances, with certified bounds.
+///
+/// Threads: the functions may be called concurrently.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/bounds.h>
+#include <sdm/mesh.h>
+#include <sdm/progress.h>
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sdm {
+
+/// Options of surface_metrics().
+struct MetricsOptions {
+  std::vector<double> percentiles{95};  ///< in per cent, above 0 and below 100
+  std::vector<double> tolerances{};     ///< distances ≥ 0, in units of the meshes
+  /// Bounds of average distances and percentiles are at most this far apart, by default kRelative of their
+  /// value; > 0, in units of the meshes. At least kLeast of the diagonal of the box of both meshes is used,
+  /// as distances are found in single precision.
+  std::optional<double> precision{};
+  double fraction_precision = 1e-3;  ///< of fractions of the area; > 0
+  /// Parts that a surface is divided into, at most, but for its faces: then the bounds stay farther apart.
+  std::size_t most_parts = 4'000'000;
+  Progress progress{};
+
+  static constexpr double kRelative = 2e-3, kLeast = 2e-5;
+};
+
+/// Distances from a surface A to a surface B: from each point p of A to the closest point of B, d(p),
+/// weighted by the area of A.
+struct DirectedMetrics {
+  double area = 0;                           ///< of A
+  BoundedNumber hausdorff{};                 ///< the largest d
+  BoundedNumber mean{};                      ///< of d
+  BoundedNumber rms{};                       ///< the root of the mean of d²
+  std::vector<BoundedNumber> percentiles{};  ///< for each percentile P, the least t with d ≤ t on P % of A
+  std::vector<BoundedNumber> within{};  ///< for each tolerance t, the fraction of A with d ≤ t, in [0, 1]
+  /// The mean of |n(p)·n(q)| for the normals of the faces at p and at its closest point q, in [0, 1]: an
+  /// estimate from the middles of all parts, as normals jump.
+  double normal_consistency = 0;
+};
+
+/// Measures of two surfaces A and B. M(A, B) is the mean of the distances from A to B, |A| the area of A.
+struct SurfaceMetrics {
+  std::array<DirectedMetrics, 2> from{};     ///< from A to B, from B to A
+  BoundedNumber hausdorff{};                 ///< the larger one
+  std::vector<BoundedNumber> percentiles{};  ///< for each percentile, the larger one of both directions
+  BoundedNumber assd{};  ///< average symmetric surface distance: (|A| M(A, B) + |B| M(B, A)) / (|A| + |B|)
+  BoundedNumber masd{};  ///< mean average surface distance: (M(A, B) + M(B, A)) / 2
+  BoundedNumber rmsd{};  ///< the root of the mean of the squared distances of the points of both
+  BoundedNumber chamfer_l1{};                 ///< M(A, B) + M(B, A)
+  BoundedNumber chamfer_l2{};                 ///< the sum of both means of squared distances: an area
+  std::vector<BoundedNumber> surface_dice{};  ///< for each tolerance, the fraction of both areas within it
+  std::vector<BoundedNumber> f_score{};  ///< for each tolerance, the harmonic mean of both fractions within
+  double normal_consistency = 0;         ///< the mean of both directions: an estimate
+};
+
+/// Computes the measures. Nothing is sampled: on each part of a surface the distance lies between two linear
+/// functions, whose integrals and distributions are known, and parts are divided until the bounds are as
+/// close as the options ask. All bounds hold in spite of rounding. Points on faces without area count for the
+/// Hausdorff distance only. The result does not depend on the number of threads.
+///
+/// A mesh without faces is an empty surface: if both are empty, distances are 0 and fractions 1; if one is,
+/// distances are infinite and fractions 0; these are exact.
+///
+/// Throws sdm::Error if a mesh is unusable for another reason (see validate) or its faces have no area, for
+/// options out of range, or if there is not enough memory; Cancelled. Cost: building the sites of both, the
+/// Hausdorff distance, a search for each vertex, and a few for each face; more parts where surfaces cross and
+/// where they are closer than their curvature.
+[[nodiscard]] SDM_API SurfaceMetrics surface_metrics(const Mesh& a, const Mesh& b,
+                                                     const MetricsOptions& options = {});
+
+/// What a measure is a number of.
+enum class MetricUnit { length, area, fraction };
+
+/// A measure with the name by which users refer to it.
+struct NamedMetric {
+  std::string name;  ///< hd, hd95, assd, masd, rmsd, chamfer_l1, chamfer_l2, nsd(T), precision(T), recall(T),
+                     ///< f_score(T), normal_consistency; T as short as it reads back
+  BoundedNumber number{};
+  MetricUnit unit = MetricUnit::length;
+};
+
+/// Returns "hd95" for 95, and "nsd(0.5)" for "nsd" and 0.5: numbers as short as they read back.
+[[nodiscard]] SDM_API std::string percentile_name(double percent);
+[[nodiscard]] SDM_API std::string metric_name(std::string_view kind, double tolerance);
+
+/// Returns all measures of both surfaces, of metrics computed with these options. `precision(T)` is the
+/// fraction of A within T of B, `recall(T)` that of B within T of A: B is the truth. Cost: O(n) in measures.
+[[nodiscard]] SDM_API std::vector<NamedMetric> named_metrics(const SurfaceMetrics& metrics,
+                                                             const MetricsOptions& options);
+
+}  // namespace sdm

@@ -1,0 +1,65 @@
+// Measures that compare two surfaces.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+#include <sdm/metrics.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proximity.h"
+#include "sites_in_use.h"
+
+namespace sdm::python {
+namespace {
+
+/// (value, lower, upper, certainty)
+nb::tuple tuple_of(const BoundedNumber& number) {
+  return nb::make_tuple(number.value, number.lower, number.upper, name_of(number.certainty));
+}
+
+nb::dict dict_of(const DirectedMetrics& m, const MetricsOptions& options) {
+  nb::dict result;
+  const auto add = [&](const std::string& name, const BoundedNumber& number) {
+    result[name.c_str()] = tuple_of(number);
+  };
+  add("hd", m.hausdorff);
+  for (std::size_t i = 0; i < m.percentiles.size(); ++i)
+    add(percentile_name(options.percentiles[i]), m.percentiles[i]);
+  add("mean", m.mean);
+  add("rms", m.rms);
+  for (std::size_t i = 0; i < m.within.size(); ++i)
+    add(metric_name("within", options.tolerances[i]), m.within[i]);
+  return result;
+}
+
+/// Dictionaries of both together, from a to b, and from b to a, and both areas.
+nb::tuple surface_metrics_of(nb::handle a, nb::handle b, std::vector<double> percentiles,
+                             std::vector<double> tolerances, std::optional<double> precision,
+                             double fraction_precision, nb::handle progress) {
+  const SitesInUse on(a), to(b);
+  MetricsOptions options{.percentiles = std::move(percentiles),
+                         .tolerances = std::move(tolerances),
+                         .precision = precision,
+                         .fraction_precision = fraction_precision};
+  SurfaceMetrics metrics;
+  run(progress, [&](const Progress& report) {
+    options.progress = report;
+    metrics = surface_metrics(on.mesh(), to.mesh(), options);
+  });
+  nb::dict both;
+  for (const NamedMetric& m : named_metrics(metrics, options)) both[m.name.c_str()] = tuple_of(m.number);
+  return nb::make_tuple(both, dict_of(metrics.from[0], options), dict_of(metrics.from[1], options),
+                        nb::make_tuple(metrics.from[0].area, metrics.from[1].area));
+}
+
+}  // namespace
+
+void bind_metrics(nb::module_& module) {
+  module.def("surface_metrics", &surface_metrics_of, nb::arg("a").none(), nb::arg("b").none(),
+             nb::arg("percentiles"), nb::arg("tolerances"), nb::arg("precision").none(),
+             nb::arg("fraction_precision"), nb::arg("progress").none());
+}
+
+}  // namespace sdm::python

@@ -1,0 +1,254 @@
+#include "certify/metrics/directed_search.h"
+
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "certify/hausdorff/vertex_search.h"
+#include "core/parallel.h"
+#include "geometry/rounding.h"
+#include "geometry/spatial_order.h"
+#include "geometry/vec.h"
+
+namespace sdm::metrics {
+namespace {
+
+constexpr std::size_t kGrain = 256;
+constexpr double kLeastSize = 1e-9;  // of the diagonal: smaller parts are not divided
+// Parts that are smaller beside their distance, squared, have a close bound by their size: of many faces that
+// are about as near, none would raise it.
+constexpr double kNear = 0.25;
+
+/// The vertices of A that have a face, measured.
+std::vector<MeasuredPoint> measure_vertices(const Mesh& a, const sites::SitesData& b, double accuracy,
+                                            const Progress& progress) {
+  std::vector<std::uint8_t> used(a.positions.size());
+  for (const Triangle& t : a.triangles)
+    if (!hausdorff::repeats_corner(t))
+      for (const std::uint32_t v : t) used[v] = 1;
+  std::vector<Vec3> points, sorted;
+  std::vector<std::uint32_t> vertex;
+  for (std::uint32_t v = 0; v < used.size(); ++v)
+    if (used[v]) points.push_back(a.positions[v]), vertex.push_back(v);
+  const std::vector<std::uint32_t> order = spatial_order(points);
+  sorted.reserve(points.size());
+  for (const std::uint32_t i : order) sorted.push_back(points[i]);
+  const std::vector<MeasuredPoint> measured = measure(b, sorted, accuracy, progress);
+  std::vector<MeasuredPoint> result(a.positions.size());
+  for (std::size_t i = 0; i < order.size(); ++i) result[vertex[order[i]]] = measured[i];
+  return result;
+}
+
+BoundedNumber between(double lower, double upper) {
+  return {.value = lower + (upper - lower) / 2, .lower = lower, .upper = std::max(lower, upper)};
+}
+
+Vec3 unit_normal(const Mesh& mesh, std::uint32_t face) {
+  const auto [a, b, c] = corners_of(mesh, face);
+  const Vec3 normal = cross(b - a, c - a);
+  const double length = norm(normal);
+  return length > 0 ? (1 / length) * normal : Vec3{};
+}
+
+}  // namespace
+
+DirectedSearch::DirectedSearch(const Mesh& a, const sites::SitesData& b, const MetricsOptions& options,
+                               const Scale& scale)
+    : a_(a), b_(b), options_(options), scale_(scale), most_parts_(a.triangles.size() + options.most_parts) {}
+
+DirectedMetrics DirectedSearch::run() {
+  make_parts();
+  do sum_up();
+  while (refine(choose()));
+  double consistency = 0;
+  for (const Part& part : parts_)
+    consistency += part.area * std::abs(dot(unit_normal(a_, part.face), unit_normal(b_.mesh, part.nearest)));
+  sums_.normal_consistency = std::min(1.0, consistency / sums_.area);
+  return sums_;
+}
+
+void DirectedSearch::make_parts() {
+  const std::vector<MeasuredPoint> vertices = measure_vertices(a_, b_, scale_.accuracy, options_.progress);
+  parts_.reserve(a_.triangles.size());
+  for (std::uint32_t f = 0; f < a_.triangles.size(); ++f) {
+    const Triangle& t = a_.triangles[f];
+    if (hausdorff::repeats_corner(t)) continue;
+    const auto [p, q, r] = corners_of(a_, f);
+    const double area = norm(cross(q - p, r - p)) / 2;
+    if (!(area > 0)) continue;
+    parts_.push_back({.corner = {vertices[t[0]], vertices[t[1]], vertices[t[2]]}, .face = f, .area = area});
+    sums_.area += area;
+  }
+  if (parts_.empty()) throw Error("the faces of a mesh have no area: there are no average distances");
+  std::vector<std::size_t> all(parts_.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  bound_by_middles(all);
+}
+
+// All sums are in the order of the parts, whatever the number of threads.
+void DirectedSearch::sum_up() {
+  double mean_low = 0, mean_high = 0, square_low = 0, square_high = 0;
+  for (const Part& part : parts_) {
+    const Linear low = part.lower(), high = part.upper();
+    mean_low += part.area * low.mean(), mean_high += part.area * high.mean();
+    square_low += part.area * low.mean_square(), square_high += part.area * high.mean_square();
+  }
+  const double less = (1 - kDoubleRounding) / sums_.area, more = (1 + kDoubleRounding) / sums_.area;
+  const auto rounded = [&](double low, double high) {
+    return between(std::max(0.0, low - scale_.rounding), high > 0 ? high + scale_.rounding : 0);
+  };
+  sums_.mean = rounded(less * mean_low, more * mean_high);
+  sums_.rms = rounded(std::sqrt(less * square_low), std::sqrt(more * square_high));
+  sums_.percentiles.clear(), sums_.within.clear();
+  for (const double percent : options_.percentiles) sums_.percentiles.push_back(percentile(percent));
+  for (const double t : options_.tolerances) sums_.within.push_back(within(t));
+}
+
+BoundedNumber DirectedSearch::within(double t) const {
+  double low = 0, high = 0;
+  bool all = true, any = false;
+  for (const Part& part : parts_) {
+    const double surely = part.upper().fraction_within(t), maybe = part.lower().fraction_within(t);
+    low += part.area * surely, high += part.area * maybe;
+    all = all && surely == 1, any = any || maybe > 0;
+  }
+  const double less = (1 - kDoubleRounding) / sums_.area, more = (1 + kDoubleRounding) / sums_.area;
+  return between(all ? 1 : less * low, !any ? 0 : std::min(1.0, more * high));
+}
+
+double DirectedSearch::width(const BoundedNumber& number) const {
+  return std::max(options_.precision.value_or(MetricsOptions::kRelative * number.lower),
+                  MetricsOptions::kLeast * scale_.size);
+}
+
+BoundedNumber DirectedSearch::percentile(double percent) const {
+  const double fraction = percent / 100;
+  const double low = quantile((1 - kDoubleRounding) * fraction, &Part::lower),
+               high = quantile(std::min(1.0, (1 + kDoubleRounding) * fraction), &Part::upper);
+  return between(std::max(0.0, low - scale_.rounding), high > 0 ? high + scale_.rounding : 0);
+}
+
+double DirectedSearch::quantile(double fraction, Linear (Part::*bound)() const) const {
+  struct Piece {
+    Linear bound;
+    double area;
+  };
+  std::vector<Piece> open;
+  double lo = std::numeric_limits<double>::infinity(), hi = 0, below = 0;
+  for (const Part& part : parts_) {
+    open.push_back({(part.*bound)(), part.area});
+    lo = std::min(lo, std::max(0.0, open.back().bound.least())),
+    hi = std::max(hi, open.back().bound.largest());
+  }
+  const double asked = fraction * sums_.area;
+  constexpr int kHalvings = 60;
+  for (int n = 0; n < kHalvings && lo < hi; ++n) {
+    const double middle = lo + (hi - lo) / 2;
+    double area = below;
+    for (const Piece& piece : open) area += piece.area * piece.bound.fraction_within(middle);
+    (area >= asked ? hi : lo) = middle;
+    // Pieces that are wholly below `lo` count from now on, those above `hi` do not.
+    std::erase_if(open, [&](const Piece& piece) {
+      if (piece.bound.largest() <= lo) below += piece.area;
+      return piece.bound.largest() <= lo || piece.bound.least() > hi;
+    });
+  }
+  return bound == &Part::lower ? lo : hi;
+}
+
+// Parts that together contribute half of what is asked for need not be bounded more closely.
+void DirectedSearch::choose_by_share(const std::vector<double>& contributions, double target,
+                                     Chosen& chosen) const {
+  double total = 0;
+  for (const double c : contributions) total += c;
+  if (total <= target) return;
+  const double share = target / (2 * static_cast<double>(contributions.size()));
+  for (std::size_t i = 0; i < contributions.size(); ++i)
+    if (contributions[i] > share) chosen[i] = 1;
+}
+
+// A percentile is as close as the bounds of the parts whose distances may be equal to it. Those that are far
+// apart come first: they may turn out to have other distances.
+void DirectedSearch::choose_around(const BoundedNumber& percentile, Chosen& chosen) const {
+  const double found = percentile.upper - percentile.lower, asked = width(percentile);
+  if (found <= asked) return;
+  const double enough = std::max(asked / 2, found / 4);
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Part& part = parts_[i];
+    if (part.gap() > enough && part.upper().largest() >= percentile.lower &&
+        part.lower().least() <= percentile.upper)
+      chosen[i] = 1;
+  }
+}
+
+DirectedSearch::Chosen DirectedSearch::choose() const {
+  Chosen chosen(parts_.size());
+  std::vector<double> contributions(parts_.size());
+  const auto choose = [&](double target, const auto& difference) {
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      contributions[i] = parts_[i].area * difference(parts_[i].lower(), parts_[i].upper());
+    choose_by_share(contributions, target * sums_.area, chosen);
+  };
+  choose(width(sums_.mean), [](const Linear& low, const Linear& high) { return high.mean() - low.mean(); });
+  if (const double found = sums_.rms.upper - sums_.rms.lower, asked = width(sums_.rms); found > asked)
+    choose(asked * (sums_.rms.lower + sums_.rms.upper),
+           [](const Linear& low, const Linear& high) { return high.mean_square() - low.mean_square(); });
+  for (const double t : options_.tolerances)
+    choose(options_.fraction_precision, [&](const Linear& low, const Linear& high) {
+      return low.fraction_within(t) - high.fraction_within(t);
+    });
+  for (const BoundedNumber& percentile : sums_.percentiles) choose_around(percentile, chosen);
+  return chosen;
+}
+
+bool DirectedSearch::refine(const Chosen& chosen) {
+  const double least = kLeastSize * scale_.size;
+  std::vector<std::size_t> thorough, divided;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Part& part = parts_[i];
+    if (!chosen[i] || part.gap() <= 2 * scale_.accuracy) continue;
+    if (!part.thorough && part.squared_size() > kNear * part.upper().least() * part.upper().least())
+      thorough.push_back(i);
+    else if (part.squared_size() > least * least)
+      divided.push_back(i);
+  }
+  parallel_for(thorough.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) bound_thoroughly(b_, parts_[thorough[n]]);
+  });
+  if (parts_.size() + divided.size() > most_parts_) divided.resize(most_parts_ - parts_.size());
+  divide(divided);
+  return !thorough.empty() || !divided.empty();
+}
+
+void DirectedSearch::divide(const std::vector<std::size_t>& divided) {
+  std::vector<Vec3> points;
+  points.reserve(divided.size());
+  for (const std::size_t i : divided) points.push_back(parts_[i].middle_of_side());
+  const std::vector<MeasuredPoint> middles = measure(b_, points, scale_.accuracy, options_.progress);
+  std::vector<std::size_t> pieces;
+  for (std::size_t n = 0; n < divided.size(); ++n) {
+    const auto [first, second] = halves(parts_[divided[n]], middles[n]);
+    pieces.push_back(divided[n]), pieces.push_back(parts_.size());
+    parts_[divided[n]] = first;
+    parts_.push_back(second);
+  }
+  bound_by_middles(pieces);
+}
+
+void DirectedSearch::bound_by_middles(const std::vector<std::size_t>& numbers) {
+  std::vector<Vec3> points;
+  points.reserve(numbers.size());
+  for (const std::size_t i : numbers) points.push_back(parts_[i].middle());
+  const std::vector<MeasuredPoint> middles = measure(b_, points, scale_.accuracy, options_.progress);
+  parallel_for(numbers.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      Part& part = parts_[numbers[n]];
+      part.nearest = middles[n].nearest;
+      bound(b_, part);
+    }
+  });
+}
+
+}  // namespace sdm::metrics

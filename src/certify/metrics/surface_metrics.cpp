@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+#include <sdm/engine.h>
+#include <sdm/error.h>
+#include <sdm/hausdorff.h>
+#include <sdm/metrics.h>
+#include <sdm/sites.h>
+#include <sdm/tolerance.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include "certify/metrics/directed_search.h"
+#include "core/memory.h"
+#include "geometry/rounding.h"
+#include "geometry/vec.h"
+
+namespace sdm {
+namespace {
+
+BoundedNumber exactly(double value) {
+  return {.value = value, .certainty = Certainty::exact, .lower = value, .upper = value};
+}
+
+/// An increasing function of two numbers.
+template <class Function>
+BoundedNumber combined(const BoundedNumber& a, const BoundedNumber& b, const Function& f) {
+  BoundedNumber result{.lower = (1 - kFewRoundings) * f(a.lower, b.lower),
+                       .upper = (1 + kFewRoundings) * f(a.upper, b.upper)};
+  result.value = std::clamp(f(a.value, b.value), result.lower, result.upper);
+  if (a.certainty == Certainty::exact && b.certainty == Certainty::exact) result.certainty = Certainty::exact;
+  return result;
+}
+
+/// The same of a function whose value lies between those of its arguments, also after rounding.
+template <class Function>
+BoundedNumber averaged(const BoundedNumber& a, const BoundedNumber& b, const Function& f) {
+  BoundedNumber result = combined(a, b, f);
+  result.lower = std::max(result.lower, std::min(a.lower, b.lower));
+  result.upper = std::min(result.upper, std::max(a.upper, b.upper));
+  result.value = std::clamp(result.value, result.lower, result.upper);
+  return result;
+}
+
+BoundedNumber larger(const BoundedNumber& a, const BoundedNumber& b) {
+  BoundedNumber result = a.lower < b.lower || (a.lower == b.lower && a.upper < b.upper) ? b : a;
+  if (const double upper = std::max(a.upper, b.upper); upper > result.upper)
+    result.upper = upper, result.certainty = Certainty::bounded;
+  return result;
+}
+
+double sum(double x, double y) {
+  return x + y;
+}
+
+double mean(double x, double y) {
+  return x / 2 + y / 2;
+}
+
+double sum_of_squares(double x, double y) {
+  return x * x + y * y;
+}
+
+double harmonic_mean(double x, double y) {
+  return x + y > 0 ? 2 * x * y / (x + y) : 0;
+}
+
+void check(const MetricsOptions& options) {
+  for (const double p : options.percentiles)
+    if (!(p > 0 && p < 100)) throw Error("a percentile must be above 0 and below 100");
+  for (const double t : options.tolerances)
+    if (!(t >= 0 && std::isfinite(t)))
+      throw Error("a tolerance of metrics must be a number that is not negative");
+  if (options.precision && !(*options.precision > 0))
+    throw Error("the precision of metrics must be greater than 0");
+  if (!(options.fraction_precision > 0)) throw Error("the precision of fractions must be greater than 0");
+}
+
+/// The measures of surfaces of which one or both are empty.
+DirectedMetrics metrics_of_none(bool both, const MetricsOptions& options) {
+  const BoundedNumber distance = exactly(both ? 0 : metrics::kInfinity), fraction = exactly(both ? 1 : 0);
+  return {.hausdorff = distance,
+          .mean = distance,
+          .rms = distance,
+          .percentiles = std::vector<BoundedNumber>(options.percentiles.size(), distance),
+          .within = std::vector<BoundedNumber>(options.tolerances.size(), fraction),
+          .normal_consistency = fraction.value};
+}
+
+/// No distance of a point exceeds the largest one.
+void limit_by_largest(DirectedMetrics& m, double accuracy) {
+  const double most = m.hausdorff.upper;
+  const auto limit = [&](BoundedNumber& number) {
+    number.upper = std::min(number.upper, most), number.lower = std::min(number.lower, most);
+    number.value = std::clamp(number.value, number.lower, number.upper);
+    if (number.upper - number.lower <= accuracy) number.certainty = Certainty::exact;
+  };
+  limit(m.mean), limit(m.rms);
+  for (BoundedNumber& percentile : m.percentiles) limit(percentile);
+  for (BoundedNumber& fraction : m.within)
+    if (fraction.lower == fraction.upper) fraction.certainty = Certainty::exact;
+}
+
+std::array<DirectedMetrics, 2> both_directions(const Mesh& a, const Mesh& b, const MetricsOptions& options) {
+  const std::array sites{Sites(a), Sites(b)};
+  const SymmetricHausdorff hausdorff =
+      symmetric_hausdorff(sites[0], sites[1], {.progress = options.progress});
+  Box box = bounds(a);
+  extend(box, bounds(b));
+  double coordinate = 0;
+  for (int k = 0; k < 3; ++k) coordinate = std::max({coordinate, std::abs(box.lo[k]), std::abs(box.hi[k])});
+  const double size = diagonal(box);
+  const metrics::Scale scale{size, kDoubleRounding * std::max(size, coordinate),
+                             engine_accuracy(engines().front(), a, b)};
+  std::array<DirectedMetrics, 2> from;
+  for (int i = 0; i < 2; ++i) {
+    from[i] = metrics::DirectedSearch(sites[i].mesh(), internals(sites[1 - i]), options, scale).run();
+    from[i].hausdorff = hausdorff.from[i].distance;
+    limit_by_largest(from[i], 2 * scale.rounding);
+  }
+  return from;
+}
+
+SurfaceMetrics metrics_of(std::array<DirectedMetrics, 2> from) {
+  const auto& [a, b] = from;
+  const auto weighted = [&](double x, double y) {
+    return x == y ? x : (a.area * x + b.area * y) / (a.area + b.area);
+  };
+  SurfaceMetrics result{
+      .hausdorff = larger(a.hausdorff, b.hausdorff),
+      .assd = averaged(a.mean, b.mean, weighted),
+      .masd = averaged(a.mean, b.mean, mean),
+      .rmsd = averaged(a.rms, b.rms, [&](double x, double y) { return std::sqrt(weighted(x * x, y * y)); }),
+      .chamfer_l1 = combined(a.mean, b.mean, sum),
+      .chamfer_l2 = combined(a.rms, b.rms, sum_of_squares),
+      .normal_consistency = mean(a.normal_consistency, b.normal_consistency)};
+  for (std::size_t i = 0; i < a.percentiles.size(); ++i)
+    result.percentiles.push_back(larger(a.percentiles[i], b.percentiles[i]));
+  for (std::size_t i = 0; i < a.within.size(); ++i) {
+    result.surface_dice.push_back(averaged(a.within[i], b.within[i], weighted));
+    result.f_score.push_back(averaged(a.within[i], b.within[i], harmonic_mean));
+  }
+  result.from = std::move(from);
+  return result;
+}
+
+}  // namespace
+
+SurfaceMetrics surface_metrics(const Mesh& a, const Mesh& b, const MetricsOptions& options) try {
+  check(options);
+  if (a.triangles.empty() || b.triangles.empty()) {
+    const DirectedMetrics none = metrics_of_none(a.triangles.empty() && b.triangles.empty(), options);
+    return metrics_of({none, none});
+  }
+  return metrics_of(both_directions(a, b, options));
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the metrics");
+}
+
+std::string percentile_name(double percent) {
+  return fmt::format("hd{}", percent);
+}
+
+std::string metric_name(std::string_view kind, double tolerance) {
+  return fmt::format("{}({})", kind, tolerance);
+}
+
+std::vector<NamedMetric> named_metrics(const SurfaceMetrics& metrics, const MetricsOptions& options) {
+  std::vector<NamedMetric> result{{"hd", metrics.hausdorff}};
+  for (std::size_t i = 0; i < options.percentiles.size(); ++i)
+    result.push_back({percentile_name(options.percentiles[i]), metrics.percentiles[i]});
+  result.push_back({"assd", metrics.assd});
+  result.push_back({"masd", metrics.masd});
+  result.push_back({"rmsd", metrics.rmsd});
+  result.push_back({"chamfer_l1", metrics.chamfer_l1});
+  result.push_back({"chamfer_l2", metrics.chamfer_l2, MetricUnit::area});
+  for (std::size_t i = 0; i < options.tolerances.size(); ++i) {
+    const auto add = [&](std::string_view name, const BoundedNumber& number) {
+      result.push_back({metric_name(name, options.tolerances[i]), number, MetricUnit::fraction});
+    };
+    add("nsd", metrics.surface_dice[i]);
+    add("precision", metrics.from[0].within[i]);
+    add("recall", metrics.from[1].within[i]);
+    add("f_score", metrics.f_score[i]);
+  }
+  const double normals = metrics.normal_consistency;
+  result.push_back({"normal_consistency",
+                    {.value = normals, .certainty = Certainty::estimate, .lower = normals, .upper = normals},
+                    MetricUnit::fraction});
+  return result;
+}
+
+}  // namespace sdm

@@ -1,0 +1,113 @@
+// `sdm metrics`.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/io.h>
+#include <sdm/metrics.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/samples.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+using Json = nlohmann::json;
+using testing::HasSubstr;
+
+struct MetricsCommandTest : testing::Test {
+  const TemporaryFolder folder;
+  const std::string o1 = write_obj(folder / "o1.obj", square(1, 0)),
+                    o2 = write_obj(folder / "o2.obj", square(1, 0.25));
+
+  [[nodiscard]] Outcome metrics(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"metrics", o1, o2});
+    return run_sdm(more);
+  }
+};
+
+TEST_F(MetricsCommandTest, PrintsWhatTheLibraryComputes) {
+  const std::string ball = write_obj(folder / "ball.obj", sphere(2));
+  const Outcome run = run_sdm(
+      {"metrics", ball, o2, "--json", "--tolerance", "0.5,1", "--percentile", "50,95", "--units", "mm"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json json = Json::parse(run.out);
+  const MetricsOptions options{.percentiles = {50, 95}, .tolerances = {0.5, 1}};
+  const SurfaceMetrics expected =
+      surface_metrics(read_mesh(ball), read_mesh(o2), options);
+  for (const NamedMetric& m : named_metrics(expected, options)) {
+    EXPECT_EQ(json["metrics"][m.name]["value"], m.number.value) << m.name;
+    EXPECT_EQ(json["metrics"][m.name]["lower"], m.number.lower) << m.name;
+    EXPECT_EQ(json["metrics"][m.name]["upper"], m.number.upper) << m.name;
+  }
+  EXPECT_EQ(json["metrics"].size(), named_metrics(expected, options).size());
+  EXPECT_EQ(json["o2_to_o1"]["mean"]["value"], expected.from[1].mean.value);
+  EXPECT_EQ(json["o1_to_o2"]["percentiles"][0]["percent"], 50);
+  EXPECT_EQ(json["o1_to_o2"]["within"][1]["upper"], expected.from[0].within[1].upper);
+  EXPECT_EQ(json["metrics"]["normal_consistency"]["kind"], "estimate");
+  EXPECT_FALSE(json.contains("verdict"));
+}
+
+TEST_F(MetricsCommandTest, PrintsUnitsAndBounds) {
+  const std::string text = metrics({"--units", "mm", "--tolerance", "0.5"}).out;
+  EXPECT_THAT(text, HasSubstr("  hd                  0.25 mm ("));
+  EXPECT_THAT(text, HasSubstr("  chamfer_l2          0.125 mm² "));
+  EXPECT_THAT(text, HasSubstr("  nsd(0.5)            1 (exact)"));
+  EXPECT_THAT(text, HasSubstr("normal_consistency  1 (estimate)"));
+  EXPECT_EQ(metrics({"--quiet"}).out, "");
+}
+
+TEST_F(MetricsCommandTest, FailsUnderConditions) {
+  const auto outcome = [&](const std::vector<std::string>& conditions) {
+    std::vector<std::string> more{"--json"};
+    for (const std::string& c : conditions) more.insert(more.end(), {"--fail-if", c});
+    return metrics(more);
+  };
+  EXPECT_EQ(outcome({"hd95>0.26"}).code, 0);
+  EXPECT_EQ(outcome({"hd95 > 0.24"}).code, 3);
+  EXPECT_EQ(outcome({"hd95>0.26", "assd>=0.2"}).code, 3);
+  EXPECT_EQ(outcome({"nsd(0.3)<0.95"}).code, 0);
+  EXPECT_EQ(outcome({"f_score(0.2)<0.95"}).code, 3);
+  EXPECT_EQ(outcome({"normal_consistency<0.5"}).code, 0);
+  const Json json = Json::parse(outcome({"hd99>0.3", "recall(0.2)<=0.5"}).out);
+  EXPECT_EQ(json["verdict"], "FAIL");
+  EXPECT_EQ(json["fail_if"][0]["text"], "hd99>0.3");
+  EXPECT_EQ(json["fail_if"][0]["verdict"], "PASS");
+  EXPECT_EQ(json["fail_if"][1]["verdict"], "FAIL");
+  EXPECT_TRUE(json["metrics"].contains("hd99"));
+  EXPECT_TRUE(json["metrics"].contains("recall(0.2)"));
+}
+
+// The bounds of a curved pair contain the limit at first.
+TEST_F(MetricsCommandTest, ComputesCloserBoundsUntilALimitIsDecided) {
+  const std::string a = write_obj(folder / "a.obj", sphere(3)), b = write_obj(folder / "b.obj", torus(24, 12));
+  const Json json = Json::parse(run_sdm({"metrics", a, b, "--json", "--precision", "0.1"}).out);
+  const double lower = json["metrics"]["assd"]["lower"], value = json["metrics"]["assd"]["value"];
+  const std::string limit = std::to_string(lower + 0.1 * (value - lower));
+  const int code = run_sdm({"metrics", a, b, "--precision", "0.1", "--fail-if", "assd>" + limit}).code;
+  EXPECT_TRUE(code == 0 || code == 3) << code;
+}
+
+TEST_F(MetricsCommandTest, RefusesWhatIsNoCondition) {
+  for (const auto& [condition, reason] : std::vector<std::pair<std::string, std::string>>{
+           {"hd95", "has no comparison"},
+           {"hd95>", "does not end with a number"},
+           {"hd95>x", "does not end with a number"},
+           {"hd100>1", "names no measure"},
+           {"dice>1", "names no measure"},
+           {"nsd>1", "names no measure"},
+           {"nsd(-1)>1", "names no measure"}}) {
+    const Outcome run = metrics({"--fail-if", condition});
+    EXPECT_EQ(run.code, 2) << condition;
+    EXPECT_THAT(run.err, HasSubstr(reason));
+    EXPECT_THAT(run.err, HasSubstr(condition));
+  }
+  EXPECT_EQ(metrics({"--percentile", "100"}).code, 2);
+  EXPECT_EQ(metrics({"--tolerance", "-1"}).code, 2);
+  EXPECT_EQ(metrics({"--precision", "0"}).code, 2);
+  EXPECT_EQ(run_sdm({"metrics", o1, folder / "none.obj"}).code, 1);
+}
+
+}  // namespace
+}  // namespace sdm::test
