@@ -5,6 +5,7 @@
 #include <sdm/bounds.h>
 #include <sdm/map.h>
 #include <sdm/proximity_query.h>
+#include <sdm/time_of_contact.h>
 
 #include <cstdint>
 #include <limits>
@@ -51,6 +52,18 @@ struct PairDepth {
 struct PairContacts {
   std::uint32_t first = kNone, second = kNone;  ///< first < second
   std::span<const Contact> contacts{};          ///< at least one
+};
+
+/// The first contact of a pair that moves, as time_of_contact() has it: O1 is `first`, O2 is `second`.
+struct PairTimeOfContact {
+  std::uint32_t first = kNone, second = kNone;  ///< first < second
+  TimeOfContact time_of_contact{};
+};
+
+/// Options of MultiBodyQuery::time_of_contact().
+struct TimeOfContactOptions {
+  double until = 1;            ///< the last time, from 0 to 1, at which contacts are looked for
+  bool earliest_only = false;  ///< only the pairs with the earliest contact of all
 };
 
 /// The distance map of one body to all others.
@@ -133,6 +146,21 @@ class SDM_API MultiBodyQuery {
   /// The number of pairs whose boxes were within `max_distance` of each other in the last call of
   /// separations().
   [[nodiscard]] std::size_t candidate_pairs() const;
+
+  /// Returns the pairs that come into contact while each body makes its motion, whatever the poses of the
+  /// bodies: one motion per body, sorted by the time of their first contacts, then by first and second body.
+  /// Pairs are those of the filters, and each is by itself: bodies move on after their contacts. To move
+  /// all of them without a collision, end all motions at the first time; those that are in contact then
+  /// have contact at time 0 of motions from there.
+  ///
+  /// `tolerance` > 0 and the results are as of sdm::time_of_contact() for each pair, to the bit, but for
+  /// pairs whose boxes are apart, which have no contact. None is missed, however thin the bodies and long the
+  /// motions. Throws sdm::Error, naming the body, as Motion::at does, and for another number of motions, or a
+  /// tolerance or time that is out of range. Cost: a sweep over the boxes around the motions, and that of
+  /// time_of_contact() for each pair whose boxes are within the tolerance, but for contacts that are later
+  /// than asked for; the pairs distributed over all cores.
+  [[nodiscard]] std::vector<PairTimeOfContact> time_of_contact(
+      std::span<const Motion> motions, double tolerance, const TimeOfContactOptions& options = {}) const;
 
   /// Returns the distances from the texels of a body to the nearest other body, whatever their filters;
   /// texels with none within `max_distance`, > 0, have no value. Throws sdm::Error for any other distance,

@@ -13,11 +13,6 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-struct PyMultiBodyQuery {
-  MultiBodyQuery query;
-  Access access;
-};
-
 struct PySeparations {
   std::vector<PairSeparation> pairs;
   LazyArray bodies, separation, witness, colliding;
@@ -117,12 +112,6 @@ MultiBodyQuery query_of(nb::handle bodies, const MultiBodyOptions& options) {
     ++i;
   }
   return MultiBodyQuery(std::move(shapes), options);
-}
-
-std::size_t faces_of(const MultiBodyQuery& query) {
-  std::size_t faces = 0;
-  for (std::size_t body = 0; body < query.size(); ++body) faces += query.sites(body).mesh().triangles.size();
-  return faces;
 }
 
 void bind_motion(nb::class_<PyMultiBodyQuery>& query) {
@@ -318,6 +307,12 @@ signed as in nearest_map(); NaN where none is within max_distance.)")
 
 }  // namespace
 
+std::size_t faces_of(const MultiBodyQuery& query) {
+  std::size_t faces = 0;
+  for (std::size_t body = 0; body < query.size(); ++body) faces += query.sites(body).mesh().triangles.size();
+  return faces;
+}
+
 void bind_bodies(nb::module_& module) {
   bind_separations(module);
   bind_penetration_depths(module);
@@ -342,6 +337,7 @@ array([[0, 1],
   bind_motion(query);
   bind_filters(query);
   bind_answers(query);
+  bind_moving_bodies(module, query);
   bind_nearest(query);
 }
 

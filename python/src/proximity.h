@@ -29,6 +29,14 @@ struct PyProximityQuery {
   Access access;
 };
 
+struct PyMultiBodyQuery {
+  MultiBodyQuery query;
+  Access access;
+};
+
+/// The number of faces of all bodies.
+[[nodiscard]] std::size_t faces_of(const MultiBodyQuery& query);
+
 /// A mesh prepared for proximity queries, as of sdm.Shape.
 struct PyShape {
   PyShape(const Mesh& mesh, std::optional<std::uint32_t> side, const Progress& progress);
@@ -64,6 +72,8 @@ struct PyNearestMap {
 
 /// Adds the method edit().
 void bind_edit(nb::class_<PyProximityQuery>& query);
+/// Adds the method time_of_contact().
+void bind_moving_bodies(nb::module_& module, nb::class_<PyMultiBodyQuery>& query);
 void bind_self_proximity(nb::module_& module);
 void bind_nearest_map(nb::module_& module);
 

@@ -166,6 +166,42 @@ def test_many_bodies():
     assert query.separations(max_distance=1.2).separation[1] == pytest.approx(0.75, abs=1e-2)
 
 
+def test_many_moving_bodies():
+    shape = sdm.Shape(meshes.box())  # of side 1
+    query = sdm.MultiBodyQuery([shape] * 4)
+    starts = np.array([shift(5 * i, 0, 0) for i in range(4)])
+    ends = starts.copy()
+    ends[0, 0, 3] = 20
+    ends[2, 1, 3] = 3
+    found = query.time_of_contact(starts, ends, tolerance=1e-6)
+    assert found.bodies.tolist() == [[0, 1], [0, 3]] and len(found) == 2  # the third has moved away
+    np.testing.assert_allclose(found.time, [4 / 20, 14 / 20], atol=1e-6)
+    np.testing.assert_allclose(found.normal, [[-1, 0, 0]] * 2, atol=1e-6)
+    assert (found.separation <= 1e-6).all() and not found.bounded.any()
+    apart = found.witness[:, 0] - found.witness[:, 1]
+    np.testing.assert_allclose(np.linalg.norm(apart, axis=1), found.separation, atol=1e-12)
+    assert found.faces.dtype == np.uint32 and found.faces.shape == (2, 2) and found.faces.max() < 12
+    single = sdm.time_of_contact(shape, (starts[0], ends[0]), shape, (starts[1], ends[1]), tolerance=1e-6)
+    assert found.time[0] == single.time and found.witness[0].tolist() == single.witness.tolist()
+
+    assert query.time_of_contact(starts, ends, tolerance=1e-6, until=0.5).bodies.tolist() == [[0, 1]]
+    assert query.time_of_contact(starts, ends, tolerance=1e-6, earliest_only=True).bodies.tolist() == [[0, 1]]
+    query.exclude_pair(0, 1)
+    assert query.time_of_contact(starts, ends, tolerance=1e-6, earliest_only=True).bodies.tolist() == [[0, 3]]
+    rows = np.zeros((4, 7))
+    rows[:, 3] = 1
+    inside = query.time_of_contact(rows, rows, tolerance=1e-6)  # in the same place
+    assert len(inside) == 5 and inside.time.tolist() == [0] * 5 and np.isnan(inside.normal).all()
+    for bad in (lambda: query.time_of_contact(starts[:3], ends[:3], tolerance=1e-6), lambda: query.time_of_contact(starts, ends[:3], tolerance=1e-6),
+                lambda: query.time_of_contact(starts, ends, tolerance=0), lambda: query.time_of_contact(starts, ends, tolerance=1, until=2),
+                lambda: query.time_of_contact(starts, None, tolerance=1)):  # fmt: skip
+        with pytest.raises(sdm.Error):
+            bad()
+    scaled = ends * [[1], [1], [1], [1]] @ np.diag([2, 2, 2, 1])
+    with pytest.raises(sdm.Error, match="body 0: the scale"):
+        query.time_of_contact(starts, scaled, tolerance=1)
+
+
 def test_many_poses():
     gripper, part = sdm.Shape(meshes.box()), sdm.Shape(meshes.sphere(radius=0.5))
     random = np.random.default_rng(4)

@@ -13,9 +13,11 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "proximity/bodies/contact_store.h"
+#include "proximity/bodies/moving_bodies.h"
 #include "proximity/bodies/near_pairs.h"
 #include "proximity/bodies/nearest_body.h"
 #include "proximity/bodies/pool.h"
+#include "proximity/motion/divided_motion.h"
 #include "proximity/pair/pair_answers.h"
 #include "query/shape/posed_body.h"
 
@@ -140,6 +142,16 @@ struct MultiBodyQuery::Impl {
       pool.give_back(std::move(answers));
     };
     parallel_for(unknown.size(), 1, compute_some);
+  }
+
+  [[nodiscard]] std::vector<motion::DividedMotion> divided(std::span<const Motion> motions) const {
+    std::vector<motion::DividedMotion> divided;
+    divided.reserve(motions.size());
+    for (const Motion& motion : motions) {
+      const std::size_t body = divided.size();
+      on_behalf_of(body, [&] { divided.emplace_back(motion, bodies[body].body().box()); });
+    }
+    return divided;
   }
 
   void find_colliding() {
@@ -294,6 +306,21 @@ std::span<const PairContacts> MultiBodyQuery::contacts() {
   impl_->intact.require();
   with_memory_of_bodies([&] { impl_->find_contacts(); });
   return impl_->contacts;
+}
+
+std::vector<PairTimeOfContact> MultiBodyQuery::time_of_contact(std::span<const Motion> motions,
+                                                               double tolerance,
+                                                               const TimeOfContactOptions& options) const {
+  impl_->check_count(motions.size(), "motions");
+  motion::check_tolerance(tolerance);
+  if (!(options.until >= 0 && options.until <= 1))
+    throw Error("contacts until the time " + std::to_string(options.until) +
+                " are asked for; motions take place from 0 to 1");
+  return with_memory_of_bodies([&] {
+    const std::vector<motion::DividedMotion> divided = impl_->divided(motions);
+    return bodies::MovingBodies(impl_->bodies, divided)
+        .first_contacts(impl_->near.filter(), tolerance, options);
+  });
 }
 
 std::size_t MultiBodyQuery::candidate_pairs() const {

@@ -10,13 +10,20 @@
 
 namespace sdm::motion {
 
+void check_tolerance(double tolerance) {
+  if (!(tolerance > 0 && std::isfinite(tolerance)))
+    throw Error("a tolerance of " + std::to_string(tolerance) + " is out of range; use more than 0");
+}
+
 DividedMotion::DividedMotion(const Motion& motion, const Shape& shape)
+    : DividedMotion(motion, internals(shape)->box()) {}
+
+DividedMotion::DividedMotion(const Motion& motion, const Box& box)
     : from_(mesh::Similarity::of(motion.from)) {
   const mesh::Similarity to = mesh::Similarity::of(motion.to);
   if (std::abs(to.scale - from_.scale) > 1e-5 * from_.scale)
     throw Error("the scale of a body changes during its motion from " + std::to_string(from_.scale) + " to " +
                 std::to_string(to.scale));
-  const Box& box = internals(shape)->box();
   shape::check_posed(from_, box);
   shape::check_posed(to, box);
   middle_ = centre(box);

@@ -7,6 +7,9 @@
 
 namespace sdm::motion {
 
+/// Throws sdm::Error unless it is finite and above 0.
+void check_tolerance(double tolerance);
+
 /// A motion: a point p of the mesh is, at the time t, at
 ///   start + t shift + R(t) q,   q = L (p − middle),
 /// with L the linear part of the first pose and R(t) the rotation by t angle about the axis.
@@ -14,6 +17,8 @@ class DividedMotion {
  public:
   /// Throws sdm::Error as Motion::at does.
   DividedMotion(const Motion& motion, const Shape& shape);
+  /// The same for a mesh with that box.
+  DividedMotion(const Motion& motion, const Box& box);
 
   [[nodiscard]] bool rests() const { return angle_ == 0 && shift_ == Vec3{}; }
   [[nodiscard]] bool turns() const { return angle_ > 0; }

@@ -24,11 +24,12 @@ Vec3 beside(const Vec3& vector, const Vec3& along) {
 class Search {
  public:
   Search(const MovingSurface& o1, const MovingSurface& o2, double tolerance,
-         const std::function<bool(double)>& in_contact)
+         const std::function<bool(double)>& in_contact, const std::atomic<double>* until)
       : parts_{Parts(o1), Parts(o2)},
         safe_(o1.motion, o2.motion, 0.5 * tolerance),
         tolerance_(tolerance),
-        in_contact_(in_contact) {}
+        in_contact_(in_contact),
+        until_(until) {}
 
   FreeMotion run() {
     if (parts_[0].empty() || parts_[1].empty()) return {};
@@ -40,6 +41,7 @@ class Search {
         std::pop_heap(later_.begin(), later_.end(), std::greater{});
         now_.push_back(later_.back());
         later_.pop_back();
+        if (until_ && now_.back().time > until_->load(std::memory_order_relaxed)) return {};
         safe_.set_now(now_.back().time);
       }
       const Pair pair = now_.back();
@@ -181,6 +183,7 @@ class Search {
   SafeTime safe_;
   const double tolerance_;
   const std::function<bool(double)>& in_contact_;
+  const std::atomic<double>* const until_;
   std::vector<Pair> now_;    // a stack: those that are safe until now, or not examined
   std::vector<Pair> later_;  // a heap: those that are safe until later, the earliest on top
 };
@@ -188,8 +191,9 @@ class Search {
 }  // namespace
 
 FreeMotion find_first_contact(const MovingSurface& o1, const MovingSurface& o2, double tolerance,
-                              const std::function<bool(double)>& in_contact) {
-  return Search(o1, o2, tolerance, in_contact).run();
+                              const std::function<bool(double)>& in_contact,
+                              const std::atomic<double>* until) {
+  return Search(o1, o2, tolerance, in_contact, until).run();
 }
 
 }  // namespace sdm::motion
