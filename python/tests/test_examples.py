@@ -38,3 +38,19 @@ def test_fit_to_scan(tmp_path):
     example.fit, fit = lambda mesh: fit(mesh, levels=3, steps=4, samples=500, log=lines.append), example.fit
     example.main(str(tmp_path / "scan.ply"), str(tmp_path / "fitted.ply"))
     assert len(sdm.read(tmp_path / "fitted.ply").faces) == 8 * 4**3
+
+
+def test_nut_on_bolt():
+    lines = []
+    advances = load("nut_on_bolt").main(turns=1, log=lines.append)
+    np.testing.assert_allclose(advances, 1, atol=4e-4)  # of the pitch
+    assert len(lines) == 1
+
+
+def test_pile():
+    example = load("pile")
+    sites = sdm.Sites(*example.ring())
+    assert sites.closed and sites.contains([[0.5, 0, 0]]).all() and not sites.contains([[0, 0, 0]]).any()
+    lines = []
+    energy, deepest = example.main(rings=30, log=lines.append)
+    assert energy < 1e-3 and deepest < example.TUBE / 6, lines
