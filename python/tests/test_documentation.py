@@ -69,6 +69,13 @@ def test_pages(page, tmp_path, monkeypatch):
     assert (tmp_path / "distance.png").stat().st_size > 10_000
 
 
+def test_robotics_page():
+    names = {}
+    for block in blocks("docs/robotics.md"):
+        exec(compile(block, "docs/robotics.md", "exec"), names)
+    assert names["hits"]
+
+
 @pytest.mark.skipif("SDM_COMMAND" not in os.environ, reason="the command is not built")
 def test_the_picture_is_that_of_the_command(tmp_path):
     """The README's program and ./demo draw the same picture."""
