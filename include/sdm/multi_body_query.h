@@ -20,6 +20,11 @@ namespace sdm {
 struct MultiBodyOptions {
   std::optional<double> depth_precision{};  ///< as that of ProximityOptions
   double contact_margin = 0;                ///< as that of ProximityOptions
+  /// Leaves out contacts that push a body across an edge between faces that continue each other, as where it
+  /// slides over the tiles of a floor: of edges and vertices whose faces are flat or concave, those that are
+  /// not along a normal of these; and of fixed solids side by side, those out of one into the other. Convex
+  /// edges keep theirs.
+  bool ignore_internal_edges = false;
 };
 
 /// Which pairs a body takes part in. Two bodies are a pair if at most one of them is fixed, and each one's
@@ -141,7 +146,9 @@ class SDM_API MultiBodyQuery {
       double max_distance = std::numeric_limits<double>::infinity());
   /// Returns the depths of the pairs that collide and of which one is a solid.
   [[nodiscard]] std::span<const PairDepth> penetration_depths();
-  /// Returns the pairs that have contacts, within MultiBodyOptions::contact_margin.
+  /// Returns the pairs that have contacts, within MultiBodyOptions::contact_margin; with
+  /// ignore_internal_edges, without those that are internal, at the cost of a sweep over the fixed bodies and
+  /// of a few tests of inside for each contact with a fixed body that has others beside it.
   [[nodiscard]] std::span<const PairContacts> contacts();
   /// The number of pairs whose boxes were within `max_distance` of each other in the last call of
   /// separations().
@@ -161,6 +168,10 @@ class SDM_API MultiBodyQuery {
   /// than asked for; the pairs distributed over all cores.
   [[nodiscard]] std::vector<PairTimeOfContact> time_of_contact(
       std::span<const Motion> motions, double tolerance, const TimeOfContactOptions& options = {}) const;
+
+  /// The poses of all bodies at a time of their motions, as Motion::at gives them; one motion per body.
+  /// Throws sdm::Error as it does, and for another number of motions.
+  [[nodiscard]] std::vector<Transform> poses_at(std::span<const Motion> motions, double time) const;
 
   /// Returns the distances from the texels of a body to the nearest other body, whatever their filters;
   /// texels with none within `max_distance`, > 0, have no value. Throws sdm::Error for any other distance,

@@ -119,14 +119,16 @@ void bind_motion(nb::class_<PyMultiBodyQuery>& query) {
       .def(
           "__init__",
           [](PyMultiBodyQuery* self, nb::handle bodies, std::optional<double> depth_precision,
-             double contact_margin) {
-            new (self) PyMultiBodyQuery{
-                query_of(bodies, {.depth_precision = depth_precision, .contact_margin = contact_margin}), {}};
+             double contact_margin, bool ignore_internal_edges) {
+            new (self) PyMultiBodyQuery{query_of(bodies, {.depth_precision = depth_precision,
+                                                          .contact_margin = contact_margin,
+                                                          .ignore_internal_edges = ignore_internal_edges}),
+                                        {}};
           },
           nb::arg("bodies").none(), nb::kw_only(), nb::arg("depth_precision") = nb::none(),
-          nb::arg("contact_margin") = 0.0,
+          nb::arg("contact_margin") = 0.0, nb::arg("ignore_internal_edges") = false,
           nb::sig("def __init__(self, bodies: collections.abc.Iterable[object], *, depth_precision: float | "
-                  "None = None, contact_margin: float = 0.0) -> None"))
+                  "None = None, contact_margin: float = 0.0, ignore_internal_edges: bool = False) -> None"))
       .def("__len__", [](const PyMultiBodyQuery& self) { return self.query.size(); })
       .def(
           "set_pose",
@@ -322,6 +324,8 @@ void bind_bodies(nb::module_& module) {
 
 bodies: each any form of a mesh (see Mesh), or a Shape, which many bodies can share.
 depth_precision, contact_margin: as of ProximityQuery.
+ignore_internal_edges: leave out contacts that push a body across an edge between faces that continue each other,
+in one mesh or in fixed solids side by side, as where it slides over the tiles of a floor.
 
 Each call computes what it returns, and no more, for the pairs of which a body has moved since the last call:
 the answers of ProximityQuery, to the bit. A call raises Error while another thread uses the object.

@@ -130,6 +130,19 @@ boxes are within the tolerance, on all cores.
 >>> found = query.time_of_contact(starts, ends, tolerance=1e-6)
 >>> found.bodies.tolist(), found.time.round(5).tolist()
 ([[0, 1], [0, 2]], [0.2, 0.4]))");
+  query.def(
+      "poses_at",
+      [](const PyMultiBodyQuery& self, nb::handle starts, nb::handle ends, double time) {
+        const std::vector<Motion> motions = motions_of(starts, ends);
+        const auto lock = self.access.use();
+        std::vector<Transform> poses = self.query.poses_at(motions, time);
+        const std::size_t count = poses.size();
+        return array_of<double>(std::move(poses), {count, 4, 4});
+      },
+      nb::arg("starts").none(), nb::arg("ends").none(), nb::arg("time"),
+      nb::sig("def poses_at(self, starts: object, ends: object, time: float) -> numpy.ndarray"),
+      R"(Returns the poses of all bodies at a time, in [0, 1], of the motions of time_of_contact(), (n, 4, 4)
+float64.)");
 }
 
 }  // namespace sdm::python

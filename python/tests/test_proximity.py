@@ -184,6 +184,9 @@ def test_many_moving_bodies():
     single = sdm.time_of_contact(shape, (starts[0], ends[0]), shape, (starts[1], ends[1]), tolerance=1e-6)
     assert found.time[0] == single.time and found.witness[0].tolist() == single.witness.tolist()
 
+    poses = query.poses_at(starts, ends, single.time)
+    assert (poses[0] == single.pose1).all() and (poses[1] == single.pose2).all() and poses.shape == (4, 4, 4)
+
     assert query.time_of_contact(starts, ends, tolerance=1e-6, until=0.5).bodies.tolist() == [[0, 1]]
     assert query.time_of_contact(starts, ends, tolerance=1e-6, earliest_only=True).bodies.tolist() == [[0, 1]]
     query.exclude_pair(0, 1)
@@ -200,6 +203,17 @@ def test_many_moving_bodies():
     scaled = ends * [[1], [1], [1], [1]] @ np.diag([2, 2, 2, 1])
     with pytest.raises(sdm.Error, match="body 0: the scale"):
         query.time_of_contact(starts, scaled, tolerance=1)
+
+
+def test_internal_edges():
+    tile = sdm.Shape(meshes.box())  # of side 1
+    for ignore in (False, True):
+        query = sdm.MultiBodyQuery([tile, tile, tile], contact_margin=0.02, ignore_internal_edges=ignore)
+        for fixed in (0, 1):
+            query.set_filter(fixed, fixed=True)
+        query.set_poses([shift(0, 0, 0), shift(1, 0, 0), shift(0.01, 0.3, 0.95)])  # 0.05 deep, 0.01 into the second tile
+        slanted = np.abs(query.contacts().normal[:, 2]) < 0.99
+        assert slanted.any() != ignore and not slanted.all()
 
 
 def test_many_poses():

@@ -363,8 +363,8 @@ class SharedShapes : public testing::Test {
 };
 
 TEST_F(SharedShapes, HaveTheAnswersOfPairs) {
-  constexpr double kMargin = 0.1;
-  MultiBodyQuery bodies = query({.contact_margin = kMargin});
+  constexpr double kSharedMargin = 0.1;
+  MultiBodyQuery bodies = query({.contact_margin = kSharedMargin});
   const std::span<const PairContacts> contacts = bodies.contacts();
   auto touching = contacts.begin();
   const std::span<const PairSeparation> separations = bodies.separations(0.5);
@@ -375,7 +375,7 @@ TEST_F(SharedShapes, HaveTheAnswersOfPairs) {
   for (std::uint32_t a = 0; a < bodies.size(); ++a)
     for (std::uint32_t b = a + 1; b < bodies.size(); ++b) {
       SCOPED_TRACE(std::to_string(a) + ' ' + std::to_string(b));
-      ProximityQuery expected = pair(a, b, kMargin);
+      ProximityQuery expected = pair(a, b, kSharedMargin);
       if (!expected.contacts().empty()) {
         ASSERT_NE(touching, contacts.end());
         ASSERT_EQ(std::pair(touching->first, touching->second), std::pair(a, b));

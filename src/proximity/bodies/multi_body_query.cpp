@@ -13,6 +13,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "proximity/bodies/contact_store.h"
+#include "proximity/bodies/internal_contacts.h"
 #include "proximity/bodies/moving_bodies.h"
 #include "proximity/bodies/near_pairs.h"
 #include "proximity/bodies/nearest_body.h"
@@ -78,6 +79,8 @@ struct MultiBodyQuery::Impl {
   std::vector<PairDepth> depths;
   std::vector<PairContacts> contacts;
   bodies::ContactStore stored_contacts;
+  bodies::InternalContacts internal_contacts;
+  std::vector<Contact> external_contacts;  // of `contacts`, if others are left out
 
   Impl(std::vector<Shape> shapes, const MultiBodyOptions& asked)
       : options(asked), given_poses(shapes.size()), near(shapes.size()) {
@@ -208,6 +211,22 @@ struct MultiBodyQuery::Impl {
     for (const bodies::NearPair& pair : near.list())
       if (pair.touching)
         contacts.push_back({pair.pair[0], pair.pair[1], stored_contacts.of(near.state(pair))});
+    if (options.ignore_internal_edges) leave_out_internal();
+  }
+
+  void leave_out_internal() {
+    internal_contacts.follow(bodies, near.filter());
+    std::size_t count = 0;
+    for (const PairContacts& pair : contacts) count += pair.contacts.size();
+    external_contacts.clear(), external_contacts.reserve(count);  // so that spans of it stay valid
+    std::erase_if(contacts, [&](PairContacts& pair) {
+      const std::size_t first = external_contacts.size();
+      for (const Contact& contact : pair.contacts)
+        if (!internal_contacts.contains(contact, {pair.first, pair.second}))
+          external_contacts.push_back(contact);
+      pair.contacts = std::span(external_contacts).subspan(first);
+      return pair.contacts.empty();
+    });
   }
 };
 
@@ -321,6 +340,14 @@ std::vector<PairTimeOfContact> MultiBodyQuery::time_of_contact(std::span<const M
     return bodies::MovingBodies(impl_->bodies, divided)
         .first_contacts(impl_->near.filter(), tolerance, options);
   });
+}
+
+std::vector<Transform> MultiBodyQuery::poses_at(std::span<const Motion> motions, double time) const {
+  impl_->check_count(motions.size(), "motions");
+  std::vector<Transform> poses;
+  poses.reserve(motions.size());
+  for (const motion::DividedMotion& motion : impl_->divided(motions)) poses.push_back(motion.at(time));
+  return poses;
 }
 
 std::size_t MultiBodyQuery::candidate_pairs() const {
