@@ -206,12 +206,12 @@ def test_many_moving_bodies():
 
 
 def test_internal_edges():
-    tile = sdm.Shape(meshes.box())  # of side 1
+    tile, (vertices, faces) = sdm.Shape(meshes.box()), meshes.box()  # of side 1
     for ignore in (False, True):
-        query = sdm.MultiBodyQuery([tile, tile, tile], contact_margin=0.02, ignore_internal_edges=ignore)
+        query = sdm.MultiBodyQuery([tile, tile, (vertices / 2, faces)], contact_margin=0.02, ignore_internal_edges=ignore)
         for fixed in (0, 1):
             query.set_filter(fixed, fixed=True)
-        query.set_poses([shift(0, 0, 0), shift(1, 0, 0), shift(0.01, 0.3, 0.95)])  # 0.05 deep, 0.01 into the second tile
+        query.set_poses([shift(0, 0, 0), shift(1, 0, 0), shift(0.51, 0.3, 0.95)])  # 0.05 deep, 0.01 into the second tile
         slanted = np.abs(query.contacts().normal[:, 2]) < 0.99
         assert slanted.any() != ignore and not slanted.all()
 
