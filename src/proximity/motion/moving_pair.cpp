@@ -7,13 +7,14 @@ namespace sdm::motion {
 
 void MovingPair::set_time(double time) {
   for (int body = 0; body < 2; ++body) bodies_[body].set_pose(motions_[body]->at(time));
-  answers_.begin(bodies_[0], bodies_[1], {.closest_faces = closest_faces_});
+  const pair::FacePair hint = begun_ ? answers_.known().closest_faces : pair::kNoFaces;
+  answers_.begin(bodies_[0], bodies_[1], {.closest_faces = hint});
+  begun_ = true;
 }
 
 TimeOfContact MovingPair::found(double time) {
   const BoundedLength& separation = answers_.separation();
-  closest_faces_ = answers_.known().closest_faces;
-  TimeOfContact found{.time = time, .separation = separation.value, .faces = closest_faces_};
+  TimeOfContact found{.time = time, .separation = separation.value, .faces = answers_.known().closest_faces};
   found.witness = *separation.witness;
   if (separation.value > 0) found.normal = normalized(found.witness[0] - found.witness[1]);
   return found;

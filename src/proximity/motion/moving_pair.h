@@ -39,7 +39,7 @@ class MovingPair {
   std::array<const DividedMotion*, 2> motions_;
   std::array<shape::PosedBody, 2> bodies_;
   pair::PairAnswers& answers_;
-  pair::FacePair closest_faces_ = pair::kNoFaces;  // a hint
+  bool begun_ = false;  // answers_ are of this pair
 };
 
 }  // namespace sdm::motion
