@@ -63,11 +63,9 @@ nlohmann::ordered_json report_of(const PointsCommand& command, const Input& o2,
   const sdm::PointDistances& found = outcome.found;
   Json report;
   report["version"] = sdm::kVersion;
-  report["o1"] = {{"file", command.cloud},
-                  {"transform", command.transform_o1},
-                  {"points", found.points},
-                  {"invalid_points", found.invalid},
-                  {"normals", found.has_normals}};
+  report["o1"] = {
+      {"file", command.cloud},  {"xxh3", sdm::file_xxh3(command.cloud)}, {"transform", command.transform_o1},
+      {"points", found.points}, {"invalid_points", found.invalid},       {"normals", found.has_normals}};
   if (found.islands) report["o1"]["ignored_islands"] = to_json(*found.islands, found.points);
   report["o1"]["format"] = found.format;
   report["o1"]["text"] = text_json(found.text);

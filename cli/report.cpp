@@ -67,6 +67,7 @@ Input load_input(const std::string& role, const std::string& file, const std::st
                  const sdm::MeshFileOptions& options) {
   sdm::MeshFile read = sdm::read_mesh_file(file, options);
   Input input{.role = role, .file = file, .transform = transform, .mesh = std::move(read.mesh)};
+  input.xxh3 = std::move(read.xxh3);
   input.names = std::move(read.names);
   input.vertices = std::move(read.vertices);
   input.tessellation = std::move(read.tessellation);
@@ -90,7 +91,8 @@ sdm::ReportedMesh reported(const Input& input) {
           .transform = input.transform,
           .info = *input.info,
           .weld = input.weld,
-          .tessellation = input.tessellation};
+          .tessellation = input.tessellation,
+          .xxh3 = input.xxh3};
 }
 
 Json to_json(const Input& input) {

@@ -18,6 +18,7 @@ struct Input {
   std::string role;  ///< "o1", "o2", or "mesh" if it is the only one
   std::string file, transform;
   sdm::Mesh mesh;
+  std::string xxh3{};                   ///< of the file
   std::optional<sdm::MeshInfo> info{};  ///< once inspected
   std::optional<sdm::WeldReport> weld{};
   std::optional<sdm::IslandReport> islands{};       ///< that were left out

@@ -55,6 +55,7 @@ struct MeshFile {
   std::vector<std::string> notes{};
   std::optional<FileVertices> vertices{};
   std::optional<Tessellation> tessellation{};  ///< of STEP and IGES
+  std::string xxh3{};                          ///< as of file_xxh3()
 };
 
 /// Options of read_mesh_file().
@@ -66,6 +67,11 @@ struct MeshFileOptions {
 /// Reads a mesh as read_mesh() does, with the names of its faces.
 [[nodiscard]] SDM_API MeshFile read_mesh_file(const std::filesystem::path& file,
                                               const MeshFileOptions& options = {});
+
+/// Returns XXH3 with 64 bits of the bytes of a file, as 16 hexadecimal digits: what `xxhsum -H3` prints.
+/// Files that it refers to, such as the .bin of glTF, do not take part. Cost: linear, less than that of
+/// reading.
+[[nodiscard]] SDM_API std::string file_xxh3(const std::filesystem::path& file);
 
 /// The names of the formats that read_mesh supports, separated by commas, for messages and help texts.
 [[nodiscard]] SDM_API std::string mesh_format_names();

@@ -24,6 +24,7 @@ struct ReportedMesh {
   MeshInfo info{};
   std::optional<WeldReport> weld{};            ///< if it was welded
   std::optional<Tessellation> tessellation{};  ///< if its file is CAD
+  std::string xxh3{};                          ///< of the file, as of file_xxh3(); empty: unknown
 };
 
 /// Wall-clock times in milliseconds; nothing where none was taken.

@@ -1,8 +1,6 @@
 #include "surface/stored_atlas.h"
 
-#define XXH_INLINE_ALL
 #include <sdm/error.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +11,7 @@
 
 #include "atlas/packing/fit.h"
 #include "atlas/size_text.h"
+#include "core/checksum.h"
 #include "geometry/vec.h"
 #include "surface/surface_data.h"
 
@@ -31,27 +30,20 @@ struct Header {
 };
 static_assert(sizeof(Header) == 120, "no padding");
 
-template <class Item>
-void add(XXH3_state_t& state, const std::vector<Item>& items) {
-  XXH3_64bits_update(&state, items.data(), items.size() * sizeof(Item));
-}
-
 std::uint64_t checksum(Header header, std::span<const std::uint8_t> arrays) {
   header.contents = 0;
-  XXH3_state_t state;
-  XXH3_64bits_reset(&state);
-  XXH3_64bits_update(&state, &header, sizeof(Header));
-  XXH3_64bits_update(&state, arrays.data(), arrays.size());
-  return XXH3_64bits_digest(&state);
+  core::Checksum sum;
+  sum.add(std::span<const Header>(&header, 1));
+  sum.add(arrays);
+  return sum.value();
 }
 
 std::uint64_t checksum(const Mesh& mesh) {
-  XXH3_state_t state;
-  XXH3_64bits_reset(&state);
-  add(state, mesh.positions);
-  add(state, mesh.triangles);
-  add(state, mesh.corner_uvs);
-  return XXH3_64bits_digest(&state);
+  core::Checksum sum;
+  sum.add(mesh.positions);
+  sum.add(mesh.triangles);
+  sum.add(mesh.corner_uvs);
+  return sum.value();
 }
 
 Header header_of(const SurfaceData& s) {

@@ -316,6 +316,8 @@ TEST_F(MapCommand, ReportHasTheNumbersOfTheLibrary) {
   EXPECT_EQ(report["engine"], "cpu");
   EXPECT_EQ(report["measured_on"], "o1");
   EXPECT_EQ(report["o1"]["file"], o1);
+  EXPECT_EQ(report["o1"]["xxh3"], file_xxh3(o1));
+  EXPECT_EQ(report["o2"]["xxh3"], file_xxh3(o2));
   EXPECT_EQ(report["o1"]["vertices"], 144);
   EXPECT_EQ(report["o1"]["triangles"], 288);
   EXPECT_EQ(report["o2"]["triangles"], 512);

@@ -116,6 +116,7 @@ TEST_F(PointsCommand, DistancesAreThoseOfAllFacesInTheOrderOfTheInput) {
   if (can_write_html()) names.insert(names.begin() + 1, "report.html");
   EXPECT_EQ(names_in(out), names);
   EXPECT_EQ(found.out, contents(out + "/report.json"));
+  EXPECT_EQ(Json::parse(found.out)["o1"]["xxh3"], file_xxh3(folder / "cloud.xyz"));
   const std::vector<Row> rows = read_rows(out + "/points.ply", false);
   ASSERT_EQ(rows.size(), points.size());
   const Sites sites(mesh);

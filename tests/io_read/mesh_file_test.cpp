@@ -145,5 +145,24 @@ TEST(FileVertices, AreThoseOfTheFileInItsOrder) {
   EXPECT_FALSE(read_mesh_file(write_file("a.obj", kNamed)).vertices);
 }
 
+// The vectors are those of xxHash.
+TEST(FileXxh3, IsThatOfTheBytes) {
+  EXPECT_EQ(file_xxh3(write_file("empty", "")), "2d06800538d394c2");
+  EXPECT_EQ(file_xxh3(write_file("abc", "abc")), "78af5f94892f3950");
+  std::string text(kNamed);  // longer than what is read at once
+  for (int i = 0; i < 100'000; ++i) text += "# 0123456789\n";
+  const auto file = write_file("long.obj", text);
+  const std::string whole = read_mesh_file(file).xxh3;
+  EXPECT_EQ(whole, file_xxh3(file));
+  text.back() = ' ';
+  EXPECT_NE(whole, file_xxh3(write_file("long.obj", text)));
+  try {
+    (void)file_xxh3("nowhere.obj");
+    ADD_FAILURE() << "there is no such file";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("nowhere.obj: cannot be opened"));
+  }
+}
+
 }  // namespace
 }  // namespace sdm::test

@@ -49,9 +49,12 @@ TEST_F(Looks, ShowsAMapAtAllSizesAndOnPaper) {
        "z", "--align", "--align-free", "x,y"});
   EXPECT_TRUE(looks("looks", page()));
   EXPECT_TRUE(looks("touches", page()));
+  const auto report = nlohmann::json::parse(contents(out + "/report.json"));
+  const std::string xxh3 = report["o1"]["xxh3"];
+  EXPECT_EQ(xxh3.size(), 16);
   EXPECT_TRUE(looks("prints", page(),
-                    {folder / "map.pdf", "2", "Measured on", "part.obj, plane.obj", "Alignment", "Hausdorff",
-                     "Bands of distance", "-Display", "-report.json"}));
+                    {folder / "map.pdf", "2", "Measured on", "part.obj (XXH3 " + xxh3 + "), plane.obj (XXH3",
+                     "Alignment", "Hausdorff", "Bands of distance", "-Display", "-report.json"}));
 }
 
 TEST_F(Looks, ShowsPointsThicknessAndSelfDistancesAtAllSizes) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <new>
+#include <span>
 
+#include "core/checksum.h"
 #include "core/memory.h"
 #include "io/file/file_bytes.h"
 #include "io/mesh/read_polygons.h"
@@ -43,7 +45,11 @@ Mesh read_mesh(const std::filesystem::path& file) try {
 
 MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions& options) try {
   return io::with_error_prefix(file.string(), [&] {
-    io::PolygonMesh polygons = io::read_polygons(io::read_bytes(file).view(), file, options.tessellation);
+    io::FileBytes bytes = io::read_bytes(file);
+    io::PolygonMesh polygons = io::read_polygons(bytes.view(), file, options.tessellation);
+    core::Checksum checksum;
+    checksum.add(std::span<const char>(bytes.view()));
+    bytes = {};  // their memory is needed below
     std::vector<std::uint32_t> renumbered, triangle_ends;
     MeshFile result{.mesh = io::to_mesh(polygons, renumbered, triangle_ends),
                     .names = {},
@@ -56,6 +62,7 @@ MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions
     add_names("face", polygons.faces, triangle_ends, result.names);
     add_names("color", polygons.colors, triangle_ends, result.names);
     result.tessellation = std::move(polygons.tessellation);
+    result.xxh3 = core::hex_text(checksum.value());
     if (options.vertices)
       result.vertices = FileVertices{.positions = std::move(polygons.positions),
                                      .mesh_vertex = std::move(renumbered),

@@ -41,6 +41,7 @@ Json to_json(const Tessellation& t) {
 
 Json to_json(const ReportedMesh& mesh) {
   Json json{{"file", mesh.file},
+            {"xxh3", mesh.xxh3.empty() ? Json() : Json(mesh.xxh3)},
             {"transform", mesh.transform},
             {"vertices", mesh.info.vertices},
             {"triangles", mesh.info.triangles},
