@@ -104,6 +104,10 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
   if (!task.sites->closed()) boundary = sdm::boundary_mask(*task.sites, map);
   sdm::PictureOptions picture = command.picture;
   picture.accuracy = computed.accuracy;
+  std::vector<sdm::FaceNames> names;
+  if (!command.groups.rows.empty()) names = sdm::names_of_part(task.on.names, part.source_face);
+  if (picture.colormap == sdm::Colormap::automatic)
+    picture.table = command.groups.rows, picture.names = names;
   const sdm::DistanceStatistics distance = sdm::statistics(surface, map);
   sdm::SummaryOptions options = summary_options(task, part, computed.accuracy);
   options.distance = &distance, options.boundary = boundary;
@@ -126,8 +130,7 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
   });
   if (!command.groups.rows.empty()) {
     sdm::GroupVerdicts groups = sdm::certify_groups(
-        surface, *task.sites, map, computed.at_vertices, sdm::names_of_part(task.on.names, part.source_face),
-        command.groups.rows,
+        surface, *task.sites, map, computed.at_vertices, names, command.groups.rows,
         {.accuracy = computed.accuracy, .doubted = !task.doubts.empty() && !command.doubts.accept});
     if (!groups.groups.empty()) outcome.groups = std::move(groups);  // none is of this mesh or tile
   }

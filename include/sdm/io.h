@@ -6,6 +6,7 @@
 #include <sdm/api.h>
 #include <sdm/channels.h>
 #include <sdm/coverage.h>
+#include <sdm/group_verdicts.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/part_statistics.h>
@@ -103,6 +104,11 @@ struct PictureOptions {
   std::uint32_t largest = 2048;
   UpAxis up = UpAxis::y;  ///< model.glb: z turns the model, so that viewers show it upright
   bool unlit = false;     ///< model.glb: without shading, so that a pixel has exactly the colour of its value
+  /// views.png: a face has bands of what the rows that name it accept, besides `tolerance`, so that what
+  /// fails is seen; faces that none judges are beige. Names are those of the faces of O1. Without either: one
+  /// scale.
+  std::span<const GroupTolerance> table{};
+  std::span<const FaceNames> names{};
 };
 
 /// Returns `options` with the colormap and the range that color_range() chooses for them on a map with these
@@ -245,7 +251,8 @@ struct HtmlOptions {
   UpAxis up = UpAxis::y;                  ///< the axis of the meshes that points up
   const CoverageMap* coverage = nullptr;  ///< of `other`, on which it is drawn
   std::span<const FaceNames> names{};     ///< of the faces of O1: what a click on a group shows apart
-  /// Of wall thickness: the list of places is of the texels of least value, or of largest value.
+  /// Of wall thickness, and of the distance of a mesh to itself: the list of places is of the texels of least
+  /// value, or of largest value.
   bool thinnest = false, thickest = false;
   // The size of the page, which grows with what it shows:
   std::uint32_t largest = 1024;              ///< the most texels a side; half from 200,000 triangles on

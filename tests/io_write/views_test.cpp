@@ -4,12 +4,14 @@
 #include <sdm/io.h>
 #include <sdm/threads.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
 
 #include "geometry/vec.h"
+#include "io/image/pictures/face_scales.h"
 #include "io/image/views/render_view.h"
 #include "io/image/views/view_layout.h"
 #include "io_write/read_png.h"
@@ -233,6 +235,60 @@ TEST(Views, OneIsSeenFromAnyDirection) {
   EXPECT_THROW(written({.towards = {0, 0, 0}}), Error);
   EXPECT_THROW(written({.width = 63}), Error);
   EXPECT_THROW(written({.other_distances = distances}), Error);
+}
+
+TEST(FaceScales, HaveTheBandsOfTheGroupsOfAFace) {
+  const std::vector<FaceNames> names{
+      {.kind = "group", .names = {"narrow", "wide"}, .of_face = {0, 1, kNone}}};
+  const std::vector<GroupTolerance> table{{"narrow", Tolerance(-1, 1)}, {"wide", Tolerance(-4, 4)}};
+  PictureOptions options{.table = table, .names = names};
+  const ColorScale scale{.map = Colormap::diverging, .lo = -5, .hi = 5};
+  const FaceScales by_group(scale, options);
+  EXPECT_EQ(by_group(0, 0.1), kWithin[0]);
+  EXPECT_EQ(by_group(0, 1.5), kAbove[1]);
+  EXPECT_EQ(by_group(0, -2), kBelow[2]);
+  EXPECT_EQ(by_group(1, 1.5), kWithin[1]);
+  EXPECT_EQ(by_group(2, 1.5), kUnjudged);
+  EXPECT_EQ(by_group(2, std::nan("")), kNoValue);
+  options.tolerance = Tolerance(-2, 2);  // of all faces, besides
+  const FaceScales both(scale, options);
+  EXPECT_EQ(both(1, 3), kAbove[1]);
+  EXPECT_EQ(both(2, 1), kWithin[2]);
+  EXPECT_EQ(both.of_legend().lo, -2);
+  LegendText text{"Distance", "mm", {"min 1", "beyond: as the ends"}, false};
+  both.describe(text);
+  EXPECT_EQ(text.labels.size(), 2u);
+  EXPECT_EQ(text.subtitle, "by the limits of each group");
+  const FaceScales one(scale, {.tolerance = Tolerance(-1, 1)});
+  EXPECT_FALSE(one.by_group());
+  EXPECT_EQ(one(0, 3), scale(3));
+}
+
+// What fails by the limits of its group is seen in views: of a cube whose distance is x, all but its middle.
+TEST(Views, ShowWhatFailsByTheLimitsOfItsGroup) {
+  const CubeScene scene;
+  const TemporaryFolder folder;
+  const std::vector<FaceNames> names{
+      {.kind = "group", .names = {"all"}, .of_face = std::vector<std::uint32_t>(12, 0)}};
+  const auto warm_and_green = [&](const Tolerance& limits) {
+    const std::vector<GroupTolerance> table{{"all", limits}};
+    write_views_png(folder / "views.png", scene.surface, scene.map, scene.vertices, nullptr,
+                    {.table = table, .names = names});
+    const Pixels pixels = read_png(folder / "views.png");
+    const ViewLayout layout = layout_views(bounds(scene.surface.mesh()), UpAxis::y);
+    const Projection& front = layout.views[0].projection;
+    std::array<int, 2> counts{};
+    for (double x = -0.95; x < 1; x += 0.1) {
+      const Vec3 at = front(Vec3{x, 0.5, 1});
+      const Rgb c = pixels.at(std::size_t(layout.views[0].x + at[0]), std::size_t(layout.views[0].y + at[1]));
+      ++counts[c.g >= c.r && c.g >= c.b ? 1 : 0];
+    }
+    return counts;
+  };
+  EXPECT_EQ(warm_and_green({-2, 2})[0], 0);
+  const auto [out, within] = warm_and_green({-0.1, 0.1});
+  EXPECT_GT(out, 15);
+  EXPECT_GT(within, 0);
 }
 
 TEST(Views, AreDrawnOfAnyMesh) {

@@ -50,9 +50,12 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
   float least = std::numeric_limits<float>::infinity(), most = -least;
   for (const float d : map.distance)
     if (std::isfinite(d)) least = std::min(least, d), most = std::max(most, d);
+  LegendText text = legend_text(map, least, most, scale, options.units);
+  if (least <= most)  // views.png and the reports have those of the vertices too
+    for (std::size_t i = 0; i < 2; ++i) text.notes[i] += " (texels)";
   write_map_png(
       file, picture, [&](std::size_t texel) { return scale(map.distance[texel]); },
-      draw_legend(scale, legend_text(map, least, most, scale, options.units), picture.height()));
+      draw_legend(scale, text, picture.height()));
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
 }

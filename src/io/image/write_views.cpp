@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "geometry/vec.h"
 #include "io/image/pictures/canvas.h"
+#include "io/image/pictures/face_scales.h"
 #include "io/image/pictures/legend.h"
 #include "io/image/pictures/picture.h"
 #include "io/image/pictures/ticks.h"
@@ -50,13 +51,18 @@ std::vector<Mark> marks_of(const std::optional<Extremes>& extremes, const std::s
 }
 
 ViewScene scene_of(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
-                   const ColorScale& scale, const Mesh* other) {
-  ViewScene scene{.surface = &surface, .vertex_distances = vertex_distances, .scale = scale, .other = other};
+                   const ColorScale& scale, const FaceScales& of_faces, const Mesh* other) {
+  ViewScene scene{.surface = &surface,
+                  .vertex_distances = vertex_distances,
+                  .scale = scale,
+                  .of_faces = &of_faces,
+                  .other = other};
   scene.colors.resize(map.distance.size());
   run_concurrently({[&] {
                       constexpr std::size_t kGrain = 1 << 14;
                       parallel_for(scene.colors.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i) scene.colors[i] = scale(map.distance[i]);
+                        for (std::size_t i = begin; i < end; ++i)
+                          scene.colors[i] = of_faces(surface.texel_faces()[i], map.distance[i]);
                       });
                     },
                     [&] { scene.normals = shading_normals(surface.mesh()); },
@@ -84,9 +90,14 @@ void draw_axes(Canvas& canvas, const PlacedView& view) {
       cairo_line_to(canvas.cairo(), to_x + 0.5 * kHead * dy, to_y - 0.5 * kHead * dx);
       cairo_close_path(canvas.cairo());
       halo ? cairo_stroke(canvas.cairo()) : cairo_fill(canvas.cairo());
-      if (!halo)
-        canvas.text(to_x + 14 * dx, to_y + 14 * dy + 0.36 * kViewText, std::string(1, "xyz"[k]), kViewText,
-                    20, false, 0.5);
+      const std::string letter(1, "xyz"[k]);
+      const double letter_x = to_x + 14 * dx, letter_y = to_y + 14 * dy + 0.36 * kViewText;
+      if (halo)  // also where the part is behind it
+        for (const double sx : {-2.0, 0.0, 2.0})
+          for (const double sy : {-2.0, 0.0, 2.0})
+            canvas.text(letter_x + sx, letter_y + sy, letter, kViewText, 20, false, 0.5);
+      else
+        canvas.text(letter_x, letter_y, letter, kViewText, 20, false, 0.5);
       cairo_new_path(canvas.cairo());
     }
   }
@@ -165,6 +176,7 @@ void write_views_png(const std::filesystem::path& file, const Surface& surface, 
                      const PictureOptions& options) try {
   const std::optional<Extremes> found = extremes(surface, map, vertex_distances);
   const ColorScale scale = color_scale(surface, map, options);
+  const FaceScales of_faces(scale, options);
   const Box box = bounds(surface.mesh());
   const ViewLayout layout = layout_views(other != nullptr ? shown_box(box, bounds(*other)) : box, options.up);
   const std::vector<Mark> marks = marks_of(found, options.units);
@@ -172,7 +184,7 @@ void write_views_png(const std::filesystem::path& file, const Surface& surface, 
   places.reserve(marks.size());
   for (const Mark& mark : marks) places.push_back(mark.point);
 
-  const ViewScene scene = scene_of(surface, map, vertex_distances, scale, other);
+  const ViewScene scene = scene_of(surface, map, vertex_distances, scale, of_faces, other);
   std::array<View, 6> views;
   parallel_for(views.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -190,8 +202,9 @@ void write_views_png(const std::filesystem::path& file, const Surface& surface, 
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   LegendText text = legend_text(map, found ? found->min.distance : kNan, found ? found->max.distance : kNan,
                                 scale, options.units);
-  if (other != nullptr) text.notes.emplace_back("pale: O2");
-  const Picture legend = draw_legend(scale, text, layout.height);
+  if (other != nullptr) text.notes.emplace_back("pale: the other mesh");
+  of_faces.describe(text);
+  const Picture legend = draw_legend(of_faces.of_legend(), text, layout.height);
   Canvas canvas(layout.width + legend.width, std::max(layout.height + kScaleBarHeight, double(legend.height)),
                 1);
   canvas.image(layout.width, 0, legend);
@@ -225,9 +238,10 @@ void write_view_png(const std::filesystem::path& file, const Surface& surface, c
     throw Error("the distances that colour O2 are not one per vertex of it");
   const std::optional<Extremes> found = extremes(surface, map, vertex_distances);
   const ColorScale scale = color_scale(surface, map, options);
+  const FaceScales of_faces(scale, options);
   std::vector<Box> boxes{bounds(surface.mesh())};
   if (view.other != nullptr) boxes.push_back(bounds(*view.other));
-  ViewScene scene = scene_of(surface, map, vertex_distances, scale, view.other);
+  ViewScene scene = scene_of(surface, map, vertex_distances, scale, of_faces, view.other);
   scene.other_distances = view.other_distances;
   const Projection projection = view_from(boxes, view.towards, options.up, view.width, view.height);
   const Picture picture = render_view(scene, projection, {}).picture;
@@ -236,8 +250,9 @@ void write_view_png(const std::filesystem::path& file, const Surface& surface, c
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   LegendText text = legend_text(map, found ? found->min.distance : kNan, found ? found->max.distance : kNan,
                                 scale, options.units);
-  if (view.other != nullptr && view.other_distances.empty()) text.notes.emplace_back("pale: O2");
-  const Picture legend = draw_legend(scale, text, view.height);
+  if (view.other != nullptr && view.other_distances.empty()) text.notes.emplace_back("pale: the other mesh");
+  of_faces.describe(text);
+  const Picture legend = draw_legend(of_faces.of_legend(), text, view.height);
   Canvas canvas(view.width + legend.width, std::max(view.height, legend.height), 1);
   canvas.image(0, 0, picture);
   canvas.image(view.width, 0, legend);

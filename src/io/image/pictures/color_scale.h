@@ -17,6 +17,8 @@ struct Rgb {
 
 inline constexpr Rgb kBackground{222, 224, 228};  ///< texels that no face owns
 inline constexpr Rgb kNoValue{128, 130, 134};  ///< owned texels without a value, beyond the maximum distance
+inline constexpr Rgb kUnjudged{216, 206,
+                               188};  ///< faces that no tolerance judges, beside those that one does
 
 /// Within the tolerance, by the share of the way to the nearest limit: up to a quarter, a half, and so on.
 /// They darken towards the limit and stay greener than the colours beyond, also for those who see green and

@@ -23,7 +23,8 @@ void write_text(Canvas& canvas, double x, double baseline, const std::string& te
   canvas.text(x, baseline, text, size, kWidth - x - kMargin / 2, bold);
 }
 
-void draw_bar(Canvas& canvas, const ColorScale& scale, double top, double bottom) {
+void draw_bar(Canvas& canvas, const ColorScale& scale, const std::vector<ScaleLabel>& labels, double top,
+              double bottom) {
   cairo_t* cairo = canvas.cairo();
   const auto height_of = [&](double d) {
     return bottom - (d - scale.lo) / (scale.hi - scale.lo) * (bottom - top);
@@ -44,7 +45,7 @@ void draw_bar(Canvas& canvas, const ColorScale& scale, double top, double bottom
   cairo_rectangle(cairo, kMargin, top, kBarWidth, bottom - top);
   cairo_stroke(cairo);
 
-  for (const auto& [value, text, is_limit] : scale_labels(scale)) {
+  for (const auto& [value, text, is_limit] : labels) {
     const double y = height_of(value);
     if (is_limit) {
       canvas.set_color(kInk);
@@ -120,12 +121,15 @@ Picture draw_legend(const ColorScale& scale, const LegendText& text, std::uint32
 
   canvas.set_color(kInk);
   write_text(canvas, kMargin, 40, text.title, kTitleSize, true);
-  write_text(canvas, kMargin, 40 + kLine, text.units.empty() ? "in units of the mesh" : "in " + text.units,
+  write_text(canvas, kMargin, 40 + kLine,
+             !text.subtitle.empty() ? text.subtitle
+             : text.units.empty()   ? "in units of the mesh"
+                                    : "in " + text.units,
              kTextSize);
 
   const double foot = kLine * (static_cast<double>(text.notes.size()) + (text.has_missing ? 1 : 0)) + kMargin;
   const double bottom = height - foot - kMargin;
-  draw_bar(canvas, scale, kBarTop, bottom);
+  draw_bar(canvas, scale, text.labels.empty() ? scale_labels(scale) : text.labels, kBarTop, bottom);
 
   double baseline = bottom + kMargin + 0.7 * kLine;
   canvas.set_color(kInk);

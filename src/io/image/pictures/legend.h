@@ -25,8 +25,10 @@ struct ScaleLabel {
 
 struct LegendText {
   std::string title, units;
-  std::vector<std::string> notes;  ///< one per line, below the bar
-  bool has_missing = false;        ///< explains the colour of texels without a value
+  std::vector<std::string> notes;    ///< one per line, below the bar
+  bool has_missing = false;          ///< explains the colour of texels without a value
+  std::string subtitle{};            ///< in place of the units
+  std::vector<ScaleLabel> labels{};  ///< in place of those of the scale
 };
 
 /// Describes a map whose distances are from `least` to `most`; there are none if least > most.

@@ -51,7 +51,7 @@ class Light {
     }
     const bool back = dot(flat, towards_) < 0;
     const double lit = std::max(0.0, (back ? -1 : 1) * dot(normalized(normal), from_));
-    return (back ? 0.42 : 0.5) + 0.5 * lit;
+    return (back ? 0.5 : 0.62) + 0.38 * lit;
   }
 
  private:
@@ -89,7 +89,7 @@ Rgb color_at(const ViewScene& scene, std::uint32_t face, const Vec3& weights) {
   double distance = 0;
   for (int k = 0; k < 3; ++k)
     distance += weights[k] * scene.vertex_distances[surface.mesh().triangles[face][k]];
-  return scene.scale(distance);
+  return scene.of_faces != nullptr ? (*scene.of_faces)(face, distance) : scene.scale(distance);
 }
 
 class Renderer {
@@ -175,7 +175,8 @@ class Renderer {
     const Triangle& t = scene_.other->triangles[face];
     const Vec3 weights = ghost_->weights(sample, t);
     const double light = light_(*scene_.other, scene_.other_normals, face, weights);
-    if (scene_.other_distances.empty()) return light * color(kGhost);
+    // Pale on every side, so that it is never darker than the part.
+    if (scene_.other_distances.empty()) return (0.7 + 0.3 * light) * color(kGhost);
     double distance = 0;
     for (int k = 0; k < 3; ++k) distance += weights[k] * scene_.other_distances[t[k]];
     return light * color(scene_.scale(distance));

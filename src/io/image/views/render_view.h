@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "io/image/pictures/face_scales.h"
 #include "io/image/pictures/picture.h"
 #include "io/image/views/depth_buffer.h"
 #include "io/mesh/model/shading_normals.h"
@@ -22,8 +23,9 @@ struct ViewScene {
   ShadingNormals normals{};
   std::vector<Rgb> colors{};                  ///< of each texel
   std::span<const float> vertex_distances{};  ///< shown where a face has no texel
-  ColorScale scale{};
-  const Mesh* other = nullptr;  ///< O2, or null
+  ColorScale scale{};                         ///< of O2's distances
+  const FaceScales* of_faces = nullptr;       ///< of those of O1; null: `scale`
+  const Mesh* other = nullptr;                ///< O2, or null
   ShadingNormals other_normals{};
   std::span<const float> other_distances{};  ///< of O2's vertices, which colour it; or empty: it is pale
 };

@@ -1,0 +1,50 @@
+#include "io/image/pictures/face_scales.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sdm::io {
+namespace {
+
+/// The scale with these limits. Its ends are as far beyond them as they are from the middle between them: ±2
+/// of ±1. The pages have the same rule.
+ColorScale banded(ColorScale scale, const Tolerance& t) {
+  const bool both = std::isfinite(t.hi - t.lo);
+  double away = both ? std::abs(t.hi - t.lo) / 2 : std::min(std::abs(t.lo), std::abs(t.hi));
+  if (!(away > 0 && std::isfinite(away))) away = std::max(std::abs(scale.lo), std::abs(scale.hi));
+  scale.lo = std::isfinite(t.lo) ? t.lo - away : std::min(0.0, t.hi - away);
+  scale.hi = std::isfinite(t.hi) ? t.hi + away : std::max(0.0, t.lo + away);
+  scale.tolerance = t;
+  return scale;
+}
+
+}  // namespace
+
+FaceScales::FaceScales(const ColorScale& scale, const PictureOptions& options) : scale_(scale) {
+  if (!options.table.empty() && !options.names.empty())
+    tolerances_.emplace(options.tolerance, options.names, options.table);
+}
+
+Rgb FaceScales::operator()(std::uint32_t face, double distance) const {
+  if (!tolerances_ || !std::isfinite(distance)) return scale_(distance);
+  const Tolerance& tolerance = tolerances_->of(face);
+  return tolerance == map::any_distance() ? kUnjudged : banded(scale_, tolerance)(distance);
+}
+
+ColorScale FaceScales::of_legend() const {
+  if (!tolerances_) return scale_;
+  ColorScale relative = banded(scale_, Tolerance(-1, 1));
+  relative.accuracy = 0;
+  return relative;
+}
+
+void FaceScales::describe(LegendText& text) const {
+  if (!tolerances_) return;
+  text.subtitle = "by the limits of each group";
+  text.labels = {{-1, "lower limit", true}, {1, "upper limit", true}};
+  std::erase_if(text.notes, [](const std::string& note) { return note.starts_with("beyond"); });
+  text.notes.insert(text.notes.end(),
+                    {"green: within its limits", "darker: nearer a limit", "beige: without limits"});
+}
+
+}  // namespace sdm::io
