@@ -84,13 +84,6 @@ std::array<sdm::AtlasOptions, 2> layouts(const SequenceCommand& command, const C
   return atlases;
 }
 
-/// The verdict on all frames; a pass without a tolerance.
-sdm::Verdict verdict_of(const std::vector<Frame>& frames) {
-  sdm::Verdict verdict = sdm::Verdict::pass;
-  for (const Frame& frame : frames) verdict = worse(verdict, frame.verdict());
-  return verdict;
-}
-
 std::string sequence_summary(const SequenceCommand& command, const FrameLoop& loop,
                              const SequenceFiles& files, const Notes& notes) {
   constexpr std::size_t kColumn = 13;

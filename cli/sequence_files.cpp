@@ -127,6 +127,11 @@ void SequenceFiles::write_collected(const std::vector<Frame>& frames) {
                              .up = command_.picture.up,
                              .colors = command_.picture};
   if (command_.reading.rate) options.frames_per_second = *command_.reading.rate;
+  if (command_.picture.tolerance) {
+    options.verdicts.emplace();
+    for (const Frame& frame : frames) options.verdicts->of_frames.push_back(frame.verdict());
+    options.verdicts->of_all = verdict_of(frames);
+  }
   if (command_.outputs.player) {
     player_->write(folder_ / "player.html", player_panels(frames, pair.units), options);
     listed_ += " player.html";

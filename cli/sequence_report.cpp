@@ -112,6 +112,12 @@ Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
   return json;
 }
 
+sdm::Verdict verdict_of(const std::vector<Frame>& frames) {
+  sdm::Verdict verdict = sdm::Verdict::pass;
+  for (const Frame& frame : frames) verdict = worse(verdict, frame.verdict());
+  return verdict;
+}
+
 Json to_json(const BadFrame& frame) {
   return {{"frame", frame.index}, {"error", frame.fault}};
 }
@@ -225,8 +231,9 @@ std::vector<sdm::PlotPanel> player_panels(const std::vector<Frame>& frames, cons
                        {"min", distance(&FrameDistances::min)}}});
   }
   panels.push_back({"Separation" + in, {{"", over([](const Frame& f) { return f.separation.value; })}}});
-  panels.push_back({"Penetration depth" + in,
-                    {{"", over([](const Frame& f) { return f.depth ? f.depth->value : kNaN; })}}});
+  if (std::ranges::any_of(frames, [](const Frame& f) { return f.depth && f.depth->value > 0; }))
+    panels.push_back({"Penetration depth" + in,
+                      {{"", over([](const Frame& f) { return f.depth ? f.depth->value : kNaN; })}}});
   return panels;
 }
 

@@ -51,6 +51,9 @@ struct Frame {
   }
 };
 
+/// The verdict on all frames; a pass without a tolerance.
+[[nodiscard]] sdm::Verdict verdict_of(const std::vector<Frame>& frames);
+
 /// A frame that could not be used.
 struct BadFrame {
   std::size_t index = 0;
@@ -68,7 +71,7 @@ struct BadFrame {
 
 /// frames.csv: one row for each frame that was used.
 [[nodiscard]] std::string to_csv(const std::vector<Frame>& frames);
-/// The curves of player.html, with one value for each frame.
+/// The curves of player.html, with one value for each frame; of penetration only if there is one.
 [[nodiscard]] std::vector<sdm::PlotPanel> player_panels(const std::vector<Frame>& frames,
                                                         const std::string& units);
 /// plot.png: separation, depth, relative error and time over frames, with gaps for skipped frames.

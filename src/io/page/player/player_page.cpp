@@ -112,6 +112,11 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
   for (int b = 0; b < 2; ++b) page["bodies"].push_back(add_body(arrays, content, b, box.lo, step, reach));
   page["panels"] = panels_json(content.panels);
   page["scale"] = scale_json(color_scale(fixed));
+  if (options.verdicts) {
+    page["verdict"] = name_of(options.verdicts->of_all);
+    page["verdicts"] = Json::array();
+    for (const Verdict verdict : options.verdicts->of_frames) page["verdicts"].push_back(name_of(verdict));
+  }
   put_page(out.stream(), kPlayerHtml.bytes, page, nullptr, arrays);
   out.commit();
 }

@@ -133,6 +133,8 @@ void SequencePlayer::write(const std::filesystem::path& file, std::span<const Pl
     for (const Curve& curve : panel.curves)
       if (curve.values.size() != impl_->added.size())
         throw Error("cannot write " + file.string() + ": a curve needs one value for each frame");
+  if (options.verdicts && options.verdicts->of_frames.size() != impl_->added.size())
+    throw Error("cannot write " + file.string() + ": verdicts need one for each frame");
   write_player_page(file, impl_->content(panels), options, colors(options.colors));
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());

@@ -7,15 +7,24 @@
 #include <sdm/io.h>
 #include <sdm/mesh.h>
 #include <sdm/sites.h>
+#include <sdm/tolerance.h>
 
 #include <array>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace sdm {
+
+/// Verdicts on a tolerance.
+struct PlayerVerdicts {
+  Verdict of_all = Verdict::pass;
+  std::vector<Verdict> of_frames;  ///< one for each frame added
+};
 
 /// Options of a SequencePlayer.
 struct PlayerOptions {
@@ -25,7 +34,8 @@ struct PlayerOptions {
   /// Colormap, range and tolerance, of all frames. Default: as fixed_colors() chooses from the distances of
   /// all frames.
   PictureOptions colors{};
-  double frames_per_second = 30;  ///< animation.glb: greater than 0
+  double frames_per_second = 30;             ///< animation.glb: greater than 0
+  std::optional<PlayerVerdicts> verdicts{};  ///< player.html: if there is a tolerance
 };
 
 /// Collects the frames of a sequence, and writes them as player.html: one file that opens in a browser, from
@@ -53,8 +63,8 @@ class SDM_API SequencePlayer {
   [[nodiscard]] std::size_t frames() const;
 
   /// Writes the page. `panels`: curves with one value for each frame added, in order. Throws sdm::Error
-  /// unless they have that, if there is no frame, if the file cannot be written, and if can_write_html() is
-  /// false.
+  /// unless they and the verdicts have that, if there is no frame, if the file cannot be written, and if
+  /// can_write_html() is false.
   void write(const std::filesystem::path& file, std::span<const PlotPanel> panels,
              const PlayerOptions& options = {}) const;
 
