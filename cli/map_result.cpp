@@ -116,9 +116,11 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
                             .boundary = boundary,
                             .sites = task.sites.get(),
                             .attributes = exr_attributes(task, map)};
+  MapFiles files = command.output.files;
+  const bool views = std::exchange(files.views, false);  // they state the verdict
   sdm::run_concurrently({
       [&] {
-        write_map_files(folder, command.output.files, surface, map, computed.at_vertices, &task.to.mesh,
+        write_map_files(folder, files, surface, map, computed.at_vertices, &task.to.mesh,
                         task.shared ? task.shared->texture : picture,
                         sdm::fixed_colors(picture, *options.colors), exr);
       },
@@ -134,6 +136,10 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
         {.accuracy = computed.accuracy, .doubted = !task.doubts.empty() && !command.doubts.accept});
     if (!groups.groups.empty()) outcome.groups = std::move(groups);  // none is of this mesh or tile
   }
+  if (!views) return;
+  sdm::PictureOptions fixed = sdm::fixed_colors(picture, *options.colors);
+  fixed.verdict = judged(outcome.summary, outcome.groups);
+  sdm::write_views_png(folder / "views.png", surface, map, computed.at_vertices, &task.to.mesh, fixed);
 }
 
 /// The kinds of names that groups with a verdict have.

@@ -104,6 +104,7 @@ struct PictureOptions {
   std::uint32_t largest = 2048;
   UpAxis up = UpAxis::y;  ///< model.glb: z turns the model, so that viewers show it upright
   bool unlit = false;     ///< model.glb: without shading, so that a pixel has exactly the colour of its value
+  std::optional<Verdict> verdict{};  ///< views.png: stated beside the scale bar
   /// views.png: a face has bands of what the rows that name it accept, besides `tolerance`, so that what
   /// fails is seen; faces that none judges are beige. Names are those of the faces of O1. Without either: one
   /// scale.

@@ -4,6 +4,7 @@
 #include <sdm/io.h>
 #include <sdm/threads.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -289,6 +290,20 @@ TEST(Views, ShowWhatFailsByTheLimitsOfItsGroup) {
   const auto [out, within] = warm_and_green({-0.1, 0.1});
   EXPECT_GT(out, 15);
   EXPECT_GT(within, 0);
+}
+
+TEST(Views, StateTheVerdictInItsColour) {
+  const CubeScene scene;
+  const TemporaryFolder folder;
+  const auto has = [&](std::optional<Verdict> verdict, Rgb color) {
+    write_views_png(folder / "views.png", scene.surface, scene.map, scene.vertices, nullptr,
+                    {.verdict = verdict});
+    return std::ranges::count(read_png(folder / "views.png").colors, color) > 1000;
+  };
+  EXPECT_TRUE(has(Verdict::fail, {163, 19, 14}));
+  EXPECT_TRUE(has(Verdict::pass, {0, 97, 61}));
+  EXPECT_TRUE(has(Verdict::not_decided, {122, 75, 0}));
+  for (const Rgb color : {Rgb{163, 19, 14}, Rgb{0, 97, 61}}) EXPECT_FALSE(has(std::nullopt, color));
 }
 
 TEST(Views, AreDrawnOfAnyMesh) {

@@ -1,5 +1,6 @@
 #include <sdm/error.h>
 #include <sdm/io.h>
+#include <sdm/summary.h>
 #include <sdm/threads.h>
 
 #include <algorithm>
@@ -152,6 +153,20 @@ void draw_mark(Canvas& canvas, const PlacedView& view, const Mark& mark, bool hi
               false, 0.5);
 }
 
+// A word in its colour, as the pages have them, at the right end of the row of the scale bar.
+void draw_verdict(Canvas& canvas, const ViewLayout& layout, Verdict verdict) {
+  constexpr double kLong = 150, kTall = 32;
+  const double x = layout.width - kLong - kViewGap, y = layout.height + 0.35 * kScaleBarHeight - kTall / 2;
+  canvas.set_color(verdict == Verdict::pass   ? Rgb{0, 97, 61}
+                   : verdict == Verdict::fail ? Rgb{163, 19, 14}
+                                              : Rgb{122, 75, 0});
+  cairo_rectangle(canvas.cairo(), x, y, kLong, kTall);
+  cairo_fill(canvas.cairo());
+  canvas.set_color({255, 255, 255});
+  canvas.text(x + kLong / 2, y + kTall / 2 + 0.36 * kTitleText, name_of(verdict), kTitleText, kLong - 16,
+              true, 0.5);
+}
+
 // The longest round length that takes at most a fifth of the row.
 void draw_scale_bar(Canvas& canvas, const ViewLayout& layout, const std::string& units) {
   const double most = 0.2 * layout.width / layout.scale;
@@ -220,6 +235,7 @@ void write_views_png(const std::filesystem::path& file, const Surface& surface, 
         draw_mark(canvas, view, marks[k], hidden, texts);
   }
   draw_scale_bar(canvas, layout, options.units);
+  if (options.verdict) draw_verdict(canvas, layout, *options.verdict);
   write_picture(file, canvas.picture("the views"));
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
