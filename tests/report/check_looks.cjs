@@ -2,11 +2,8 @@
 // Packages are found from the current folder. Prints what is wrong and exits with 1.
 const assert = require('assert');
 const { execFileSync } = require('child_process');
-const { existsSync } = require('fs');
-const { createRequire } = require('module');
-const { delimiter, join } = require('path');
 const { pathToFileURL } = require('url');
-const { chromium } = createRequire(process.cwd() + '/')('playwright-core');
+const { inBrowser, opened } = require('./checks/browser.cjs');
 
 const [check, file, ...rest] = process.argv.slice(2);
 const url = pathToFileURL(file).href;
@@ -324,32 +321,11 @@ const checks = {
   },
 };
 
-(async () => {
-  const browser = await chromium.launch({
-    executablePath: process.env.PATH.split(delimiter).map((folder) => join(folder, 'chromium')).find(existsSync),
-    args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-  });
-  const faults = [];
+void inBrowser((browser, faults) => {
   // The page in a window of its own, when it is ready.
   const open = async ({ width = 1280, height = 800, scheme = 'light', touch = false }) => {
     const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, hasTouch: touch, isMobile: touch });
-    const page = await context.newPage();
-    page.on('console', (message) => faults.push(`console: ${message.text()}`));
-    page.on('pageerror', (error) => faults.push(`error: ${error.message}`));
-    page.on('request', (request) => {
-      if (request.url() !== url && !request.url().startsWith('data:')) faults.push(`request: ${request.url()}`);
-    });
-    await page.goto(url);
-    await page.waitForSelector('html[data-ready]', { state: 'attached', timeout: 60000 });
-    return page;
+    return opened(context, url, faults);
   };
-  try {
-    await checks[check](open, ...rest);
-    assert.deepStrictEqual(faults, []);
-  } finally {
-    await browser.close();
-  }
-})().catch((error) => {
-  console.error(error.message);
-  process.exitCode = 1;
+  return checks[check](open, ...rest);
 });

@@ -1,21 +1,13 @@
 // Checks a report.html or player.html in headless Chromium: node check_page.cjs CHECK PAGE [ARGUMENT...]. Packages are found from the
 // current folder. Prints what is wrong and exits with 1.
 const assert = require('assert');
-const { existsSync, readFileSync, writeFileSync } = require('fs');
+const { readFileSync, writeFileSync } = require('fs');
 const { createRequire } = require('module');
-const { delimiter, join } = require('path');
 const { pathToFileURL } = require('url');
+const { inBrowser, opened } = require('./checks/browser.cjs');
 const { pictureOf, plain, settled } = require('./checks/support.cjs');
-const { chromium } = createRequire(process.cwd() + '/')('playwright-core');
 
 const [check, file, ...rest] = process.argv.slice(2);
-
-function findBrowser() {
-  const folders = process.env.PATH.split(delimiter);
-  const found = folders.map((folder) => join(folder, 'chromium')).find(existsSync);
-  assert(found, 'chromium is needed for this test (Debian package chromium)');
-  return found;
-}
 
 const checks = {
   ...require('./checks/values.cjs'),
@@ -24,6 +16,7 @@ const checks = {
   ...require('./checks/reading.cjs'),
   ...require('./checks/section.cjs'),
   ...require('./checks/judging.cjs'),
+  ...require('./checks/answers.cjs'),
 
   // A saved page opens with the callouts, the section, the colours and the view that it was saved with, and can be
   // saved again; the file is a page like any other.
@@ -272,35 +265,13 @@ function animationPage(model, html) {
   return html;
 }
 
-(async () => {
-  const browser = await chromium.launch({
-    executablePath: findBrowser(),
-    args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-  });
-  try {
-    const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
-    const faults = [];
-    page.on('console', (message) => faults.push(`console: ${message.text()}`));
-    page.on('pageerror', (error) => faults.push(`error: ${error.message}`));
-    const url = pathToFileURL(check === 'animates' ? animationPage(file, rest[3]) : file).href;
-    page.on('request', (request) => {
-      if (request.url() !== url && !request.url().startsWith('data:')) faults.push(`request: ${request.url()}`);
-    });
-    await page.goto(url);
-    await page
-      .waitForSelector('html[data-ready]', { state: 'attached', timeout: 60000 })
-      .catch(async () => assert.fail(`the page says: ${await page.textContent('#message')} ${faults}`));
-    await page.evaluate(() =>
-      document.getElementById('canvas').addEventListener('pointermove', (event) => {
-        window.pointer = [event.offsetX, event.offsetY];
-      }),
-    );
-    await checks[check](page, ...rest);
-    assert.deepStrictEqual(faults, []);
-  } finally {
-    await browser.close();
-  }
-})().catch((error) => {
-  console.error(error.message);
-  process.exitCode = 1;
+void inBrowser(async (browser, faults) => {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 900 } });
+  const page = await opened(context, pathToFileURL(check === 'animates' ? animationPage(file, rest[3]) : file).href, faults);
+  await page.evaluate(() =>
+    document.getElementById('canvas').addEventListener('pointermove', (event) => {
+      window.pointer = [event.offsetX, event.offsetY];
+    }),
+  );
+  await checks[check](page, ...rest);
 });

@@ -4,7 +4,7 @@ const { writeFileSync } = require('fs');
 const { createRequire } = require('module');
 const { join } = require('path');
 const { pathToFileURL } = require('url');
-const { pictureOf, plain, settled } = require('./support.cjs');
+const { pictureOf, plain, settled, shareOfPixels } = require('./support.cjs');
 
 module.exports = {
   async recolours(page) {
@@ -108,17 +108,7 @@ module.exports = {
     for (const id of ['#mode', '#range', '#tolerance']) assert(await page.isDisabled(id), `${id} changes nothing`);
     await settled(page);
     near(
-      await page.evaluate(() => {
-        const canvas = document.getElementById('canvas');
-        const copy = document.createElement('canvas');
-        [copy.width, copy.height] = [canvas.width, canvas.height];
-        const context = copy.getContext('2d');
-        context.drawImage(canvas, 0, 0);
-        const { data } = context.getImageData(0, 0, copy.width, copy.height);
-        const pixels = [0, 0]; // warm, cool
-        for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 250) ++pixels[data[i] > data[i + 2] ? 0 : 1];
-        return pixels[1] / (pixels[0] + pixels[1]);
-      }),
+      await shareOfPixels(page, (r, g, b) => r <= b), // cool
       'of the pixels',
       0.01,
     );
@@ -135,19 +125,7 @@ module.exports = {
   // A group that is chosen is alone in colours, also in the saved page, until it is chosen again.
   async highlights(page, saved) {
     const settle = (of) => settled(of);
-    const greys = (of) =>
-      of.evaluate(() => {
-        const canvas = document.getElementById('canvas');
-        const copy = document.createElement('canvas');
-        [copy.width, copy.height] = [canvas.width, canvas.height];
-        const context = copy.getContext('2d');
-        context.drawImage(canvas, 0, 0);
-        const { data } = context.getImageData(0, 0, copy.width, copy.height);
-        const pixels = [0, 0]; // coloured, grey
-        for (let i = 0; i < data.length; i += 4)
-          if (data[i + 3] > 250) ++pixels[Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) < 4 ? 1 : 0];
-        return pixels[1] / (pixels[0] + pixels[1]);
-      });
+    const greys = (of) => shareOfPixels(of, (r, g, b) => Math.max(r, g, b) - Math.min(r, g, b) < 4);
     await settle(page);
     assert(await greys(page) < 0.01);
     await page.click('#groups-table tbody tr:first-child button');

@@ -54,4 +54,18 @@ async function pictureOf(page) {
   return page.locator('#canvas').screenshot();
 }
 
-module.exports = { numbers, plain, plyRows, hitsFrom, pictureOf, settled };
+/// Of the opaque pixels of the canvas, the share that a function of red, green and blue accepts.
+const shareOfPixels = (page, accepts) =>
+  page.evaluate(`(() => {
+    const canvas = document.getElementById('canvas');
+    const copy = document.createElement('canvas');
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    const context = copy.getContext('2d');
+    context.drawImage(canvas, 0, 0);
+    const { data } = context.getImageData(0, 0, copy.width, copy.height);
+    const counts = [0, 0];
+    for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 250) ++counts[(${accepts})(data[i], data[i + 1], data[i + 2]) ? 1 : 0];
+    return counts[1] / (counts[0] + counts[1]);
+  })()`);
+
+module.exports = { numbers, plain, plyRows, hitsFrom, pictureOf, settled, shareOfPixels };

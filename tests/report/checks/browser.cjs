@@ -1,0 +1,51 @@
+// Pages in headless Chromium. Packages are found from the current folder.
+const assert = require('assert');
+const { existsSync } = require('fs');
+const { createRequire } = require('module');
+const { delimiter, join } = require('path');
+const { chromium } = createRequire(process.cwd() + '/')('playwright-core');
+
+function findBrowser() {
+  const found = process.env.PATH.split(delimiter).map((folder) => join(folder, 'chromium')).find(existsSync);
+  assert(found, 'chromium is needed for this test (Debian package chromium)');
+  return found;
+}
+
+/// Opens a page in a context; what it logs, throws and requests beside itself is added to `faults`. Returns when the page
+/// is ready.
+async function opened(context, url, faults) {
+  const page = await context.newPage();
+  page.on('console', (message) => faults.push(`console: ${message.text()}`));
+  page.on('pageerror', (error) => faults.push(`error: ${error.message}`));
+  page.on('request', (request) => {
+    if (request.url() !== url && !request.url().startsWith('data:')) faults.push(`request: ${request.url()}`);
+  });
+  await page.goto(url);
+  await page
+    .waitForSelector('html[data-ready]', { state: 'attached', timeout: 60000 })
+    .catch(async () => assert.fail(`the page says: ${await page.textContent('#message')} ${faults}`));
+  return page;
+}
+
+/// Calls a check with a browser and a list of faults, which has to stay empty. Prints what is wrong, and makes the program
+/// exit with 1.
+async function inBrowser(check) {
+  try {
+    const browser = await chromium.launch({
+      executablePath: findBrowser(),
+      args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+    });
+    try {
+      const faults = [];
+      await check(browser, faults);
+      assert.deepStrictEqual(faults, []);
+    } finally {
+      await browser.close();
+    }
+  } catch (error) {
+    console.error(error.message);
+    process.exitCode = 1;
+  }
+}
+
+module.exports = { inBrowser, opened };
