@@ -81,7 +81,8 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
   report["separation"] = separation ? to_json(*separation) : Json(nullptr);
   const std::string text = to_text(report);
   if (command.files.html)
-    sdm::write_html(folder / "report.html", surface, map, at_vertices, text, {.up = command.picture.up});
+    sdm::write_html(folder / "report.html", surface, map, at_vertices, text,
+                    {.up = command.picture.up, .thinnest = true});
   write_text(folder / "report.json", text);
   return report;
 }

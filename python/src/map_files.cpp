@@ -177,7 +177,7 @@ void write_page(const PyMap& self, nb::handle file, const VertexDistances& at_ve
   const auto sites_lock = self.use_sites();
   HtmlOptions options{.other = self.of_itself() ? nullptr : &self.to->sites.mesh(),
                       .up = up_axis_of(up),
-                      .thinnest = self.thickness.has_value(),
+                      .thinnest = self.thickness.has_value() || self.of_itself(),
                       .largest = largest,
                       .triangles = triangles};
   options.triangles_of_other = std::min(options.triangles_of_other, triangles);

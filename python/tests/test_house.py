@@ -151,7 +151,7 @@ def test_groups(told):
     for group, line, row in zip(told.json["group_tolerances"]["groups"], lines, told.page["groups"], strict=False):
         name, verdict, kind, limits, least, most, outside, proof = map(plain, row)
         assert (name, kind, verdict) == (group["group"], group["kind"], group["verdict"])
-        assert (limits, proof) == ("±0.02 mm", "certified") and group["certified"]
+        assert (limits, proof) == ("±0.02 mm", "proven") and group["certified"]
         measured = [group["lowest"], group["highest"]]
         shown = [0 if abs(x) <= accuracy else stated(told, x) for x in measured]
         assert [first_number(least), first_number(most)] == shown

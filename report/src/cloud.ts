@@ -1,7 +1,7 @@
 // A measured cloud: points as discs, of which the page has some.
 import { BufferAttribute, BufferGeometry, Points, ShaderMaterial } from 'three';
-import { Colors, kColorShader } from './color_scale';
-import { colorUniforms, Uniforms } from './color_uniforms';
+import { Colors, kColorShader, Scale } from './color_scale';
+import { colorUniforms, setScale, Uniforms } from './color_uniforms';
 import { count } from './numbers';
 import type { CloudData, Vec } from './page_data';
 import { Found, HalfSpace, nearest, Subject } from './subject';
@@ -107,6 +107,10 @@ export class Cloud implements Subject {
     const points = data.distance.length;
     this.stride = Math.max(1, Math.ceil(points / kCoarse));
     this.few = this.stride === 1 ? null : new BufferAttribute(Uint32Array.from({ length: Math.floor(points / this.stride) }, (_, i) => i * this.stride), 1);
+  }
+
+  setScale(scale: Scale, colors: Colors): void {
+    setScale(this.uniforms, scale, colors);
   }
 
   /// Some of the points, with larger discs that overlap less.

@@ -44,22 +44,27 @@ function copied(geometry: BufferGeometry, cells: number): BufferGeometry {
   const position = geometry.getAttribute('position').array;
   const triangle = geometry.getIndex()!.array;
   const { place, like } = representatives(cellsOf(position, cells), geometry.getAttribute('normal')?.array ?? null);
+  const groups = geometry.groups.length > 0 ? geometry.groups : [{ start: 0, count: triangle.length, materialIndex: 0 }];
+  const copy = new BufferGeometry();
   const used: number[] = []; // vertices of the geometry, one for each of the copy
   const number = new Map<number, number>();
   const corners: number[] = [];
-  for (let i = 0; i < triangle.length; i += 3) {
-    const [a, b, c] = [triangle[i], triangle[i + 1], triangle[i + 2]];
-    if (place[a] === place[b] || place[b] === place[c] || place[c] === place[a]) continue;
-    for (const corner of [a, b, c]) {
-      let n = number.get(like[corner]);
-      if (n === undefined) {
-        n = used.push(like[corner]) - 1;
-        number.set(like[corner], n);
+  for (const { start, count, materialIndex } of groups) {
+    const first = corners.length;
+    for (let i = start; i < start + count; i += 3) {
+      const [a, b, c] = [triangle[i], triangle[i + 1], triangle[i + 2]];
+      if (place[a] === place[b] || place[b] === place[c] || place[c] === place[a]) continue;
+      for (const corner of [a, b, c]) {
+        let n = number.get(like[corner]);
+        if (n === undefined) {
+          n = used.push(like[corner]) - 1;
+          number.set(like[corner], n);
+        }
+        corners.push(n);
       }
-      corners.push(n);
     }
+    copy.addGroup(first, corners.length - first, materialIndex);
   }
-  const copy = new BufferGeometry();
   for (const [name, { array, itemSize, normalized }] of Object.entries(geometry.attributes)) {
     const values = new (array.constructor as Float32ArrayConstructor)(used.length * itemSize);
     used.forEach((v, n) => {

@@ -3,7 +3,7 @@ import type { Vec } from './page_data';
 
 export type MapName = 'viridis' | 'diverging' | 'paper2006';
 export type Mode = MapName | 'sequential' | 'tolerance';
-export type Colors = Record<MapName | 'opposite' | 'within' | 'above' | 'below' | 'no_value', Vec[]>;
+export type Colors = Record<MapName | 'opposite' | 'within' | 'above' | 'below' | 'no_value' | 'unjudged', Vec[]>;
 
 export interface Scale {
   mode: Mode;
@@ -21,6 +21,8 @@ function gradient(colors: Vec[], t: number): Vec {
   return colors[i].map((a, k) => a + (s - i) * (colors[i + 1][k] - a)) as Vec;
 }
 
+export const kViridis = 'Violet – green – yellow'; // viridis, in words
+
 function fraction(x: number, from: number, to: number): number {
   return to > from ? (x - from) / (to - from) : 1;
 }
@@ -36,6 +38,7 @@ function closeness({ lower, upper, lo, hi }: Scale, d: number): number {
 export function colorOf(scale: Scale, colors: Colors, distance: number): Vec {
   if (!Number.isFinite(distance)) return colors.no_value[0];
   if (scale.mode === 'tolerance') {
+    if (scale.lower === -Infinity && scale.upper === Infinity) return colors.unjudged[0];
     if (distance > scale.upper + scale.accuracy)
       return gradient(colors.above, fraction(distance, scale.upper, scale.hi));
     if (distance < scale.lower - scale.accuracy)
@@ -63,7 +66,7 @@ export function css(color: Vec): string {
 export const kColorShader = `
   uniform int mode; // 0 viridis or the like, 1 diverging, 2 tolerance, 3 sequential
   uniform float lo, hi, lower, upper, accuracy; // lower -1e38 or upper 1e38: no limit
-  uniform vec3 stops[11], above[3], below[3], opposite[3], within[4], noValue;
+  uniform vec3 stops[11], above[3], below[3], opposite[3], within[4], noValue, unjudged;
   uniform int stopCount;
 
   vec3 gradientOf(float t) {
@@ -91,6 +94,7 @@ export const kColorShader = `
 
   vec3 colorOf(float d) {
     if (mode == 2) {
+      if (lower < -1e37 && upper > 1e37) return unjudged;
       if (d > upper + accuracy) return gradientOf3(above, fractionOf(d, upper, hi));
       if (d < lower - accuracy) return gradientOf3(below, fractionOf(-d, -lower, -lo));
       return within[clamp(int(floor(4.0 * closeness(d))), 0, 3)];

@@ -23,6 +23,7 @@ export function colorUniforms(colors: Colors): Uniforms {
     below: { value: triple(colors.below) },
     opposite: { value: triple(colors.opposite) },
     within: { value: triple(colors.within) },
+    unjudged: { value: triple(colors.unjudged)[0] },
     noValue: { value: triple(colors.no_value)[0] },
   };
 }

@@ -1,5 +1,5 @@
 // Sliders and choices, and the state that they set.
-import type { Mode, Scale } from './color_scale';
+import { kViridis, Mode, Scale } from './color_scale';
 import { byId, make } from './dom';
 import { text } from './numbers';
 import type { AreaByValue } from './area_by_value';
@@ -93,14 +93,15 @@ class Slider {
     this.range.setAttribute('aria-valuetext', `${text(value)} ${this.options.unit}`);
   }
 }
-/// The settings that a page opens with.
-export function startOf(report: Report, area: AreaByValue, ghostShown: boolean): State {
+
+/// The settings that a page opens with; `byGroup`: triangles have limits by their groups.
+export function startOf(report: Report, area: AreaByValue, ghostShown: boolean, byGroup = false): State {
   const [least, most] = [report.extremes?.min?.distance ?? area.lo, report.extremes?.max?.distance ?? area.hi];
   const largest = Math.max(Math.abs(least), Math.abs(most)) || 1;
   const [lo, hi] = report.colors?.range ?? [least < 0 ? -largest : least, Math.max(most, least + largest * 1e-6)];
   return {
     scale: {
-      mode: (report.colors?.map ?? (least < 0 && most > 0 ? 'diverging' : 'viridis')) as Mode,
+      mode: (byGroup ? 'tolerance' : report.colors?.map ?? (least < 0 && most > 0 ? 'diverging' : 'viridis')) as Mode,
       lo,
       hi: hi > lo ? hi : lo + 1,
       ...(limitsOf(report) ?? { lower: -Infinity, upper: Infinity }),
@@ -122,6 +123,7 @@ export function makeControls(
   hasCoverage: boolean,
   ghostShown: boolean,
   isCloud: boolean,
+  byGroup: boolean, // triangles have limits by their groups
   box: [Vec, Vec], // in the units of the files
   saved: State | null,
   onChange: (state: State) => void,
@@ -132,7 +134,7 @@ export function makeControls(
   const [least, most] = [report.extremes?.min?.distance ?? area.lo, report.extremes?.max?.distance ?? area.hi];
   const largest = Math.max(Math.abs(least), Math.abs(most)) || 1;
   const limits = limitsOf(report);
-  const start = () => startOf(report, area, ghostShown);
+  const start = () => startOf(report, area, ghostShown, byGroup);
   let state = start();
   const { mode: startMode, lo, hi } = state.scale;
 
@@ -208,7 +210,7 @@ export function makeControls(
   const showSliders = () => {
     const { mode } = state.scale;
     const symmetric = mode === 'diverging' || mode === 'tolerance' || mode === 'sequential';
-    sliders.reach.element.hidden = !symmetric;
+    sliders.reach.element.hidden = !symmetric || (byGroup && mode === 'tolerance');
     sliders.lo.element.hidden = sliders.hi.element.hidden = symmetric;
     sliders.reach.show(reach());
     sliders.reach.element.querySelector('label')!.textContent = signs && mode !== 'sequential' ? 'Colours up to ±' : 'Colours up to';
@@ -216,10 +218,10 @@ export function makeControls(
     sliders.hi.show(state.scale.hi);
   };
   const modes: [string, string][] = [
-    ['tolerance', 'Tolerance bands'],
+    ['tolerance', byGroup ? 'Tolerance bands of each group' : 'Tolerance bands'],
     ['diverging', 'Blue – white – red, about zero'],
     ['sequential', 'From zero, the other side in red'],
-    ['viridis', 'Viridis'],
+    ['viridis', kViridis],
   ];
   if (startMode === 'paper2006') modes.push(['paper2006', 'Red – yellow – green']);
   const [modeRow, modeSelect] = select('mode', 'Colours', modes, startMode, (value) => {
@@ -242,7 +244,7 @@ export function makeControls(
   });
   // Bands need limits.
   const allowBands = () => {
-    const allowed = isLimited(state.scale);
+    const allowed = isLimited(state.scale) || byGroup;
     modeSelect.options[0].disabled = !allowed;
     if (allowed || state.scale.mode !== 'tolerance') return;
     modeSelect.value = 'diverging';

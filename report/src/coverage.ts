@@ -89,6 +89,6 @@ export function coverageRow(report: Report): string[][] {
   return [[
     'Coverage of the reference',
     percent(c.value),
-    `of its area have a measured point within ${text(c.reach)}${unitOf(report)}: an estimate, certified between ${percent(c.lower)} and ${percent(c.upper)}`,
+    `of its area have a measured point within ${text(c.reach)}${unitOf(report)}: an estimate, proven to be between ${percent(c.lower)} and ${percent(c.upper)}`,
   ]];
 }

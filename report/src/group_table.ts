@@ -15,7 +15,7 @@ type Row = NonNullable<Report['group_tolerances']>['groups'][number];
 /// What the verdict of a group rests on.
 function kindOf({ verdict, certified, undecided_by: by }: Row, unit: string): string {
   if (verdict === 'NOT DECIDED') return typeof by === 'number' ? `open by ${text(by)}${unit}` : 'open';
-  return certified ? 'certified' : 'estimate';
+  return certified ? 'proven' : 'estimate';
 }
 
 /// `show`, if given, is called with a group that is chosen, or null for one that was.

@@ -121,6 +121,7 @@ function sentenceOf(report: Report, area: AreaByValue, [lo, hi]: [number, number
   return (
     (typeof min === 'number' && typeof max === 'number' ? `${capital(quantityOf(report))} from ${shown(min)} to ${shown(max)}${unitOf(report)}` : 'No values') +
     (beside.length > 0 ? `; of the ${whole}, ${beside.join(', ')}` : '') +
+    (report.group_tolerances ? '. The limits of groups are not in this chart' : '') +
     (logarithmic ? '. Each line of the grid is ten times the one below it' : '') +
     (whole === 'area' ? '. Areas are estimates from the samples.' : '. All points of the cloud were counted.')
   );

@@ -1,11 +1,14 @@
 // The colour scale beside the part.
 import { Colors, colorOf, css, Scale } from './color_scale';
 import { byId, make } from './dom';
+import type { GroupLimits } from './group_limits';
 import { text, ticks, tickText, valueLabel } from './numbers';
+import type { Vec } from './page_data';
 
 const kColors = 192; // of the bar
 const kScaleSteps = 10;
 const kApart = 0.06; // numbers, of the length of the bar
+const kLine = 17; // pixels that a number takes
 
 /// The distances at the ends of the bar: those of the scale, symmetric where its colours are.
 export function ends(scale: Scale): [number, number] {
@@ -21,13 +24,14 @@ interface ScaleLabel {
 }
 
 /// The numbers beside the bar, from the lowest: those of pictures, by scale_labels() of src/io/image/pictures/legend.h.
-export function scaleLabels(scale: Scale): ScaleLabel[] {
+/// `apart`: the least distance of two, of the length of the bar.
+export function scaleLabels(scale: Scale, apart = kApart): ScaleLabel[] {
   const [lo, hi] = ends(scale);
   const round = ticks(lo, hi, kScaleSteps);
   const step = round.length > 1 ? round[1] - round[0] : hi - lo;
   const labels: ScaleLabel[] = [];
   const add = (value: number, isLimit: boolean) => {
-    const close = labels.some((label) => Math.abs(label.value - value) < kApart * (hi - lo));
+    const close = labels.some((label) => Math.abs(label.value - value) < apart * (hi - lo));
     if (close && !isLimit) return;
     const isRound = Math.abs(value / step - Math.round(value / step)) < 1e-6;
     labels.push({ value, text: close ? '' : isRound ? tickText(value, step) : valueLabel(value), isLimit });
@@ -38,23 +42,38 @@ export function scaleLabels(scale: Scale): ScaleLabel[] {
   return labels.sort((a, b) => a.value - b.value);
 }
 
-export function drawLegend(scale: Scale, colors: Colors, quantity: string, unit: string, noValue: boolean): void {
+/// The bar with its labels, below a title; `keys`: other colours, below it.
+function draw(scale: Scale, colors: Colors, title: string, labelsOf: (apart: number) => ScaleLabel[], keys: [color: Vec, words: string][]): void {
   const [lo, hi] = ends(scale);
   const stops = Array.from({ length: kColors }, (_, i) => {
     const color = css(colorOf(scale, colors, lo + ((i + 0.5) / kColors) * (hi - lo)));
     return `${color} ${(100 * i) / kColors}% ${(100 * (i + 1)) / kColors}%`;
   });
   const bar = make('div', { class: 'bar', style: `background: linear-gradient(to top, ${stops.join(', ')})` });
-  for (const label of scaleLabels(scale)) {
+  const below = keys.map(([color, words]) => make('p', { class: 'missing' }, make('span', { style: `background: ${css(color)}` }), words));
+  byId('legend').replaceChildren(make('p', { class: 'unit' }, title), bar, ...below);
+  for (const label of labelsOf(Math.max(kApart, kLine / (bar.clientHeight || Infinity)))) {
     const style = `bottom: ${(100 * (label.value - lo)) / (hi - lo)}%`;
     if (label.isLimit) bar.append(make('span', { class: 'limit', style }));
     if (label.text) bar.append(make('span', { class: `tick${label.isLimit ? ' of-limit' : ''}`, style }, label.text));
   }
-  const legend = byId('legend');
-  legend.replaceChildren(make('p', { class: 'unit' }, unit ? `${quantity} in ${unit}` : quantity), bar);
-  if (noValue)
-    legend.append(
-      make('p', { class: 'missing' }, make('span', { style: `background: ${css(colors.no_value[0])}` }), 'no value'),
-    );
-  legend.setAttribute('aria-label', `Colour scale from ${text(lo)} to ${text(hi)} ${unit}`);
+}
+
+const noValueKey = (colors: Colors, noValue: boolean): [Vec, string][] => (noValue ? [[colors.no_value[0], 'no value']] : []);
+
+export function drawLegend(scale: Scale, colors: Colors, quantity: string, unit: string, noValue: boolean): void {
+  draw(scale, colors, unit ? `${quantity} in ${unit}` : quantity, (apart) => scaleLabels(scale, apart), noValueKey(colors, noValue));
+  byId('legend').setAttribute('aria-label', `Colour scale from ${text(ends(scale)[0])} to ${text(ends(scale)[1])} ${unit}`);
+}
+
+/// The legend of bands that are those of each group: in units of its limits.
+export function drawGroupLegend(scale: Scale, limits: GroupLimits, colors: Colors, quantity: string, noValue: boolean): void {
+  const { scale: relative, lower, upper, someHaveNone } = limits.relative(scale);
+  const labels: ScaleLabel[] = [];
+  if (lower) labels.push({ value: -1, text: 'lower', isLimit: true });
+  if (upper) labels.push({ value: 1, text: 'upper', isLimit: true });
+  const keys = noValueKey(colors, noValue);
+  if (someHaveNone) keys.unshift([colors.unjudged[0], 'no limits']);
+  draw(relative, colors, `${quantity}, by the limits of each group`, () => labels, keys);
+  byId('legend').setAttribute('aria-label', `Colour scale of each group from ${lower ? 'below its lower limit' : 'its least value'} to ${upper ? 'above its upper limit' : 'its largest value'}`);
 }

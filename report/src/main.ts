@@ -1,4 +1,5 @@
 // The page of report.html: the text first, then the part.
+import { showBadge } from './badge';
 import { Callouts } from './callouts';
 import { Cloud } from './cloud';
 import { drawCoverageLegend } from './coverage';
@@ -6,7 +7,8 @@ import { makeControls, State } from './controls';
 import { byId, make } from './dom';
 import { GroupName, showGroups } from './group_table';
 import { drawHistogram } from './histogram';
-import { drawLegend } from './legend';
+import { GroupLimits } from './group_limits';
+import { drawGroupLegend, drawLegend } from './legend';
 import { showMade } from './made';
 import { exactText, place } from './numbers';
 import { openPage } from './open_page';
@@ -19,22 +21,24 @@ import { copyOfPage, csvOf, download, pageWith, readSaved, Saved } from './saved
 import { SectionView } from './section_view';
 import { showWithoutPicture } from './without_picture';
 import { boxOf, Subject, toFile, toScene } from './subject';
+import { howSure } from './sure';
 import { Surface } from './surface';
 import { inputsOf, showFields, showInputs, showMethod, showMore, showNumbers, showOmissions, titleOf } from './tables';
 import { isCloud, isSigned, outsideOf, unitOf, verdictOf, whatIf } from './verdict';
 import { View } from './view';
-import { capital, quantityOf } from './words';
+import { capital, named, quantityOf } from './words';
 
 function showVerdict(report: Report): void {
   const { verdict, sentence } = verdictOf(report);
-  const signs: Record<string, string> = { PASS: '✓', FAIL: '✗', 'NOT DECIDED': '?', DOUBTFUL: '?', MEASURED: 'i' };
-  byId('verdict').className = verdict.toLowerCase().replace(' ', '-');
-  byId('verdict').replaceChildren(make('span', { 'aria-hidden': 'true' }, signs[verdict]), ` ${verdict}`);
+  showBadge(verdict);
+  const sure = howSure(report, verdict);
+  byId('sure').hidden = !sure;
+  if (sure) byId('sure').replaceChildren('How sure: ', make('b', {}, sure[0]), ` – ${sure[1]}`);
   const tile = report.atlas?.udim ? ' This page is of one tile of the texture; the verdict on all tiles is in report.json in the folder above.' : '';
   const doubts = verdict === 'FAIL' || verdict === 'NOT DECIDED' ? (report.doubts ?? []).map((doubt) => ` ${capital(doubt.text)}.`).join('') : '';
   const notes = report.notes?.length ?? 0;
   const link = notes === 0 ? '' : make('a', { href: '#method' }, notes === 1 ? 'One note' : `${notes} notes`);
-  byId('sentence').replaceChildren(sentence + doubts + tile, ...(link ? [' ', link, notes === 1 ? ' qualifies this.' : ' qualify this.'] : []));
+  byId('sentence').replaceChildren(named(sentence + doubts, report) + tile, ...(link ? [' ', link, notes === 1 ? ' qualifies this.' : ' qualify this.'] : []));
   document.title = `${verdict}: ${titleOf(report)}`;
   byId('title').textContent = titleOf(report);
 }
@@ -43,6 +47,7 @@ function showVerdict(report: Report): void {
 function nameSubject(report: Report): void {
   byId('canvas').setAttribute('aria-label', `The part, coloured by ${quantityOf(report)}`);
   if (report.thickness) byId('worst-title').textContent = onlyThickest(report) ? 'Thickest places' : 'Thinnest places';
+  else if (report.mesh) byId('worst-title').textContent = 'Smallest distances';
   else if (report.places?.limits_from === 'tolerance') byId('worst-title').textContent = 'Places out of tolerance';
   if (!isCloud(report)) return;
   byId('part-title').textContent = 'The cloud in 3D';
@@ -61,6 +66,7 @@ function sectionWords({ part, other, factor }: SectionView): string {
 class Page {
   private readonly subject: Subject;
   private readonly cloud: Cloud | null;
+  private readonly limits: GroupLimits | null; // of triangles, by their groups
   private readonly view: View;
   private readonly section: SectionView;
   private readonly callouts: Callouts;
@@ -83,7 +89,9 @@ class Page {
     this.first = verdictOf(report).verdict === 'MEASURED' ? undefined : listedPlaces(report, page)[0];
     const { measured } = inputsOf(report);
     this.cloud = cloud && new Cloud(cloud, page.colors);
-    this.subject = this.cloud ?? new Surface(surface!.model, surface!.map, page.colors, measured?.closed ?? false, this.unit);
+    const limits = surface && new GroupLimits(report, surface.model);
+    this.limits = limits && limits.count > 1 ? limits : null;
+    this.subject = this.cloud ?? new Surface(surface!.model, surface!.map, page.colors, measured?.closed ?? false, this.unit, this.limits);
     this.section = this.makeSection();
     this.view = new View(byId('view'), this.subject, ghost, this.section, page.up, () => this.callouts?.update());
     this.callouts = new Callouts(this.view, (d) => this.valueText(d), this.unit, this.subject.size, (at) => this.lookAt(at));
@@ -95,6 +103,7 @@ class Page {
       data.ghost?.covered != null,
       ghostShown,
       data.cloud !== null,
+      this.limits !== null,
       [toFile(this.subject, this.subject.lo), toFile(this.subject, this.subject.hi)],
       saved?.state ?? null,
       (state) => this.apply(state),
@@ -189,11 +198,20 @@ class Page {
       this.view.setCut({ normal, offset: sign * (least + section.at * (most - least)) });
       byId('section-words').textContent = sectionWords(this.section);
     }
-    const hasGaps = (this.report.beyond_max_distance ?? 0) > 0 || (this.report.without_match ?? 0) > 0 || ((this.report.texels_without_value as number) ?? 0) > 0;
-    if (state.coverage) drawCoverageLegend(this.report);
-    else drawLegend(scale, colors, quantityOf(this.report), this.report.units ?? '', hasGaps);
+    this.drawLegend();
     this.drawHistogram();
     this.showWhatIf(state);
+  }
+
+  private drawLegend(): void {
+    const { report, limits } = this;
+    const { scale, group, coverage } = this.state;
+    const { colors } = this.data.page;
+    if (coverage) return drawCoverageLegend(report);
+    const hasGaps = [report.beyond_max_distance, report.without_match, report.texels_without_value].some((n) => Number(n ?? 0) > 0);
+    const byGroup = limits !== null && scale.mode === 'tolerance';
+    if (byGroup && !group) drawGroupLegend(scale, limits, colors, quantityOf(report), hasGaps);
+    else drawLegend(byGroup ? limits.scaleOfGroup(report, group!.kind, group!.group, scale) : scale, colors, quantityOf(report), report.units ?? '', hasGaps);
   }
 
   /// The cut surface of a section that is new faces the viewer.
@@ -260,6 +278,7 @@ class Page {
     canvas.addEventListener('blur', () => byId('view').classList.remove('keyboard'));
     printPicture(this.view);
     new ResizeObserver(() => this.drawHistogram()).observe(byId('histogram-chart'));
+    new ResizeObserver(() => this.drawLegend()).observe(byId('legend'));
     byId('logarithmic').addEventListener('change', (event) => {
       this.state.logarithmic = (event.target as HTMLInputElement).checked;
       this.drawHistogram();

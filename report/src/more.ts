@@ -3,7 +3,7 @@ import { make, table } from './dom';
 import { count, percent, place, text } from './numbers';
 import type { Report, Vec } from './page_data';
 import { isSigned, limitsOf, unitOf, wholeOf } from './verdict';
-import { isThickness, quantityOf } from './words';
+import { isThickness, named, quantityOf } from './words';
 
 /// The keys of the report that are shown in words.
 export const kInWords = ['alignment', 'hausdorff', 'bands', 'separation', 'exclusion', 'thickness', 'doubts'];
@@ -66,9 +66,8 @@ export function alignmentWords(report: Report): Node[] {
   const a = report.alignment as AlignmentJson | undefined;
   if (!a) return [];
   const unit = unitOf(report);
-  const names = report.measured_on === 'o2' ? ['the reference', 'the part'] : ['the part', 'the reference'];
   // Its residuals are named in a sentence.
-  const done = a.text.replace(/; residual rms .*?\(.*?\)/, '').replace(/\bO([12])\b/g, (_, n) => names[n - 1]);
+  const done = named(a.text.replace(/; residual rms .*?\(.*?\)/, ''), report);
   const from = (key: keyof Residual) => `from ${text(a.before?.[key], 3)} to ${text(a.after?.[key], 3)}${unit}`;
   return [
     words(
@@ -111,7 +110,7 @@ function hausdorff(report: Report): Node[] {
   const both = h.symmetric && between(h.symmetric, unit);
   const at = h.one_sided.point ? ` The largest one measured is at (${place(h.one_sided.point, size)}).` : '';
   return [
-    make('h3', {}, 'Hausdorff distance'),
+    make('h3', {}, 'Largest distance of all points (Hausdorff distance)'),
     words(
       one ? `The largest distance from any point of the part to the reference (one-sided) ${one}.${at}` : 'The largest distance of all points of the part is not bounded by this measurement.',
       both && `That of both directions (symmetric) ${both}.`,

@@ -27,7 +27,7 @@ export interface PageJson {
   model?: Placement & { triangles_of_mesh: number; names?: { kind: string; names: string[] }[] };
   cloud?: Placement & { points: number; picked: number; normals: boolean }; ///< in place of map and model
   ghost?: Placement & { box: { lo: Vec; hi: Vec }; triangles_of_mesh: number };
-  thinnest?: Pick<Place, 'distance' | 'point' | 'at'>[]; ///< of wall thickness, in place of the report's places
+  thinnest?: Pick<Place, 'distance' | 'point' | 'at'>[]; ///< of wall thickness and of the distance to itself, in place of the report's places
   thickest?: Pick<Place, 'distance' | 'point' | 'at'>[]; ///< the same with an upper limit only
   area: { lo: number; hi: number; without_value: number };
   arrays: ArrayIndex;

@@ -38,12 +38,18 @@ export function onlyThickest({ thickness }: Report): boolean {
   return typeof thickness?.max === 'number' && typeof thickness.min !== 'number';
 }
 
-/// The places of a report on wall thickness.
+/// The places of a report on wall thickness, or on the distance of a part to itself.
 const wallsOf = ({ thinnest, thickest }: PageJson): Listed[] | null => thinnest ?? thickest ?? null;
 
 /// The places of the list, the worst one first.
 export function listedPlaces(report: Report, page: PageJson): Listed[] {
   return wallsOf(page) ?? report.places?.largest ?? [];
+}
+
+/// The least distance of a part to itself, of all points; null if there is none.
+export function separationOf(report: Report): number | null {
+  const { value } = (report.separation ?? {}) as { value?: number };
+  return report.mesh && typeof value === 'number' ? value : null;
 }
 
 /// Fills the list; without `show` the places cannot be seen.
@@ -64,12 +70,12 @@ export function showPlaces(report: Report, page: PageJson, size: number, show?: 
   });
   const head = ['', capital(quantityOf(report)), report.units ? `Position in ${report.units}` : 'Position', ...(walls ? [] : ['Extent']), ...(grouped ? ['Group'] : [])];
   const hint = walls
-    ? `The ${onlyThickest(report) ? 'largest' : 'least'} values, at texels that are at least 6 % of the part\u2019s size apart. `
+    ? `The ${onlyThickest(report) ? 'largest' : 'least'} values, at measured points that are at least 6 % of the part\u2019s size apart. ${separationOf(report) === null ? '' : `Of all points, also in between, the least is ${distanceText(separationOf(report), report)}${unitOf(report)}. `}`
     : report.places ? hintOf(report, report.places) : '';
   byId('worst-table').replaceChildren(
     rows.length === 0
       ? make('p', {}, walls || report.places ? `No point of the ${isCloud(report) ? 'cloud' : 'part'} has a distance beyond the accuracy.` : 'This report lists no places.')
-      : table(head, rows, walls ? `The ${onlyThickest(report) ? 'thickest' : 'thinnest'} places` : 'The places with the largest distances'),
+      : table(head, rows, walls ? `The places with the ${onlyThickest(report) ? 'largest' : 'least'} values` : 'The places with the largest distances'),
     make('p', { class: 'hint' }, hint + (hint && show ? 'Choose one to see it.' : '')),
   );
 }

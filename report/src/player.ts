@@ -1,13 +1,14 @@
 // Puts the pieces of player.html together.
-import type { Mode, Scale } from './color_scale';
+import { kViridis, Mode, Scale } from './color_scale';
 import { byId, make } from './dom';
 import { drawLegend } from './legend';
 import { showMade } from './made';
 import { count, signedText } from './numbers';
 import { openPage } from './open_page';
 import { Chart } from './player_charts';
-import { distancesOf, placeFrame, PlayerData, readPlayer } from './player_data';
+import { distancesOf, hasSigns, placeFrame, PlayerData, readPlayer } from './player_data';
 import { encloses, PlayerView } from './player_view';
+import { showVerdict } from './player_verdict';
 import { Mark, Worst, worstOf } from './player_worst';
 import { printPicture } from './print';
 
@@ -35,7 +36,7 @@ class Player {
     const { page } = data;
     this.view = new PlayerView(byId('view'), data, () => this.mark?.update());
     this.worst = worstOf(data);
-    const text = this.worst && `${signedText(this.worst.distance, true, 3)}${page.units ? `\u00a0${page.units}` : ''} at a vertex`;
+    const text = this.worst && `${signedText(this.worst.distance, hasSigns(data), 3)}${page.units ? `\u00a0${page.units}` : ''} at a vertex`;
     this.mark = text === null ? null : new Mark(this.view, text);
     this.scale = { ...page.scale };
     this.time.max = String(page.shown.length - 1);
@@ -59,6 +60,7 @@ class Player {
     this.recolour();
     this.show(0);
     this.showWorst();
+    showVerdict(data, pick);
   }
 
   /// Shows the frame of the worst place, with this in front.
@@ -144,7 +146,7 @@ class Player {
       return make('div', { class: 'choice' }, make('label', { for: id }, label), select);
     };
     const modes: [Mode, string][] = [
-      ['viridis', 'Viridis'],
+      ['viridis', kViridis],
       ['sequential', 'From zero, the other side in red'],
       ['diverging', 'Blue, white, red'],
       ['paper2006', 'Red to green'],

@@ -2,6 +2,7 @@
 import { ArrayIndex, Arrays, summed, unpacked } from './arrays';
 import type { Colors, Scale } from './color_scale';
 import type { Vec } from './page_data';
+import type { Verdict } from './verdict';
 
 export interface Curve {
   name: string;
@@ -29,6 +30,8 @@ interface PlayerJson {
   panels: Panel[];
   colors: Colors;
   scale: Scale;
+  verdict?: Verdict; ///< on all frames, if there is a tolerance
+  verdicts?: Verdict[]; ///< on each of them
   arrays: ArrayIndex;
 }
 
@@ -43,6 +46,11 @@ export interface PlayerBody {
 export interface PlayerData {
   page: PlayerJson;
   bodies: PlayerBody[];
+}
+
+/// Whether a distance of the curves is negative: otherwise numbers have no signs.
+export function hasSigns({ page }: PlayerData): boolean {
+  return page.panels.some(({ curves }) => curves.some(({ values }) => values.some((x) => x !== null && x < 0)));
 }
 
 const kNoDistance = 65535;

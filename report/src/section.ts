@@ -56,6 +56,7 @@ export function fanOf({ ends }: Profile): Float32Array {
 export interface ProfilePoint {
   at: Vec;
   distance: number; ///< NaN without one
+  triangle: number; ///< of the part
 }
 
 /// Pieces of at most a length of the profile of a part, two points each, with the values there.
@@ -73,7 +74,7 @@ export function sampledProfile(
     const parts = Math.min(200, Math.max(1, Math.ceil(length(minus(b, a)) / longest)));
     const sample = (s: number): ProfilePoint => {
       const at = [0, 1, 2].map((k) => a[k] + s * (b[k] - a[k])) as Vec;
-      return { at, distance: valueAt(triangle, weightsOf(at, corners)) };
+      return { at, distance: valueAt(triangle, weightsOf(at, corners)), triangle };
     };
     let last = sample(0);
     for (let i = 1; i <= parts; ++i) {

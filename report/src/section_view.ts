@@ -43,6 +43,7 @@ export interface Cuttable extends Triangles {
 
 export interface CutPart extends Cuttable {
   valueAt: (triangle: number, weights: Vec) => number; ///< the distance at a point of a triangle, NaN without one
+  scaleAt: (triangle: number, scale: Scale) => Scale; ///< that of a triangle, which may have limits of its own
 }
 
 /// The fills of the bodies that cover a pixel by an odd number of triangles of their fans.
@@ -116,7 +117,7 @@ export class SectionView {
   private points: ProfilePoint[] = [];
   private otherProfile: Profile = { ends: new Float32Array(0), triangle: new Uint32Array(0) };
   private cut: HalfSpace | null = null;
-  private color: (distance: number) => Vec = () => [0, 0, 0];
+  private color: (point: ProfilePoint) => Vec = () => [0, 0, 0];
   private largest = 0; // distance of the scale
 
   /// `part` is null for clouds, `other` if the reference is not in the page; `size` of a unit of the scene.
@@ -142,7 +143,7 @@ export class SectionView {
   }
 
   setScale(scale: Scale, colors: Colors): void {
-    this.color = (d) => colorOf(scale, colors, d);
+    this.color = ({ distance, triangle }) => colorOf(this.part?.scaleAt(triangle, scale) ?? scale, colors, distance);
     this.largest = Math.max(Math.abs(scale.lo), Math.abs(scale.hi));
     if (this.cut) this.recolour();
   }
@@ -161,7 +162,7 @@ export class SectionView {
 
   private recolour(): void {
     const draw = (mesh: LineSegments2, points: ProfilePoint[]) =>
-      setLines(mesh, Float32Array.from(points.flatMap(({ at }) => at)), points.flatMap(({ distance }) => this.color(distance)));
+      setLines(mesh, Float32Array.from(points.flatMap(({ at }) => at)), points.flatMap((point) => this.color(point)));
     draw(this.profile, this.points);
     draw(this.gap, gapLines(this.points, this.otherProfile, kSpacing, this.factor, kLongestGap));
   }

@@ -2,8 +2,9 @@
 import { BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, Mesh, RedFormat, ShaderMaterial, Vector3 } from 'three';
 import { CoarseWhileMoving } from './coarse_copy';
 import { kColorShader } from './color_scale';
-import { colorUniforms, Uniforms } from './color_uniforms';
-import type { Colors } from './color_scale';
+import { colorUniforms, setScale, Uniforms } from './color_uniforms';
+import type { Colors, Scale } from './color_scale';
+import type { GroupLimits } from './group_limits';
 import { exactText } from './numbers';
 import type { Channel, Model, TexelMap, Vec } from './page_data';
 import { firstHit, pointOf, valueAt } from './pick';
@@ -102,6 +103,7 @@ export class Surface implements Subject {
   readonly uniforms: Uniforms;
   readonly object: Mesh;
   private readonly rest: Mesh; // the triangles that are not highlighted
+  private readonly ofSet: Uniforms[]; // of each set of limits
   private readonly coarse: CoarseWhileMoving[];
   private readonly showBacks: boolean;
 
@@ -111,6 +113,7 @@ export class Surface implements Subject {
     colors: Colors,
     readonly isClosed: boolean,
     private readonly unit: string,
+    readonly limits: GroupLimits | null, // of the triangles, which have a tolerance of their own
   ) {
     ({ centre: this.centre, size: this.size } = model);
     ({ lo: this.lo, hi: this.hi } = boxOf(model.position));
@@ -132,21 +135,24 @@ export class Surface implements Subject {
     geometry.setAttribute('place', new BufferAttribute(model.place ?? new Float32Array(2 * model.distance.length), 2));
     const values = Float32Array.from(model.distance, (d) => (Number.isNaN(d) ? kNoValue : d));
     geometry.setAttribute('value', new BufferAttribute(values, 1));
-    geometry.setIndex(new BufferAttribute(model.triangle, 1));
+    const own = () => Object.fromEntries(['lo', 'hi', 'lower', 'upper'].map((key) => [key, { value: 0 }]));
+    this.ofSet = limits ? Array.from({ length: limits.count }, () => ({ ...this.uniforms, ...own() })) : [this.uniforms];
     const meshOf = (shape: BufferGeometry, faded: boolean) => {
-      const mesh = new Mesh(
-        shape,
-        new ShaderMaterial({
-          glslVersion: '300 es',
-          vertexShader: kVertexShader,
-          fragmentShader: kPartShader,
-          side: DoubleSide,
-          uniforms: { ...this.uniforms, faded: { value: faded } },
-        }),
+      const materials = this.ofSet.map(
+        (uniforms) =>
+          new ShaderMaterial({
+            glslVersion: '300 es',
+            vertexShader: kVertexShader,
+            fragmentShader: kPartShader,
+            side: DoubleSide,
+            uniforms: { ...uniforms, faded: { value: faded } },
+          }),
       );
+      const mesh = new Mesh(shape, materials);
       mesh.frustumCulled = false;
       return mesh;
     };
+    this.setTriangles(geometry);
     this.object = meshOf(geometry, false);
     const others = new BufferGeometry();
     for (const [name, attribute] of Object.entries(geometry.attributes)) others.setAttribute(name, attribute);
@@ -159,7 +165,32 @@ export class Surface implements Subject {
   /// What a section is made of.
   get cuttable(): CutPart {
     const { model, map, isClosed } = this;
-    return { position: model.position, triangle: model.triangle, isClosed, valueAt: (triangle, weights) => valueAt(model, map, { triangle, weights }).distance };
+    const scaleAt = (triangle: number, scale: Scale) => this.limits?.scaleOf(this.limits.ofTriangle[triangle], scale) ?? scale;
+    return { position: model.position, triangle: model.triangle, isClosed, scaleAt, valueAt: (triangle, weights) => valueAt(model, map, { triangle, weights }).distance };
+  }
+
+  setScale(scale: Scale, colors: Colors): void {
+    setScale(this.uniforms, scale, colors);
+    if (this.limits) this.ofSet.forEach((uniforms, set) => setScale(uniforms, this.limits!.scaleOf(set, scale), colors));
+  }
+
+  /// The triangles of a geometry, by their sets of limits, which have a material each; by default all.
+  private setTriangles(geometry: BufferGeometry, chosen?: number[]): void {
+    const { triangle } = this.model;
+    const setOf = (t: number) => this.limits?.ofTriangle[t] ?? 0;
+    const bySet: number[][] = this.ofSet.map(() => []);
+    const add = (t: number) => bySet[setOf(t)].push(t);
+    if (chosen) chosen.forEach(add);
+    else if (this.limits) for (let t = 0; t < triangle.length / 3; ++t) add(t);
+    const index = chosen || this.limits ? new Uint32Array(3 * bySet.reduce((sum, list) => sum + list.length, 0)) : triangle;
+    geometry.clearGroups();
+    if (index === triangle) geometry.addGroup(0, triangle.length, 0);
+    let at = 0;
+    bySet.forEach((list, set) => {
+      if (list.length > 0) geometry.addGroup(at, 3 * list.length, set);
+      for (const t of list) index.set(triangle.subarray(3 * t, 3 * t + 3), at), (at += 3);
+    });
+    geometry.setIndex(new BufferAttribute(index, 1));
   }
 
   /// A vertex in the middle of the triangles of a group, if they are known.
@@ -185,18 +216,17 @@ export class Surface implements Subject {
   /// Shows all but the triangles of a group in grey; null: all in colours.
   highlight(group: { kind: string; group: string } | null): void {
     this.setCoarse(false);
-    const { triangle } = this.model;
     const named = group && this.model.names.find((n) => n.kind === group.kind);
     const number = named ? named.names.indexOf(group.group) + 1 : 0;
     this.rest.visible = number > 0;
     if (number === 0) {
-      this.object.geometry.setIndex(new BufferAttribute(triangle, 1));
+      this.setTriangles(this.object.geometry);
       return;
     }
-    const corners: [number[], number[]] = [[], []]; // of the group, and of the rest
-    named!.ofTriangle.forEach((n, t) => corners[n === number ? 0 : 1].push(...triangle.subarray(3 * t, 3 * t + 3)));
-    this.object.geometry.setIndex(new BufferAttribute(Uint32Array.from(corners[0]), 1));
-    this.rest.geometry.setIndex(new BufferAttribute(Uint32Array.from(corners[1]), 1));
+    const chosen: [number[], number[]] = [[], []]; // of the group, and of the rest
+    named!.ofTriangle.forEach((n, t) => chosen[n === number ? 0 : 1].push(t));
+    this.setTriangles(this.object.geometry, chosen[0]);
+    this.setTriangles(this.rest.geometry, chosen[1]);
   }
 
   prepare(): void {}
@@ -216,13 +246,13 @@ export class Surface implements Subject {
     const rows: Found['rows'] = [];
     const detail = siteText(value.site);
     if (detail) rows.push(['Nearest', detail, 'probe-site']);
-    if (value.texel) rows.push([map.step > 1 ? `Texels (${map.step}² each)` : 'Texel', value.texel.join(', '), 'probe-texel']);
+    if (value.texel) rows.push([map.step > 1 ? `Pixels (${map.step}² each)` : 'Pixel', value.texel.join(', '), 'probe-texel']);
     else rows.push(['Of', 'the nearest vertex', 'probe-texel']);
     if (value.texel) {
       const texel = value.texel[1] * map.width + value.texel[0];
       rows.push(...map.channels.map((channel) => channelRow(channel, texel, this.unit)));
     }
-    return { at: pointOf(model, hit), normal: this.normalOf(hit), distance: value.distance, detail, rows, value };
+    return { at: pointOf(model, hit), normal: this.normalOf(hit), distance: value.distance, detail, rows, value: { ...value, triangle: hit.triangle } };
   }
 
   isHidden(viewer: Viewer, point: Vec, cut: HalfSpace | null): boolean {

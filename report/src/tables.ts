@@ -4,9 +4,10 @@ import { coverageRow } from './coverage';
 import { alignmentWords, folded, inWords, kInWords } from './more';
 import { count, percent, text } from './numbers';
 import { Input, PageData, Report, reportText } from './page_data';
+import { separationOf } from './places';
 import { distanceText } from './precision';
 import { isCloud, isSigned, unitOf } from './verdict';
-import { capital, endsOf, isThickness, quantityOf } from './words';
+import { capital, endsOf, isThickness, named, quantityOf } from './words';
 
 function fileName(path: string): string {
   return path.split(/[\\/]/).pop() || path;
@@ -40,7 +41,7 @@ export function showFields(report: Report): void {
 function otherDistance(report: Report): string | null {
   const measured = report.measured;
   if (!measured || measured.kind === 'closest' || isThickness(report)) return null;
-  return capital(measured.text);
+  return capital(named(measured.text, report));
 }
 
 export function showNumbers(report: Report): void {
@@ -69,6 +70,7 @@ export function showNumbers(report: Report): void {
   else add('Largest', 'max', 'measured', true);
   if (extremes?.min)
     rows.push([ends.smallest, shown(extremes.min.distance), sampled(Math.min(bound ?? 0, signs ? Infinity : extremes.min.distance), 'less')]);
+  else if (separationOf(report) !== null) rows.push(['Smallest', `${distanceText(separationOf(report), report)}${unit}`, 'exact, of all points']);
   else add('Smallest', 'min', 'measured', true);
   const estimate = cloud ? 'of all points' : 'estimate over the area';
   const share = cloud ? 'points are' : 'area is';
@@ -128,6 +130,11 @@ function sentence(...parts: (string | false | undefined)[]): HTMLElement {
   return make('p', {}, parts.filter(Boolean).join(' '));
 }
 
+/// A text whose options, such as --precision, are not broken at their hyphens.
+function unbroken(words: string): (string | Node)[] {
+  return words.split(/(--[\w-]+)/).map((part, i) => (i % 2 ? make('span', { class: 'option' }, part) : part));
+}
+
 export function showMethod(report: Report): void {
   const unit = unitOf(report);
   const { atlas, sign, error_bound: bound, accuracy } = report;
@@ -136,7 +143,7 @@ export function showMethod(report: Report): void {
   out.push(
     sentence(
       atlas &&
-        `The surface of the measured part was covered with ${count(atlas.texels)} points, the centres of the texels of a texture of ${atlas.resolution} × ${atlas.rows ?? atlas.resolution}.`,
+        `The surface of the measured part was covered with ${count(atlas.texels)} points, the centres of the pixels (texels) of a texture of ${atlas.resolution} × ${atlas.rows ?? atlas.resolution}.`,
       isCloud(report) && `The measured part is a cloud of ${count(report.o1!.points!)} points. Nothing is said about places between them.`,
       report.thickness
         ? `For each, the thickness of the wall below it was found (${report.thickness.text}). Between the points, the thickness is an estimate.`
@@ -181,6 +188,7 @@ export function showMethod(report: Report): void {
       'Words in this report: "exact" and "bounded" numbers hold for the whole surface or say by how much they may differ; "estimate" means computed from the measured points only.',
     ),
   );
+  for (const element of out) element.replaceChildren(...unbroken(named(element.textContent!, report)));
   byId('method-text').replaceChildren(...out);
 }
 

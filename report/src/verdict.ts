@@ -48,11 +48,15 @@ export function isLimited({ lower, upper }: Limits): boolean {
   return Number.isFinite(lower) || Number.isFinite(upper);
 }
 
-export function limitsText({ lower, upper }: Limits, report: Report): string {
-  const unit = unitOf(report);
+export function limitsText(limits: Limits, report: Report): string {
+  return limitsIn(limits, unitOf(report), isSigned(report));
+}
+
+/// `unit`: with the space before it.
+export function limitsIn({ lower, upper }: Limits, unit: string, signed: boolean): string {
   if (lower === -Infinity) return `at most ${text(upper)}${unit}`;
   if (upper === Infinity) return `at least ${text(lower)}${unit}`;
-  if (lower === -upper) return isSigned(report) ? `±${text(upper)}${unit}` : `${text(upper)}${unit}`;
+  if (lower === -upper) return signed ? `±${text(upper)}${unit}` : `${text(upper)}${unit}`;
   return `${text(lower)} to ${text(upper)}${unit}`;
 }
 

@@ -2,7 +2,6 @@
 import { BufferAttribute, BufferGeometry, DoubleSide, Mesh, ShaderMaterial, Vector3 } from 'three';
 import { CoarseWhileMoving } from './coarse_copy';
 import type { Colors, Scale } from './color_scale';
-import { setScale } from './color_uniforms';
 import { coverageOf, kReferenceVertexShader } from './coverage';
 import type { Ghost, Vec } from './page_data';
 import type { Camera } from './saved';
@@ -82,7 +81,7 @@ export class View extends Viewer {
   }
 
   setScale(scale: Scale, colors: Colors): void {
-    setScale(this.subject.uniforms, scale, colors);
+    this.subject.setScale(scale, colors);
     this.section.setScale(scale, colors);
     this.draw();
   }

@@ -21,7 +21,8 @@ Json colors_json() {
           {"within", list(kWithin)},
           {"above", list(kAbove)},
           {"below", list(kBelow)},
-          {"no_value", list({&kNoValue, 1})}};
+          {"no_value", list({&kNoValue, 1})},
+          {"unjudged", list({&kUnjudged, 1})}};
 }
 
 std::string as_script(const std::string& json) {
