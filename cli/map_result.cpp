@@ -138,7 +138,7 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
   }
   if (!views) return;
   sdm::PictureOptions fixed = sdm::fixed_colors(picture, *options.colors);
-  fixed.verdict = judged(outcome.summary, outcome.groups);
+  if (const auto verdict = judged(outcome.summary, outcome.groups)) fixed.verdict.emplace(*verdict);
   sdm::write_views_png(folder / "views.png", surface, map, computed.at_vertices, &task.to.mesh, fixed);
 }
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "atlas/charts/bucket_queue.h"
 #include "atlas/charts/normal_cone.h"
-#include "core/bucket_queue.h"
 #include "core/cancellation.h"
 #include "core/parallel.h"
 #include "core/rows.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace sdm::core {
+namespace sdm::atlas {
 
 /// Items whose priorities, ≥ 0, fall into the same interval of `width` are returned in the order in which
 /// they were pushed. Priorities must not be below the last interval returned from. Cost: constant, other than
@@ -45,8 +45,4 @@ class BucketQueue {
   std::size_t bucket_ = 0, next_ = 0;  ///< of the next item
 };
 
-}  // namespace sdm::core
-
-namespace sdm {
-using namespace core;  // used unqualified in every folder
-}
+}  // namespace sdm::atlas
