@@ -45,6 +45,12 @@ double processor_ms(const std::function<void()>& work) {
   return least;
 }
 
+constexpr double kPrecision = 1e-3;
+
+double size_of(const std::array<Shape, 2>& shapes) {
+  return std::min(diagonal(internals(shapes[0])->box()), diagonal(internals(shapes[1])->box()));
+}
+
 // The largest depth of a vertex of O2 in O1, 0 if there is none. `pose`: of O2; O1 has none.
 double deepest_vertex(const Shape& o1, const Shape& o2, const Affine& pose) {
   if (!internals(o1)->solid()) return 0;
@@ -70,7 +76,7 @@ struct Measured {
         std::min(diagonal(internals(shapes[0])->box()), diagonal(internals(shapes[1])->box()));
     const double deepest = std::max(deepest_vertex(shapes[0], shapes[1], pose),
                                     deepest_vertex(shapes[1], shapes[0], inverse(pose)));
-    wrong += deepest > depth.upper + 1e-6 * size || depth.upper - depth.lower > 1.01e-3 * size ||
+    wrong += deepest > depth.upper + 1e-6 * size || depth.upper - depth.lower > 1.01 * kPrecision * size ||
              depth.value < depth.lower || depth.value > depth.upper;
     ms.push_back(processor_ms([&] {
       query.set_pose(1, placed);
@@ -112,7 +118,7 @@ Affine slightly_turned(std::mt19937& random, double most) {
 void measure_pair(const std::array<Mesh, 2>& meshes, int poses, std::mt19937& random, const Placing& place,
                   Measured& measured) {
   const std::array shapes{Shape(meshes[0]), Shape(meshes[1])};
-  ProximityQuery query(shapes[0], shapes[1]);
+  ProximityQuery query(shapes[0], shapes[1], {.depth_precision = kPrecision * size_of(shapes)});
   for (int i = 0; i < poses;) {
     const Affine pose = place(random);
     query.set_pose(1, mesh::Similarity{.map = pose}.transform());

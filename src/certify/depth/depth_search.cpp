@@ -22,6 +22,8 @@ constexpr double kSameDirection = 0.9999;
 constexpr int kFirstDirections = 3;
 // So many parts of the boundary are found for a triangle before it is divided.
 constexpr std::uint32_t kMostCuts = 4;
+// If more parts have to be measured, walls may be thin.
+constexpr std::size_t kEasy = 512, kUnlimited = std::numeric_limits<std::size_t>::max();
 
 // Whether the part of the boundary that was found excludes the point for which it was found, even though its
 // distance is taken to be linear in the triangle. If not, the triangle is too large for that. `enough` is in
@@ -40,17 +42,44 @@ Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity,
   bodies_ = bodies, precision_ = precision;
   coarse_ = kCoarse * std::min(diagonal(bodies[0]->box()), diagonal(bodies[1]->box()));
   depth_ = {};
+  measured_ = 0;
   parts_.start(0, precision);
   for (int body = 0; body < 2; ++body)
     if (bodies[1 - body]->body().solid()) {
       leaving_[body].start(*bodies[body], *bodies[1 - body], to_other[body]);
       find_exits(body);
     }
-  for (int body = 0; body < 2; ++body)
-    if (bodies[1 - body]->body().solid()) leaving_[body].divide({.body = body, .what = NodePart{0}}, parts_);
-  search::branch_and_bound(*this, parts_);
+  budget_ = kEasy;
+  search_all();
+  if (parts_.upper() > parts_.enough()) {
+    budget_ = kUnlimited;
+    if (look_at_walls()) {
+      parts_.start(parts_.lower(), precision);
+      search_all();
+    } else {
+      search::branch_and_bound(*this, parts_);
+    }
+  }
   depth_.lower = parts_.lower(), depth_.upper = parts_.upper();
   return depth_;
+}
+
+// From the roots of the trees.
+void DepthSearch::search_all() {
+  for (int body = 0; body < 2; ++body)
+    if (bodies_[1 - body]->body().solid()) leaving_[body].divide({.body = body, .what = NodePart{0}}, parts_);
+  search::branch_and_bound(*this, parts_);
+}
+
+// Whether those of a solid are thin: nodes of any size may then be excluded as a whole.
+bool DepthSearch::look_at_walls() {
+  bool thin = false;
+  for (int body = 0; body < 2; ++body)
+    if (bodies_[1 - body]->body().solid()) {
+      leaving_[body].look_at_walls(parts_.enough());
+      thin |= leaving_[body].thin();
+    }
+  return thin;
 }
 
 // Steps towards a deep point: the point of the body that is farthest from the exit in some direction, and the
@@ -91,7 +120,8 @@ bool DepthSearch::improve(int body, const Vec3& p, const BoundaryDistance& b) {
 
 bool DepthSearch::expand(const Part& part) {
   const Leaving& leaving = leaving_[part.body];
-  if (!std::holds_alternative<NodePart>(part.what) || leaving.scale() * part.ball.radius <= coarse_)
+  if (!std::holds_alternative<NodePart>(part.what) || leaving.thin() ||
+      leaving.scale() * part.ball.radius <= coarse_)
     return false;
   leaving.divide(part, parts_);
   return true;
@@ -137,6 +167,7 @@ void DepthSearch::evaluate_one(Part& part, Value& value) const {
 }
 
 void DepthSearch::learn(std::span<const Part> run, const std::vector<Value>& values) {
+  measured_ += run.size();
   for (std::size_t i = 0; i < run.size(); ++i) {
     const auto& [body, place, ball, upper, exits, what] = run[i];
     const BoundaryDistance& b = values[i].b;

@@ -43,7 +43,11 @@ class DepthSearch : public search::Policy {
   void learn(std::span<const Part> run, const std::vector<Value>& values);
   void conclude(std::span<Part> run, const std::vector<Value>& values);
 
+  [[nodiscard]] bool within_budget() const { return measured_ <= budget_; }
+
  private:
+  void search_all();
+  [[nodiscard]] bool look_at_walls();
   void find_exits(int body);
   [[nodiscard]] bool improve(int body, const Vec3& p, const BoundaryDistance& b);
   void evaluate_one(Part& part, Value& value) const;
@@ -51,6 +55,7 @@ class DepthSearch : public search::Policy {
   Bodies bodies_{};
   std::array<Leaving, 2> leaving_;  // by the body that leaves the other
   double precision_ = 0, coarse_ = 0;
+  std::size_t measured_ = 0, budget_ = 0;  // parts
   Depth depth_;
   Parts parts_;
 };

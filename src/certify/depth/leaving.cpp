@@ -2,16 +2,24 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 
 #include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
+#include "query/shape/wall_column.h"
+#include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
+#include "tree/visit.h"
 
 namespace sdm::depth {
 namespace {
 
 constexpr std::uint64_t kFaceStep = std::uint64_t{1} << 32;  // between the places of faces
+// Walls are thin if they are at most so many times as thick as the depth that is enough, and that depth is at
+// most this fraction of the size of the solid.
+constexpr double kThin = 3, kThinOfSize = 1.0 / 100;
+constexpr std::size_t kSampledFaces = 16;
 
 // Sets where a triangle is measured.
 void measure_at(Part& part, TrianglePart& triangle, const CornerValues& weights) {
@@ -29,6 +37,7 @@ void Leaving::start(const shape::PosedBody& body, const shape::PosedBody& solid,
   body_ = &body.body(), solid_ = &solid.body(), to_solid_ = to_solid, scale_ = solid.pose().scale;
   exits_.start(internals(body_->sites()), internals(solid_->sites()), to_solid);
   known_.clear();
+  thin_ = false;
 }
 
 bool Leaving::tighten(Part& part, double enough) {
@@ -73,13 +82,68 @@ void Leaving::evaluate(Part& part, Value& value, const ClosestPoint& closest, bo
     part.limit(scale_ * (value.b.upper + radius));
     if (triangle != nullptr) triangle->gap = scale_ * (value.b.upper - value.b.lower);
     if (value.b.nearest) keep(*value.b.nearest);
+    if (thin_ && part.upper > enough) bound_by_walls(part, closest, value.b, true, enough);
     return;
   }
   part.limit(scale_ * (radius - closest.distance));
+  if (part.upper <= enough) return;
+  if (thin_) bound_by_walls(part, closest, value.b, false, enough);
   if (triangle == nullptr || part.upper <= enough) return;
   if (const std::optional<BoundaryPart> face = boundary_face(*solid_, closest)) keep(*face);
   keep({.point = centre, .clear = closest.distance});
   part.limit(scale_ * bound_outside(part, *triangle, value, closest.distance, enough));
+}
+
+// Whether no point p in a ball is deeper than `enough`, if its centre c is not. If one were, some point
+// between c and p were that deep, as b is continuous, and closest to a face that is not farther from c than
+// the radius and that depth.
+bool Leaving::walls_are_thin(const shape::Ball& ball, double enough) const {
+  const sites::SitesData& sites = internals(solid_->sites());
+  const shape::WallThickness& walls = solid_->wall_thickness();
+  const double reach =
+      (1 + kSingleRounding) * (ball.radius + enough) + kUnitDistanceRounding / sites.frame.scale;
+  const Vec3 at = sites.frame.to_unit(ball.centre);
+  const double in_unit = sites.frame.scale * reach + kSingleRounding;
+  bool thin = true;
+  const auto near = [&](tree::Subtree subtree) {
+    return thin && squared_norm(gap(sites.tree.box(subtree.root), at)) <= in_unit * in_unit;
+  };
+  const auto test = [&](std::uint32_t leaf) {
+    for (const std::uint32_t face : sites.tree.items_of(leaf))
+      thin = thin && (walls.is_within(face, enough) ||
+                      sites::closest_on_face(sites, face, ball.centre).distance > reach);
+  };
+  tree::visit(sites.tree, tree::InOrder{near, test});
+  return thin;
+}
+
+void Leaving::look_at_walls(double enough) {
+  const double depth = enough / scale_;
+  const std::size_t faces = internals(solid_->sites()).mesh.triangles.size();
+  if (depth > kThinOfSize * diagonal(solid_->box())) return;
+  std::size_t thin = 0;
+  for (std::size_t i = 0; i < kSampledFaces; ++i)
+    thin += solid_->wall_thickness().is_within(static_cast<std::uint32_t>(i * faces / kSampledFaces),
+                                               kThin * depth);
+  thin_ = 2 * thin >= kSampledFaces;
+}
+
+void Leaving::bound_by_walls(Part& part, const ClosestPoint& closest, const BoundaryDistance& b, bool inside,
+                             double enough) const {
+  if (scale_ * b.upper <= enough && walls_are_thin(part.ball, enough / scale_)) return part.limit(enough);
+  const auto* triangle = std::get_if<TrianglePart>(&part.what);
+  if (triangle == nullptr || scale_ * part.ball.radius < enough) return;
+  const sites::SitesData& sites = internals(solid_->sites());
+  const std::uint32_t face = sites.face_of(closest.type, closest.site);
+  const Vec3 along =
+      sites.sliver[face] == 0 ? sites.normals.face[face] : normalized(part.ball.centre - closest.point);
+  if (along == Vec3{}) return;
+  std::optional<int> winding;
+  const inside::Sides sides = solid_->inside().sides().of_site(closest.type, closest.site);
+  if (!inside || sides == inside::Sides::boundary || sides == inside::Sides::reversed)
+    winding = !inside ? 0 : sides == inside::Sides::boundary ? 1 : -1;
+  const auto column = shape::WallColumn::around(triangle->at, part.ball.centre, along);
+  part.limit(scale_ * shape::bound_in_column(sites, solid_->inside(), column, winding, enough / scale_));
 }
 
 // The bound of a triangle whose centre is outside, by this distance, where that alone is not enough.

@@ -42,12 +42,19 @@ class Leaving {
   bool tighten(Part& part, double enough);
   /// Sets the value at the centre of a part, and lowers its bound by that. Thread-safe.
   void evaluate(Part& part, Value& value, const ClosestPoint& closest, bool inside, double enough) const;
+  /// Finds whether the walls of the solid are thin. If so, evaluate() bounds parts by their thickness, too: a
+  /// search that has measured many parts starts anew after this.
+  void look_at_walls(double enough);
+  [[nodiscard]] bool thin() const { return thin_; }
   /// Puts the pieces of a part, or settles them.
   void divide(const Part& part, Parts& parts) const;
 
  private:
   [[nodiscard]] double bound_outside(const Part& part, const TrianglePart& triangle, const Value& value,
                                      double distance, double enough) const;
+  [[nodiscard]] bool walls_are_thin(const shape::Ball& ball, double enough) const;
+  void bound_by_walls(Part& part, const ClosestPoint& closest, const BoundaryDistance& b, bool inside,
+                      double enough) const;
   void put_children(const Part& part, std::uint32_t node, Parts& parts) const;
   void put_faces(const Part& part, std::uint32_t leaf, Parts& parts) const;
   void put_quarters(const Part& part, const TrianglePart& triangle, Parts& parts) const;
@@ -57,6 +64,7 @@ class Leaving {
   const shape::Body *body_ = nullptr, *solid_ = nullptr;
   mesh::Similarity to_solid_;
   double scale_ = 1;
+  bool thin_ = false;  // walls
   ExitDirections exits_;
   KnownBoundary known_;
   std::vector<CornerValues> functions_;  // that bound b in a triangle

@@ -95,6 +95,11 @@ const InnerBalls& Body::inner_balls() const {
   return *inner_balls_->value;
 }
 
+const WallThickness& Body::wall_thickness() const {
+  std::call_once(walls_->built, [this] { walls_->value.emplace(internals(sites_), *inside_); });
+  return *walls_->value;
+}
+
 void Body::follow_positions() {
   cylinders_ = {};
   box_ = bounds(sites_.mesh());
@@ -102,6 +107,7 @@ void Body::follow_positions() {
   if (boundary_->value) boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
   if (convexity_->value) convexity_ = std::make_unique<Lazy<double>>();
   if (inner_balls_->value) inner_balls_ = std::make_unique<Lazy<InnerBalls>>();
+  if (walls_->value) walls_ = std::make_unique<Lazy<WallThickness>>();
   if (inside_)
     inside_->refit();
   else

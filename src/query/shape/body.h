@@ -16,6 +16,7 @@
 #include "query/shape/contact_parts.h"
 #include "query/shape/inner_balls.h"
 #include "query/shape/node_ball.h"
+#include "query/shape/wall_thickness.h"
 #include "sites/bounding_cylinders.h"
 
 namespace sdm::shape {
@@ -56,6 +57,9 @@ class Body {
   /// Balls inside and points of the surface. Thread-safe; computed by the first call.
   [[nodiscard]] const InnerBalls& inner_balls() const;
 
+  /// Of a solid. Thread-safe; made by the first call, and filled by its functions.
+  [[nodiscard]] const WallThickness& wall_thickness() const;
+
   /// Around the nodes of the tree; none after a refit, for which they would take longer than a few searches
   /// save.
   [[nodiscard]] const sites::CylinderTree& cylinders() const { return cylinders_; }
@@ -84,6 +88,7 @@ class Body {
   std::unique_ptr<Lazy<inside::SolidBoundary>> boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
   std::unique_ptr<Lazy<double>> convexity_ = std::make_unique<Lazy<double>>();
   std::unique_ptr<Lazy<InnerBalls>> inner_balls_ = std::make_unique<Lazy<InnerBalls>>();
+  std::unique_ptr<Lazy<WallThickness>> walls_ = std::make_unique<Lazy<WallThickness>>();
 };
 
 }  // namespace sdm::shape

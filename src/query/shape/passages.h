@@ -1,0 +1,156 @@
+// The faces in a column.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/rounding.h"
+#include "geometry/vec.h"
+#include "query/shape/wall_column.h"
+#include "sites/sites_data.h"
+#include "tree/visit.h"
+
+namespace sdm::shape {
+
+/// Levels without faces are used if they are farther apart than this, in the unit frame.
+inline constexpr double kLeastGap = 4 * kSingleRounding;
+
+/// Where faces pass through a column, at levels between limits.
+class Passages {
+ public:
+  /// Appends to `faces` the parts of faces in the column, up to `most`.
+  Passages(const sites::SitesData& solid, const WallColumn& column, const Levels& limits, std::size_t most,
+           std::vector<Polygon>& faces)
+      : solid_(solid),
+        column_(column),
+        limits_(limits),
+        most_(most),
+        error_(kDoubleRounding * (1 / solid.frame.scale + norm(column.origin))),
+        faces_(faces) {
+    const auto enter = [&](tree::Subtree subtree) {
+      return !overflow_ && may_pass(solid.tree.box(subtree.root));
+    };
+    tree::visit(solid.tree, tree::InOrder{enter, [&](std::uint32_t leaf) {
+                                            for (const std::uint32_t face : solid.tree.items_of(leaf))
+                                              add(face);
+                                          }});
+  }
+
+  /// Whether there are too many.
+  [[nodiscard]] bool overflow() const { return overflow_; }
+
+  /// The winding number at a level between them minus that at the origin, if it is clear.
+  [[nodiscard]] std::optional<int> change(double level) const {
+    if (level > 0 ? unclear_above_ < level : unclear_below_ > level) return {};
+    int change = 0;
+    for (const Crossing& c : std::span(crossings_).first(crossing_count_)) {
+      if (std::abs(c.level) <= kUnitDistanceRounding / solid_.frame.scale) return {};
+      if (level > 0 ? c.level > 0 && c.level < level : c.level < 0 && c.level > level)
+        change += level > 0 ? c.change : -c.change;
+    }
+    return change;
+  }
+
+  /// The levels at which a polygon is, above a plane through the origin.
+  [[nodiscard]] Levels levels(const Polygon& polygon, const Vec2& slope = {}) const {
+    Levels levels{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const Vec3& p : std::span(polygon.corners).first(polygon.count)) {
+      const double level = p[0] - slope[0] * p[1] - slope[1] * p[2];
+      levels = {std::min(levels.lo, level), std::max(levels.hi, level)};
+    }
+    return {levels.lo - error_, levels.hi + error_};
+  }
+
+ private:
+  struct Crossing {
+    double level;
+    int change;  // of the winding number, upwards
+  };
+
+  [[nodiscard]] double lo(int axis) const { return (axis == 0 ? limits_.lo : column_.lo[axis]) - error_; }
+  [[nodiscard]] double hi(int axis) const { return (axis == 0 ? limits_.hi : column_.hi[axis]) + error_; }
+  [[nodiscard]] bool may_pass(const tree::FloatBox& box) const {
+    Vec3 middle, half;
+    for (int k = 0; k < 3; ++k) {
+      middle[k] = solid_.frame.origin[k] + 0.5 * (double{box.lo[k]} + box.hi[k]) / solid_.frame.scale;
+      half[k] = (0.5 * (double{box.hi[k]} - box.lo[k]) + kSingleRounding) / solid_.frame.scale;
+    }
+    middle = middle - column_.origin;
+    for (const int a : {1, 2, 0}) {
+      const Vec3& u = column_.axes[a];
+      const double at = dot(u, middle);
+      const double reach = std::abs(u[0]) * half[0] + std::abs(u[1]) * half[1] + std::abs(u[2]) * half[2];
+      if (at + reach < lo(a) || at - reach > hi(a)) return false;
+    }
+    return true;
+  }
+
+  void add(std::uint32_t face) {
+    Polygon polygon;
+    std::array<Vec3, 3> from;
+    for (int k = 0; k < 3; ++k)
+      from[k] = solid_.mesh.positions[solid_.mesh.triangles[face][k]] - column_.origin;
+    for (const int a : {1, 2, 0}) {
+      for (int k = 0; k < 3; ++k) polygon.corners[k][a] = dot(column_.axes[a], from[k]);
+      const double x = polygon.corners[0][a], y = polygon.corners[1][a], z = polygon.corners[2][a];
+      if (std::max({x, y, z}) < lo(a) || std::min({x, y, z}) > hi(a)) return;
+    }
+    polygon.count = 3;
+    cross(std::span(polygon.corners).first<3>());
+    if (column_.side_count == 0) {
+      polygon.clip(-1, 0, -lo(1)), polygon.clip(1, 0, hi(1));
+      polygon.clip(0, -1, -lo(2)), polygon.clip(0, 1, hi(2));
+    }
+    for (std::size_t i = 0; i < column_.side_count; ++i) {
+      const Vec3& h = column_.sides[i];
+      polygon.clip(h[0], h[1], h[2] + error_);
+    }
+    if (polygon.count == 0) return;
+    overflow_ |= faces_.size() >= most_;
+    if (!overflow_) faces_.push_back(polygon);
+  }
+
+  // Where the line through the origin along u passes through a face.
+  void cross(std::span<const Vec3, 3> corners) {
+    std::array<double, 3> areas;  // opposite to each corner
+    bool left = true, right = true, clear = true;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 &p = corners[(k + 1) % 3], &q = corners[(k + 2) % 3];
+      areas[k] = p[1] * q[2] - p[2] * q[1];
+      const double rounding = error_ * (std::abs(p[1]) + std::abs(p[2]) + std::abs(q[1]) + std::abs(q[2]));
+      left &= areas[k] > -rounding, right &= areas[k] < rounding;
+      clear &= std::abs(areas[k]) > rounding;
+    }
+    if (!left && !right) return;
+    if (!clear || crossing_count_ == crossings_.size()) {
+      const auto [lo, hi] = std::minmax({corners[0][0], corners[1][0], corners[2][0]});
+      if (hi >= 0) unclear_above_ = std::min(unclear_above_, lo);
+      if (lo <= 0) unclear_below_ = std::max(unclear_below_, hi);
+      return;
+    }
+    const double level = (areas[0] * corners[0][0] + areas[1] * corners[1][0] + areas[2] * corners[2][0]) /
+                         (areas[0] + areas[1] + areas[2]);
+    crossings_[crossing_count_++] = {level, left ? -1 : 1};
+  }
+
+  const sites::SitesData& solid_;
+  const WallColumn& column_;
+  Levels limits_;
+  std::size_t most_;
+  double error_;
+  std::vector<Polygon>& faces_;
+  std::array<Crossing, 64> crossings_;
+  std::size_t crossing_count_ = 0;
+  bool overflow_ = false;
+  // Where the winding number is not clear, from the origin.
+  double unclear_above_ = std::numeric_limits<double>::infinity(), unclear_below_ = -unclear_above_;
+};
+
+}  // namespace sdm::shape

@@ -1,0 +1,168 @@
+#include "query/shape/wall_thickness.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "query/shape/passages.h"
+#include "query/shape/wall_column.h"
+
+namespace sdm::shape {
+namespace {
+
+using inside::Sides;
+
+constexpr double kNoWall = std::numeric_limits<double>::infinity();
+// Added to angles and their cosines, for rounding.
+constexpr double kAngleRounding = 1e-6;
+// Of the corners, at a point of a face that is not right above or below edges of regular meshes.
+constexpr Vec3 kWeights{0.4142, 0.3183, 0.2675};
+constexpr double kSteepest = 1.3;
+constexpr std::size_t kMostAround = 24;
+
+double angle(const Vec3& a, const Vec3& b) {
+  return std::acos(std::clamp(dot(a, b), -1.0, 1.0));
+}
+
+// The largest angle between the normal of a face and the outward way from a point inside to its closest point
+// in an edge of the face, if the edge belongs to this face rather than to the other one.
+double angle_at_edge(const sites::SitesData& solid, std::uint32_t face, int side) {
+  const std::uint32_t edge = solid.topology.face_edges[face][side];
+  if (edge == kNone || solid.topology.edge_faces(edge).size() != 2) return kNoWall;
+  const auto faces = solid.topology.edge_faces(edge);
+  const std::uint32_t other = faces[0] == face ? faces[1] : faces[0];
+  if (solid.sliver[other] != 0) return kNoWall;
+  const Vec3 &n = solid.normals.face[face], &m = solid.normals.face[other];
+  const Vec3& from = solid.mesh.positions[solid.mesh.triangles[face][side]];
+  double height = -kNoWall, reach = 0;
+  for (const std::uint32_t v : solid.mesh.triangles[other]) {
+    const Vec3 to = solid.mesh.positions[v] - from;
+    height = std::max(height, dot(n, to)), reach = std::max(reach, norm(to));
+  }
+  // No point inside is closest to the interior of a convex edge.
+  return height < -kAngleRounding * reach ? 0 : 0.5 * angle(n, m);
+}
+
+// The same for a vertex. With e the directions of its edges, points p = v − b m inside can be closest to the
+// vertex v for m in the cone m·e ≥ 0 only, which is spanned by cross products of two of them. Every m in it
+// is in the cone of these, and so no farther from one of them than they are from the middle of a cap that
+// contains all of them: if it were, with c the middle, (m − c)·g < 0 for all of them, so also (m − c)·m < 0.
+// `face` is one of the faces whose normal is next to that one.
+double angle_at_vertex(const sites::SitesData& solid, std::uint32_t vertex) {
+  std::array<Vec3, kMostAround> edges, normals;
+  std::size_t count = 0, face_count = 0;
+  const Vec3& at = solid.mesh.positions[vertex];
+  for (const std::uint32_t face : solid.vertex_faces.of(vertex)) {
+    if (face_count == normals.size() || solid.sliver[face] != 0) return kNoWall;
+    normals[face_count++] = solid.normals.face[face];
+    for (const std::uint32_t v : solid.mesh.triangles[face]) {
+      if (v == vertex) continue;
+      const Vec3 e = normalized(solid.mesh.positions[v] - at);
+      if (std::ranges::count(std::span(edges).first(count), e) > 0) continue;
+      if (count == edges.size()) return kNoWall;
+      edges[count++] = e;
+    }
+  }
+  const std::span<const Vec3> around = std::span(edges).first(count),
+                              faces = std::span(normals).first(face_count);
+  const Vec3 outward = normalized(solid.normals.vertex[vertex]);
+  std::array<Vec3, kMostAround * kMostAround> span;
+  std::size_t spanning = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = i + 1; j < count; ++j) {
+      const Vec3 c = cross(around[i], around[j]);
+      if (!(norm(c) > kAngleRounding)) continue;  // others bound the cone, to rounding
+      // The solid is on one side of the vertex for all of the cone, or for half of a line.
+      const Vec3 g = dot(c, outward) < 0 ? normalized(-c) : normalized(c);
+      if (std::ranges::all_of(around, [&](const Vec3& e) { return dot(g, e) >= -kAngleRounding; }))
+        span[spanning++] = g;
+      if (spanning > 0 && dot(span[spanning - 1], outward) < kAngleRounding) return kNoWall;
+    }
+  const std::span<const Vec3> rays = std::span(span).first(spanning);
+  if (rays.empty()) return 0;
+  std::array<Vec3, 2> farthest{rays[0], rays[0]};
+  double least = 1, beside = 0;
+  for (const Vec3& g : rays) {
+    double nearest = kNoWall;
+    for (const Vec3& n : faces) nearest = std::min(nearest, angle(g, n));
+    beside = std::max(beside, nearest);
+    for (const Vec3& h : rays)
+      if (dot(g, h) < least) least = dot(g, h), farthest = {g, h};
+  }
+  const Vec3 middle = normalized(farthest[0] + farthest[1]);
+  double cap = 0;
+  for (const Vec3& g : rays) cap = std::max(cap, angle(middle, g));
+  return cap + beside;
+}
+
+}  // namespace
+
+WallThickness::WallThickness(const sites::SitesData& solid, const inside::InsideTest& inside)
+    : solid_(&solid),
+      inside_(&inside),
+      bounds_(std::make_unique<std::atomic<double>[]>(solid.mesh.triangles.size())) {}
+
+bool WallThickness::is_within(std::uint32_t face, double most) const {
+  const double known = bounds_[face].load(std::memory_order_relaxed);
+  if (known > 0) return known <= most;
+  if (-known >= most) return false;
+  const double found = find(face, most);
+  const bool within = found <= most;
+  bounds_[face].store(within ? found : -most, std::memory_order_relaxed);
+  return within;
+}
+
+// Let x be the closest point on the face F of a point p inside, b = |p − x|, and θ the angle between the
+// outward normal n of F and x − p. If the section of the column of F at a depth L below it is outside, the
+// way from p to it along −n leaves the solid, so b ≤ L − b cos θ, and b ≤ L / (1 + cos θ). The column must
+// contain p, so that it is wider than F by b sin θ ≤ L tan(θ/2). Points p deeper than L are not closest to x,
+// as the way to x would pass through that section.
+double WallThickness::find(std::uint32_t face, double most) const {
+  const sites::SitesData& solid = *solid_;
+  if (solid.sliver[face] != 0 || inside_->sides().of_face(face) != Sides::boundary) return kNoWall;
+  double most_angle = 0;
+  for (int k = 0; k < 3; ++k)
+    most_angle = std::max(
+        {most_angle, angle_at_edge(solid, face, k), angle_at_vertex(solid, solid.mesh.triangles[face][k])});
+  if (most_angle > kSteepest) return kNoWall;
+  most_angle += kAngleRounding;
+  const auto& [i, j, k] = solid.mesh.triangles[face];
+  const Corners corners{solid.mesh.positions[i], solid.mesh.positions[j], solid.mesh.positions[k]};
+  const Vec3& n = solid.normals.face[face];
+  const Vec3 beside = kWeights[0] * corners[0] + kWeights[1] * corners[1] + kWeights[2] * corners[2] -
+                      inside_->sides().offset() * n;
+  thread_local std::vector<Polygon> faces;
+  thread_local std::vector<Levels> taken;
+  double wider = 0;
+  for (int turn = 0; turn < 3; ++turn) {
+    WallColumn column = WallColumn::around(corners, beside, n);
+    column.enlarge(wider);
+    faces.clear();
+    const Levels limits{column.lo[0] - 2 * most, 0};
+    // So many as there are, so that a bound does not depend on `most`.
+    const Passages passages(solid, column, limits, std::numeric_limits<std::size_t>::max(), faces);
+    taken.clear();
+    for (const Polygon& polygon : faces) taken.push_back(passages.levels(polygon));
+    std::ranges::sort(taken, {}, &Levels::lo);
+    double depth = kNoWall, lo = limits.lo;
+    const double least = kLeastGap / solid.frame.scale;
+    for (const Levels& t : taken) {
+      // The winding number inside is 1.
+      if (t.lo - lo > least && passages.change(0.5 * (lo + t.lo)) == -1) depth = column.hi[0] - t.lo;
+      lo = std::max(lo, t.hi);
+    }
+    if (depth == kNoWall) return kNoWall;
+    const double needed = depth * std::tan(0.5 * most_angle);
+    if (needed <= wider) return (1 + kDoubleRounding) * depth / (1 + std::cos(most_angle));
+    wider = 1.01 * needed + kDoubleRounding / solid.frame.scale;
+  }
+  return kNoWall;
+}
+
+}  // namespace sdm::shape
