@@ -1,0 +1,145 @@
+// Penetration depth of thin-walled bodies, where nearly all points are as deep as any other.
+#include <gtest/gtest.h>
+#include <sdm/sdm.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "query/inside/solid.h"
+#include "sites/sites_data.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+// A cube whose sides are grids of n² squares.
+Mesh grid_cube(double half_side, int n) {
+  Mesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {-1, 1}) {
+      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+      for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= n; ++j) {
+          Vec3 p{};
+          p[axis] = side * half_side;
+          p[(axis + 1) % 3] = half_side * (2.0 * i / n - 1),
+                         p[(axis + 2) % 3] = half_side * (2.0 * j / n - 1);
+          mesh.positions.push_back(p);
+        }
+      const auto at = [&](int i, int j) { return first + static_cast<std::uint32_t>(i * (n + 1) + j); };
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+          for (const auto& [a, b, c] : {Triangle{at(i, j), at(i + 1, j), at(i + 1, j + 1)},
+                                        Triangle{at(i, j), at(i + 1, j + 1), at(i, j + 1)}})
+            mesh.triangles.push_back(side > 0 ? Triangle{a, b, c} : Triangle{a, c, b});
+    }
+  return weld(mesh).mesh;
+}
+
+Mesh hollow(const Mesh& outer, const Mesh& cavity) {
+  return joined(outer, flipped(cavity));
+}
+
+Mesh scaled(Mesh mesh, double by) {
+  for (Vec3& p : mesh.positions) p = by * p;
+  return mesh;
+}
+
+Mesh hollow_ball(double radius, double wall) {
+  return hollow(scaled(sphere(3), radius), scaled(sphere(3), radius - wall));
+}
+
+// The largest depth of some points of each face of `body` in a solid.
+double sampled_depth(const Mesh& body, const Transform& in_solid, const Mesh& solid) {
+  std::vector<Vec3> points;
+  constexpr int kDivisions = 3;
+  for (const auto& [a, b, c] : body.triangles)
+    for (int i = 0; i <= kDivisions; ++i)
+      for (int j = 0; i + j <= kDivisions; ++j) {
+        const double u = static_cast<double>(i) / kDivisions, v = static_cast<double>(j) / kDivisions;
+        points.push_back(
+            in_solid((1 - u - v) * body.positions[a] + u * body.positions[b] + v * body.positions[c]));
+      }
+  const Sites sites(solid);
+  const std::vector<ClosestPoint> closest = closest_points(sites, points);
+  double deepest = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (closest[i].distance > deepest && inside::contains(internals(sites), {}, points[i]))
+      deepest = closest[i].distance;
+  return deepest;
+}
+
+// The wall of either of two boxes is in the middle of that of the other one.
+TEST(WallDepth, OfBoxesInEachOther) {
+  const Mesh a = hollow(grid_cube(1, 8), grid_cube(0.98, 8)),
+             b = hollow(grid_cube(1.01, 8), grid_cube(0.99, 8));
+  for (const double precision : {4e-3, 1e-3, 1e-5}) {
+    ProximityQuery query(a, b, {.depth_precision = precision});
+    const BoundedLength depth = *query.penetration_depth();
+    EXPECT_NEAR(depth.value, 0.01, precision + 1e-5);
+    EXPECT_LE(depth.lower, 0.01 + 1e-9);
+    EXPECT_GE(depth.upper, 0.01 - 1e-9);
+    EXPECT_LE(depth.upper - depth.lower, precision + 2e-5);
+  }
+}
+
+// A point in the wall of a hollow ball is at most half a wall deep.
+TEST(WallDepth, OfBallsInEachOther) {
+  const Mesh a = hollow_ball(1, 0.02), b = hollow_ball(0.99, 0.02);
+  ProximityQuery query(a, b);
+  for (const Vec3& degrees : {Vec3{0, 0, 0}, Vec3{20, 30, 40}, Vec3{70, 10, 50}}) {
+    const Transform pose = Transform::translation({0.001, 0.002, 0}) * Transform::rotation(degrees);
+    query.set_pose(1, pose);
+    const BoundedLength depth = *query.penetration_depth();
+    EXPECT_LE(depth.upper - depth.lower, 1.8e-3 * diagonal(bounds(b)));
+    EXPECT_LE(depth.value, 0.01 + 1e-6);
+    const double deepest = std::max(sampled_depth(b, pose, a), sampled_depth(a, pose.inverse(), b));
+    EXPECT_GT(deepest, 0.009);
+    EXPECT_GE(depth.upper, deepest - 1e-6);
+    EXPECT_LE(depth.lower, 0.01 + 1e-6);
+  }
+}
+
+// Intervals hold what is sampled, and intersect whatever the precision, in poses where walls cross.
+TEST(WallDepth, HoldsWhereWallsCross) {
+  const Mesh ball = hollow_ball(1, 0.02), box = hollow(grid_cube(0.8, 8), grid_cube(0.77, 8));
+  for (int i = 0; i < 4; ++i) {
+    const Transform pose =
+        Transform::translation({0.1 * i, 0.07, 0.03 * i}) * Transform::rotation({20.0 * i, 15.0, 33.0 * i});
+    const double deepest = std::max(sampled_depth(box, pose, ball), sampled_depth(ball, pose.inverse(), box));
+    double lower = 0, upper = 1;
+    for (const double precision : {5e-3, 1e-3, 2e-4}) {
+      ProximityQuery query(ball, box, {.depth_precision = precision});
+      query.set_pose(1, pose);
+      const BoundedLength depth = *query.penetration_depth();
+      EXPECT_LE(depth.upper - depth.lower, precision + 2e-5);
+      EXPECT_GE(depth.upper, deepest - 1e-6);
+      lower = std::max(lower, depth.lower), upper = std::min(upper, depth.upper);
+      ASSERT_TRUE(depth.witness);
+      EXPECT_NEAR(norm((*depth.witness)[1] - (*depth.witness)[0]), depth.value, 1e-6);
+    }
+    EXPECT_LE(lower, upper);
+  }
+}
+
+// What is known of the walls of a shape does not change answers: another order of poses, the same bits.
+TEST(WallDepth, DoesNotDependOnOtherPoses) {
+  const Shape ball(hollow_ball(1, 0.02)), other(hollow_ball(0.99, 0.02));
+  const auto depth = [](ProximityQuery& query, double x) {
+    query.set_pose(1, Transform::translation({x, 0, 0}));
+    return *query.penetration_depth();
+  };
+  ProximityQuery query(ball, other);
+  for (const double x : {0.02, 0.005, 0.3, 0.0}) {
+    ProximityQuery anew(hollow_ball(1, 0.02), hollow_ball(0.99, 0.02));
+    const BoundedLength first = depth(query, x), second = depth(anew, x);
+    EXPECT_EQ(first.value, second.value);
+    EXPECT_EQ(first.lower, second.lower);
+    EXPECT_EQ(first.upper, second.upper);
+  }
+}
+
+}  // namespace
+}  // namespace sdm::test
