@@ -23,7 +23,7 @@ constexpr int kFirstDirections = 3;
 // So many parts of the boundary are found for a triangle before it is divided.
 constexpr std::uint32_t kMostCuts = 4;
 // If more parts have to be measured, walls may be thin.
-constexpr std::size_t kEasy = 512, kUnlimited = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kEasy = 256, kUnlimited = std::numeric_limits<std::size_t>::max();
 
 // Whether the part of the boundary that was found excludes the point for which it was found, even though its
 // distance is taken to be linear in the triangle. If not, the triangle is too large for that. `enough` is in

@@ -8,7 +8,6 @@
 #include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
 #include "query/shape/wall_column.h"
-#include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
 #include "tree/visit.h"
 
@@ -110,8 +109,7 @@ bool Leaving::walls_are_thin(const shape::Ball& ball, double enough) const {
   };
   const auto test = [&](std::uint32_t leaf) {
     for (const std::uint32_t face : sites.tree.items_of(leaf))
-      thin = thin && (walls.is_within(face, enough) ||
-                      sites::closest_on_face(sites, face, ball.centre).distance > reach);
+      thin = thin && walls.is_within(face, {ball.centre, reach}, enough);
   };
   tree::visit(sites.tree, tree::InOrder{near, test});
   return thin;

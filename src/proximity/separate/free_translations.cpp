@@ -10,8 +10,9 @@ namespace {
 
 constexpr int kMostSteps = 24;
 // After so many translations no further direction is tried, and the bounds stay as far apart as they are.
-// Where a separation takes long, as of hundreds of needles at one point, more would take minutes.
-constexpr std::size_t kMostTries = 500;
+// Where a separation takes long, as of hundreds of needles at one point, more would take minutes. Fewer do
+// where neither body is a solid: the lower bound is 0 then, however short the translation is.
+constexpr std::size_t kMostTries = 500, kMostOfSurfaces = 50;
 constexpr std::size_t kMostPlanes = 8;
 constexpr double kSettled = 1e-3;   // of the length, of a step that is not worth it
 constexpr double kMargin = 1e-4;    // of the length, from the planes
@@ -45,7 +46,7 @@ Vec3 least_in(std::span<const Plane> planes) {
 
 void FreeTranslations::try_direction(const Vec3& u, double shortest) {
   for (const double more : {1.02, 1.25, 1.6, 2.2, 3.2, 5.0, 8.0}) {
-    if (pair_.tries() > kMostTries) return;
+    if (pair_.tries() > (solids_ ? kMostTries : kMostOfSurfaces)) return;
     if (!(more * shortest < (1 - kSettled) * length())) return;
     if (try_translation(more * shortest * u)) return;
   }

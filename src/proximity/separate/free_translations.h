@@ -12,9 +12,9 @@ namespace sdm::separate {
 /// test; that none is shorter is not said.
 class FreeTranslations {
  public:
-  /// `first`: a translation without a collision. `size`: of both bodies.
-  FreeTranslations(MovedPair& pair, const Vec3& first, double size)
-      : pair_(pair), best_(first), size_(size) {}
+  /// `first`: a translation without a collision. `size`: of both bodies. `solids`: whether one is a solid.
+  FreeTranslations(MovedPair& pair, const Vec3& first, double size, bool solids)
+      : pair_(pair), best_(first), size_(size), solids_(solids) {}
 
   [[nodiscard]] const Vec3& best() const { return best_; }
   [[nodiscard]] double length() const { return norm(best_); }
@@ -44,6 +44,7 @@ class FreeTranslations {
   MovedPair& pair_;
   Vec3 best_;
   double size_;
+  bool solids_;
   std::vector<Plane> planes_;
 };
 

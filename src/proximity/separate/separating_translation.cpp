@@ -81,7 +81,7 @@ class TranslationSearch {
   }
 
   Vec3 search(const Vec3& out, double& lower) {
-    FreeTranslations free(pair_, out, size_);
+    FreeTranslations free(pair_, out, size_, o1_.body().solid() || o2_.body().solid());
     free.improve();
     OverlapCover cover(o1_, o2_, kExact * size_);
     lower = use_depth(free, cover);

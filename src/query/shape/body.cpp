@@ -107,11 +107,13 @@ void Body::follow_positions() {
   if (boundary_->value) boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
   if (convexity_->value) convexity_ = std::make_unique<Lazy<double>>();
   if (inner_balls_->value) inner_balls_ = std::make_unique<Lazy<InnerBalls>>();
-  if (walls_->value) walls_ = std::make_unique<Lazy<WallThickness>>();
-  if (inside_)
+  if (inside_) {
+    if (walls_->value) walls_->value->forget();
     inside_->refit();
-  else
-    inside_.emplace(internals(sites_), solid() ? SignMethod::exact : SignMethod::none);
+    return;
+  }
+  walls_ = std::make_unique<Lazy<WallThickness>>();
+  inside_.emplace(internals(sites_), solid() ? SignMethod::exact : SignMethod::none);
 }
 
 }  // namespace sdm::shape

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "geometry/point_triangle.h"
 #include "geometry/vec.h"
 #include "query/shape/passages.h"
 #include "query/shape/wall_column.h"
@@ -101,21 +103,83 @@ double angle_at_vertex(const sites::SitesData& solid, std::uint32_t vertex) {
   return cap + beside;
 }
 
+Corners corners_of(const sites::SitesData& solid, std::uint32_t face) {
+  const auto& [i, j, k] = solid.mesh.triangles[face];
+  return {solid.mesh.positions[i], solid.mesh.positions[j], solid.mesh.positions[k]};
+}
+
+std::array<Corners, 4> quarters_of(const Corners& at) {
+  Corners middle;
+  for (int k = 0; k < 3; ++k) middle[k] = 0.5 * (at[k] + at[(k + 1) % 3]);
+  return {
+      {{at[0], middle[0], middle[2]}, {at[1], middle[1], middle[0]}, {at[2], middle[2], middle[1]}, middle}};
+}
+
+// Whether the triangle is outside of the ball.
+bool beyond(const Corners& at, const Ball& ball) {
+  return norm(closest_on_triangle(ball.centre, at) - ball.centre) > ball.radius;
+}
+
 }  // namespace
 
 WallThickness::WallThickness(const sites::SitesData& solid, const inside::InsideTest& inside)
     : solid_(&solid),
       inside_(&inside),
-      bounds_(std::make_unique<std::atomic<double>[]>(solid.mesh.triangles.size())) {}
+      count_(solid.mesh.triangles.size()),
+      bounds_(std::make_unique<std::atomic<double>[]>(count_)),
+      parts_(std::make_unique<std::atomic<Bounds*>[]>(count_)) {}
 
-bool WallThickness::is_within(std::uint32_t face, double most) const {
-  const double known = bounds_[face].load(std::memory_order_relaxed);
+WallThickness::~WallThickness() {
+  for (std::size_t face = 0; face < count_; ++face) delete parts_[face].load();
+}
+
+void WallThickness::forget() {
+  for (std::size_t face = 0; face < count_; ++face) {
+    bounds_[face] = 0;
+    if (Bounds* parts = parts_[face].load())
+      for (std::atomic<double>& bound : *parts) bound = 0;
+  }
+}
+
+template <class Find>
+bool WallThickness::compare(std::atomic<double>& bound, double most, const Find& find) {
+  const double known = bound.load(std::memory_order_relaxed);
   if (known > 0) return known <= most;
   if (-known >= most) return false;
-  const double found = find(face, most);
-  const bool within = found <= most;
-  bounds_[face].store(within ? found : -most, std::memory_order_relaxed);
-  return within;
+  const double found = find();
+  bound.store(found <= most ? found : -most, std::memory_order_relaxed);
+  return found <= most;
+}
+
+bool WallThickness::is_within(std::uint32_t face, double most) const {
+  return compare(bounds_[face], most, [&] { return find(face, corners_of(*solid_, face), most); });
+}
+
+bool WallThickness::is_within(std::uint32_t face, const Ball& near, double most) const {
+  if (is_within(face, most)) return true;
+  const Corners at = corners_of(*solid_, face);
+  if (beyond(at, near)) return true;
+  Bounds& parts = parts_of(face);
+  const auto part_is_within = [&](std::size_t part, const Corners& corners) {
+    return beyond(corners, near) || compare(parts[part], most, [&] { return find(face, corners, most); });
+  };
+  const std::array<Corners, 4> quarters = quarters_of(at);
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (part_is_within(i, quarters[i])) continue;
+    const std::array<Corners, 4> of_quarter = quarters_of(quarters[i]);
+    for (std::size_t j = 0; j < 4; ++j)
+      if (!part_is_within(4 * i + 4 + j, of_quarter[j])) return false;
+  }
+  return true;
+}
+
+WallThickness::Bounds& WallThickness::parts_of(std::uint32_t face) const {
+  Bounds* known = parts_[face].load(std::memory_order_acquire);
+  if (known != nullptr) return *known;
+  auto made = std::make_unique<Bounds>();
+  if (parts_[face].compare_exchange_strong(known, made.get(), std::memory_order_acq_rel))
+    return *made.release();
+  return *known;
 }
 
 // Let x be the closest point on the face F of a point p inside, b = |p − x|, and θ the angle between the
@@ -123,7 +187,7 @@ bool WallThickness::is_within(std::uint32_t face, double most) const {
 // way from p to it along −n leaves the solid, so b ≤ L − b cos θ, and b ≤ L / (1 + cos θ). The column must
 // contain p, so that it is wider than F by b sin θ ≤ L tan(θ/2). Points p deeper than L are not closest to x,
 // as the way to x would pass through that section.
-double WallThickness::find(std::uint32_t face, double most) const {
+double WallThickness::find(std::uint32_t face, const Corners& corners, double most) const {
   const sites::SitesData& solid = *solid_;
   if (solid.sliver[face] != 0 || inside_->sides().of_face(face) != Sides::boundary) return kNoWall;
   double most_angle = 0;
@@ -132,8 +196,6 @@ double WallThickness::find(std::uint32_t face, double most) const {
         {most_angle, angle_at_edge(solid, face, k), angle_at_vertex(solid, solid.mesh.triangles[face][k])});
   if (most_angle > kSteepest) return kNoWall;
   most_angle += kAngleRounding;
-  const auto& [i, j, k] = solid.mesh.triangles[face];
-  const Corners corners{solid.mesh.positions[i], solid.mesh.positions[j], solid.mesh.positions[k]};
   const Vec3& n = solid.normals.face[face];
   const Vec3 beside = kWeights[0] * corners[0] + kWeights[1] * corners[1] + kWeights[2] * corners[2] -
                       inside_->sides().offset() * n;
