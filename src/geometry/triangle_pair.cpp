@@ -25,20 +25,31 @@ void offer_crossing(PointPair& best, const Vec3& p, const Vec3& u, const Vec3& q
   if (s > 0 && s < 1 && t > 0 && t < 1) offer(best, p + s * u, q + t * v);
 }
 
-PointPair closest(const TriangleSides& a, const TriangleSides& b) {
+bool has(unsigned bits, int i) {
+  return (bits >> i & 1) != 0;
+}
+
+PointPair closest(const TriangleSides& a, const TriangleSides& b, const Features& of_a,
+                  const Features& of_b) {
   PointPair best{std::numeric_limits<double>::infinity(), {}, {}};
   for (int i = 0; i < 3; ++i) {
     const Vec3 &p = a.corner[i], &q = b.corner[i];
     Vec3 foot;
     for (int j = 0; j < 3; ++j) {
-      offer(best, p, b.on_side(j, p));
-      offer(best, a.on_side(j, q), q);
-      offer_crossing(best, p, a.side[i], b.corner[j], b.side[j]);
+      if (has(of_a.corners, i) && has(of_b.sides, j)) offer(best, p, b.on_side(j, p));
+      if (has(of_b.corners, i) && has(of_a.sides, j)) offer(best, a.on_side(j, q), q);
+      if (has(of_a.sides, i) && has(of_b.sides, j))
+        offer_crossing(best, p, a.side[i], b.corner[j], b.side[j]);
     }
-    if (b.over(p, foot)) offer(best, p, foot);
-    if (a.over(q, foot)) offer(best, foot, q);
+    if (has(of_a.corners, i) && b.over(p, foot)) offer(best, p, foot);
+    if (has(of_b.corners, i) && a.over(q, foot)) offer(best, foot, q);
   }
   return best;
+}
+
+PointPair closest(const TriangleSides& a, const TriangleSides& b) {
+  constexpr Features kAll{.corners = 7, .sides = 7};
+  return closest(a, b, kAll, kAll);
 }
 
 Box box_of(const Corners& triangle) {
@@ -56,6 +67,10 @@ double squared_box_distance(const Corners& a, const Corners& b) {
 
 PointPair closest_points(const Corners& a, const Corners& b) {
   return closest(TriangleSides(a), TriangleSides(b));
+}
+
+PointPair closest_points(const Corners& a, const Features& of_a, const Corners& b, const Features& of_b) {
+  return closest(TriangleSides(a), TriangleSides(b), of_a, of_b);
 }
 
 Vec3 common_point(const Corners& a, const Corners& b) {

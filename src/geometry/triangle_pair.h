@@ -22,6 +22,16 @@ struct PointPair {
 /// be returned. Cost: the distances of all pairs of features.
 [[nodiscard]] PointPair closest_points(const Corners& a, const Corners& b);
 
+/// Some corners and sides of a triangle, a bit for each; side k is that from corner k.
+struct Features {
+  unsigned corners = 0, sides = 0;
+};
+
+/// closest_points(a, b), if these features, or the interior of the other triangle, have the only closest
+/// points.
+[[nodiscard]] PointPair closest_points(const Corners& a, const Features& of_a, const Corners& b,
+                                       const Features& of_b);
+
 /// A common point of two triangles that intersect, to rounding.
 [[nodiscard]] Vec3 common_point(const Corners& a, const Corners& b);
 

@@ -31,7 +31,8 @@ Similarity Similarity::of(const Transform& pose) {
     finite = finite && std::isfinite(norm(result.map.rows[i])) && std::isfinite(result.map.offset[i]);
   }
   std::array<Vec3, 3>& r = result.map.rows;
-  result.scale = std::cbrt(pose.determinant());
+  const double determinant = pose.determinant();
+  result.scale = std::abs(determinant - 1) < 2e-12 ? 1 : std::cbrt(determinant);
   if (std::abs(result.scale - 1) < 1e-12) result.scale = 1;  // rounding
   double error = finite && result.scale > 0 && std::isfinite(result.scale) ? 0 : 1;
   if (error == 0) {

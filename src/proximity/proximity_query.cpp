@@ -32,7 +32,7 @@ struct ProximityQuery::Impl {
     for (const shape::PosedBody& body : bodies) body.body().require_intact();
   }
   // The faces that were closest before are most likely near the closest ones now.
-  void begin() { begin({.closest_faces = answers.known().closest_faces}); }
+  void begin() { begin(answers.known().hints()); }
   void begin_anew() { begin({}); }
 
  private:

@@ -23,6 +23,7 @@ set(order
   query/inside
   query/rays
   query/pairs
+  query/convex
   query/shape
   engine
   engine/reference

@@ -104,9 +104,9 @@ void NearPairs::adopt(std::span<const Sweep::Pair> found) {
       next_.push_back(*before++);
       continue;
     }
-    const pair::FacePair hint = listed ? states_[before->state].known.closest_faces : pair::kNoFaces;
+    const pair::KnownAnswers hints = listed ? states_[before->state].known.hints() : pair::KnownAnswers{};
     const std::uint32_t state = listed ? (before++)->state : new_state();
-    states_[state] = {.known = {.closest_faces = hint}};
+    states_[state] = {.known = hints};
     next_.push_back({.pair = pair, .state = state, .gap = box_distance(boxes_[pair[0]], boxes_[pair[1]])});
   }
   drop_until([](const Sweep::Pair&) { return false; });

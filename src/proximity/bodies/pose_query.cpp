@@ -22,7 +22,7 @@ namespace {
 class PosedShape {
  public:
   PosedShape(const Shape& shape, std::size_t obstacles, const std::optional<double>& depth_precision)
-      : body_(shape), answers_(0, depth_precision), hints_(obstacles, pair::kNoFaces) {}
+      : body_(shape), answers_(0, depth_precision), hints_(obstacles) {}
 
   // A pose, and what moved since the last one.
   void begin(const Transform& pose) { body_.set_pose(pose); }
@@ -41,10 +41,10 @@ class PosedShape {
   double separation(std::span<const shape::PosedBody> obstacles, double max_distance) {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < obstacles.size() && least > 0; ++i) {
-      answers_.begin(body_, obstacles[i], {.closest_faces = hints_[i]});
+      answers_.begin(body_, obstacles[i], hints_[i]);
       if (answers_.surfaces_within(std::min(max_distance, least)))
         least = std::min(least, answers_.separation().value);
-      hints_[i] = answers_.known().closest_faces;
+      hints_[i] = answers_.known().hints();
     }
     return least;
   }
@@ -66,13 +66,15 @@ class PosedShape {
 
  private:
   bool hits(std::span<const shape::PosedBody> obstacles, std::size_t i) {
-    answers_.begin(body_, obstacles[i]);
-    return answers_.colliding();
+    answers_.begin(body_, obstacles[i], hints_[i]);
+    const bool colliding = answers_.colliding();
+    hints_[i] = answers_.known().hints();
+    return colliding;
   }
 
   shape::PosedBody body_;
   pair::PairAnswers answers_;
-  std::vector<pair::FacePair> hints_;  // the closest faces of the last pose, for each obstacle
+  std::vector<pair::KnownAnswers> hints_;  // of the last pose, for each obstacle
   std::size_t last_hit_ = 0;
 };
 

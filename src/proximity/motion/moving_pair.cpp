@@ -7,8 +7,8 @@ namespace sdm::motion {
 
 void MovingPair::set_time(double time) {
   for (int body = 0; body < 2; ++body) bodies_[body].set_pose(motions_[body]->at(time));
-  const pair::FacePair hint = begun_ ? answers_.known().closest_faces : pair::kNoFaces;
-  answers_.begin(bodies_[0], bodies_[1], {.closest_faces = hint});
+  const pair::KnownAnswers hints = begun_ ? answers_.known().hints() : pair::KnownAnswers{};
+  answers_.begin(bodies_[0], bodies_[1], hints);
   begun_ = true;
 }
 

@@ -16,6 +16,10 @@ namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
+mesh::Similarity between(const mesh::Similarity& from, const mesh::Similarity& to) {
+  return {inverse(to.map) * from.map, from.scale / to.scale};
+}
+
 }  // namespace
 
 void check_options(double contact_margin, const std::optional<double>& depth_precision) {
@@ -32,13 +36,17 @@ void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, 
   bodies_ = {&o1, &o2};
   known_ = known;
   contacts_.reset();
-  for (int b = 0; b < 2; ++b) {
-    const mesh::Similarity &from = bodies_[b]->pose(), &to = bodies_[1 - b]->pose();
-    to_other_[b] = {inverse(to.map) * from.map, from.scale / to.scale};
-  }
+  to_other_[1] = between(o2.pose(), o1.pose());
+  first_to_other_known_ = false;
   Box box = o1.box();
   extend(box, o2.box());
   precision_ = 1e-6 * diagonal(box);
+}
+
+const std::array<mesh::Similarity, 2>& PairAnswers::to_other() {
+  if (!first_to_other_known_) to_other_[0] = between(bodies_[0]->pose(), bodies_[1]->pose());
+  first_to_other_known_ = true;
+  return to_other_;
 }
 
 const BoundedLength& PairAnswers::separation() {
@@ -48,9 +56,16 @@ const BoundedLength& PairAnswers::separation() {
 
 bool PairAnswers::colliding() {
   if (!known_.colliding)
-    known_.colliding = box_distance(bodies_[0]->box(), bodies_[1]->box()) == 0 &&
-                       (surfaces_intersect() || pairs::one_contains_part_of_other(meshes()));
+    known_.colliding = box_distance(bodies_[0]->box(), bodies_[1]->box()) == 0 && find_collision();
   return *known_.colliding;
+}
+
+bool PairAnswers::find_collision() {
+  const pairs::MeshPair pair = meshes();
+  if (!known_.intersecting)
+    if (std::optional<convex::ConvexPair> convex = convex_pair(pair))
+      if (const std::optional<bool> colliding = convex->colliding(known_.closest_vertices)) return *colliding;
+  return surfaces_intersect() || pairs::one_contains_part_of_other(pair);
 }
 
 const std::optional<BoundedLength>& PairAnswers::penetration_depth() {
@@ -60,7 +75,8 @@ const std::optional<BoundedLength>& PairAnswers::penetration_depth() {
 
 std::span<const Contact> PairAnswers::contacts() {
   if (!contacts_ && !within(contact_margin_)) contacts_ = std::span<const Contact>();
-  if (!contacts_) contacts_ = contact_finder_.find(bodies_, meshes(), to_other_, contact_margin_, precision_);
+  if (!contacts_)
+    contacts_ = contact_finder_.find(bodies_, meshes(), to_other(), contact_margin_, precision_);
   return *contacts_;
 }
 
@@ -89,11 +105,22 @@ pairs::MeshPair PairAnswers::meshes() const {
   return {internals(o1.sites()), internals(o2.sites()), to_other_[1].map, {&o1.cylinders(), &o2.cylinders()}};
 }
 
+std::optional<convex::ConvexPair> PairAnswers::convex_pair(const pairs::MeshPair& meshes) const {
+  const convex::ConvexMesh *o1 = bodies_[0]->body().convex(), *o2 = bodies_[1]->body().convex();
+  if (o1 == nullptr || o2 == nullptr) return {};
+  return convex::ConvexPair(*o1, *o2, meshes, to_other_[1].scale);
+}
+
 // Computes known_.separation if it is at most `bound`, and returns whether it is.
 bool PairAnswers::find_closest(double bound) {
   const mesh::Similarity& pose = bodies_[0]->pose();
+  const pairs::MeshPair pair = meshes();
+  const double own_bound = bound / pose.scale;
+  std::optional<pairs::Separation> found;
+  if (std::optional<convex::ConvexPair> convex = convex_pair(pair))
+    found = convex->find_closest(own_bound, known_.closest_vertices, known_.closest_faces);
   const pairs::Separation c =
-      pairs::find_closest(meshes(), bound / pose.scale, workspace_, known_.closest_faces);
+      found ? *found : pairs::find_closest(pair, own_bound, workspace_, known_.closest_faces);
   if (c.face1 == kNone) return false;
   known_.intersecting = c.intersecting;
   known_.closest_faces = {c.face1, c.face2};
@@ -114,7 +141,7 @@ std::optional<BoundedLength> PairAnswers::depth() {
   if (!colliding()) return BoundedLength{{.certainty = Certainty::exact}};
   const double size = std::min(diagonal(bodies_[0]->box()), diagonal(bodies_[1]->box()));
   const depth::Depth found = depth_search_.find(
-      bodies_, to_other_, depth_precision_.value_or(ProximityOptions::kDepthPrecision * size));
+      bodies_, to_other(), depth_precision_.value_or(ProximityOptions::kDepthPrecision * size));
   return BoundedLength{{.value = found.value,
                         .certainty = Certainty::bounded,
                         .lower = std::max(0.0, found.lower - precision_),

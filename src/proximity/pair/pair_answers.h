@@ -9,6 +9,7 @@
 
 #include "certify/depth/depth_search.h"
 #include "proximity/contacts/contact_finder.h"
+#include "query/convex/convex_pair.h"
 #include "query/pairs/pair_search.h"
 #include "query/shape/posed_body.h"
 
@@ -23,11 +24,17 @@ using pairs::FacePair, pairs::kNoFaces;
 struct KnownAnswers {
   /// The closest faces, or faces that intersect, if the separation is known; otherwise a hint.
   FacePair closest_faces = kNoFaces;
+  convex::Simplex closest_vertices{};  ///< of two convex solids: a hint
   double beyond = -1;                  ///< the surfaces are farther apart than this
   std::optional<bool> intersecting{};  ///< the surfaces
   std::optional<bool> colliding{};
   std::optional<BoundedLength> separation{};
   std::optional<std::optional<BoundedLength>> depth{};
+
+  /// What helps in a similar pose.
+  [[nodiscard]] KnownAnswers hints() const {
+    return {.closest_faces = closest_faces, .closest_vertices = closest_vertices};
+  }
 };
 
 /// Results as documented at ProximityQuery, each computed on first use. Memory is reused from pair to pair;
@@ -44,7 +51,7 @@ class PairAnswers {
   /// Sets the bodies to which the results refer. They must outlive this object and remain unchanged until the
   /// next call.
   ///
-  /// `known`: what known() returned for the bodies as they are, or only closest_faces, of a similar pose.
+  /// `known`: what known() returned for the bodies as they are, or only hints(), of a similar pose.
   /// These change how long results take, not the results.
   void begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const KnownAnswers& known = {});
 
@@ -63,6 +70,10 @@ class PairAnswers {
  private:
   [[nodiscard]] pairs::MeshPair meshes() const;
   [[nodiscard]] bool boxes_or_balls_apart(double distance) const;
+  /// Of two convex solids.
+  [[nodiscard]] std::optional<convex::ConvexPair> convex_pair(const pairs::MeshPair& meshes) const;
+  [[nodiscard]] bool find_collision();
+  [[nodiscard]] const std::array<mesh::Similarity, 2>& to_other();
   bool find_closest(double bound);
   [[nodiscard]] bool surfaces_intersect();
   [[nodiscard]] std::optional<BoundedLength> depth();
@@ -71,6 +82,7 @@ class PairAnswers {
   std::optional<double> depth_precision_;
   std::array<const shape::PosedBody*, 2> bodies_{};
   std::array<mesh::Similarity, 2> to_other_;  // from the frame of each body to that of the other
+  bool first_to_other_known_ = false;         // the first of these is computed when it is needed
   double precision_ = 0;                      // error of a computed distance
   contacts::ContactFinder contact_finder_;
   pairs::PairWorkspace workspace_;

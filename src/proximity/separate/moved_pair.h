@@ -37,7 +37,7 @@ class MovedPair {
     at_ = translation;
     ++tries_;
     moved_.set_pose(Transform::translation(translation) * pose_);
-    answers_.begin(moved_, o2_, {.closest_faces = answers_.known().closest_faces});
+    answers_.begin(moved_, o2_, answers_.known().hints());
   }
 
   Transform pose_;

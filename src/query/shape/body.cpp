@@ -69,6 +69,7 @@ void Body::edit(const MeshEdit& edit) {
 
 void Body::find_parts() {
   cylinders_ = {internals(sites_).wide, internals(sites_).regions};
+  convex_ = convex::recognise(internals(sites_));
   contact_parts_ = shape::contact_parts(internals(sites_).tree);
 }
 
@@ -102,6 +103,7 @@ const WallThickness& Body::wall_thickness() const {
 
 void Body::follow_positions() {
   cylinders_ = {};
+  convex_.reset();
   box_ = bounds(sites_.mesh());
   ball_ = ball_about(0.5 * (box_.lo + box_.hi), internals(sites_));
   if (boundary_->value) boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();

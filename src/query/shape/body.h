@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/intact.h"
+#include "query/convex/convex_mesh.h"
 #include "query/inside/inside.h"
 #include "query/inside/solid_boundary.h"
 #include "query/shape/contact_parts.h"
@@ -52,6 +53,8 @@ class Body {
   /// The boundary of the solid. Requires a call of require_boundary().
   [[nodiscard]] const inside::SolidBoundary& boundary() const { return *boundary_->value; }
 
+  /// The mesh, if it bounds a convex solid (see convex::recognise); none after a refit, as with cylinders().
+  [[nodiscard]] const convex::ConvexMesh* convex() const { return convex_.get(); }
   /// See convexity_deficit(). Thread-safe; computed by the first call.
   [[nodiscard]] double convexity_deficit() const;
   /// Balls inside and points of the surface. Thread-safe; computed by the first call.
@@ -77,6 +80,7 @@ class Body {
   Ball ball_;
   std::optional<inside::InsideTest> inside_;
   sites::CylinderTree cylinders_;
+  std::unique_ptr<const convex::ConvexMesh> convex_;
   std::vector<ContactPart> contact_parts_;
 
   /// A value that queries build when they need it.

@@ -1,0 +1,148 @@
+#include "query/convex/convex_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <span>
+
+#include "geometry/predicates.h"
+#include "geometry/triangle.h"
+#include "query/inside/solid_angle.h"
+
+namespace sdm::convex {
+namespace {
+
+constexpr float kSingleHeightError = 1e-6F;  // of a height of coordinates of at most 1, in single precision
+
+// The corner of a face that is not on the edge.
+std::uint32_t apex_of(const Triangle& face, const std::array<std::uint32_t, 2>& edge) {
+  for (const std::uint32_t vertex : face)
+    if (vertex != edge[0] && vertex != edge[1]) return vertex;
+  return face[0];
+}
+
+// Whether no edge is reflex, and whether the faces are oriented as their neighbours. `outward`: −1 if the
+// mesh is inside out.
+bool has_no_reflex_edge(const sites::SitesData& sites, int outward) {
+  const Mesh& mesh = sites.mesh;
+  for (std::size_t e = 0; e < sites.topology.edges.size(); ++e) {
+    const std::span<const std::uint32_t> faces = sites.topology.edge_faces(e);
+    const Corners corners = corners_of(mesh, faces[0]);
+    const Vec3& apex = mesh.positions[apex_of(mesh.triangles[faces[1]], sites.topology.edges[e])];
+    if (outward * orientation(corners[0], corners[1], corners[2], apex) > 0) return false;
+  }
+  return true;
+}
+
+// The distance of the nearest plane of a face, if all of them see the centre from within, and once.
+std::optional<double> inner_radius_about(const Vec3& centre, const Mesh& mesh, int outward) {
+  double least = std::numeric_limits<double>::infinity(), angle = 0;
+  for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
+    const auto [a, b, c] = corners_of(mesh, face);
+    if (outward * orientation(a, b, c, centre) >= 0) return {};
+    const Vec3 normal = normalized(cross(b - a, c - a));
+    least = std::min(least, std::abs(dot(normal, a - centre)));
+    angle += outward * inside::solid_angle(a - centre, b - centre, c - centre);
+  }
+  constexpr double kSphere = 4 * std::numbers::pi;
+  if (!(std::abs(angle - kSphere) < 0.1 * kSphere)) return {};
+  return least;
+}
+
+// The numbers of vertices of faces, kNone for others, and their edges.
+void set_vertices(ConvexMesh& convex, const sites::SitesData& sites) {
+  const Mesh& mesh = sites.mesh;
+  std::vector<std::uint32_t> number(mesh.positions.size(), kNone);
+  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+    const std::span<const std::uint32_t> faces = sites.vertex_faces.of(v);
+    if (faces.empty()) continue;
+    number[v] = static_cast<std::uint32_t>(convex.points.size());
+    convex.points.push_back(mesh.positions[v]);
+    convex.vertex.push_back(v);
+    convex.first_face.push_back(faces.front());
+  }
+  convex.spokes = make_rows<Spoke>(convex.points.size(), [&](const auto& put) {
+    for (std::size_t e = 0; e < sites.topology.edges.size(); ++e) {
+      const auto& [a, b] = sites.topology.edges[e];
+      const std::span<const std::uint32_t> faces = sites.topology.edge_faces(e);
+      put(number[a], Spoke{number[b], {faces[0], faces[1]}});
+      put(number[b], Spoke{number[a], {faces[0], faces[1]}});
+    }
+  });
+}
+
+// Sets the coordinates in single precision.
+void set_coordinates(ConvexMesh& convex) {
+  const std::size_t count = convex.points.size();
+  const std::size_t padded = (count + ConvexMesh::kBlock - 1) / ConvexMesh::kBlock * ConvexMesh::kBlock;
+  for (int k = 0; k < 3; ++k) {
+    convex.along[k].resize(padded);
+    for (std::size_t i = 0; i < padded; ++i)
+      convex.along[k][i] =
+          static_cast<float>((convex.points[std::min(i, count - 1)][k] - convex.centre[k]) / convex.size);
+  }
+}
+
+// Let a be a unit vector at a vertex v, and let all neighbours w be lower along it, −a·(w − v) ≥ s. If none
+// is higher than v by more than e along a unit vector u, then along u + e / s · a none is higher at all, nor
+// any other point p, as the mesh is convex: u·(p − v) ≤ e / s · |p − v|.
+double least_sharpness(const ConvexMesh& convex, const Mesh& mesh) {
+  std::vector<Vec3> normals(mesh.triangles.size());
+  for (std::size_t face = 0; face < normals.size(); ++face) {
+    const auto [a, b, c] = corners_of(mesh, face);
+    normals[face] = convex.outward * normalized(cross(b - a, c - a));
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; v < convex.points.size(); ++v) {
+    Vec3 a{};
+    for (const Spoke& spoke : convex.spokes.of(v)) a = a + normals[spoke.faces[0]] + normals[spoke.faces[1]];
+    a = normalized(a);
+    for (const Spoke& spoke : convex.spokes.of(v))
+      least = std::min(least, dot(a, convex.points[v] - convex.points[spoke.end]));
+  }
+  return least;
+}
+
+// Decides how farthest vertices are found.
+void set_climbing(ConvexMesh& convex, const Mesh& mesh) {
+  constexpr std::size_t kFew = 64;  // vertices that are all compared in less time
+  convex.height_error = kSingleHeightError * convex.size + kFewRoundings * norm(convex.centre);
+  convex.least_climb = kProductRounding * convex.size;
+  if (convex.points.size() <= kFew) return;
+  const double sharpness = least_sharpness(convex, mesh) - convex.least_climb;
+  convex.climbs = sharpness > 0 && 2 * convex.least_climb / sharpness * convex.size < convex.height_error;
+}
+
+}  // namespace
+
+std::unique_ptr<const ConvexMesh> recognise(const sites::SitesData& sites) {
+  const Mesh& mesh = sites.mesh;
+  if (!sites.is_solid() || !sites.consistently_oriented || sites.orientation.first_face.size() != 1)
+    return {};
+  if (sites.topology.duplicate_faces + sites.topology.collapsed_faces > 0) return {};
+  if (mesh.triangles.size() > 2 * kMostVertices) return {};
+  const int outward = sites.inverted[0] != 0 ? -1 : 1;
+  if (!has_no_reflex_edge(sites, outward)) return {};
+  auto convex = std::make_unique<ConvexMesh>();
+  convex->outward = outward;
+  double count = 0;
+  Box box;
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle) {
+      const Vec3& p = mesh.positions[vertex];
+      count += 1, convex->centre = convex->centre + (1 / count) * (p - convex->centre);
+      extend(box, p);
+    }
+  const std::optional<double> radius = inner_radius_about(convex->centre, mesh, outward);
+  if (!radius) return {};
+  convex->size = diagonal(box);
+  convex->inner_radius = (1 - kDoubleRounding) * *radius - kDoubleRounding * norm(convex->centre);
+  set_vertices(*convex, sites);
+  set_coordinates(*convex);
+  set_climbing(*convex, mesh);
+  return convex;
+}
+
+}  // namespace sdm::convex

@@ -1,0 +1,34 @@
+// The closest points and the collision of two convex solids.
+#pragma once
+
+#include <optional>
+
+#include "query/convex/support_search.h"
+#include "query/pairs/mesh_pair.h"
+
+namespace sdm::convex {
+
+/// What pairs::find_closest() and pairs::colliding() find for two convex solids, to the bit, in less time
+/// where it can be proven: the results are empty elsewhere, as where faces are parallel or the solids nearly
+/// touch.
+class ConvexPair {
+ public:
+  /// `scale`: of the pose.
+  ConvexPair(const ConvexMesh& o1, const ConvexMesh& o2, const pairs::MeshPair& pair, double scale);
+
+  /// As find_closest(), if its result is known. `hint` receives faces near the closest ones, unless the
+  /// solids overlap. `simplex`: see search_by_supports().
+  [[nodiscard]] std::optional<pairs::Separation> find_closest(double bound, Simplex& simplex,
+                                                              pairs::FacePair& hint);
+  /// Whether the solids have a point in common, if it is known.
+  [[nodiscard]] std::optional<bool> colliding(Simplex& simplex);
+
+ private:
+  [[nodiscard]] std::optional<pairs::Separation> finish(const Simplex& simplex, pairs::FacePair& hint) const;
+
+  const ConvexMesh &o1_, &o2_;
+  const pairs::MeshPair& pair_;
+  double scale_, rounding_;
+};
+
+}  // namespace sdm::convex

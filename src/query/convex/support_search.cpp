@@ -1,0 +1,174 @@
+#include "query/convex/support_search.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "query/convex/support_search.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which includes this file once for each set of instructions.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "query/convex/simplex_point.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sdm::convex::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+namespace {
+
+// A vertex that is farthest along u, up to the height error: all are compared.
+HWY_INLINE std::uint32_t farthest_vertex(const ConvexMesh& mesh, const Vec3& u) {
+  const hn::CappedTag<float, ConvexMesh::kBlock> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  const std::size_t lanes = hn::Lanes(d), count = mesh.along[0].size();
+  const float *x = mesh.along[0].data(), *y = mesh.along[1].data(), *z = mesh.along[2].data();
+  const auto ux = hn::Set(d, static_cast<float>(u[0])), uy = hn::Set(d, static_cast<float>(u[1])),
+             uz = hn::Set(d, static_cast<float>(u[2]));
+  auto best = hn::Set(d, -std::numeric_limits<float>::infinity());
+  auto at = hn::Iota(di, 0), best_at = at;
+  const auto step = hn::Set(di, static_cast<int>(lanes));
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const auto height = hn::MulAdd(hn::LoadU(d, z + i), uz,
+                                   hn::MulAdd(hn::LoadU(d, y + i), uy, hn::Mul(hn::LoadU(d, x + i), ux)));
+    const auto higher = hn::Gt(height, best);
+    best = hn::IfThenElse(higher, height, best);
+    best_at = hn::IfThenElse(hn::RebindMask(di, higher), at, best_at);
+    at = hn::Add(at, step);
+  }
+  const intptr_t lane = hn::FindFirstTrue(d, hn::Eq(best, hn::MaxOfLanes(d, best)));
+  alignas(64) std::int32_t found[ConvexMesh::kBlock];
+  hn::Store(best_at, di, found);
+  return std::min(static_cast<std::uint32_t>(found[lane < 0 ? 0 : lane]),
+                  static_cast<std::uint32_t>(mesh.points.size() - 1));
+}
+
+// The same up to the climb error, by neighbours of a vertex.
+HWY_INLINE std::uint32_t climb(const ConvexMesh& mesh, const Vec3& u, std::uint32_t vertex) {
+  for (;;) {
+    const Vec3& from = mesh.points[vertex];
+    std::uint32_t next = vertex;
+    double most = mesh.least_climb;
+    for (const Spoke& spoke : mesh.spokes.of(vertex))
+      if (const double higher = dot(u, mesh.points[spoke.end] - from); higher > most)
+        most = higher, next = spoke.end;
+    if (next == vertex) return vertex;
+    vertex = next;
+  }
+}
+
+class SupportSearch {
+ public:
+  SupportSearch(const SupportRequest& request, Simplex& simplex) : r_(request), known_(simplex) {
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) turn_[j][k] = r_.pose.rows[k][j] / r_.scale;
+    error_ = r_.o1.height_error + r_.scale * r_.o2.height_error + 4 * r_.rounding;
+    size_ = r_.o1.size + r_.scale * r_.o2.size;
+  }
+
+  Relation run() {
+    begin();
+    constexpr int kMostSteps = 40;
+    for (int step = 0; step < kMostSteps; ++step) {
+      const double squared = squared_norm(v_);
+      if (!(squared > 1e-24 * size_ * size_)) return Relation::unknown;
+      const double length = std::sqrt(squared);
+      const SimplexPoint p = support((-1 / length) * v_);
+      const double along = dot(p.w, v_) / length;  // no point of the difference is nearer to the origin
+      if (along - error_ > r_.beyond) return keep(Relation::apart);
+      if (known(p) || along > length - kConverged * length - kNoise * size_) return keep(Relation::near);
+      simplex_.add(p);
+      if (!simplex_.reduce(v_)) return encloses_origin() ? Relation::overlap : Relation::unknown;
+    }
+    return Relation::unknown;
+  }
+
+ private:
+  static constexpr double kConverged = 1e-13, kNoise = 1e-15;
+
+  SimplexPoint point_of(std::uint32_t v1, std::uint32_t v2) const {
+    SimplexPoint p{{v1, v2}, r_.o1.points[v1], r_.pose(r_.o2.points[v2]), {}};
+    p.w = p.x1 - p.x2;
+    return p;
+  }
+  SimplexPoint support(const Vec3& u) {
+    constexpr double kNear = 0.97;  // cosine
+    climb_ = simplex_.count > 0 && dot(u, last_u_) > kNear;
+    last_u_ = u;
+    const Vec3 u2{-dot(turn_[0], u), -dot(turn_[1], u), -dot(turn_[2], u)};
+    return point_of(farthest(r_.o1, u, 0), farthest(r_.o2, u2, 1));
+  }
+  // The last vertex is near the next one in a similar direction.
+  std::uint32_t farthest(const ConvexMesh& mesh, const Vec3& u, int side) const {
+    if (!mesh.climbs || !climb_) return farthest_vertex(mesh, u);
+    return climb(mesh, u, simplex_.points[simplex_.count - 1].vertices[side]);
+  }
+
+  // The simplex of a similar pose is a better start than the centres, unless the poses differ much.
+  void begin() {
+    const Vec3 between = r_.o1.centre - r_.pose(r_.o2.centre);
+    for (std::uint32_t i = 0; i < known_.count; ++i) {
+      const auto& [v1, v2] = known_.vertices[i];
+      if (v1 >= r_.o1.points.size() || v2 >= r_.o2.points.size()) continue;
+      simplex_.add(point_of(v1, v2));
+    }
+    if (simplex_.count > 0 && simplex_.reduce(v_)) {
+      const double along = dot(v_, between);
+      constexpr double kSimilar = 0.6;  // cosine
+      if (along > 0 && along * along > kSimilar * kSimilar * squared_norm(v_) * squared_norm(between)) {
+        last_u_ = (-1 / norm(v_)) * v_;
+        return;
+      }
+    }
+    simplex_.count = 0;
+    v_ = between;
+    if (!(squared_norm(v_) > 1e-20 * size_ * size_)) v_ = {size_, 0, 0};
+    const double length = norm(v_);
+    simplex_.add(support((-1 / length) * v_));
+    v_ = simplex_.points[0].w;
+  }
+
+  bool known(const SimplexPoint& p) const {
+    for (int i = 0; i < simplex_.count; ++i)
+      if (simplex_.points[i].vertices == p.vertices) return true;
+    return false;
+  }
+  bool encloses_origin() const {
+    return simplex_.count == 4 && simplex_.depth_of_origin() > 16 * r_.rounding + 1e-13 * size_;
+  }
+  Relation keep(Relation relation) {
+    known_.count = static_cast<std::uint32_t>(simplex_.count);
+    for (int i = 0; i < simplex_.count; ++i) known_.vertices[i] = simplex_.points[i].vertices;
+    return relation;
+  }
+
+  const SupportRequest& r_;
+  Simplex& known_;
+  std::array<Vec3, 3> turn_;  // from the frame of O1 to that of O2, without the scale
+  double error_, size_;
+  SimplexPoints simplex_;
+  Vec3 last_u_{};
+  bool climb_ = false;
+  Vec3 v_{};  // the point of the simplex that is closest to the origin
+};
+
+}  // namespace
+
+Relation SearchBySupports(const SupportRequest& request, Simplex& simplex) {
+  return SupportSearch(request, simplex).run();
+}
+
+}  // namespace sdm::convex::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sdm::convex {
+
+HWY_EXPORT(SearchBySupports);
+
+Relation search_by_supports(const SupportRequest& request, Simplex& simplex) {
+  return HWY_DYNAMIC_DISPATCH(SearchBySupports)(request, simplex);
+}
+
+}  // namespace sdm::convex
+#endif

@@ -1,0 +1,204 @@
+// Closest points and collisions of convex solids by their support functions, against the searches of trees.
+#include "query/convex/convex_pair.h"
+
+#include <gmock/gmock.h>
+#include <sdm/sdm.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "mesh/similarity.h"
+#include "poses.h"
+#include "query/pairs/collision.h"
+#include "support/meshes.h"
+#include "support/shapes.h"
+
+namespace sdm::convex {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+std::unique_ptr<const ConvexMesh> recognised(const Mesh& mesh) {
+  return recognise(internals(Sites(mesh)));
+}
+
+Mesh scaled(Mesh mesh, const Vec3& by, const Vec3& offset = {}) {
+  for (Vec3& p : mesh.positions)
+    for (int k = 0; k < 3; ++k) p[k] = by[k] * p[k] + offset[k];
+  return mesh;
+}
+
+Mesh without_smoothness(Mesh mesh, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> factor(0.98, 1.02);
+  for (Vec3& p : mesh.positions) p = factor(random) * p;
+  return mesh;
+}
+
+TEST(ConvexMesh, IsRecognised) {
+  EXPECT_TRUE(recognised(test::tetrahedron()));
+  EXPECT_TRUE(recognised(test::cube()));
+  EXPECT_TRUE(recognised(test::sphere(3)));
+  EXPECT_TRUE(recognised(scaled(test::sphere(2), {1, 1e-3, 1e-3})));
+  EXPECT_TRUE(recognised(scaled(test::cube(), {1, 1, 1e-6}, {1e3, 0, 0})));
+  EXPECT_TRUE(recognised(test::flipped(test::sphere(1)))) << "inside out";
+}
+
+TEST(ConvexMesh, IsNoOtherMesh) {
+  EXPECT_FALSE(recognised(test::torus(16, 8)));
+  EXPECT_FALSE(recognised(test::band(12, false))) << "open";
+  EXPECT_FALSE(recognised(test::joined(test::cube(), test::moved(test::cube(), {3, 0, 0})))) << "two pieces";
+  EXPECT_FALSE(recognised(test::joined(test::cube(), test::cube(0.5)))) << "one in another";
+  EXPECT_FALSE(recognised(without_smoothness(test::sphere(3), 1))) << "with dents";
+  Mesh dented = test::cube();
+  dented.positions[0] = 0.2 * dented.positions[0];
+  EXPECT_FALSE(recognised(dented));
+}
+
+// A prism over a star {5/2}, whose outline goes round twice: no edge is reflex.
+TEST(ConvexMesh, GoesRoundOnce) {
+  Mesh star;
+  for (int i = 0; i < 5; ++i) {
+    const double angle = 4 * std::acos(-1.0) * i / 5;
+    star.positions.push_back({std::cos(angle), std::sin(angle), 0});
+  }
+  star.positions.push_back({0, 0, 1});
+  star.positions.push_back({0, 0, -1});
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    star.triangles.push_back({i, (i + 1) % 5, 5});
+    star.triangles.push_back({(i + 1) % 5, i, 6});
+  }
+  EXPECT_FALSE(recognised(star));
+}
+
+TEST(ConvexMesh, IsGoneAfterARefit) {
+  const Mesh ball = test::sphere(1);
+  ProximityQuery query(ball, test::moved(ball, {3, 0, 0}));
+  const double before = query.separation().value;
+  Mesh dented = ball;
+  for (Vec3& p : dented.positions)
+    if (p[0] > 0.5) p[0] = 0.2;
+  query.refit(dented.positions, {});
+  ProximityQuery expected(dented, test::moved(ball, {3, 0, 0}));
+  EXPECT_GT(query.separation().value, before);
+  EXPECT_EQ(query.separation().value, expected.separation().value);
+}
+
+struct Pair {
+  std::string name;
+  Mesh o1, o2;
+};
+
+std::vector<Pair> pairs_of_convex_solids() {
+  using test::cube, test::sphere, test::tetrahedron;
+  return {{"cubes", cube(), cube(0.7)},
+          {"tetrahedron and cube", tetrahedron(), cube(0.3)},
+          {"ellipsoids of 20", scaled(sphere(0), {1, 0.7, 0.5}), scaled(sphere(0), {0.6, 0.9, 0.8})},
+          {"ellipsoids of 320", scaled(sphere(2), {1, 0.7, 0.5}), scaled(sphere(2), {0.6, 0.9, 0.8})},
+          {"ellipsoids of 1280", scaled(sphere(3), {1, 0.7, 0.5}), scaled(sphere(3), {0.6, 0.9, 0.8})},
+          {"needles", scaled(sphere(1), {1, 1e-3, 1e-3}), scaled(cube(), {1e-3, 1e-4, 1})},
+          {"flat boxes", scaled(cube(), {1, 1, 1e-4}), scaled(cube(), {1, 0.5, 1e-6})},
+          {"of different size", scaled(sphere(2), {1e-3, 1e-3, 1e-3}), cube(2)},
+          {"far from the origin", scaled(sphere(1), {1, 1, 1}, {1e6, -1e6, 3e5}),
+           scaled(cube(), {1, 1, 1}, {5e5, 0, 0})},
+          {"inside out", test::flipped(sphere(1)), test::flipped(cube())}};
+}
+
+class ConvexPairs : public testing::Test {
+ protected:
+  pairs::PairWorkspace workspace_;
+  std::size_t tried_ = 0, found_ = 0, decided_ = 0;
+
+  /// All answers that are known are those of the searches, to the bit, whatever is known from another pose.
+  void expect_same(const Sites& o1, const Sites& o2, const ConvexMesh& c1, const ConvexMesh& c2,
+                   const Affine& pose, double scale, Simplex& warm) {
+    const pairs::MeshPair pair{internals(o1), internals(o2), pose};
+    const pairs::Separation expected = pairs::find_closest(pair, kInfinite, workspace_);
+    const bool colliding = pairs::colliding(pair, workspace_);
+    ConvexPair convex(c1, c2, pair, scale);
+    for (Simplex cold; Simplex * simplex : {&cold, &warm}) {
+      ++tried_;
+      pairs::FacePair hint = pairs::kNoFaces;
+      if (const auto found = convex.find_closest(kInfinite, *simplex, hint)) {
+        ++found_;
+        EXPECT_EQ(found->distance, expected.distance);
+        EXPECT_EQ(found->point1, expected.point1);
+        EXPECT_EQ(found->point2, expected.point2);
+        EXPECT_EQ(found->face1, expected.face1);
+        EXPECT_EQ(found->face2, expected.face2);
+        EXPECT_FALSE(expected.intersecting);
+      }
+      for (const double factor : {0.5, 0.999, 1.001}) {
+        const auto within = convex.find_closest(factor * expected.distance, *simplex, hint);
+        if (within && !expected.intersecting) {
+          EXPECT_EQ(within->face1 != kNone, factor > 1) << factor;
+        }
+      }
+      if (const auto decided = convex.colliding(*simplex)) {
+        ++decided_;
+        EXPECT_EQ(*decided, colliding);
+      }
+    }
+  }
+};
+
+TEST_F(ConvexPairs, HaveTheAnswersOfSearches) {
+  constexpr int kPoses = 200;
+  for (const auto& [name, m1, m2] : pairs_of_convex_solids()) {
+    SCOPED_TRACE(name);
+    const Sites o1(m1), o2(m2);
+    const auto c1 = recognise(internals(o1)), c2 = recognise(internals(o2));
+    ASSERT_TRUE(c1 && c2);
+    std::mt19937 random(3);
+    Simplex warm;
+    tried_ = found_ = decided_ = 0;
+    for (const Affine& pose : bench::random_poses(o1, o2, kPoses, random))
+      expect_same(o1, o2, *c1, *c2, pose, 1, warm);
+    // Of five stands, one only touches, and in one both have the same centre.
+    EXPECT_GE(decided_, 6 * tried_ / 10);
+    const bool extreme = name == "needles" || name == "flat boxes" || name == "far from the origin";
+    EXPECT_GE(found_, extreme ? 0 : 3 * tried_ / 10);
+  }
+}
+
+TEST_F(ConvexPairs, HaveThemInScaledAndCoherentPoses) {
+  const Mesh m1 = scaled(test::sphere(2), {1, 0.7, 0.5}), m2 = test::cube(0.5);
+  const Sites o1(m1), o2(m2);
+  const auto c1 = recognise(internals(o1)), c2 = recognise(internals(o2));
+  Simplex warm;
+  for (int i = 0; i < 300; ++i) {
+    const double scale = i % 2 == 0 ? 1 : 0.3 + 0.01 * i, t = 0.01 * i;
+    Transform placed =
+        Transform::translation({3 - t, 0.3, 0.2 * t}) * Transform::rotation({20 * t, 70 * t, 5});
+    for (int row = 0; row < 3; ++row)
+      for (int k = 0; k < 3; ++k) placed.rows[row][k] *= scale;
+    const auto pose = mesh::Similarity::of(placed);
+    expect_same(o1, o2, *c1, *c2, pose.map, pose.scale, warm);
+  }
+  EXPECT_GE(found_ + decided_, tried_);
+}
+
+// Parallel faces and edges, equal places and touching corners: whatever is answered is right.
+TEST_F(ConvexPairs, HaveThemInSpecialPoses) {
+  for (const Mesh& m2 : {test::cube(), test::cube(0.5), test::sphere(1), test::tetrahedron()}) {
+    const Mesh m1 = test::cube();
+    const Sites o1(m1), o2(m2);
+    const auto c1 = recognise(internals(o1)), c2 = recognise(internals(o2));
+    Simplex warm;
+    for (const double x : {0.0, 0.5, 1.0, 1.5, 2.0, 2.0 + 1e-15, 2.0 + 1e-9, 2.0 - 1e-12, 3.0})
+      for (const double y : {0.0, 0.25, 2.0, 2.5})
+        for (const double z : {0.0, 1e-13, 2.0})
+          for (const double angle : {0.0, 45.0, 90.0, 1e-7})
+            expect_same(
+                o1, o2, *c1, *c2,
+                mesh::Similarity::of(Transform::translation({x, y, z}) * Transform::rotation({0, 0, angle}))
+                    .map,
+                1, warm);
+  }
+}
+
+}  // namespace
+}  // namespace sdm::convex
