@@ -12,6 +12,7 @@
 #include <sdm/closest_in_parts.h>
 #include <sdm/closest_points.h>
 #include <sdm/combined_statistics.h>
+#include <sdm/convex_hull.h>
 #include <sdm/coverage.h>
 #include <sdm/distance_kind.h>
 #include <sdm/doubts.h>

@@ -30,6 +30,10 @@ class SDM_API Shape {
   [[nodiscard]] const Surface& surface() const;
   /// The sites, in the frame of the mesh.
   [[nodiscard]] const Sites& sites() const;
+  /// Whether the mesh bounds a convex solid, exactly, with at most 16,384 faces: closed, in one piece,
+  /// consistently oriented, without reflex edges and faces without area. Two such shapes are searched by
+  /// support functions, which takes less time and gives the same results. False once the shape was deformed.
+  [[nodiscard]] bool convex() const;
 
  private:
   friend const std::shared_ptr<shape::Body>& internals(const Shape& shape);

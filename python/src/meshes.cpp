@@ -1,5 +1,6 @@
 // Meshes from Python objects and files.
 #include <nanobind/stl/optional.h>
+#include <sdm/convex_hull.h>
 #include <sdm/io.h>
 #include <sdm/islands.h>
 #include <sdm/weld.h>
@@ -141,6 +142,26 @@ sides of a thin wall. Raises Error for a tolerance that is not positive.
 )");
 }
 
+void bind_convex_hull(nb::module_& module) {
+  module.def(
+      "convex_hull",
+      [](nb::handle mesh) {
+        const Mesh given = mesh_of(mesh, nb::none());
+        Mesh hull;
+        run(nb::none(), [&](const Progress&) { hull = convex_hull(given); });
+        return nb::cast(new PyMesh{std::move(hull)}, nb::rv_policy::take_ownership);
+      },
+      nb::arg("mesh").none(), nb::sig("def convex_hull(mesh: object) -> Mesh"),
+      R"(The convex hull of the corners of all faces: a closed mesh, counter-clockwise from outside, whose
+vertices are corners in their order. It is convex exactly, so that two hulls are compared in little time
+by ProximityQuery, PoseQuery and MultiBodyQuery. Raises Error for a mesh whose corners are in one plane.
+
+>>> hull = sdm.convex_hull(box)
+>>> len(hull.faces), sdm.Shape(hull).convex
+(12, True)
+)");
+}
+
 void bind_islands(nb::module_& module) {
   nb::class_<IslandReport>(module, "IslandReport", "What remove_islands() removed.")
       .def_ro("islands", &IslandReport::islands, "The number of components.")
@@ -239,6 +260,7 @@ Traceback (most recent call last):
 sdm.Error: ...
 )");
   bind_weld(module);
+  bind_convex_hull(module);
   bind_islands(module);
 }
 

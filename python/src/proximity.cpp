@@ -161,6 +161,11 @@ atlas. Raises Error for a mesh that cannot be used.
             return faces_view(nb::cast<const PyShape&>(self).shape.sites().mesh(), self);
           },
           nb::sig("def faces(self) -> numpy.ndarray"), "The vertices of each face, (m, 3) uint32, read-only.")
+      .def_prop_ro(
+          "convex", [](const PyShape& self) { return self.shape.convex(); },
+          "Whether the mesh bounds a convex solid, exactly: two such shapes are compared in less time, with "
+          "the "
+          "same results. See convex_hull().")
       .def("__repr__", [](const PyShape& self) {
         const Mesh& mesh = self.shape.sites().mesh();
         return nb::str("sdm.Shape({} vertices, {} faces)")

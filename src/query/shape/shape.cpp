@@ -23,6 +23,9 @@ const Surface& Shape::surface() const {
 const Sites& Shape::sites() const {
   return body_->sites();
 }
+bool Shape::convex() const {
+  return body_->convex() != nullptr;
+}
 
 const std::shared_ptr<shape::Body>& internals(const Shape& shape) {
   return shape.body_;
