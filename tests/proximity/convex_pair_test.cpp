@@ -118,6 +118,12 @@ class ConvexPairs : public testing::Test {
     const pairs::MeshPair pair{internals(o1), internals(o2), pose};
     const pairs::Separation expected = pairs::find_closest(pair, kInfinite, workspace_);
     const bool colliding = pairs::colliding(pair, workspace_);
+    if (expected.intersecting) {
+      const pairs::Separation first = pairs::find_intersection(pair, workspace_);
+      EXPECT_EQ(first.point1, expected.point1);
+      EXPECT_EQ(first.face1, expected.face1);
+      EXPECT_EQ(first.face2, expected.face2);
+    }
     ConvexPair convex(c1, c2, pair, scale);
     for (Simplex cold; Simplex * simplex : {&cold, &warm}) {
       ++tried_;

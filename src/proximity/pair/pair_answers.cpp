@@ -117,8 +117,14 @@ bool PairAnswers::find_closest(double bound) {
   const pairs::MeshPair pair = meshes();
   const double own_bound = bound / pose.scale;
   std::optional<pairs::Separation> found;
-  if (std::optional<convex::ConvexPair> convex = convex_pair(pair))
+  if (std::optional<convex::ConvexPair> convex = convex_pair(pair)) {
     found = convex->find_closest(own_bound, known_.closest_vertices, known_.closest_faces);
+    // Solids that overlap intersect, or one is inside the other. The faces that are found to intersect are
+    // the first ones in the order of the trees, in either search.
+    if (convex->found_overlap())
+      if (const pairs::Separation first = pairs::find_intersection(pair, workspace_); first.intersecting)
+        found = first;
+  }
   const pairs::Separation c =
       found ? *found : pairs::find_closest(pair, own_bound, workspace_, known_.closest_faces);
   if (c.face1 == kNone) return false;

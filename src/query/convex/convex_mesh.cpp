@@ -36,13 +36,16 @@ bool has_no_reflex_edge(const sites::SitesData& sites, int outward) {
   return true;
 }
 
-// The distance of the nearest plane of a face, if all of them see the centre from within, and once.
-std::optional<double> inner_radius_about(const Vec3& centre, const Mesh& mesh, int outward) {
+// The distance of the nearest plane of a face, if all of them see the centre from within, and once; and their
+// normals.
+std::optional<double> inner_radius_about(const Vec3& centre, const Mesh& mesh, int outward,
+                                         std::vector<Vec3>& normals) {
   double least = std::numeric_limits<double>::infinity(), angle = 0;
   for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
     const auto [a, b, c] = corners_of(mesh, face);
     if (outward * orientation(a, b, c, centre) >= 0) return {};
-    const Vec3 normal = normalized(cross(b - a, c - a));
+    const Vec3 normal = outward * normalized(cross(b - a, c - a));
+    normals.push_back(normal);
     least = std::min(least, std::abs(dot(normal, a - centre)));
     angle += outward * inside::solid_angle(a - centre, b - centre, c - centre);
   }
@@ -88,16 +91,12 @@ void set_coordinates(ConvexMesh& convex) {
 // Let a be a unit vector at a vertex v, and let all neighbours w be lower along it, −a·(w − v) ≥ s. If none
 // is higher than v by more than e along a unit vector u, then along u + e / s · a none is higher at all, nor
 // any other point p, as the mesh is convex: u·(p − v) ≤ e / s · |p − v|.
-double least_sharpness(const ConvexMesh& convex, const Mesh& mesh) {
-  std::vector<Vec3> normals(mesh.triangles.size());
-  for (std::size_t face = 0; face < normals.size(); ++face) {
-    const auto [a, b, c] = corners_of(mesh, face);
-    normals[face] = convex.outward * normalized(cross(b - a, c - a));
-  }
+double least_sharpness(const ConvexMesh& convex) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t v = 0; v < convex.points.size(); ++v) {
     Vec3 a{};
-    for (const Spoke& spoke : convex.spokes.of(v)) a = a + normals[spoke.faces[0]] + normals[spoke.faces[1]];
+    for (const Spoke& spoke : convex.spokes.of(v))
+      a = a + convex.normals[spoke.faces[0]] + convex.normals[spoke.faces[1]];
     a = normalized(a);
     for (const Spoke& spoke : convex.spokes.of(v))
       least = std::min(least, dot(a, convex.points[v] - convex.points[spoke.end]));
@@ -106,12 +105,12 @@ double least_sharpness(const ConvexMesh& convex, const Mesh& mesh) {
 }
 
 // Decides how farthest vertices are found.
-void set_climbing(ConvexMesh& convex, const Mesh& mesh) {
+void set_climbing(ConvexMesh& convex) {
   constexpr std::size_t kFew = 64;  // vertices that are all compared in less time
   convex.height_error = kSingleHeightError * convex.size + kFewRoundings * norm(convex.centre);
   convex.least_climb = kProductRounding * convex.size;
   if (convex.points.size() <= kFew) return;
-  const double sharpness = least_sharpness(convex, mesh) - convex.least_climb;
+  const double sharpness = least_sharpness(convex) - convex.least_climb;
   convex.climbs = sharpness > 0 && 2 * convex.least_climb / sharpness * convex.size < convex.height_error;
 }
 
@@ -135,13 +134,13 @@ std::unique_ptr<const ConvexMesh> recognise(const sites::SitesData& sites) {
       count += 1, convex->centre = convex->centre + (1 / count) * (p - convex->centre);
       extend(box, p);
     }
-  const std::optional<double> radius = inner_radius_about(convex->centre, mesh, outward);
+  const std::optional<double> radius = inner_radius_about(convex->centre, mesh, outward, convex->normals);
   if (!radius) return {};
   convex->size = diagonal(box);
   convex->inner_radius = (1 - kDoubleRounding) * *radius - kDoubleRounding * norm(convex->centre);
   set_vertices(*convex, sites);
   set_coordinates(*convex);
-  set_climbing(*convex, mesh);
+  set_climbing(*convex);
   return convex;
 }
 

@@ -30,6 +30,7 @@ struct ConvexMesh {
       along;  ///< coordinates about the centre, those of a vertex repeated at the end
   std::vector<Vec3> points;
   std::vector<std::uint32_t> vertex;      ///< the number of each in the mesh
+  std::vector<Vec3> normals;              ///< of the faces, to rounding, outwards
   core::CompressedRows<Spoke> spokes;     ///< of each vertex
   std::vector<std::uint32_t> first_face;  ///< the smallest number of a face, of each vertex
   int outward = 1;                        ///< −1 if the mesh is inside out

@@ -30,7 +30,7 @@ namespace {
 
 constexpr double kPosedRounding = 1.6e-14;  // of a posed vertex and of distances, relative to all lengths
 constexpr double kLeastDrop = 1e-8;         // of the sizes: what exceeds the error of a direction
-constexpr double kReliable = 1e-9;          // error of a direction
+constexpr double kReliable = 1e-4;          // error of a direction, which the drop exceeds
 constexpr double kMany = 64;                // roundings that are nothing beside a length
 
 // The different vertices of a side of a simplex.
@@ -202,13 +202,20 @@ class Proof {
     const Vec3 p = point(vertex_side, features_[vertex_side].vertex[0]);
     const int face_side = 1 - vertex_side;
     const ConvexMesh& mesh = *meshes_[face_side];
+    // Of faces in one plane, any may have the closest point. Each is met at two spokes of a vertex.
+    const auto& [a, b, c] = features_[face_side].vertex;
+    const Vec3 normal = normalized(cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]));
+    constexpr double kSamePlane = 1 - 1e-6;  // cosine
+    std::uint32_t tried = kNone;
     for (const std::uint32_t v : features_[face_side].vertices())
       for (const Spoke& spoke : mesh.spokes.of(v))
-        for (const std::uint32_t face : spoke.faces)
-          if (is_over(vertex_side, p, face)) {
-            faces_[face_side] = face;
-            return points_of_features();
-          }
+        for (const std::uint32_t face : spoke.faces) {
+          if (face == tried || std::abs(dot(normal, mesh.normals[face])) < kSamePlane) continue;
+          tried = face;
+          if (!is_over(vertex_side, p, face)) continue;
+          faces_[face_side] = face;
+          return points_of_features();
+        }
     return {};
   }
   // Whether the face has the point closest to the vertex p.
@@ -251,6 +258,11 @@ ConvexPair::ConvexPair(const ConvexMesh& o1, const ConvexMesh& o2, const pairs::
       rounding_(kPosedRounding * (o1.size + scale * o2.size + norm(o1.centre) + scale * norm(o2.centre) +
                                   norm(pair.pose.offset))) {}
 
+bool ConvexPair::centres_near() const {
+  const double reach = o1_.inner_radius + scale_ * o2_.inner_radius - kMany * rounding_;
+  return reach > 0 && squared_norm(pair_.pose(o2_.centre) - o1_.centre) < reach * reach;
+}
+
 std::optional<pairs::Separation> ConvexPair::finish(const Simplex& simplex, pairs::FacePair& hint) const {
   Proof proof({&o1_, &o2_}, pair_, scale_, rounding_, simplex);
   const std::optional<PointPair> points = proof.find();
@@ -262,8 +274,11 @@ std::optional<pairs::Separation> ConvexPair::finish(const Simplex& simplex, pair
 
 std::optional<pairs::Separation> ConvexPair::find_closest(double bound, Simplex& simplex,
                                                           pairs::FacePair& hint) {
+  found_overlap_ = centres_near();
+  if (found_overlap_) return {};
   const SupportRequest request{o1_, o2_, pair_.pose, scale_, bound, rounding_};
-  switch (search_by_supports(request, simplex)) {
+  const Relation relation = search_by_supports(request, simplex);
+  switch (relation) {
     case Relation::apart:
       return pairs::Separation{};
     case Relation::near: {
@@ -271,11 +286,13 @@ std::optional<pairs::Separation> ConvexPair::find_closest(double bound, Simplex&
       return found && found->distance > bound ? pairs::Separation{} : found;
     }
     default:
+      found_overlap_ = relation == Relation::overlap;
       return {};
   }
 }
 
 std::optional<bool> ConvexPair::colliding(Simplex& simplex) {
+  if (centres_near()) return true;
   const SupportRequest request{o1_, o2_, pair_.pose, scale_, 0, rounding_};
   switch (search_by_supports(request, simplex)) {
     case Relation::apart:

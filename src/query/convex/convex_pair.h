@@ -20,15 +20,20 @@ class ConvexPair {
   /// solids overlap. `simplex`: see search_by_supports().
   [[nodiscard]] std::optional<pairs::Separation> find_closest(double bound, Simplex& simplex,
                                                               pairs::FacePair& hint);
+  /// Whether find_closest() found that the solids overlap: its result is then empty.
+  [[nodiscard]] bool found_overlap() const { return found_overlap_; }
   /// Whether the solids have a point in common, if it is known.
   [[nodiscard]] std::optional<bool> colliding(Simplex& simplex);
 
  private:
+  // Whether the balls about the centres overlap, beyond rounding errors.
+  [[nodiscard]] bool centres_near() const;
   [[nodiscard]] std::optional<pairs::Separation> finish(const Simplex& simplex, pairs::FacePair& hint) const;
 
   const ConvexMesh &o1_, &o2_;
   const pairs::MeshPair& pair_;
   double scale_, rounding_;
+  bool found_overlap_ = false;
 };
 
 }  // namespace sdm::convex

@@ -97,8 +97,8 @@ struct SimplexPoints {
     return {squared_norm(v), v, 3, {i, j, k}};
   }
   bool keep(const Nearest& nearest, Vec3& v) {
-    const std::array<SimplexPoint, 4> before = points;
-    for (int i = 0; i < nearest.count; ++i) points[i] = before[nearest.kept[i]];
+    for (int i = 0; i < nearest.count; ++i)  // in increasing order
+      if (nearest.kept[i] != i) points[i] = points[nearest.kept[i]];
     count = nearest.count, v = nearest.v;
     return true;
   }

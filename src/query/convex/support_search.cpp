@@ -36,11 +36,14 @@ HWY_INLINE std::uint32_t farthest_vertex(const ConvexMesh& mesh, const Vec3& u) 
     best_at = hn::IfThenElse(hn::RebindMask(di, higher), at, best_at);
     at = hn::Add(at, step);
   }
-  const intptr_t lane = hn::FindFirstTrue(d, hn::Eq(best, hn::MaxOfLanes(d, best)));
-  alignas(64) std::int32_t found[ConvexMesh::kBlock];
-  hn::Store(best_at, di, found);
-  return std::min(static_cast<std::uint32_t>(found[lane < 0 ? 0 : lane]),
-                  static_cast<std::uint32_t>(mesh.points.size() - 1));
+  const intptr_t first = hn::FindFirstTrue(d, hn::Eq(best, hn::MaxOfLanes(d, best)));
+  auto lane = static_cast<std::uint32_t>(first < 0 ? 0 : first);
+  if (lanes < count) {
+    alignas(64) std::int32_t found[ConvexMesh::kBlock];
+    hn::Store(best_at, di, found);
+    lane = static_cast<std::uint32_t>(found[lane]);
+  }
+  return std::min(lane, static_cast<std::uint32_t>(mesh.points.size() - 1));
 }
 
 // The same up to the climb error, by neighbours of a vertex.
@@ -107,18 +110,9 @@ class SupportSearch {
   // The simplex of a similar pose is a better start than the centres, unless the poses differ much.
   void begin() {
     const Vec3 between = r_.o1.centre - r_.pose(r_.o2.centre);
-    for (std::uint32_t i = 0; i < known_.count; ++i) {
-      const auto& [v1, v2] = known_.vertices[i];
-      if (v1 >= r_.o1.points.size() || v2 >= r_.o2.points.size()) continue;
-      simplex_.add(point_of(v1, v2));
-    }
-    if (simplex_.count > 0 && simplex_.reduce(v_)) {
-      const double along = dot(v_, between);
-      constexpr double kSimilar = 0.6;  // cosine
-      if (along > 0 && along * along > kSimilar * kSimilar * squared_norm(v_) * squared_norm(between)) {
-        last_u_ = (-1 / norm(v_)) * v_;
-        return;
-      }
+    if (known_.count > 0 && similar(known_.away, between) && begin_with_known() && similar(v_, between)) {
+      last_u_ = (-1 / norm(v_)) * v_;
+      return;
     }
     simplex_.count = 0;
     v_ = between;
@@ -126,6 +120,20 @@ class SupportSearch {
     const double length = norm(v_);
     simplex_.add(support((-1 / length) * v_));
     v_ = simplex_.points[0].w;
+  }
+
+  static bool similar(const Vec3& a, const Vec3& b) {
+    constexpr double kSimilar = 0.6;  // cosine
+    const double along = dot(a, b);
+    return along > 0 && along * along > kSimilar * kSimilar * squared_norm(a) * squared_norm(b);
+  }
+  bool begin_with_known() {
+    for (std::uint32_t i = 0; i < known_.count; ++i) {
+      const auto& [v1, v2] = known_.vertices[i];
+      if (v1 >= r_.o1.points.size() || v2 >= r_.o2.points.size()) return false;
+      simplex_.add(point_of(v1, v2));
+    }
+    return simplex_.reduce(v_);
   }
 
   bool known(const SimplexPoint& p) const {
@@ -138,6 +146,7 @@ class SupportSearch {
   }
   Relation keep(Relation relation) {
     known_.count = static_cast<std::uint32_t>(simplex_.count);
+    known_.away = normalized(v_);
     for (int i = 0; i < simplex_.count; ++i) known_.vertices[i] = simplex_.points[i].vertices;
     return relation;
   }

@@ -13,6 +13,7 @@ namespace sdm::convex {
 struct Simplex {
   std::uint32_t count = 0;
   std::array<std::array<std::uint32_t, 2>, 3> vertices{};
+  Vec3 away{};  ///< the unit vector from the closest point of O2 to that of O1, in the frame of O1
 };
 
 enum class Relation : std::uint8_t {
