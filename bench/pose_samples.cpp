@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <limits>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "arrays.h"
@@ -16,6 +18,34 @@
 #include "poses.h"
 #include "refine_mesh.h"
 #include "scenes.h"
+#include "scenes/ball.h"
+#include "scenes/box_mesh.h"
+
+namespace sdm::bench {
+namespace {
+
+// A mesh of the benchmarks; "box", or "hull:N", the hull of an ellipsoid that is subdivided N times.
+Mesh mesh_of(const std::string& name, std::uint32_t parts, const Vec3& half) {
+  if (name == "box") return scenes::box_mesh({-half, half});
+  if (!name.starts_with("hull:")) return refine_mesh(load(name, "fit"), parts, 0);
+  Mesh mesh = scenes::ball({}, 1, std::stoi(name.substr(5)));
+  for (Vec3& p : mesh.positions)
+    for (int k = 0; k < 3; ++k) p[k] *= half[k];
+  return convex_hull(mesh);
+}
+
+// Microseconds for each pose, of all in one call.
+double time_batch(PoseQuery& query, const std::vector<Transform>& poses,
+                  const std::vector<std::uint8_t>& expected) {
+  Stopwatch watch;
+  const std::vector<std::uint8_t> found = query.colliding(poses);
+  const double us = 1000 * watch.lap() / static_cast<double>(poses.size());
+  if (found != expected) throw std::runtime_error("poses in one call have other collisions than single ones");
+  return us;
+}
+
+}  // namespace
+}  // namespace sdm::bench
 
 int main(int argc, char** argv) try {
   using namespace sdm;
@@ -23,19 +53,21 @@ int main(int argc, char** argv) try {
       "Computes separation, collision and contacts of O1 and O2 in random poses of O2. Writes arrays without "
       "headers into OUT: vertices1, vertices2 (float64), triangles1, triangles2 (uint32), poses (3 × 4, by "
       "rows), separation (float64), colliding (uint8), contacts (their number, uint32); the microseconds on "
-      "one core, separation_us, colliding_us and contacts_us; and on all cores, contacts_all_us.");
+      "one core, separation_us, colliding_us and contacts_us; and on all cores, contacts_all_us. batch_us: "
+      "those "
+      "for each pose of a call of PoseQuery::colliding for all poses, on one core and on all. clock_us: the "
+      "time that the clock takes.");
   std::string o1, o2;
   std::filesystem::path out;
   std::uint32_t parts = 1, count = 200;
-  app.add_option("O1", o1, "A mesh of the benchmarks")->required();
-  app.add_option("O2", o2, "A mesh of the benchmarks")->required();
+  app.add_option("O1", o1, "A mesh of the benchmarks, box, or hull:N, with 8 · 4^N triangles")->required();
+  app.add_option("O2", o2, "The same")->required();
   app.add_option("PARTS", parts, "Triangles are divided into PARTS² triangles")->required();
   app.add_option("COUNT", count, "Number of poses")->required();
   app.add_option("OUT", out)->required();
   CLI11_PARSE(app, argc, argv);
 
-  const Mesh m1 = bench::refine_mesh(bench::load(o1, "fit"), parts, 0),
-             m2 = bench::refine_mesh(bench::load(o2, "fit"), parts, 0);
+  const Mesh m1 = bench::mesh_of(o1, parts, {1, 0.7, 0.5}), m2 = bench::mesh_of(o2, parts, {0.6, 0.9, 0.8});
   std::mt19937 random(1);
   const std::vector<Affine> placements = bench::random_poses(Sites(m1), Sites(m2), count, random);
   ProximityQuery query(m1, m2);
@@ -69,6 +101,29 @@ int main(int argc, char** argv) try {
     time(colliding_us, [&](std::size_t i) { colliding[i] = query.colliding(); });
     time(contacts_us, find_contacts);
   }
+  Stopwatch clock;
+  std::vector<double> clock_us(1, kInfinity);  // what the times contain of the clock
+  for (std::uint32_t i = 0; i < count; ++i) clock_us[0] = std::min(clock_us[0], 1000 * clock.lap());
+  bench::write_array<double>(out / "clock_us", clock_us);
+  PoseQuery many{Shape(m2), Shape(m1)};
+  std::vector<Transform> transforms;
+  for (const Affine& placement : placements)
+    transforms.push_back(mesh::Similarity{.map = placement}.transform());
+  // As each body is compared in the frame of O1, surfaces that just touch may have another answer if they are
+  // exchanged.
+  ProximityQuery exchanged(m2, m1);
+  std::vector<std::uint8_t> expected;
+  for (const Transform& pose : transforms) {
+    exchanged.set_pose(0, pose);
+    expected.push_back(exchanged.colliding());
+  }
+  std::vector<double> batch_us(2, kInfinity);
+  for (int turn = 0; turn < kTurns; ++turn) {
+    batch_us[1] = std::min(batch_us[1], bench::time_batch(many, transforms, expected));
+    const ThreadLimit alone(1);
+    batch_us[0] = std::min(batch_us[0], bench::time_batch(many, transforms, expected));
+  }
+  bench::write_array<double>(out / "batch_us", batch_us);
   bench::write_array<Vec3>(out / "vertices1", m1.positions);
   bench::write_array<Vec3>(out / "vertices2", m2.positions);
   bench::write_array<Triangle>(out / "triangles1", m1.triangles);
