@@ -1,6 +1,9 @@
 #include "engine/engine.h"
 
+#include "geometry/spatial_order.h"
 #include "query/closest/blocks.h"
+#include "query/closest/scattered.h"
+#include "sites/sites_data.h"
 
 namespace sdm {
 
@@ -17,6 +20,14 @@ void Engine::map(const Surface& surface, const Sites& sites, const engine::Engin
                          sink(begin + first, points.subspan(first, closest.count), closest);
                        });
       });
+}
+
+void Engine::scattered(const Sites& sites, std::span<const Vec3> points, const engine::EngineOptions& options,
+                       std::span<ClosestPoint> found) const {
+  const auto search = [&](std::span<const Vec3> block, const sites::ClosestSink& sink) {
+    closest_points(sites, block, options.max_distance, sink);
+  };
+  closest::find_in_blocks(internals(sites), points, spatial_order(points), search, options.progress, found);
 }
 
 }  // namespace sdm

@@ -46,6 +46,12 @@ class Engine {
   /// the engine computes maps only.
   virtual void closest_points(const Sites& sites, std::span<const Vec3> points, double max_distance,
                               const sites::ClosestSink& sink) const = 0;
+
+  /// Sets found[i] to the closest point of points[i], which are in any order, with a face of its site. On all
+  /// cores. Calls closest_points for blocks of the points in a spatial order, unless overridden. Throws as
+  /// closest_points does; Cancelled.
+  virtual void scattered(const Sites& sites, std::span<const Vec3> points,
+                         const engine::EngineOptions& options, std::span<ClosestPoint> found) const;
 };
 
 }  // namespace sdm

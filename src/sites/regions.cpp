@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/atomic_extremes.h"
 #include "core/parallel.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
@@ -86,12 +87,20 @@ void refit(Regions& regions, const Placement& placement, Pseudonormals& normals,
       sliver[face] = shapes[i].sliver;
     }
   });
+  regions.largest_radius = 0;
   parallel_for(regions.bounds.size(), kLeaves, [&](std::size_t begin, std::size_t end) {
     const Regions::Owner &first = regions.owners[regions.leaves[begin]],
                          &last = regions.owners[regions.leaves[end]];
     compute_edges(regions, placement, first.edges, last.edges);
     compute_vertices(regions, placement, first.vertices, last.vertices);
-    for (std::size_t leaf = begin; leaf < end; ++leaf) look_around(regions, leaf, shapes, normals);
+    float largest = 0;
+    for (std::size_t leaf = begin; leaf < end; ++leaf) {
+      look_around(regions, leaf, shapes, normals);
+      const std::uint32_t count = regions.leaves[leaf + 1] - regions.leaves[leaf];
+      largest = std::max(largest,
+                         *std::max_element(regions.bounds[leaf].radius, regions.bounds[leaf].radius + count));
+    }
+    atomic_max(regions.largest_radius, largest);
   });
 }
 

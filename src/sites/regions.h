@@ -95,6 +95,7 @@ struct Regions {
   std::vector<EdgeRegion> edges;
   std::vector<VertexRegion> vertices;
   std::vector<UnitVertex> points;  ///< of vertices
+  float largest_radius = 0;        ///< of `bounds`
 
   std::vector<std::uint8_t> enclosed;  ///< of each owner: whether the faces around it form a closed sheet
   SitePlaces places;

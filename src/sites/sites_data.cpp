@@ -78,6 +78,7 @@ void SitesData::refit(std::span<const Vec3> positions) {
     find_leaf_boxes(regions, frame, refit.placed, refit.boxes);
     tree::refit_leaves(tree, refit.boxes);
     tree::refit(wide, tree);
+    frames.forget();
     compute_regions(refit);
   });
 }

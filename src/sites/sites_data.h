@@ -8,6 +8,7 @@
 #include "core/intact.h"
 #include "mesh/crossings/ray_parity.h"
 #include "mesh/topology.h"
+#include "sites/frames/face_frames.h"
 #include "sites/orient_outward.h"
 #include "sites/pseudonormals.h"
 #include "sites/regions.h"
@@ -56,6 +57,7 @@ class SitesData {
   tree::AabbTree tree;  ///< over those faces, in the unit frame
   tree::WideTree wide;  ///< the same, collapsed
   Regions regions;      ///< by the leaves of both
+  LeafFrames frames;    ///< of the leaves of both
   Pseudonormals normals;
   std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a reliable normal
 

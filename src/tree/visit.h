@@ -137,7 +137,7 @@ template <class Open, class Policy>
 }
 
 /// Visits the leaves of the wide tree, depth first. `Open` is what is kept of a node until its turn comes, as
-/// OpenNode; `stack` is scratch memory. Of the policy:
+/// OpenNode; `stack` is scratch memory, which only grows. Of the policy:
 ///
 ///   enter(open)                whether to enter a node or leaf, asked when its turn comes
 ///   bound(open, node, bounds)  sets bounds of the children; returns which of them may be entered, as bits
@@ -156,36 +156,40 @@ template <class Open, class Policy>
   constexpr bool ordered = requires {
     policy.before(0.0F, 0.0F);
   };
-  stack.assign(1, Open{});
-  while (!stack.empty()) {
-    Open next = stack.back();
-    stack.pop_back();
+  constexpr std::size_t kWidth = WideTree::kWidth;
+  if (stack.size() < kWidth) stack.resize(kWidth);
+  stack[0] = Open{};
+  for (std::size_t count = 1; count > 0;) {
+    Open next = stack[--count];
     if (!policy.enter(next)) continue;
     if (next.leaf()) {
       if (!visit_leaf(next, policy)) return false;
       continue;
     }
+    if (count + kWidth > stack.size()) stack.resize(2 * stack.size() + kWidth);
     const WideTree::Node& node = tree.nodes[next.child];
+    Open* const first = stack.data() + count;
+    Open* end = first;
     if constexpr (ordered) {
-      alignas(64) float bound[WideTree::kWidth];
+      alignas(64) float bound[kWidth];
       std::uint32_t children = policy.bound(next, node, bound);
-      const auto base = static_cast<std::ptrdiff_t>(stack.size());
       for (; children != 0; children &= children - 1) {
         const auto slot = static_cast<std::uint32_t>(std::countr_zero(children));
         const Open child = Open::of(next, node, slot, bound[slot]);
-        auto at = stack.end();  // the first one on top
-        while (at != stack.begin() + base && policy.before((at - 1)->bound, child.bound)) --at;
-        stack.insert(at, child);
+        Open* at = end++;  // the first one on top
+        for (; at != first && policy.before((at - 1)->bound, child.bound); --at) *at = *(at - 1);
+        *at = child;
       }
     } else {
       for (std::uint32_t children = policy.bound(next, node); children != 0; children &= children - 1) {
         Open child = Open::of(next, node, static_cast<std::uint32_t>(std::countr_zero(children)));
         if (!child.leaf())
-          stack.push_back(child);
+          *end++ = child;
         else if (policy.enter(child) && !visit_leaf(child, policy))
           return false;
       }
     }
+    count += static_cast<std::size_t>(end - first);
   }
   return true;
 }

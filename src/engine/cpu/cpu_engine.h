@@ -1,8 +1,10 @@
-// The cpu engine: candidate lists for groups of neighbouring samples, and vector instructions.
+// The cpu engine: candidate lists for groups of neighbouring samples, searches for scattered points, and
+// vector instructions.
 #pragma once
 
 #include "engine/engine.h"
 #include "query/closest/closest_points.h"
+#include "query/closest/scattered.h"
 #include "sites/sites_data.h"
 
 namespace sdm::cpu {
@@ -15,6 +17,10 @@ class CpuEngine final : public Engine {
   void closest_points(const Sites& sites, std::span<const Vec3> points, double max_distance,
                       const sites::ClosestSink& sink) const override {
     closest::closest_points(internals(sites), points, max_distance, sink);
+  }
+  void scattered(const Sites& sites, std::span<const Vec3> points, const engine::EngineOptions& options,
+                 std::span<ClosestPoint> found) const override {
+    closest::find_scattered(internals(sites), points, options.max_distance, options.progress, found);
   }
 };
 

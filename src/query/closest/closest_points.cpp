@@ -6,8 +6,6 @@
 #include "query/closest/blocks.h"
 #include "query/closest/descent.h"
 #include "query/closest/finish.h"
-#include "query/closest/reference.h"
-#include "query/closest/single_point.h"
 
 namespace sdm::closest {
 namespace {
@@ -43,12 +41,6 @@ void closest_points(const sites::SitesData& sites, std::span<const Vec3> points,
     finish(sites, {descent->winners, queries.size()}, queries, max_distance,
            [&](std::size_t first, const sites::ClosestPacket& closest) { sink(begin + first, closest); });
   }
-}
-
-ClosestPoint closest_point(const sites::SitesData& sites, const Vec3& point, double max_distance) {
-  thread_local SinglePointMemory memory;
-  return is_near(sites, point) ? closest_to_point(sites, point, max_distance, memory)
-                               : reference_closest(sites, point, max_distance);
 }
 
 }  // namespace sdm::closest

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "query/closest/single_point.h"
 #include "sites/closest_packet.h"
 #include "sites/sites_data.h"
 
@@ -14,9 +15,5 @@ namespace sdm::closest {
 /// sink in order, on the calling thread; type none where nothing is within max_distance.
 void closest_points(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
                     const sites::ClosestSink& sink);
-
-/// The same for one point. Without a site within max_distance, the result has the type none.
-[[nodiscard]] ClosestPoint closest_point(const sites::SitesData& sites, const Vec3& point,
-                                         double max_distance);
 
 }  // namespace sdm::closest

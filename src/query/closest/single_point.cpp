@@ -11,153 +11,230 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/lanes/point_triangle-inl.h"
-#include "geometry/vec.h"
-#include "query/closest/region_kernels-inl.h"
-#include "sites/closest_on_face.h"
+#include "query/closest/candidates-inl.h"
+#include "query/closest/face_distances-inl.h"
+#include "query/closest/reference.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::closest::HWY_NAMESPACE {
-
-using namespace lanes::HWY_NAMESPACE;
-
 namespace {
 
-// Finds the faces that may be closest; the policy of its search of the tree.
-class SinglePoint {
- public:
-  SinglePoint(const sites::SitesData& sites, const Vec3& query, double max_distance,
-              SinglePointMemory& memory)
-      : sites_(sites), m_(memory) {
-    const Vec3 unit = sites.frame.to_unit(query);
-    for (int k = 0; k < 3; ++k) point_.centre[k] = static_cast<float>(unit[k]);
-    error_ = coordinate_error(point_);
-    const float limit =
-        static_cast<float>(std::min(1.00001 * max_distance * sites.frame.scale, 1e18)) + error_;
-    squared_limit_ = limit * limit;
-  }
+sites::FrameSource frame_source(const sites::SitesData& sites) {
+  return {sites.mesh.positions, sites.mesh.triangles, sites.frame, sites.regions};
+}
 
-  void collect() {
+// Searches for one point at a time; the policy of its search of the tree, nearest box first.
+class PointSearch {
+ public:
+  PointSearch(const sites::SitesData& sites, double max_distance, SinglePointMemory& memory)
+      : sites_(sites),
+        frames_(sites.frames, frame_source(sites)),
+        settled_(sites),
+        max_distance_(max_distance),
+        m_(memory) {}
+
+  ClosestPoint operator()(const Vec3& query) {
+    const Vec3 unit = sites_.frame.to_unit(query);
+    if (!is_near(unit)) return reference_closest(sites_, query, max_distance_);
+    for (int k = 0; k < 3; ++k) point_[k] = static_cast<float>(unit[k]);
+    error_ = distance_error(std::max({std::abs(point_[0]), std::abs(point_[1]), std::abs(point_[2])}),
+                            sites_.regions.largest_radius);
+    const float limit = unit_limit(max_distance_, sites_.frame.scale) + error_;
+    squared_limit_ = limit * limit;
     m_.candidates.clear();
     tree::visit(sites_.wide, m_.stack, *this);
+    settled_.compare({&query, 1}, &squared_limit_, m_.candidates);
+    return settled_.closest(0, max_distance_);
   }
-
-  [[nodiscard]] float squared_limit() const { return squared_limit_; }
 
   static bool before(float first, float second) { return first < second; }
   bool enter(const tree::OpenNode& open) const { return open.bound <= squared_limit_; }
   uint32_t bound(const tree::OpenNode&, const tree::WideTree::Node& node, float* squared) const {
-    const Block d;
-    uint32_t near = 0;
-    for (size_t i = 0; i < SiteBlock::kWidth; i += hn::Lanes(d)) {
-      const auto from = [&](int k) HWY_ATTR {
-        const BlockVec p = hn::Set(d, point_.centre[k]);
-        return hn::Sub(p, hn::Min(hn::Max(p, hn::Load(d, node.lo[k] + i)), hn::Load(d, node.hi[k] + i)));
-      };
-      const BlockVec least = square_norm(d, from(0), from(1), from(2));
-      hn::Store(least, d, squared + i);
-      near |= bits(hn::Le(least, hn::Set(d, squared_limit_))) << i;
-    }
-    return near & ((1u << node.count) - 1);
+    return near_children(node, point_, squared_limit_, squared);
   }
-
-  void leaf(const tree::OpenNode& open_leaf) {
-    const Block d;
-    const uint32_t leaf = open_leaf.leaf_number();
-    const sites::Regions& regions = sites_.regions;
-    const uint32_t first = regions.leaves[leaf], count = regions.leaves[leaf + 1] - first;
-    uint32_t thin = regions.thin[leaf];
-    // Most leaves end here.
-    uint32_t open = 0;
-    alignas(64) float bound[SiteBlock::kWidth];
-    for (size_t i = 0; i < SiteBlock::kWidth; i += hn::Lanes(d)) {
-      const BlockVec least = squared_to_discs(regions.bounds[leaf], thin, i);
-      hn::Store(least, d, bound + i);
-      open |= bits(hn::Le(least, hn::Set(d, squared_limit_))) << i;
-    }
-    open &= (1u << count) - 1;
-    if (open == 0) return;
-
-    load_corners(first, count);
-    alignas(64) float squared[SiteBlock::kWidth];
-    for (size_t i = 0; i < SiteBlock::kWidth; i += hn::Lanes(d))
-      hn::Store(squared_to_faces(thin, i), d, squared + i);
-    for (uint32_t rest = open; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<uint32_t>(std::countr_zero(rest));
-      // The distance of a face without a reliable normal is that of its sides, which is only an upper bound.
-      const float least = (thin >> i & 1) != 0 ? std::min(squared[i], bound[i]) : squared[i];
-      if (!(least <= squared_limit_)) continue;
-      m_.candidates.push_back({least, regions.owners[first + i].face});
-      const float most = std::sqrt(squared[i]) * 1.00001f + error_;
-      squared_limit_ = std::min(squared_limit_, most * most);
-    }
+  void leaf(const tree::OpenNode& open) {
+    const sites::FaceFrames& faces = frames_[open.leaf_number()];
+    compare_faces(faces, point_, error_, squared_limit_, [&](float squared, size_t lane) {
+      m_.candidates.push_back({squared, faces.face[lane], open.leaf_number(), 0});
+    });
   }
 
  private:
-  // Lower bounds on the squared distances of the faces, from the discs that contain them; from balls where
-  // the normal may be rounding noise.
-  HWY_INLINE BlockVec squared_to_discs(const sites::FaceBounds& bounds, uint32_t thin, size_t i) const {
-    const Block d;
-    const Vec3Of<BlockVec> r = sub(splat(d, point_.centre), load(d, bounds.centre, i));
-    const BlockVec h = hn::IfThenElseZero(hn::Not(lanes_of(thin, i)), dot(r, load(d, bounds.normal, i)));
-    const BlockVec squared = dot(r, r), h2 = hn::Mul(h, h);
-    // Reduced by the cancellation error in the difference of squares.
-    const BlockVec beside =
-        hn::Sqrt(hn::Max(hn::NegMulAdd(squared, hn::Set(d, 1e-6f), hn::Sub(squared, h2)), hn::Zero(d)));
-    const BlockVec beyond = hn::Max(hn::Sub(beside, hn::Load(d, bounds.radius + i)), hn::Zero(d));
-    return hn::MulAdd(beyond, beyond, h2);
-  }
+  const sites::SitesData& sites_;
+  sites::LeafFrames::View frames_;
+  Settled settled_;
+  const double max_distance_;
+  SinglePointMemory& m_;
+  float point_[3] = {};      // the query in the unit frame
+  float error_ = 0;          // see distance_error()
+  float squared_limit_ = 0;  // nothing beyond this in the unit frame is closest
+};
 
-  static HWY_INLINE BlockMask lanes_of(uint32_t bits, size_t i) {
-    const uint8_t bytes[8] = {static_cast<uint8_t>(bits >> i)};
-    return hn::LoadMaskBits(Block(), bytes);
-  }
+// Searches for a packet of points that are near each other; the policy of its search of the tree. The node
+// nearest to the centre of the points comes first, boxes are compared with all points at once, and the faces
+// of a leaf with each point that is near enough to its box.
+class PacketSearch {
+ public:
+  static constexpr size_t kSize = SinglePointMemory::kPacket;
 
-  // Lanes beyond the last face repeat it.
-  void load_corners(uint32_t first, uint32_t count) {
-    const sites::Regions& regions = sites_.regions;
-    for (uint32_t lane = 0; lane < SiteBlock::kWidth; ++lane) {
-      const Triangle& corners = regions.places.corners[first + std::min(lane, count - 1)];
-      for (int c = 0; c < 3; ++c)
-        for (int k = 0; k < 3; ++k) corner_[c][k][lane] = regions.points[corners[c]].point[k];
+  PacketSearch(const sites::SitesData& sites, double max_distance, SinglePointMemory& memory)
+      : sites_(sites),
+        frames_(sites.frames, frame_source(sites)),
+        settled_(sites),
+        max_distance_(max_distance),
+        m_(memory) {}
+
+  void operator()(std::span<const Vec3> queries, std::span<const uint32_t> order,
+                  std::span<ClosestPoint> found) {
+    const size_t count = order.size();
+    Vec3 packet[kSize];
+    for (size_t i = 0; i < kSize; ++i) packet[i] = queries[order[std::min(i, count - 1)]];
+    place(packet, count);
+    limit();
+    m_.candidates.clear();
+    tree::visit(sites_.wide, m_.open, *this);
+    settled_.compare({packet, count}, squared_limit_, m_.candidates);
+    const uint32_t alone = far_ | settled_.tied();
+    for (size_t i = 0; i < count; ++i) {
+      ClosestPoint& closest = found[order[i]];
+      closest = (alone >> i & 1) != 0 ? closest_point(sites_, packet[i], max_distance_)
+                                      : settled_.closest(i, max_distance_);
+      if (closest.type != SiteType::none) remember(i, closest.point);
     }
   }
 
-  // The squared distances of the faces whose corners are loaded; if they are thin, of their sides. Adds to
-  // `thin` those whose smallest height is so small a part of their longest side that their normals are too
-  // inaccurate in single precision.
-  HWY_INLINE BlockVec squared_to_faces(uint32_t& thin, size_t i) const {
-    constexpr float kThin = 3e-5f;
-    const Block d;
-    const TriangleSides<Block> faces(load(d, corner_[0], i), load(d, corner_[1], i), load(d, corner_[2], i));
-    const auto squared = [&](int k) HWY_ATTR { return dot(faces.side[k], faces.side[k]); };
-    const BlockVec least = hn::Mul(hn::Set(d, kThin), hn::Max(hn::Max(squared(0), squared(1)), squared(2)));
-    thin |= bits(hn::Le(dot(faces.normal, faces.normal), hn::Mul(least, least))) << i;
-    return faces.squared_distance(splat(d, point_.centre), hn::Not(lanes_of(thin, i)));
+  [[nodiscard]] const PacketWork& work() const { return work_; }
+
+  using Open = SinglePointMemory::Open;
+  static bool before(float first, float second) { return first < second; }
+  bool enter(const Open& open) {
+    if (open.above == nullptr) return true;
+    if (!(open.bound <= squared_reach_)) return false;
+    const Points d;
+    const tree::WideTree::Node& node = *open.above;
+    const auto side = [&](const float(&rows)[3][tree::WideTree::kWidth]) HWY_ATTR {
+      return Vec3Of<PointVec>{hn::Set(d, rows[0][open.slot]), hn::Set(d, rows[1][open.slot]),
+                              hn::Set(d, rows[2][open.slot])};
+    };
+    near_ = 0;
+    for (size_t i = 0; i < kSize; i += hn::Lanes(d)) {
+      const PointVec least = squared_to_boxes(d, load(d, point_, i), side(node.lo), side(node.hi));
+      near_ |= bits_of(d, hn::Le(least, hn::Load(d, squared_limit_ + i))) << i;
+    }
+    return near_ != 0;
+  }
+  uint32_t bound(const Open&, const tree::WideTree::Node& node, float* squared) const {
+    return near_children(node, centre_, squared_reach_, squared);
+  }
+  void leaf(const Open& open) {
+    const sites::FaceFrames& faces = frames_[open.leaf_number()];
+    work_.leaves += 1;
+    work_.pairs += static_cast<size_t>(std::popcount(near_));
+    bool reduced = false;
+    for (uint32_t near = near_; near != 0; near &= near - 1) {
+      const auto i = static_cast<uint32_t>(std::countr_zero(near));
+      const float point[3] = {point_[0][i], point_[1][i], point_[2][i]};
+      reduced |= compare_faces(faces, point, error_, squared_limit_[i], [&](float squared, size_t lane) {
+        m_.candidates.push_back({squared, faces.face[lane], open.leaf_number(), i});
+      });
+    }
+    if (reduced) find_reach();
   }
 
-  static HWY_INLINE uint32_t bits(BlockMask mask) {
-    uint8_t bytes[8] = {};
-    hn::StoreMaskBits(Block(), mask, bytes);
-    return bytes[0];
+ private:
+  // Maps the points into the unit frame. Points that are far away or beyond `count` are near nothing.
+  void place(const Vec3* packet, size_t count) {
+    far_ = used_ = 0;
+    float lo[3], hi[3], most = 0;
+    std::fill_n(lo, 3, std::numeric_limits<float>::infinity());
+    std::fill_n(hi, 3, -std::numeric_limits<float>::infinity());
+    for (size_t i = 0; i < kSize; ++i) {
+      const Vec3 unit = sites_.frame.to_unit(packet[i]);
+      const bool near = is_near(unit);
+      far_ |= (near ? 0u : 1u) << i;
+      used_ |= (near && i < count ? 1u : 0u) << i;
+      for (int k = 0; k < 3; ++k) {
+        const float x = point_[k][i] = near ? static_cast<float>(unit[k]) : 0;
+        if (near) lo[k] = std::min(lo[k], x), hi[k] = std::max(hi[k], x);
+        most = std::max(most, std::abs(x));
+      }
+    }
+    for (int k = 0; k < 3; ++k) centre_[k] = used_ != 0 ? 0.5f * (lo[k] + hi[k]) : 0;
+    error_ = distance_error(most, sites_.regions.largest_radius);
+  }
+
+  // The squared distances of points from one point.
+  HWY_INLINE PointVec squared_from(const float (&p)[3], size_t i) const {
+    const Points d;
+    const Vec3Of<PointVec> r = sub(load(d, point_, i), splat(d, p));
+    return square_norm(d, r.x, r.y, r.z);
+  }
+
+  // Sets the limits by the maximum distance and by the closest points of the packet before.
+  void limit() {
+    const Points d;
+    const float within = unit_limit(max_distance_, sites_.frame.scale) + error_;
+    for (size_t i = 0; i < kSize; i += hn::Lanes(d)) {
+      hn::Store(hn::Sqrt(squared_from(centre_, i)), d, from_centre_ + i);
+      PointVec least = hn::Inf(d);
+      for (size_t k = 0; k < known_; ++k) least = hn::Min(least, squared_from(last_[k], i));
+      const PointVec limit =
+          hn::Min(hn::MulAdd(hn::Sqrt(least), hn::Set(d, kFarther), hn::Set(d, error_)), hn::Set(d, within));
+      hn::Store(hn::Mul(limit, limit), d, squared_limit_ + i);
+    }
+    for (size_t i = 0; i < kSize; ++i)
+      if ((used_ >> i & 1) == 0) squared_limit_[i] = -1;
+    find_reach();
+  }
+
+  // No box farther than this from the centre is within the limit of any point.
+  void find_reach() {
+    const Points d;
+    PointVec most = hn::Zero(d);
+    for (size_t i = 0; i < kSize; i += hn::Lanes(d)) {
+      const PointVec squared = hn::Load(d, squared_limit_ + i);
+      const PointVec reach = hn::Add(hn::Sqrt(hn::Max(squared, hn::Zero(d))), hn::Load(d, from_centre_ + i));
+      most = hn::Max(most, hn::IfThenElseZero(hn::Ge(squared, hn::Zero(d)), reach));
+    }
+    const float reach = hn::GetLane(hn::MaxOfLanes(d, most)) * kFarther;
+    squared_reach_ = reach * reach;
+  }
+
+  void remember(size_t i, const Vec3& point) {
+    const Vec3 unit = sites_.frame.to_unit(point);
+    for (int k = 0; k < 3; ++k) last_[i][k] = static_cast<float>(unit[k]);
+    if (i == known_) ++known_;
   }
 
   const sites::SitesData& sites_;
+  sites::LeafFrames::View frames_;
+  Settled settled_;
+  const double max_distance_;
   SinglePointMemory& m_;
-  Ball point_{};                                       // the query in the unit frame
-  float error_;                                        // of a distance, by rounding
-  float squared_limit_;                                // nothing beyond this in the unit frame is closest
-  alignas(64) float corner_[3][3][SiteBlock::kWidth];  // of the faces of a leaf, by corner and axis
+  alignas(64) float point_[3][kSize];       // in the unit frame
+  alignas(64) float squared_limit_[kSize];  // nothing beyond this is closest
+  alignas(64) float from_centre_[kSize];
+  float centre_[3], squared_reach_, error_;
+  uint32_t used_, far_, near_;  // points, as bits
+  float last_[kSize][3];        // closest points found before
+  size_t known_ = 0;
+  PacketWork work_;
 };
 
 }  // namespace
 
-// Sets memory.candidates, and returns the bound that those must be within.
-float CollectCandidates(const sites::SitesData& sites, const Vec3& query, double max_distance,
-                        SinglePointMemory& memory) {
-  SinglePoint search(sites, query, max_distance, memory);
-  search.collect();
-  return search.squared_limit();
+ClosestPoint SearchOne(const sites::SitesData& sites, const Vec3& query, double max_distance,
+                       SinglePointMemory& memory) {
+  return PointSearch(sites, max_distance, memory)(query);
+}
+
+PacketWork SearchEach(const sites::SitesData& sites, std::span<const Vec3> queries,
+                      std::span<const uint32_t> order, double max_distance, std::span<ClosestPoint> found,
+                      SinglePointMemory& memory) {
+  PacketSearch search(sites, max_distance, memory);
+  for (size_t i = 0; i < order.size(); i += PacketSearch::kSize)
+    search(queries, order.subspan(i, std::min(PacketSearch::kSize, order.size() - i)), found);
+  return search.work();
 }
 
 }  // namespace sdm::closest::HWY_NAMESPACE
@@ -166,24 +243,19 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sdm::closest {
 
-HWY_EXPORT(CollectCandidates);
+HWY_EXPORT(SearchOne);
+HWY_EXPORT(SearchEach);
 
-bool is_near(const sites::SitesData& sites, const Vec3& query) {
-  constexpr double kNear = 16;
-  const Vec3 unit = sites.frame.to_unit(query);
-  return std::abs(unit[0]) <= kNear && std::abs(unit[1]) <= kNear && std::abs(unit[2]) <= kNear;
+ClosestPoint closest_point(const sites::SitesData& sites, const Vec3& query, double max_distance) {
+  thread_local SinglePointMemory memory;
+  return HWY_DYNAMIC_DISPATCH(SearchOne)(sites, query, max_distance, memory);
 }
 
-ClosestPoint closest_to_point(const sites::SitesData& sites, const Vec3& query, double max_distance,
-                              SinglePointMemory& memory) {
-  const float most = HWY_DYNAMIC_DISPATCH(CollectCandidates)(sites, query, max_distance, memory);
-  ClosestPoint best;
-  for (const SinglePointMemory::Candidate& candidate : memory.candidates) {
-    if (!(candidate.squared <= most)) continue;
-    const ClosestPoint c = sites::closest_on_face(sites, candidate.face, query);
-    if (c.distance <= max_distance && c.distance < best.distance) best = c;
-  }
-  return best;
+PacketWork closest_of_each(const sites::SitesData& sites, std::span<const Vec3> queries,
+                           std::span<const std::uint32_t> order, double max_distance,
+                           std::span<ClosestPoint> found) {
+  thread_local SinglePointMemory memory;
+  return HWY_DYNAMIC_DISPATCH(SearchEach)(sites, queries, order, max_distance, found, memory);
 }
 
 }  // namespace sdm::closest

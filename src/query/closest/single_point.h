@@ -1,8 +1,9 @@
-// Closest points of points that are far from each other, one at a time.
+// Closest points of points that are far from each other, compared with the faces themselves.
 #pragma once
 
 #include <sdm/sites.h>
 
+#include <span>
 #include <vector>
 
 #include "sites/sites_data.h"
@@ -12,24 +13,49 @@ namespace sdm::closest {
 
 /// Per-thread memory, reused between points.
 struct SinglePointMemory {
-  /// A face whose distance in single precision may be that of the closest one.
+  static constexpr std::size_t kPacket = 16;  ///< points that are searched together
+
+  /// A face whose distance from one of the points, in single precision, may be that of the closest one.
   struct Candidate {
     float squared;
-    std::uint32_t face;
+    std::uint32_t face, leaf, point;
+  };
+  /// A node or leaf whose turn has not come, by its place in the node above, where its box is.
+  struct Open {
+    const tree::WideTree::Node* above = nullptr;  ///< null for the root
+    std::uint32_t slot = 0, child = 0;
+    float bound = 0;
+
+    static Open of(const Open& /*parent*/, const tree::WideTree::Node& node, std::uint32_t slot,
+                   float bound) {
+      return {&node, slot, node.child[slot], bound};
+    }
+    [[nodiscard]] bool leaf() const { return tree::WideTree::is_leaf(child); }
+    [[nodiscard]] std::uint32_t leaf_number() const { return tree::WideTree::leaf_number(child); }
   };
   std::vector<tree::OpenNode> stack;
+  std::vector<Open> open;
   std::vector<Candidate> candidates;
 };
 
-/// Whether single precision resolves the point well enough to select faces near it: it is within a few sizes
-/// of O2.
-[[nodiscard]] bool is_near(const sites::SitesData& sites, const Vec3& query);
+/// The closest point of O2, if it is within max_distance, otherwise the type none: by closest_on_face(), in
+/// double precision, of the faces that cannot be told apart in single precision. Of faces with the same
+/// distance, the first one in the order of the search is selected, nearest box first. Cost: a traversal of
+/// the tree; a group of points (descent.h) costs less for each if they are much closer together than the
+/// faces.
+[[nodiscard]] ClosestPoint closest_point(const sites::SitesData& sites, const Vec3& query,
+                                         double max_distance);
 
-/// The closest point of O2, if it is within max_distance: by closest_on_face(), in double precision, of the
-/// faces that cannot be told apart in single precision. Requires is_near(query). Cost: a traversal of the
-/// tree, nearest first; a group of points (descent.h) costs less for each if they are as close together as
-/// the faces.
-[[nodiscard]] ClosestPoint closest_to_point(const sites::SitesData& sites, const Vec3& query,
-                                            double max_distance, SinglePointMemory& memory);
+/// What packets of points were compared with.
+struct PacketWork {
+  std::size_t leaves = 0;  ///< that were near to any point of their packets
+  std::size_t pairs = 0;   ///< of a point and a leaf near to it
+};
+
+/// Sets found[i] to closest_point(queries[i]) for each i of `order`; `face` may be another one of the same
+/// site. Costs less if queries that follow each other are near each other.
+PacketWork closest_of_each(const sites::SitesData& sites, std::span<const Vec3> queries,
+                           std::span<const std::uint32_t> order, double max_distance,
+                           std::span<ClosestPoint> found);
 
 }  // namespace sdm::closest
