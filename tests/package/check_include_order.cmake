@@ -17,6 +17,7 @@ set(order
   atlas
   surface
   surface/sampling_bound
+  sites/frames
   sites
   query/closest
   query/facing

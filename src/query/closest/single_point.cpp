@@ -20,7 +20,8 @@ namespace sdm::closest::HWY_NAMESPACE {
 namespace {
 
 sites::FrameSource frame_source(const sites::SitesData& sites) {
-  return {sites.mesh.positions, sites.mesh.triangles, sites.frame, sites.regions};
+  static_assert(sites::FaceFrames::kWidth == sites::FaceBounds::kWidth);
+  return {sites.mesh.positions, sites.mesh.triangles, sites.frame, sites.tree.items, sites.regions.leaves};
 }
 
 // Searches for one point at a time; the policy of its search of the tree, nearest box first.

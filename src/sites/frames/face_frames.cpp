@@ -83,7 +83,7 @@ void LeafFrames::forget() {
 
 LeafFrames::View::View(const LeafFrames& frames, const FrameSource& source)
     : source_(source), version_(frames.version_) {
-  const Store& store = frames.shared_.get(source.regions.bounds.size());
+  const Store& store = frames.shared_.get(source.leaves.size() - 1);
   frames_ = store.frames.get(), made_ = store.made.get();
 }
 
@@ -92,13 +92,13 @@ const FaceFrames& LeafFrames::View::make(std::uint32_t leaf) {
   const bool ours = before != kBeingMade && before != version_ &&
                     made_[leaf].compare_exchange_strong(before, kBeingMade, std::memory_order_acquire);
   FaceFrames& frames = ours ? frames_[leaf] : own_;
-  const std::uint32_t first = source_.regions.leaves[leaf], count = source_.regions.leaves[leaf + 1] - first;
+  const std::uint32_t first = source_.leaves[leaf], count = source_.leaves[leaf + 1] - first;
   for (std::uint32_t lane = 0; lane < FaceFrames::kWidth; ++lane) {
     if (lane >= count) {
       frames.set_unused(lane);
       continue;
     }
-    const std::uint32_t face = source_.regions.owners[first + lane].face;
+    const std::uint32_t face = source_.faces[first + lane];
     const auto [a, b, c] = corners_of(source_.positions, source_.triangles[face]);
     const UnitFrame& unit = source_.frame;
     frames.set(lane, {unit.to_unit(a), unit.to_unit(b), unit.to_unit(c)});

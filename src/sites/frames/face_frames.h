@@ -4,12 +4,12 @@
 #include <sdm/types.h>
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
-#include <vector>
+#include <span>
 
 #include "geometry/triangle.h"
 #include "geometry/unit_frame.h"
-#include "sites/regions.h"
 
 namespace sdm::sites {
 
@@ -20,7 +20,7 @@ namespace sdm::sites {
 /// The frame is computed in double precision and orthonormal for any shape: that of a needle may be any that
 /// contains its longest side, and is off by the height of the needle at most. Unused lanes are NaN.
 struct FaceFrames {
-  static constexpr int kWidth = FaceBounds::kWidth;
+  static constexpr int kWidth = 8;
   /// A direction in the plane and a length; direction (1, 0) if the length is 0.
   struct Side {
     alignas(32) float along[kWidth], beside[kWidth], length[kWidth];
@@ -43,7 +43,8 @@ struct FrameSource {
   std::span<const Vec3> positions;
   std::span<const Triangle> triangles;
   const UnitFrame& frame;
-  const Regions& regions;
+  std::span<const std::uint32_t> faces;   ///< in the order of the leaves
+  std::span<const std::uint32_t> leaves;  ///< the first of the faces of each leaf; and an end
 };
 
 /// The frames of all leaves. Those of a leaf are made by the first search that needs them, so maps and builds
