@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <ctime>
 #include <string_view>
 #include <thread>
 
@@ -18,7 +19,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
-constexpr auto kPatience = 500ms;
+// Work that has not stopped after the patience is given up if it waits for something, and after the longest
+// one if it computes: it may be about to poll on a machine with much else to do.
+constexpr auto kPatience = 500ms, kLongestPatience = 3000ms;
+constexpr double kIdle = 0.005;  // seconds of processor time within the patience: a thread that waits
 std::atomic<bool> cancelled{false};
 const std::atomic<bool> never{false};
 std::atomic<int> interrupted_by{0};
@@ -36,10 +40,20 @@ extern "C" void interrupt(int signal) {
   sem_post(&arrived);
 }
 
+double processor_seconds() {
+  timespec used{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
 extern "C" void* watch(void*) {
   while (sem_wait(&arrived) != 0) {
   }
-  std::this_thread::sleep_for(kPatience);
+  for (auto waited = 0ms; waited < kLongestPatience; waited += kPatience) {
+    const double before = processor_seconds();
+    std::this_thread::sleep_for(kPatience);
+    if (processor_seconds() - before < kIdle) break;
+  }
   for (int none = 0; !protections.compare_exchange_strong(none, kEnding); none = 0)
     std::this_thread::sleep_for(10ms);
   OutputFolder::discard_current();

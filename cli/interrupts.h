@@ -4,8 +4,9 @@
 #include <sdm/cancellation.h>
 
 /// During its lifetime, which is that of the program, the first interrupt cancels the work: the library polls
-/// a flag (sdm::CancelScope). Where it does not stop in time, as in a system call that blocks, a thread ends
-/// the program half a second later, after removing what output folders have staged. A second interrupt
+/// a flag (sdm::CancelScope). Where it does not stop in time, a thread ends the program, after removing what
+/// output folders have staged: half a second later if it waits, as in a system call that blocks, and at most
+/// three seconds later. A second interrupt
 /// terminates at once. Interrupts that were ignored before, as under nohup, stay ignored.
 class Interrupts {
  public:
@@ -20,7 +21,7 @@ class Interrupts {
   static void end();
 
   /// Work that an interrupt must not cut off, such as moving files into place or keeping what is finished:
-  /// during its lifetime the library does not poll, and the program goes on after the half second. Only on
+  /// during its lifetime the library does not poll, and the program goes on after that time. Only on
   /// the main thread.
   class Protected {
    public:

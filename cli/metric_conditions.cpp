@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 #include <string_view>
 
 #include "option_checks.h"
@@ -38,36 +39,37 @@ std::optional<std::string> known_name(std::string_view name, sdm::MetricsOptions
   return sdm::metric_name(kind, *tolerance);
 }
 
-std::string without_blanks(std::string text) {
-  std::erase_if(text, [](char c) { return c == ' ' || c == '\t'; });
-  return text;
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") + 1 - first);
 }
 
 }  // namespace
 
 MetricCondition parse_metric_condition(const std::string& text, sdm::MetricsOptions& options) {
-  const std::string plain = without_blanks(text);
-  const std::size_t at = plain.find_first_of("<>");
+  const std::size_t at = text.find_first_of("<>");
   const auto fault = [&](const std::string& what) {
     return CLI::ValidationError(fmt::format("--fail-if: \"{}\" {}", text, what));
   };
   if (at == std::string::npos) throw fault("has no comparison: write NAME>X or NAME<X, such as hd95>0.5");
-  const bool or_equal = plain.substr(at + 1).starts_with('=');
-  const auto limit = parse_number(std::string_view(plain).substr(at + (or_equal ? 2 : 1)));
+  const bool or_equal = text.substr(at + 1).starts_with('=');
+  const auto limit = parse_number(trimmed(std::string_view(text).substr(at + (or_equal ? 2 : 1))));
   if (!limit) throw fault("does not end with a number");
-  const std::string name = plain.substr(0, at);
+  const std::string_view name = trimmed(std::string_view(text).substr(0, at));
   const auto known = known_name(name, options);
   if (!known)
     throw fault(fmt::format(
         "names no measure: \"{}\" is not hd, hdP, assd, masd, rmsd, chamfer_l1, chamfer_l2, nsd(T), "
         "precision(T), recall(T), f_score(T) or normal_consistency",
         name));
-  return {text, *known, plain[at] == '>', or_equal, *limit};
+  return {text, *known, text[at] == '>', or_equal, *limit};
 }
 
 sdm::Verdict judge(const MetricCondition& condition, const std::vector<sdm::NamedMetric>& metrics) {
-  const sdm::BoundedNumber& number =
-      std::ranges::find(metrics, condition.name, &sdm::NamedMetric::name)->number;
+  const auto found = std::ranges::find(metrics, condition.name, &sdm::NamedMetric::name);
+  if (found == metrics.end()) throw std::logic_error("there is no measure " + condition.name);
+  const sdm::BoundedNumber& number = found->number;
   const auto holds = [&](double x) {
     if (x == condition.limit) return condition.or_equal;
     return condition.above ? x > condition.limit : x < condition.limit;

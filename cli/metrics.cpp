@@ -54,21 +54,30 @@ MetricsAnswer measure_metrics(const InputPair& pair, const MetricsCommand& comma
   return answer;
 }
 
+/// Asks for closer bounds of what is not decided.
+void tighten(const MetricsCommand& command, const MetricsAnswer& answer, sdm::MetricsOptions& options) {
+  constexpr double kCloser = 0.1;
+  for (std::size_t i = 0; i < command.conditions.size(); ++i) {
+    if (answer.verdicts[i] != sdm::Verdict::not_decided) continue;
+    const sdm::NamedMetric& m =
+        *std::ranges::find(answer.named, command.conditions[i].name, &sdm::NamedMetric::name);
+    const double closer = kCloser * (m.number.upper - m.number.lower);
+    double& precision = m.unit == sdm::MetricUnit::fraction
+                            ? options.fraction_precision
+                            : options.precision.emplace(options.precision.value_or(closer));
+    precision = std::min(precision, closer);
+  }
+}
+
 /// Computes the measures, with closer bounds if a limit is between them.
 MetricsAnswer decide_metrics(const InputPair& pair, const MetricsCommand& command,
                              const sdm::Progress& progress) {
-  constexpr double kCloser = 0.1;
   constexpr int kMostTries = 3;
   sdm::MetricsOptions options = command.options;
   options.progress = progress;
   MetricsAnswer answer = measure_metrics(pair, command, options);
   for (int n = 0; n < kMostTries && answer.verdict() == sdm::Verdict::not_decided; ++n) {
-    const auto& widest = answer.metrics.assd;
-    options.precision = kCloser * options.precision.value_or(
-                                      std::max(widest.upper - widest.lower,
-                                               sdm::MetricsOptions::kRelative * answer.metrics.assd.lower));
-    if (!(*options.precision > 0)) break;
-    options.fraction_precision *= kCloser;
+    tighten(command, answer, options);
     answer = measure_metrics(pair, command, options);
   }
   return answer;
@@ -153,9 +162,16 @@ int run(const MetricsCommand& command) {
   return exit_code(answer.verdict());
 }
 
+void remove_duplicates(std::vector<double>& numbers) {
+  std::vector<double> once;
+  for (const double x : numbers)
+    if (std::ranges::find(once, x) == once.end()) once.push_back(x);
+  numbers = once;
+}
+
 CLI::Option* add_numbers(CLI::App& app, const std::string& name, std::vector<double>& target,
                          const std::string& description, const CLI::Validator& validator) {
-  return app.add_option(name, target, description)->delimiter(',')->check(validator);
+  return app.add_option(name, target, description)->delimiter(',')->allow_extra_args(false)->check(validator);
 }
 
 }  // namespace
@@ -204,6 +220,8 @@ void add_metrics_command(CLI::App& app) {
   metrics->callback([command, conditions] {
     check_units(command->units, command->o1, command->transform_o1);
     check_units(command->units, command->o2, command->transform_o2);
+    for (std::vector<double>* numbers : {&command->options.percentiles, &command->options.tolerances})
+      remove_duplicates(*numbers);
     for (const std::string& text : *conditions)
       command->conditions.push_back(parse_metric_condition(text, command->options));
     if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);

@@ -128,7 +128,7 @@ void SequenceFiles::write_collected(const std::vector<Frame>& frames) {
                              .colors = command_.picture};
   if (command_.reading.rate) options.frames_per_second = *command_.reading.rate;
   if (command_.picture.tolerance) {
-    options.verdicts.emplace();
+    options.verdicts.emplace().tolerance = *command_.picture.tolerance;
     for (const Frame& frame : frames) options.verdicts->of_frames.push_back(frame.verdict());
     options.verdicts->of_all = verdict_of(frames);
   }

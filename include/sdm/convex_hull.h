@@ -10,7 +10,8 @@ namespace sdm {
 
 /// The convex hull of the corners of all faces: a closed mesh of triangles, counter-clockwise from outside.
 /// Its vertices are corners at their positions, to the bit, in their order; no corner is outside, and no edge
-/// reflex, which is decided exactly: Shape::convex() of it is true. Faces in one plane are divided into
+/// reflex, which is decided exactly. Shape::convex() of it is true, unless it has more vertices than that
+/// looks at, or is as thin as rounding. Faces in one plane are divided into
 /// triangles; corners inside of faces and edges of the hull are left out, as a rule.
 ///
 /// Throws sdm::Error for a mesh that is not valid, for one whose corners are in one plane, and if there is

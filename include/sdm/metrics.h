@@ -27,11 +27,12 @@ struct MetricsOptions {
   /// as distances are found in single precision.
   std::optional<double> precision{};
   double fraction_precision = 1e-3;  ///< of fractions of the area; > 0
-  /// Parts that a surface is divided into, at most, but for its faces: then the bounds stay farther apart.
+  /// Parts that a surface is divided into, at most, beside its faces: then the bounds stay farther apart.
+  /// Each takes some 250 bytes.
   std::size_t most_parts = 4'000'000;
   Progress progress{};
 
-  static constexpr double kRelative = 2e-3, kLeast = 2e-5;
+  static constexpr double kRelative = 2e-3, kLeast = 2e-5, kRounding = 1e-6;
 };
 
 /// Distances from a surface A to a surface B: from each point p of A to the closest point of B, d(p),
@@ -42,7 +43,9 @@ struct DirectedMetrics {
   BoundedNumber mean{};                      ///< of d
   BoundedNumber rms{};                       ///< the root of the mean of d²
   std::vector<BoundedNumber> percentiles{};  ///< for each percentile P, the least t with d ≤ t on P % of A
-  std::vector<BoundedNumber> within{};  ///< for each tolerance t, the fraction of A with d ≤ t, in [0, 1]
+  /// For each tolerance t, the fraction of A with d ≤ t, in [0, 1]. Rounding exceeds no tolerance: t is
+  /// kRounding of the diagonal of the box of both meshes more than given.
+  std::vector<BoundedNumber> within{};
   /// The mean of |n(p)·n(q)| for the normals of the faces at p and at its closest point q, in [0, 1]: an
   /// estimate from the middles of all parts, as normals jump.
   double normal_consistency = 0;

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import numpy as np
 
 from . import _core
-from ._core import Error, Mesh
+from ._core import Error
 
 
 @dataclasses.dataclass(frozen=True)
@@ -66,17 +66,18 @@ def _numbers(numbers: object, name: str) -> list[float]:
         raise Error(f"{name} must be numbers") from None
 
 
-def mask_surface(mask: object, spacing: float | Sequence[float] = 1.0) -> Mesh:
-    """Returns the surface of a segmentation: the faces between voxels inside and outside.
+def mask_surface(mask: object, spacing: float | Sequence[float] = 1.0) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the surface of a segmentation, the faces between voxels inside and outside: vertices (n, 3) float64 and
+    faces (m, 3) uint32.
 
     mask: a boolean array of three dimensions, or one of numbers, where all but 0 is inside.
     spacing: of voxels, along each axis of the array or the same along all.
 
     The centre of voxel [i, j, k] is the point (i, j, k) times the spacing, and the surface is half a voxel away: each
-    face is two triangles, with the normal outward, and shares its vertices. No voxel inside: a mesh without faces. Raises
+    face is two triangles, with the normal outward, and shares its vertices. Without a voxel inside there are no faces. Raises
     Error for an array of other dimensions, or a spacing that is not positive. Cost: linear in voxels.
 
-    >>> sdm.mask_surface(numpy.ones((2, 2, 2))).faces.shape
+    >>> sdm.mask_surface(numpy.ones((2, 2, 2)))[1].shape
     (48, 3)
     """
     inside = np.asarray(mask)
@@ -103,7 +104,12 @@ def mask_surface(mask: object, spacing: float | Sequence[float] = 1.0) -> Mesh:
     lattice = np.stack(np.unravel_index(index, shape), axis=1)
     quad = quad.reshape(-1, 4)
     faces = np.concatenate([quad[:, [0, 1, 2]], quad[:, [0, 2, 3]]])
-    return Mesh((lattice - 1.5) * steps, faces.astype(np.uint32))
+    return (lattice - 1.5) * steps, faces.astype(np.uint32)
+
+
+def _or_none_if_empty(mesh: object) -> object:
+    """A mesh, or None for vertices and faces of which there are none."""
+    return None if isinstance(mesh, tuple) and len(mesh) == 2 and np.size(mesh[1]) == 0 else mesh
 
 
 def surface_metrics(
@@ -118,7 +124,7 @@ def surface_metrics(
 ) -> SurfaceMetrics:
     """Compares two surfaces by the measures that papers and benchmarks report, with certified bounds.
 
-    a, b: any form of a mesh (see Mesh), or Sites. b is the truth for 'precision(T)' and 'recall(T)'.
+    a, b: any form of a mesh (see Mesh), also without faces as a pair of arrays, or Sites. b is the truth for 'precision(T)' and 'recall(T)'.
     tolerances: distances T ≥ 0, for 'nsd(T)' (surface Dice), 'precision(T)', 'recall(T)' and 'f_score(T)'.
     percentiles: above 0 and below 100, for 'hdP'.
     precision: bounds of distances are at most this far apart, in units of the meshes; None: 0.2 % of their value. 2e-5
@@ -139,7 +145,13 @@ def surface_metrics(
     0.0
     """
     both, forth, back, areas = _core.surface_metrics(
-        a, b, _numbers(percentiles, "percentiles"), _numbers(tolerances, "tolerances"), precision, fraction_precision, progress
+        _or_none_if_empty(a),
+        _or_none_if_empty(b),
+        _numbers(percentiles, "percentiles"),
+        _numbers(tolerances, "tolerances"),
+        precision,
+        fraction_precision,
+        progress,
     )
     numbers = [{name: BoundedNumber(*n) for name, n in part.items()} for part in (both, forth, back)]
     return SurfaceMetrics(*numbers, areas)

@@ -34,11 +34,24 @@ nb::dict dict_of(const DirectedMetrics& m, const MetricsOptions& options) {
   return result;
 }
 
+/// A mesh; none is one without faces.
+class MeshOrNone {
+ public:
+  explicit MeshOrNone(nb::handle mesh) {
+    if (!mesh.is_none()) in_use_.emplace(mesh);
+  }
+  [[nodiscard]] const Mesh& get() const { return in_use_ ? in_use_->mesh() : none_; }
+
+ private:
+  std::optional<SitesInUse> in_use_;
+  Mesh none_;
+};
+
 /// Dictionaries of both together, from a to b, and from b to a, and both areas.
 nb::tuple surface_metrics_of(nb::handle a, nb::handle b, std::vector<double> percentiles,
                              std::vector<double> tolerances, std::optional<double> precision,
                              double fraction_precision, nb::handle progress) {
-  const SitesInUse on(a), to(b);
+  const MeshOrNone on(a), to(b);
   MetricsOptions options{.percentiles = std::move(percentiles),
                          .tolerances = std::move(tolerances),
                          .precision = precision,
@@ -46,7 +59,7 @@ nb::tuple surface_metrics_of(nb::handle a, nb::handle b, std::vector<double> per
   SurfaceMetrics metrics;
   run(progress, [&](const Progress& report) {
     options.progress = report;
-    metrics = surface_metrics(on.mesh(), to.mesh(), options);
+    metrics = surface_metrics(on.get(), to.get(), options);
   });
   nb::dict both;
   for (const NamedMetric& m : named_metrics(metrics, options)) both[m.name.c_str()] = tuple_of(m.number);

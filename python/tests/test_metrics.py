@@ -45,11 +45,11 @@ def test_masks():
     metrics = sdm.surface_metrics(sdm.mask_surface(ball, 0.5), sdm.mask_surface(moved, 0.5), tolerances=[1])
     assert metrics["hd"].value == pytest.approx(1)
     assert 0 < metrics["assd"].value < 1
-    assert metrics["nsd(1)"].value == 1
-    surface = sdm.mask_surface(numpy.ones((2, 3, 4)), [1, 2, 3])
-    assert surface.vertices.min(axis=0).tolist() == [-0.5, -1, -1.5]
-    assert surface.vertices.max(axis=0).tolist() == [1.5, 5, 10.5]
-    corners = surface.vertices[surface.faces]
+    assert metrics["nsd(1)"].value == 1, "distances that are equal to the tolerance are within it"
+    vertices, faces = sdm.mask_surface(numpy.ones((2, 3, 4)), [1, 2, 3])
+    assert vertices.min(axis=0).tolist() == [-0.5, -1, -1.5]
+    assert vertices.max(axis=0).tolist() == [1.5, 5, 10.5]
+    corners = vertices[faces]
     volume = numpy.einsum("ij,ij->i", corners[:, 0], numpy.cross(corners[:, 1], corners[:, 2])).sum() / 6
     assert volume == pytest.approx(2 * 6 * 12), "closed, with outward normals"
 

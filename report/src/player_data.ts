@@ -31,6 +31,7 @@ interface PlayerJson {
   colors: Colors;
   scale: Scale;
   verdict?: Verdict; ///< on all frames, if there is a tolerance
+  tolerance?: { lower: number; upper: number };
   verdicts?: Verdict[]; ///< on each of them
   arrays: ArrayIndex;
 }

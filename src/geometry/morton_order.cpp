@@ -67,7 +67,7 @@ std::vector<std::uint32_t> morton_order(std::span<const Vec3> points, const Box&
       for (int k = 0; k < 3; ++k) {
         const double cell = (points[i][k] - cells.lo[k]) * cells_per_unit[k];
         constexpr double kLast = (1 << kAxisBits) - 1;
-        code |= spread(static_cast<std::uint32_t>(std::min(std::max(cell, 0.0), kLast))) << k;
+        code |= spread(static_cast<std::uint32_t>(cell > 0 ? std::min(cell, kLast) : 0.0)) << k;
       }
       items[i] = {code, static_cast<std::uint32_t>(i)};
     }

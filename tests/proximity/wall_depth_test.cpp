@@ -8,6 +8,7 @@
 
 #include "geometry/vec.h"
 #include "query/inside/solid.h"
+#include "query/shape/body.h"
 #include "sites/sites_data.h"
 #include "support/shapes.h"
 
@@ -138,6 +139,39 @@ TEST(WallDepth, DoesNotDependOnOtherPoses) {
     EXPECT_EQ(first.value, second.value);
     EXPECT_EQ(first.lower, second.lower);
     EXPECT_EQ(first.upper, second.upper);
+  }
+}
+
+// A bound on the thickness holds for what is below a face, whatever is above it.
+TEST(WallDepth, OfABlockUnderSlantedPlatesIsNotThatOfThePlates) {
+  const auto plate = [](double up) {
+    Mesh mesh = cube();
+    for (Vec3& p : mesh.positions) {
+      p = {-1.5 + 7.5 * p[0], 5 * p[1], 0.05 * p[2]};
+      p[2] += p[0] + 7 + up;
+    }
+    return mesh;
+  };
+  const shape::Body body(joined(joined(moved(cube(6), {0, 0, -6}), plate(0)), plate(2)), nullptr);
+  ASSERT_TRUE(body.solid());
+  for (std::uint32_t face = 0; face < 12; ++face)
+    for (int call = 0; call < 2; ++call) EXPECT_FALSE(body.wall_thickness().is_within(face, 0.3)) << face;
+}
+
+// Where two bodies of a solid overlap, a wall ends where the last of them does, also if they are inside out.
+TEST(WallDepth, DoesNotEndInsideOfSolidsThatAreInsideOut) {
+  const Mesh two = joined(moved(grid_cube(5, 10), {5, 5, 5}), moved(grid_cube(3, 3), {5, 5, 0}));
+  for (const Mesh& mesh : {two, flipped(two)}) {
+    const shape::Body body(mesh, nullptr);
+    ASSERT_TRUE(body.solid());
+    for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
+      const Corners at = corners_of(mesh, face);
+      const Vec3 middle = (1.0 / 3) * (at[0] + at[1] + at[2]);
+      const bool on_top = middle[2] == 10 && std::abs(middle[0] - 5) < 2 && std::abs(middle[1] - 5) < 2;
+      if (on_top) {
+        EXPECT_FALSE(body.wall_thickness().is_within(face, 3)) << "points below it are 4 deep";
+      }
+    }
   }
 }
 

@@ -51,7 +51,7 @@ Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity,
     }
   budget_ = kEasy;
   search_all();
-  if (parts_.upper() > parts_.enough()) {
+  if (parts_.upper() > parts_.enough() && !within_budget()) {
     budget_ = kUnlimited;
     if (look_at_walls()) {
       parts_.start(parts_.lower(), precision);

@@ -18,7 +18,7 @@ constexpr std::uint64_t kFaceStep = std::uint64_t{1} << 32;  // between the plac
 // Walls are thin if they are at most so many times as thick as the depth that is enough, and that depth is at
 // most this fraction of the size of the solid.
 constexpr double kThin = 3, kThinOfSize = 1.0 / 100;
-constexpr std::size_t kSampledFaces = 16;
+constexpr std::size_t kSampledFaces = 16, kMostFaces = 512;
 
 // Sets where a triangle is measured.
 void measure_at(Part& part, TrianglePart& triangle, const CornerValues& weights) {
@@ -103,13 +103,14 @@ bool Leaving::walls_are_thin(const shape::Ball& ball, double enough) const {
       (1 + kSingleRounding) * (ball.radius + enough) + kUnitDistanceRounding / sites.frame.scale;
   const Vec3 at = sites.frame.to_unit(ball.centre);
   const double in_unit = sites.frame.scale * reach + kSingleRounding;
+  std::size_t faces = 0;  // of a ball with many, a part of it is asked for anyway
   bool thin = true;
   const auto near = [&](tree::Subtree subtree) {
     return thin && squared_norm(gap(sites.tree.box(subtree.root), at)) <= in_unit * in_unit;
   };
   const auto test = [&](std::uint32_t leaf) {
     for (const std::uint32_t face : sites.tree.items_of(leaf))
-      thin = thin && walls.is_within(face, {ball.centre, reach}, enough);
+      thin = thin && ++faces <= kMostFaces && walls.is_within(face, {ball.centre, reach}, enough);
   };
   tree::visit(sites.tree, tree::InOrder{near, test});
   return thin;

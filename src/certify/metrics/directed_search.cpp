@@ -7,6 +7,8 @@
 #include <numeric>
 
 #include "certify/hausdorff/vertex_search.h"
+#include "certify/metrics/sum.h"
+#include "core/cancellation.h"
 #include "core/parallel.h"
 #include "geometry/rounding.h"
 #include "geometry/spatial_order.h"
@@ -16,10 +18,10 @@ namespace sdm::metrics {
 namespace {
 
 constexpr std::size_t kGrain = 256;
+constexpr double kAreaRounding = 1e-15;
 constexpr double kLeastSize = 1e-9;  // of the diagonal: smaller parts are not divided
-// Parts that are smaller beside their distance, squared, have a close bound by their size: of many faces that
-// are about as near, none would raise it.
-constexpr double kNear = 0.25;
+// Parts that are smaller beside their distance, squared, have a close bound by their size.
+constexpr double kNear = 1e-4;
 
 /// The vertices of A that have a face, measured.
 std::vector<MeasuredPoint> measure_vertices(const Mesh& a, const sites::SitesData& b, double accuracy,
@@ -42,7 +44,13 @@ std::vector<MeasuredPoint> measure_vertices(const Mesh& a, const sites::SitesDat
 }
 
 BoundedNumber between(double lower, double upper) {
-  return {.value = lower + (upper - lower) / 2, .lower = lower, .upper = std::max(lower, upper)};
+  upper = std::max(lower, upper);
+  return {.value = lower + (upper - lower) / 2, .lower = lower, .upper = upper};
+}
+
+std::size_t most_parts(const Mesh& a, const MetricsOptions& options) {
+  constexpr std::size_t kMost = std::size_t{1} << 31;
+  return a.triangles.size() + std::min(options.most_parts, kMost);
 }
 
 Vec3 unit_normal(const Mesh& mesh, std::uint32_t face) {
@@ -56,7 +64,7 @@ Vec3 unit_normal(const Mesh& mesh, std::uint32_t face) {
 
 DirectedSearch::DirectedSearch(const Mesh& a, const sites::SitesData& b, const MetricsOptions& options,
                                const Scale& scale)
-    : a_(a), b_(b), options_(options), scale_(scale), most_parts_(a.triangles.size() + options.most_parts) {}
+    : a_(a), b_(b), options_(options), scale_(scale), most_parts_(most_parts(a, options)) {}
 
 DirectedMetrics DirectedSearch::run() {
   make_parts();
@@ -72,50 +80,66 @@ DirectedMetrics DirectedSearch::run() {
 void DirectedSearch::make_parts() {
   const std::vector<MeasuredPoint> vertices = measure_vertices(a_, b_, scale_.accuracy, options_.progress);
   parts_.reserve(a_.triangles.size());
+  Sum area_of_all, error;
   for (std::uint32_t f = 0; f < a_.triangles.size(); ++f) {
     const Triangle& t = a_.triangles[f];
     if (hausdorff::repeats_corner(t)) continue;
     const auto [p, q, r] = corners_of(a_, f);
     const double area = norm(cross(q - p, r - p)) / 2;
     if (!(area > 0)) continue;
+    error += kAreaRounding * norm(q - p) * norm(r - p);  // more than the area of a needle
     parts_.push_back({.corner = {vertices[t[0]], vertices[t[1]], vertices[t[2]]}, .face = f, .area = area});
-    sums_.area += area;
+    area_of_all += area;
   }
+  sums_.area = area_of_all.value();
+  rounding_ = kDoubleRounding + 2 * error.value() / sums_.area;
   if (parts_.empty()) throw Error("the faces of a mesh have no area: there are no average distances");
   std::vector<std::size_t> all(parts_.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   bound_by_middles(all);
 }
 
-// All sums are in the order of the parts, whatever the number of threads.
+// All sums are in the order of the parts, whatever the number of threads. With areas that are off by a
+// fraction of the whole, a mean is off by that fraction of the largest distance, at most.
 void DirectedSearch::sum_up() {
-  double mean_low = 0, mean_high = 0, square_low = 0, square_high = 0;
+  poll();
+  Sum mean_low, mean_high, square_low, square_high;
+  largest_ = 0;
   for (const Part& part : parts_) {
     const Linear low = part.lower(), high = part.upper();
+    largest_ = std::max(largest_, high.largest());
     mean_low += part.area * low.mean(), mean_high += part.area * high.mean();
     square_low += part.area * low.mean_square(), square_high += part.area * high.mean_square();
   }
-  const double less = (1 - kDoubleRounding) / sums_.area, more = (1 + kDoubleRounding) / sums_.area;
   const auto rounded = [&](double low, double high) {
     return between(std::max(0.0, low - scale_.rounding), high > 0 ? high + scale_.rounding : 0);
   };
-  sums_.mean = rounded(less * mean_low, more * mean_high);
-  sums_.rms = rounded(std::sqrt(less * square_low), std::sqrt(more * square_high));
+  const double off = rounding_ * largest_;
+  sums_.mean = rounded(mean_low.value() / sums_.area - off, mean_high.value() / sums_.area + off);
+  sums_.rms = rounded(std::sqrt(std::max(0.0, square_low.value() / sums_.area - off * largest_)),
+                      std::sqrt(square_high.value() / sums_.area + off * largest_));
   sums_.percentiles.clear(), sums_.within.clear();
   for (const double percent : options_.percentiles) sums_.percentiles.push_back(percentile(percent));
   for (const double t : options_.tolerances) sums_.within.push_back(within(t));
 }
 
-BoundedNumber DirectedSearch::within(double t) const {
-  double low = 0, high = 0;
+// Distances that are equal to a tolerance, as those of voxels are, shall not depend on rounding.
+double DirectedSearch::limit(double tolerance) const {
+  return tolerance + scale_.accuracy;
+}
+
+BoundedNumber DirectedSearch::within(double tolerance) const {
+  const double t = limit(tolerance);
+  poll();
+  Sum low, high;
   bool all = true, any = false;
   for (const Part& part : parts_) {
     const double surely = part.upper().fraction_within(t), maybe = part.lower().fraction_within(t);
     low += part.area * surely, high += part.area * maybe;
     all = all && surely == 1, any = any || maybe > 0;
   }
-  const double less = (1 - kDoubleRounding) / sums_.area, more = (1 + kDoubleRounding) / sums_.area;
-  return between(all ? 1 : less * low, !any ? 0 : std::min(1.0, more * high));
+  return between(all ? 1 : std::max(0.0, low.value() / sums_.area - rounding_),
+                 !any ? 0 : std::min(1.0, high.value() / sums_.area + rounding_));
 }
 
 double DirectedSearch::width(const BoundedNumber& number) const {
@@ -125,8 +149,8 @@ double DirectedSearch::width(const BoundedNumber& number) const {
 
 BoundedNumber DirectedSearch::percentile(double percent) const {
   const double fraction = percent / 100;
-  const double low = quantile((1 - kDoubleRounding) * fraction, &Part::lower),
-               high = quantile(std::min(1.0, (1 + kDoubleRounding) * fraction), &Part::upper);
+  const double low = quantile(std::max(0.0, fraction - rounding_), &Part::lower),
+               high = quantile(std::min(1.0, fraction + rounding_), &Part::upper);
   return between(std::max(0.0, low - scale_.rounding), high > 0 ? high + scale_.rounding : 0);
 }
 
@@ -136,7 +160,8 @@ double DirectedSearch::quantile(double fraction, Linear (Part::*bound)() const) 
     double area;
   };
   std::vector<Piece> open;
-  double lo = std::numeric_limits<double>::infinity(), hi = 0, below = 0;
+  double lo = kInfinity, hi = 0;
+  Sum below;
   for (const Part& part : parts_) {
     open.push_back({(part.*bound)(), part.area});
     lo = std::min(lo, std::max(0.0, open.back().bound.least())),
@@ -145,10 +170,11 @@ double DirectedSearch::quantile(double fraction, Linear (Part::*bound)() const) 
   const double asked = fraction * sums_.area;
   constexpr int kHalvings = 60;
   for (int n = 0; n < kHalvings && lo < hi; ++n) {
+    poll();
     const double middle = lo + (hi - lo) / 2;
-    double area = below;
+    Sum area = below;
     for (const Piece& piece : open) area += piece.area * piece.bound.fraction_within(middle);
-    (area >= asked ? hi : lo) = middle;
+    (area.value() >= asked ? hi : lo) = middle;
     // Pieces that are wholly below `lo` count from now on, those above `hi` do not.
     std::erase_if(open, [&](const Piece& piece) {
       if (piece.bound.largest() <= lo) below += piece.area;
@@ -184,6 +210,7 @@ void DirectedSearch::choose_around(const BoundedNumber& percentile, Chosen& chos
 }
 
 DirectedSearch::Chosen DirectedSearch::choose() const {
+  poll();
   Chosen chosen(parts_.size());
   std::vector<double> contributions(parts_.size());
   const auto choose = [&](double target, const auto& difference) {
@@ -197,7 +224,7 @@ DirectedSearch::Chosen DirectedSearch::choose() const {
            [](const Linear& low, const Linear& high) { return high.mean_square() - low.mean_square(); });
   for (const double t : options_.tolerances)
     choose(options_.fraction_precision, [&](const Linear& low, const Linear& high) {
-      return low.fraction_within(t) - high.fraction_within(t);
+      return low.fraction_within(limit(t)) - high.fraction_within(limit(t));
     });
   for (const BoundedNumber& percentile : sums_.percentiles) choose_around(percentile, chosen);
   return chosen;

@@ -31,8 +31,10 @@ class DirectedSearch {
 
   void make_parts();
   void sum_up();
-  /// The fraction of the area with d ≤ t.
-  [[nodiscard]] BoundedNumber within(double t) const;
+  /// The largest distance that counts as within a tolerance.
+  [[nodiscard]] double limit(double tolerance) const;
+  /// The fraction of the area that is within a tolerance.
+  [[nodiscard]] BoundedNumber within(double tolerance) const;
   [[nodiscard]] BoundedNumber percentile(double percent) const;
   /// The least t such that `bound` is at most t on this fraction of the area.
   [[nodiscard]] double quantile(double fraction, Linear (Part::*bound)() const) const;
@@ -52,6 +54,8 @@ class DirectedSearch {
   const Scale scale_;
   std::vector<Part> parts_;
   std::size_t most_parts_ = 0;
+  double rounding_ = 0;  // of areas and their sums, as a fraction of the whole area
+  double largest_ = 0;   // bound on all distances
   DirectedMetrics sums_;
 };
 

@@ -15,6 +15,8 @@
 namespace sdm::metrics {
 namespace {
 
+constexpr double kLeastLength = 1e-140;  // of a direction: its square does not underflow
+
 double sum(const Vec3& v) {
   return v[0] + v[1] + v[2];
 }
@@ -72,7 +74,7 @@ Vec3 lower_bound(const Part& part, const Corners& face) {
   double least = loss(best);
   const auto offer = [&](const Vec3& direction) {
     const double length = norm(direction);
-    if (!(length > std::numeric_limits<double>::min())) return;
+    if (!(length > kLeastLength)) return;
     const Vec3 low = along((1 / length) * direction, part, face);
     if (const double l = loss(low); l < least) best = low, least = l;
   };

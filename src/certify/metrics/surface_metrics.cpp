@@ -1,19 +1,20 @@
-#include <fmt/format.h>
-#include <sdm/engine.h>
 #include <sdm/error.h>
 #include <sdm/hausdorff.h>
 #include <sdm/metrics.h>
 #include <sdm/sites.h>
-#include <sdm/tolerance.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <new>
 #include <utility>
 
 #include "certify/metrics/directed_search.h"
+#include "certify/metrics/sum.h"
 #include "core/memory.h"
 #include "geometry/rounding.h"
+#include "geometry/triangle.h"
 #include "geometry/vec.h"
 
 namespace sdm {
@@ -66,6 +67,12 @@ double harmonic_mean(double x, double y) {
   return x + y > 0 ? 2 * x * y / (x + y) : 0;
 }
 
+std::string shortest(double number) {
+  number += 0.0;  // no minus sign of 0
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+}
+
 void check(const MetricsOptions& options) {
   for (const double p : options.percentiles)
     if (!(p > 0 && p < 100)) throw Error("a percentile must be above 0 and below 100");
@@ -75,6 +82,16 @@ void check(const MetricsOptions& options) {
   if (options.precision && !(*options.precision > 0))
     throw Error("the precision of metrics must be greater than 0");
   if (!(options.fraction_precision > 0)) throw Error("the precision of fractions must be greater than 0");
+}
+
+double area_of(const Mesh& mesh) {
+  metrics::Sum area;
+  for (const Triangle& t : mesh.triangles) {
+    if (is_removed(t)) continue;
+    const auto [p, q, r] = corners_of(mesh.positions, t);
+    area += norm(cross(q - p, r - p)) / 2;
+  }
+  return area.value();
 }
 
 /// The measures of surfaces of which one or both are empty.
@@ -104,15 +121,17 @@ void limit_by_largest(DirectedMetrics& m, double accuracy) {
 
 std::array<DirectedMetrics, 2> both_directions(const Mesh& a, const Mesh& b, const MetricsOptions& options) {
   const std::array sites{Sites(a), Sites(b)};
-  const SymmetricHausdorff hausdorff =
-      symmetric_hausdorff(sites[0], sites[1], {.progress = options.progress});
   Box box = bounds(a);
   extend(box, bounds(b));
   double coordinate = 0;
   for (int k = 0; k < 3; ++k) coordinate = std::max({coordinate, std::abs(box.lo[k]), std::abs(box.hi[k])});
   const double size = diagonal(box);
   const metrics::Scale scale{size, kDoubleRounding * std::max(size, coordinate),
-                             engine_accuracy(engines().front(), a, b)};
+                             MetricsOptions::kRounding * size};
+  const double precision =
+      std::min(HausdorffOptions::kPrecision * size, options.precision.value_or(metrics::kInfinity));
+  const SymmetricHausdorff hausdorff =
+      symmetric_hausdorff(sites[0], sites[1], {.precision = precision, .progress = options.progress});
   std::array<DirectedMetrics, 2> from;
   for (int i = 0; i < 2; ++i) {
     from[i] = metrics::DirectedSearch(sites[i].mesh(), internals(sites[1 - i]), options, scale).run();
@@ -150,8 +169,11 @@ SurfaceMetrics metrics_of(std::array<DirectedMetrics, 2> from) {
 SurfaceMetrics surface_metrics(const Mesh& a, const Mesh& b, const MetricsOptions& options) try {
   check(options);
   if (a.triangles.empty() || b.triangles.empty()) {
-    const DirectedMetrics none = metrics_of_none(a.triangles.empty() && b.triangles.empty(), options);
-    return metrics_of({none, none});
+    std::array<DirectedMetrics, 2> from;
+    from.fill(metrics_of_none(a.triangles.empty() && b.triangles.empty(), options));
+    for (const auto& [mesh, m] : {std::pair(&a, &from[0]), std::pair(&b, &from[1])})
+      if (!mesh->triangles.empty()) validate(*mesh), m->area = area_of(*mesh);
+    return metrics_of(from);
   }
   return metrics_of(both_directions(a, b, options));
 } catch (const std::bad_alloc&) {
@@ -159,11 +181,11 @@ SurfaceMetrics surface_metrics(const Mesh& a, const Mesh& b, const MetricsOption
 }
 
 std::string percentile_name(double percent) {
-  return fmt::format("hd{}", percent);
+  return "hd" + shortest(percent);
 }
 
 std::string metric_name(std::string_view kind, double tolerance) {
-  return fmt::format("{}({})", kind, tolerance);
+  return std::string(kind) + "(" + shortest(tolerance) + ")";
 }
 
 std::vector<NamedMetric> named_metrics(const SurfaceMetrics& metrics, const MetricsOptions& options) {

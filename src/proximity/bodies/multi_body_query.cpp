@@ -219,14 +219,14 @@ struct MultiBodyQuery::Impl {
     std::size_t count = 0;
     for (const PairContacts& pair : contacts) count += pair.contacts.size();
     external_contacts.clear(), external_contacts.reserve(count);  // so that spans of it stay valid
-    std::erase_if(contacts, [&](PairContacts& pair) {
+    for (PairContacts& pair : contacts) {
       const std::size_t first = external_contacts.size();
       for (const Contact& contact : pair.contacts)
         if (!internal_contacts.contains(contact, {pair.first, pair.second}))
           external_contacts.push_back(contact);
       pair.contacts = std::span(external_contacts).subspan(first);
-      return pair.contacts.empty();
-    });
+    }
+    std::erase_if(contacts, [](const PairContacts& pair) { return pair.contacts.empty(); });
   }
 };
 
@@ -343,11 +343,13 @@ std::vector<PairTimeOfContact> MultiBodyQuery::time_of_contact(std::span<const M
 }
 
 std::vector<Transform> MultiBodyQuery::poses_at(std::span<const Motion> motions, double time) const {
-  impl_->check_count(motions.size(), "motions");
-  std::vector<Transform> poses;
-  poses.reserve(motions.size());
-  for (const motion::DividedMotion& motion : impl_->divided(motions)) poses.push_back(motion.at(time));
-  return poses;
+  return with_memory_of_bodies([&] {
+    impl_->check_count(motions.size(), "motions");
+    std::vector<Transform> poses;
+    poses.reserve(motions.size());
+    for (const motion::DividedMotion& motion : impl_->divided(motions)) poses.push_back(motion.at(time));
+    return poses;
+  });
 }
 
 std::size_t MultiBodyQuery::candidate_pairs() const {

@@ -135,8 +135,7 @@ void find_in_blocks(const sites::SitesData& sites, std::span<const Vec3> points,
                     std::span<const std::uint32_t> order, const BlockSearch& search, const Progress& progress,
                     std::span<ClosestPoint> found) {
   for_each_block(points.size(), progress, "closest points", [&](std::size_t begin, std::size_t end) {
-    thread_local std::vector<Vec3> batch;
-    batch.resize(end - begin);
+    std::vector<Vec3> batch(end - begin);
     for (std::size_t i = begin; i < end; ++i) batch[i - begin] = points[order[i]];
     search(batch, [&](std::size_t first, const sites::ClosestPacket& closest) {
       for (std::size_t i = 0; i < closest.count; ++i) {

@@ -152,7 +152,7 @@ class ClosestFaces {
   }
 
   // Faces at larger distances than this are not closest.
-  double limit_in_double() const { return std::min(least_, bound_) + s_.maps.rounding(); }
+  double limit_in_double() const { return std::min(least_, bound_) + 2 * s_.maps.rounding(); }
   void restrict(double distance) {
     least_ = std::min(least_, distance);
     limit_ = s_.maps.round_up(limit_in_double());

@@ -103,7 +103,7 @@ class Passages {
       if (std::max({x, y, z}) < lo(a) || std::min({x, y, z}) > hi(a)) return;
     }
     polygon.count = 3;
-    cross(std::span(polygon.corners).first<3>());
+    cross(std::span(polygon.corners).first<3>(), solid_.inverted[face] != 0);
     if (column_.side_count == 0) {
       polygon.clip(-1, 0, -lo(1)), polygon.clip(1, 0, hi(1));
       polygon.clip(0, -1, -lo(2)), polygon.clip(0, 1, hi(2));
@@ -118,7 +118,7 @@ class Passages {
   }
 
   // Where the line through the origin along u passes through a face.
-  void cross(std::span<const Vec3, 3> corners) {
+  void cross(std::span<const Vec3, 3> corners, bool inverted) {
     std::array<double, 3> areas;  // opposite to each corner
     bool left = true, right = true, clear = true;
     for (int k = 0; k < 3; ++k) {
@@ -137,7 +137,7 @@ class Passages {
     }
     const double level = (areas[0] * corners[0][0] + areas[1] * corners[1][0] + areas[2] * corners[2][0]) /
                          (areas[0] + areas[1] + areas[2]);
-    crossings_[crossing_count_++] = {level, left ? -1 : 1};
+    crossings_[crossing_count_++] = {level, left != inverted ? -1 : 1};
   }
 
   const sites::SitesData& solid_;

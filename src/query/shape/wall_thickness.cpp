@@ -44,6 +44,7 @@ double angle_at_edge(const sites::SitesData& solid, std::uint32_t face, int side
   const Vec3& from = solid.mesh.positions[solid.mesh.triangles[face][side]];
   double height = -kNoWall, reach = 0;
   for (const std::uint32_t v : solid.mesh.triangles[other]) {
+    if (v == solid.topology.edges[edge][0] || v == solid.topology.edges[edge][1]) continue;
     const Vec3 to = solid.mesh.positions[v] - from;
     height = std::max(height, dot(n, to)), reach = std::max(reach, norm(to));
   }
@@ -120,6 +121,15 @@ bool beyond(const Corners& at, const Ball& ball) {
   return norm(closest_on_triangle(ball.centre, at) - ball.centre) > ball.radius;
 }
 
+// Whether there are so many faces below a large one that a bound takes too long. The same for any `most`, so
+// that bounds do not depend on those that were asked for before.
+bool has_many_below(const sites::SitesData& solid, const WallColumn& column, std::vector<Polygon>& faces) {
+  constexpr std::size_t kMany = 2048;
+  constexpr double kDepth = 0.2;  // of the size of the solid: walls are less than that
+  faces.clear();
+  return Passages(solid, column, {column.lo[0] - kDepth / solid.frame.scale, 0}, kMany, faces).overflow();
+}
+
 }  // namespace
 
 WallThickness::WallThickness(const sites::SitesData& solid, const inside::InsideTest& inside)
@@ -185,8 +195,9 @@ WallThickness::Bounds& WallThickness::parts_of(std::uint32_t face) const {
 // Let x be the closest point on the face F of a point p inside, b = |p − x|, and θ the angle between the
 // outward normal n of F and x − p. If the section of the column of F at a depth L below it is outside, the
 // way from p to it along −n leaves the solid, so b ≤ L − b cos θ, and b ≤ L / (1 + cos θ). The column must
-// contain p, so that it is wider than F by b sin θ ≤ L tan(θ/2). Points p deeper than L are not closest to x,
-// as the way to x would pass through that section.
+// contain p, so that it is wider than F by b sin θ ≤ L tan(θ/2). No point p closest to x is deeper: the point
+// of the way to it at the distance L / (1 + cos θ) would be in the column and closest to x, but closer to
+// that section.
 double WallThickness::find(std::uint32_t face, const Corners& corners, double most) const {
   const sites::SitesData& solid = *solid_;
   if (solid.sliver[face] != 0 || inside_->sides().of_face(face) != Sides::boundary) return kNoWall;
@@ -201,12 +212,13 @@ double WallThickness::find(std::uint32_t face, const Corners& corners, double mo
                       inside_->sides().offset() * n;
   thread_local std::vector<Polygon> faces;
   thread_local std::vector<Levels> taken;
+  if (has_many_below(solid, WallColumn::around(corners, beside, n), faces)) return kNoWall;
   double wider = 0;
   for (int turn = 0; turn < 3; ++turn) {
     WallColumn column = WallColumn::around(corners, beside, n);
     column.enlarge(wider);
     faces.clear();
-    const Levels limits{column.lo[0] - 2 * most, 0};
+    const Levels limits{column.lo[0] - 2 * most - 2 * kLeastGap / solid.frame.scale, 0};
     // So many as there are, so that a bound does not depend on `most`.
     const Passages passages(solid, column, limits, std::numeric_limits<std::size_t>::max(), faces);
     taken.clear();
@@ -215,8 +227,9 @@ double WallThickness::find(std::uint32_t face, const Corners& corners, double mo
     double depth = kNoWall, lo = limits.lo;
     const double least = kLeastGap / solid.frame.scale;
     for (const Levels& t : taken) {
+      if (t.lo > 0) break;
       // The winding number inside is 1.
-      if (t.lo - lo > least && passages.change(0.5 * (lo + t.lo)) == -1) depth = column.hi[0] - t.lo;
+      if (t.lo - lo > least && passages.change(t.lo - 0.5 * least) == -1) depth = column.hi[0] - t.lo;
       lo = std::max(lo, t.hi);
     }
     if (depth == kNoWall) return kNoWall;

@@ -23,6 +23,9 @@ ColorScale banded(ColorScale scale, const Tolerance& t) {
 FaceScales::FaceScales(const ColorScale& scale, const PictureOptions& options) : scale_(scale) {
   if (!options.table.empty() && !options.names.empty())
     tolerances_.emplace(options.tolerance, options.names, options.table);
+  // A table of groups of another mesh changes nothing.
+  const auto names_none = [](const NamedFaces& named) { return named.faces.empty(); };
+  if (std::ranges::all_of(faces_of_groups(options.names, options.table), names_none)) tolerances_.reset();
 }
 
 Rgb FaceScales::operator()(std::uint32_t face, double distance) const {

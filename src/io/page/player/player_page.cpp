@@ -114,6 +114,8 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
   page["scale"] = scale_json(color_scale(fixed));
   if (options.verdicts) {
     page["verdict"] = name_of(options.verdicts->of_all);
+    page["tolerance"] = {{"lower", options.verdicts->tolerance.lo},
+                         {"upper", options.verdicts->tolerance.hi}};
     page["verdicts"] = Json::array();
     for (const Verdict verdict : options.verdicts->of_frames) page["verdicts"].push_back(name_of(verdict));
   }

@@ -22,6 +22,7 @@ namespace sdm {
 
 /// Verdicts on a tolerance.
 struct PlayerVerdicts {
+  Tolerance tolerance{};
   Verdict of_all = Verdict::pass;
   std::vector<Verdict> of_frames;  ///< one for each frame added
 };
