@@ -106,17 +106,19 @@ DirectedMetrics metrics_of_none(bool both, const MetricsOptions& options) {
 }
 
 /// No distance of a point exceeds the largest one.
-void limit_by_largest(DirectedMetrics& m, double accuracy) {
+void limit_by_largest(const MetricsOptions& options, const metrics::Scale& scale, DirectedMetrics& m) {
   const double most = m.hausdorff.upper;
   const auto limit = [&](BoundedNumber& number) {
     number.upper = std::min(number.upper, most), number.lower = std::min(number.lower, most);
     number.value = std::clamp(number.value, number.lower, number.upper);
-    if (number.upper - number.lower <= accuracy) number.certainty = Certainty::exact;
+    if (number.upper - number.lower <= 2 * scale.rounding) number.certainty = Certainty::exact;
   };
   limit(m.mean), limit(m.rms);
   for (BoundedNumber& percentile : m.percentiles) limit(percentile);
-  for (BoundedNumber& fraction : m.within)
-    if (fraction.lower == fraction.upper) fraction.certainty = Certainty::exact;
+  for (std::size_t i = 0; i < m.within.size(); ++i) {
+    if (most <= options.tolerances[i] + scale.accuracy) m.within[i] = exactly(1);
+    if (m.within[i].lower == m.within[i].upper) m.within[i].certainty = Certainty::exact;
+  }
 }
 
 std::array<DirectedMetrics, 2> both_directions(const Mesh& a, const Mesh& b, const MetricsOptions& options) {
@@ -136,7 +138,7 @@ std::array<DirectedMetrics, 2> both_directions(const Mesh& a, const Mesh& b, con
   for (int i = 0; i < 2; ++i) {
     from[i] = metrics::DirectedSearch(sites[i].mesh(), internals(sites[1 - i]), options, scale).run();
     from[i].hausdorff = hausdorff.from[i].distance;
-    limit_by_largest(from[i], 2 * scale.rounding);
+    limit_by_largest(options, scale, from[i]);
   }
   return from;
 }
