@@ -77,8 +77,9 @@ def mask_surface(mask: object, spacing: float | Sequence[float] = 1.0) -> tuple[
     face is two triangles, with the normal outward, and shares its vertices. Without a voxel inside there are no faces. Raises
     Error for an array of other dimensions, or a spacing that is not positive. Cost: linear in voxels.
 
-    >>> sdm.mask_surface(numpy.ones((2, 2, 2)))[1].shape
-    (48, 3)
+    >>> vertices, faces = sdm.mask_surface([[[True]]])
+    >>> vertices.shape, faces.shape
+    ((8, 3), (12, 3))
     """
     inside = np.asarray(mask)
     if inside.ndim != 3 or inside.dtype.kind not in "biuf":
