@@ -210,10 +210,10 @@ TEST_F(ConvexPairs, HaveThemInSpecialPoses) {
 TEST(ConvexPair, AnswersOfTiesDoNotDependOnHints) {
   const Mesh mesh = test::cube();
   Transform tilted;
-  tilted.rows = {
-      {{0.99999999999015632, -3.5191408926469337e-06, 2.7023922144894301e-06, 0},
-       {3.5191392767040772e-06, 0.9999999999936291, 5.9797207415736576e-07, 0},
-       {-2.7023943188201923e-06, -5.9796256405689645e-07, 0.99999999999616973, -67.749430234109084}}};
+  tilted.rows[0] = {0.99999999999015632, -3.5191408926469337e-06, 2.7023922144894301e-06, 0};
+  tilted.rows[1] = {3.5191392767040772e-06, 0.9999999999936291, 5.9797207415736576e-07, 0};
+  tilted.rows[2] = {-2.7023943188201923e-06, -5.9796256405689645e-07, 0.99999999999616973,
+                    -67.749430234109084};
   ProximityQuery convex(mesh, mesh), by_trees(mesh, mesh);
   by_trees.refit(mesh.positions, mesh.positions);  // whose faces are no longer known to be convex
   convex.set_pose(1, tilted), by_trees.set_pose(1, tilted);
