@@ -34,8 +34,7 @@ TEST_F(MetricsCommandTest, PrintsWhatTheLibraryComputes) {
   ASSERT_EQ(run.code, 0) << run.err;
   const Json json = Json::parse(run.out);
   const MetricsOptions options{.percentiles = {50, 95}, .tolerances = {0.5, 1}};
-  const SurfaceMetrics expected =
-      surface_metrics(read_mesh(ball), read_mesh(o2), options);
+  const SurfaceMetrics expected = surface_metrics(read_mesh(ball), read_mesh(o2), options);
   for (const NamedMetric& m : named_metrics(expected, options)) {
     EXPECT_EQ(json["metrics"][m.name]["value"], m.number.value) << m.name;
     EXPECT_EQ(json["metrics"][m.name]["lower"], m.number.lower) << m.name;
@@ -81,7 +80,8 @@ TEST_F(MetricsCommandTest, FailsUnderConditions) {
 
 // The bounds of a curved pair contain the limit at first.
 TEST_F(MetricsCommandTest, ComputesCloserBoundsUntilALimitIsDecided) {
-  const std::string a = write_obj(folder / "a.obj", sphere(3)), b = write_obj(folder / "b.obj", torus(24, 12));
+  const std::string a = write_obj(folder / "a.obj", sphere(3)),
+                    b = write_obj(folder / "b.obj", torus(24, 12));
   const Json json = Json::parse(run_sdm({"metrics", a, b, "--json", "--precision", "0.1"}).out);
   const double lower = json["metrics"]["assd"]["lower"], value = json["metrics"]["assd"]["value"];
   const std::string limit = std::to_string(lower + 0.1 * (value - lower));
@@ -90,14 +90,14 @@ TEST_F(MetricsCommandTest, ComputesCloserBoundsUntilALimitIsDecided) {
 }
 
 TEST_F(MetricsCommandTest, RefusesWhatIsNoCondition) {
-  for (const auto& [condition, reason] : std::vector<std::pair<std::string, std::string>>{
-           {"hd95", "has no comparison"},
-           {"hd95>", "does not end with a number"},
-           {"hd95>x", "does not end with a number"},
-           {"hd100>1", "names no measure"},
-           {"dice>1", "names no measure"},
-           {"nsd>1", "names no measure"},
-           {"nsd(-1)>1", "names no measure"}}) {
+  for (const auto& [condition, reason] :
+       std::vector<std::pair<std::string, std::string>>{{"hd95", "has no comparison"},
+                                                        {"hd95>", "does not end with a number"},
+                                                        {"hd95>x", "does not end with a number"},
+                                                        {"hd100>1", "names no measure"},
+                                                        {"dice>1", "names no measure"},
+                                                        {"nsd>1", "names no measure"},
+                                                        {"nsd(-1)>1", "names no measure"}}) {
     const Outcome run = metrics({"--fail-if", condition});
     EXPECT_EQ(run.code, 2) << condition;
     EXPECT_THAT(run.err, HasSubstr(reason));

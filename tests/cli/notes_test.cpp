@@ -149,7 +149,8 @@ TEST_F(Notes, TellOfCoordinatesThatAreCoarseForTheSize) {
   const auto coarse = HasSubstr("coordinates in single precision are 0.5 apart");
   expect_notes({"info", stl}, coarse);
   for (const auto& command : commands(stl, text))
-    if (command[0] == "hausdorff" || command[0] == "metrics" || command[0] == "proximity" || command[0] == "bodies")
+    if (command[0] == "hausdorff" || command[0] == "metrics" || command[0] == "proximity" ||
+        command[0] == "bodies")
       expect_notes(command, AllOf(coarse, HasSubstr("far.stl"), Not(HasSubstr("far.obj: coord"))));
   expect_notes({"self", stl, "--resolution", "64", "--write", "none", "-o", out}, coarse);
   expect_notes({"info", text}, Not(HasSubstr("single precision")));

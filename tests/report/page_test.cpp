@@ -174,8 +174,8 @@ TEST_F(Page, StatesTheVerdictOfEachGroup) {
   std::ofstream(table) << "group,lower,upper\nring,0,1\n";
   map({"--resolution", "64", "--tolerance-table", table, "--units", "mm"});
   EXPECT_TRUE(passes("highlights", page(), {folder / "saved.html"}));
-  EXPECT_TRUE(passes("says", page(),
-                     {"Verdicts by group", "ring\tFAIL\tgroup\t0 to 1 mm\t", "\t2.40", "\tproven"}));
+  EXPECT_TRUE(
+      passes("says", page(), {"Verdicts by group", "ring\tFAIL\tgroup\t0 to 1 mm\t", "\t2.40", "\tproven"}));
 }
 
 TEST_F(Page, NamesWhatIsMeasured) {
