@@ -92,8 +92,9 @@ struct NamedMetric {
   MetricUnit unit = MetricUnit::length;
 };
 
-/// Returns "hd95" for 95, and "nsd(0.5)" for "nsd" and 0.5: numbers as short as they read back.
+/// Returns "hd95" for 95: the number as short as it reads back.
 [[nodiscard]] SDM_API std::string percentile_name(double percent);
+/// Returns "nsd(0.5)" for "nsd" and 0.5, likewise.
 [[nodiscard]] SDM_API std::string metric_name(std::string_view kind, double tolerance);
 
 /// Returns all measures of both surfaces, of metrics computed with these options. `precision(T)` is the
