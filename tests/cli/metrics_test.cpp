@@ -69,6 +69,8 @@ TEST_F(MetricsCommandTest, FailsUnderConditions) {
   EXPECT_EQ(outcome({"nsd(0.3)<0.95"}).code, 0);
   EXPECT_EQ(outcome({"f_score(0.2)<0.95"}).code, 3);
   EXPECT_EQ(outcome({"normal_consistency<0.5"}).code, 0);
+  EXPECT_EQ(run_sdm({"metrics", o1, o1, "--tolerance", "0", "--fail-if", "nsd(-0)<0.5"}).code, 0)
+      << "one name for 0 and -0";
   const Json json = Json::parse(outcome({"hd99>0.3", "recall(0.2)<=0.5"}).out);
   EXPECT_EQ(json["verdict"], "FAIL");
   EXPECT_EQ(json["fail_if"][0]["text"], "hd99>0.3");
@@ -97,6 +99,7 @@ TEST_F(MetricsCommandTest, RefusesWhatIsNoCondition) {
                                                         {"hd100>1", "names no measure"},
                                                         {"dice>1", "names no measure"},
                                                         {"nsd>1", "names no measure"},
+                                                        {"hd>1 2", "does not end with a number"},
                                                         {"nsd(-1)>1", "names no measure"}}) {
     const Outcome run = metrics({"--fail-if", condition});
     EXPECT_EQ(run.code, 2) << condition;

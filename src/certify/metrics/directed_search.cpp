@@ -91,9 +91,9 @@ void DirectedSearch::make_parts() {
     parts_.push_back({.corner = {vertices[t[0]], vertices[t[1]], vertices[t[2]]}, .face = f, .area = area});
     area_of_all += area;
   }
+  if (parts_.empty()) throw Error("the faces of a mesh have no area: there are no average distances");
   sums_.area = area_of_all.value();
   rounding_ = kDoubleRounding + 2 * error.value() / sums_.area;
-  if (parts_.empty()) throw Error("the faces of a mesh have no area: there are no average distances");
   std::vector<std::size_t> all(parts_.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   bound_by_middles(all);

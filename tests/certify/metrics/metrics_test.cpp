@@ -270,6 +270,28 @@ TEST(SurfaceMetrics, CloserBoundsAgreeWithWiderOnes) {
   }
 }
 
+// Areas of needles are known to a few digits only, and so is what they weigh.
+TEST(SurfaceMetrics, HoldForNeedlesWhoseAreasAreInexact) {
+  for (const double height : {1e-12, 1e-10, 1e-8}) {
+    Mesh needles;
+    long double area[2];
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      const double z = i == 0 ? 0.1 : 1, first = 3.0 * i;
+      needles.positions.insert(needles.positions.end(),
+                               {{first / 7, 0.1, z},
+                                {first / 7 + 1.0 / 3, 0.1 + 0.7 / 3, z},
+                                {first / 7 + 0.2 / 3 - height, 0.1 + 0.14 / 3 + (1 + i) * height, z}});
+      needles.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+      const auto side = [&](std::size_t to, int axis) {
+        return static_cast<long double>(needles.positions[3 * i + to][axis]) - needles.positions[3 * i][axis];
+      };
+      area[i] = std::abs(side(1, 0) * side(2, 1) - side(1, 1) * side(2, 0));
+    }
+    const auto truth = static_cast<double>((0.1L * area[0] + area[1]) / (area[0] + area[1]));
+    expect_contains(surface_metrics(needles, square(40, 0)).from[0].mean, truth);
+  }
+}
+
 TEST(SurfaceMetrics, SymmetricOnesAreMadeOfBothDirections) {
   const Mesh a = sphere(3), b = moved(torus(16, 8), {0.5, 0, 0});
   const SurfaceMetrics m = surface_metrics(a, b, {.tolerances = {0.5}}),
