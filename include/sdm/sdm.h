@@ -52,6 +52,7 @@
 #include <sdm/time_of_contact.h>
 #include <sdm/tolerance.h>
 #include <sdm/tolerance_proof.h>
+#include <sdm/transfer.h>
 #include <sdm/transform.h>
 #include <sdm/types.h>
 #include <sdm/unit_check.h>

@@ -1,5 +1,4 @@
 #include <sdm/channels.h>
-#include <sdm/closest_points.h>
 #include <sdm/error.h>
 
 #include <algorithm>
@@ -9,11 +8,8 @@
 #include <type_traits>
 
 #include "core/memory.h"
-#include "geometry/barycentric.h"
-#include "geometry/triangle.h"
 #include "geometry/vec.h"
-#include "sites/closest_on_face.h"
-#include "sites/sites_data.h"
+#include "map/transfer/closest_of_texels.h"
 
 namespace sdm {
 
@@ -37,42 +33,14 @@ class map::TexelBlock {
     return points_[i];
   }
   [[nodiscard]] const SurfacePoint& closest(std::size_t i) const {
-    const DistanceMap& map = *source_.map;
-    if (closest_.empty())
-      fill(closest_, [&](std::size_t k) {
-        const SiteType type = map.site_type[texels_[k]];
-        const std::uint32_t site = map.site[texels_[k]];
-        switch (map.measured.kind) {
-          case DistanceKind::closest:
-            return point_on_face(*source_.sites, type, site, point(k));
-          case DistanceKind::facing:
-            return point_on_site(type, site, point(k));
-          default:
-            return end_of_vector(site, k);
-        }
-      });
+    if (closest_.empty()) {
+      ClosestOfTexels points(*source_.surface, *source_.sites, *source_.map);
+      fill(closest_, [&](std::size_t k) { return points.at(texels_[k]); });
+    }
     return closest_[i];
   }
 
  private:
-  /// Where the vector ends, on a face that need not be closest there.
-  [[nodiscard]] SurfacePoint end_of_vector(std::uint32_t face, std::size_t k) const {
-    if (face == kNone) return {};
-    const auto [p, q, r] = corners_of(internals(*source_.sites).mesh, face);
-    const auto& vector = source_.map->vector[texels_[k]];
-    Vec3 end = point(k);
-    for (int i = 0; i < 3; ++i) end[i] += vector[i];
-    return {face, barycentric(p, q, r, end)};
-  }
-  /// The closest point of a site that need not be the closest one of O2.
-  [[nodiscard]] SurfacePoint point_on_site(SiteType type, std::uint32_t site, const Vec3& query) const {
-    if (type == SiteType::none) return {};
-    const sites::SitesData& data = internals(*source_.sites);
-    const ClosestPoint c = sites::closest_around_site(data, type, site, query);
-    const auto [p, q, r] = corners_of(data.mesh, c.face);
-    return {c.face, barycentric(p, q, r, c.point)};
-  }
-
   template <class T, class Get>
   void fill(std::vector<T>& values, const Get& get) const {
     values.resize(texels_.size());

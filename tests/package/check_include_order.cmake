@@ -35,6 +35,7 @@ set(order
   engines
   map/statistics
   map/places
+  map/transfer
   map
   registration
   certify/hausdorff

@@ -2,7 +2,7 @@
 #include "core/parallel.h"
 #include "io/file/atomic_file.h"
 #include "io/file/deflate.h"
-#include "io/image/pictures/gutter.h"
+#include "atlas/gutter.h"
 
 #include <OpenEXR/openexr.h>
 #include <fmt/format.h>
@@ -154,7 +154,7 @@ void write_planes(const std::filesystem::path& file, const Surface& surface, std
                   const Attributes& attributes, const Read& read) {
   static_assert(std::endian::native == std::endian::little, "the order of bytes in the file");
   const std::uint32_t n = surface.resolution();
-  const Gutter gutter(n, surface.texel_faces(), std::max(kGutter, surface.gutter()));
+  const atlas::Gutter gutter(n, surface.texel_faces(), std::max(atlas::kGutter, surface.gutter()));
   ExrFile exr(file, n, surface.rows(), planes, attributes);
   const auto chunk = [&](std::uint32_t first_row) {
     const std::uint32_t rows = std::min(kRowsPerChunk, surface.rows() - first_row);

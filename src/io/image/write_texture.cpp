@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "io/file/atomic_file.h"
 #include "io/image/pictures/color_scale.h"
-#include "io/image/pictures/gutter.h"
+#include "atlas/gutter.h"
 #include "io/image/pictures/png.h"
 
 namespace sdm {
@@ -37,7 +37,7 @@ TextureRange write_distance_texture(const std::filesystem::path& file, const Sur
   const ColorScale scale =
       color_scale(texture_range(options, open ? statistics(surface, map) : DistanceStatistics{}));
   const std::uint32_t n = surface.resolution();
-  const Gutter gutter(n, surface.texel_faces(), std::max(kGutter, surface.gutter()));
+  const atlas::Gutter gutter(n, surface.texel_faces(), std::max(atlas::kGutter, surface.gutter()));
   constexpr double kWhite = 0xFFFF;
   const double factor = kWhite / (scale.hi - scale.lo);
 

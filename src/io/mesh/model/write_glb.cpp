@@ -4,7 +4,7 @@
 #include "io/file/atomic_file.h"
 #include "io/image/pictures/atlas_picture.h"
 #include "io/image/pictures/color_scale.h"
-#include "io/image/pictures/gutter.h"
+#include "atlas/gutter.h"
 #include "io/image/pictures/png.h"
 #include "io/mesh/model/glb_model.h"
 #include "io/mesh/model/model_vertices.h"
@@ -123,7 +123,7 @@ std::string texture_png(const Surface& surface, const DistanceMap& map, const Co
   for (const std::vector<Seed>& some : seeds)
     for (const auto& [pixel, d] : some)
       if (std::exchange(shown[pixel], 0) == kNone) distance[pixel] = d;
-  const Gutter gutter(n, shown);
+  const atlas::Gutter gutter(n, shown);
   std::ostringstream png;
   write_png(png, n, rows, [&](std::uint32_t y, std::span<Rgb> pixels) {
     for (std::uint32_t x = 0; x < n; ++x) {

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace sdm::io {
+namespace sdm::atlas {
 
 /// How far, in texels, values extend beyond the charts at least: bilinear filtering needs 1, the rest is for
 /// smaller mip levels.
@@ -43,4 +43,4 @@ class Gutter {
   std::vector<std::uint8_t> close_;
 };
 
-}  // namespace sdm::io
+}  // namespace sdm::atlas

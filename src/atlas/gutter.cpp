@@ -1,4 +1,4 @@
-#include "io/image/pictures/gutter.h"
+#include "atlas/gutter.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 
-namespace sdm::io {
+namespace sdm::atlas {
 namespace {
 
 // All offsets within a disc, shortest first; of equal lengths, those along rows first.
@@ -60,4 +60,4 @@ std::uint32_t Gutter::search(std::uint32_t x, std::uint32_t y) const {
   return kNone;
 }
 
-}  // namespace sdm::io
+}  // namespace sdm::atlas

@@ -1,0 +1,58 @@
+/// Transfer: the values that O2 has at the closest points of O1's texels, such as its colours or
+/// temperatures.
+///
+/// Threads: the functions may be called concurrently, also with the same map.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/map.h>
+#include <sdm/progress.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace sdm {
+
+/// What an array over a mesh has a row for.
+enum class AttributeDomain : std::uint8_t {
+  vertex,  ///< each vertex; linear within faces
+  face,    ///< each face; constant within it
+  corner,  ///< each corner of each face, number 3 · face + corner; linear within faces
+};
+
+/// An array over the vertices, faces or corners of a mesh.
+struct AttributeArray {
+  std::span<const float> values;  ///< row after row
+  std::size_t components = 1;     ///< of a row
+  AttributeDomain domain = AttributeDomain::vertex;
+};
+
+/// Options of transfer().
+struct TransferOptions {
+  /// Whether the texels of no face get values too, so that filtering at the border of a chart does not blend
+  /// in a background: beside charts, within AtlasOptions::gutter or four texels, those of the nearest texel
+  /// that has one; elsewhere smooth ones.
+  bool fill = true;
+  Progress progress{};
+};
+
+/// Returns the values of the array, a row for each texel of the map, at the texel's closest point on O2: that
+/// of point_on_face() or, for maps along normals and of thickness, the end of the vector. Values are
+/// interpolated in double and stored in float. Texels that a face owns but that have no distance hold NaN; so
+/// do, unless they are filled, those that no face owns.
+///
+/// Of a point on an edge or a vertex, the face is any of those around it: values of faces and corners jump
+/// there. A value that is not finite makes those of the texels in its faces, and of the texels filled from
+/// them, not finite.
+///
+/// Throws sdm::Error if the array does not fit O2, the map is not one from the surface to the sites, or there
+/// is not enough memory; Cancelled. Cost: linear in texels, all cores.
+[[nodiscard]] SDM_API std::vector<float> transfer(const Surface& surface, const Sites& sites,
+                                                  const DistanceMap& map, const AttributeArray& array,
+                                                  const TransferOptions& options = {});
+
+}  // namespace sdm

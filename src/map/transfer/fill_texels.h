@@ -1,0 +1,24 @@
+// Values for the texels that no face owns.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace sdm::map {
+
+/// What a texel of an atlas has.
+enum class TexelState : std::uint8_t {
+  free,     ///< no face; gets a value
+  valued,   ///< a value, to be kept
+  missing,  ///< a face but no value; stays as it is
+};
+
+/// Sets the `components` values of each free texel: within `gutter` texels of valued ones to those of the
+/// nearest, elsewhere by push-pull (Gortler et al., The Lumigraph, 1996, 3.4): the means of ever larger
+/// squares, where smaller ones have nothing. `states`: whole rows of `resolution` texels. Nothing changes if
+/// no texel has a value. Cost: linear in texels, all cores, and a third of the memory of the values.
+void fill_free_texels(std::uint32_t resolution, std::span<const TexelState> states, std::uint32_t gutter,
+                      std::size_t components, std::span<float> values);
+
+}  // namespace sdm::map

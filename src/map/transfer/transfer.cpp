@@ -1,0 +1,150 @@
+#include <sdm/error.h>
+#include <sdm/transfer.h>
+
+#include <algorithm>
+#include <limits>
+#include <new>
+#include <string>
+
+#include "atlas/gutter.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "map/transfer/closest_of_texels.h"
+#include "map/transfer/fill_texels.h"
+
+namespace sdm {
+namespace {
+
+using map::ClosestOfTexels;
+using map::TexelState;
+
+std::size_t rows_of(const AttributeArray& array, const Mesh& mesh) {
+  switch (array.domain) {
+    case AttributeDomain::vertex:
+      return mesh.positions.size();
+    case AttributeDomain::face:
+      return mesh.triangles.size();
+    case AttributeDomain::corner:
+      return 3 * mesh.triangles.size();
+  }
+  return 0;
+}
+
+const char* name_of_rows(AttributeDomain domain) {
+  switch (domain) {
+    case AttributeDomain::vertex:
+      return "vertices";
+    case AttributeDomain::face:
+      return "faces";
+    case AttributeDomain::corner:
+      return "corners of faces";
+  }
+  return "";
+}
+
+void require_fitting(const AttributeArray& array, const Mesh& mesh) {
+  if (array.components == 0) throw Error("an array to transfer needs at least one component");
+  const std::size_t rows = rows_of(array, mesh);
+  if (array.values.size() / array.components != rows || array.values.size() % array.components != 0)
+    throw Error("an array of " + std::to_string(array.components) + " components for each of " +
+                std::to_string(rows) + " " + name_of_rows(array.domain) + " has " +
+                std::to_string(rows * array.components) + " values, not " +
+                std::to_string(array.values.size()));
+}
+
+/// Reads the values of points of faces.
+class Interpolation {
+ public:
+  Interpolation(const AttributeArray& array, const Mesh& mesh) : array_(array), mesh_(mesh) {}
+
+  /// Sets the components of `values`; N: their number, or 0 where it is not known at compile time.
+  template <std::size_t N>
+  void at(const SurfacePoint& point, float* values) const {
+    const std::size_t components = N == 0 ? array_.components : N;
+    if (array_.domain == AttributeDomain::face) {
+      std::copy_n(row(point.face, components), components, values);
+      return;
+    }
+    const bool by_corner = array_.domain == AttributeDomain::corner;
+    const Triangle& triangle = mesh_.triangles[point.face];
+    std::array<const float*, 3> rows;
+    for (std::size_t i = 0; i < 3; ++i)
+      rows[i] = row(by_corner ? 3 * std::size_t{point.face} + i : triangle[i], components);
+    const Vec3& w = point.barycentric;
+    for (std::size_t k = 0; k < components; ++k)
+      values[k] = static_cast<float>(w[0] * rows[0][k] + w[1] * rows[1][k] + w[2] * rows[2][k]);
+  }
+
+ private:
+  [[nodiscard]] const float* row(std::size_t i, std::size_t components) const {
+    return array_.values.data() + i * components;
+  }
+
+  const AttributeArray& array_;
+  const Mesh& mesh_;
+};
+
+/// A transfer in progress: the map and what its texels get.
+struct Texels {
+  const Surface& surface;
+  const Sites& sites;
+  const DistanceMap& map;
+  std::vector<TexelState> states;
+  std::vector<float> values;
+};
+
+template <std::size_t N>
+void read_values(const AttributeArray& array, const Progress& progress, Texels& texels) {
+  const std::uint32_t resolution = texels.map.resolution;
+  const auto faces = texels.surface.texel_faces();
+  const Interpolation interpolation(array, texels.sites.mesh());
+  constexpr std::size_t kRowsOfRange = 8;  // of a range
+  parallel_for(texels.map.rows(), kRowsOfRange, progress, "transfer",
+               [&](std::size_t begin, std::size_t end) {
+                 ClosestOfTexels points(texels.surface, texels.sites, texels.map);
+                 for (std::size_t i = begin * resolution; i < end * resolution; ++i) {
+                   float* const values = &texels.values[i * array.components];
+                   const SurfacePoint point =
+                       faces[i] == kNone ? SurfacePoint{} : points.at(static_cast<std::uint32_t>(i));
+                   if (point.face == kNone) {
+                     texels.states[i] = faces[i] == kNone ? TexelState::free : TexelState::missing;
+                     std::fill_n(values, array.components, std::numeric_limits<float>::quiet_NaN());
+                   } else {
+                     texels.states[i] = TexelState::valued;
+                     interpolation.at<N>(point, values);
+                   }
+                 }
+               });
+}
+
+}  // namespace
+
+std::vector<float> transfer(const Surface& surface, const Sites& sites, const DistanceMap& map,
+                            const AttributeArray& array, const TransferOptions& options) try {
+  require_fitting(array, sites.mesh());
+  if (map.distance.size() != surface.texel_faces().size() || map.resolution != surface.resolution())
+    throw Error("the map belongs to another surface: its number of texels differs");
+  Texels texels{surface, sites, map, std::vector<TexelState>(map.distance.size()),
+                std::vector<float>(map.distance.size() * array.components)};
+  switch (array.components) {
+    case 1:
+      read_values<1>(array, options.progress, texels);
+      break;
+    case 3:
+      read_values<3>(array, options.progress, texels);
+      break;
+    case 4:
+      read_values<4>(array, options.progress, texels);
+      break;
+    default:
+      read_values<0>(array, options.progress, texels);
+  }
+  if (options.fill)
+    map::fill_free_texels(map.resolution, texels.states, std::max(atlas::kGutter, surface.gutter()),
+                          array.components, texels.values);
+  return std::move(texels.values);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the values of a transfer");
+}
+
+}  // namespace sdm
