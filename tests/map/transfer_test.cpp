@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/oracle.h"
 #include "support/shapes.h"
@@ -109,6 +110,35 @@ TEST_F(Transfer, FollowsTheConstraintOfTheMap) {
       ASSERT_NEAR(values[3 * texel + k], query[k] + facing.vector[texel][k], 2e-6) << texel;
   }
   EXPECT_GT(compared, 500u);
+}
+
+// A part of a plate overhangs the other one, whose rim it is closest to: that edge belongs to the top, the
+// side and, nearly, to the bottom.
+TEST(TransferAtEdges, TakesTheFaceThatFacesTheSample) {
+  const auto plate = [](double half_side, double half_height) {
+    Mesh mesh = cube();
+    for (Vec3& p : mesh.positions) p = {half_side * p[0], half_side * p[1], half_height * p[2]};
+    return mesh;
+  };
+  const Surface surface(plate(1, 0.05), {.resolution = 128});
+  const Sites sites(plate(0.9, 0.04));
+  const auto height_of_normal = [](const Mesh& mesh, std::uint32_t face) {
+    const Triangle& t = mesh.triangles[face];
+    const Vec3& a = mesh.positions[t[0]];
+    return normalized(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a))[2];
+  };
+  std::vector<float> heights;
+  for (std::uint32_t f = 0; f < sites.mesh().triangles.size(); ++f)
+    heights.push_back(static_cast<float>(height_of_normal(sites.mesh(), f)));
+  const DistanceMap map = compute_map(surface, sites, {.facing = 60});
+  const auto values = transfer(surface, sites, map, {heights, 1, AttributeDomain::face}, {.fill = false});
+  std::size_t at_edges = 0;
+  for (const std::uint32_t texel : surface.sample_texels()) {
+    ASSERT_EQ(values[texel],
+              static_cast<float>(height_of_normal(surface.mesh(), surface.texel_faces()[texel])));
+    at_edges += map.site_type[texel] != SiteType::face;
+  }
+  EXPECT_GT(at_edges, 500u);
 }
 
 TEST_F(Transfer, FillsAllTexelsOfNoFaceAndNoOther) {

@@ -2,15 +2,19 @@
 #include <sdm/transfer.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <new>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "atlas/gutter.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "map/transfer/closest_of_texels.h"
 #include "map/transfer/fill_texels.h"
+#include "query/facing/outward_normals.h"
 
 namespace sdm {
 namespace {
@@ -89,6 +93,7 @@ struct Texels {
   const Surface& surface;
   const Sites& sites;
   const DistanceMap& map;
+  std::vector<Vec3> normals;  ///< of O1's faces, if the map is of faces that face them
   std::vector<TexelState> states;
   std::vector<float> values;
 };
@@ -101,7 +106,7 @@ void read_values(const AttributeArray& array, const Progress& progress, Texels& 
   constexpr std::size_t kRowsOfRange = 8;  // of a range
   parallel_for(texels.map.rows(), kRowsOfRange, progress, "transfer",
                [&](std::size_t begin, std::size_t end) {
-                 ClosestOfTexels points(texels.surface, texels.sites, texels.map);
+                 ClosestOfTexels points(texels.surface, texels.sites, texels.map, texels.normals);
                  for (std::size_t i = begin * resolution; i < end * resolution; ++i) {
                    float* const values = &texels.values[i * array.components];
                    const SurfacePoint point =
@@ -124,7 +129,12 @@ std::vector<float> transfer(const Surface& surface, const Sites& sites, const Di
   require_fitting(array, sites.mesh());
   if (map.distance.size() != surface.texel_faces().size() || map.resolution != surface.resolution())
     throw Error("the map belongs to another surface: its number of texels differs");
-  Texels texels{surface, sites, map, std::vector<TexelState>(map.distance.size()),
+  const bool facing = map.measured.kind == DistanceKind::facing;
+  Texels texels{surface,
+                sites,
+                map,
+                facing ? facing::outward_normals(surface.mesh()) : std::vector<Vec3>(),
+                std::vector<TexelState>(map.distance.size()),
                 std::vector<float>(map.distance.size() * array.components)};
   switch (array.components) {
     case 1:
