@@ -183,6 +183,45 @@ class DistanceMap(_core.MapChannels):
         """
         return self._core.places(tolerance, names, tolerance_table, progress)
 
+    def transfer(
+        self,
+        values: "np.typing.ArrayLike",
+        domain: str = "vertex",
+        *,
+        fill: bool = True,
+        progress: "Progress | None" = None,
+    ) -> np.ndarray:
+        """Returns what O2 has at the closest point of each texel, such as its colours: (H, W, ...) float32.
+
+        values: real numbers, a row for each vertex of O2, each face, or each corner of each face, then of shape
+        (faces, 3, ...); further axes are components. domain: 'vertex', 'face' or 'corner', what the rows are of. Values of
+        vertices and corners are linear within faces. fill: whether the texels of no face get values too: beside charts
+        those of the nearest texel, elsewhere smooth ones, so that a texture can be filtered. Texels of a face without a
+        distance hold NaN. Colours are to be given in linear light.
+
+        On an edge or a vertex, the face is any of those around it, or with ``facing`` one that faces the sample. Raises
+        Error if the surface or the sites have been refitted, and for an array of another shape; Cancelled. Cost: linear in
+        texels, all cores.
+
+        >>> m = sdm.map(sphere, box, resolution=64)
+        >>> heights = m.transfer(sdm.Mesh(box).vertices[:, 2])
+        >>> heights.shape, bool(np.all(np.abs(heights) <= 1.0001))
+        ((64, 64), True)
+        """
+        array = np.asarray(values)
+        if np.ma.isMaskedArray(values) or array.dtype.kind not in "biuf":
+            raise TypeError(f"values must be an array of real numbers, without a mask, not {array.dtype}")
+        axes = 2 if domain == "corner" else 1
+        if array.ndim < axes or (domain == "corner" and array.shape[1] != 3):
+            raise Error(
+                f"values of domain '{domain}' have the shape {'(faces, 3, ...)' if axes == 2 else '(rows, ...)'}, "
+                f"not {array.shape}"
+            )
+        components = array.shape[axes:]
+        rows = np.ascontiguousarray(array, np.float32).reshape(int(np.prod(array.shape[:axes])), -1 if array.size else 0)
+        filled = self._core.transfer(rows, domain, fill, progress)
+        return filled.reshape(*filled.shape[:2], *components)
+
     def free_distances(self) -> np.ndarray:
         """Returns, for each texel, a radius within which there is no point of O2, (H, W) float64; 0 without a value.
 

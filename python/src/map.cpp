@@ -167,6 +167,7 @@ void bind_map(nb::module_& module) {
   bind_map_groups(map_class);
   bind_map_files(module, map_class);
   bind_map_rays(map_class);
+  bind_map_transfer(map_class);
   bind_channels(module);
   bind_other_maps(module);
 

@@ -106,5 +106,6 @@ void bind_channels(nb::module_& module);
 void bind_other_maps(nb::module_& module);
 void bind_map_numbers(nb::module_& module, nb::class_<PyMap>& map);
 void bind_map_files(nb::module_& module, nb::class_<PyMap>& map);
+void bind_map_transfer(nb::class_<PyMap>& map);
 
 }  // namespace sdm::python

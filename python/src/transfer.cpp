@@ -1,0 +1,45 @@
+// The compiled part of DistanceMap.transfer().
+#include <sdm/transfer.h>
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "map.h"
+#include "run.h"
+
+namespace sdm::python {
+namespace {
+
+AttributeDomain domain_of(std::string_view name) {
+  if (name == "vertex") return AttributeDomain::vertex;
+  if (name == "face") return AttributeDomain::face;
+  if (name == "corner") return AttributeDomain::corner;
+  throw Error("domain must be 'vertex', 'face' or 'corner', not '" + std::string(name) + "'");
+}
+
+using Rows = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+nb::object transferred(const PyMap& self, const Rows& rows, const char* domain, bool fill,
+                       nb::handle progress) {
+  const auto lock = self.use_surface();
+  const auto sites_lock = self.use_sites();
+  const AttributeArray array{
+      .values = {rows.data(), rows.size()}, .components = rows.shape(1), .domain = domain_of(domain)};
+  std::vector<float> values;
+  run(progress, [&](const Progress& report) {
+    values = transfer(self.on->surface, self.to->sites, self.map, array, {.fill = fill, .progress = report});
+  });
+  return array_of<float>(std::move(values), {self.rows(), self.map.resolution, array.components});
+}
+
+}  // namespace
+
+void bind_map_transfer(nb::class_<PyMap>& map) {
+  map.def("transfer", &transferred, nb::arg("values"), nb::arg("domain"), nb::arg("fill"),
+          nb::arg("progress").none(),
+          nb::sig("def transfer(self, values: numpy.ndarray, domain: str, fill: bool, progress: object) -> "
+                  "numpy.ndarray"));
+}
+
+}  // namespace sdm::python
