@@ -9,6 +9,7 @@
 #include <sdm/group_verdicts.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
+#include <sdm/mesh_attributes.h>
 #include <sdm/part_statistics.h>
 #include <sdm/statistics.h>
 #include <sdm/summary.h>
@@ -57,12 +58,14 @@ struct MeshFile {
   std::optional<FileVertices> vertices{};
   std::optional<Tessellation> tessellation{};  ///< of STEP and IGES
   std::string xxh3{};                          ///< as of file_xxh3()
+  std::vector<MeshAttribute> attributes{};     ///< of glTF, OBJ and PLY
 };
 
 /// Options of read_mesh_file().
 struct MeshFileOptions {
   bool vertices = false;  ///< keep the vertices of the file: up to six times the memory of the mesh for STL
   TessellationOptions tessellation{};  ///< of STEP and IGES; other files consist of polygons
+  bool attributes = false;             ///< read MeshFile::attributes
 };
 
 /// Reads a mesh as read_mesh() does, with the names of its faces.

@@ -26,6 +26,7 @@
 #include <sdm/islands.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
+#include <sdm/mesh_attributes.h>
 #include <sdm/mesh_edit.h>
 #include <sdm/metrics.h>
 #include <sdm/multi_body_query.h>

@@ -5,6 +5,10 @@
 #include <sdm/islands.h>
 #include <sdm/weld.h>
 
+#include <algorithm>
+#include <limits>
+#include <vector>
+
 #include "arrays.h"
 #include "objects.h"
 
@@ -96,6 +100,52 @@ array([2., 1., 1.]))")
         return nb::str("sdm.Mesh({} vertices, {} faces)")
             .format(self.mesh.positions.size(), self.mesh.triangles.size());
       });
+}
+
+// A row for each corner of each face, as transfer() takes them.
+nb::object corner_values(const MeshAttribute& attribute) {
+  const std::size_t n = attribute.components;
+  std::vector<float> values(3 * attribute.rows->size() * n, std::numeric_limits<float>::quiet_NaN());
+  float* to = values.data();
+  for (const Triangle& rows : *attribute.rows)
+    for (const std::uint32_t row : rows) {
+      if (row != kNone) std::copy_n(&attribute.values[row * n], n, to);
+      to += n;
+    }
+  if (n == 1) return array_of<float>(std::move(values), {attribute.rows->size(), 3});
+  return array_of<float>(std::move(values), {attribute.rows->size(), 3, n});
+}
+
+void bind_attributes(nb::module_& module) {
+  module.def(
+      "read_attributes",
+      [](nb::handle file) {
+        const std::filesystem::path name = path_of(file);
+        MeshFile read;
+        run(nb::none(), [&](const Progress&) { read = read_mesh_file(name, {.attributes = true}); });
+        nb::dict result;
+        for (MeshAttribute& attribute : read.attributes) {
+          result[attribute.name.c_str()] = corner_values(attribute);
+          attribute = {};
+        }
+        return result;
+      },
+      nb::arg("file").none(),
+      nb::sig("def read_attributes(file: str | os.PathLike[str]) -> dict[str, numpy.ndarray]"),
+      R"(Returns what a mesh file has at the corners of the faces of read(), besides positions and texture
+coordinates, by name: (faces, 3, components) float32, or (faces, 3) for one component; NaN where it has nothing.
+
+``normal``: as in the file, moved as the faces are. ``color``: three or four components from 0 to 1 in linear light.
+``uv1``, ``uv2``, ...: further texture coordinates of glTF. Other numbers of PLY and glTF by their names; of faces,
+where vertices have numbers of that name too, as ``face_...``. From OBJ, PLY, glTF and GLB; empty for other formats.
+The values are constant within faces where the file has one for each face. DistanceMap.transfer(values, 'corner')
+takes them. Raises Error, naming the file and the fault.
+
+>>> sdm.read_attributes('no such file.ply')
+Traceback (most recent call last):
+    ...
+sdm.Error: ...
+)");
 }
 
 void bind_weld(nb::module_& module) {
@@ -259,6 +309,7 @@ Traceback (most recent call last):
     ...
 sdm.Error: ...
 )");
+  bind_attributes(module);
   bind_weld(module);
   bind_convex_hull(module);
   bind_islands(module);

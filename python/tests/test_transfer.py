@@ -69,3 +69,38 @@ def test_is_refused_for_another_shape():
     surface.refit(np.asarray(meshes.sphere()[0]) * 2)
     with pytest.raises(sdm.Error, match="refitted"):
         m.transfer(np.zeros(8))
+
+
+def write_ply(path, vertices, faces, colors):
+    rows = "\n".join(" ".join(map(str, [*v, *c])) for v, c in zip(vertices, colors, strict=True))
+    polygons = "\n".join(" ".join(map(str, [3, *f])) for f in faces)
+    names = "".join(f"property double {n}\n" for n in "xyz") + "".join(
+        f"property uchar {n}\n" for n in ("red", "green", "blue")
+    )
+    path.write_text(
+        f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\n{names}element face {len(faces)}\n"
+        f"property list uchar int vertex_indices\nend_header\n{rows}\n{polygons}\n"
+    )
+
+
+def test_colours_of_a_file_are_transferred(tmp_path):
+    vertices, faces = meshes.box()
+    colors = (255 * np.asarray(vertices)).astype(int)  # red along x, and so on: linear only at its ends
+    file = tmp_path / "box.ply"
+    write_ply(file, vertices, faces, colors)
+    attributes = sdm.read_attributes(file)
+    assert list(attributes) == ["color"]
+    color = attributes["color"]
+    mesh = sdm.read(file)
+    assert color.shape == (len(mesh.faces), 3, 3) and color.dtype == np.float32
+    np.testing.assert_array_equal(color, mesh.vertices[mesh.faces])
+    m = sdm.map(meshes.sphere(), mesh, resolution=64)
+    found = m.transfer(color, "corner")
+    np.testing.assert_allclose(found[m.valid], np.clip((m.position + m.vector)[m.valid], 0, 1), atol=1e-5)
+
+
+def test_files_without_attributes_have_none(tmp_path):
+    (tmp_path / "a.off").write_text("OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+    assert sdm.read_attributes(tmp_path / "a.off") == {}
+    with pytest.raises(sdm.Error, match="b.ply"):
+        sdm.read_attributes(tmp_path / "b.ply")

@@ -42,6 +42,23 @@ void read_sequence(const std::filesystem::path& file) {
     require(sequence.positions(frame).size() == sequence.mesh().positions.size(), "frames of unequal size");
 }
 
+bool is_mesh(const std::filesystem::path& file) {
+  constexpr std::array kExtensions{".ply", ".obj", ".gltf", ".glb"};
+  return std::ranges::count(kExtensions, file.extension()) > 0;
+}
+
+void read_attributes(const std::filesystem::path& file) {
+  const MeshFile read = read_mesh_file(file, {.attributes = true});
+  for (const MeshAttribute& attribute : read.attributes) {
+    require(!attribute.name.empty() && attribute.components > 0, "an attribute without a name or numbers");
+    require(attribute.values.size() % attribute.components == 0, "an incomplete row");
+    require(attribute.rows->size() == read.mesh.triangles.size(), "rows of other faces");
+    for (const Triangle& rows : *attribute.rows)
+      for (const std::uint32_t row : rows)
+        require(row == kNone || row < attribute.values.size() / attribute.components, "no such row");
+  }
+}
+
 // NaN equals NaN.
 bool same(const Vec3& a, const Vec3& b) {
   return std::equal(a.begin(), a.end(), b.begin(),
@@ -95,6 +112,7 @@ bool try_read(const std::filesystem::path& file) {
       read_transform(file);
     else
       read_sequence(file);
+    if (is_mesh(file)) read_attributes(file);
     return true;
   } catch (const Error& fault) {
     const std::string message = fault.what();

@@ -215,6 +215,36 @@ TEST_F(Transfer, RefusesWhatDoesNotFit) {
             "the map belongs to another surface: its number of texels differs");
 }
 
+TEST_F(Transfer, CornersMayShareRows) {
+  std::vector<float> by_corner_values;
+  for (const Triangle& t : target.triangles)
+    for (const std::uint32_t v : t) by_corner_values.push_back(positions[3 * v]);
+  std::vector<float> of_vertices;
+  for (std::size_t v = 0; v < target.positions.size(); ++v) of_vertices.push_back(positions[3 * v]);
+  std::vector<Triangle> rows = target.triangles;
+  const auto own = moved({by_corner_values, 1, AttributeDomain::corner});
+  const auto shared = moved({of_vertices, 1, AttributeDomain::corner, rows});
+  rows[map.site[*std::ranges::find_if(
+      surface.sample_texels(), [&](auto t) { return map.site_type[t] == SiteType::face; })]][1] = kNone;
+  const auto with_gap = moved({of_vertices, 1, AttributeDomain::corner, rows});
+  std::size_t in_gap = 0;
+  for (const std::uint32_t texel : surface.sample_texels()) {
+    if (map.site_type[texel] == SiteType::none) continue;
+    ASSERT_EQ(own[texel], shared[texel]);
+    ASSERT_TRUE(std::isnan(with_gap[texel]) || with_gap[texel] == shared[texel]);
+    in_gap += std::isnan(with_gap[texel]);
+  }
+  EXPECT_GT(in_gap, 0u);
+  EXPECT_EQ(error_of([&] {
+              (void)moved({of_vertices, 1, AttributeDomain::vertex, rows});
+            }),
+            "rows of an array to transfer must be those of the corners of each face");
+  EXPECT_EQ(error_of([&] {
+              (void)moved({std::span(of_vertices).first(2), 1, AttributeDomain::corner, rows});
+            }),
+            "an array to transfer has 2 rows, but a corner refers to row 11");
+}
+
 TEST_F(Transfer, IsCancelled) {
   EXPECT_THROW((void)transfer(surface, sites, map, {positions, 3},
                               {.progress = [](std::string_view, double) { return false; }}),

@@ -13,13 +13,13 @@ namespace sdm::io {
 
 /// Reads Wavefront OBJ: v, vt and f statements (polygons; indices are relative or count from 1), and names of
 /// faces by o, g and usemtl. Texture coordinates of an index out of range are left out, all of them, with a
-/// note. All other statements are skipped.
-[[nodiscard]] PolygonMesh read_obj(std::string_view text);
+/// note. `attributes`: also vn and colours after the coordinates of v. All other statements are skipped.
+[[nodiscard]] PolygonMesh read_obj(std::string_view text, bool attributes = false);
 
 /// Reads PLY, as text or binary of either byte order: the elements vertex (x, y, z, texture coordinates),
-/// face (vertex_indices, texcoord) and tristrips. All other elements and properties are skipped. Names of
-/// properties may be in upper case.
-[[nodiscard]] PolygonMesh read_ply(std::string_view bytes);
+/// face (vertex_indices, texcoord) and tristrips; `attributes`: all other numbers of vertices and faces,
+/// lists excepted. All other elements and properties are skipped. Names of properties may be in upper case.
+[[nodiscard]] PolygonMesh read_ply(std::string_view bytes, bool attributes = false);
 
 /// Reads STL, as text or binary; the solids of text are objects. Normals and attributes are skipped. Text is
 /// read by words, wherever its lines end; endsolid may be missing, with a note. A count in a binary header
@@ -36,8 +36,10 @@ namespace sdm::io {
 [[nodiscard]] bool is_off_header(std::string_view word);
 
 /// Reads glTF 2.0, as JSON or GLB: the triangles of all meshes of the default scene, in scene coordinates.
-/// External buffers are looked up relative to `file`.
-[[nodiscard]] PolygonMesh read_gltf(std::string_view bytes, const std::filesystem::path& file);
+/// External buffers are looked up relative to `file`. `attributes`: also those of vertices, tangents, joints
+/// and weights excepted.
+[[nodiscard]] PolygonMesh read_gltf(std::string_view bytes, const std::filesystem::path& file,
+                                    bool attributes = false);
 
 /// Reads Autodesk 3DS: all meshes, in the coordinates of the scene, as they are stored.
 [[nodiscard]] PolygonMesh read_3ds(std::string_view bytes);

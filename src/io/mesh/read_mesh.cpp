@@ -7,6 +7,7 @@
 #include "core/checksum.h"
 #include "core/memory.h"
 #include "io/file/file_bytes.h"
+#include "io/mesh/mesh_attributes.h"
 #include "io/mesh/read_polygons.h"
 
 namespace sdm {
@@ -46,14 +47,17 @@ Mesh read_mesh(const std::filesystem::path& file) try {
 MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions& options) try {
   return io::with_error_prefix(file.string(), [&] {
     io::FileBytes bytes = io::read_bytes(file);
-    io::PolygonMesh polygons = io::read_polygons(bytes.view(), file, options.tessellation);
+    io::PolygonMesh polygons =
+        io::read_polygons(bytes.view(), file, {options.tessellation, options.attributes});
     core::Checksum checksum;
     checksum.add(std::span<const char>(bytes.view()));
     bytes = {};  // their memory is needed below
     std::vector<std::uint32_t> renumbered, triangle_ends;
-    MeshFile result{.mesh = io::to_mesh(polygons, renumbered, triangle_ends),
-                    .names = {},
-                    .notes = std::move(polygons.notes)};
+    std::vector<Triangle> places;
+    MeshFile result{
+        .mesh = io::to_mesh(polygons, renumbered, triangle_ends, options.attributes ? &places : nullptr),
+        .names = {},
+        .notes = std::move(polygons.notes)};
     if (std::string fault = io::uv_fault(polygons); !fault.empty()) result.notes.push_back(std::move(fault));
     validate(result.mesh);
     add_names("object", polygons.objects, triangle_ends, result.names);
@@ -61,6 +65,7 @@ MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions
     add_names("material", polygons.materials, triangle_ends, result.names);
     add_names("face", polygons.faces, triangle_ends, result.names);
     add_names("color", polygons.colors, triangle_ends, result.names);
+    result.attributes = io::to_attributes(polygons, places, triangle_ends, result.notes);
     result.tessellation = std::move(polygons.tessellation);
     result.xxh3 = core::hex_text(checksum.value());
     if (options.vertices)

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
 
+#include <array>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -30,7 +32,10 @@ std::uint32_t index_of(std::int64_t i, std::size_t count) {
 
 class ObjReader {
  public:
-  explicit ObjReader(std::string_view text) : in_(text) {}
+  ObjReader(std::string_view text, bool attributes) : in_(text), with_attributes_(attributes) {
+    normals_ = {.name = "normal", .components = 3, .domain = PolygonDomain::corner, .values = {}, .rows = {}};
+    colors_ = {.name = "color", .components = 3, .domain = PolygonDomain::vertex, .values = {}, .rows = {}};
+  }
 
   PolygonMesh read() {
     for (; !in_.at_end(); in_.skip_line()) {
@@ -39,6 +44,8 @@ class ObjReader {
         read_position();
       else if (in_.accept("vt"))
         read_uv();
+      else if (with_attributes_ && in_.accept("vn"))
+        read_normal();
       else if (in_.accept("f"))
         read_face();
       else if (in_.accept("usemtl"))
@@ -60,6 +67,7 @@ class ObjReader {
                               std::size_t{highest_vertex_.index} + 1, mesh_.positions.size()));
     check_uvs();
     check_other_statements();
+    add_attributes();
     return std::move(mesh_);
   }
 
@@ -67,6 +75,22 @@ class ObjReader {
   void read_position() {
     const double x = in_.number(), y = in_.number(), z = in_.number();
     mesh_.positions.push_back({x, y, z});
+    if (with_attributes_) read_color();
+  }
+  // Three numbers after the coordinates; a single one is a weight. The convention of many programs: sRGB.
+  void read_color() {
+    std::array<float, 3> color{};
+    std::size_t count = 0;
+    for (; in_.more_on_line(); ++count) {
+      const auto x = static_cast<float>(in_.number());
+      if (count < 3) color[count] = linear_light(x);
+    }
+    has_colors_ |= count == 3;
+    if (count != 3) color.fill(std::numeric_limits<float>::quiet_NaN());
+    colors_.values.insert(colors_.values.end(), color.begin(), color.end());
+  }
+  void read_normal() {
+    for (int k = 0; k < 3; ++k) normals_.values.push_back(static_cast<float>(in_.number()));
   }
   void read_uv() {
     const double u = in_.number();
@@ -76,17 +100,19 @@ class ObjReader {
   void read_face() {
     while (in_.more_on_line()) {
       mesh_.corners.push_back(read_vertex_index());
-      std::uint32_t uv = kNone;
+      std::uint32_t uv = kNone, normal = kNone;
       if (in_.accept('/')) {
         if (in_.in_word() && !in_.accept('/')) {
           uv = read_uv_index();
           in_.accept('/');
         }
-        if (in_.in_word()) in_.integer();
+        if (in_.in_word()) normal = index_of(in_.integer(), normals_.count());
       }
       mesh_.corner_uvs.push_back(uv);
+      if (with_attributes_) normals_.rows.push_back(normal);
     }
     mesh_.end_polygon();
+    if (with_attributes_) normals_.rows.resize(mesh_.corners.size());  // without those of a dropped polygon
   }
   std::uint32_t read_vertex_index() {
     const char* at = in_.position();
@@ -118,6 +144,13 @@ class ObjReader {
                     in_.line_of(impossible_uv_->second), impossible_uv_->first, mesh_.uvs.size()));
     mesh_.uvs.clear(), mesh_.corner_uvs.clear();
   }
+  // Normals may follow the faces that refer to them; what does not exist is left out.
+  void add_attributes() {
+    for (std::uint32_t& row : normals_.rows)
+      if (row >= normals_.count()) row = kNone;
+    if (!normals_.values.empty()) mesh_.attributes.push_back(std::move(normals_));
+    if (has_colors_) mesh_.attributes.push_back(std::move(colors_));
+  }
   void check_other_statements() {
     if (mesh_.ends.empty()) {
       if (curves_ + surfaces_ > 0)
@@ -140,6 +173,8 @@ class ObjReader {
 
   TextScanner in_;
   PolygonMesh mesh_;
+  bool with_attributes_, has_colors_ = false;
+  PolygonAttribute normals_, colors_;
   HighestIndex highest_vertex_, highest_uv_;
   std::optional<std::pair<std::int64_t, const char*>> impossible_uv_;  // the first one and its position
   std::size_t lines_ = 0, curves_ = 0, surfaces_ = 0;                  // statements
@@ -147,8 +182,8 @@ class ObjReader {
 
 }  // namespace
 
-PolygonMesh read_obj(std::string_view text) {
-  return ObjReader(text).read();
+PolygonMesh read_obj(std::string_view text, bool attributes) {
+  return ObjReader(text, attributes).read();
 }
 
 }  // namespace sdm::io

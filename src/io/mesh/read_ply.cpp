@@ -8,6 +8,7 @@
 #include "io/file/byte_scanner.h"
 #include "io/file/text_scanner.h"
 #include "io/mesh/formats.h"
+#include "io/mesh/ply_attributes.h"
 #include "io/mesh/ply_header.h"
 
 namespace sdm::io {
@@ -58,7 +59,8 @@ class BinarySource {
 template <typename Source>
 class PlyReader {
  public:
-  PlyReader(const PlyHeader& header, Source source) : header_(header), in_(source) {}
+  PlyReader(const PlyHeader& header, Source source, bool attributes)
+      : header_(header), in_(source), with_attributes_(attributes) {}
 
   PolygonMesh read() {
     for (const Element& element : header_.elements) {
@@ -81,6 +83,8 @@ class PlyReader {
       mesh_.uvs = std::move(vertex_uvs_);
       mesh_.corner_uvs = mesh_.uvs.empty() ? std::vector<std::uint32_t>{} : mesh_.corners;
     }
+    mesh_.attributes = of_vertices_.take();
+    add_face_attributes(mesh_.attributes, of_faces_.take());
     return std::move(mesh_);
   }
 
@@ -131,11 +135,17 @@ class PlyReader {
     const auto u = element.find({"s", "u", "texture_u", "texture_s"});
     const auto v = element.find({"t", "v", "texture_v", "texture_t"});
     const bool has_uvs = u && v && !element.properties[*u].count_type && !element.properties[*v].count_type;
+    if (with_attributes_) {
+      std::vector<std::size_t> others(place.begin(), place.end());
+      if (has_uvs) others.insert(others.end(), {*u, *v});
+      of_vertices_ = PlyAttributes(element, PolygonDomain::vertex, std::move(others));
+    }
     mesh_.positions.reserve(element.count);
     for (std::size_t row = 0; row < element.count; ++row) {
       read_row(element, row);
       mesh_.positions.push_back({scalars_[place[0]], scalars_[place[1]], scalars_[place[2]]});
       if (has_uvs) vertex_uvs_.push_back({scalars_[*u], scalars_[*v]});
+      of_vertices_.add(scalars_);
     }
   }
 
@@ -150,6 +160,7 @@ class PlyReader {
     const std::size_t indices = list_place(element, {"vertex_indices", "vertex_index"});
     const auto texcoord = element.find({"texcoord"});
     const bool has_texcoords = texcoord && element.properties[*texcoord].count_type;
+    if (with_attributes_) of_faces_ = PlyAttributes(element, PolygonDomain::polygon, {});
     mesh_.ends.reserve(element.count);
     mesh_.corners.reserve(3 * element.count);
     for (std::size_t row = 0; row < element.count; ++row) {
@@ -163,7 +174,9 @@ class PlyReader {
           mesh_.uvs.push_back({uv[2 * k], uv[2 * k + 1]});
         }
       }
+      const std::size_t before = mesh_.ends.size();
       mesh_.end_polygon();
+      if (mesh_.ends.size() > before) of_faces_.add(scalars_);
     }
   }
 
@@ -201,6 +214,8 @@ class PlyReader {
   Source in_;
   Poll due_{4096};  // rows
   PolygonMesh mesh_;
+  bool with_attributes_;
+  PlyAttributes of_vertices_, of_faces_;
   std::vector<Vec2> vertex_uvs_;
   std::vector<double> scalars_;
   std::vector<std::vector<double>> lists_;
@@ -208,18 +223,18 @@ class PlyReader {
 
 }  // namespace
 
-PolygonMesh read_ply(std::string_view bytes) {
+PolygonMesh read_ply(std::string_view bytes, bool attributes) {
   const PlyHeader header = parse_ply_header(bytes);
   const std::string_view data = bytes.substr(header.size);
   switch (header.encoding) {
     case PlyHeader::Encoding::text:
-      return PlyReader(header, TextSource(TextScanner(bytes, header.size))).read();
+      return PlyReader(header, TextSource(TextScanner(bytes, header.size)), attributes).read();
     case PlyHeader::Encoding::little_endian:
-      return PlyReader(header, BinarySource(data, std::endian::little)).read();
+      return PlyReader(header, BinarySource(data, std::endian::little), attributes).read();
     case PlyHeader::Encoding::big_endian:
       break;
   }
-  return PlyReader(header, BinarySource(data, std::endian::big)).read();
+  return PlyReader(header, BinarySource(data, std::endian::big), attributes).read();
 }
 
 }  // namespace sdm::io

@@ -42,13 +42,19 @@ PolygonMesh read_stl(std::string_view bytes) {
   return is_stl_binary(bytes) || !is_text(bytes) ? read_stl_binary(bytes) : read_stl_text(bytes);
 }
 
+template <auto Read>
+PolygonMesh read_by_module(std::string_view bytes, const std::filesystem::path& file,
+                           const PolygonOptions& options) {
+  return Read(bytes, file, options.tessellation);
+}
+
 struct Format {
   std::string_view names;                      ///< for messages
   std::array<std::string_view, 2> extensions;  ///< in lower case
   bool text_only;
   bool (*matches)(const Content& content);
   PolygonMesh (*read)(std::string_view bytes, const std::filesystem::path& file,
-                      const TessellationOptions& options);
+                      const PolygonOptions& options);
 };
 
 // The table of formats. The first that matches the content is taken, else the one with the extension.
@@ -57,9 +63,19 @@ constexpr Format kFormats[] = {
      {".gltf", ".glb"},
      false,
      [](const Content& c) { return c.bytes.starts_with("glTF") || c.first_word.starts_with('{'); },
-     [](std::string_view bytes, const auto& file, const auto&) { return read_gltf(bytes, file); }},
-    {"STEP", {".step", ".stp"}, true, [](const Content& c) { return is_step(c.bytes); }, read_step},
-    {"IGES", {".iges", ".igs"}, true, [](const Content& c) { return is_iges(c.bytes); }, read_iges},
+     [](std::string_view bytes, const auto& file, const auto& options) {
+       return read_gltf(bytes, file, options.attributes);
+     }},
+    {"STEP",
+     {".step", ".stp"},
+     true,
+     [](const Content& c) { return is_step(c.bytes); },
+     read_by_module<read_step>},
+    {"IGES",
+     {".iges", ".igs"},
+     true,
+     [](const Content& c) { return is_iges(c.bytes); },
+     read_by_module<read_iges>},
     {"STL",
      {".stl"},
      false,
@@ -69,7 +85,9 @@ constexpr Format kFormats[] = {
      {".ply"},
      false,
      [](const Content& c) { return TextScanner(c.bytes).accept("ply"); },
-     [](std::string_view bytes, const auto&, const auto&) { return read_ply(bytes); }},
+     [](std::string_view bytes, const auto&, const auto& options) {
+       return read_ply(bytes, options.attributes);
+     }},
     {"OFF",
      {".off"},
      true,
@@ -79,7 +97,9 @@ constexpr Format kFormats[] = {
      {".obj"},
      true,
      is_obj,
-     [](std::string_view bytes, const auto&, const auto&) { return read_obj(bytes); }},
+     [](std::string_view bytes, const auto&, const auto& options) {
+       return read_obj(bytes, options.attributes);
+     }},
     {"3DS",
      {".3ds"},
      false,
@@ -126,7 +146,7 @@ std::string_view mesh_format_of(std::string_view begin) {
 }
 
 PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file,
-                          const TessellationOptions& options) {
+                          const PolygonOptions& options) {
   const Content content(without_byte_order_mark(bytes));
   const Format* format = find_format(content, file);
   if (format == nullptr) throw Error(fmt::format("unknown format; {} are supported", mesh_format_names()));

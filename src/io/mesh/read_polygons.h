@@ -24,9 +24,15 @@ namespace sdm::io {
 /// none. Binary STL is recognised by all of its bytes only.
 [[nodiscard]] std::string_view mesh_format_of(std::string_view begin);
 
+/// What is read of a mesh file.
+struct PolygonOptions {
+  TessellationOptions tessellation{};  ///< of CAD
+  bool attributes = false;             ///< PolygonMesh::attributes
+};
+
 /// Reads the contents of a mesh file. Throws sdm::Error; the message does not name the file.
 [[nodiscard]] PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file,
-                                        const TessellationOptions& options = {});
+                                        const PolygonOptions& options = {});
 
 /// Calls `read`. If it throws sdm::Error or runs out of memory, throws an sdm::Error whose message begins
 /// with `name`, unless that is empty. It is printable(), whatever the file contains.

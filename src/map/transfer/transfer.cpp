@@ -48,6 +48,17 @@ const char* name_of_rows(AttributeDomain domain) {
 
 void require_fitting(const AttributeArray& array, const Mesh& mesh) {
   if (array.components == 0) throw Error("an array to transfer needs at least one component");
+  if (!array.rows.empty()) {
+    if (array.domain != AttributeDomain::corner || array.rows.size() != mesh.triangles.size())
+      throw Error("rows of an array to transfer must be those of the corners of each face");
+    const std::size_t count = array.values.size() / array.components;
+    for (const Triangle& of_face : array.rows)
+      for (const std::uint32_t row : of_face)
+        if (row != kNone && row >= count)
+          throw Error("an array to transfer has " + std::to_string(count) +
+                      " rows, but a corner refers to row " + std::to_string(row));
+    return;
+  }
   const std::size_t rows = rows_of(array, mesh);
   if (array.values.size() / array.components != rows || array.values.size() % array.components != 0)
     throw Error("an array of " + std::to_string(array.components) + " components for each of " +
@@ -72,8 +83,16 @@ class Interpolation {
     const bool by_corner = array_.domain == AttributeDomain::corner;
     const Triangle& triangle = mesh_.triangles[point.face];
     std::array<const float*, 3> rows;
-    for (std::size_t i = 0; i < 3; ++i)
-      rows[i] = row(by_corner ? 3 * std::size_t{point.face} + i : triangle[i], components);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t number = !by_corner            ? triangle[i]
+                                 : array_.rows.empty() ? 3 * std::size_t{point.face} + i
+                                                       : array_.rows[point.face][i];
+      if (number == kNone) {
+        std::fill_n(values, components, std::numeric_limits<float>::quiet_NaN());
+        return;
+      }
+      rows[i] = row(number, components);
+    }
     const Vec3& w = point.barycentric;
     for (std::size_t k = 0; k < components; ++k)
       values[k] = static_cast<float>(w[0] * rows[0][k] + w[1] * rows[1][k] + w[2] * rows[2][k]);

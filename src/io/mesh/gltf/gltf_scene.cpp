@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "io/mesh/gltf/gltf_attributes.h"
 #include "io/mesh/gltf/gltf_extensions.h"
 #include "io/mesh/gltf/gltf_morph.h"
 #include "io/mesh/gltf/gltf_rows.h"
@@ -175,19 +176,27 @@ bool has_triangles(const GltfDocument& document, const json& primitive) {
 }
 
 PolygonMesh read_gltf_scene(const GltfDocument& document, const std::vector<GltfInstance>& instances,
-                            const std::set<std::size_t>& unmorphed) {
+                            const std::set<std::size_t>& unmorphed, bool attributes) {
   check_memory(document, instances, unmorphed);
   GltfSkins skins(document);
   PolygonMesh mesh;
+  GltfAttributes of_vertices;
   for (const GltfInstance& instance : instances) {
     const std::vector<double> weights =
         unmorphed.contains(instance.node) ? std::vector<double>() : gltf_weights(document, instance);
     for (const json& primitive : list_of(document.item("meshes", instance.mesh), "primitives"))
       if (has_triangles(document, primitive)) {
         begin_names(document, instance, primitive, mesh);
-        add_primitive(document, primitive, skins.placement(instance, primitive), weights, mesh);
+        const GltfPlacement placement = skins.placement(instance, primitive);
+        const std::size_t first_vertex = mesh.positions.size();
+        add_primitive(document, primitive, placement, weights, mesh);
+        if (attributes)
+          of_vertices.add(document, primitive.at("attributes"), placement, first_vertex,
+                          mesh.positions.size() - first_vertex,
+                          std::ranges::any_of(weights, [](double w) { return w != 0; }));
       }
   }
+  mesh.attributes = of_vertices.take(mesh.positions.size());
   return mesh;
 }
 

@@ -16,9 +16,10 @@ namespace sdm::io {
 
 /// Returns all triangles of the instances, which are all those of the document's scene. The vertices of their
 /// primitives are concatenated. Morph targets and skins are applied as they are in the file, but no morph
-/// targets to the nodes of `unmorphed`.
+/// targets to the nodes of `unmorphed`. `attributes`: also those of vertices, see GltfAttributes.
 [[nodiscard]] PolygonMesh read_gltf_scene(const GltfDocument& document,
                                           const std::vector<GltfInstance>& instances,
-                                          const std::set<std::size_t>& unmorphed = {});
+                                          const std::set<std::size_t>& unmorphed = {},
+                                          bool attributes = false);
 
 }  // namespace sdm::io

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/mesh/polygons/polygon_attributes.h"
+
 namespace sdm::io {
 
 /// Names of polygons: each holds from one polygon on, until another one does.
@@ -38,6 +40,7 @@ struct PolygonMesh {
   std::vector<std::uint32_t> corner_uvs;  ///< the uv of each corner, or kNone; may be empty
   std::vector<std::uint32_t> ends;        ///< for each polygon, one past its last corner
   PolygonNames objects, groups, materials, faces, colors;
+  std::vector<PolygonAttribute> attributes;  ///< if asked for
   std::optional<Tessellation> tessellation;  ///< of CAD
   std::vector<std::string> notes;            ///< what was left out, or may be wrong; see MeshFile::notes
 

@@ -1,0 +1,21 @@
+// The attributes of a mesh, from those of a file's polygons.
+#pragma once
+
+#include <sdm/mesh_attributes.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "io/mesh/polygons/polygon_mesh.h"
+
+namespace sdm::io {
+
+/// Takes the attributes of the polygons, with the rows of each triangle's corners; those that do not cover
+/// all polygons are left out, with a note. `places`, `triangle_ends`: as of to_mesh().
+[[nodiscard]] std::vector<MeshAttribute> to_attributes(PolygonMesh& polygons,
+                                                       const std::vector<Triangle>& places,
+                                                       const std::vector<std::uint32_t>& triangle_ends,
+                                                       std::vector<std::string>& notes);
+
+}  // namespace sdm::io
