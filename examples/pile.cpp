@@ -141,7 +141,7 @@ int main() {
 
     std::vector<Constraint> constraints;
     std::vector<Key> keys;
-    for (const auto& [first, second, contacts] : query.contacts()) {
+    for (const auto& [first, second, contacts, parts] : query.contacts()) {
       Body &a = bodies[first], &b = bodies[second];
       for (const sdm::Contact& c : contacts) {
         const Vec3 other = std::abs(c.normal[0]) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};

@@ -7,6 +7,7 @@
 #include <sdm/proximity_query.h>
 #include <sdm/time_of_contact.h>
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -15,6 +16,16 @@
 #include <vector>
 
 namespace sdm {
+
+/// One of the shapes that a body is made of, and its pose in the frame of the body: a map of a rotation, a
+/// uniform scale and a translation.
+struct BodyPart {
+  Shape shape;
+  Transform pose{};
+};
+
+/// The parts of a pair of bodies that an answer is of, by their numbers in each body: 0 for one of one shape.
+using PartPair = std::array<std::uint32_t, 2>;
 
 /// Options of a MultiBodyQuery.
 struct MultiBodyOptions {
@@ -38,6 +49,7 @@ struct BodyFilter {
 /// Two bodies that collide.
 struct BodyPair {
   std::uint32_t first = kNone, second = kNone;  ///< first < second
+  PartPair parts{};                             ///< the first parts that collide
 };
 
 /// ProximityQuery::separation() and colliding() of a pair: O1 is `first`, O2 is `second`.
@@ -45,24 +57,29 @@ struct PairSeparation {
   std::uint32_t first = kNone, second = kNone;  ///< first < second
   BoundedLength separation{};
   bool colliding = false;
+  PartPair parts{};  ///< those that are the separation apart
 };
 
 /// ProximityQuery::penetration_depth() of a pair that collides: O1 is `first`, O2 is `second`.
 struct PairDepth {
   std::uint32_t first = kNone, second = kNone;  ///< first < second
   BoundedLength penetration_depth{};
+  PartPair parts{};  ///< those whose depth is `value`
 };
 
-/// ProximityQuery::contacts() of a pair: O1 is `first`, O2 is `second`.
+/// ProximityQuery::contacts() of a pair: O1 is `first`, O2 is `second`. Of compound bodies, there is one of
+/// these for each pair of parts that has contacts, with patches and ids of its own.
 struct PairContacts {
   std::uint32_t first = kNone, second = kNone;  ///< first < second
   std::span<const Contact> contacts{};          ///< at least one
+  PartPair parts{};                             ///< those in contact
 };
 
 /// The first contact of a pair that moves, as time_of_contact() has it: O1 is `first`, O2 is `second`.
 struct PairTimeOfContact {
   std::uint32_t first = kNone, second = kNone;  ///< first < second
   TimeOfContact time_of_contact{};
+  PartPair parts{};  ///< those that come into contact first
 };
 
 /// Options of MultiBodyQuery::time_of_contact().
@@ -79,10 +96,16 @@ struct NearestMap {
   DistanceMap map;
   /// The index of that body for each texel; kNone where the map has no value.
   std::vector<std::uint32_t> body;
+  /// The part of that body for each texel, whose sites those of the map are; empty if no body is a compound.
+  std::vector<std::uint32_t> part;
 };
 
 /// Proximity of bodies that move and deform, each against all others, for simulation loops. A body is a shape
-/// in a pose, as in ProximityQuery; many bodies can share a shape.
+/// in a pose, as in ProximityQuery; many bodies can share a shape. Or it is a *compound* of several shapes
+/// that move as one, each with its own pose in the frame of the body: the answers for a pair of bodies are
+/// then the smallest separation, the largest depth and all contacts of pairs of their parts, and name these.
+/// Parts of a body are no pair, and the inside of a compound is that of each of its parts, not of their
+/// union: where parts overlap, a depth is that in one of them.
 ///
 /// Each call computes what it returns, and no more, for the pairs of which a body has moved since the last
 /// call. Two bodies that did not move keep their answers, which cost a pass over the list of near pairs.
@@ -96,12 +119,18 @@ class SDM_API MultiBodyQuery {
   explicit MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options = {});
   /// The same for shapes that are there already, or that have an atlas, for maps. Cost: constant for each.
   explicit MultiBodyQuery(std::vector<Shape> shapes, const MultiBodyOptions& options = {});
+  /// The same for bodies of one part or more. Throws sdm::Error, naming the body, also for a body without
+  /// parts, and as set_pose() does for their poses.
+  explicit MultiBodyQuery(std::vector<std::vector<BodyPart>> bodies, const MultiBodyOptions& options = {});
   ~MultiBodyQuery();
   MultiBodyQuery(MultiBodyQuery&&) noexcept;
   MultiBodyQuery& operator=(MultiBodyQuery&&) noexcept;
 
   /// The number of bodies.
   [[nodiscard]] std::size_t size() const;
+  /// The number of parts of a body: 1 for a body of one shape. Throws sdm::Error for a body that does not
+  /// exist.
+  [[nodiscard]] std::size_t part_count(std::size_t body) const;
 
   /// Sets the pose of a body, as ProximityQuery::set_pose does. Throws sdm::Error, and changes nothing, also
   /// for a body that does not exist. A body that is given the pose that it was given last, to the bit,
@@ -111,11 +140,14 @@ class SDM_API MultiBodyQuery {
   void set_poses(std::span<const Transform> poses);
   /// The pose of a body. Throws sdm::Error for a body that does not exist.
   [[nodiscard]] Transform pose(std::size_t body) const;
+  /// The map from the frame of the mesh of a part to space. Throws sdm::Error for a body or a part that does
+  /// not exist.
+  [[nodiscard]] Transform part_pose(std::size_t body, std::size_t part) const;
 
   /// Moves the vertices of a body, keeping its triangles and its pose. Throws sdm::Error, and changes
-  /// nothing, for a body that does not exist or whose Shape is shared, a wrong number of positions, or a
-  /// coordinate that is not finite or beyond 1e37. If there is not enough memory, it also throws, and changes
-  /// nothing or leaves the object broken (see sdm/error.h). Cost: linear.
+  /// nothing, for a body that does not exist, is a compound or whose Shape is shared, a wrong number of
+  /// positions, or a coordinate that is not finite or beyond 1e37. If there is not enough memory, it also
+  /// throws, and changes nothing or leaves the object broken (see sdm/error.h). Cost: linear.
   void refit(std::size_t body, std::span<const Vec3> positions);
   /// The same for all bodies, on all cores: one entry per body; an empty one leaves the body unchanged.
   void refit(std::span<const std::span<const Vec3>> positions);
@@ -150,15 +182,16 @@ class SDM_API MultiBodyQuery {
   /// ignore_internal_edges, without those that are internal, at the cost of a sweep over the fixed bodies and
   /// of a few tests of inside for each contact with a fixed body that has others beside it.
   [[nodiscard]] std::span<const PairContacts> contacts();
-  /// The number of pairs whose boxes were within `max_distance` of each other in the last call of
-  /// separations().
+  /// The number of pairs, of parts if there are compounds, whose boxes were within `max_distance` of each
+  /// other in the last call of separations().
   [[nodiscard]] std::size_t candidate_pairs() const;
 
   /// Returns the pairs that come into contact while each body makes its motion, whatever the poses of the
-  /// bodies: one motion per body, sorted by the time of their first contacts, then by first and second body.
-  /// Pairs are those of the filters, and each is by itself: bodies move on after their contacts. To move
-  /// all of them without a collision, end all motions at the first time; those that are in contact then
-  /// have contact at time 0 of motions from there.
+  /// bodies (a compound turns about the centre of the box of all its parts in its frame): one motion per
+  /// body, sorted by the time of their first contacts, then by first and second body. Pairs are those of the
+  /// filters, and each is by itself: bodies move on after their contacts. To move all of them without a
+  /// collision, end all motions at the first time; those that are in contact then have contact at time 0 of
+  /// motions from there.
   ///
   /// `tolerance` > 0 and the results are as of sdm::time_of_contact() for each pair, to the bit, but for
   /// pairs whose boxes are apart, which have no contact. None is missed, however thin the bodies and long the
@@ -175,7 +208,8 @@ class SDM_API MultiBodyQuery {
 
   /// Returns the distances from the texels of a body to the nearest other body, whatever their filters;
   /// texels with none within `max_distance`, > 0, have no value. Throws sdm::Error for any other distance,
-  /// for a body that does not exist or has no atlas, or if there is not enough memory. Cost: that of
+  /// for a body that does not exist, is a compound or has no atlas, or if there is not enough memory. Cost:
+  /// that of
   /// compute_map to each body whose box is nearer than the distances found so far, all cores.
   [[nodiscard]] NearestMap nearest_map(std::size_t body,
                                        double max_distance = std::numeric_limits<double>::infinity()) const;
@@ -183,20 +217,20 @@ class SDM_API MultiBodyQuery {
   /// are unspecified.
   void nearest_map(std::size_t body, double max_distance, NearestMap& nearest) const;
 
-  /// The atlas and the sites of a body, in the frame of its mesh, without the pose. Both throw sdm::Error for
-  /// a body that does not exist, surface() also for one without an atlas.
-  [[nodiscard]] const Surface& surface(std::size_t body) const;
+  /// The atlas and the sites of a body, or of a part of it, in the frame of its mesh, without the pose. Both
+  /// throw sdm::Error for a body or part that does not exist, surface() also for one without an atlas.
+  [[nodiscard]] const Surface& surface(std::size_t body, std::size_t part = 0) const;
   /// As surface().
-  [[nodiscard]] const Sites& sites(std::size_t body) const;
+  [[nodiscard]] const Sites& sites(std::size_t body, std::size_t part = 0) const;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// Returns the distance from each vertex of a body to the nearest other body, signed as in nearest_map; NaN
-/// where none is within max_distance. Throws sdm::Error for a body that does not exist. Cost: that of
-/// closest_points to every other body.
+/// Returns the distance from each vertex of a body, those of its parts one after another, to the nearest
+/// other body, signed as in nearest_map; NaN where none is within max_distance. Throws sdm::Error for a body
+/// that does not exist. Cost: that of closest_points to every other body.
 [[nodiscard]] SDM_API std::vector<float> nearest_distances_at_vertices(const MultiBodyQuery& bodies,
                                                                        std::size_t body, double max_distance);
 

@@ -54,6 +54,10 @@ struct ProximityOptions {
   /// Contacts are reported for points inside the other body or within this distance of it; ≥ 0, in units of
   /// the meshes.
   double contact_margin = 0;
+  /// Leaves out contacts() that push a body across an edge between faces that continue each other, as where
+  /// it slides over the triangles of a floor: of edges and vertices whose faces are flat or concave, those
+  /// that are not along a normal of these. Convex edges keep theirs.
+  bool ignore_internal_edges = false;
 };
 
 /// Proximity of two bodies that move and deform, for simulation loops.

@@ -7,6 +7,7 @@
 
 #include "core/cancellation.h"
 #include "core/memory.h"
+#include "proximity/bodies/internal_contacts.h"
 #include "proximity/pair/pair_answers.h"
 #include "proximity/separate/separating_contacts.h"
 #include "proximity/separate/separating_translation.h"
@@ -20,12 +21,18 @@ struct ProximityQuery::Impl {
   double contact_margin;
   std::optional<SeparatingTranslation> separating_translation{};
   std::vector<Contact> separating_contacts{};
+  std::optional<bodies::ExternalContacts> external_contacts{};  // with ignore_internal_edges
 
   Impl(Shape o1, Shape o2, const ProximityOptions& options)
       : bodies{shape::PosedBody(std::move(o1)), shape::PosedBody(std::move(o2))},
         answers(options.contact_margin, options.depth_precision),
         contact_margin(options.contact_margin) {
+    if (options.ignore_internal_edges) external_contacts.emplace();
     begin();
+  }
+  [[nodiscard]] std::span<const Contact> contacts() {
+    const std::span<const Contact> all = answers.contacts();
+    return external_contacts ? external_contacts->of(bodies, all) : all;
   }
   // Every call but construction begins with this.
   void require_intact() const {
@@ -39,6 +46,7 @@ struct ProximityQuery::Impl {
   void begin(const pair::KnownAnswers& known) {
     answers.begin(bodies[0], bodies[1], known);
     separating_translation.reset();
+    if (external_contacts) external_contacts->forget();
   }
 };
 
@@ -143,7 +151,7 @@ const SeparatingTranslation& ProximityQuery::separating_translation() {
 }
 std::span<const Contact> ProximityQuery::contacts() {
   impl_->require_intact();
-  return with_memory([&] { return impl_->answers.contacts(); });
+  return with_memory([&] { return impl_->contacts(); });
 }
 std::span<const Contact> ProximityQuery::separating_contacts(std::optional<std::size_t> most_per_patch) {
   if (most_per_patch == 0) throw Error("0 contacts of each patch are too few; use 1 or more");
@@ -153,7 +161,7 @@ std::span<const Contact> ProximityQuery::separating_contacts(std::optional<std::
     if (impl_->answers.colliding()) {
       contacts = separate::contacts_after(impl_->bodies[0], impl_->bodies[1], out, impl_->contact_margin);
     } else {
-      const std::span<const Contact> apart = impl_->answers.contacts();
+      const std::span<const Contact> apart = impl_->contacts();
       contacts.assign(apart.begin(), apart.end());
     }
     if (most_per_patch) separate::keep_per_patch(contacts, *most_per_patch);

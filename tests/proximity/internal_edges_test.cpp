@@ -171,5 +171,52 @@ TEST(InternalEdges, KeepRidges) {
   }
 }
 
+// Of two bodies, contacts() leaves out what a world of the two leaves out.
+TEST(InternalEdges, AreThoseOfAWorldInAQueryOfTwo) {
+  const Shape box(brick({-0.6, -0.6, 0}, {0.6, 0.6, 0.6}));
+  const Shape floor(solid_of(floor_of([](int, int) { return 0.0; })));
+  ProximityQuery plain(box, floor, {.contact_margin = kSlideMargin});
+  ProximityQuery pair(box, floor, {.contact_margin = kSlideMargin, .ignore_internal_edges = true});
+  MultiBodyQuery world({box, floor}, {.contact_margin = kSlideMargin, .ignore_internal_edges = true});
+  std::size_t left_out = 0;
+  for (int step = 0; step <= 20; ++step) {
+    const Transform pose =
+        Transform::translation({2 + step / 7.0, 4.3, -0.03}) * Transform::rotation({0, 0, 17});
+    plain.set_pose(0, pose), pair.set_pose(0, pose), world.set_pose(0, pose);
+    const std::span<const Contact> found = pair.contacts();
+    ASSERT_EQ(world.contacts().size(), 1u);
+    const std::span<const Contact> expected = world.contacts()[0].contacts;
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].id, expected[i].id);
+      EXPECT_EQ(found[i].normal, expected[i].normal);
+    }
+    EXPECT_EQ(pair.contacts().size(), found.size()) << "the second call";
+    left_out += plain.contacts().size() - found.size();
+  }
+  EXPECT_GT(left_out, 0u);
+}
+
+// Regression: the faces along the ridge of a rod have corners of a third of a degree at its ends, and were
+// taken for flat there.
+TEST(InternalEdges, KeepTheRidgeOfAThinRod) {
+  Mesh rod;
+  for (const double x : {0.0, 10.0})
+    rod.positions.insert(rod.positions.end(), {{x, 0, 0}, {x, -0.05, -0.0044}, {x, 0.05, -0.0044}});
+  rod.triangles = {{0, 1, 2}, {3, 5, 4}};
+  for (const auto& [i, j] : {std::array{1u, 0u}, std::array{0u, 2u}, std::array{2u, 1u}})
+    rod.triangles.insert(rod.triangles.end(), {{i, j, j + 3}, {i, j + 3, i + 3}});
+  const Shape box(brick({4, -1e-4, -0.5}, {6, 1, 0.5})), shape(rod);  // its side pushes the ridge
+  ASSERT_TRUE(shape.sites().closed() && shape.sites().orientable());
+  ProximityQuery plain(box, shape), pair(box, shape, {.ignore_internal_edges = true});
+  const auto on_ridge = [](std::span<const Contact> contacts) {
+    return std::ranges::count_if(contacts, [](const Contact& c) {
+      return std::abs(c.point2[1]) + std::abs(c.point2[2]) < 1e-9 && std::abs(c.normal[1]) > 0.99;
+    });
+  };
+  ASSERT_GT(on_ridge(plain.contacts()), 0);
+  EXPECT_EQ(on_ridge(pair.contacts()), on_ridge(plain.contacts()));
+}
+
 }  // namespace
 }  // namespace sdm::test

@@ -105,7 +105,7 @@ TEST(MovingBodies, UntilATimeOrTheEarliest) {
   std::erase_if(all, [](const PairTimeOfContact& pair) { return pair.time_of_contact.time > 0.4; });
   const auto pairs = [](const std::vector<PairTimeOfContact>& contacts) {
     std::vector<std::tuple<std::uint32_t, std::uint32_t, double>> result;
-    for (const auto& [a, b, found] : contacts) result.emplace_back(a, b, found.time);
+    for (const auto& [a, b, found, parts] : contacts) result.emplace_back(a, b, found.time);
     return result;
   };
   EXPECT_GT(all.size(), 1u);

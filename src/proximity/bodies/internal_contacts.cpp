@@ -30,9 +30,11 @@ bool may_be_convex(const sites::SitesData& sites, std::uint32_t edge) {
   const auto& [a, b] = sites.topology.edges[edge];
   for (const std::uint32_t corner : sites.mesh.triangles[faces[1]]) {
     if (corner == a || corner == b) continue;
-    const Vec3 across = normalized(sites.mesh.positions[corner] - sites.mesh.positions[a]);
-    const double height = dot(sites.normals.face[faces[0]], across);
-    return sites.is_solid() ? height < -kFlat : std::abs(height) > kFlat;
+    // Perpendicular to the edge: where the corner at its end is sharp, a side of the face is nearly along it.
+    const Vec3 along = normalized(sites.mesh.positions[b] - sites.mesh.positions[a]);
+    const Vec3 side = sites.mesh.positions[corner] - sites.mesh.positions[a];
+    const double sine = dot(sites.normals.face[faces[0]], normalized(side - dot(side, along) * along));
+    return sites.is_solid() ? sine < -kFlat : std::abs(sine) > kFlat;
   }
   return true;
 }
@@ -43,14 +45,16 @@ void InternalContacts::follow(std::span<const shape::PosedBody> bodies, const Pa
   bodies_ = bodies;
   fixed_.clear(), boxes_.clear(), neighbours_.clear();
   for (std::uint32_t b = 0; b < bodies.size(); ++b)
-    if (filter[b].fixed && bodies[b].body().solid())
+    if ((filter[b].fixed || filter.in_compound(b)) && bodies[b].body().solid())
       fixed_.push_back(b), boxes_.push_back(bodies[b].tight_box());
   double reach = 0;
   for (const std::uint32_t b : fixed_)
     reach = std::max(reach, kBeyond * bodies[b].pose().scale * diagonal_of(bodies[b]));
   for (const auto& [i, j] : sweep_.near_pairs(boxes_, reach)) {
-    neighbours_.push_back({fixed_[i], fixed_[j]});
-    neighbours_.push_back({fixed_[j], fixed_[i]});
+    const std::uint32_t a = fixed_[i], b = fixed_[j];
+    if (!filter.same_body(a, b) && !(filter[a].fixed && filter[b].fixed)) continue;
+    neighbours_.push_back({a, b});
+    neighbours_.push_back({b, a});
   }
   std::ranges::sort(neighbours_);
 }
@@ -75,6 +79,19 @@ bool InternalContacts::contains(const Contact& contact, const Sweep::Pair& pair)
     if ((flat_ && off_flat_faces(body, exit)) || into_neighbour(pair[side], exit)) return true;
   }
   return false;
+}
+
+void InternalContacts::leave_out(std::vector<PairContacts>& pairs) {
+  std::size_t count = 0;
+  for (const PairContacts& pair : pairs) count += pair.contacts.size();
+  external_.clear(), external_.reserve(count);  // so that spans of it stay valid
+  for (PairContacts& pair : pairs) {
+    const std::size_t first = external_.size();
+    for (const Contact& contact : pair.contacts)
+      if (!contains(contact, {pair.first, pair.second})) external_.push_back(contact);
+    pair.contacts = std::span(external_).subspan(first);
+  }
+  std::erase_if(pairs, [](const PairContacts& pair) { return pair.contacts.empty(); });
 }
 
 // Those around the vertex or at the edge that the point is on, or its face.
@@ -152,6 +169,17 @@ bool InternalContacts::covered(std::uint32_t body, std::uint32_t face, const Vec
     const ClosestPoint closest = closest::closest_point(internals(other.body().sites()), there, kAnywhere);
     return other.body().inside()(there, closest);
   });
+}
+
+std::span<const Contact> ExternalContacts::of(std::span<const shape::PosedBody> bodies,
+                                              std::span<const Contact> all) {
+  if (!known_) {
+    internal_.follow(bodies, filter_);
+    pair_.assign(1, {.first = 0, .second = 1, .contacts = all});
+    internal_.leave_out(pair_);
+    known_ = true;
+  }
+  return pair_.empty() ? std::span<const Contact>() : pair_.front().contacts;
 }
 
 }  // namespace sdm::bodies

@@ -18,10 +18,13 @@ namespace sdm::bodies {
 /// one with an edge that a body slides across.
 class InternalContacts {
  public:
-  /// For the bodies in their poses, until one moves. Cost: a sweep over the fixed bodies. Reuses memory.
+  /// For the bodies in their poses, until one moves; with parts of one body side by side, too. Cost: a sweep
+  /// over the fixed bodies. Reuses memory.
   void follow(std::span<const shape::PosedBody> bodies, const PairFilter& filter);
 
   [[nodiscard]] bool contains(const Contact& contact, const Sweep::Pair& pair);
+  /// Leaves out internal contacts, and pairs that have no others. The spans are valid until the next call.
+  void leave_out(std::vector<PairContacts>& pairs);
 
  private:
   /// A point of a body and the direction out of it, in the frame of its mesh.
@@ -39,10 +42,27 @@ class InternalContacts {
   std::vector<std::uint32_t> fixed_;
   std::vector<Box> boxes_;  ///< of these
   Sweep sweep_;
-  std::vector<Sweep::Pair> neighbours_;  ///< a fixed body and another one beside it, sorted
+  std::vector<Sweep::Pair> neighbours_;  ///< a body and another one fixed beside it, sorted
+  std::vector<Contact> external_;        ///< what leave_out() left
   // Around the point that is looked at:
   std::vector<std::uint32_t> faces_;
   bool flat_ = false;  ///< it is on an edge or a vertex without a convex edge
+};
+
+/// The contacts of two bodies without those that are internal.
+class ExternalContacts {
+ public:
+  /// After a body has moved.
+  void forget() { known_ = false; }
+  /// `all`: of the bodies as they are. The span is valid until the next call after forget().
+  [[nodiscard]] std::span<const Contact> of(std::span<const shape::PosedBody> bodies,
+                                            std::span<const Contact> all);
+
+ private:
+  PairFilter filter_{{0, 1}};
+  InternalContacts internal_;
+  std::vector<PairContacts> pair_;  ///< one, or none without contacts
+  bool known_ = false;
 };
 
 }  // namespace sdm::bodies

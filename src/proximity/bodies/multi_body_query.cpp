@@ -12,6 +12,8 @@
 #include "core/intact.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "mesh/similarity.h"
+#include "proximity/bodies/body_parts.h"
 #include "proximity/bodies/contact_store.h"
 #include "proximity/bodies/internal_contacts.h"
 #include "proximity/bodies/moving_bodies.h"
@@ -29,27 +31,14 @@ const MultiBodyOptions& checked(const MultiBodyOptions& options) {
   pair::check_options(options.contact_margin, options.depth_precision);
   return options;
 }
-
 void check_distance(double max_distance) {
   if (!(max_distance > 0)) throw Error("the maximum distance must be greater than 0");
-}
-
-// Adds the body to the messages of errors thrown by `work`.
-template <class Work>
-void on_behalf_of(std::size_t body, const Work& work) {
-  try {
-    work();
-  } catch (const Cancelled&) {
-    throw;
-  } catch (const Error& error) {
-    throw Error("body " + std::to_string(body) + ": " + error.what(), error.remedy());
-  }
 }
 
 std::vector<Shape> shapes_of(std::span<const Mesh> meshes) {
   std::vector<Shape> shapes;
   shapes.reserve(meshes.size());
-  for (const Mesh& mesh : meshes) on_behalf_of(shapes.size(), [&] { shapes.emplace_back(mesh); });
+  for (const Mesh& mesh : meshes) bodies::on_behalf_of(shapes.size(), [&] { shapes.emplace_back(mesh); });
   return shapes;
 }
 
@@ -61,12 +50,15 @@ decltype(auto) with_memory_of_bodies(const Work& work) try {
   throw out_of_memory("a query of many bodies");
 }
 
+using bodies::on_behalf_of;
+
 }  // namespace
 
 struct MultiBodyQuery::Impl {
   MultiBodyOptions options;
-  std::vector<shape::PosedBody> bodies;
-  std::vector<Transform> given_poses;
+  bodies::BodyParts parts;
+  std::vector<shape::PosedBody> posed;       // the parts, and so in `near`
+  std::vector<Transform> given_poses;        // of bodies
   Intact intact{"a MultiBodyQuery object"};  // every call but construction requires it first
   bodies::Pool<pair::PairAnswers> pool;
   bodies::NearPairs near;
@@ -80,20 +72,24 @@ struct MultiBodyQuery::Impl {
   std::vector<PairContacts> contacts;
   bodies::ContactStore stored_contacts;
   bodies::InternalContacts internal_contacts;
-  std::vector<Contact> external_contacts;  // of `contacts`, if others are left out
 
-  Impl(std::vector<Shape> shapes, const MultiBodyOptions& asked)
-      : options(asked), given_poses(shapes.size()), near(shapes.size()) {
-    bodies.reserve(shapes.size());
-    for (Shape& shape : shapes) bodies.emplace_back(std::move(shape));
+  Impl(std::vector<Shape> shapes, bodies::BodyParts of_bodies, const MultiBodyOptions& asked)
+      : options(asked), parts(std::move(of_bodies)), given_poses(parts.bodies()), near(parts.body_of()) {
+    posed.reserve(shapes.size());
+    for (Shape& shape : shapes) posed.emplace_back(std::move(shape));
+    for (std::uint32_t part = 0; part < posed.size(); ++part)
+      if (parts.any_compound()) posed[part].set_pose(parts.pose_of(part, {}));
   }
 
   [[nodiscard]] std::size_t checked(std::size_t body) const {
     intact.require();
-    if (body >= bodies.size())
-      throw Error("there is no body " + std::to_string(body) + " among " + std::to_string(bodies.size()) +
+    if (body >= parts.bodies())
+      throw Error("there is no body " + std::to_string(body) + " among " + std::to_string(parts.bodies()) +
                   "; they are numbered from 0");
     return body;
+  }
+  [[nodiscard]] const shape::PosedBody& part_of(std::size_t body, std::size_t part) const {
+    return posed[parts.checked(checked(body), part)];
   }
   [[nodiscard]] Sweep::Pair checked_pair(std::size_t a, std::size_t b) const {
     if (checked(a) == checked(b))
@@ -102,12 +98,15 @@ struct MultiBodyQuery::Impl {
   }
   void check_count(std::size_t count, const char* what) const {
     intact.require();
-    if (count != bodies.size())
-      throw Error("there are " + std::to_string(bodies.size()) + " bodies, but " + what + " for " +
+    if (count != parts.bodies())
+      throw Error("there are " + std::to_string(parts.bodies()) + " bodies, but " + what + " for " +
                   std::to_string(count) + " were given; give one entry per body");
   }
   void check(std::size_t body, std::span<const Vec3> positions) const {
-    on_behalf_of(body, [&] { bodies[body].check_refit(positions); });
+    on_behalf_of(body, [&] {
+      parts.require_one_shape(body, "vertices that can be moved");
+      posed[parts.begin(body)].check_refit(positions);
+    });
   }
 
   // Compares bits, since 0 and −0 may give zeros of other signs.
@@ -116,16 +115,25 @@ struct MultiBodyQuery::Impl {
   }
   void set_pose(std::size_t body, const Transform& pose) {
     if (has_pose(body, pose)) return;
-    on_behalf_of(body, [&] { bodies[body].set_pose(pose); });
+    if (parts.count(body) > 1) check_pose(body, pose);
+    for (std::uint32_t part = parts.begin(body); part < parts.end(body); ++part) {
+      on_behalf_of(body, [&] { posed[part].set_pose(parts.pose_of(part, pose)); });
+      near.moved(part);
+    }
     given_poses[body] = pose;
-    near.moved(body);
+  }
+  void check_pose(std::size_t body, const Transform& pose) const {
+    on_behalf_of(body, [&] {
+      for (std::uint32_t part = parts.begin(body); part < parts.end(body); ++part)
+        (void)posed[part].checked_pose(parts.pose_of(part, pose));
+    });
   }
 
   // Calls compute(answers, i) for the pairs within `reach` that is_unknown(pair), on all cores, where i
   // counts them; and keeps what is then known.
   template <class IsUnknown, class Compute>
   void complete(double reach, const IsUnknown& is_unknown, const Compute& compute) {
-    near.follow(bodies, reach);
+    near.follow(posed, reach);
     unknown.clear();
     const std::span<bodies::NearPair> pairs = near.list();
     for (std::size_t i = 0; i < pairs.size(); ++i)
@@ -137,7 +145,7 @@ struct MultiBodyQuery::Impl {
       for (std::size_t u = begin; u < end; ++u) {
         bodies::NearPair& pair = pairs[unknown[u]];
         bodies::PairState& state = near.state(pair);
-        answers->begin(bodies[pair.pair[0]], bodies[pair.pair[1]], state.known);
+        answers->begin(posed[pair.pair[0]], posed[pair.pair[1]], state.known);
         compute(*answers, u);
         state.known = answers->known();
         pair.set(state.known);
@@ -147,16 +155,6 @@ struct MultiBodyQuery::Impl {
     parallel_for(unknown.size(), 1, compute_some);
   }
 
-  [[nodiscard]] std::vector<motion::DividedMotion> divided(std::span<const Motion> motions) const {
-    std::vector<motion::DividedMotion> divided;
-    divided.reserve(motions.size());
-    for (const Motion& motion : motions) {
-      const std::size_t body = divided.size();
-      on_behalf_of(body, [&] { divided.emplace_back(motion, bodies[body].body().box()); });
-    }
-    return divided;
-  }
-
   void find_colliding() {
     complete(
         0, [](const bodies::NearPair& pair) { return !pair.collision_known; },
@@ -164,6 +162,7 @@ struct MultiBodyQuery::Impl {
     colliding.clear();
     for (const bodies::NearPair& pair : near.list())
       if (pair.colliding) colliding.push_back({pair.pair[0], pair.pair[1]});
+    parts.merge(colliding);
   }
 
   void find_separations(double max_distance) {
@@ -183,6 +182,7 @@ struct MultiBodyQuery::Impl {
         separations.push_back(
             {pair.pair[0], pair.pair[1], *near.state(pair).known.separation, pair.colliding});
     }
+    parts.merge(separations);
   }
 
   void find_depths() {
@@ -198,10 +198,11 @@ struct MultiBodyQuery::Impl {
       if (const std::optional<BoundedLength>& depth = *near.state(pair).known.depth)
         depths.push_back({pair.pair[0], pair.pair[1], *depth});
     }
+    parts.merge(depths);
   }
 
   void find_contacts() {
-    near.follow(bodies, options.contact_margin);
+    near.follow(posed, options.contact_margin);
     stored_contacts.begin(near.list().size());
     complete(
         options.contact_margin, [](const bodies::NearPair& pair) { return !pair.contacts_known; },
@@ -211,31 +212,27 @@ struct MultiBodyQuery::Impl {
     for (const bodies::NearPair& pair : near.list())
       if (pair.touching)
         contacts.push_back({pair.pair[0], pair.pair[1], stored_contacts.of(near.state(pair))});
-    if (options.ignore_internal_edges) leave_out_internal();
-  }
-
-  void leave_out_internal() {
-    internal_contacts.follow(bodies, near.filter());
-    std::size_t count = 0;
-    for (const PairContacts& pair : contacts) count += pair.contacts.size();
-    external_contacts.clear(), external_contacts.reserve(count);  // so that spans of it stay valid
-    for (PairContacts& pair : contacts) {
-      const std::size_t first = external_contacts.size();
-      for (const Contact& contact : pair.contacts)
-        if (!internal_contacts.contains(contact, {pair.first, pair.second}))
-          external_contacts.push_back(contact);
-      pair.contacts = std::span(external_contacts).subspan(first);
+    if (options.ignore_internal_edges) {
+      internal_contacts.follow(posed, near.filter());
+      internal_contacts.leave_out(contacts);
     }
-    std::erase_if(contacts, [](const PairContacts& pair) { return pair.contacts.empty(); });
+    parts.merge(contacts);
   }
 };
 
 MultiBodyQuery::MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options)
     : MultiBodyQuery(shapes_of(meshes), checked(options)) {}
-MultiBodyQuery::MultiBodyQuery(std::vector<Shape> shapes, const MultiBodyOptions& options) try
-    : impl_(std::make_unique<Impl>(std::move(shapes), checked(options))) {
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("a query of many bodies");
+MultiBodyQuery::MultiBodyQuery(std::vector<Shape> shapes, const MultiBodyOptions& options)
+    : impl_(with_memory_of_bodies([&] {
+        bodies::BodyParts parts(shapes.size());
+        return std::make_unique<Impl>(std::move(shapes), std::move(parts), checked(options));
+      })) {}
+MultiBodyQuery::MultiBodyQuery(std::vector<std::vector<BodyPart>> bodies, const MultiBodyOptions& options) {
+  with_memory_of_bodies([&] {
+    std::vector<Shape> shapes;
+    bodies::BodyParts parts(std::move(bodies), shapes);
+    impl_ = std::make_unique<Impl>(std::move(shapes), std::move(parts), checked(options));
+  });
 }
 MultiBodyQuery::~MultiBodyQuery() = default;
 MultiBodyQuery::MultiBodyQuery(MultiBodyQuery&&) noexcept = default;
@@ -243,7 +240,11 @@ MultiBodyQuery& MultiBodyQuery::operator=(MultiBodyQuery&&) noexcept = default;
 
 std::size_t MultiBodyQuery::size() const {
   impl_->intact.require();
-  return impl_->bodies.size();
+  return impl_->parts.bodies();
+}
+
+std::size_t MultiBodyQuery::part_count(std::size_t body) const {
+  return impl_->parts.count(impl_->checked(body));
 }
 
 void MultiBodyQuery::set_pose(std::size_t body, const Transform& pose) {
@@ -253,20 +254,26 @@ void MultiBodyQuery::set_pose(std::size_t body, const Transform& pose) {
 void MultiBodyQuery::set_poses(std::span<const Transform> poses) {
   impl_->check_count(poses.size(), "poses");
   for (std::size_t b = 0; b < size(); ++b)
-    if (!impl_->has_pose(b, poses[b]))
-      on_behalf_of(b, [&] { (void)impl_->bodies[b].checked_pose(poses[b]); });
+    if (!impl_->has_pose(b, poses[b])) impl_->check_pose(b, poses[b]);
   for (std::size_t b = 0; b < size(); ++b) impl_->set_pose(b, poses[b]);
 }
 
 Transform MultiBodyQuery::pose(std::size_t body) const {
-  return impl_->bodies[impl_->checked(body)].pose().transform();
+  const shape::PosedBody& part = impl_->part_of(body, 0);
+  if (impl_->parts.compound(body)) return mesh::Similarity::of(impl_->given_poses[body]).transform();
+  return part.pose().transform();
+}
+
+Transform MultiBodyQuery::part_pose(std::size_t body, std::size_t part) const {
+  return impl_->part_of(body, part).pose().transform();
 }
 
 void MultiBodyQuery::refit(std::size_t body, std::span<const Vec3> positions) {
   const Uncancellable whole;
   impl_->check(impl_->checked(body), positions);
-  impl_->near.moved(body);
-  with_memory_of_bodies([&] { impl_->intact.change([&] { impl_->bodies[body].refit(positions); }); });
+  const std::uint32_t p = impl_->parts.begin(body);
+  impl_->near.moved(p);
+  with_memory_of_bodies([&] { impl_->intact.change([&] { impl_->posed[p].refit(positions); }); });
 }
 
 void MultiBodyQuery::refit(std::span<const std::span<const Vec3>> positions) {
@@ -275,21 +282,23 @@ void MultiBodyQuery::refit(std::span<const std::span<const Vec3>> positions) {
   for (std::size_t b = 0; b < size(); ++b)
     if (!positions[b].empty()) impl_->check(b, positions[b]);
   for (std::size_t b = 0; b < size(); ++b)
-    if (!positions[b].empty()) impl_->near.moved(b);
+    if (!positions[b].empty()) impl_->near.moved(impl_->parts.begin(b));
   const auto refit = [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b)
-      if (!positions[b].empty()) impl_->bodies[b].refit(positions[b]);
+      if (!positions[b].empty()) impl_->posed[impl_->parts.begin(b)].refit(positions[b]);
   };
   with_memory_of_bodies([&] { impl_->intact.change([&] { parallel_for(positions.size(), 1, refit); }); });
 }
 
 void MultiBodyQuery::set_filter(std::size_t body, const BodyFilter& filter) {
   const std::size_t number = impl_->checked(body);
-  impl_->near.change_filter()[number] = filter;
+  bodies::PairFilter& filters = impl_->near.change_filter();
+  for (std::uint32_t part = impl_->parts.begin(number); part < impl_->parts.end(number); ++part)
+    filters[part] = filter;
 }
 
 BodyFilter MultiBodyQuery::filter(std::size_t body) const {
-  return impl_->near.filter()[impl_->checked(body)];
+  return impl_->near.filter()[impl_->parts.begin(impl_->checked(body))];
 }
 
 void MultiBodyQuery::exclude_pair(std::size_t a, std::size_t b) {
@@ -336,9 +345,11 @@ std::vector<PairTimeOfContact> MultiBodyQuery::time_of_contact(std::span<const M
     throw Error("contacts until the time " + std::to_string(options.until) +
                 " are asked for; motions take place from 0 to 1");
   return with_memory_of_bodies([&] {
-    const std::vector<motion::DividedMotion> divided = impl_->divided(motions);
-    return bodies::MovingBodies(impl_->bodies, divided)
-        .first_contacts(impl_->near.filter(), tolerance, options);
+    const std::vector<motion::DividedMotion> divided = impl_->parts.divided(impl_->posed, motions);
+    std::vector<PairTimeOfContact> contacts =
+        bodies::MovingBodies(impl_->posed, divided).first_contacts(impl_->near.filter(), tolerance, options);
+    impl_->parts.merge(contacts);
+    return contacts;
   });
 }
 
@@ -347,7 +358,9 @@ std::vector<Transform> MultiBodyQuery::poses_at(std::span<const Motion> motions,
     impl_->check_count(motions.size(), "motions");
     std::vector<Transform> poses;
     poses.reserve(motions.size());
-    for (const motion::DividedMotion& motion : impl_->divided(motions)) poses.push_back(motion.at(time));
+    for (const Motion& m : motions)
+      on_behalf_of(poses.size(),
+                   [&] { poses.push_back(impl_->parts.pose_at(poses.size(), impl_->posed, m, time)); });
     return poses;
   });
 }
@@ -357,30 +370,32 @@ std::size_t MultiBodyQuery::candidate_pairs() const {
   return impl_->candidates;
 }
 
-NearestMap MultiBodyQuery::nearest_map(std::size_t body, double max_distance) const try {
+NearestMap MultiBodyQuery::nearest_map(std::size_t body, double max_distance) const {
   NearestMap nearest;
   nearest_map(body, max_distance, nearest);
   return nearest;
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("a map of the nearest bodies");
 }
 
 void MultiBodyQuery::nearest_map(std::size_t body, double max_distance, NearestMap& nearest) const try {
   check_distance(max_distance);
-  on_behalf_of(impl_->checked(body),
-               [&] { bodies::map_nearest(impl_->bodies, body, max_distance, nearest); });
+  on_behalf_of(impl_->checked(body), [&] {
+    impl_->parts.require_one_shape(body, "map");
+    bodies::map_nearest(impl_->posed, impl_->parts.begin(body), max_distance, nearest);
+  });
+  impl_->parts.merge(nearest);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a map of the nearest bodies");
 }
 
-const Surface& MultiBodyQuery::surface(std::size_t body) const {
+const Surface& MultiBodyQuery::surface(std::size_t body, std::size_t part) const {
+  const shape::Body& of = impl_->part_of(body, part).body();
   const Surface* surface = nullptr;
-  on_behalf_of(impl_->checked(body), [&] { surface = &impl_->bodies[body].body().surface(); });
+  on_behalf_of(body, [&] { surface = &of.surface(); });
   return *surface;
 }
 
-const Sites& MultiBodyQuery::sites(std::size_t body) const {
-  return impl_->bodies[impl_->checked(body)].body().sites();
+const Sites& MultiBodyQuery::sites(std::size_t body, std::size_t part) const {
+  return impl_->part_of(body, part).body().sites();
 }
 
 }  // namespace sdm

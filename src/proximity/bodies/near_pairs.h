@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/boxes/sweep.h"
@@ -13,20 +14,30 @@
 
 namespace sdm::bodies {
 
-/// Which pairs of bodies are asked for.
+/// Which pairs of parts are asked for (see BodyParts).
 class PairFilter {
  public:
-  explicit PairFilter(std::size_t bodies) : of_(bodies) {}
+  /// `body_of`: the body of each part.
+  explicit PairFilter(std::vector<std::uint32_t> body_of)
+      : of_(body_of.size()), body_of_(std::move(body_of)) {}
 
-  BodyFilter& operator[](std::size_t body) { return of_[body]; }
-  const BodyFilter& operator[](std::size_t body) const { return of_[body]; }
+  BodyFilter& operator[](std::size_t part) { return of_[part]; }
+  const BodyFilter& operator[](std::size_t part) const { return of_[part]; }
+  /// Pairs of bodies.
   void exclude(const Sweep::Pair& pair);
   void include(const Sweep::Pair& pair);
 
   [[nodiscard]] bool operator()(std::uint32_t a, std::uint32_t b) const;
+  [[nodiscard]] bool same_body(std::uint32_t a, std::uint32_t b) const { return body_of_[a] == body_of_[b]; }
+  /// Whether the body of a part has others.
+  [[nodiscard]] bool in_compound(std::uint32_t part) const {
+    return (part > 0 && same_body(part, part - 1)) ||
+           (part + 1 < body_of_.size() && same_body(part, part + 1));
+  }
 
  private:
   std::vector<BodyFilter> of_;
+  std::vector<std::uint32_t> body_of_;
   std::vector<Sweep::Pair> excluded_;  ///< sorted
 };
 
@@ -78,7 +89,9 @@ struct NearPair {
 /// The list of near pairs. It follows the bodies that have moved, and keeps the states of the other pairs.
 class NearPairs {
  public:
-  explicit NearPairs(std::size_t bodies) : boxes_(bodies), filter_(bodies), moved_(bodies) {}
+  /// `body_of`: the body of each part; bodies are parts elsewhere in this class.
+  explicit NearPairs(std::vector<std::uint32_t> body_of)
+      : boxes_(body_of.size()), filter_(std::move(body_of)), moved_(boxes_.size()) {}
 
   void moved(std::size_t body) noexcept;
   [[nodiscard]] const PairFilter& filter() const { return filter_; }

@@ -11,7 +11,9 @@ namespace sdm::motion {
 // angle, |f″| ≤ θ² ρ, so that f is within θ² ρ / 8 of the straight line from f(0) to f(1): the box around
 // both ends, extended by that, contains the body. So does the box around the ball of radius ρ at both ends.
 Box swept_box(const shape::Body& body, const DividedMotion& motion) {
-  const Vec3 half = 0.5 * (body.box().hi - body.box().lo);
+  Vec3 half;  // of the box about the centre of the motion that contains all faces
+  for (int k = 0; k < 3; ++k)
+    half[k] = std::max(body.box().hi[k] - motion.middle()[k], motion.middle()[k] - body.box().lo[k]);
   const auto& [ball_centre, ball_radius] = body.ball();
   const double radius =
       motion.scale() * std::min(norm(half), norm(ball_centre - motion.middle()) + ball_radius);
