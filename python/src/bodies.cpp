@@ -15,12 +15,12 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct PySeparations {
   std::vector<PairSeparation> pairs;
-  LazyArray bodies, separation, witness, colliding;
+  LazyArray bodies, parts, separation, witness, colliding;
 };
 
 struct PyPenetrationDepths {
   std::vector<PairDepth> pairs;
-  LazyArray bodies, depth, depth_bounds;
+  LazyArray bodies, parts, depth, depth_bounds;
 };
 
 // The query throws for one that is too large.
@@ -40,6 +40,7 @@ auto pair_column(LazyArray Pairs::*array, Get get) {
 }
 
 constexpr auto kBodiesOfPair = [](const auto& pair) { return std::array{pair.first, pair.second}; };
+constexpr auto kPartsOfPair = [](const auto& pair) { return pair.parts; };
 
 void bind_separations(nb::module_& module) {
   using P = PySeparations;
@@ -48,6 +49,8 @@ void bind_separations(nb::module_& module) {
       .def_prop_ro("bodies", pair_column(&P::bodies, kBodiesOfPair),
                    nb::sig("def bodies(self) -> numpy.ndarray"),
                    "The indices of O1 and O2, (n, 2) uint32, the smaller one first.")
+      .def_prop_ro("parts", pair_column(&P::parts, kPartsOfPair), nb::sig("def parts(self) -> numpy.ndarray"),
+                   "The parts of O1 and O2 that are the separation apart, (n, 2) uint32; see Compound.")
       .def_prop_ro("separation",
                    pair_column(&P::separation, [](const PairSeparation& p) { return p.separation.value; }),
                    nb::sig("def separation(self) -> numpy.ndarray"),
@@ -84,6 +87,8 @@ void bind_penetration_depths(nb::module_& module) {
       .def_prop_ro("bodies", pair_column(&P::bodies, kBodiesOfPair),
                    nb::sig("def bodies(self) -> numpy.ndarray"),
                    "The indices of O1 and O2, (n, 2) uint32, the smaller one first.")
+      .def_prop_ro("parts", pair_column(&P::parts, kPartsOfPair), nb::sig("def parts(self) -> numpy.ndarray"),
+                   "The parts of O1 and O2 that have this depth, (n, 2) uint32; see Compound.")
       .def_prop_ro("penetration_depth",
                    pair_column(&P::depth, [](const PairDepth& p) { return p.penetration_depth.value; }),
                    nb::sig("def penetration_depth(self) -> numpy.ndarray"),
@@ -99,11 +104,11 @@ void bind_penetration_depths(nb::module_& module) {
 }
 
 MultiBodyQuery query_of(nb::handle bodies, const MultiBodyOptions& options) {
-  std::vector<Shape> shapes;
+  std::vector<std::vector<BodyPart>> all;
   std::size_t i = 0;
   for (const nb::handle body : nb::iter(bodies)) {
     try {
-      shapes.push_back(shape_of(body));
+      all.push_back(parts_of(body));
     } catch (const Cancelled&) {
       throw;
     } catch (const Error& error) {
@@ -111,7 +116,7 @@ MultiBodyQuery query_of(nb::handle bodies, const MultiBodyOptions& options) {
     }
     ++i;
   }
-  return MultiBodyQuery(std::move(shapes), options);
+  return MultiBodyQuery(std::move(all), options);
 }
 
 void bind_motion(nb::class_<PyMultiBodyQuery>& query) {
@@ -169,7 +174,7 @@ w x y z of any length.)")
           nb::arg("body"), nb::arg("vertices").none(),
           nb::sig("def refit(self, body: int, vertices: object) -> None"),
           R"(Moves the vertices of a body, (n, 3) numbers, keeping its faces and its pose. Raises Error,
-and changes nothing, for a body that does not exist or whose Shape is shared, another number of vertices,
+and changes nothing, for a body that does not exist, is a Compound or whose Shape is shared, another number of vertices,
 or coordinates that are not finite. Cost: linear.)");
 }
 
@@ -207,21 +212,27 @@ moved.)")
           "Takes exclude_pair() back.");
 }
 
+std::vector<BodyPair> colliding_pairs(PyMultiBodyQuery& self) {
+  const auto lock = self.access.change();
+  std::vector<BodyPair> pairs;
+  run_sized(faces_of(self.query), [&] {
+    const auto found = self.query.colliding();
+    pairs.assign(found.begin(), found.end());
+  });
+  return pairs;
+}
+
 void bind_answers(nb::class_<PyMultiBodyQuery>& query) {
   query
       .def(
-          "colliding",
-          [](PyMultiBodyQuery& self) {
-            const auto lock = self.access.change();
-            std::vector<BodyPair> pairs;
-            run_sized(faces_of(self.query), [&] {
-              const auto found = self.query.colliding();
-              pairs.assign(found.begin(), found.end());
-            });
-            return column(pairs, kBodiesOfPair);
-          },
+          "colliding", [](PyMultiBodyQuery& self) { return column(colliding_pairs(self), kBodiesOfPair); },
           nb::sig("def colliding(self) -> numpy.ndarray"),
           "Returns the pairs that collide, (n, 2) uint32, the smaller index first; exact.")
+      .def(
+          "colliding_parts",
+          [](PyMultiBodyQuery& self) { return column(colliding_pairs(self), kPartsOfPair); },
+          nb::sig("def colliding_parts(self) -> numpy.ndarray"),
+          "Returns the first parts that collide of each pair of colliding(), (n, 2) uint32; see Compound.")
       .def(
           "separations",
           [](PyMultiBodyQuery& self, double max_distance) {
@@ -260,6 +271,7 @@ meshes.)")
             run_sized(faces_of(self.query), [&] {
               for (const PairContacts& pair : self.query.contacts()) {
                 result->contacts.insert(result->contacts.end(), pair.contacts.begin(), pair.contacts.end());
+                result->parts.insert(result->parts.end(), pair.contacts.size(), pair.parts);
                 result->bodies.insert(result->bodies.end(), pair.contacts.size(), {pair.first, pair.second});
               }
             });
@@ -284,8 +296,8 @@ void bind_nearest(nb::class_<PyMultiBodyQuery>& query) {
           nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
           nb::sig("def nearest_map(self, body: int, *, max_distance: float = ...) -> NearestMap"),
           R"(Returns the distances from the texels of a body to the nearest other body; texels with none
-within max_distance, > 0, have no value. Raises Error for a body that does not exist, or whose Shape has no
-resolution.)")
+within max_distance, > 0, have no value. Raises Error for a body that does not exist, is a Compound, or whose
+Shape has no resolution.)")
       .def(
           "distances_at_vertices",
           [](const PyMultiBodyQuery& self, std::int64_t body, double max_distance) {
@@ -311,18 +323,21 @@ signed as in nearest_map(); NaN where none is within max_distance.)")
 
 std::size_t faces_of(const MultiBodyQuery& query) {
   std::size_t faces = 0;
-  for (std::size_t body = 0; body < query.size(); ++body) faces += query.sites(body).mesh().triangles.size();
+  for (std::size_t body = 0; body < query.size(); ++body)
+    for (std::size_t part = 0; part < query.part_count(body); ++part)
+      faces += query.sites(body, part).mesh().triangles.size();
   return faces;
 }
 
 void bind_bodies(nb::module_& module) {
+  bind_compound(module);
   bind_separations(module);
   bind_penetration_depths(module);
   bind_nearest_map(module);
   nb::class_<PyMultiBodyQuery> query(module, "MultiBodyQuery",
                                      R"(Proximity of bodies that move and deform, each against all others.
 
-bodies: each any form of a mesh (see Mesh), or a Shape, which many bodies can share.
+bodies: each any form of a mesh (see Mesh), a Shape, which many bodies can share, or a Compound of several.
 depth_precision, contact_margin: as of ProximityQuery.
 ignore_internal_edges: leave out contacts that push a body across an edge between faces that continue each other,
 in one mesh or in fixed solids side by side, as where it slides over the tiles of a floor.

@@ -8,7 +8,7 @@ namespace {
 
 struct PyTimesOfContact {
   std::vector<PairTimeOfContact> pairs;
-  LazyArray bodies, time, separation, witness, faces, normal, bounded;
+  LazyArray bodies, parts, time, separation, witness, faces, normal, bounded;
 };
 
 // A property with get(pair) of all pairs.
@@ -33,6 +33,9 @@ void bind_times_of_contact(nb::module_& module) {
                                   }),
                    nb::sig("def bodies(self) -> numpy.ndarray"),
                    "The indices of O1 and O2, (n, 2) uint32, the smaller one first.")
+      .def_prop_ro("parts", contact_column(&T::parts, [](const Pair& p) { return p.parts; }),
+                   nb::sig("def parts(self) -> numpy.ndarray"),
+                   "The parts of O1 and O2 that come into contact first, (n, 2) uint32; see Compound.")
       .def_prop_ro(
           "time", contact_column(&T::time, [](const Pair& p) { return p.time_of_contact.time; }),
           nb::sig("def time(self) -> numpy.ndarray"),
@@ -117,7 +120,8 @@ tolerance: > 0, in units of space, as of sdm.time_of_contact().
 until: the last time, in [0, 1], at which contacts are looked for.
 earliest_only: only the pairs with the earliest contact of all.
 
-Pairs are those of the filters, and each is by itself: bodies move on after their contacts. None is missed,
+A Compound turns about the centre of the box of all its parts in its frame. Pairs are those of the filters, and
+each is by itself: bodies move on after their contacts. None is missed,
 however thin the bodies and long the motions. Raises Error for another number of poses, or one that is out of
 range. Cost: a sweep over the boxes around the motions, and that of sdm.time_of_contact() for each pair whose
 boxes are within the tolerance, on all cores.

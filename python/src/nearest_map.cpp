@@ -48,6 +48,15 @@ void bind_nearest_map(nb::module_& module) {
           },
           nb::sig("def body(self) -> numpy.ndarray"), "The index of the other body, (H, W) uint32, or NONE.")
       .def_prop_ro(
+          "part",
+          [](nb::handle self) -> nb::object {
+            const NearestMap& n = nb::cast<const M&>(self).nearest;
+            if (n.part.empty()) return nb::none();
+            return texels_of<std::uint32_t>(n.part, n.map, self);
+          },
+          nb::sig("def part(self) -> numpy.ndarray | None"),
+          "The part of that body, (H, W) uint32, or NONE; None if no body is a Compound.")
+      .def_prop_ro(
           "valid",
           [](M& self) {
             return self.valid.get([&] {

@@ -148,7 +148,8 @@ nb::tuple state_of(const DistanceMap& map) {
       map.beyond_max_distance, map.without_match, packed(map.unmatched));
 }
 
-DistanceMap map_from(nb::handle packed, const Surface& surface, const Sites& sites) {
+/// A map of `texels`, whose sites are not checked.
+DistanceMap map_from(nb::handle packed, std::size_t texels) {
   const nb::tuple state = items(packed, 10), sign = items(state[5], 2), measured = items(state[6], 3);
   DistanceMap map;
   map.resolution = nb::cast<std::uint32_t>(state[0]);
@@ -160,11 +161,16 @@ DistanceMap map_from(nb::handle packed, const Surface& surface, const Sites& sit
   map.beyond_max_distance = nb::cast<std::size_t>(state[7]);
   map.without_match = nb::cast<std::size_t>(state[8]);
   map.unmatched = unpacked<std::uint8_t>(state[9]);
-  const std::size_t texels = surface.texel_faces().size();
-  if (map.resolution != surface.resolution() || map.distance.size() != texels ||
-      map.vector.size() != texels || map.site.size() != texels || map.site_type.size() != texels ||
-      (!map.unmatched.empty() && map.unmatched.size() != texels))
+  if (map.distance.size() != texels || map.vector.size() != texels || map.site.size() != texels ||
+      map.site_type.size() != texels || (!map.unmatched.empty() && map.unmatched.size() != texels))
     throw Error(kDamaged);
+  return map;
+}
+
+DistanceMap map_from(nb::handle packed, const Surface& surface, const Sites& sites) {
+  const std::size_t texels = surface.texel_faces().size();
+  DistanceMap map = map_from(packed, texels);
+  if (map.resolution != surface.resolution()) throw Error(kDamaged);
   const std::array counts{sites.mesh().positions.size(), sites.edges().size(), sites.mesh().triangles.size()};
   for (std::size_t i = 0; i < texels; ++i) {
     const auto type = static_cast<std::size_t>(map.site_type[i]);
@@ -232,6 +238,24 @@ void bind_map_state() {
       });
 }
 
+void bind_nearest_map_state() {
+  bind_state<PyNearestMap>(
+      3,
+      [](const PyNearestMap& self) {
+        return nb::make_tuple(state_of(self.nearest.map), packed(self.nearest.body),
+                              packed(self.nearest.part));
+      },
+      [](PyNearestMap* self, const nb::tuple& from) {
+        NearestMap nearest;
+        nearest.body = unpacked<std::uint32_t>(from[1]), nearest.part = unpacked<std::uint32_t>(from[2]);
+        nearest.map = map_from(from[0], nearest.body.size());
+        if (nearest.map.resolution == 0 || nearest.body.size() % nearest.map.resolution != 0 ||
+            (!nearest.part.empty() && nearest.part.size() != nearest.body.size()))
+          throw Error(kDamaged);
+        new (self) PyNearestMap{.nearest = std::move(nearest), .valid = {}};
+      });
+}
+
 void bind_number_states() {
   bind_state<DistanceStatistics>(
       1, [](const DistanceStatistics& self) { return nb::make_tuple(packed(std::vector{self})); },
@@ -258,6 +282,22 @@ void bind_number_states() {
         made->certainty = certainty;
         made->lower = numbers[1], made->upper = numbers[2];
         if (!witness.empty()) made->witness = witness.front();
+      });
+  bind_state<SeparatingTranslation>(
+      5,
+      [](const SeparatingTranslation& self) {
+        return nb::make_tuple(self.value, static_cast<int>(self.certainty), self.lower, self.upper,
+                              packed(std::vector{self.translation}));
+      },
+      [](SeparatingTranslation* self, const nb::tuple& from) {
+        const auto translation = unpacked<Vec3>(from[4]);
+        if (translation.size() != 1) throw Error(kDamaged);
+        SeparatingTranslation made;
+        made.value = nb::cast<double>(from[0]);
+        made.certainty = enumerator<Certainty>(from[1], Certainty::estimate);
+        made.lower = nb::cast<double>(from[2]), made.upper = nb::cast<double>(from[3]);
+        made.translation = translation.front();
+        new (self) SeparatingTranslation(made);
       });
 }
 
@@ -286,6 +326,7 @@ void bind_pickle() {
       });
   bind_surface_state();
   bind_map_state();
+  bind_nearest_map_state();
   bind_state<PyShape>(
       2,
       [](const PyShape& self) {

@@ -118,8 +118,8 @@ At most penetration_depth().upper; of separating_contacts(), at most separating_
       .def_prop_ro(
           "id", contact_column(&PyContacts::id, [](const Contact& c) { return c.id; }),
           nb::sig("def id(self) -> numpy.ndarray"),
-          R"(Identifies what is in contact, (n,) uint64: unique among the contacts of a pair of bodies, and
-the same in all frames.)")
+          R"(Identifies what is in contact, (n,) uint64: unique among the contacts of a pair of bodies, or of
+their parts, and the same in all frames.)")
       .def_prop_ro(
           "bodies",
           [](PyContacts& self) -> nb::object {
@@ -128,6 +128,15 @@ the same in all frames.)")
           },
           nb::sig("def bodies(self) -> numpy.ndarray | None"),
           "The indices of O1 and O2, (n, 2) uint32, for MultiBodyQuery; otherwise None.")
+      .def_prop_ro(
+          "parts",
+          [](PyContacts& self) -> nb::object {
+            if (!self.has_bodies) return nb::none();
+            return self.part.get(
+                [&] { return column(self.parts, [](const PartPair& pair) { return pair; }); });
+          },
+          nb::sig("def parts(self) -> numpy.ndarray | None"),
+          "The parts of O1 and O2 (see Compound), (n, 2) uint32, for MultiBodyQuery; otherwise None.")
       .def("__len__", [](const PyContacts& self) { return self.contacts.size(); })
       .def("__repr__",
            [](const PyContacts& self) { return nb::str("sdm.Contacts({})").format(self.contacts.size()); });
@@ -198,16 +207,16 @@ void bind_motion(nb::class_<PyProximityQuery>& query) {
       .def(
           "__init__",
           [](PyProximityQuery* self, nb::handle o1, nb::handle o2, std::optional<double> depth_precision,
-             double contact_margin) {
+             double contact_margin, bool ignore_internal_edges) {
             const ProximityOptions options{.depth_precision = depth_precision,
-                                           .contact_margin = contact_margin};
+                                           .contact_margin = contact_margin,
+                                           .ignore_internal_edges = ignore_internal_edges};
             new (self) PyProximityQuery{ProximityQuery(shape_of(o1), shape_of(o2), options), {}};
           },
           nb::arg("o1").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("depth_precision") = nb::none(),
-          nb::arg("contact_margin") = 0.0,
+          nb::arg("contact_margin") = 0.0, nb::arg("ignore_internal_edges") = false,
           nb::sig("def __init__(self, o1: object, o2: object, *, depth_precision: float | None = None, "
-                  "contact_margin: float = "
-                  "0.0) -> None"))
+                  "contact_margin: float = 0.0, ignore_internal_edges: bool = False) -> None"))
       .def(
           "set_pose",
           [](PyProximityQuery& self, int body, nb::handle pose) {
@@ -351,6 +360,8 @@ depth_precision: the bounds on the penetration depth are at most this far apart,
 diagonal of the smaller body's box.
 contact_margin: contacts are reported for points inside the other body or within this distance.
 ≥ 0. Both in units of the meshes.
+ignore_internal_edges: leave out contacts() that push a body across an edge between faces that continue each
+other, as where it slides over the triangles of a floor.
 
 A closed, orientable body is a solid; any other one is a surface without an inside. All results are
 in space, with both bodies in their poses, and are computed by the first call after a body has moved.

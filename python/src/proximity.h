@@ -20,8 +20,9 @@ namespace sdm::python {
 struct PyContacts {
   std::vector<Contact> contacts;
   std::vector<std::array<std::uint32_t, 2>> bodies;
+  std::vector<PartPair> parts;
   bool has_bodies = false;
-  LazyArray point1, point2, normal, depth, patch, faces, barycentric, id, body;
+  LazyArray point1, point2, normal, depth, patch, faces, barycentric, id, body, part;
 };
 
 struct PyProximityQuery {
@@ -45,8 +46,16 @@ struct PyShape {
   Shape shape;
 };
 
+/// Several shapes that are one body, as of sdm.Compound.
+struct PyCompound {
+  std::vector<BodyPart> parts;
+};
+
 /// The shape of a Shape, or a new one of any other mesh.
 [[nodiscard]] Shape shape_of(nb::handle body);
+
+/// The parts of a Compound, or the one of any other body.
+[[nodiscard]] std::vector<BodyPart> parts_of(nb::handle body);
 
 /// Positions for a refit; none for None.
 class OptionalPoints {
@@ -74,6 +83,7 @@ struct PyNearestMap {
 void bind_edit(nb::class_<PyProximityQuery>& query);
 /// Adds the method time_of_contact().
 void bind_moving_bodies(nb::module_& module, nb::class_<PyMultiBodyQuery>& query);
+void bind_compound(nb::module_& module);
 void bind_self_proximity(nb::module_& module);
 void bind_nearest_map(nb::module_& module);
 

@@ -104,6 +104,34 @@ def test_shapes(pair):
         assert query.penetration_depth().value == sdm.ProximityQuery(*pair).penetration_depth().value
 
 
+def test_separating_translations():
+    query = sdm.ProximityQuery(meshes.box(), meshes.box())
+    query.set_pose(0, [[1, 0, 0, 0.75], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    expected = query.separating_translation()
+    found = again(expected)
+    assert (found.value, found.certainty, found.lower, found.upper) == (
+        expected.value, expected.certainty, expected.lower, expected.upper)  # fmt: skip
+    assert np.array_equal(found.translation, expected.translation)
+
+
+def test_maps_to_the_nearest_body(pair):
+    mapped, box = sdm.Shape(pair[0], resolution=64), sdm.Shape(pair[1])
+    for other in (box, sdm.Compound([box, box], [[3, 0, 0, 1, 0, 0, 0], [-3, 0, 0, 1, 0, 0, 0]])):
+        expected = sdm.MultiBodyQuery([mapped, other]).nearest_map(0)
+        found = again(expected)
+        for name in ("distance", "vector", "site", "site_type", "body", "valid"):
+            assert getattr(found, name).tobytes() == getattr(expected, name).tobytes()
+        if other is box:
+            assert found.part is None
+        else:
+            assert np.array_equal(found.part, expected.part) and set(np.unique(found.part)) == {0, 1, sdm.NONE}
+    state = expected.__getstate__()
+    for i, wrong in ((1, state[1][:-4]), (2, b"1234"), (0, (0, *state[0][1:]))):
+        made = type(expected).__new__(type(expected))
+        with pytest.raises(sdm.Error, match="damaged"):
+            made.__setstate__((*state[:i], wrong, *state[i + 1 :]))
+
+
 def test_numbers(pair):
     distance_map = sdm.map(*pair, resolution=64)
     statistics, distance = distance_map.statistics(), distance_map.hausdorff(1e-6)

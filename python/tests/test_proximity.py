@@ -216,6 +216,52 @@ def test_internal_edges():
         assert slanted.any() != ignore and not slanted.all()
 
 
+def test_internal_edges_of_two():
+    x, y = np.meshgrid(np.arange(5.0), np.arange(5.0), indexing="ij")
+    vertices = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
+    corner = (np.arange(4)[:, None] * 5 + np.arange(4)).ravel()
+    floor = (vertices, np.concatenate([np.stack([corner, corner + 5, corner + 6], 1), np.stack([corner, corner + 6, corner + 1], 1)]))
+    for ignore in (False, True):
+        query = sdm.ProximityQuery(meshes.box(), floor, contact_margin=0.02, ignore_internal_edges=ignore)
+        query.set_pose(0, shift(1.98, 1.3, -0.05))
+        slanted = np.abs(query.contacts().normal[:, 2]) < 0.99
+        assert slanted.any() != ignore and not slanted.all()
+
+
+def test_compounds():
+    box = sdm.Shape(meshes.box())
+    dumbbell = sdm.Compound([box, meshes.box(), box], [[0, 0, 0, 1, 0, 0, 0], [3, 0, 0, 1, 0, 0, 0], [6, 0, 0, 1, 0, 0, 0]])
+    assert len(dumbbell) == 3
+    query = sdm.MultiBodyQuery([box, dumbbell, box], contact_margin=0.1)
+    query.set_poses(np.stack([shift(2.95, 0.2, 0), shift(0, 0, 0), shift(5, 0, 1.5)]))
+    found = query.separations()
+    assert found.bodies.tolist() == [[0, 1], [0, 2], [1, 2]]
+    assert found.parts[[0, 2]].tolist() == [[0, 1], [2, 0]]
+    assert found.colliding.tolist() == [True, False, False]
+    parts = [sdm.ProximityQuery(box, box) for _ in range(3)]
+    for i, part in enumerate(parts):
+        part.set_pose(0, shift(3 * i, 0, 0))
+        part.set_pose(1, shift(5, 0, 1.5))
+    assert found.separation[2] == min(part.separation().value for part in parts)
+    assert query.colliding().tolist() == [[0, 1]] and query.colliding_parts().tolist() == [[0, 1]]
+    depths = query.penetration_depths()
+    assert depths.parts.tolist() == [[0, 1]]
+    contacts = query.contacts()
+    assert len(contacts) > 0 and (contacts.parts == [0, 1]).all()
+    starts = np.stack([shift(-4, 0, 0), shift(0, 0, 0), shift(20, 0, 0)])
+    ends = np.stack([shift(-1.5, 0, 0), shift(0, 0, 0), shift(20, 0, 0)])
+    ends[0, 0, 3] = 0
+    first = query.time_of_contact(starts, ends, tolerance=1e-6)
+    assert first.bodies.tolist() == [[0, 1]] and first.parts.tolist() == [[0, 0]]
+    np.testing.assert_allclose(first.time, 0.75, atol=1e-5)
+    assert len(query.distances_at_vertices(1)) == 24
+    with pytest.raises(sdm.Error, match="compound"):
+        query.refit(1, meshes.box()[0])
+    for bad in (lambda: sdm.Compound([]), lambda: sdm.Compound([box], np.tile(np.eye(4), (2, 1, 1)))):
+        with pytest.raises(sdm.Error):
+            bad()
+
+
 def test_many_poses():
     gripper, part = sdm.Shape(meshes.box()), sdm.Shape(meshes.sphere(radius=0.5))
     random = np.random.default_rng(4)
