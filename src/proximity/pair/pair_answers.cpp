@@ -138,7 +138,12 @@ bool PairAnswers::find_closest(double bound) {
 }
 
 bool PairAnswers::surfaces_intersect() {
-  if (!known_.intersecting) known_.intersecting = pairs::find_intersection(meshes(), workspace_).intersecting;
+  if (!known_.intersecting) {
+    // Faces that intersected in a similar pose mostly still do.
+    const FacePair faces = pairs::find_common_faces(meshes(), workspace_, known_.common_faces);
+    known_.intersecting = faces != kNoFaces;
+    if (*known_.intersecting) known_.common_faces = faces;
+  }
   return *known_.intersecting;
 }
 

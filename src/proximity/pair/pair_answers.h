@@ -24,6 +24,7 @@ using pairs::FacePair, pairs::kNoFaces;
 struct KnownAnswers {
   /// The closest faces, or faces that intersect, if the separation is known; otherwise a hint.
   FacePair closest_faces = kNoFaces;
+  FacePair common_faces = kNoFaces;    ///< faces that intersect in this or a similar pose: a hint
   convex::Simplex closest_vertices{};  ///< of two convex solids: a hint
   double beyond = -1;                  ///< the surfaces are farther apart than this
   std::optional<bool> intersecting{};  ///< the surfaces
@@ -33,7 +34,8 @@ struct KnownAnswers {
 
   /// What helps in a similar pose.
   [[nodiscard]] KnownAnswers hints() const {
-    return {.closest_faces = closest_faces, .closest_vertices = closest_vertices};
+    return {
+        .closest_faces = closest_faces, .common_faces = common_faces, .closest_vertices = closest_vertices};
   }
 };
 

@@ -13,7 +13,7 @@ namespace sdm::pairs {
 
 /// Whether the surfaces intersect, or a solid contains part of the other mesh.
 [[nodiscard]] inline bool colliding(const MeshPair& pair, PairWorkspace& workspace) {
-  return find_intersection(pair, workspace).intersecting || one_contains_part_of_other(pair);
+  return find_common_faces(pair, workspace) != kNoFaces || one_contains_part_of_other(pair);
 }
 
 }  // namespace sdm::pairs

@@ -36,6 +36,7 @@ class PairSearch {
 
   ClosestFaces& closest() { return closest_; }
 
+  // `separate`: the closest faces, or those that intersect, with their points; otherwise faces alone.
   Separation run() {
     w_.overlapping.clear(), w_.apart.clear();
     // Caps of large meshes are mostly too large as long as there is no bound: trying costs a tenth of the
@@ -250,8 +251,8 @@ class PairSearch {
         if constexpr (separate) closest_.add({0, candidate.owner1, candidate.owner2});
         continue;
       }
-      const Vec3 point = common_point(a, b);
-      intersection_ = {0, true, point, point, faces[0], faces[1]};
+      intersection_ = {0, true, {}, {}, faces[0], faces[1]};
+      if constexpr (separate) intersection_.point1 = intersection_.point2 = common_point(a, b);
       return;
     }
   }
@@ -275,8 +276,9 @@ Separation FindClosest(const MeshPair& pair, double bound, PairWorkspace& worksp
     search.closest().look_ahead();
   return search.run();
 }
-Separation FindIntersection(const MeshPair& pair, PairWorkspace& workspace) {
-  return PairSearch<false>(pair, 0, workspace).run();
+FacePair FindCommonFaces(const MeshPair& pair, PairWorkspace& workspace) {
+  const Separation found = PairSearch<false>(pair, 0, workspace).run();
+  return found.intersecting ? FacePair{found.face1, found.face2} : kNoFaces;
 }
 
 }  // namespace sdm::pairs::HWY_NAMESPACE
@@ -286,15 +288,23 @@ HWY_AFTER_NAMESPACE();
 namespace sdm::pairs {
 
 HWY_EXPORT(FindClosest);
-HWY_EXPORT(FindIntersection);
+HWY_EXPORT(FindCommonFaces);
 
 Separation find_closest(const MeshPair& pair, double bound, PairWorkspace& workspace, const FacePair& hint) {
   return HWY_DYNAMIC_DISPATCH(FindClosest)(pair, bound, workspace, hint);
 }
 
+FacePair find_common_faces(const MeshPair& pair, PairWorkspace& workspace, const FacePair& hint) {
+  if (hint != kNoFaces && triangles_intersect(pair.face1(hint[0]), pair.face2(hint[1]))) return hint;
+  if (have_separating_axis(pair)) return kNoFaces;
+  return HWY_DYNAMIC_DISPATCH(FindCommonFaces)(pair, workspace);
+}
+
 Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace) {
-  if (have_separating_axis(pair)) return {};
-  return HWY_DYNAMIC_DISPATCH(FindIntersection)(pair, workspace);
+  const FacePair faces = find_common_faces(pair, workspace);
+  if (faces == kNoFaces) return {};
+  const Vec3 point = common_point(pair.face1(faces[0]), pair.face2(faces[1]));
+  return {0, true, point, point, faces[0], faces[1]};
 }
 
 }  // namespace sdm::pairs

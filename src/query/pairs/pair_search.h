@@ -84,7 +84,11 @@ struct PairWorkspace {
 [[nodiscard]] Separation find_closest(const MeshPair& pair, double bound, PairWorkspace& workspace,
                                       const FacePair& hint = kNoFaces);
 
-/// Finds two faces, one of each surface, that have a point in common, if any; decided exactly.
+/// Finds two faces, one of each surface, that have a point in common; kNoFaces if there are none. Decided
+/// exactly. `hint`: faces that may be such ones, which are then the result.
+[[nodiscard]] FacePair find_common_faces(const MeshPair& pair, PairWorkspace& workspace,
+                                         const FacePair& hint = kNoFaces);
+/// The same without a hint, with a point that the faces have in common.
 [[nodiscard]] Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace);
 
 }  // namespace sdm::pairs
