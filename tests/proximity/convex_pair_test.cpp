@@ -163,9 +163,9 @@ TEST_F(ConvexPairs, HaveTheAnswersOfSearches) {
     tried_ = found_ = decided_ = 0;
     for (const Affine& pose : bench::random_poses(o1, o2, kPoses, random))
       expect_same(o1, o2, *c1, *c2, pose, 1, warm);
-    // Of five stands, one only touches, and in one both have the same centre.
-    EXPECT_GE(decided_, 6 * tried_ / 10);
+    // Of five stands, one only touches, which is mostly decided, too.
     const bool extreme = name == "needles" || name == "flat boxes" || name == "far from the origin";
+    EXPECT_GE(decided_, (extreme ? 6 : 9) * tried_ / 10);
     EXPECT_GE(found_, extreme ? 0 : 3 * tried_ / 10);
   }
 }

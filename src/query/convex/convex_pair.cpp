@@ -7,6 +7,7 @@
 
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
+#include "query/convex/touching.h"
 
 // What proves a result. Let u be the unit vector from the closest point of O1 to that of O2, d their
 // distance, and r a bound on rounding errors. Heights are along u for O1, along −u for O2.
@@ -303,11 +304,12 @@ std::optional<bool> ConvexPair::colliding(Simplex& simplex) {
       pairs::FacePair unused{};
       const std::optional<pairs::Separation> found = finish(simplex, unused);
       if (found && found->distance > kMany * rounding_) return false;
-      return {};
+      break;
     }
     default:
-      return {};
+      break;
   }
+  return touching(o1_, o2_, pair_, scale_, simplex, kMany * rounding_);
 }
 
 }  // namespace sdm::convex

@@ -74,7 +74,7 @@ class SupportSearch {
     constexpr int kMostSteps = 40;
     for (int step = 0; step < kMostSteps; ++step) {
       const double squared = squared_norm(v_);
-      if (!(squared > 1e-24 * size_ * size_)) return Relation::unknown;
+      if (!(squared > 1e-24 * size_ * size_)) return keep_touching();
       const double length = std::sqrt(squared);
       const SimplexPoint p = support((-1 / length) * v_);
       const double along = dot(p.w, v_) / length;  // no point of the difference is nearer to the origin
@@ -149,6 +149,12 @@ class SupportSearch {
     known_.away = normalized(v_);
     for (int i = 0; i < simplex_.count; ++i) known_.vertices[i] = simplex_.points[i].vertices;
     return relation;
+  }
+
+  // Where the closest points are one, they have no direction between them: the last one was.
+  Relation keep_touching() {
+    v_ = -last_u_;
+    return keep(Relation::unknown);
   }
 
   const SupportRequest& r_;

@@ -33,7 +33,8 @@ struct SupportRequest {
 
 /// Gilbert, Johnson & Keerthi 1988: the point closest to the origin of simplices of differences x1 − x2, each
 /// extended by the vertices that are farthest in its direction. `simplex`: that of a similar pose, or none;
-/// it receives the last one. Cost: some steps, each that of comparing all vertices of both.
+/// it receives the last one, unless the bodies overlap. Cost: some steps, each that of comparing all vertices
+/// of both.
 [[nodiscard]] Relation search_by_supports(const SupportRequest& request, Simplex& simplex);
 
 }  // namespace sdm::convex
