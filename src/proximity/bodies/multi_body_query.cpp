@@ -242,7 +242,6 @@ std::size_t MultiBodyQuery::size() const {
   impl_->intact.require();
   return impl_->parts.bodies();
 }
-
 std::size_t MultiBodyQuery::part_count(std::size_t body) const {
   return impl_->parts.count(impl_->checked(body));
 }
@@ -263,7 +262,6 @@ Transform MultiBodyQuery::pose(std::size_t body) const {
   if (impl_->parts.compound(body)) return mesh::Similarity::of(impl_->given_poses[body]).transform();
   return part.pose().transform();
 }
-
 Transform MultiBodyQuery::part_pose(std::size_t body, std::size_t part) const {
   return impl_->part_of(body, part).pose().transform();
 }
@@ -370,10 +368,12 @@ std::size_t MultiBodyQuery::candidate_pairs() const {
   return impl_->candidates;
 }
 
-NearestMap MultiBodyQuery::nearest_map(std::size_t body, double max_distance) const {
+NearestMap MultiBodyQuery::nearest_map(std::size_t body, double max_distance) const try {
   NearestMap nearest;
   nearest_map(body, max_distance, nearest);
   return nearest;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a map of the nearest bodies");
 }
 
 void MultiBodyQuery::nearest_map(std::size_t body, double max_distance, NearestMap& nearest) const try {
@@ -393,7 +393,6 @@ const Surface& MultiBodyQuery::surface(std::size_t body, std::size_t part) const
   on_behalf_of(body, [&] { surface = &of.surface(); });
   return *surface;
 }
-
 const Sites& MultiBodyQuery::sites(std::size_t body, std::size_t part) const {
   return impl_->part_of(body, part).body().sites();
 }
