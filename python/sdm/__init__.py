@@ -76,6 +76,7 @@ from ._core import (
     weld,
 )
 from ._core import version as __version__
+from ._batches import BatchItem, ClosestPointsBatch, closest_points_batch
 from ._closest_points import NONE, SiteType, closest_points
 from ._distance_map import DistanceMap, MapBounds
 from ._maps import map, self_map, thickness
@@ -83,10 +84,12 @@ from ._metrics import BoundedNumber, SurfaceMetrics, mask_surface, surface_metri
 
 __all__ = [
     "Alignment",
+    "BatchItem",
     "BoundedLength",
     "BoundedNumber",
     "Cancelled",
     "ClosestPoints",
+    "ClosestPointsBatch",
     "Compound",
     "Contacts",
     "Coverage",
@@ -133,6 +136,7 @@ __all__ = [
     "align_points",
     "alignment_doubts",
     "closest_points",
+    "closest_points_batch",
     "convex_hull",
     "coverage",
     "distance_field",

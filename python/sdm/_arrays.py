@@ -59,6 +59,11 @@ def points(array: Any, name: str) -> np.ndarray:
     return _floats(array, name, (None, 3))
 
 
+def stack(array: Any, name: str) -> np.ndarray:
+    """B arrays of points."""
+    return _floats(array, name, (None, None, 3))
+
+
 def matrix(array: Any, name: str) -> np.ndarray:
     return _floats(array, name, (4, 4))
 

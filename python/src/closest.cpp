@@ -1,15 +1,13 @@
 #include "closest.h"
 
+#include <sdm/closest_points.h>
 #include <sdm/error.h>
+#include <sdm/sign.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace sdm::python {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // The areas of the triangles opposite to the corners, relative to that of the face, which has one.
 Vec3 weights_in_face(const std::array<Vec3, 3>& corners, const Vec3& p) {
@@ -25,28 +23,29 @@ Vec3 weights_in_face(const std::array<Vec3, 3>& corners, const Vec3& p) {
 
 }  // namespace
 
-void PyClosestPoints::set_gradients(std::span<const Vec3> points) {
-  has_gradients_ = true;
-  gradients.assign(found.size(), Vec3{});
-  for_parts(found.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const double distance = distance_of(i);
-      if (found[i].type == SiteType::none || distance == 0) continue;
-      const Vec3 to_point = points[i] - found[i].point;
-      for (int k = 0; k < 3; ++k) gradients[i][k] = to_point[k] / distance;
-    }
-  });
+Vec3 Found::gradient_of(std::size_t i, const Vec3& point) const {
+  const double distance = distance_of(i);
+  if (closest[i].type == SiteType::none || distance == 0) return {};
+  const Vec3 to_point = point - closest[i].point;
+  return {to_point[0] / distance, to_point[1] / distance, to_point[2] / distance};
 }
 
-Vec3 PyClosestPoints::barycentric_of(const ClosestPoint& closest) const {
-  if (closest.type == SiteType::none) return {kNan, kNan, kNan};
-  const Sites& mesh = version->get();
-  const Triangle& triangle = mesh.mesh().triangles[closest.face];
-  Vec3 weights{};
-  if (closest.type == SiteType::face) {
-    const std::vector<Vec3>& at = *positions;
-    return weights_in_face({at[triangle[0]], at[triangle[1]], at[triangle[2]]}, closest.point);
+Found search(const Sites& sites, std::span<const Vec3> points, const MapOptions& options) {
+  Found found{closest_points(sites, points, options), {}};
+  if (options.sign != SignMethod::none) {
+    const SignMethod sign = choose_sign(sites, options.sign).method;
+    if (sign != SignMethod::none) found.inside = inside_flags(sites, points, found.closest, sign);
   }
+  return found;
+}
+
+Vec3 weights_of(const Sites& sites, std::span<const Vec3> positions, const ClosestPoint& closest) {
+  if (closest.type == SiteType::none) return kNoPoint;
+  const Triangle& triangle = sites.mesh().triangles[closest.face];
+  Vec3 weights{};
+  if (closest.type == SiteType::face)
+    return weights_in_face({positions[triangle[0]], positions[triangle[1]], positions[triangle[2]]},
+                           closest.point);
   const auto corner = [&](std::uint32_t vertex) {
     return std::ranges::find(triangle, vertex) - triangle.begin();
   };
@@ -54,12 +53,20 @@ Vec3 PyClosestPoints::barycentric_of(const ClosestPoint& closest) const {
     weights[corner(closest.site)] = 1;
     return weights;
   }
-  const auto [from, to] = mesh.edges()[closest.site];
-  const Vec3 along = (*positions)[to] - (*positions)[from];
-  const double t = dot(closest.point - (*positions)[from], along) / dot(along, along);
+  const auto [from, to] = sites.edges()[closest.site];
+  const Vec3 along = positions[to] - positions[from];
+  const double t = dot(closest.point - positions[from], along) / dot(along, along);
   weights[corner(to)] = t >= 0 ? std::min(t, 1.0) : 0;  // 0 also for an edge without length
   weights[corner(from)] = 1 - weights[corner(to)];
   return weights;
+}
+
+void PyClosestPoints::set_gradients(std::span<const Vec3> points) {
+  has_gradients_ = true;
+  gradients.resize(size());
+  for_parts(size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) gradients[i] = found.gradient_of(i, points[i]);
+  });
 }
 
 void PyClosestPoints::require_gradients() const {
@@ -69,35 +76,36 @@ void PyClosestPoints::require_gradients() const {
 
 nb::object PyClosestPoints::distance() {
   return distance_.get([&] {
-    return column(found, [this](const ClosestPoint& c) { return distance_of(&c - found.data()); });
+    return column(found.closest,
+                  [this](const ClosestPoint& c) { return found.distance_of(&c - found.closest.data()); });
   });
 }
 
 nb::object PyClosestPoints::point() {
   return point_.get([&] {
-    return column(found, [](const ClosestPoint& c) {
-      return c.type == SiteType::none ? Vec3{kNan, kNan, kNan} : c.point;
-    });
+    return column(found.closest,
+                  [](const ClosestPoint& c) { return c.type == SiteType::none ? kNoPoint : c.point; });
   });
 }
 
 nb::object PyClosestPoints::face() {
-  return face_.get([&] { return column(found, [](const ClosestPoint& c) { return c.face; }); });
+  return face_.get([&] { return column(found.closest, [](const ClosestPoint& c) { return c.face; }); });
 }
 
 nb::object PyClosestPoints::barycentric() {
   const auto lock = sites->access.use();
   return barycentric_.get(
-      [&] { return column(found, [this](const ClosestPoint& c) { return barycentric_of(c); }); });
+      [&] { return column(found.closest, [this](const ClosestPoint& c) { return barycentric_of(c); }); });
 }
 
 nb::object PyClosestPoints::site() {
-  return site_.get([&] { return column(found, [](const ClosestPoint& c) { return c.site; }); });
+  return site_.get([&] { return column(found.closest, [](const ClosestPoint& c) { return c.site; }); });
 }
 
 nb::object PyClosestPoints::site_type() {
-  return site_type_.get(
-      [&] { return column(found, [](const ClosestPoint& c) { return static_cast<std::uint8_t>(c.type); }); });
+  return site_type_.get([&] {
+    return column(found.closest, [](const ClosestPoint& c) { return static_cast<std::uint8_t>(c.type); });
+  });
 }
 
 nb::object PyClosestPoints::gradient() {
@@ -109,18 +117,18 @@ nb::object PyClosestPoints::vertex_gradients() const {
   require_gradients();
   const auto lock = sites->access.use();
   const auto& triangles = version->get().mesh().triangles;
-  std::vector<Triangle> vertices(found.size());
-  std::vector<std::array<Vec3, 3>> derivatives(found.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].type == SiteType::none) continue;
-    vertices[i] = triangles[found[i].face];
+  std::vector<Triangle> vertices(size());
+  std::vector<std::array<Vec3, 3>> derivatives(size());
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (found.closest[i].type == SiteType::none) continue;
+    vertices[i] = triangles[found.closest[i].face];
     // The closest point moves with its face; the motion within the face does not change the distance.
-    const Vec3 weights = barycentric_of(found[i]);
+    const Vec3 weights = barycentric_of(found.closest[i]);
     for (int k = 0; k < 3; ++k)
       for (int axis = 0; axis < 3; ++axis) derivatives[i][k][axis] = -weights[k] * gradients[i][axis];
   }
-  return nb::make_tuple(array_of<std::uint32_t>(std::move(vertices), {found.size(), 3}),
-                        array_of<double>(std::move(derivatives), {found.size(), 3, 3}));
+  return nb::make_tuple(array_of<std::uint32_t>(std::move(vertices), {size(), 3}),
+                        array_of<double>(std::move(derivatives), {size(), 3, 3}));
 }
 
 }  // namespace sdm::python

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <sdm/map.h>
 #include <sdm/sites.h>
 
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -13,19 +16,40 @@
 
 namespace sdm::python {
 
+inline constexpr Vec3 kNoPoint{std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::quiet_NaN()};
+
+/// What a search finds.
+struct Found {
+  std::vector<ClosestPoint> closest;
+  std::vector<std::uint8_t> inside;  ///< empty: unsigned
+
+  [[nodiscard]] double distance_of(std::size_t i) const {
+    return !inside.empty() && inside[i] ? -closest[i].distance : closest[i].distance;
+  }
+  /// The derivative of distance i by its point: 0 where there is none.
+  [[nodiscard]] Vec3 gradient_of(std::size_t i, const Vec3& point) const;
+};
+
+/// The closest points, with a sign if the options ask for one. Needs no GIL.
+[[nodiscard]] Found search(const Sites& sites, std::span<const Vec3> points, const MapOptions& options);
+
+/// The barycentric coordinates of a closest point in its face; NaN where there is none. `positions`: of the
+/// vertices of the sites.
+[[nodiscard]] Vec3 weights_of(const Sites& sites, std::span<const Vec3> positions,
+                              const ClosestPoint& closest);
+
 /// Holds what the search returned; the arrays are made by the first access.
 struct PyClosestPoints {
   nb::object owner;  ///< keeps the sites
   const PySites* sites = nullptr;
   std::shared_ptr<SitesVersion> version;  ///< their faces and edges at the time of the search
   Positions positions;                    ///< of its vertices at the time of the search
-  std::vector<ClosestPoint> found;
-  std::vector<std::uint8_t> inside;  ///< empty: unsigned
-  std::vector<Vec3> gradients;       ///< empty: not requested
+  Found found;
+  std::vector<Vec3> gradients;  ///< empty: not requested
 
-  [[nodiscard]] double distance_of(std::size_t i) const {
-    return !inside.empty() && inside[i] ? -found[i].distance : found[i].distance;
-  }
+  [[nodiscard]] std::size_t size() const { return found.closest.size(); }
   void set_gradients(std::span<const Vec3> points);
 
   nb::object distance();
@@ -38,7 +62,9 @@ struct PyClosestPoints {
   [[nodiscard]] nb::object vertex_gradients() const;
 
  private:
-  [[nodiscard]] Vec3 barycentric_of(const ClosestPoint& closest) const;
+  [[nodiscard]] Vec3 barycentric_of(const ClosestPoint& closest) const {
+    return weights_of(version->get(), *positions, closest);
+  }
   void require_gradients() const;
 
   bool has_gradients_ = false;

@@ -13,6 +13,7 @@ NB_MODULE(_core, module) {
   bind_errors(module);
   bind_meshes(module);
   bind_sites(module);
+  bind_batches(module);
   bind_surface(module);
   bind_groups(module);
   bind_map(module);

@@ -38,19 +38,15 @@ std::unique_ptr<PyClosestPoints> closest(nb::handle self, nb::handle points, con
   result->sites = &sites;
   result->version = sites.version;
   result->positions = sites.positions;
-  const auto search = [&](const Progress& progress) {
+  const auto work = [&](const Progress& progress) {
     options.progress = progress;
-    result->found = closest_points(sites.sites, p.get(), options);
-    if (options.sign != SignMethod::none) {
-      const SignMethod sign = choose_sign(sites.sites, options.sign).method;
-      if (sign != SignMethod::none) result->inside = inside_flags(sites.sites, p.get(), result->found, sign);
-    }
+    result->found = search(sites.sites, p.get(), options);
     if (query.gradients) result->set_gradients(p.get());
   };
   if (p.get().size() <= kShort && cpu && query.progress.is_none()) {
-    run_short([&] { search({}); });
+    run_short([&] { work({}); });
   } else {
-    run(query.progress, search);
+    run(query.progress, work);
   }
   return result;
 }
@@ -104,9 +100,9 @@ there is no closest point. Raises Error without gradients.
 >>> vertices, derivatives = closest.vertex_gradients()
 >>> closest.gradient[0].tolist(), float(derivatives[0, :, 2].sum().round(12))
 ([0.0, 0.0, 1.0], -1.0))")
-      .def("__len__", [](const PyClosestPoints& self) { return self.found.size(); })
+      .def("__len__", [](const PyClosestPoints& self) { return self.size(); })
       .def("__repr__", [](const PyClosestPoints& self) {
-        return nb::str("sdm.ClosestPoints({} points)").format(self.found.size());
+        return nb::str("sdm.ClosestPoints({} points)").format(self.size());
       });
 }
 
@@ -183,9 +179,9 @@ array([-0.5,  1. ]))")
           [](nb::handle self, nb::handle points, const char* sign, nb::handle progress) {
             const auto found = closest(
                 self, points, {std::numeric_limits<double>::infinity(), sign, false, "cpu", progress});
-            std::vector<std::uint8_t> inside = std::move(found->inside);
-            inside.resize(found->found.size());
-            return array_of<bool>(std::move(inside), {found->found.size()});
+            std::vector<std::uint8_t> inside = std::move(found->found.inside);
+            inside.resize(found->size());
+            return array_of<bool>(std::move(inside), {found->size()});
           },
           nb::arg("points").none(), nb::kw_only(), nb::arg("sign") = "exact",
           nb::arg("progress") = nb::none(),

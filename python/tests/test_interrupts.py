@@ -51,6 +51,10 @@ CALLS = {
         "query = sdm.MultiBodyQuery([rings(8, 60), (ring(60)[0] + 0.1, ring(60)[1])])",
         "query.penetration_depths()",
     ),
+    "batch": (
+        "mesh, points = ring(60), np.random.default_rng(0).normal(size=(2000, 3))",
+        "sdm.closest_points_batch([mesh] * 1000, points)",
+    ),
     "covering_radius": (
         "surface = sdm.Surface(ring(100), resolution=1024)",
         "[surface.covering_radius() for _ in range(3000)]",
