@@ -1,20 +1,17 @@
-"""The chain rule of distances, on NumPy arrays."""
+"""The chain rule of distances, on arrays of NumPy or of PyTorch.
 
-import numpy as np
+``gradient`` (..., 3) has the derivatives of distances by their points, ``weights`` (..., 3) the barycentric coordinates of the
+closest points, ``upstream`` (...) the derivatives of a function by the distances.
+"""
 
-from ._core import ClosestPoints
-
-
-def of_points(closest: ClosestPoints, upstream: np.ndarray) -> np.ndarray:
-    """Returns ∂L/∂points, (n, 3), from ∂L/∂distance, (n,)."""
-    return upstream[:, None] * closest.gradient
+from typing import Any
 
 
-def of_vertices(closest: ClosestPoints, upstream: np.ndarray, count: int) -> np.ndarray:
-    """Returns ∂L/∂vertices, (count, 3), from ∂L/∂distance, (n,)."""
-    vertices, derivatives = closest.vertex_gradients()
-    result = np.empty((count, 3))
-    for axis in range(3):
-        weights = (upstream[:, None] * derivatives[:, :, axis]).ravel()
-        result[:, axis] = np.bincount(vertices.ravel(), weights=weights, minlength=count)
-    return result
+def of_points(gradient: Any, upstream: Any) -> Any:
+    """Returns the derivatives by the points, (..., 3)."""
+    return upstream[..., None] * gradient
+
+
+def of_corners(gradient: Any, weights: Any, upstream: Any) -> Any:
+    """Returns the derivatives by the corners of the closest faces, (..., 3, 3): a closest point moves with its face."""
+    return -weights[..., :, None] * of_points(gradient, upstream)[..., None, :]

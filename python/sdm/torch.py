@@ -1,55 +1,375 @@
-"""Distances with derivatives in PyTorch, which is not a dependency of the package: import this module to use it.
+"""Closest points and distances with derivatives in PyTorch, which is not a dependency of the package: import this module.
 
-The derivatives are exact wherever the distance is differentiable, and 0 where it is 0. Second derivatives are not computed.
+Points are (..., n, 3), vertices (..., v, 3), faces (f, 3) integers; leading dimensions are batches, which are searched on all
+cores. Tensors may have any real dtype, bfloat16 included, and be on any device; the search runs on the CPU, in double
+precision. Results have the dtype and device of the points. A mesh that does not change may be a ``sdm.Sites``, in place of
+vertices and faces: it is built once, and derivatives do not flow to it. ``sites``, of the same faces, are refitted to the
+vertices at each call, which takes a fraction of building them.
+
+Derivatives are exact wherever the result is differentiable; those of a distance are 0 where it is 0. torch.func.grad and
+torch.vmap apply; forward mode does not. Second derivatives are right as well, and slower.
 """
 
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, NamedTuple, Union
+
+import numpy as np
 import torch
 
 from . import _gradients
-from ._core import Sites
+from ._batches import closest_points_batch
+from ._closest_points import NONE
+from ._core import Error, Sites
 
-__all__ = ["PointMeshDistance", "distance"]
+__all__ = [
+    "ClosestPoints",
+    "Samples",
+    "SurfaceLosses",
+    "chamfer",
+    "closest_points",
+    "distance",
+    "normal_consistency",
+    "point_to_surface",
+    "sample_surface",
+    "surface_losses",
+]
+
+#: Vertices and faces, or Sites that do not change.
+Surface = Union["tuple[torch.Tensor, torch.Tensor]", Sites]
 
 
-class PointMeshDistance(torch.autograd.Function):
-    """The function behind distance()."""
+class ClosestPoints(NamedTuple):
+    """The closest points of a mesh to n points."""
 
-    @staticmethod
-    def forward(ctx, points, vertices, faces, sign, max_distance):
-        sites = Sites(vertices.detach().cpu().numpy(), faces.detach().cpu().numpy())
-        closest = sites.closest_points(
-            points.detach().cpu().numpy(), sign=sign, max_distance=max_distance, gradients=True
+    distance: torch.Tensor
+    """(..., n): negative inside if signed; infinite where nothing is within max_distance."""
+    point: torch.Tensor
+    """(..., n, 3); NaN where there is none."""
+    face: torch.Tensor
+    """(..., n) int64: a face that contains the point; -1 where there is none."""
+    barycentric: torch.Tensor
+    """(..., n, 3): of the point in its face; NaN where there is none."""
+
+
+@dataclasses.dataclass(frozen=True)
+class _Options:  # no tuple, which torch.func would take apart
+    sites: Sites | None
+    sign: str
+    max_distance: float
+
+
+def _array(tensor: torch.Tensor) -> np.ndarray:
+    return tensor.detach().to("cpu", torch.float64).contiguous().numpy()
+
+
+def _indices(tensor: torch.Tensor) -> np.ndarray:
+    if tensor.is_floating_point():
+        raise Error(f"the faces must be integers, not {tensor.dtype}")
+    return tensor.detach().cpu().contiguous().numpy()
+
+
+def _found(points: torch.Tensor, vertices: torch.Tensor | None, faces: torch.Tensor | None, options: _Options) -> Any:
+    """The arrays of the closest points, the corners of their faces and, of Sites that do not change, their positions."""
+    query = {"sign": options.sign, "max_distance": options.max_distance, "gradients": True}
+    p = _array(points)
+    sites: Any = options.sites
+    if vertices is None or (vertices.dim() == 2 and faces is not None and faces.dim() == 2):
+        if vertices is not None and faces is not None:
+            if sites is None:
+                sites = Sites(_array(vertices), _indices(faces))
+            elif not np.array_equal(sites.vertices, _array(vertices)):
+                sites.refit(_array(vertices))
+        found: Any = sites.closest_points(p.reshape(-1, 3), **query)
+        corners = sites.faces[np.where(found.face == NONE, 0, found.face)]
+    else:
+        assert faces is not None
+        shapes, shared = _array(vertices), _indices(faces)
+        if shared.ndim > 2:
+            shared = shared.reshape(-1, *shared.shape[-2:])
+        found = closest_points_batch(
+            shapes.reshape(-1, *shapes.shape[-2:]), shared, p.reshape(-1, *p.shape[-2:]), **query
         )
-        ctx.closest = closest
-        ctx.points, ctx.vertices = points.new_empty(0), vertices.new_empty(0)  # their dtypes and devices
-        ctx.vertex_count = len(vertices)
-        return torch.from_numpy(closest.distance).to(points)
+        corners = found.corners
+    return found, corners, sites.vertices[corners] if vertices is None else np.empty((len(found), 0))
+
+
+class _Query(torch.autograd.Function):
+    """(distance, face, barycentric, gradient, corners, positions). Only the distance has derivatives.
+
+    Vertices have two dimensions, or the batch of the points; so do faces.
+    """
 
     @staticmethod
-    @torch.autograd.function.once_differentiable
-    def backward(ctx, upstream):
-        upstream = upstream.detach().cpu().double().numpy()
+    def forward(points: torch.Tensor, vertices: Any, faces: Any, options: _Options) -> tuple[torch.Tensor, ...]:
+        found, corners, positions = _found(points, vertices, faces, options)
+        shape, real = points.shape[:-1], torch.float32 if points.device.type == "mps" else torch.float64
+        face = np.where(found.face == NONE, -1, found.face.astype(np.int64))
+        weights = np.where(np.isnan(found.barycentric), 0.0, found.barycentric)
+        return (
+            torch.from_numpy(np.ascontiguousarray(found.distance)).to(points).reshape(shape),
+            torch.from_numpy(face).to(points.device).reshape(shape),
+            torch.from_numpy(weights).to(points.device, real).reshape(*shape, 3),
+            torch.from_numpy(np.ascontiguousarray(found.gradient)).to(points.device, real).reshape(*shape, 3),
+            torch.from_numpy(corners.astype(np.int64)).to(points.device).reshape(*shape, 3),
+            torch.from_numpy(positions).to(points.device, real).reshape(*shape, *positions.shape[1:]),
+        )
+
+    @staticmethod
+    def setup_context(ctx: Any, inputs: Any, output: Any) -> None:
+        points, vertices, _, _ = inputs
+        ctx.mark_non_differentiable(*output[1:])
+        ctx.save_for_backward(points, vertices, *output[2:])
+
+    @staticmethod
+    def backward(ctx: Any, upstream: torch.Tensor, *_: Any) -> tuple[Any, ...]:
+        points, vertices, weights, gradient, corners, positions = ctx.saved_tensors
+        if torch.is_grad_enabled():  # derivatives of this may be needed
+            if vertices is not None:
+                positions = _corner_positions(vertices, corners).to(weights)
+            gradient, weights = _moving(points.to(weights), positions, weights, gradient)
+        upstream = upstream.to(gradient.dtype)
         of_points = of_vertices = None
         if ctx.needs_input_grad[0]:
-            of_points = torch.from_numpy(_gradients.of_points(ctx.closest, upstream)).to(ctx.points)
+            of_points = _gradients.of_points(gradient, upstream).to(points.dtype)
         if ctx.needs_input_grad[1]:
-            gradient = _gradients.of_vertices(ctx.closest, upstream, ctx.vertex_count)
-            of_vertices = torch.from_numpy(gradient).to(ctx.vertices)
-        return of_points, of_vertices, None, None, None
+            parts = _gradients.of_corners(gradient, weights, upstream)
+            shape = vertices.shape
+            if len(shape) > 2:  # one vertex after the other, over the batch
+                items = torch.arange(shape[:-2].numel(), device=corners.device).reshape(*shape[:-2], 1, 1)
+                corners = corners + shape[-2] * items
+            zeros = torch.zeros(shape.numel() // 3, 3, dtype=parts.dtype, device=parts.device)
+            sums = zeros.index_add(0, corners.reshape(-1), parts.reshape(-1, 3))
+            of_vertices = sums.reshape(shape).to(vertices.dtype)
+        return of_points, of_vertices, None, None
+
+    @staticmethod
+    def vmap(info: Any, in_dims: Any, points: Any, vertices: Any, faces: Any, options: _Options) -> tuple[Any, Any]:
+        tensors = [
+            t if t is None or dim is None else t.movedim(dim, 0)
+            for t, dim in zip((points, vertices, faces), in_dims)
+        ]
+        points, vertices, faces = tensors
+        if in_dims[0] is None:
+            points = points.expand(info.batch_size, *points.shape)
+        batch = points.shape[:-2]
+        if in_dims[1] is not None or in_dims[2] is not None:
+            vertices = _with_batch(vertices, in_dims[1] is not None, batch)
+            if in_dims[2] is not None or faces.dim() > 2:
+                faces = _with_batch(faces, in_dims[2] is not None, batch)
+        elif vertices is not None and vertices.dim() > 2:
+            vertices = _with_batch(vertices, False, batch)
+            faces = faces if faces.dim() == 2 else _with_batch(faces, False, batch)
+        return _Query.apply(points, vertices, faces, options), (0, 0, 0, 0, 0, 0)
+
+
+def _with_batch(rows: torch.Tensor, has_first: bool, batch: torch.Size) -> torch.Tensor:
+    """Rows (..., k, 3) for each item of a batch, of whose dimensions they may have the first one, or the others."""
+    missing = len(batch) - (rows.dim() - 2)
+    first = rows.shape[:1] if has_first else torch.Size()
+    return rows.reshape(*first, *([1] * missing), *rows.shape[len(first) :]).expand(*batch, *rows.shape[-2:])
+
+
+def _query(points: torch.Tensor, mesh: Any, faces: Any, sites: Any, sign: str, max_distance: float) -> Any:
+    if isinstance(mesh, Sites):
+        if faces is not None or sites is not None:
+            raise Error("Sites have faces of their own; leave out faces and sites")
+        return _Query.apply(points, None, None, _Options(mesh, sign, max_distance))
+    if faces is None:
+        raise Error("vertices need faces")
+    if mesh.dim() > 2 or faces.dim() > 2:
+        if sites is not None:
+            raise Error("sites are of one mesh; leave them out for a batch of vertices")
+        batch = torch.broadcast_shapes(points.shape[:-2], mesh.shape[:-2], faces.shape[:-2])
+        points = points.expand(*batch, *points.shape[-2:])
+        mesh = mesh.expand(*batch, *mesh.shape[-2:])
+        faces = faces if faces.dim() == 2 else faces.expand(*batch, *faces.shape[-2:])
+    return _Query.apply(points, mesh, faces, _Options(sites, sign, max_distance))
 
 
 def distance(
     points: torch.Tensor,
-    vertices: torch.Tensor,
-    faces: torch.Tensor,
+    vertices: torch.Tensor | Sites,
+    faces: torch.Tensor | None = None,
     *,
+    sites: Sites | None = None,
     sign: str = "none",
     max_distance: float = float("inf"),
 ) -> torch.Tensor:
-    """Returns the distance of each of n points to a mesh, (n,), of the dtype and device of ``points``.
+    """Returns the distance of each point to a mesh, (..., n), of the dtype and device of ``points``.
 
-    points: (n, 3). vertices: (v, 3). faces: (f, 3) integers. Derivatives flow to points and vertices. sign and max_distance
-    are those of Sites.closest_points(); points farther away have an infinite distance, with the derivative 0. The
-    computation runs on the CPU, in double precision. Raises sdm.Error as Sites does.
+    points, vertices, faces, sites: as the module describes. Derivatives flow to points and vertices. sign and max_distance
+    are those of Sites.closest_points(); points farther away have an infinite distance, with the derivative 0. Raises
+    sdm.Error as Sites does.
     """
-    return PointMeshDistance.apply(points, vertices, faces, sign, max_distance)
+    return _query(points, vertices, faces, sites, sign, max_distance)[0]
+
+
+def _corner_positions(vertices: torch.Tensor, corners: torch.Tensor) -> torch.Tensor:
+    """The positions (..., n, 3, 3) of vertices (..., n, 3)."""
+    if vertices.dim() == 2:
+        return vertices[corners]
+    batch = torch.broadcast_shapes(vertices.shape[:-2], corners.shape[:-2])
+    rows = corners.expand(*batch, *corners.shape[-2:]).reshape(*batch, -1, 1)
+    positions = vertices.expand(*batch, *vertices.shape[-2:]).gather(-2, rows.expand(*rows.shape[:-1], 3))
+    return positions.reshape(*batch, -1, 3, 3)
+
+
+def _differentiable(weights: torch.Tensor, points: torch.Tensor, corners: torch.Tensor) -> torch.Tensor:
+    """The weights with their derivatives by points and corners: those of the projection onto the vertex, the edge or the
+    plane that the corners with a weight span."""
+    order = weights.argsort(dim=-1, descending=True, stable=True)
+    w = weights.gather(-1, order)
+    a, b, c = corners.gather(-2, order[..., None].expand(corners.shape)).unbind(-2)
+    ab, ac, ap = b - a, c - a, points - a
+    one = torch.ones_like(w[..., 0])
+    aa, bb, mixed = (ab * ab).sum(-1), (ac * ac).sum(-1), (ab * ac).sum(-1)
+    along_ab, along_ac = (ab * ap).sum(-1), (ac * ap).sum(-1)
+    area = aa * bb - mixed * mixed
+    on_edge, in_face = (w[..., 1] > 0) & (aa > 0), (w[..., 2] > 0) & (area > 0)
+    edge = torch.where(on_edge, along_ab / torch.where(on_edge, aa, one), 0 * one)
+    inverse = 1 / torch.where(in_face, area, one)
+    u = torch.where(in_face, (bb * along_ab - mixed * along_ac) * inverse, edge)
+    v = torch.where(in_face, (aa * along_ac - mixed * along_ab) * inverse, 0 * one)
+    moved = torch.stack([1 - u - v, u, v], dim=-1).gather(-1, order.argsort(dim=-1))
+    return weights + (moved - moved.detach())  # the weights of the search, bit for bit
+
+
+def _moving(points: Any, positions: Any, weights: Any, gradient: Any) -> tuple[torch.Tensor, torch.Tensor]:
+    """The gradient and the weights with their derivatives by points and the positions of corners."""
+    weights = _differentiable(weights, points, positions)
+    offset = points - (weights[..., None] * positions).sum(-2)
+    there = (gradient != 0).any(-1, keepdim=True)
+    side = (gradient * offset.detach()).sum(-1, keepdim=True).sign()
+    length = torch.where(there, offset.square().sum(-1, keepdim=True), 1).sqrt()
+    unit = torch.where(there, side * offset / length, 0)
+    return gradient + (unit - unit.detach()), weights
+
+
+def closest_points(
+    points: torch.Tensor,
+    vertices: torch.Tensor | Sites,
+    faces: torch.Tensor | None = None,
+    *,
+    sites: Sites | None = None,
+    sign: str = "none",
+    max_distance: float = float("inf"),
+) -> ClosestPoints:
+    """Returns the closest points of a mesh: distance, point, face and barycentric coordinates.
+
+    The arguments are those of distance(). Derivatives flow from distance, point and barycentric to points and vertices.
+    They are those of the site that was found: closest points jump where several are equally close. Raises sdm.Error as Sites
+    does.
+    """
+    found, face, weights, _, corners, still = _query(points, vertices, faces, sites, sign, max_distance)
+    positions = still if isinstance(vertices, Sites) else _corner_positions(vertices, corners).to(weights)
+    barycentric = _differentiable(weights, points.to(weights), positions)
+    point = (barycentric[..., None] * positions).sum(-2)
+    none = (face < 0)[..., None]
+    nan = torch.full_like(point, float("nan"))
+    return ClosestPoints(
+        found, torch.where(none, nan, point).to(found), face, torch.where(none, nan, barycentric).to(found)
+    )
+
+
+class Samples(NamedTuple):
+    """Points of a surface that move with its vertices."""
+
+    face: torch.Tensor
+    """(..., n) int64."""
+    barycentric: torch.Tensor
+    """(..., n, 3)."""
+
+
+def _parts(surface: Surface) -> tuple[torch.Tensor, torch.Tensor]:
+    if isinstance(surface, Sites):
+        return torch.from_numpy(np.array(surface.vertices)), torch.from_numpy(surface.faces.astype(np.int64))
+    vertices, faces = surface
+    return vertices, faces.long()
+
+
+def _normals(corners: torch.Tensor) -> torch.Tensor:
+    """The normals (..., 3) of faces with these corners, twice their area long."""
+    a, b, c = corners.unbind(-2)
+    return torch.linalg.cross(b - a, c - a)
+
+
+def sample_surface(surface: Surface, count: int, *, generator: torch.Generator | None = None) -> Samples:
+    """Returns random points of a surface, uniformly by area: ``count`` of each item of a batch of vertices."""
+    vertices, faces = _parts(surface)
+    areas = _normals(_corner_positions(vertices.detach().double(), faces)).norm(dim=-1)
+    face = torch.multinomial(areas.reshape(-1, areas.shape[-1]), count, replacement=True, generator=generator)
+    face = face.reshape(*areas.shape[:-1], count)
+    u, v = torch.rand(2, *face.shape, dtype=torch.float64, device=areas.device, generator=generator)
+    root = u.sqrt()
+    return Samples(face, torch.stack([1 - root, root * (1 - v), root * v], dim=-1))
+
+
+class SurfaceLosses(NamedTuple):
+    """What surface_losses() returns."""
+
+    chamfer: torch.Tensor
+    """The mean of (squared) distances from a to b, and that from b to a, added."""
+    normals: torch.Tensor
+    """The mean of 1 - |cos| of the angle to the normal of the closest face, from a to b and from b to a, added."""
+
+
+def _one_way(a: Surface, b: Surface, samples: Samples, b_sites: Sites | None, squared: bool) -> Any:
+    vertices, faces = _parts(a)
+    corners = _corner_positions(vertices, faces[samples.face])
+    points = (samples.barycentric.to(corners)[..., None] * corners).sum(-2)
+    mesh, mesh_faces = (b, None) if isinstance(b, Sites) else b
+    far, _, _, _, closest, still = _query(points, mesh, mesh_faces, b_sites, "none", float("inf"))
+    there = _normals((still if isinstance(mesh, Sites) else _corner_positions(mesh, closest)).to(corners))
+    cosine = torch.nn.functional.cosine_similarity(_normals(corners), there, dim=-1, eps=1e-30)
+    return (far.square() if squared else far).mean(), (1 - cosine.abs()).mean()
+
+
+def surface_losses(
+    a: Surface,
+    b: Surface,
+    *,
+    samples: int | tuple[Samples, Samples] = 10_000,
+    squared: bool = True,
+    sites: tuple[Sites | None, Sites | None] = (None, None),
+    generator: torch.Generator | None = None,
+) -> SurfaceLosses:
+    """Returns losses of two surfaces in both directions, by one search in each.
+
+    a, b: (vertices, faces), or Sites that do not change. samples: of each surface, drawn uniformly by area, or those of
+    both from sample_surface(), which move with the vertices. squared: the squares of distances. sites: of the faces of a
+    and of b, refitted in place of being built. Sampled distances are those to all points of the other surface and not to its
+    samples, so that the loss of equal surfaces is 0. Derivatives flow to the vertices. Raises sdm.Error as Sites does.
+    """
+    if isinstance(samples, int):
+        samples = (sample_surface(a, samples, generator=generator), sample_surface(b, samples, generator=generator))
+    forth = _one_way(a, b, samples[0], sites[1], squared)
+    back = _one_way(b, a, samples[1], sites[0], squared)
+    return SurfaceLosses(forth[0] + back[0], forth[1] + back[1])
+
+
+def chamfer(a: Surface, b: Surface, **options: Any) -> torch.Tensor:
+    """Returns the symmetric point-to-surface (chamfer) loss of two surfaces: surface_losses().chamfer."""
+    return surface_losses(a, b, **options).chamfer
+
+
+def normal_consistency(a: Surface, b: Surface, **options: Any) -> torch.Tensor:
+    """Returns how much the normals of two surfaces differ where these are closest: surface_losses().normals.
+
+    Where normals are piecewise constant its derivatives are those of the faces that were found.
+    """
+    return surface_losses(a, b, **options).normals
+
+
+def point_to_surface(
+    points: torch.Tensor,
+    vertices: torch.Tensor | Sites,
+    faces: torch.Tensor | None = None,
+    *,
+    sites: Sites | None = None,
+    squared: bool = True,
+) -> torch.Tensor:
+    """Returns the mean of the (squared) distances of points to a mesh. The arguments are those of distance()."""
+    far = distance(points, vertices, faces, sites=sites)
+    return (far.square() if squared else far).mean()

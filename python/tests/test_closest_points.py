@@ -158,27 +158,14 @@ def test_derivatives_by_finite_differences(sign):
 
     # The chain rule of sdm.torch, without torch.
     upstream = np.random.default_rng(5).normal(size=len(points))
-    np.testing.assert_allclose(sdm._gradients.of_points(found, upstream),
+    np.testing.assert_allclose(sdm._gradients.of_points(found.gradient, upstream),
                                np.einsum("n,npx->px", upstream, by_points), atol=1e-6)  # fmt: skip
-    np.testing.assert_allclose(sdm._gradients.of_vertices(found, upstream, len(vertices)),
-                               np.einsum("n,nvx->vx", upstream, by_vertices), atol=1e-6)  # fmt: skip
+    of_vertices = np.zeros_like(vertices)
+    np.add.at(of_vertices, where, sdm._gradients.of_corners(found.gradient, found.barycentric, upstream))
+    np.testing.assert_allclose(of_vertices, np.einsum("n,nvx->vx", upstream, by_vertices), atol=1e-6)
 
 
 def test_derivatives_are_0_on_the_surface():
     vertices, faces = meshes.box()
     found = sdm.closest_points(vertices, faces, [[1, 0.5, 0.25]], gradients=True)
     assert found.distance[0] == 0 and (found.gradient == 0).all()
-
-
-def test_torch():
-    torch = pytest.importorskip("torch")
-    import sdm.torch
-
-    vertices, faces = (torch.tensor(a) for a in meshes.box())
-    vertices.requires_grad_()
-    points = torch.tensor(np.random.default_rng(4).uniform(-0.7, 1.7, (20, 3)), requires_grad=True)
-    for sign in ("none", "exact"):
-        assert torch.autograd.gradcheck(lambda p, v: sdm.torch.distance(p, v, faces, sign=sign), (points, vertices))
-    assert sdm.torch.distance(points.float(), vertices, faces).dtype == torch.float32
-    sites = sdm.Sites(vertices, faces)  # tensors that require gradients
-    np.testing.assert_array_equal(sites.closest_points(points.detach()).distance, sites.closest_points(points).distance)
