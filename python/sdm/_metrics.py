@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import numpy as np
 
 from . import _core
+from ._arrays import numpy_of
 from ._core import Error
 
 
@@ -81,7 +82,7 @@ def mask_surface(mask: object, spacing: float | Sequence[float] = 1.0) -> tuple[
     >>> vertices.shape, faces.shape
     ((8, 3), (12, 3))
     """
-    inside = np.asarray(mask)
+    inside = numpy_of(mask, "the mask")
     if inside.ndim != 3 or inside.dtype.kind not in "biuf":
         raise Error("a mask must be an array of numbers or booleans with three dimensions")
     try:

@@ -59,7 +59,7 @@ void restrict(AlignOptions& options, nb::handle free, nb::handle about, nb::hand
 void bind_freedom(nb::module_& module) {
   using F = DegreeOfFreedom;
   nb::class_<F>(
-      module, "DegreeOfFreedom",
+      module, "DegreeOfFreedom", nb::is_weak_referenceable(),
       R"(A rigid motion of the aligned O1, and how well O2 determines it: a translation and a rotation
 about an axis through the centre of O1, with |translation|² + |rotation|² = 1. A rotation of r moves O1 by r
 divided by its radius of gyration, in radians.)")
@@ -87,7 +87,8 @@ divided by its radius of gyration, in radians.)")
 
 void bind_alignment(nb::module_& module) {
   using A = Alignment;
-  nb::class_<A>(module, "Alignment", "A rigid motion that aligns O1 to O2, and how good it is.")
+  nb::class_<A>(module, "Alignment", nb::is_weak_referenceable(),
+                "A rigid motion that aligns O1 to O2, and how good it is.")
       .def_prop_ro(
           "transform", [](const A& self) { return matrix(self.transform); },
           nb::sig("def transform(self) -> numpy.ndarray"),
@@ -240,7 +241,7 @@ True)");
 }
 
 void bind_doubts(nb::module_& module) {
-  nb::class_<Doubt>(module, "Doubt",
+  nb::class_<Doubt>(module, "Doubt", nb::is_weak_referenceable(),
                     "Why it should not be trusted that all distances are within a tolerance.")
       .def_prop_ro(
           "reason", [](const Doubt& self) { return name_of(self.reason); },

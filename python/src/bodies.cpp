@@ -44,7 +44,7 @@ constexpr auto kPartsOfPair = [](const auto& pair) { return pair.parts; };
 
 void bind_separations(nb::module_& module) {
   using P = PySeparations;
-  nb::class_<P>(module, "Separations",
+  nb::class_<P>(module, "Separations", nb::is_weak_referenceable(),
                 "The near pairs of bodies as arrays with one row each, sorted by first, then second body.")
       .def_prop_ro("bodies", pair_column(&P::bodies, kBodiesOfPair),
                    nb::sig("def bodies(self) -> numpy.ndarray"),
@@ -81,7 +81,7 @@ void bind_separations(nb::module_& module) {
 
 void bind_penetration_depths(nb::module_& module) {
   using P = PyPenetrationDepths;
-  nb::class_<P>(module, "PenetrationDepths",
+  nb::class_<P>(module, "PenetrationDepths", nb::is_weak_referenceable(),
                 "The pairs of bodies that collide, and of which one is a solid, as arrays with one row each, "
                 "sorted by first, then second body.")
       .def_prop_ro("bodies", pair_column(&P::bodies, kBodiesOfPair),
@@ -334,7 +334,7 @@ void bind_bodies(nb::module_& module) {
   bind_separations(module);
   bind_penetration_depths(module);
   bind_nearest_map(module);
-  nb::class_<PyMultiBodyQuery> query(module, "MultiBodyQuery",
+  nb::class_<PyMultiBodyQuery> query(module, "MultiBodyQuery", nb::is_weak_referenceable(),
                                      R"(Proximity of bodies that move and deform, each against all others.
 
 bodies: each any form of a mesh (see Mesh), a Shape, which many bodies can share, or a Compound of several.

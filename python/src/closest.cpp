@@ -61,6 +61,35 @@ Vec3 weights_of(const Sites& sites, std::span<const Vec3> positions, const Close
   return weights;
 }
 
+PyClosestPoints::PyClosestPoints(Found stored, bool has_gradients, std::vector<Vec3> of_points,
+                                 StoredFaces faces)
+    : found(std::move(stored)),
+      gradients(std::move(of_points)),
+      has_gradients_(has_gradients),
+      stored_(std::move(faces)) {}
+
+std::shared_lock<std::shared_mutex> PyClosestPoints::use() const {
+  return sites ? sites->access.use() : std::shared_lock<std::shared_mutex>();
+}
+
+Vec3 PyClosestPoints::barycentric_of(std::size_t i) const {
+  return stored_ ? stored_->weights[i] : weights_of(version->get(), *positions, found.closest[i]);
+}
+
+Triangle PyClosestPoints::corners_of(std::size_t i) const {
+  if (stored_) return stored_->corners[i];
+  const ClosestPoint& closest = found.closest[i];
+  return closest.type == SiteType::none ? Triangle{} : version->get().mesh().triangles[closest.face];
+}
+
+StoredFaces PyClosestPoints::stored_faces() const {
+  const auto lock = use();
+  StoredFaces result{std::vector<Triangle>(size()), std::vector<Vec3>(size())};
+  for (std::size_t i = 0; i < size(); ++i)
+    result.corners[i] = corners_of(i), result.weights[i] = barycentric_of(i);
+  return result;
+}
+
 void PyClosestPoints::set_gradients(std::span<const Vec3> points) {
   has_gradients_ = true;
   gradients.resize(size());
@@ -93,9 +122,12 @@ nb::object PyClosestPoints::face() {
 }
 
 nb::object PyClosestPoints::barycentric() {
-  const auto lock = sites->access.use();
-  return barycentric_.get(
-      [&] { return column(found.closest, [this](const ClosestPoint& c) { return barycentric_of(c); }); });
+  const auto lock = use();
+  return barycentric_.get([&] {
+    return column(found.closest, [this](const ClosestPoint& c) {
+      return barycentric_of(static_cast<std::size_t>(&c - found.closest.data()));
+    });
+  });
 }
 
 nb::object PyClosestPoints::site() {
@@ -115,15 +147,14 @@ nb::object PyClosestPoints::gradient() {
 
 nb::object PyClosestPoints::vertex_gradients() const {
   require_gradients();
-  const auto lock = sites->access.use();
-  const auto& triangles = version->get().mesh().triangles;
+  const auto lock = use();
   std::vector<Triangle> vertices(size());
   std::vector<std::array<Vec3, 3>> derivatives(size());
   for (std::size_t i = 0; i < size(); ++i) {
     if (found.closest[i].type == SiteType::none) continue;
-    vertices[i] = triangles[found.closest[i].face];
+    vertices[i] = corners_of(i);
     // The closest point moves with its face; the motion within the face does not change the distance.
-    const Vec3 weights = barycentric_of(found.closest[i]);
+    const Vec3 weights = barycentric_of(i);
     for (int k = 0; k < 3; ++k)
       for (int axis = 0; axis < 3; ++axis) derivatives[i][k][axis] = -weights[k] * gradients[i][axis];
   }

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <shared_mutex>
 #include <span>
 #include <vector>
 
@@ -40,8 +42,18 @@ struct Found {
 [[nodiscard]] Vec3 weights_of(const Sites& sites, std::span<const Vec3> positions,
                               const ClosestPoint& closest);
 
+/// The faces of closest points, of results that no longer have their sites.
+struct StoredFaces {
+  std::vector<Triangle> corners;  ///< 0 where there is no closest point
+  std::vector<Vec3> weights;      ///< as weights_of()
+};
+
 /// Holds what the search returned; the arrays are made by the first access.
 struct PyClosestPoints {
+  PyClosestPoints() = default;
+  /// A result that was stored.
+  PyClosestPoints(Found found, bool has_gradients, std::vector<Vec3> gradients, StoredFaces faces);
+
   nb::object owner;  ///< keeps the sites
   const PySites* sites = nullptr;
   std::shared_ptr<SitesVersion> version;  ///< their faces and edges at the time of the search
@@ -51,6 +63,8 @@ struct PyClosestPoints {
 
   [[nodiscard]] std::size_t size() const { return found.closest.size(); }
   void set_gradients(std::span<const Vec3> points);
+  [[nodiscard]] bool has_gradients() const { return has_gradients_; }
+  [[nodiscard]] StoredFaces stored_faces() const;
 
   nb::object distance();
   nb::object point();
@@ -62,12 +76,14 @@ struct PyClosestPoints {
   [[nodiscard]] nb::object vertex_gradients() const;
 
  private:
-  [[nodiscard]] Vec3 barycentric_of(const ClosestPoint& closest) const {
-    return weights_of(version->get(), *positions, closest);
-  }
+  [[nodiscard]] Vec3 barycentric_of(std::size_t i) const;
+  [[nodiscard]] Triangle corners_of(std::size_t i) const;
+  /// Keeps the sites from changing, if it has them.
+  [[nodiscard]] std::shared_lock<std::shared_mutex> use() const;
   void require_gradients() const;
 
   bool has_gradients_ = false;
+  std::optional<StoredFaces> stored_;  ///< in place of sites, version and positions
   LazyArray distance_, point_, face_, barycentric_, site_, site_type_, gradient_;
 };
 

@@ -48,7 +48,8 @@ void check(const FaceNames& names) {
 }
 
 void bind_face_names(nb::module_& module) {
-  nb::class_<FaceNames>(module, "FaceNames", "The names of one kind that the faces of a mesh have.")
+  nb::class_<FaceNames>(module, "FaceNames", nb::is_weak_referenceable(),
+                        "The names of one kind that the faces of a mesh have.")
       .def(
           "__init__",
           [](FaceNames* self, const std::string& kind, const std::vector<std::string>& names,
@@ -96,7 +97,8 @@ sdm.Error: ...
 }
 
 void bind_places(nb::module_& module) {
-  nb::class_<Place>(module, "Place", "A region whose distances are all beyond the same limit.")
+  nb::class_<Place>(module, "Place", nb::is_weak_referenceable(),
+                    "A region whose distances are all beyond the same limit.")
       .def_ro(
           "distance", &Place::distance,
           "Of its samples the one that is farthest beyond the limit; NaN where a tolerance asks for values, "
@@ -117,7 +119,8 @@ void bind_places(nb::module_& module) {
       .def("__repr__", [](const Place& self) {
         return nb::str("sdm.Place(distance={:.6g}, fraction={:.3g})").format(self.distance, self.fraction);
       });
-  nb::class_<Places>(module, "Places", "Where a map or a cloud deviates most, as regions.")
+  nb::class_<Places>(module, "Places", nb::is_weak_referenceable(),
+                     "Where a map or a cloud deviates most, as regions.")
       .def_prop_ro(
           "limits", [](const Places& self) { return nb::make_tuple(self.limits.lo, self.limits.hi); },
           nb::sig("def limits(self) -> tuple[float, float]"),
@@ -145,7 +148,8 @@ void bind_places(nb::module_& module) {
 }
 
 void bind_verdicts(nb::module_& module) {
-  nb::class_<GroupVerdict>(module, "GroupVerdict", "The verdict on a group of faces.")
+  nb::class_<GroupVerdict>(module, "GroupVerdict", nb::is_weak_referenceable(),
+                           "The verdict on a group of faces.")
       .def_ro("kind", &GroupVerdict::kind, "Of the name.")
       .def_ro("group", &GroupVerdict::group, "The name.")
       .def_ro("faces", &GroupVerdict::faces, "The number of its faces.")
@@ -158,7 +162,8 @@ void bind_verdicts(nb::module_& module) {
         return nb::str("sdm.GroupVerdict({!r}, {!r})")
             .format(self.group, lower(sdm::name_of(self.verdict.verdict)));
       });
-  nb::class_<GroupVerdicts>(module, "GroupVerdicts", "The verdicts on the groups of a table.")
+  nb::class_<GroupVerdicts>(module, "GroupVerdicts", nb::is_weak_referenceable(),
+                            "The verdicts on the groups of a table.")
       .def_ro("groups", &GroupVerdicts::groups, "In the order of the table.")
       .def_prop_ro(
           "verdict", [](const GroupVerdicts& self) { return lower(sdm::name_of(self.verdict)); },

@@ -139,7 +139,7 @@ CertifiedVerdict check(const PyMap& self, nb::handle tolerance, nb::handle progr
 void bind_statistics(nb::module_& module) {
   using S = DistanceStatistics;
   nb::class_<S>(
-      module, "DistanceStatistics",
+      module, "DistanceStatistics", nb::is_weak_referenceable(),
       "Statistics of the texels of a map that have a value, each weighted by its area on the surface. "
       "Distances are NaN if there are none. Estimates for the surface: DistanceMap.bounds holds everywhere.")
       .def_ro("texels", &S::texels, "The number of texels that have a value.")
@@ -176,7 +176,7 @@ nb::object witness_of(const CertifiedVerdict& verdict) {
 
 void bind_verdict(nb::module_& module) {
   using V = CertifiedVerdict;
-  nb::class_<V>(module, "ToleranceVerdict",
+  nb::class_<V>(module, "ToleranceVerdict", nb::is_weak_referenceable(),
                 "Whether the distances of all points of a surface are within a tolerance.")
       .def_prop_ro(
           "verdict", [](const V& self) { return word_of(self.verdict); },

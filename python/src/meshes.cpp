@@ -149,7 +149,7 @@ sdm.Error: ...
 }
 
 void bind_weld(nb::module_& module) {
-  nb::class_<WeldReport>(module, "WeldReport", "What weld() did.")
+  nb::class_<WeldReport>(module, "WeldReport", nb::is_weak_referenceable(), "What weld() did.")
       .def_ro("tolerance", &WeldReport::tolerance,
               "The largest distance between the ends of two edges that were joined.")
       .def_ro("largest_move", &WeldReport::largest_move,
@@ -213,7 +213,8 @@ by ProximityQuery, PoseQuery and MultiBodyQuery. Raises Error for a mesh whose c
 }
 
 void bind_islands(nb::module_& module) {
-  nb::class_<IslandReport>(module, "IslandReport", "What remove_islands() removed.")
+  nb::class_<IslandReport>(module, "IslandReport", nb::is_weak_referenceable(),
+                           "What remove_islands() removed.")
       .def_ro("islands", &IslandReport::islands, "The number of components.")
       .def_ro("faces", &IslandReport::faces, "The number of their faces.")
       .def_ro("area", &IslandReport::area, "Their area.")

@@ -23,7 +23,7 @@ void bind_times_of_contact(nb::module_& module) {
   using T = PyTimesOfContact;
   using Pair = PairTimeOfContact;
   nb::class_<T>(
-      module, "TimesOfContact",
+      module, "TimesOfContact", nb::is_weak_referenceable(),
       "The first contacts of pairs of bodies that move, as arrays with one row each, sorted by time, then by "
       "first and second body.")
       .def_prop_ro("bodies",

@@ -5,7 +5,7 @@ namespace sdm::python {
 
 void bind_nearest_map(nb::module_& module) {
   using M = PyNearestMap;
-  nb::class_<M>(module, "NearestMap",
+  nb::class_<M>(module, "NearestMap", nb::is_weak_referenceable(),
                 "The distances from the texels of a body to the nearest other body. Arrays are read-only, "
                 "with row 0 at "
                 "the top.")

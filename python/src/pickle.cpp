@@ -3,46 +3,21 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <type_traits>
-#include <typeinfo>
 #include <utility>
 
 #include "arrays.h"
+#include "closest.h"
 #include "map.h"
 #include "objects.h"
 #include "proximity.h"
+#include "stored.h"
 
 namespace sdm::python {
 namespace {
-
-constexpr const char* kDamaged = "the pickle is damaged, or of another version of sdm";
-
-/// The items of a tuple of `count`. Throws sdm::Error for anything else.
-nb::tuple items(nb::handle state, std::size_t count) {
-  if (!nb::isinstance<nb::tuple>(state) || nb::len(state) != count) throw Error(kDamaged);
-  return nb::borrow<nb::tuple>(state);
-}
-
-/// A copy of plain values, as bytes.
-template <class Element>
-nb::object packed(const std::vector<Element>& values) {
-  static_assert(std::is_trivially_copyable_v<Element>);
-  return nb::bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Element));
-}
-
-/// The values of packed(). Throws sdm::Error if there is a part of one.
-template <class Element>
-std::vector<Element> unpacked(nb::handle packed) {
-  const auto bytes = nb::cast<nb::bytes>(packed);
-  if (bytes.size() % sizeof(Element) != 0) throw Error(kDamaged);
-  std::vector<Element> values(bytes.size() / sizeof(Element));
-  if (!values.empty()) std::memcpy(values.data(), bytes.c_str(), bytes.size());
-  return values;
-}
 
 nb::tuple state_of(const Mesh& mesh) {
   return nb::make_tuple(packed(mesh.positions), packed(mesh.triangles), packed(mesh.corner_uvs));
@@ -70,23 +45,6 @@ AtlasOptions atlas_from(nb::handle packed) {
           .rows = nb::cast<std::optional<std::uint32_t>>(state[2]),
           .max_stretch = nb::cast<double>(state[3]),
           .gutter = nb::cast<std::uint32_t>(state[4])};
-}
-
-/// A method that stores the object as a tuple of `count`, and one that makes it again from that.
-template <class Object, class State, class Make>
-void bind_state(std::size_t count, State state, Make make) {
-  nb::borrow<nb::class_<Object>>(nb::type<Object>())
-      .def("__getstate__", state, nb::sig("def __getstate__(self) -> tuple"))
-      .def(
-          "__setstate__",
-          [count, make](Object& self, const nb::tuple& from) {
-            try {
-              make(&self, items(from, count));
-            } catch (const std::bad_cast&) {
-              throw Error(kDamaged);
-            }
-          },
-          nb::arg("state"), nb::sig("def __setstate__(self, state: tuple, /) -> None"));
 }
 
 /// The present positions if a refit has changed the first ones, otherwise None.
@@ -130,14 +88,6 @@ void bind_surface_state() {
           if (positions) refit_to(self, self->surface, positions);
         });
       });
-}
-
-/// An enumerator from 0 to the last one.
-template <class Enum>
-Enum enumerator(nb::handle number, Enum last) {
-  const int value = nb::cast<int>(number);
-  if (value < 0 || value > static_cast<int>(last)) throw Error(kDamaged);
-  return static_cast<Enum>(value);
 }
 
 nb::tuple state_of(const DistanceMap& map) {
@@ -256,6 +206,37 @@ void bind_nearest_map_state() {
       });
 }
 
+void bind_result_states() {
+  bind_state<PyClosestPoints>(
+      6,
+      [](PyClosestPoints& self) {
+        const StoredFaces faces = self.stored_faces();
+        return nb::make_tuple(packed(self.found.closest), packed(self.found.inside), self.has_gradients(),
+                              packed(self.gradients), packed(faces.corners), packed(faces.weights));
+      },
+      [](PyClosestPoints* self, const nb::tuple& from) {
+        const auto closest = unpacked<ClosestPoint>(from[0]);
+        const auto inside = unpacked<std::uint8_t>(from[1]);
+        const bool with = nb::cast<bool>(from[2]);
+        const auto gradients = unpacked<Vec3>(from[3]);
+        StoredFaces faces{unpacked<Triangle>(from[4]), unpacked<Vec3>(from[5])};
+        const std::size_t n = closest.size();
+        if ((!inside.empty() && inside.size() != n) || gradients.size() != (with ? n : 0) ||
+            faces.corners.size() != n || faces.weights.size() != n)
+          throw Error(kDamaged);
+        new (self) PyClosestPoints({closest, inside}, with, gradients, std::move(faces));
+      });
+  bind_state<FaceNames>(
+      3, [](const FaceNames& self) { return nb::make_tuple(self.kind, self.names, packed(self.of_face)); },
+      [](FaceNames* self, const nb::tuple& from) {
+        FaceNames names{nb::cast<std::string>(from[0]), nb::cast<std::vector<std::string>>(from[1]),
+                        unpacked<std::uint32_t>(from[2])};
+        for (const std::uint32_t name : names.of_face)
+          if (name != kNone && name >= names.names.size()) throw Error(kDamaged);
+        new (self) FaceNames(std::move(names));
+      });
+}
+
 void bind_number_states() {
   bind_state<DistanceStatistics>(
       1, [](const DistanceStatistics& self) { return nb::make_tuple(packed(std::vector{self})); },
@@ -338,6 +319,7 @@ void bind_pickle() {
         run_sized(mesh.triangles.size(), [&] { new (self) PyShape(mesh, resolution, {}); });
       });
   bind_number_states();
+  bind_result_states();
 }
 
 }  // namespace sdm::python

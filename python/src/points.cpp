@@ -75,7 +75,7 @@ nb::object read_points(nb::handle file, const std::optional<std::vector<std::str
 
 void bind_distances(nb::module_& module) {
   using E = PointExtreme;
-  nb::class_<E>(module, "PointExtreme", "The distance of a point of a cloud.")
+  nb::class_<E>(module, "PointExtreme", nb::is_weak_referenceable(), "The distance of a point of a cloud.")
       .def_ro("distance", &E::distance, "In units of the mesh.")
       .def_prop_ro(
           "point", [](const E& self) { return vector_of(self.point); },
@@ -85,7 +85,8 @@ void bind_distances(nb::module_& module) {
         return nb::str("sdm.PointExtreme({:.6g}, index={})").format(self.distance, self.index);
       });
   using D = PointDistances;
-  nb::class_<D>(module, "PointDistances", "The numbers of the distances of a point cloud to a mesh.")
+  nb::class_<D>(module, "PointDistances", nb::is_weak_referenceable(),
+                "The numbers of the distances of a point cloud to a mesh.")
       .def_ro("points", &D::points, "The number of points of the file.")
       .def_ro("invalid", &D::invalid, "The number of those with a coordinate that is NaN or infinite.")
       .def_ro("beyond_max_distance", &D::beyond_max_distance,

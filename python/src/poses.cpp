@@ -86,7 +86,7 @@ exact, 0 if they intersect; infinite if it is more than max_distance, > 0. A sma
 }  // namespace
 
 void bind_poses(nb::module_& module) {
-  nb::class_<PyPoseQuery> query(module, "PoseQuery",
+  nb::class_<PyPoseQuery> query(module, "PoseQuery", nb::is_weak_referenceable(),
                                 R"(Proximity of one shape in many poses to obstacles, other shapes at rest.
 
 shape: any form of a mesh (see Mesh), or a Shape. obstacles: one of these, or a list of them.

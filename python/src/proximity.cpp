@@ -18,7 +18,7 @@ int checked(int body) {
 
 void bind_lengths(nb::module_& module) {
   nb::class_<BoundedLength>(
-      module, "BoundedLength",
+      module, "BoundedLength", nb::is_weak_referenceable(),
       "A length with its bounds, in units of the meshes. ``float()`` of it is the value.")
       .def_ro("value", &BoundedLength::value)
       .def_prop_ro(
@@ -48,7 +48,7 @@ of points attains the value.)")
 
 void bind_separating_translation(nb::module_& module) {
   using T = SeparatingTranslation;
-  nb::class_<T>(module, "SeparatingTranslation",
+  nb::class_<T>(module, "SeparatingTranslation", nb::is_weak_referenceable(),
                 R"(How far O1 must be moved to leave O2, in units of the meshes. ``float()`` of it is the
 value.)")
       .def_ro("value", &T::value, "The length of ``translation``; the same as ``upper``.")
@@ -80,7 +80,7 @@ auto contact_column(LazyArray PyContacts::*array, Get get) {
 
 void bind_contacts(nb::module_& module) {
   nb::class_<PyContacts>(
-      module, "Contacts",
+      module, "Contacts", nb::is_weak_referenceable(),
       R"(Contacts as arrays with one row each, sorted by patch, the patch with the deepest contact
 first, and by decreasing depth within a patch; those of many bodies first by pair of bodies.)")
       .def_prop_ro("point1", contact_column(&PyContacts::point1, [](const Contact& c) { return c.point1; }),
@@ -352,7 +352,7 @@ void bind_proximity(nb::module_& module) {
   bind_contacts(module);
   bind_shape(module);
   nb::class_<PyProximityQuery> query(
-      module, "ProximityQuery",
+      module, "ProximityQuery", nb::is_weak_referenceable(),
       R"(Proximity of two bodies that move and deform: separation, collision, penetration depth, contacts.
 
 o1, o2: each any form of a mesh (see Mesh), or a Shape.

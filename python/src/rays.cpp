@@ -49,7 +49,7 @@ void bind_hits(nb::module_& module) {
   const auto hit_column = [](LazyArray H::*array, auto get) {
     return [array, get](H& self) { return (self.*array).get([&] { return column(self.hits, get); }); };
   };
-  nb::class_<H>(module, "RayHits",
+  nb::class_<H>(module, "RayHits", nb::is_weak_referenceable(),
                 "The first hits of n rays. Arrays are made by the first access. The points are "
                 "``origins + hits.t[:, None] * directions``.")
       .def_prop_ro("t", hit_column(&H::t, [](const RayHit& h) { return h.t; }),

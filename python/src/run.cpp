@@ -1,5 +1,6 @@
 #include "run.h"
 
+#include <pthread.h>
 #include <sdm/cancellation.h>
 
 #include <atomic>
@@ -9,6 +10,8 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 namespace sdm::python {
 namespace {
@@ -66,6 +69,76 @@ class Exchange {
   std::atomic<bool> cancelled_{false};
 };
 
+// A thread that computes for one call after the other. It is not ended with the call: what oneTBB keeps for
+// each thread that has called it is not all freed when the thread ends.
+class Worker {
+ public:
+  Worker() {
+    std::thread([this] { loop(); }).detach();
+  }
+
+  void start(std::function<void()> work) {
+    const std::lock_guard lock(mutex_);
+    work_ = std::move(work);
+    changed_.notify_all();
+  }
+  // Waits for the end of the work.
+  void join() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return !work_; });
+  }
+
+ private:
+  [[noreturn]] void loop() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      changed_.wait(lock, [&] { return static_cast<bool>(work_); });
+      lock.unlock();
+      work_();
+      lock.lock();
+      work_ = nullptr;
+      changed_.notify_all();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::function<void()> work_;
+};
+
+// The workers without work: as many as there were calls at the same time. The GIL guards them. They are never
+// destroyed, as their threads wait until the process ends.
+std::vector<Worker*>& idle_workers() {
+  static std::vector<Worker*>* const idle = [] {
+    pthread_atfork(nullptr, nullptr, [] { idle_workers().clear(); });  // the child has none of the threads
+    return new std::vector<Worker*>;
+  }();
+  return *idle;
+}
+
+// A worker for one call.
+class Computation {
+ public:
+  Computation() {
+    std::vector<Worker*>& idle = idle_workers();
+    if (idle.empty()) {
+      worker_ = new Worker;
+    } else {
+      worker_ = idle.back();
+      idle.pop_back();
+    }
+  }
+  ~Computation() { idle_workers().push_back(worker_); }
+  Computation(const Computation&) = delete;
+  Computation& operator=(const Computation&) = delete;
+
+  void start(std::function<void()> work) { worker_->start(std::move(work)); }
+  void join() { worker_->join(); }
+
+ private:
+  Worker* worker_;
+};
+
 }  // namespace
 
 void run(nb::handle progress, const std::function<void(const Progress&)>& work) {
@@ -73,9 +146,10 @@ void run(nb::handle progress, const std::function<void(const Progress&)>& work) 
   if (reports && PyCallable_Check(progress.ptr()) == 0) throw Error("progress must be callable, or None");
   Exchange exchange;
   std::exception_ptr failure, raised;  // of the computation, of Python
+  Computation computation;
   {
     const nb::gil_scoped_release released;
-    std::thread computation([&] {
+    computation.start([&] {
       const CancelScope scope(exchange.cancelled());
       try {
         work([&](std::string_view step, double fraction) {

@@ -51,7 +51,7 @@ std::vector<PySceneBody> bodies_of(const PyScene& self) {
 
 void bind_scene(nb::module_& module) {
   using B = PySceneBody;
-  nb::class_<B>(module, "SceneBody", "A body of a scene, in one frame.")
+  nb::class_<B>(module, "SceneBody", nb::is_weak_referenceable(), "A body of a scene, in one frame.")
       .def_prop_ro(
           "name", [](const B& self) { return nb::str(self.name.c_str()); }, nb::sig("def name(self) -> str"),
           "Of the body.")
@@ -64,7 +64,7 @@ void bind_scene(nb::module_& module) {
         return nb::str("sdm.SceneBody('{}', {!r})").format(self.name.c_str(), self.mesh);
       });
   using S = PyScene;
-  nb::class_<S>(module, "Scene",
+  nb::class_<S>(module, "Scene", nb::is_weak_referenceable(),
                 R"(A simulation of bodies that move and deform, frame by frame. Returned by scene().
 
 Lengths are in metres, z is up. The frames are bit-identical in every run.)")
@@ -115,7 +115,8 @@ True)");
 void bind_scenes(nb::module_& module) {
   bind_scene(module);
   using M = MadeScan;
-  nb::class_<M>(module, "MadeScan", "A made scan of a part, with what inspection has to find.")
+  nb::class_<M>(module, "MadeScan", nb::is_weak_referenceable(),
+                "A made scan of a part, with what inspection has to find.")
       .def_prop_ro(
           "mesh", [](const M& self) { return new PyMesh{self.mesh}; }, nb::rv_policy::take_ownership,
           nb::sig("def mesh(self) -> Mesh"), "The scan: an open mesh.")

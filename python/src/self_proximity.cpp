@@ -86,7 +86,7 @@ not exclude, with the nearest such face. depth is -|point2 - point1|, as a surfa
 
 void bind_self_proximity(nb::module_& module) {
   nb::class_<PySelfProximityQuery> query(
-      module, "SelfProximityQuery",
+      module, "SelfProximityQuery", nb::is_weak_referenceable(),
       R"(Proximity of a deforming mesh to itself. Results are exact: computed from the triangles.
 
 rest: any form of a mesh (see Mesh), at rest.

@@ -61,7 +61,7 @@ constexpr const char* kClosestPoints =
     "The closest points of a mesh to n query points. Arrays are made by the first access.";
 
 void bind_closest_points(nb::module_& module) {
-  nb::class_<PyClosestPoints>(module, "ClosestPoints", kClosestPoints)
+  nb::class_<PyClosestPoints>(module, "ClosestPoints", nb::is_weak_referenceable(), kClosestPoints)
       .def_prop_ro(
           "distance", &PyClosestPoints::distance, nb::sig("def distance(self) -> numpy.ndarray"),
           "The distances, (n,) float64, in units of the mesh; negative inside the mesh if they are signed. "

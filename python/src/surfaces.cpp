@@ -78,7 +78,8 @@ True
 
 void bind_coverage(nb::module_& module) {
   using C = CoverageMap;
-  nb::class_<C>(module, "Coverage", "The share of the area of O2 that has a measured point near it.")
+  nb::class_<C>(module, "Coverage", nb::is_weak_referenceable(),
+                "The share of the area of O2 that has a measured point near it.")
       .def_prop_ro(
           "value", [](const C& self) { return self.value; }, "In [0, 1]; an estimate within the bounds.")
       .def_prop_ro(

@@ -19,7 +19,8 @@ Motion motion_of(nb::handle poses, const char* name) {
 
 void bind_result(nb::module_& module) {
   using T = PyTimeOfContact;
-  nb::class_<T>(module, "TimeOfContact", "When two moving bodies first come into contact, if they do.")
+  nb::class_<T>(module, "TimeOfContact", nb::is_weak_referenceable(),
+                "When two moving bodies first come into contact, if they do.")
       .def_prop_ro(
           "contact", [](const T& self) { return self.found.contact; },
           R"(Whether the bodies collide at ``time``, or are at most the tolerance apart; or, where ``certainty``

@@ -18,6 +18,7 @@
 
 #include "arrays.h"
 #include "sites_in_use.h"
+#include "stored.h"
 
 namespace sdm::python {
 namespace {
@@ -86,7 +87,8 @@ void bind_samples(nb::module_& module) {
       });
     };
   };
-  nb::class_<S>(module, "FieldSamples", "The distances at n points between the points of a grid.")
+  nb::class_<S>(module, "FieldSamples", nb::is_weak_referenceable(),
+                "The distances at n points between the points of a grid.")
       .def_prop_ro(
           "value", sample_column(&S::value, &FieldSample::value), nb::sig("def value(self) -> numpy.ndarray"),
           "Estimates, (n,) float64: interpolated linearly along each axis; NaN outside the grid, and "
@@ -193,9 +195,46 @@ because a distance changes no faster than the point moves. Raises Error for coor
       });
 }
 
+nb::tuple state_of(const DistanceField& field) {
+  return nb::make_tuple(
+      packed(std::vector{field.grid}), packed(field.distance), packed(field.site), packed(field.site_type),
+      field.max_distance, field.accuracy, packed(std::vector{field.o2_bounds}),
+      nb::make_tuple(sdm::name_of(field.sign.method), field.sign.reason), field.beyond_max_distance);
+}
+
+DistanceField field_from(const nb::tuple& state) {
+  const auto grid = unpacked<Grid>(state[0]);
+  const auto bounds = unpacked<Box>(state[6]);
+  const nb::tuple sign = items(state[7], 2);
+  if (grid.size() != 1 || bounds.size() != 1) throw Error(kDamaged);
+  DistanceField field{
+      .grid = grid.front(),
+      .distance = unpacked<float>(state[1]),
+      .site = unpacked<std::uint32_t>(state[2]),
+      .site_type = unpacked<SiteType>(state[3]),
+      .max_distance = nb::cast<double>(state[4]),
+      .accuracy = nb::cast<double>(state[5]),
+      .o2_bounds = bounds.front(),
+      .sign = {sign_of(nb::cast<std::string>(sign[0]).c_str()), nb::cast<std::string>(sign[1])},
+      .beyond_max_distance = nb::cast<std::size_t>(state[8])};
+  const std::size_t n = field.distance.size();
+  const bool bad_dims =
+      std::ranges::any_of(field.grid.dims, [](std::uint32_t d) { return d == 0 || d > Grid::kMostPoints; });
+  if (bad_dims || field.grid.size() != n || (!field.site.empty() && field.site.size() != n) ||
+      field.site_type.size() != field.site.size())
+    throw Error(kDamaged);
+  return field;
+}
+
+void bind_field_state() {
+  bind_state<PyField>(
+      9, [](const PyField& self) { return state_of(self.field); },
+      [](PyField* self, const nb::tuple& from) { new (self) PyField{field_from(from)}; });
+}
+
 void bind_field(nb::module_& module) {
   nb::class_<PyField> field(
-      module, "DistanceField",
+      module, "DistanceField", nb::is_weak_referenceable(),
       R"(The distances from the points of a regular grid to a mesh. Returned by distance_field().
 
 Arrays are read-only and have the shape (nz, ny, nx): the value of the point with the coordinates
@@ -203,6 +242,7 @@ Arrays are read-only and have the shape (nz, ny, nx): the value of the point wit
   bind_arrays(field);
   bind_grid(field);
   bind_uses(field);
+  bind_field_state();
 }
 
 }  // namespace

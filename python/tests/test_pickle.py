@@ -2,7 +2,10 @@
 
 import copy
 import gc
+import os
 import pickle
+import subprocess
+import sys
 import weakref
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
@@ -141,6 +144,42 @@ def test_numbers(pair):
     assert np.array_equal(found.witness, distance.witness)
 
 
+@pytest.mark.parametrize("options", [{}, {"gradients": True, "sign": "exact"}, {"max_distance": 0.1}])
+def test_closest_points(pair, options):
+    points = np.random.default_rng(5).uniform(-2, 2, (300, 3))
+    closest = sdm.closest_points(pair[0], points, **options)
+    found = again(again(closest))  # also without the sites
+    assert len(found) == len(closest) and repr(found) == repr(closest)
+    for name in ("distance", "point", "face", "barycentric", "site", "site_type"):
+        assert getattr(found, name).tobytes() == getattr(closest, name).tobytes()
+    if options.get("gradients"):
+        assert np.array_equal(found.gradient, closest.gradient)
+        for a, b in zip(found.vertex_gradients(), closest.vertex_gradients()):
+            assert np.array_equal(a, b)
+    else:
+        assert found.gradient is None
+        with pytest.raises(sdm.Error, match="gradients=True"):
+            found.vertex_gradients()
+
+
+@pytest.mark.parametrize("options", [{}, {"max_distance": 0.3, "sites": True, "sign": "none"}])
+def test_fields(pair, options):
+    field = sdm.distance_field(pair[0], spacing=0.25, **options)
+    found = again(field)
+    for name in ("distance", "transform", "accuracy", "sign", "sign_reason", "site", "site_type"):
+        assert np.array_equal(getattr(found, name), getattr(field, name), equal_nan=name == "distance")
+    points = np.random.default_rng(5).uniform(-0.9, 0.9, (50, 3))
+    for name in ("value", "lower", "upper"):
+        assert getattr(found.sample(points), name).tobytes() == getattr(field.sample(points), name).tobytes()
+
+
+def test_names_of_faces():
+    names = sdm.FaceNames("group", ["top", "side"], np.array([0, 1, 0, 1], np.uint32))
+    found = again(names)
+    assert (found.kind, found.names) == (names.kind, names.names)
+    assert np.array_equal(found.of_face, names.of_face)
+
+
 def test_what_cannot_be_stored_says_so(pair):
     surface = sdm.Surface(pair[0], resolution=64)
     distance_map = sdm.map(surface, pair[1])
@@ -164,7 +203,9 @@ def test_damaged_pickles_are_refused(pair):
 def test_states_of_another_length_or_type_are_refused(pair):
     distance_map = sdm.map(*pair, resolution=64)
     for value in (sdm.Mesh(*pair[1]), sdm.Sites(pair[1]), sdm.Surface(pair[1], resolution=64), sdm.Shape(pair[1]),
-                  distance_map._core, distance_map.statistics(), distance_map.hausdorff()):  # fmt: skip
+                  distance_map._core, distance_map.statistics(), distance_map.hausdorff(),
+                  sdm.closest_points(pair[1], [[0, 0, 3]]), sdm.distance_field(pair[1], spacing=0.5),
+                  sdm.FaceNames("group", ["a"], np.zeros(12, np.uint32))):  # fmt: skip
         state = value.__getstate__()
         for wrong in ((), state[:-1], (*state, None), tuple(None for _ in state)):
             made = type(value).__new__(type(value))
@@ -189,12 +230,78 @@ def test_other_processes(pair, method):
         assert np.array_equal(pool.submit(distance_of, sites, points).result(), distance_of(sites, points))
 
 
+class Dataset:
+    """As torch.utils.data.Dataset: workers get a copy, and items go back."""
+
+    def __init__(self, sites, surface):
+        self.sites, self.surface = sites, surface
+
+    def __getitem__(self, i):
+        points = np.random.default_rng(i).uniform(-2, 2, (20, 3))
+        return i, self.sites.closest_points(points), sdm.map(self.surface, self.sites)
+
+
+def item_of(dataset, i):
+    return dataset[i]
+
+
+@pytest.mark.parametrize("method", ["spawn", "forkserver"])
+def test_data_loaders(pair, method):
+    dataset = Dataset(sdm.Sites(pair[0]), sdm.Surface(pair[1], resolution=32))
+    with ProcessPoolExecutor(2, mp_context=get_context(method)) as pool:
+        for i, closest, distance_map in pool.map(item_of, [dataset] * 4, range(4)):
+            expected = dataset[i]
+            assert closest.distance.tobytes() == expected[1].distance.tobytes()
+            assert distance_map.distance.tobytes() == expected[2].distance.tobytes()
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork")
+def test_forks_compute():
+    """A child has none of the threads of its parent, and starts its own."""
+    program = """
+import os, sys
+sys.path.insert(0, sys.argv[1])
+import meshes, sdm
+def work():
+    return sdm.map(meshes.sphere(), meshes.box(), resolution=32, progress=lambda step, fraction: True).distance.tobytes()
+with sdm.thread_limit(1):  # oneTBB has its threads in the parent only
+    expected = work()
+    child = os.fork()
+    if child == 0:
+        os._exit(0 if work() == expected else 3)
+    print(os.waitpid(child, 0)[1])
+"""
+    tests = os.path.dirname(meshes.__file__)
+    result = subprocess.run([sys.executable, "-c", program, tests], capture_output=True, text=True, timeout=60)
+    assert result.stdout.strip() == "0", result.stdout + result.stderr
+
+
+def test_joblib(pair):
+    joblib = pytest.importorskip("joblib")
+    dataset = Dataset(sdm.Sites(pair[0]), sdm.Surface(pair[1], resolution=32))
+    found = joblib.Parallel(2)(joblib.delayed(item_of)(dataset, i) for i in range(4))
+    assert all(closest.distance.tobytes() == dataset[i][1].distance.tobytes() for i, closest, _ in found)
+
+
+def public_objects(pair):
+    distance_map = sdm.map(sdm.Surface(pair[0], resolution=32), sdm.Sites(pair[1]))
+    query, bodies = sdm.ProximityQuery(*pair, contact_margin=0.1), sdm.MultiBodyQuery(list(pair))
+    yield from (sdm.Mesh(pair[0]), sdm.Sites(pair[0]), sdm.Surface(pair[0], resolution=64))
+    yield from (sdm.Shape(pair[0]), distance_map, distance_map.statistics(), distance_map.hausdorff())
+    yield from (distance_map.check(2), distance_map.places(), sdm.closest_points(pair[0], [[0, 0, 3]]))
+    yield from (sdm.distance_field(pair[0], spacing=0.5), sdm.Sites(pair[0]).first_hits([[0, 0, 3]], [[0, 0, -1]]))
+    yield from (query, bodies, query.contacts(), query.separating_translation(), bodies.separations())
+    yield from (bodies.penetration_depths(), sdm.PoseQuery(*pair), sdm.SelfProximityQuery(pair[0]), sdm.align(pair[0], pair[0]))
+    yield from (sdm.closest_points_batch([pair[0]], [[[0, 0, 3]]]), sdm.FaceNames("group", ["a"], np.zeros(12, np.uint32)))
+
+
 def test_weak_references(pair):
-    for make in (lambda: sdm.Mesh(*pair[0]), lambda: sdm.Sites(pair[0]), lambda: sdm.Surface(pair[0], resolution=64),
-                 lambda: sdm.Shape(pair[0])):  # fmt: skip
-        value = make()
+    values = list(public_objects(pair))
+    while values:
+        value = values.pop()
         reference = weakref.ref(value)
         assert reference() is value
+        name = type(value).__name__
         del value
         gc.collect()
-        assert reference() is None
+        assert reference() is None, name
