@@ -83,6 +83,7 @@ from ._maps import map, self_map, thickness
 from ._metrics import BoundedNumber, SurfaceMetrics, mask_surface, surface_metrics
 
 __all__ = [
+    "__version__",
     "Alignment",
     "BatchItem",
     "BoundedLength",

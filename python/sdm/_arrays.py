@@ -7,7 +7,7 @@ import numpy as np
 from ._core import Error
 
 
-def _shape(shape: tuple) -> str:
+def _shape(shape: tuple[Any, ...]) -> str:
     return "(" + ", ".join(str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
 
 
@@ -37,7 +37,7 @@ def numpy_of(array: Any, name: str) -> np.ndarray:
         raise Error(f"{name} must be an array of numbers ({fault})") from None
 
 
-def _numbers(array: Any, name: str, kinds: str, what: str, shape: tuple) -> np.ndarray:
+def _numbers(array: Any, name: str, kinds: str, what: str, shape: tuple[Any, ...]) -> np.ndarray:
     numbers = numpy_of(array, name)
     fits = numbers.ndim == len(shape) and all(n in (m, None) for m, n in zip(numbers.shape, shape))
     if not fits:
@@ -48,7 +48,7 @@ def _numbers(array: Any, name: str, kinds: str, what: str, shape: tuple) -> np.n
     return numbers
 
 
-def _floats(array: Any, name: str, shape: tuple) -> np.ndarray:
+def _floats(array: Any, name: str, shape: tuple[Any, ...]) -> np.ndarray:
     numbers = _numbers(array, name, "fiu", "real numbers", shape)
     with np.errstate(over="ignore"):  # of longer floats: infinity, which the library rejects
         numbers = numbers.astype(np.float64, order="C", copy=False)

@@ -3,36 +3,39 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _arrays, _core
 from ._core import Error
+from ._types import Sign
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class BatchItem:
     """The closest points of one mesh of a batch: views of the arrays of the batch, with those of ClosestPoints."""
 
-    distance: np.ndarray
+    distance: npt.NDArray[np.float64]
     """float64, in units of the mesh; negative inside if signed. Infinite where nothing is within max_distance."""
-    point: np.ndarray
+    point: npt.NDArray[np.float64]
     """(..., 3) float64; NaN where there is none."""
-    face: np.ndarray
+    face: npt.NDArray[np.uint32]
     """uint32: a face of the item's mesh that contains the closest point; NONE where there is none."""
-    barycentric: np.ndarray
+    barycentric: npt.NDArray[np.float64]
     """(..., 3) float64: of the closest point in its face; NaN where there is none."""
-    site: np.ndarray
+    site: npt.NDArray[np.uint32]
     """uint32: the closest vertex, edge or face of the item's mesh, by site_type."""
-    site_type: np.ndarray
+    site_type: npt.NDArray[np.uint8]
     """uint8: a SiteType."""
-    corners: np.ndarray
+    corners: npt.NDArray[np.uint32]
     """(..., 3) uint32: the vertices of ``face``; 0 where there is none."""
-    gradient: np.ndarray | None
+    gradient: npt.NDArray[np.float64] | None
     """(..., 3) float64, if gradients were requested: the derivative of the distance by the query point."""
 
-    def vertex_gradients(self) -> tuple[np.ndarray, np.ndarray]:
+    def vertex_gradients(self) -> tuple[npt.NDArray[np.uint32], npt.NDArray[np.float64]]:
         """Returns (vertices, derivatives), (..., 3) uint32 and (..., 3, 3) float64, as ClosestPoints.vertex_gradients().
 
         Raises Error if gradients were not requested.
@@ -57,10 +60,10 @@ class ClosestPointsBatch(BatchItem):
     of item i from offsets[i] to offsets[i + 1]. batch[i] has the arrays of one item. Objects can be pickled and copied.
     """
 
-    offsets: np.ndarray
+    offsets: npt.NDArray[np.int64]
     """(B + 1,) int64: the first row of each item in packed arrays, and the number of all."""
 
-    def _arrays_of(self, i: int) -> dict[str, np.ndarray | None]:
+    def _arrays_of(self, i: int) -> dict[str, Any]:
         stacked = self.distance.ndim == 2
         rows = i if stacked else slice(self.offsets[i], self.offsets[i + 1])
         arrays = {field.name: getattr(self, field.name) for field in dataclasses.fields(BatchItem)}
@@ -80,7 +83,7 @@ class ClosestPointsBatch(BatchItem):
         return f"sdm.ClosestPointsBatch({len(self)} items, {self.offsets[-1]} points)"
 
 
-def _items(arrays: object, name: str, dimensions: int = 3) -> tuple[list, bool]:
+def _items(arrays: object, name: str, dimensions: int = 3) -> tuple[list[Any], bool]:
     """The arrays of all items, and whether they are parts of one array."""
     if isinstance(arrays, (list, tuple)):
         return list(arrays), False
@@ -103,7 +106,7 @@ def closest_points_batch(
     points: object = None,
     *,
     max_distance: float = float("inf"),
-    sign: str = "none",
+    sign: Sign = "none",
     gradients: bool = False,
     progress: Callable[[str, float], bool | None] | None = None,
 ) -> ClosestPointsBatch:
@@ -153,4 +156,5 @@ def closest_points_batch(
     if stacked:
         shape = (len(meshes), counts[0] if counts else 0)
         found = tuple(None if a is None else a.reshape(shape + a.shape[1:]) for a in found)
-    return ClosestPointsBatch(*found, offsets)
+    names = (field.name for field in dataclasses.fields(BatchItem))
+    return ClosestPointsBatch(**dict(zip(names, found)), offsets=offsets)

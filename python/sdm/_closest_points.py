@@ -2,6 +2,7 @@ import enum
 from collections.abc import Callable
 
 from ._core import ClosestPoints, Sites
+from ._types import Engine, Sign
 
 #: The index that represents "no face" and "no site" in arrays of uint32.
 NONE = 0xFFFFFFFF
@@ -22,9 +23,9 @@ def closest_points(
     points: object = None,
     *,
     max_distance: float = float("inf"),
-    sign: str = "none",
+    sign: Sign = "none",
     gradients: bool = False,
-    engine: str = "cpu",
+    engine: Engine = "cpu",
     progress: "Callable[[str, float], bool | None] | None" = None,
 ) -> ClosestPoints:
     """Returns the closest point of a mesh to each of n points.

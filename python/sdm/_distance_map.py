@@ -3,9 +3,10 @@ import json
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core
 from ._closest_points import NONE
@@ -20,6 +21,7 @@ from ._core import (
     Surface,
     ToleranceVerdict,
 )
+from ._types import Colormap
 
 Progress = Callable[[str, float], "bool | None"]
 
@@ -66,9 +68,16 @@ class DistanceMap(_core.MapChannels):
         return self._core.sites
 
     @functools.cached_property
-    def valid(self) -> np.ndarray:
+    def valid(self) -> "npt.NDArray[np.bool_]":
         """Whether a texel has a value, (H, W) bool."""
         return _frozen(self.site != NONE)
+
+    @functools.cached_property
+    def closest_barycentric(self) -> "npt.NDArray[np.float64]":
+        """Where the closest point is on ``closest_face``: the weights of its corners, (H, W, 3) float64, of the precision of
+        ``closest_uv``; NaN without a value."""
+        uv = self.closest_uv.astype(np.float64)
+        return _frozen(np.concatenate([1 - uv.sum(axis=2, keepdims=True), uv], axis=2))
 
     @property
     def sign(self) -> str:
@@ -85,11 +94,6 @@ class DistanceMap(_core.MapChannels):
         """What the distances are to, in words, such as
         'distance to the closest of the faces that face the same way, within 90°'."""
         return self._core.measured
-
-    @property
-    def without_match(self) -> int:
-        """The number of texels without a value because no face of O2 faces as they do."""
-        return self._core.without_match
 
     @functools.cached_property
     def bounds(self) -> MapBounds:
@@ -185,12 +189,12 @@ class DistanceMap(_core.MapChannels):
 
     def transfer(
         self,
-        values: "np.typing.ArrayLike",
-        domain: str = "vertex",
+        values: "npt.ArrayLike",
+        domain: Literal["vertex", "face", "corner"] = "vertex",
         *,
         fill: bool = True,
         progress: "Progress | None" = None,
-    ) -> np.ndarray:
+    ) -> "npt.NDArray[np.float32]":
         """Returns what O2 has at the closest point of each texel, such as its colours: (H, W, ...) float32.
 
         values: real numbers, a row for each vertex of O2, each face, or each corner of each face, then of shape
@@ -222,7 +226,7 @@ class DistanceMap(_core.MapChannels):
         filled = self._core.transfer(rows, domain, fill, progress)
         return filled.reshape(*filled.shape[:2], *components)
 
-    def free_distances(self) -> np.ndarray:
+    def free_distances(self) -> "npt.NDArray[np.float64]":
         """Returns, for each texel, a radius within which there is no point of O2, (H, W) float64; 0 without a value.
 
         The t_min of rays of length 1 that start at the texel: the distance less what the engine may be off. Raises Error as
@@ -232,7 +236,7 @@ class DistanceMap(_core.MapChannels):
 
     def ambient_occlusion(
         self, rays: int = 64, *, max_distance: float = float("inf"), seed: int = 0, progress: "Progress | None" = None
-    ) -> np.ndarray:
+    ) -> "npt.NDArray[np.float32]":
         """Returns, for each texel, how much of the hemisphere above it is free of O2, (H, W) float32: an estimate.
 
         1: all of it; NaN where no face owns the texel. Rays start at the texel, to the side of the face's normal, with a
@@ -250,7 +254,7 @@ class DistanceMap(_core.MapChannels):
         *,
         tolerance: "float | tuple[float, float] | None" = None,
         units: str = "",
-        colormap: str = "automatic",
+        colormap: Colormap = "automatic",
         range: "tuple[float, float] | None" = None,
         progress: "Progress | None" = None,
     ) -> "dict[str, Any]":
@@ -265,9 +269,10 @@ class DistanceMap(_core.MapChannels):
         """
         at_vertices = self.at_vertices(progress=progress)
         text = self._core.report(at_vertices, tolerance=tolerance, units=units, colormap=colormap, range=range)
-        return json.loads(text)
+        report: "dict[str, Any]" = json.loads(text)
+        return report
 
-    def at_vertices(self, *, progress: "Progress | None" = None) -> np.ndarray:
+    def at_vertices(self, *, progress: "Progress | None" = None) -> "npt.NDArray[np.float32]":
         """Returns the distance at each vertex of the surface, (n,) float32, signed as the map; NaN where nothing is within
         the maximum distance.
 
@@ -279,7 +284,7 @@ class DistanceMap(_core.MapChannels):
         self,
         file: "str | os.PathLike[str]",
         *,
-        colormap: str = "automatic",
+        colormap: Colormap = "automatic",
         range: "tuple[float, float] | None" = None,
         tolerance: "float | tuple[float, float] | None" = None,
         units: str = "",
@@ -329,7 +334,7 @@ class DistanceMap(_core.MapChannels):
         towards: "tuple[float, float, float]" = (0.7, 0.5, 1.0),
         *,
         other: "DistanceMap | None" = None,
-        colormap: str = "automatic",
+        colormap: Colormap = "automatic",
         range: "tuple[float, float] | None" = None,
         tolerance: "float | tuple[float, float] | None" = None,
         units: str = "",
@@ -384,6 +389,6 @@ class DistanceMap(_core.MapChannels):
         return f"sdm.DistanceMap({width} × {height} texels, distance {s.min:.6g} to {s.max:.6g}, mean {s.mean:.6g})"
 
 
-def _frozen(array: np.ndarray) -> np.ndarray:
+def _frozen(array: np.ndarray) -> "npt.NDArray[Any]":
     array.flags.writeable = False
     return array

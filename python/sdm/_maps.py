@@ -1,6 +1,9 @@
+from typing import Literal
+
 from . import _core
 from ._core import Error, Mesh, Surface
 from ._distance_map import DistanceMap, Progress
+from ._types import Atlas, Engine, Sign
 
 
 def map(
@@ -9,13 +12,13 @@ def map(
     *,
     resolution: "int | tuple[int, int] | None" = None,
     precision: "float | None" = None,
-    engine: str = "cpu",
+    engine: Engine = "cpu",
     transform: object = None,
-    sign: str = "automatic",
+    sign: Sign = "automatic",
     along: "str | tuple[float, float, float] | None" = None,
     max_distance: float = float("inf"),
     facing: "float | None" = None,
-    atlas: str = "charts",
+    atlas: Atlas = "charts",
     max_stretch: float = 1.3,
     gutter: int = 1,
     progress: "Progress | None" = None,
@@ -86,7 +89,7 @@ def self_map(
     max_distance: float = float("inf"),
     resolution: "int | tuple[int, int] | None" = None,
     precision: "float | None" = None,
-    atlas: str = "charts",
+    atlas: Atlas = "charts",
     max_stretch: float = 1.3,
     gutter: int = 1,
     progress: "Progress | None" = None,
@@ -139,10 +142,10 @@ def self_map(
 def thickness(
     mesh: object,
     *,
-    method: str = "ball",
+    method: "Literal['ball', 'ray']" = "ball",
     angle: float = 90.0,
     resolution: "int | tuple[int, int] | None" = None,
-    atlas: str = "charts",
+    atlas: Atlas = "charts",
     max_stretch: float = 1.3,
     gutter: int = 1,
     progress: "Progress | None" = None,

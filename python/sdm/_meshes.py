@@ -9,7 +9,7 @@ from ._arrays import numpy_of
 from ._core import Error, Mesh, read
 
 _FORMS = (
-    "a mesh must be (vertices, faces), a path, or a mesh of sdm, trimesh, open3d, pyvista or meshio, not "
+    "a mesh must be (vertices, faces), a path, or a mesh of sdm, trimesh, open3d, pyvista, vtk or meshio, not "
 )
 
 
@@ -17,27 +17,28 @@ def _of_corners(uvs: Any, vertices: Any, faces: np.ndarray) -> "np.ndarray | Non
     """Texture coordinates of corners, from those of vertices."""
     if uvs is None or np.shape(uvs) != (len(vertices), 2) or len(faces) == 0:
         return None
-    return numpy_of(uvs, "texture coordinates")[numpy_of(faces, "faces")]
+    corners: np.ndarray = numpy_of(uvs, "texture coordinates")[numpy_of(faces, "faces")]
+    return corners
 
 
-def _trimesh(mesh: Any) -> tuple:
+def _trimesh(mesh: Any) -> tuple[Any, ...]:
     uvs = getattr(getattr(mesh, "visual", None), "uv", None)
     return mesh.vertices, mesh.faces, _of_corners(uvs, mesh.vertices, mesh.faces)
 
 
-def _open3d_legacy(mesh: Any) -> tuple:
+def _open3d_legacy(mesh: Any) -> tuple[Any, ...]:
     faces = numpy_of(mesh.triangles, "faces")
     uvs = numpy_of(getattr(mesh, "triangle_uvs", ()), "texture coordinates")
     return numpy_of(mesh.vertices, "vertices"), faces, uvs.reshape(-1, 3, 2) if len(uvs) == 3 * len(faces) > 0 else None
 
 
-def _open3d_tensor(mesh: Any) -> tuple:
+def _open3d_tensor(mesh: Any) -> tuple[Any, ...]:
     triangle = mesh.triangle
     uvs = triangle["texture_uvs"].cpu().numpy() if "texture_uvs" in triangle else None
     return mesh.vertex["positions"].cpu().numpy(), triangle["indices"].cpu().numpy(), uvs
 
 
-def _pyvista(mesh: Any) -> tuple:
+def _pyvista(mesh: Any) -> tuple[Any, ...]:
     def all_triangles(faces: np.ndarray) -> bool:
         return len(faces) % 4 == 0 and bool((faces[::4] == 3).all())
 
@@ -52,7 +53,7 @@ def _pyvista(mesh: Any) -> tuple:
     return mesh.points, faces, _of_corners(uvs, mesh.points, faces)
 
 
-def _meshio(mesh: Any) -> tuple:
+def _meshio(mesh: Any) -> tuple[Any, ...]:
     triangles = []
     for block in mesh.cells:
         if block.type == "triangle":
@@ -65,7 +66,41 @@ def _meshio(mesh: Any) -> tuple:
     return mesh.points, np.concatenate(triangles) if triangles else np.empty((0, 3), np.uint32), None
 
 
-def parts(mesh: Any, faces: object) -> "Mesh | tuple":
+def _trimesh_scene(scene: Any) -> tuple[Any, ...]:
+    """The geometries with faces at all places that the graph has for them, one after the other."""
+    vertices, faces, count = [], [], 0
+    for node in scene.graph.nodes_geometry:
+        place, name = scene.graph.get(node)
+        geometry = scene.geometry[name]
+        if not hasattr(geometry, "faces"):  # paths and point clouds
+            continue
+        matrix, positions = numpy_of(place, "transform"), numpy_of(geometry.vertices, "vertices")
+        corners = numpy_of(geometry.faces, "faces") + count
+        vertices.append(positions @ matrix[:3, :3].T + matrix[:3, 3])
+        faces.append(corners[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else corners)
+        count += len(positions)
+    if not faces:
+        raise Error("the scene of trimesh has no triangles")
+    return np.concatenate(vertices), np.concatenate(faces), None
+
+
+def _vtk(data: Any) -> tuple[Any, ...]:
+    if data.GetStrips().GetNumberOfCells():
+        raise Error("the data of vtk has triangle strips; triangulate it with vtkTriangleFilter first")
+    polygons = data.GetPolys()
+    ends = numpy_of(polygons.GetOffsetsArray(), "offsets")
+    corners = numpy_of(polygons.GetConnectivityArray(), "faces")
+    counts, begins = np.diff(ends), ends[:-1]
+    if (counts > 4).any():
+        raise Error("the data of vtk has polygons with five corners or more; triangulate it with vtkTriangleFilter first")
+    first = np.flatnonzero(counts >= 3)
+    second = np.flatnonzero(counts == 4)
+    order = np.argsort(np.concatenate([first, second]), kind="stable")
+    faces = np.concatenate([corners[begins[first, None] + [0, 1, 2]], corners[begins[second, None] + [0, 2, 3]]])[order]
+    return numpy_of(data.GetPoints().GetData(), "vertices"), faces, None
+
+
+def parts(mesh: Any, faces: object) -> "Mesh | tuple[Any, ...]":
     """Returns a Mesh, or (vertices, faces, texture coordinates of corners or None)."""
     if faces is not None:
         return mesh, faces, None
@@ -73,6 +108,10 @@ def parts(mesh: Any, faces: object) -> "Mesh | tuple":
         return read(mesh)
     if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
         return mesh[0], mesh[1], None
+    if hasattr(mesh, "geometry") and hasattr(mesh, "graph"):
+        return _trimesh_scene(mesh)
+    if hasattr(mesh, "GetPolys") and not hasattr(mesh, "faces"):  # which pyvista adds
+        return _vtk(mesh)
     if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
         return _trimesh(mesh)
     if hasattr(mesh, "vertices") and hasattr(mesh, "triangles"):

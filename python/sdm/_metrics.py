@@ -6,10 +6,12 @@ import dataclasses
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core
 from ._arrays import numpy_of
 from ._core import Error
+from ._types import Certainty
 
 
 @dataclasses.dataclass(frozen=True)
@@ -21,7 +23,7 @@ class BoundedNumber:
     """lower ≤ truth, unless an estimate."""
     upper: float
     """truth ≤ upper, unless an estimate."""
-    certainty: str
+    certainty: Certainty
     """'exact': but for rounding; 'bounded': the true value lies between the bounds; 'estimate'."""
 
     def __float__(self) -> float:
@@ -37,7 +39,7 @@ class SurfaceMetrics(Mapping[str, BoundedNumber]):
     """What surface_metrics() returns: a mapping from the names of measures to numbers with bounds."""
 
     def __init__(
-        self, both: Mapping[str, BoundedNumber], a_to_b: dict, b_to_a: dict, areas: tuple[float, float]
+        self, both: Mapping[str, BoundedNumber], a_to_b: dict[str, BoundedNumber], b_to_a: dict[str, BoundedNumber], areas: tuple[float, float]
     ) -> None:
         self._both = dict(both)
         self.a_to_b: dict[str, BoundedNumber] = a_to_b
@@ -67,7 +69,7 @@ def _numbers(numbers: object, name: str) -> list[float]:
         raise Error(f"{name} must be numbers") from None
 
 
-def mask_surface(mask: object, spacing: float | Sequence[float] = 1.0) -> tuple[np.ndarray, np.ndarray]:
+def mask_surface(mask: object, spacing: float | Sequence[float] = 1.0) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
     """Returns the surface of a segmentation, the faces between voxels inside and outside: vertices (n, 3) float64 and
     faces (m, 3) uint32.
 
@@ -156,4 +158,4 @@ def surface_metrics(
         progress,
     )
     numbers = [{name: BoundedNumber(*n) for name, n in part.items()} for part in (both, forth, back)]
-    return SurfaceMetrics(*numbers, areas)
+    return SurfaceMetrics(numbers[0], numbers[1], numbers[2], areas)

@@ -7,7 +7,7 @@ import numpy as np
 from ._core import Error
 
 
-def _colours(distance_map: Any, cmap: "str | None") -> tuple:
+def _colours(distance_map: Any, cmap: "str | None") -> tuple[Any, ...]:
     """A colour map and its range, which is that of all pictures of the map."""
     from matplotlib import colormaps
     from matplotlib.colors import ListedColormap, Normalize

@@ -22,6 +22,7 @@ from . import _gradients
 from ._batches import closest_points_batch
 from ._closest_points import NONE
 from ._core import Error, Sites
+from ._types import Sign
 
 __all__ = [
     "ClosestPoints",
@@ -56,7 +57,7 @@ class ClosestPoints(NamedTuple):
 @dataclasses.dataclass(frozen=True)
 class _Options:  # no tuple, which torch.func would take apart
     sites: Sites | None
-    sign: str
+    sign: Sign
     max_distance: float
 
 
@@ -72,7 +73,7 @@ def _indices(tensor: torch.Tensor) -> np.ndarray:
 
 def _found(points: torch.Tensor, vertices: torch.Tensor | None, faces: torch.Tensor | None, options: _Options) -> Any:
     """The arrays of the closest points, the corners of their faces and, of Sites that do not change, their positions."""
-    query = {"sign": options.sign, "max_distance": options.max_distance, "gradients": True}
+    query: dict[str, Any] = {"sign": options.sign, "max_distance": options.max_distance, "gradients": True}
     p = _array(points)
     sites: Any = options.sites
     if vertices is None or (vertices.dim() == 2 and faces is not None and faces.dim() == 2):
@@ -164,6 +165,10 @@ class _Query(torch.autograd.Function):
         return _Query.apply(points, vertices, faces, options), (0, 0, 0, 0, 0, 0)
 
 
+def _broadcast(*shapes: torch.Size) -> torch.Size:
+    return torch.Size(np.broadcast_shapes(*shapes))
+
+
 def _with_batch(rows: torch.Tensor, has_first: bool, batch: torch.Size) -> torch.Tensor:
     """Rows (..., k, 3) for each item of a batch, of whose dimensions they may have the first one, or the others."""
     missing = len(batch) - (rows.dim() - 2)
@@ -171,7 +176,7 @@ def _with_batch(rows: torch.Tensor, has_first: bool, batch: torch.Size) -> torch
     return rows.reshape(*first, *([1] * missing), *rows.shape[len(first) :]).expand(*batch, *rows.shape[-2:])
 
 
-def _query(points: torch.Tensor, mesh: Any, faces: Any, sites: Any, sign: str, max_distance: float) -> Any:
+def _query(points: torch.Tensor, mesh: Any, faces: Any, sites: Any, sign: Sign, max_distance: float) -> Any:
     if isinstance(mesh, Sites):
         if faces is not None or sites is not None:
             raise Error("Sites have faces of their own; leave out faces and sites")
@@ -181,7 +186,7 @@ def _query(points: torch.Tensor, mesh: Any, faces: Any, sites: Any, sign: str, m
     if mesh.dim() > 2 or faces.dim() > 2:
         if sites is not None:
             raise Error("sites are of one mesh; leave them out for a batch of vertices")
-        batch = torch.broadcast_shapes(points.shape[:-2], mesh.shape[:-2], faces.shape[:-2])
+        batch = _broadcast(points.shape[:-2], mesh.shape[:-2], faces.shape[:-2])
         points = points.expand(*batch, *points.shape[-2:])
         mesh = mesh.expand(*batch, *mesh.shape[-2:])
         faces = faces if faces.dim() == 2 else faces.expand(*batch, *faces.shape[-2:])
@@ -194,7 +199,7 @@ def distance(
     faces: torch.Tensor | None = None,
     *,
     sites: Sites | None = None,
-    sign: str = "none",
+    sign: Sign = "none",
     max_distance: float = float("inf"),
 ) -> torch.Tensor:
     """Returns the distance of each point to a mesh, (..., n), of the dtype and device of ``points``.
@@ -203,14 +208,15 @@ def distance(
     are those of Sites.closest_points(); points farther away have an infinite distance, with the derivative 0. Raises
     sdm.Error as Sites does.
     """
-    return _query(points, vertices, faces, sites, sign, max_distance)[0]
+    found: torch.Tensor = _query(points, vertices, faces, sites, sign, max_distance)[0]
+    return found
 
 
 def _corner_positions(vertices: torch.Tensor, corners: torch.Tensor) -> torch.Tensor:
     """The positions (..., n, 3, 3) of vertices (..., n, 3)."""
     if vertices.dim() == 2:
         return vertices[corners]
-    batch = torch.broadcast_shapes(vertices.shape[:-2], corners.shape[:-2])
+    batch = _broadcast(vertices.shape[:-2], corners.shape[:-2])
     rows = corners.expand(*batch, *corners.shape[-2:]).reshape(*batch, -1, 1)
     positions = vertices.expand(*batch, *vertices.shape[-2:]).gather(-2, rows.expand(*rows.shape[:-1], 3))
     return positions.reshape(*batch, -1, 3, 3)
@@ -253,7 +259,7 @@ def closest_points(
     faces: torch.Tensor | None = None,
     *,
     sites: Sites | None = None,
-    sign: str = "none",
+    sign: Sign = "none",
     max_distance: float = float("inf"),
 ) -> ClosestPoints:
     """Returns the closest points of a mesh: distance, point, face and barycentric coordinates.
@@ -292,7 +298,8 @@ def _parts(surface: Surface) -> tuple[torch.Tensor, torch.Tensor]:
 def _normals(corners: torch.Tensor) -> torch.Tensor:
     """The normals (..., 3) of faces with these corners, twice their area long."""
     a, b, c = corners.unbind(-2)
-    return torch.linalg.cross(b - a, c - a)
+    normals: torch.Tensor = torch.linalg.cross(b - a, c - a)
+    return normals
 
 
 def sample_surface(surface: Surface, count: int, *, generator: torch.Generator | None = None) -> Samples:

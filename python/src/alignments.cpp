@@ -65,10 +65,11 @@ about an axis through the centre of O1, with |translation|² + |rotation|² = 1.
 divided by its radius of gyration, in radians.)")
       .def_prop_ro(
           "translation", [](const F& self) { return vector_of(self.translation); },
-          nb::sig("def translation(self) -> numpy.ndarray"), "(3,) float64.")
+          nb::sig("def translation(self) -> numpy.typing.NDArray[numpy.float64]"), "(3,) float64.")
       .def_prop_ro(
           "rotation", [](const F& self) { return vector_of(self.rotation); },
-          nb::sig("def rotation(self) -> numpy.ndarray"), "Along the axis, (3,) float64.")
+          nb::sig("def rotation(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Along the axis, (3,) float64.")
       .def_ro(
           "determined", &F::determined,
           "The rms distance by which the samples move along the normals of O2, per unit of motion: 0 for a "
@@ -91,7 +92,7 @@ void bind_alignment(nb::module_& module) {
                 "A rigid motion that aligns O1 to O2, and how good it is.")
       .def_prop_ro(
           "transform", [](const A& self) { return matrix(self.transform); },
-          nb::sig("def transform(self) -> numpy.ndarray"),
+          nb::sig("def transform(self) -> numpy.typing.NDArray[numpy.float64]"),
           "Maps O1, as it was given, to its place on O2: a rotation and a translation, (4, 4) float64, for "
           "column vectors.")
       .def_prop_ro(
@@ -226,7 +227,7 @@ void bind_align_321(nb::module_& module) {
         return matrix(align_321(from.get(), to.get()));
       },
       nb::arg("points").none(), nb::arg("places").none(),
-      nb::sig("def align_321(points: object, places: object) -> numpy.ndarray"),
+      nb::sig("def align_321(points: object, places: object) -> numpy.typing.NDArray[numpy.float64]"),
       R"(Returns the motion of a 3-2-1 alignment, (4, 4) float64, for column vectors.
 
 points, places: (6, 3) numbers, points of O1 and their places on O2.

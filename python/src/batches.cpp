@@ -15,6 +15,7 @@
 #include "arrays.h"
 #include "closest.h"
 #include "objects.h"
+#include "signatures.h"
 #include "sites_in_use.h"
 
 namespace sdm::python {
@@ -202,10 +203,11 @@ void bind_batches(nb::module_& module) {
       nb::arg("meshes"), nb::arg("faces").none(), nb::arg("points"), nb::kw_only(),
       nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("sign") = "none",
       nb::arg("gradients") = false, nb::arg("progress") = nb::none(),
-      nb::sig("def closest_points_batch(meshes: list[object], faces: object, points: list[object], *, "
-              "max_distance: float = ..., sign: str = 'none', gradients: bool = False, progress: "
+      nb::sig("def closest_points_batch(meshes: collections.abc.Sequence[object], faces: object, points: "
+              "collections.abc.Sequence[object], *, "
+              "max_distance: float = ..., sign: " SDM_SIGN " = 'none', gradients: bool = False, progress: "
               "collections.abc.Callable[[str, float], bool | None] | None = None) -> "
-              "tuple[numpy.ndarray | None, ...]"));
+              "tuple[typing.Any, ...]"));
 }
 
 }  // namespace sdm::python

@@ -47,13 +47,14 @@ void bind_separations(nb::module_& module) {
   nb::class_<P>(module, "Separations", nb::is_weak_referenceable(),
                 "The near pairs of bodies as arrays with one row each, sorted by first, then second body.")
       .def_prop_ro("bodies", pair_column(&P::bodies, kBodiesOfPair),
-                   nb::sig("def bodies(self) -> numpy.ndarray"),
+                   nb::sig("def bodies(self) -> numpy.typing.NDArray[numpy.uint32]"),
                    "The indices of O1 and O2, (n, 2) uint32, the smaller one first.")
-      .def_prop_ro("parts", pair_column(&P::parts, kPartsOfPair), nb::sig("def parts(self) -> numpy.ndarray"),
+      .def_prop_ro("parts", pair_column(&P::parts, kPartsOfPair),
+                   nb::sig("def parts(self) -> numpy.typing.NDArray[numpy.uint32]"),
                    "The parts of O1 and O2 that are the separation apart, (n, 2) uint32; see Compound.")
       .def_prop_ro("separation",
                    pair_column(&P::separation, [](const PairSeparation& p) { return p.separation.value; }),
-                   nb::sig("def separation(self) -> numpy.ndarray"),
+                   nb::sig("def separation(self) -> numpy.typing.NDArray[numpy.float64]"),
                    "The smallest distances of their surfaces, (n,) float64; exact.")
       .def_prop_ro("witness",
                    pair_column(&P::witness,
@@ -61,7 +62,7 @@ void bind_separations(nb::module_& module) {
                                  constexpr Vec3 none{kNan, kNan, kNan};
                                  return p.separation.witness.value_or(std::array{none, none});
                                }),
-                   nb::sig("def witness(self) -> numpy.ndarray"),
+                   nb::sig("def witness(self) -> numpy.typing.NDArray[numpy.float64]"),
                    "A point of O1 and one of O2 that are the separation apart, (n, 2, 3) float64; NaN if "
                    "there is none.")
       .def_prop_ro(
@@ -73,7 +74,8 @@ void bind_separations(nb::module_& module) {
               return array_of<bool>(std::move(flags), {self.pairs.size()});
             });
           },
-          nb::sig("def colliding(self) -> numpy.ndarray"), "Whether they collide, (n,) bool; exact.")
+          nb::sig("def colliding(self) -> numpy.typing.NDArray[numpy.bool_]"),
+          "Whether they collide, (n,) bool; exact.")
       .def("__len__", [](const P& self) { return self.pairs.size(); })
       .def("__repr__",
            [](const P& self) { return nb::str("sdm.Separations({})").format(self.pairs.size()); });
@@ -85,18 +87,19 @@ void bind_penetration_depths(nb::module_& module) {
                 "The pairs of bodies that collide, and of which one is a solid, as arrays with one row each, "
                 "sorted by first, then second body.")
       .def_prop_ro("bodies", pair_column(&P::bodies, kBodiesOfPair),
-                   nb::sig("def bodies(self) -> numpy.ndarray"),
+                   nb::sig("def bodies(self) -> numpy.typing.NDArray[numpy.uint32]"),
                    "The indices of O1 and O2, (n, 2) uint32, the smaller one first.")
-      .def_prop_ro("parts", pair_column(&P::parts, kPartsOfPair), nb::sig("def parts(self) -> numpy.ndarray"),
+      .def_prop_ro("parts", pair_column(&P::parts, kPartsOfPair),
+                   nb::sig("def parts(self) -> numpy.typing.NDArray[numpy.uint32]"),
                    "The parts of O1 and O2 that have this depth, (n, 2) uint32; see Compound.")
       .def_prop_ro("penetration_depth",
                    pair_column(&P::depth, [](const PairDepth& p) { return p.penetration_depth.value; }),
-                   nb::sig("def penetration_depth(self) -> numpy.ndarray"),
+                   nb::sig("def penetration_depth(self) -> numpy.typing.NDArray[numpy.float64]"),
                    "The penetration depths, (n,) float64; within their bounds.")
       .def_prop_ro(
           "penetration_depth_bounds",
           pair_column(&P::depth_bounds, [](const PairDepth& p) { return bounds_of(p.penetration_depth); }),
-          nb::sig("def penetration_depth_bounds(self) -> numpy.ndarray"),
+          nb::sig("def penetration_depth_bounds(self) -> numpy.typing.NDArray[numpy.float64]"),
           "Lower and upper bounds on the penetration depths, (n, 2) float64.")
       .def("__len__", [](const P& self) { return self.pairs.size(); })
       .def("__repr__",
@@ -161,7 +164,7 @@ w x y z of any length.)")
             const auto lock = self.access.use();
             return matrix(self.query.pose(index_of(body)));
           },
-          nb::arg("body"), nb::sig("def pose(self, body: int) -> numpy.ndarray"),
+          nb::arg("body"), nb::sig("def pose(self, body: int) -> numpy.typing.NDArray[numpy.float64]"),
           "The pose of a body, (4, 4) float64.")
       .def(
           "refit",
@@ -226,12 +229,12 @@ void bind_answers(nb::class_<PyMultiBodyQuery>& query) {
   query
       .def(
           "colliding", [](PyMultiBodyQuery& self) { return column(colliding_pairs(self), kBodiesOfPair); },
-          nb::sig("def colliding(self) -> numpy.ndarray"),
+          nb::sig("def colliding(self) -> numpy.typing.NDArray[numpy.uint32]"),
           "Returns the pairs that collide, (n, 2) uint32, the smaller index first; exact.")
       .def(
           "colliding_parts",
           [](PyMultiBodyQuery& self) { return column(colliding_pairs(self), kPartsOfPair); },
-          nb::sig("def colliding_parts(self) -> numpy.ndarray"),
+          nb::sig("def colliding_parts(self) -> numpy.typing.NDArray[numpy.uint32]"),
           "Returns the first parts that collide of each pair of colliding(), (n, 2) uint32; see Compound.")
       .def(
           "separations",
@@ -310,8 +313,8 @@ Shape has no resolution.)")
             return array_of<float>(std::move(distances), {count});
           },
           nb::arg("body"), nb::kw_only(), nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
-          nb::sig(
-              "def distances_at_vertices(self, body: int, *, max_distance: float = ...) -> numpy.ndarray"),
+          nb::sig("def distances_at_vertices(self, body: int, *, max_distance: float = ...) -> "
+                  "numpy.typing.NDArray[numpy.float32]"),
           R"(Returns the distance from each vertex of a body to the nearest other body, (n,) float32,
 signed as in nearest_map(); NaN where none is within max_distance.)")
       .def("__repr__", [](const PyMultiBodyQuery& self) {

@@ -105,7 +105,8 @@ void bind_channels(nb::module_& module) {
   channels_class.def(nb::init<nb::handle>(), nb::arg("map"), nb::sig("def __init__(self, map: Map) -> None"));
   for (const Channel& channel : channels()) {
     if (!channel.in_python) continue;
-    const std::string signature = "def " + std::string(channel.name) + "(self) -> numpy.ndarray";
+    const std::string signature = "def " + std::string(channel.name) +
+                                  "(self) -> numpy.typing.NDArray[numpy." + name_of(channel.type) + "]";
     channels_class.def_prop_ro(
         channel.name, [&channel](PyMapChannels& self) { return self.get(channel); },
         nb::sig(signature.c_str()), documentation(channel).c_str());

@@ -18,14 +18,10 @@
 #include "arrays.h"
 #include "map.h"
 #include "run.h"
+#include "signatures.h"
 
 namespace sdm::python {
 namespace {
-
-std::string lower(std::string word) {
-  for (char& c : word) c = static_cast<char>(std::tolower(c));
-  return word;
-}
 
 nb::object tuple_of(const Vec3& p) {
   return nb::make_tuple(p[0], p[1], p[2]);
@@ -71,7 +67,7 @@ void bind_face_names(nb::module_& module) {
             const std::size_t count = copy.size();
             return array_of<std::uint32_t>(std::move(copy), {count});
           },
-          nb::sig("def of_face(self) -> numpy.ndarray"),
+          nb::sig("def of_face(self) -> numpy.typing.NDArray[numpy.uint32]"),
           "For each face the number of its name, or 0xFFFFFFFF without one, (m,) uint32.")
       .def("__repr__", [](const FaceNames& self) {
         return nb::str("sdm.FaceNames({!r}, {} names)").format(self.kind, self.names.size());
@@ -159,14 +155,14 @@ void bind_verdicts(nb::module_& module) {
       .def_ro("verdict", &GroupVerdict::verdict,
               "Fractions of the area are those of the group, or of its points.")
       .def("__repr__", [](const GroupVerdict& self) {
-        return nb::str("sdm.GroupVerdict({!r}, {!r})")
-            .format(self.group, lower(sdm::name_of(self.verdict.verdict)));
+        return nb::str("sdm.GroupVerdict({!r}, {!r})").format(self.group, word_of(self.verdict.verdict));
       });
   nb::class_<GroupVerdicts>(module, "GroupVerdicts", nb::is_weak_referenceable(),
                             "The verdicts on the groups of a table.")
       .def_ro("groups", &GroupVerdicts::groups, "In the order of the table.")
       .def_prop_ro(
-          "verdict", [](const GroupVerdicts& self) { return lower(sdm::name_of(self.verdict)); },
+          "verdict", [](const GroupVerdicts& self) { return word_of(self.verdict); },
+          nb::sig("def verdict(self) -> " SDM_VERDICT),
           "'fail' if that of one group is, or if points of a cloud are of no group; else 'not decided' if "
           "that of one is, else 'pass'.")
       .def_prop_ro(
@@ -179,7 +175,7 @@ void bind_verdicts(nb::module_& module) {
           "Of a cloud: the number of points that are of no group, as no face of the mesh faces as they do.")
       .def("__repr__", [](const GroupVerdicts& self) {
         return nb::str("sdm.GroupVerdicts({!r}, {} groups)")
-            .format(lower(sdm::name_of(self.verdict)), self.groups.size());
+            .format(word_of(self.verdict), self.groups.size());
       });
 }
 

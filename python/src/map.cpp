@@ -10,6 +10,7 @@
 
 #include "groups.h"
 #include "rays.h"
+#include "signatures.h"
 
 namespace sdm::python {
 namespace {
@@ -162,7 +163,7 @@ void bind_map(nb::module_& module) {
             return array_of<float>(std::move(distances), {count});
           },
           nb::arg("progress") = nb::none(),
-          nb::sig("def at_vertices(self, progress: object = None) -> numpy.ndarray"));
+          nb::sig("def at_vertices(self, progress: object = None) -> numpy.typing.NDArray[numpy.float32]"));
   bind_map_numbers(module, map_class);
   bind_map_groups(map_class);
   bind_map_files(module, map_class);
@@ -182,7 +183,8 @@ void bind_map(nb::module_& module) {
       nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
       nb::arg("facing").none() = nb::none(), nb::arg("progress") = nb::none(),
       nb::sig(
-          "def compute_map(surface: Surface, sites: Sites, *, engine: str = 'cpu', sign: str = 'automatic', "
+          "def compute_map(surface: Surface, sites: Sites, *, engine: " SDM_ENGINE " = 'cpu', sign: "
+          "" SDM_SIGN " = 'automatic', "
           "max_distance: float = ..., facing: float | None = None, progress: collections.abc.Callable[[str, "
           "float], bool | None] | None = None) -> Map"));
 

@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "map.h"
+#include "signatures.h"
 
 namespace sdm::python {
 namespace {
@@ -208,7 +209,8 @@ void bind_map_files(nb::module_& module, nb::class_<PyMap>& map) {
   map.def("write", &write, nb::arg("format"), nb::arg("file").none(), nb::kw_only(),
           nb::arg("colormap") = "automatic", nb::arg("range") = nb::none(), nb::arg("tolerance") = nb::none(),
           nb::arg("units") = "", nb::arg("size") = 2048, nb::arg("progress") = nb::none(),
-          nb::sig("def write(self, format: str, file: str, *, colormap: str = 'automatic', range: "
+          nb::sig("def write(self, format: str, file: str, *, colormap: " SDM_COLORMAP
+                  " = 'automatic', range: "
                   "tuple[float, float] | "
                   "None = None, tolerance: float | tuple[float, float] | None = None, units: str = '', "
                   "size: int = 2048, "
@@ -216,18 +218,19 @@ void bind_map_files(nb::module_& module, nb::class_<PyMap>& map) {
                   "None) -> None"))
       .def("report", &report, nb::arg("at_vertices"), nb::kw_only(), nb::arg("colormap") = "automatic",
            nb::arg("range") = nb::none(), nb::arg("tolerance") = nb::none(), nb::arg("units") = "",
-           nb::sig("def report(self, at_vertices: numpy.ndarray, *, colormap: str = 'automatic', range: "
+           nb::sig("def report(self, at_vertices: numpy.ndarray, *, colormap: " SDM_COLORMAP " = "
+                   "'automatic', range: "
                    "tuple[float, float] | None = None, tolerance: float | tuple[float, float] | None = None, "
                    "units: str = '') -> str"))
       .def("colors", &colors, nb::sig("def colors(self) -> tuple[str, float, float]"))
-      .def(
-          "write_view", &write_view, nb::arg("file"), nb::arg("at_vertices"), nb::arg("towards"),
-          nb::arg("other").none(), nb::kw_only(), nb::arg("colormap"), nb::arg("range").none(),
-          nb::arg("tolerance").none(), nb::arg("units"), nb::arg("size"), nb::arg("up"), nb::arg("legend"),
-          nb::sig("def write_view(self, file: str, at_vertices: numpy.ndarray, towards: tuple[float, float, "
-                  "float], other: numpy.ndarray | None, *, colormap: str, range: tuple[float, float] | None, "
-                  "tolerance: float | tuple[float, float] | None, units: str, size: int, up: str, legend: "
-                  "bool) -> None"))
+      .def("write_view", &write_view, nb::arg("file"), nb::arg("at_vertices"), nb::arg("towards"),
+           nb::arg("other").none(), nb::kw_only(), nb::arg("colormap"), nb::arg("range").none(),
+           nb::arg("tolerance").none(), nb::arg("units"), nb::arg("size"), nb::arg("up"), nb::arg("legend"),
+           nb::sig("def write_view(self, file: str, at_vertices: numpy.ndarray, towards: tuple[float, float, "
+                   "float], other: numpy.ndarray | None, *, colormap: " SDM_COLORMAP ", range: "
+                   "tuple[float, float] | None, "
+                   "tolerance: float | tuple[float, float] | None, units: str, size: int, up: str, legend: "
+                   "bool) -> None"))
       .def("write_page", &write_page, nb::arg("file"), nb::arg("at_vertices"), nb::arg("report"),
            nb::kw_only(), nb::arg("up") = "y", nb::arg("largest") = HtmlOptions{}.largest,
            nb::arg("triangles") = HtmlOptions{}.triangles,

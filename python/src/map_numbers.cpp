@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "map.h"
+#include "signatures.h"
 
 namespace sdm::python {
 namespace {
@@ -109,13 +110,6 @@ BoundedLength hausdorff(const PyMap& self, std::optional<double> precision, nb::
   return result;
 }
 
-// As of the command, in small letters.
-std::string word_of(Verdict verdict) {
-  std::string word = sdm::name_of(verdict);
-  for (char& c : word) c = static_cast<char>(std::tolower(c));
-  return word;
-}
-
 CertifiedVerdict check(const PyMap& self, nb::handle tolerance, nb::handle progress) {
   if (!self.thickness && !self.along) self.require_other_mesh();
   const Tolerance accepted = tolerance_of(tolerance, self.map.sign.method);
@@ -180,6 +174,7 @@ void bind_verdict(nb::module_& module) {
                 "Whether the distances of all points of a surface are within a tolerance.")
       .def_prop_ro(
           "verdict", [](const V& self) { return word_of(self.verdict); },
+          nb::sig("def verdict(self) -> " SDM_VERDICT),
           "'pass': every point of the surface is within the tolerance; 'fail': some point is not; 'not "
           "decided': "
           "neither is proven, as a distance is within the accuracy of a limit, or signs are estimates.")
@@ -224,6 +219,12 @@ void bind_verdict(nb::module_& module) {
 }
 
 }  // namespace
+
+std::string word_of(Verdict verdict) {
+  std::string word = sdm::name_of(verdict);
+  for (char& c : word) c = static_cast<char>(std::tolower(c));
+  return word;
+}
 
 Tolerance tolerance_of(nb::handle value, SignMethod sign) {
   const auto fault = [&] {

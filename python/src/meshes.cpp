@@ -63,10 +63,12 @@ void bind_arrays(nb::class_<PyMesh>& type) {
             const auto& positions = nb::cast<const PyMesh&>(self).mesh.positions;
             return view_of<double>(positions, {positions.size(), 3}, self);
           },
-          nb::sig("def vertices(self) -> numpy.ndarray"), "The positions, (n, 3) float64, read-only.")
+          nb::sig("def vertices(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "The positions, (n, 3) float64, read-only.")
       .def_prop_ro(
           "faces", [](nb::handle self) { return faces_view(nb::cast<const PyMesh&>(self).mesh, self); },
-          nb::sig("def faces(self) -> numpy.ndarray"), "The vertices of each face, (m, 3) uint32, read-only.")
+          nb::sig("def faces(self) -> numpy.typing.NDArray[numpy.uint32]"),
+          "The vertices of each face, (m, 3) uint32, read-only.")
       .def_prop_ro(
           "corner_uvs",
           [](nb::handle self) -> nb::object {
@@ -74,13 +76,13 @@ void bind_arrays(nb::class_<PyMesh>& type) {
             if (uvs.empty()) return nb::none();
             return view_of<double>(uvs, {uvs.size(), 3, 2}, self);
           },
-          nb::sig("def corner_uvs(self) -> numpy.ndarray | None"),
+          nb::sig("def corner_uvs(self) -> numpy.typing.NDArray[numpy.float64] | None"),
           "Texture coordinates of the corners of each face, (m, 3, 2) float64, read-only; None if there are "
           "none.")
       .def(
           "__iter__",
           [](nb::handle self) { return nb::iter(nb::make_tuple(self.attr("vertices"), self.attr("faces"))); },
-          nb::sig("def __iter__(self) -> collections.abc.Iterator[numpy.ndarray]"))
+          nb::sig("def __iter__(self) -> collections.abc.Iterator[numpy.typing.NDArray[typing.Any]]"))
       .def(
           "transformed",
           [](const PyMesh& self, nb::handle matrix) {
@@ -131,7 +133,8 @@ void bind_attributes(nb::module_& module) {
         return result;
       },
       nb::arg("file").none(),
-      nb::sig("def read_attributes(file: str | os.PathLike[str]) -> dict[str, numpy.ndarray]"),
+      nb::sig("def read_attributes(file: str | os.PathLike[str]) -> dict[str, "
+              "numpy.typing.NDArray[numpy.float32]]"),
       R"(Returns what a mesh file has at the corners of the faces of read(), besides positions and texture
 coordinates, by name: (faces, 3, components) float32, or (faces, 3) for one component; NaN where it has nothing.
 
@@ -275,7 +278,7 @@ an index out of range, for coordinates that are NaN or beyond 1e37, and if no fa
 
   module.def(
       "fit_to_unit", [](nb::handle mesh) { return matrix(fit_to_unit(mesh_of(mesh, nb::none()))); },
-      nb::arg("mesh").none(), nb::sig("def fit_to_unit(mesh: object) -> numpy.ndarray"),
+      nb::arg("mesh").none(), nb::sig("def fit_to_unit(mesh: object) -> numpy.typing.NDArray[numpy.float64]"),
       R"(Returns the uniform scaling and translation that make the longest side of a mesh's bounds 1 and
 centre them at the origin, as a (4, 4) float64 matrix for column vectors.
 

@@ -70,9 +70,13 @@ nb::tuple surface_metrics_of(nb::handle a, nb::handle b, std::vector<double> per
 }  // namespace
 
 void bind_metrics(nb::module_& module) {
-  module.def("surface_metrics", &surface_metrics_of, nb::arg("a").none(), nb::arg("b").none(),
-             nb::arg("percentiles"), nb::arg("tolerances"), nb::arg("precision").none(),
-             nb::arg("fraction_precision"), nb::arg("progress").none());
+  module.def(
+      "surface_metrics", &surface_metrics_of, nb::arg("a").none(), nb::arg("b").none(),
+      nb::arg("percentiles"), nb::arg("tolerances"), nb::arg("precision").none(),
+      nb::arg("fraction_precision"), nb::arg("progress").none(),
+      nb::sig("def surface_metrics(a: object, b: object, percentiles: collections.abc.Sequence[float], "
+              "tolerances: collections.abc.Sequence[float], precision: float | None, "
+              "fraction_precision: float, progress: object) -> tuple[typing.Any, ...]"));
 }
 
 }  // namespace sdm::python

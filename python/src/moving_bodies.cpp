@@ -31,27 +31,27 @@ void bind_times_of_contact(nb::module_& module) {
                                   [](const Pair& p) {
                                     return std::array{p.first, p.second};
                                   }),
-                   nb::sig("def bodies(self) -> numpy.ndarray"),
+                   nb::sig("def bodies(self) -> numpy.typing.NDArray[numpy.uint32]"),
                    "The indices of O1 and O2, (n, 2) uint32, the smaller one first.")
       .def_prop_ro("parts", contact_column(&T::parts, [](const Pair& p) { return p.parts; }),
                    nb::sig("def parts(self) -> numpy.ndarray"),
                    "The parts of O1 and O2 that come into contact first, (n, 2) uint32; see Compound.")
       .def_prop_ro(
           "time", contact_column(&T::time, [](const Pair& p) { return p.time_of_contact.time; }),
-          nb::sig("def time(self) -> numpy.ndarray"),
+          nb::sig("def time(self) -> numpy.typing.NDArray[numpy.float64]"),
           R"(The times of the first contacts, in [0, 1], (n,) float64. The bodies of a pair do not touch
 before: they are more than half of the tolerance apart.)")
       .def_prop_ro("separation",
                    contact_column(&T::separation, [](const Pair& p) { return p.time_of_contact.separation; }),
-                   nb::sig("def separation(self) -> numpy.ndarray"),
+                   nb::sig("def separation(self) -> numpy.typing.NDArray[numpy.float64]"),
                    "The smallest distances between their surfaces at these times, in units of space, (n,) "
                    "float64; exact.")
       .def_prop_ro(
           "witness", contact_column(&T::witness, [](const Pair& p) { return p.time_of_contact.witness; }),
-          nb::sig("def witness(self) -> numpy.ndarray"),
+          nb::sig("def witness(self) -> numpy.typing.NDArray[numpy.float64]"),
           "A point of O1 and one of O2 that are the separation apart then, in space, (n, 2, 3) float64.")
       .def_prop_ro("faces", contact_column(&T::faces, [](const Pair& p) { return p.time_of_contact.faces; }),
-                   nb::sig("def faces(self) -> numpy.ndarray"),
+                   nb::sig("def faces(self) -> numpy.typing.NDArray[numpy.uint32]"),
                    "A face of O1 and one of O2 that contain these points, (n, 2) uint32.")
       .def_prop_ro("normal",
                    contact_column(&T::normal,
@@ -59,7 +59,7 @@ before: they are more than half of the tolerance apart.)")
                                     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
                                     return p.time_of_contact.normal.value_or(Vec3{nan, nan, nan});
                                   }),
-                   nb::sig("def normal(self) -> numpy.ndarray"),
+                   nb::sig("def normal(self) -> numpy.typing.NDArray[numpy.float64]"),
                    R"(Unit vectors along which moving O1 separates it from O2, (n, 3) float64; NaN where the
 surfaces intersect at time 0.)")
       .def_prop_ro(
@@ -72,7 +72,7 @@ surfaces intersect at time 0.)")
               return array_of<bool>(std::move(flags), {self.pairs.size()});
             });
           },
-          nb::sig("def bounded(self) -> numpy.ndarray"),
+          nb::sig("def bounded(self) -> numpy.typing.NDArray[numpy.bool_]"),
           R"(Where it is not decided whether there is a contact, but the motions are free until ``time`` for certain,
 (n,) bool: ``TimeOfContact.certainty`` is 'bounded'.)")
       .def("__len__", [](const T& self) { return self.pairs.size(); })
@@ -144,7 +144,8 @@ boxes are within the tolerance, on all cores.
         return array_of<double>(std::move(poses), {count, 4, 4});
       },
       nb::arg("starts").none(), nb::arg("ends").none(), nb::arg("time"),
-      nb::sig("def poses_at(self, starts: object, ends: object, time: float) -> numpy.ndarray"),
+      nb::sig("def poses_at(self, starts: object, ends: object, time: float) -> "
+              "numpy.typing.NDArray[numpy.float64]"),
       R"(Returns the poses of all bodies at a time, in [0, 1], of the motions of time_of_contact(), (n, 4, 4)
 float64.)");
 }

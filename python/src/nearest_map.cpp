@@ -15,7 +15,7 @@ void bind_nearest_map(nb::module_& module) {
             const NearestMap& n = nb::cast<const M&>(self).nearest;
             return texels_of<float>(n.map.distance, n.map, self);
           },
-          nb::sig("def distance(self) -> numpy.ndarray"),
+          nb::sig("def distance(self) -> numpy.typing.NDArray[numpy.float32]"),
           "(H, W) float32, negative inside the other body if that is a solid; NaN where there is no value.")
       .def_prop_ro(
           "vector",
@@ -23,7 +23,7 @@ void bind_nearest_map(nb::module_& module) {
             const NearestMap& n = nb::cast<const M&>(self).nearest;
             return texels_of<float>(n.map.vector, n.map, self);
           },
-          nb::sig("def vector(self) -> numpy.ndarray"),
+          nb::sig("def vector(self) -> numpy.typing.NDArray[numpy.float32]"),
           "From the texel to the closest point, (H, W, 3) float32.")
       .def_prop_ro(
           "site",
@@ -31,7 +31,7 @@ void bind_nearest_map(nb::module_& module) {
             const NearestMap& n = nb::cast<const M&>(self).nearest;
             return texels_of<std::uint32_t>(n.map.site, n.map, self);
           },
-          nb::sig("def site(self) -> numpy.ndarray"),
+          nb::sig("def site(self) -> numpy.typing.NDArray[numpy.uint32]"),
           "The closest site of the other body, (H, W) uint32, or NONE.")
       .def_prop_ro(
           "site_type",
@@ -39,14 +39,15 @@ void bind_nearest_map(nb::module_& module) {
             const NearestMap& n = nb::cast<const M&>(self).nearest;
             return texels_of<std::uint8_t>(n.map.site_type, n.map, self);
           },
-          nb::sig("def site_type(self) -> numpy.ndarray"), "Its SiteType, (H, W) uint8.")
+          nb::sig("def site_type(self) -> numpy.typing.NDArray[numpy.uint8]"), "Its SiteType, (H, W) uint8.")
       .def_prop_ro(
           "body",
           [](nb::handle self) {
             const NearestMap& n = nb::cast<const M&>(self).nearest;
             return texels_of<std::uint32_t>(n.body, n.map, self);
           },
-          nb::sig("def body(self) -> numpy.ndarray"), "The index of the other body, (H, W) uint32, or NONE.")
+          nb::sig("def body(self) -> numpy.typing.NDArray[numpy.uint32]"),
+          "The index of the other body, (H, W) uint32, or NONE.")
       .def_prop_ro(
           "part",
           [](nb::handle self) -> nb::object {
@@ -66,7 +67,8 @@ void bind_nearest_map(nb::module_& module) {
               return array_of<bool>(std::move(flags), {self.nearest.map.rows(), self.nearest.map.resolution});
             });
           },
-          nb::sig("def valid(self) -> numpy.ndarray"), "Whether a texel has a value, (H, W) bool.");
+          nb::sig("def valid(self) -> numpy.typing.NDArray[numpy.bool_]"),
+          "Whether a texel has a value, (H, W) bool.");
 }
 
 }  // namespace sdm::python

@@ -77,7 +77,8 @@ void bind_parts(nb::module_& module) {
         const auto texels = nb::cast<const PySurface&>(self).surface.sample_texels();
         return view_of<std::uint32_t>(texels, {texels.size()}, self);
       },
-      nb::arg("surface"), nb::sig("def sample_texels(surface: Surface) -> numpy.ndarray"),
+      nb::arg("surface"),
+      nb::sig("def sample_texels(surface: Surface) -> numpy.typing.NDArray[numpy.uint32]"),
       "Returns the indices of the texels that a face owns, (n,) uint32, read-only: neighbours on the surface "
       "follow each other.");
   module.def(
@@ -88,7 +89,8 @@ void bind_parts(nb::module_& module) {
         const std::size_t count = points.size();
         return array_of<double>(std::move(points), {count, 3});
       },
-      nb::arg("surface"), nb::sig("def sample_points(surface: Surface) -> numpy.ndarray"),
+      nb::arg("surface"),
+      nb::sig("def sample_points(surface: Surface) -> numpy.typing.NDArray[numpy.float64]"),
       "Returns the surface points of sample_texels(), (n, 3) float64.");
   module.def(
       "merge_closest",

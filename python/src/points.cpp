@@ -17,6 +17,7 @@
 #include "arrays.h"
 #include "groups.h"
 #include "map.h"
+#include "signatures.h"
 #include "sites_in_use.h"
 
 namespace sdm::python {
@@ -79,7 +80,7 @@ void bind_distances(nb::module_& module) {
       .def_ro("distance", &E::distance, "In units of the mesh.")
       .def_prop_ro(
           "point", [](const E& self) { return vector_of(self.point); },
-          nb::sig("def point(self) -> numpy.ndarray"), "The point, (3,) float64.")
+          nb::sig("def point(self) -> numpy.typing.NDArray[numpy.float64]"), "The point, (3,) float64.")
       .def_ro("index", &E::index, "Its place in the file, from 0.")
       .def("__repr__", [](const E& self) {
         return nb::str("sdm.PointExtreme({:.6g}, index={})").format(self.distance, self.index);
@@ -140,8 +141,9 @@ void bind_read_points(nb::module_& module) {
       nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",
       nb::sig(
           "def read_points(file: str | os.PathLike[str], *, columns: collections.abc.Sequence[str] | None = "
-          "None, separator: str = 'automatic', decimal: str = 'automatic') -> tuple[numpy.ndarray, "
-          "numpy.ndarray | None]"),
+          "None, separator: str = 'automatic', decimal: str = 'automatic') -> "
+          "tuple[numpy.typing.NDArray[numpy.float64], "
+          "numpy.typing.NDArray[numpy.float64] | None]"),
       R"(Reads a point cloud: PLY, PCD 0.7, LAS 1.0 to 1.4 (not LAZ), PTX, PTS, or text with a point a row. The
 format is detected from the content.
 
@@ -221,7 +223,8 @@ void bind_points(nb::module_& module) {
       nb::arg("tolerance_table") = nb::none(), nb::arg("names") = nb::none(), nb::arg("island_points") = 0,
       nb::sig(
           "def measure_points(cloud: str | os.PathLike[str], o2: object, output: str | os.PathLike[str], *, "
-          "transform: object = None, engine: str = 'cpu', sign: str = 'automatic', max_distance: float = "
+          "transform: object = None, engine: " SDM_ENGINE " = 'cpu', sign: " SDM_SIGN " = 'automatic', "
+          "max_distance: float = "
           "..., facing: float | None = None, along: str | tuple[float, float, float] | None = None, "
           "tolerance: float | tuple[float, float] | None = None, colormap: "
           "str = 'automatic', range: "

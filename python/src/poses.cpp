@@ -52,7 +52,8 @@ void bind_answers_of_poses(nb::class_<PyPoseQuery>& query) {
             const std::size_t count = found.size();
             return array_of<bool>(std::move(found), {count});
           },
-          nb::arg("poses").none(), nb::sig("def colliding(self, poses: object) -> numpy.ndarray"),
+          nb::arg("poses").none(),
+          nb::sig("def colliding(self, poses: object) -> numpy.typing.NDArray[numpy.bool_]"),
           "Returns whether the shape collides with any obstacle, (n,) bool; exact.")
       .def(
           "separations",
@@ -65,7 +66,8 @@ void bind_answers_of_poses(nb::class_<PyPoseQuery>& query) {
           },
           nb::arg("poses").none(), nb::kw_only(),
           nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
-          nb::sig("def separations(self, poses: object, *, max_distance: float = ...) -> numpy.ndarray"),
+          nb::sig("def separations(self, poses: object, *, max_distance: float = ...) -> "
+                  "numpy.typing.NDArray[numpy.float64]"),
           R"(Returns the smallest distances between the surfaces of the shape and of any obstacle, (n,) float64:
 exact, 0 if they intersect; infinite if it is more than max_distance, > 0. A smaller one takes less time.)")
       .def(
@@ -78,7 +80,8 @@ exact, 0 if they intersect; infinite if it is more than max_distance, > 0. A sma
               return std::array{depth.lower, depth.upper};
             });
           },
-          nb::arg("poses").none(), nb::sig("def penetration_depths(self, poses: object) -> numpy.ndarray"),
+          nb::arg("poses").none(),
+          nb::sig("def penetration_depths(self, poses: object) -> numpy.typing.NDArray[numpy.float64]"),
           R"(Returns lower and upper bounds on the largest penetration depth of the shape and any obstacle,
 (n, 2) float64, of the pairs of which one is a solid: both 0 without a collision; NaN if there is no such pair.)");
 }

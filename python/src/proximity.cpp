@@ -1,5 +1,6 @@
 // Proximity of two bodies.
 #include "proximity.h"
+#include "signatures.h"
 
 #include <nanobind/stl/optional.h>
 #include <sdm/error.h>
@@ -23,6 +24,7 @@ void bind_lengths(nb::module_& module) {
       .def_ro("value", &BoundedLength::value)
       .def_prop_ro(
           "certainty", [](const BoundedLength& self) { return name_of(self.certainty); },
+          nb::sig("def certainty(self) -> " SDM_CERTAINTY),
           "'exact': computed from the triangles, accurate to 1e-6 of the diagonal of both bodies' box; "
           "'bounded': the true value lies between the bounds.")
       .def_ro("lower", &BoundedLength::lower, "lower ≤ truth.")
@@ -34,7 +36,7 @@ void bind_lengths(nb::module_& module) {
             std::vector<std::array<Vec3, 2>> rows{*self.witness};
             return array_of<double>(std::move(rows), {2, 3});
           },
-          nb::sig("def witness(self) -> numpy.ndarray | None"),
+          nb::sig("def witness(self) -> numpy.typing.NDArray[numpy.float64] | None"),
           R"(A point of O1 and a point of O2 that are ``value`` apart, (2, 3) float64; None where no pair
 of points attains the value.)")
       .def("__float__", [](const BoundedLength& self) { return self.value; })
@@ -54,6 +56,7 @@ value.)")
       .def_ro("value", &T::value, "The length of ``translation``; the same as ``upper``.")
       .def_prop_ro(
           "certainty", [](const T& self) { return name_of(self.certainty); },
+          nb::sig("def certainty(self) -> " SDM_CERTAINTY),
           "'exact': the bounds are at most 1e-6 of the diagonal of both bodies' box apart, as those of "
           "convex "
           "solids are; 'bounded': the shortest translation is between the bounds.")
@@ -61,7 +64,7 @@ value.)")
       .def_ro("upper", &T::upper, "``translation`` is that long, and separates them.")
       .def_prop_ro(
           "translation", [](const T& self) { return vector_of(self.translation); },
-          nb::sig("def translation(self) -> numpy.ndarray"),
+          nb::sig("def translation(self) -> numpy.typing.NDArray[numpy.float64]"),
           "Moving O1 by it ends the collision, (3,) float64: verified by the exact test. 0 without a "
           "collision.")
       .def("__float__", [](const T& self) { return self.value; })
@@ -84,40 +87,42 @@ void bind_contacts(nb::module_& module) {
       R"(Contacts as arrays with one row each, sorted by patch, the patch with the deepest contact
 first, and by decreasing depth within a patch; those of many bodies first by pair of bodies.)")
       .def_prop_ro("point1", contact_column(&PyContacts::point1, [](const Contact& c) { return c.point1; }),
-                   nb::sig("def point1(self) -> numpy.ndarray"), "The points of O1, (n, 3) float64.")
+                   nb::sig("def point1(self) -> numpy.typing.NDArray[numpy.float64]"),
+                   "The points of O1, (n, 3) float64.")
       .def_prop_ro("point2", contact_column(&PyContacts::point2, [](const Contact& c) { return c.point2; }),
-                   nb::sig("def point2(self) -> numpy.ndarray"), "The points of O2, (n, 3) float64.")
+                   nb::sig("def point2(self) -> numpy.typing.NDArray[numpy.float64]"),
+                   "The points of O2, (n, 3) float64.")
       .def_prop_ro("normal", contact_column(&PyContacts::normal, [](const Contact& c) { return c.normal; }),
-                   nb::sig("def normal(self) -> numpy.ndarray"),
+                   nb::sig("def normal(self) -> numpy.typing.NDArray[numpy.float64]"),
                    R"(Unit vectors along which moving O1 separates it from O2, (n, 3) float64:
 (point2 - point1) / depth; where depth is 0, O2's outward normal. Those of separating_contacts() have their
 own direction and depth, see there.)")
       .def_prop_ro(
           "depth", contact_column(&PyContacts::depth, [](const Contact& c) { return c.depth; }),
-          nb::sig("def depth(self) -> numpy.ndarray"),
+          nb::sig("def depth(self) -> numpy.typing.NDArray[numpy.float64]"),
           R"(±|point2 - point1|, (n,) float64; positive if the point in contact is inside the other body.
 At most penetration_depth().upper; of separating_contacts(), at most separating_translation().upper.)")
       .def_prop_ro(
           "patch", contact_column(&PyContacts::patch, [](const Contact& c) { return c.patch; }),
-          nb::sig("def patch(self) -> numpy.ndarray"),
+          nb::sig("def patch(self) -> numpy.typing.NDArray[numpy.uint32]"),
           "The patch of each contact, (n,) uint32: contacts on connected parts of a surface share one.")
       .def_prop_ro("faces",
                    contact_column(&PyContacts::faces,
                                   [](const Contact& c) {
                                     return std::array{c.on[0].face, c.on[1].face};
                                   }),
-                   nb::sig("def faces(self) -> numpy.ndarray"),
+                   nb::sig("def faces(self) -> numpy.typing.NDArray[numpy.uint32]"),
                    "A face of O1 that contains point1 and one of O2 that contains point2, (n, 2) uint32.")
       .def_prop_ro("barycentric",
                    contact_column(&PyContacts::barycentric,
                                   [](const Contact& c) {
                                     return std::array{c.on[0].barycentric, c.on[1].barycentric};
                                   }),
-                   nb::sig("def barycentric(self) -> numpy.ndarray"),
+                   nb::sig("def barycentric(self) -> numpy.typing.NDArray[numpy.float64]"),
                    "The barycentric coordinates of the points in these faces, (n, 2, 3) float64.")
       .def_prop_ro(
           "id", contact_column(&PyContacts::id, [](const Contact& c) { return c.id; }),
-          nb::sig("def id(self) -> numpy.ndarray"),
+          nb::sig("def id(self) -> numpy.typing.NDArray[numpy.uint64]"),
           R"(Identifies what is in contact, (n,) uint64: unique among the contacts of a pair of bodies, or of
 their parts, and the same in all frames.)")
       .def_prop_ro(
@@ -126,7 +131,7 @@ their parts, and the same in all frames.)")
             if (!self.has_bodies) return nb::none();
             return self.body.get([&] { return column(self.bodies, [](const auto& pair) { return pair; }); });
           },
-          nb::sig("def bodies(self) -> numpy.ndarray | None"),
+          nb::sig("def bodies(self) -> numpy.typing.NDArray[numpy.uint32] | None"),
           "The indices of O1 and O2, (n, 2) uint32, for MultiBodyQuery; otherwise None.")
       .def_prop_ro(
           "parts",
@@ -135,7 +140,7 @@ their parts, and the same in all frames.)")
             return self.part.get(
                 [&] { return column(self.parts, [](const PartPair& pair) { return pair; }); });
           },
-          nb::sig("def parts(self) -> numpy.ndarray | None"),
+          nb::sig("def parts(self) -> numpy.typing.NDArray[numpy.uint32] | None"),
           "The parts of O1 and O2 (see Compound), (n, 2) uint32, for MultiBodyQuery; otherwise None.")
       .def("__len__", [](const PyContacts& self) { return self.contacts.size(); })
       .def("__repr__",
@@ -169,7 +174,8 @@ atlas. Raises Error for a mesh that cannot be used.
           [](nb::handle self) {
             return faces_view(nb::cast<const PyShape&>(self).shape.sites().mesh(), self);
           },
-          nb::sig("def faces(self) -> numpy.ndarray"), "The vertices of each face, (m, 3) uint32, read-only.")
+          nb::sig("def faces(self) -> numpy.typing.NDArray[numpy.uint32]"),
+          "The vertices of each face, (m, 3) uint32, read-only.")
       .def_prop_ro(
           "convex", [](const PyShape& self) { return self.shape.convex(); },
           "Whether the mesh bounds a convex solid, exactly: two such shapes are compared in less time, with "
@@ -235,7 +241,7 @@ changes nothing, if it differs from such a matrix by more than 1e-5 of the scale
             const auto lock = self.access.use();
             return matrix(self.query.pose(checked(body)));
           },
-          nb::arg("body"), nb::sig("def pose(self, body: int) -> numpy.ndarray"),
+          nb::arg("body"), nb::sig("def pose(self, body: int) -> numpy.typing.NDArray[numpy.float64]"),
           "The pose of a body, (4, 4) float64.")
       .def(
           "refit",

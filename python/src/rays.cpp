@@ -53,11 +53,11 @@ void bind_hits(nb::module_& module) {
                 "The first hits of n rays. Arrays are made by the first access. The points are "
                 "``origins + hits.t[:, None] * directions``.")
       .def_prop_ro("t", hit_column(&H::t, [](const RayHit& h) { return h.t; }),
-                   nb::sig("def t(self) -> numpy.ndarray"),
+                   nb::sig("def t(self) -> numpy.typing.NDArray[numpy.float64]"),
                    "The parameters of the hits, (n,) float64: lengths, if the directions have length 1. "
                    "Infinite where a ray hits nothing.")
       .def_prop_ro("face", hit_column(&H::face, [](const RayHit& h) { return h.face; }),
-                   nb::sig("def face(self) -> numpy.ndarray"),
+                   nb::sig("def face(self) -> numpy.typing.NDArray[numpy.uint32]"),
                    "The faces that are hit, (n,) uint32; NONE where a ray hits nothing.")
       .def_prop_ro("barycentric",
                    hit_column(&H::barycentric,
@@ -65,7 +65,7 @@ void bind_hits(nb::module_& module) {
                                 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
                                 return h.face == kNone ? Vec3{nan, nan, nan} : h.barycentric;
                               }),
-                   nb::sig("def barycentric(self) -> numpy.ndarray"),
+                   nb::sig("def barycentric(self) -> numpy.typing.NDArray[numpy.float64]"),
                    "The barycentric coordinates of the hits in their faces, (n, 3) float64; NaN where a ray "
                    "hits nothing.")
       .def("__len__", [](const H& self) { return self.hits.size(); })
@@ -78,7 +78,7 @@ void bind_rays(nb::module_& module, nb::class_<PySites>& sites) {
   bind_hits(module);
   static const std::string first_hits_signature = std::string("def first_hits(self, ") + kOfRays + "RayHits";
   static const std::string occluded_signature =
-      std::string("def occluded(self, ") + kOfRays + "numpy.ndarray";
+      std::string("def occluded(self, ") + kOfRays + "numpy.typing.NDArray[numpy.bool_]";
   sites
       .def(
           "first_hits",
@@ -141,7 +141,7 @@ void bind_map_rays(nb::class_<PyMap>& map) {
                self.texels(), [&] { return free_distances(self.on->surface, self.to->sites, self.map); });
            return array_of<double>(std::move(values), {self.rows(), self.map.resolution});
          },
-         nb::sig("def free_distances(self) -> numpy.ndarray"))
+         nb::sig("def free_distances(self) -> numpy.typing.NDArray[numpy.float64]"))
       .def(
           "ambient_occlusion",
           [](const PyMap& self, std::uint32_t rays, double max_distance, std::uint64_t seed,
@@ -159,7 +159,7 @@ void bind_map_rays(nb::class_<PyMap>& map) {
           },
           nb::arg("rays"), nb::arg("max_distance"), nb::arg("seed"), nb::arg("progress").none(),
           nb::sig("def ambient_occlusion(self, rays: int, max_distance: float, seed: int, progress: object) "
-                  "-> numpy.ndarray"));
+                  "-> numpy.typing.NDArray[numpy.float32]"));
 }
 
 }  // namespace sdm::python

@@ -122,11 +122,12 @@ void bind_scenes(nb::module_& module) {
           nb::sig("def mesh(self) -> Mesh"), "The scan: an open mesh.")
       .def_prop_ro(
           "transform", [](const M& self) { return matrix(self.placement); },
-          nb::sig("def transform(self) -> numpy.ndarray"), "From the part to the scan, (4, 4) float64.")
+          nb::sig("def transform(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "From the part to the scan, (4, 4) float64.")
       .def_ro("size", &M::size, "The diagonal of the part's bounding box.")
       .def_prop_ro(
           "dent_place", [](const M& self) { return vector_of(self.dent_place); },
-          nb::sig("def dent_place(self) -> numpy.ndarray"),
+          nb::sig("def dent_place(self) -> numpy.typing.NDArray[numpy.float64]"),
           "The middle of the dent, on the surface of the part, (3,) float64.")
       .def_ro("dent_depth", &M::dent_depth, "The depth of the dent.")
       .def_ro("dent_radius", &M::dent_radius, "Its radius.")

@@ -1,6 +1,14 @@
 // Parts of the signatures that functions have in Python.
 #pragma once
 
+// The words of arguments and results: macros, as signatures are literals. python/sdm/_types.py has them, too.
+#define SDM_SIGN "typing.Literal['automatic', 'none', 'exact', 'winding', 'side']"
+#define SDM_ENGINE "typing.Literal['cpu', 'gl', 'reference']"
+#define SDM_ATLAS "typing.Literal['charts', 'triangles', 'uv']"
+#define SDM_VERDICT "typing.Literal['pass', 'fail', 'not decided']"
+#define SDM_CERTAINTY "typing.Literal['exact', 'bounded', 'estimate']"
+#define SDM_COLORMAP "typing.Literal['automatic', 'viridis', 'sequential', 'diverging', 'paper2006']"
+
 namespace sdm::python {
 
 /// The last argument of a call that reports its progress, and what leads to its result.

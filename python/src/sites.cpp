@@ -10,6 +10,7 @@
 #include "closest.h"
 #include "objects.h"
 #include "rays.h"
+#include "signatures.h"
 
 namespace sdm::python {
 namespace {
@@ -63,32 +64,39 @@ constexpr const char* kClosestPoints =
 void bind_closest_points(nb::module_& module) {
   nb::class_<PyClosestPoints>(module, "ClosestPoints", nb::is_weak_referenceable(), kClosestPoints)
       .def_prop_ro(
-          "distance", &PyClosestPoints::distance, nb::sig("def distance(self) -> numpy.ndarray"),
+          "distance", &PyClosestPoints::distance,
+          nb::sig("def distance(self) -> numpy.typing.NDArray[numpy.float64]"),
           "The distances, (n,) float64, in units of the mesh; negative inside the mesh if they are signed. "
           "Infinite where nothing is within max_distance.")
-      .def_prop_ro("point", &PyClosestPoints::point, nb::sig("def point(self) -> numpy.ndarray"),
+      .def_prop_ro("point", &PyClosestPoints::point,
+                   nb::sig("def point(self) -> numpy.typing.NDArray[numpy.float64]"),
                    "The closest points, (n, 3) float64; NaN where there is none.")
-      .def_prop_ro("face", &PyClosestPoints::face, nb::sig("def face(self) -> numpy.ndarray"),
+      .def_prop_ro("face", &PyClosestPoints::face,
+                   nb::sig("def face(self) -> numpy.typing.NDArray[numpy.uint32]"),
                    "A face that contains the closest point, (n,) uint32; NONE where there is none.")
       .def_prop_ro(
-          "barycentric", &PyClosestPoints::barycentric, nb::sig("def barycentric(self) -> numpy.ndarray"),
+          "barycentric", &PyClosestPoints::barycentric,
+          nb::sig("def barycentric(self) -> numpy.typing.NDArray[numpy.float64]"),
           "The barycentric coordinates of the closest point in its face, (n, 3) float64: not negative, with "
           "a sum of 1 to rounding. Exactly 0 for corners that the site does not have. NaN where there is "
           "none.")
       .def_prop_ro(
-          "site", &PyClosestPoints::site, nb::sig("def site(self) -> numpy.ndarray"),
+          "site", &PyClosestPoints::site, nb::sig("def site(self) -> numpy.typing.NDArray[numpy.uint32]"),
           "The closest vertex, edge or face, (n,) uint32: an index into the vertices, Sites.edges or the "
           "faces, by site_type; NONE where there is none.")
-      .def_prop_ro("site_type", &PyClosestPoints::site_type, nb::sig("def site_type(self) -> numpy.ndarray"),
+      .def_prop_ro("site_type", &PyClosestPoints::site_type,
+                   nb::sig("def site_type(self) -> numpy.typing.NDArray[numpy.uint8]"),
                    "The kind of each site, (n,) uint8: a SiteType.")
       .def_prop_ro(
-          "gradient", &PyClosestPoints::gradient, nb::sig("def gradient(self) -> numpy.ndarray | None"),
+          "gradient", &PyClosestPoints::gradient,
+          nb::sig("def gradient(self) -> numpy.typing.NDArray[numpy.float64] | None"),
           "The derivative of the distance by the query point, (n, 3) float64, if gradients were requested, "
           "else None: a unit vector. 0 where the distance is 0, where it is not differentiable, and where "
           "there is no closest point. Where several points are equally close, the derivative for the one "
           "that was found.")
       .def("vertex_gradients", &PyClosestPoints::vertex_gradients,
-           nb::sig("def vertex_gradients(self) -> tuple[numpy.ndarray, numpy.ndarray]"),
+           nb::sig("def vertex_gradients(self) -> tuple[numpy.typing.NDArray[numpy.uint32], "
+                   "numpy.typing.NDArray[numpy.float64]]"),
            R"(The derivatives of the distances by the vertices, if gradients were requested.
 
 Returns (vertices, derivatives): (n, 3) uint32 and (n, 3, 3) float64. Distance i depends on the vertices
@@ -128,8 +136,10 @@ void bind_closest(nb::class_<PySites>& sites) {
       nb::rv_policy::take_ownership, nb::arg("points").none(), nb::kw_only(),
       nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("sign") = "none",
       nb::arg("gradients") = false, nb::arg("engine") = "cpu", nb::arg("progress") = nb::none(),
-      nb::sig("def closest_points(self, points: object, *, max_distance: float = ..., sign: str = 'none', "
-              "gradients: bool = False, engine: str = 'cpu', progress: collections.abc.Callable[[str, "
+      nb::sig("def closest_points(self, points: object, *, max_distance: float = ..., sign: " SDM_SIGN " "
+              "= 'none', "
+              "gradients: bool = False, engine: " SDM_ENGINE " = 'cpu', progress: "
+              "collections.abc.Callable[[str, "
               "float], "
               "bool | None] | None = None) -> ClosestPoints"),
       R"(Returns the closest point of the mesh to each of n points.
@@ -164,10 +174,10 @@ void bind_signs(nb::class_<PySites>& sites) {
           },
           nb::arg("points").none(), nb::kw_only(), nb::arg("sign") = "exact",
           nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("progress") = nb::none(),
-          nb::sig(
-              "def signed_distance(self, points: object, *, sign: str = 'exact', max_distance: float = ..., "
-              "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> "
-              "numpy.ndarray"),
+          nb::sig("def signed_distance(self, points: object, *, sign: " SDM_SIGN " = 'exact', "
+                  "max_distance: float = ..., "
+                  "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> "
+                  "numpy.typing.NDArray[numpy.float64]"),
           R"(Returns the distances of n points, (n,) float64, negative inside the mesh.
 
 As closest_points(), with a sign. Raises Error for an open mesh, unless sign is 'winding'.
@@ -185,9 +195,9 @@ array([-0.5,  1. ]))")
           },
           nb::arg("points").none(), nb::kw_only(), nb::arg("sign") = "exact",
           nb::arg("progress") = nb::none(),
-          nb::sig("def contains(self, points: object, *, sign: str = 'exact', "
+          nb::sig("def contains(self, points: object, *, sign: " SDM_SIGN " = 'exact', "
                   "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> "
-                  "numpy.ndarray"),
+                  "numpy.typing.NDArray[numpy.bool_]"),
           R"(Returns whether each of n points lies inside the mesh, (n,) bool.
 
 As the sign of signed_distance(): exact at points farther from the mesh than 1e-6 of the diagonal.
@@ -227,7 +237,7 @@ void bind_views(nb::class_<PySites>& sites) {
   sites
       .def_prop_ro(
           "vertices", [](const PySites& self) { return positions_view(self.positions); },
-          nb::sig("def vertices(self) -> numpy.ndarray"),
+          nb::sig("def vertices(self) -> numpy.typing.NDArray[numpy.float64]"),
           "The positions, (n, 3) float64, read-only. The array does not change with a refit or an edit.")
       .def_prop_ro(
           "faces",
@@ -236,7 +246,8 @@ void bind_views(nb::class_<PySites>& sites) {
             const auto lock = given.access.use();
             return faces_view(given.sites.mesh(), version_owner(self));
           },
-          nb::sig("def faces(self) -> numpy.ndarray"), "The vertices of each face, (m, 3) uint32, read-only.")
+          nb::sig("def faces(self) -> numpy.typing.NDArray[numpy.uint32]"),
+          "The vertices of each face, (m, 3) uint32, read-only.")
       .def_prop_ro(
           "edges",
           [](nb::handle self) {
@@ -245,7 +256,7 @@ void bind_views(nb::class_<PySites>& sites) {
             const auto edges = given.sites.edges();
             return view_of<std::uint32_t>(edges, {edges.size(), 2}, version_owner(self));
           },
-          nb::sig("def edges(self) -> numpy.ndarray"),
+          nb::sig("def edges(self) -> numpy.typing.NDArray[numpy.uint32]"),
           "The two vertices of each edge, the smaller index first, in lexicographic order, (e, 2) uint32, "
           "read-only.")
       .def_prop_ro(

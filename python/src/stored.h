@@ -42,7 +42,7 @@ std::vector<Element> unpacked(nb::handle packed) {
 template <class Object, class State, class Make>
 void bind_state(std::size_t count, State state, Make make) {
   nb::borrow<nb::class_<Object>>(nb::type<Object>())
-      .def("__getstate__", state, nb::sig("def __getstate__(self) -> tuple"))
+      .def("__getstate__", state, nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"))
       .def(
           "__setstate__",
           [count, make](Object& self, const nb::tuple& from) {
@@ -52,7 +52,7 @@ void bind_state(std::size_t count, State state, Make make) {
               throw Error(kDamaged);
             }
           },
-          nb::arg("state"), nb::sig("def __setstate__(self, state: tuple, /) -> None"));
+          nb::arg("state"), nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"));
 }
 
 /// An enumerator from 0 to the last one.

@@ -9,6 +9,7 @@
 
 #include "arrays.h"
 #include "objects.h"
+#include "signatures.h"
 
 namespace sdm::python {
 namespace {
@@ -107,7 +108,8 @@ void bind_prepare(nb::module_& module) {
           "def prepare(a: object, b: object, *, transform: object = None, resolution: int | tuple[int, int] "
           "| "
           "None = None, precision: "
-          "float | None = None, atlas: str = 'charts', max_stretch: float = 1.3, gutter: int = 1, progress: "
+          "float | None = None, atlas: " SDM_ATLAS " = 'charts', max_stretch: float = 1.3, gutter: int = "
+          "1, progress: "
           "collections.abc.Callable[[str, float], bool | None] | None = None) -> tuple[Surface, Sites]"));
 }
 
@@ -130,7 +132,8 @@ void bind_construction(nb::class_<PySurface>& surface) {
       nb::arg("progress") = nb::none(),
       nb::sig("def __init__(self, mesh: object, faces: object = None, *, resolution: int | tuple[int, "
               "int] | None = "
-              "None, precision: float | None = None, atlas: str = 'charts', max_stretch: float = 1.3, "
+              "None, precision: float | None = None, atlas: " SDM_ATLAS " = 'charts', max_stretch: float "
+              "= 1.3, "
               "gutter: "
               "int = 1, "
               "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> None"));
@@ -188,7 +191,7 @@ centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")
 void bind_arrays(nb::class_<PySurface>& type) {
   type.def_prop_ro(
           "vertices", [](const PySurface& self) { return positions_view(self.positions); },
-          nb::sig("def vertices(self) -> numpy.ndarray"),
+          nb::sig("def vertices(self) -> numpy.typing.NDArray[numpy.float64]"),
           "The positions, (n, 3) float64, read-only. The array does not change with a refit or an edit.")
       .def_prop_ro(
           "faces",
@@ -197,7 +200,26 @@ void bind_arrays(nb::class_<PySurface>& type) {
             const auto& faces = copied(self.faces, self.surface.mesh().triangles);
             return view_of<std::uint32_t>(*faces, {faces->size(), 3}, owner_of(faces));
           },
-          nb::sig("def faces(self) -> numpy.ndarray"), "The vertices of each face, (m, 3) uint32, read-only.")
+          nb::sig("def faces(self) -> numpy.typing.NDArray[numpy.uint32]"),
+          "The vertices of each face, (m, 3) uint32, read-only.")
+      .def_prop_ro(
+          "uvs",
+          [](const PySurface& self) {
+            const auto lock = self.access.use();
+            const std::size_t count = self.surface.mesh().triangles.size();
+            std::vector<std::array<Vec2, 3>> uvs(count);
+            const auto charts = self.surface.face_charts();
+            constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+            for (std::uint32_t face = 0; face < count; ++face)
+              uvs[face] = charts[face] == kNone
+                              ? std::array<Vec2, 3>{{{kNan, kNan}, {kNan, kNan}, {kNan, kNan}}}
+                              : self.surface.atlas_corners(face);
+            return array_of<double>(std::move(uvs), {count, 3, 2});
+          },
+          nb::sig("def uvs(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "The place of each corner of each face in the atlas, (m, 3, 2) float64: u to the right and v "
+          "downwards, in units of the width of the atlas; "
+          "NaN for faces without area. A new array at each access.")
       .def_prop_ro(
           "texel_faces",
           [](const PySurface& self) {
@@ -206,7 +228,7 @@ void bind_arrays(nb::class_<PySurface>& type) {
             const auto& owners = copied(self.texel_faces, surface.texel_faces());
             return view_of<std::uint32_t>(*owners, {surface.rows(), surface.resolution()}, owner_of(owners));
           },
-          nb::sig("def texel_faces(self) -> numpy.ndarray"),
+          nb::sig("def texel_faces(self) -> numpy.typing.NDArray[numpy.uint32]"),
           "The face that owns each texel, or NONE, (H, W) uint32, read-only; row 0 at the top.")
       .def("__repr__", [](const PySurface& self) {
         const Mesh& mesh = self.surface.mesh();

@@ -93,7 +93,7 @@ void bind_coverage(nb::module_& module) {
           [](const C& self) {
             return array_of<float>(std::vector<float>(self.of_face), {self.of_face.size()});
           },
-          nb::sig("def of_face(self) -> numpy.ndarray"),
+          nb::sig("def of_face(self) -> numpy.typing.NDArray[numpy.float32]"),
           "Of each face of O2, the share of its area, (m,) float32: an estimate; NaN without area.")
       .def("__repr__", [](const C& self) {
         return nb::str("sdm.Coverage({:.4g}, from {:.4g} to {:.4g})")

@@ -3,6 +3,7 @@
 #include <sdm/time_of_contact.h>
 
 #include "proximity.h"
+#include "signatures.h"
 
 namespace sdm::python {
 namespace {
@@ -34,6 +35,7 @@ is 'bounded', may be about to: a motion that must be free of contact ends at ``t
           "The smallest distance between the surfaces at ``time``, in units of space; exact.")
       .def_prop_ro(
           "certainty", [](const T& self) { return name_of(self.found.certainty); },
+          nb::sig("def certainty(self) -> " SDM_CERTAINTY),
           R"('exact'; or 'bounded': free of contact until ``time`` for certain, but not decided beyond it,
 as the next step that is safe is less than what rounding resolves: of the time, whose unit is 1e-16, or of
 coordinates in space. The bodies are ``separation`` apart then, more than the tolerance.)")
@@ -43,7 +45,7 @@ coordinates in space. The bodies are ``separation`` apart then, more than the to
             std::vector<std::array<Vec3, 2>> rows{self.found.witness};
             return array_of<double>(std::move(rows), {2, 3});
           },
-          nb::sig("def witness(self) -> numpy.ndarray"),
+          nb::sig("def witness(self) -> numpy.typing.NDArray[numpy.float64]"),
           R"(A point of O1 and a point of O2 that are ``separation`` apart at ``time``, in space, (2, 3)
 float64.)")
       .def_prop_ro(
@@ -53,17 +55,17 @@ float64.)")
       .def_prop_ro(
           "normal",
           [](const T& self) { return self.found.normal ? vector_of(*self.found.normal) : nb::none(); },
-          nb::sig("def normal(self) -> numpy.ndarray | None"),
+          nb::sig("def normal(self) -> numpy.typing.NDArray[numpy.float64] | None"),
           R"(Unit vector along which moving O1 separates it from O2, (3,) float64:
 (witness[0] - witness[1]) / separation, or the opposite where one body contains part of the other at time 0;
 None if the surfaces intersect then.)")
       .def_prop_ro(
           "pose1", [](const T& self) { return matrix(self.poses[0]); },
-          nb::sig("def pose1(self) -> numpy.ndarray"),
+          nb::sig("def pose1(self) -> numpy.typing.NDArray[numpy.float64]"),
           "The pose of the first body at ``time``, (4, 4) float64.")
       .def_prop_ro(
           "pose2", [](const T& self) { return matrix(self.poses[1]); },
-          nb::sig("def pose2(self) -> numpy.ndarray"), "That of the second.")
+          nb::sig("def pose2(self) -> numpy.typing.NDArray[numpy.float64]"), "That of the second.")
       .def("__repr__", [](const T& self) {
         return nb::str("sdm.TimeOfContact({}, time={:.9g}, separation={:.6g})")
             .format(self.found.contact ? "contact" : "no contact", self.found.time, self.found.separation);

@@ -38,8 +38,9 @@ nb::object transferred(const PyMap& self, const Rows& rows, const char* domain, 
 void bind_map_transfer(nb::class_<PyMap>& map) {
   map.def("transfer", &transferred, nb::arg("values"), nb::arg("domain"), nb::arg("fill"),
           nb::arg("progress").none(),
-          nb::sig("def transfer(self, values: numpy.ndarray, domain: str, fill: bool, progress: object) -> "
-                  "numpy.ndarray"));
+          nb::sig("def transfer(self, values: numpy.typing.NDArray[numpy.float32], domain: str, fill: bool, "
+                  "progress: object) -> "
+                  "numpy.typing.NDArray[numpy.float32]"));
 }
 
 }  // namespace sdm::python

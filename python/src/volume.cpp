@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "arrays.h"
+#include "signatures.h"
 #include "sites_in_use.h"
 #include "stored.h"
 
@@ -90,14 +91,16 @@ void bind_samples(nb::module_& module) {
   nb::class_<S>(module, "FieldSamples", nb::is_weak_referenceable(),
                 "The distances at n points between the points of a grid.")
       .def_prop_ro(
-          "value", sample_column(&S::value, &FieldSample::value), nb::sig("def value(self) -> numpy.ndarray"),
+          "value", sample_column(&S::value, &FieldSample::value),
+          nb::sig("def value(self) -> numpy.typing.NDArray[numpy.float64]"),
           "Estimates, (n,) float64: interpolated linearly along each axis; NaN outside the grid, and "
           "beside a point without a value.")
       .def_prop_ro("lower", sample_column(&S::lower, &FieldSample::lower),
-                   nb::sig("def lower(self) -> numpy.ndarray"),
+                   nb::sig("def lower(self) -> numpy.typing.NDArray[numpy.float64]"),
                    "Lower bounds on the distances, (n,) float64.")
       .def_prop_ro("upper", sample_column(&S::upper, &FieldSample::upper),
-                   nb::sig("def upper(self) -> numpy.ndarray"), "Upper bounds, (n,) float64.")
+                   nb::sig("def upper(self) -> numpy.typing.NDArray[numpy.float64]"),
+                   "Upper bounds, (n,) float64.")
       .def("__len__", [](const S& self) { return self.samples.size(); })
       .def("__repr__",
            [](const S& self) { return nb::str("sdm.FieldSamples({})").format(self.samples.size()); });
@@ -113,7 +116,7 @@ void bind_arrays(nb::class_<PyField>& field) {
             const DistanceField& f = nb::cast<const F&>(self).field;
             return points_of<float>(f.distance, f.grid, self);
           },
-          nb::sig("def distance(self) -> numpy.ndarray"),
+          nb::sig("def distance(self) -> numpy.typing.NDArray[numpy.float32]"),
           "(nz, ny, nx) float32, in units of the mesh; negative inside the mesh if the field is signed.")
       .def_prop_ro(
           "site",
@@ -121,7 +124,7 @@ void bind_arrays(nb::class_<PyField>& field) {
             const DistanceField& f = nb::cast<const F&>(self).field;
             return points_of<std::uint32_t>(f.site, f.grid, self);
           },
-          nb::sig("def site(self) -> numpy.ndarray | None"),
+          nb::sig("def site(self) -> numpy.typing.NDArray[numpy.uint32] | None"),
           "The closest vertex, edge or face, (nz, ny, nx) uint32, by ``site_type``; None unless requested.")
       .def_prop_ro(
           "site_type",
@@ -129,7 +132,7 @@ void bind_arrays(nb::class_<PyField>& field) {
             const DistanceField& f = nb::cast<const F&>(self).field;
             return points_of<std::uint8_t>(f.site_type, f.grid, self);
           },
-          nb::sig("def site_type(self) -> numpy.ndarray | None"),
+          nb::sig("def site_type(self) -> numpy.typing.NDArray[numpy.uint8] | None"),
           "The SiteType of each site, (nz, ny, nx) uint8; None unless requested.");
 }
 
@@ -137,14 +140,16 @@ void bind_grid(nb::class_<PyField>& field) {
   field
       .def_prop_ro(
           "transform", [](const F& self) { return matrix(index_transform(self.field.grid)); },
-          nb::sig("def transform(self) -> numpy.ndarray"),
+          nb::sig("def transform(self) -> numpy.typing.NDArray[numpy.float64]"),
           "From the indices (i, j, k, 1) of a point, i along x, to its coordinates: (4, 4) float64.")
       .def_prop_ro(
           "origin", [](const F& self) { return vector_of(self.field.grid.origin); },
-          nb::sig("def origin(self) -> numpy.ndarray"), "The point [0, 0, 0], (3,) float64: x, y, z.")
+          nb::sig("def origin(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "The point [0, 0, 0], (3,) float64: x, y, z.")
       .def_prop_ro(
           "spacing", [](const F& self) { return vector_of(self.field.grid.spacing); },
-          nb::sig("def spacing(self) -> numpy.ndarray"), "Between points along x, y and z, (3,) float64.")
+          nb::sig("def spacing(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Between points along x, y and z, (3,) float64.")
       .def_prop_ro(
           "max_distance", [](const F& self) { return self.field.max_distance; },
           "Points farther away have no value.")
@@ -272,7 +277,7 @@ void bind_volume(nb::module_& module) {
       nb::arg("progress") = nb::none(),
       nb::sig("def distance_field(mesh: object, *, spacing: float | None = None, shape: tuple[int, int, int] "
               "| None = None, bounds: object = None, margin: float | None = None, sign: "
-              "str = 'automatic', max_distance: float = ..., sites: bool = False, progress: "
+              "" SDM_SIGN " = 'automatic', max_distance: float = ..., sites: bool = False, progress: "
               "collections.abc.Callable[[str, float], bool | None] | None = None) -> DistanceField"),
       R"(Computes the distances from the points of a regular grid to a mesh.
 

@@ -2,6 +2,7 @@
 
 import html
 import json
+import os
 import re
 import struct
 import subprocess
@@ -540,3 +541,50 @@ def test_views(tmp_path):
     with pytest.raises(sdm.Error, match="no.jpg"):
         there.save_view(tmp_path / "no.jpg")
     assert not (tmp_path / "no.png").exists()
+
+
+def keys_of(report, at=""):
+    if isinstance(report, dict):
+        for key, value in report.items():
+            yield f"{at}.{key}"
+            yield from keys_of(value, f"{at}.{key}")
+    elif isinstance(report, list) and report:
+        yield from keys_of(report[0], f"{at}[]")
+
+
+@pytest.mark.skipif("SDM_COMMAND" not in os.environ, reason="the command is not built")
+@pytest.mark.parametrize("tolerance", [None, 0.3, 5.0])
+def test_reports_have_the_keys_of_the_command(tmp_path, tolerance):
+    for name, mesh in {"a": meshes.sphere(), "b": meshes.box()}.items():
+        rows = [f"v {x!r} {y!r} {z!r}" for x, y, z in mesh[0].tolist()] + ["f %d %d %d" % tuple(f + 1) for f in mesh[1]]
+        (tmp_path / f"{name}.obj").write_text("\n".join(rows))
+    files = [tmp_path / "a.obj", tmp_path / "b.obj"]
+    options = [] if tolerance is None else [f"--tolerance={tolerance}"]
+    command = [os.environ["SDM_COMMAND"], "map", *files, "-o", tmp_path / "out", "--resolution", "64", "--write", "none", "--quiet"]
+    assert subprocess.run([*command, *options]).returncode in (0, 3)
+    written = json.loads((tmp_path / "out" / "report.json").read_text())
+    report = sdm.map(*map(sdm.read, files), resolution=64).report(tolerance=tolerance)
+    assert list(keys_of(report)) == list(keys_of(written))
+    for key in written.keys() - {"o1", "o2", "time_ms"}:
+        assert report[key] == written[key], key
+
+
+@pytest.mark.parametrize("options", [{}, {"atlas": "triangles"}, {"max_stretch": 3}])
+def test_places_of_texels(options):
+    """The weights of texels and those of closest points are of the points that they stand for; texels are where uvs say."""
+    mesh = meshes.sphere(steps=3)
+    m = sdm.map(mesh, meshes.box(), resolution=64, **options)
+    owned = m.face != sdm.NONE
+    weights = m.barycentric[owned]
+    assert (weights >= 0).all() and np.isnan(m.barycentric[~owned]).all()
+    corners = m.surface.vertices[m.surface.faces[m.face[owned]]]
+    np.testing.assert_allclose(np.einsum("nk,nkx->nx", weights, corners), m.position[owned], atol=1e-12)
+    places = np.einsum("nk,nkx->nx", weights, m.surface.uvs[m.face[owned]])
+    y, x = np.nonzero(owned)
+    np.testing.assert_allclose(places, np.stack([x, y], axis=1) + 0.5, atol=1e-6)
+    assert m.surface.uvs.shape == (len(mesh[1]), 3, 2)
+
+    box = m.sites
+    closest = np.einsum("nk,nkx->nx", m.closest_barycentric[m.valid], box.vertices[box.faces[m.closest_face[m.valid]]])
+    np.testing.assert_allclose(closest, m.position[m.valid] + m.vector[m.valid], atol=1e-6)
+    assert np.isnan(m.closest_barycentric[~m.valid]).all()

@@ -158,6 +158,11 @@ Vec3 position(const TexelBlock& block, std::size_t i) {
   return block.point(i);
 }
 
+Vec3 own_barycentric(const TexelBlock& block, std::size_t i) {
+  const auto [a, b, c] = corners_of(block.source().surface->mesh(), block.owner(i));
+  return barycentric(a, b, c, block.point(i));
+}
+
 Vec3f normal(const TexelBlock& block, std::size_t i) {
   const Mesh& mesh = block.source().surface->mesh();
   const auto& [a, b, c] = mesh.triangles[block.owner(i)];
@@ -220,6 +225,13 @@ constexpr Channel kChannels[] = {
                         .is_length = true,
                         .on_request = true,
                         .needs_shape = true}),
+    computed<own_barycentric>(
+        {.name = "barycentric",
+         .layer = "barycentric",
+         .planes = {"barycentric.A", "barycentric.B", "barycentric.C"},
+         .description = "where the texel's centre is on `face`: the weights of its corners",
+         .on_request = true,
+         .needs_shape = true}),
     computed<normal>(
         {.name = "normal",
          .layer = "normal",

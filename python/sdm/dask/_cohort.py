@@ -42,7 +42,7 @@ class CohortStatistics:
     high: float
     bins: np.ndarray
     """The number of copies below the range, in each of n bins of equal width, and above, (n + 2, H, W) integers."""
-    errors: dict
+    errors: dict[int, Any]
     """Why copies are not part of this, by their number."""
 
     @property
@@ -72,7 +72,7 @@ class CohortStatistics:
         upper = np.minimum(np.concatenate([edges, [np.inf]])[np.minimum(bin_of, len(edges))], self.max)
         return lower, upper
 
-    def save(self, file: "str | os.PathLike") -> None:
+    def save(self, file: "str | os.PathLike[str]") -> None:
         """Writes all arrays as .npz. The complete file appears, or none."""
         with _files.replacing(file) as partial, open(partial, "wb") as opened:
             np.savez_compressed(
@@ -84,7 +84,7 @@ class CohortStatistics:
 
 def cohort_statistics(
     mesh: Any,
-    copies: Iterable,
+    copies: Iterable[Any],
     b: Any,
     *,
     range: "tuple[float, float]",
@@ -171,12 +171,12 @@ class _Sums:
     """Of the distances of some copies, at the texels that faces own: count, mean, squares (of differences from the mean),
     min, max and bins; and what was wrong with other copies."""
 
-    def __init__(self, texels: int, work: dict) -> None:
+    def __init__(self, texels: int, work: dict[str, Any]) -> None:
         self.count = np.zeros(texels, np.uint32)
         self.mean, self.squares = np.zeros(texels), np.zeros(texels)
         self.min, self.max = np.full(texels, np.inf, np.float32), np.full(texels, -np.inf, np.float32)
         self.bins = np.zeros((work["bins"] + 2, texels), work["counter"])
-        self.errors: dict = {}
+        self.errors: dict[int, Any] = {}
 
     def add(self, distances: np.ndarray, edges: np.ndarray) -> None:
         """Adds a copy; NaN where it has no value (Welford 1962)."""
@@ -202,11 +202,11 @@ class _Sums:
         self.errors = {**self.errors, **other.errors}
 
 
-def _of_copies(mesh: Any, copies: list, first: int, targets: Any, several: bool, work: dict) -> _Sums:
+def _of_copies(mesh: Any, copies: list[Any], first: int, targets: Any, several: bool, work: dict[str, Any]) -> _Sums:
     edges = _edges(work["low"], work["high"], work["bins"])
     with sdm.thread_limit(work["threads"]), _surface(mesh, work) as surface:
         owned = surface.texel_faces != sdm.NONE
-        sums = _Sums(np.count_nonzero(owned), work)
+        sums = _Sums(int(np.count_nonzero(owned)), work)
         for number, vertices in enumerate(copies):
             try:
                 sites = _sites_of(targets[number] if several else targets)
@@ -219,11 +219,12 @@ def _of_copies(mesh: Any, copies: list, first: int, targets: Any, several: bool,
 
 def _sites_of(target: Any) -> sdm.Sites:
     with _meshes.naming(target if isinstance(target, str) else "the mesh to measure to"):
-        return _sites.get(_meshes.digest(target), lambda: sdm.Sites(_meshes.load(target)))
+        sites: sdm.Sites = _sites.get(_meshes.digest(target), lambda: sdm.Sites(_meshes.load(target)))
+        return sites
 
 
 @contextlib.contextmanager
-def _surface(mesh: Any, work: dict) -> Iterator[sdm.Surface]:
+def _surface(mesh: Any, work: dict[str, Any]) -> Iterator[sdm.Surface]:
     """A surface that no other thread uses meanwhile, with the atlas of the mesh as it is in the mesh. Laying it out takes
     longer than a map, so surfaces are kept for later tasks."""
     key = _meshes.digest(mesh), _files.key_of(layout=work["layout"])
@@ -238,15 +239,15 @@ def _surface(mesh: Any, work: dict) -> Iterator[sdm.Surface]:
         free.append(surface)
 
 
-def _merged(sums: list) -> _Sums:
+def _merged(sums: list[Any]) -> _Sums:
     """From the first to the last. Does not change what it is given, which Dask may use again."""
-    total = copy.copy(sums[0])
+    total: _Sums = copy.copy(sums[0])
     for other in sums[1:]:
         total.merge(other)
     return total
 
 
-def _finished(mesh: Any, sums: _Sums, work: dict) -> CohortStatistics:
+def _finished(mesh: Any, sums: _Sums, work: dict[str, Any]) -> CohortStatistics:
     none = sums.count == 0
     if none.all():
         number, text = next(iter(sorted(sums.errors.items())), (0, "no texel has a value"))

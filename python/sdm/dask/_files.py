@@ -11,7 +11,7 @@ from typing import Any
 
 
 @contextlib.contextmanager
-def replacing(file: "str | os.PathLike") -> Iterator[Path]:
+def replacing(file: "str | os.PathLike[str]") -> Iterator[Path]:
     """Yields a name to write to. The file has the name given to it after the block, if that does not raise."""
     file = Path(file)
     partial = file.with_name(f".{uuid.uuid4().hex}{file.suffix}")
@@ -23,12 +23,12 @@ def replacing(file: "str | os.PathLike") -> Iterator[Path]:
             os.unlink(partial)
 
 
-def write_json(file: "str | os.PathLike", value: Any) -> None:
+def write_json(file: "str | os.PathLike[str]", value: Any) -> None:
     with replacing(file) as partial:
         partial.write_text(json.dumps(value) + "\n", encoding="utf-8")
 
 
-def read_json(file: "str | os.PathLike") -> Any:
+def read_json(file: "str | os.PathLike[str]") -> Any:
     """Returns None if there is no such file, or none that is complete."""
     try:
         return json.loads(Path(file).read_text(encoding="utf-8"))

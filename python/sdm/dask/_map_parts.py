@@ -38,22 +38,23 @@ class PartsMap:
     tiles: int
     """The number of tasks."""
 
-    def save(self, file: "str | os.PathLike") -> None:
+    def save(self, file: "str | os.PathLike[str]") -> None:
         """Writes all arrays as .npz. The complete file appears, or none."""
         with _files.replacing(file) as partial, open(partial, "wb") as opened:
             np.savez(opened, **vars(self))
 
     @classmethod
-    def load(cls, file: "str | os.PathLike") -> "PartsMap":
+    def load(cls, file: "str | os.PathLike[str]") -> "PartsMap":
         """Reads what save() has written."""
         with np.load(file) as arrays:
-            return cls(**{name: arrays[name] if arrays[name].ndim else int(arrays[name]) for name in arrays.files})
+            values: Any = {name: arrays[name] if arrays[name].ndim else int(arrays[name]) for name in arrays.files}
+            return cls(**values)
 
 
 def map_parts(
     a: Any,
     parts: Parts,
-    folder: "str | os.PathLike",
+    folder: "str | os.PathLike[str]",
     *,
     samples_per_tile: int = 65536,
     max_distance: float = float("inf"),
@@ -117,17 +118,17 @@ def map_parts(
     return dask.delayed(_map_of_tiles, pure=False)(tiles, of_surface[1])
 
 
-def _map_of_tiles(files: list, of_surface: str) -> PartsMap:
+def _map_of_tiles(files: list[Any], of_surface: str) -> PartsMap:
     with np.load(of_surface) as arrays:
         return _assembled(map(_read, files), arrays["texels"], arrays["faces"])
 
 
-def _read(file: str) -> dict:
+def _read(file: str) -> dict[str, Any]:
     with np.load(file) as arrays:
         return dict(arrays)
 
 
-def _map_tile(points: str, begin: int, end: int, file: str, work: dict) -> str:
+def _map_tile(points: str, begin: int, end: int, file: str, work: dict[str, Any]) -> str:
     """Computes a tile unless its file is there; returns the file's name."""
     if not os.path.exists(file):
         queries = np.array(np.load(points, mmap_mode="r")[begin:end])
@@ -136,7 +137,7 @@ def _map_tile(points: str, begin: int, end: int, file: str, work: dict) -> str:
     return file
 
 
-def _map_part(folder: str, part: int, layout: dict, file: str, work: dict) -> str:
+def _map_part(folder: str, part: int, layout: dict[str, Any], file: str, work: dict[str, Any]) -> str:
     """Computes the map of one part of O1 unless its file is there; returns the file's name."""
     if not os.path.exists(file):
         with sdm.thread_limit(work["threads"]):
@@ -146,7 +147,7 @@ def _map_part(folder: str, part: int, layout: dict, file: str, work: dict) -> st
     return file
 
 
-def _stored(found: dict) -> dict:
+def _stored(found: dict[str, Any]) -> dict[str, Any]:
     """What a map stores of closest points."""
     distance = found["distance"].astype(np.float32)
     vector = found["vector"].astype(np.float32)
@@ -156,8 +157,8 @@ def _stored(found: dict) -> dict:
             "visits": found["visits"]}  # fmt: skip
 
 
-def _assembled(tiles: Iterable, texels: np.ndarray, faces: np.ndarray) -> PartsMap:
-    result = {
+def _assembled(tiles: Iterable[Any], texels: np.ndarray, faces: np.ndarray) -> PartsMap:
+    result: dict[str, Any] = {
         "distance": np.full(faces.size, np.nan, np.float32), "vector": np.full((faces.size, 3), np.nan, np.float32),
         "site": np.full(faces.size, sdm.NONE, np.uint32), "site_type": np.full(faces.size, sdm.SiteType.NONE, np.uint8),
     }  # fmt: skip
@@ -171,10 +172,10 @@ def _assembled(tiles: Iterable, texels: np.ndarray, faces: np.ndarray) -> PartsM
     return PartsMap(face=faces, visits=visits, tiles=count, **shaped)
 
 
-def closest_in_parts(queries: np.ndarray, parts: Parts, work: dict) -> dict:
+def closest_in_parts(queries: np.ndarray, parts: Parts, work: dict[str, Any]) -> dict[str, Any]:
     """The closest points of the whole O2, from those parts that bounds do not exclude."""
     count = len(queries)
-    best = {
+    best: dict[str, Any] = {
         "distance": np.full(count, work["max_distance"]), "vector": np.zeros((count, 3)),
         "site": np.full(count, sdm.NONE, np.uint32), "site_type": np.full(count, sdm.SiteType.NONE, np.uint8),
         "face": np.full(count, sdm.NONE, np.uint32),
@@ -192,9 +193,11 @@ def closest_in_parts(queries: np.ndarray, parts: Parts, work: dict) -> dict:
             if len(within) == 0:
                 continue
             visits += 1
-            sites, numbers = _sites.get((parts.key, part), lambda part=part: (sdm.Sites(parts.mesh(part)), parts.numbers(part)))
+            built = lambda part=part: (sdm.Sites(parts.mesh(part)), parts.numbers(part))  # noqa: E731
+            sites, numbers = _sites.get((parts.key, part), built)
             some = {name: np.ascontiguousarray(values[within]) for name, values in best.items()}
-            _core.merge_closest(sites, *numbers, queries[within], **some)
+            vertices, edges, faces = numbers
+            _core.merge_closest(sites, vertices, edges, faces, queries[within], **some)
             for name, values in best.items():
                 values[within] = some[name]
     return {**best, "visits": visits}

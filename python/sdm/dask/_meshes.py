@@ -57,11 +57,11 @@ def digest(mesh: Any) -> str:
     if isinstance(mesh, sdm.Error):
         raise mesh
     if isinstance(mesh, str):
-        return digest_of_files(mesh)[0]
+        return str(digest_of_files(mesh)[0])
     return digest_of_arrays(mesh)
 
 
-def digest_of_files(path: str) -> tuple:
+def digest_of_files(path: str) -> tuple[Any, ...]:
     """Returns (digest, state): the state differs after any of the files has been written to."""
     files = [path, *_buffers(path)]
     state = tuple((file, status.st_mtime_ns, status.st_size, status.st_ino) for file in files for status in [os.stat(file)])
@@ -69,7 +69,7 @@ def digest_of_files(path: str) -> tuple:
 
 
 @functools.lru_cache(maxsize=4096)
-def _digest_in_state(state: tuple) -> str:
+def _digest_in_state(state: tuple[Any, ...]) -> str:
     total = hashlib.blake2b(digest_size=16)
     for file, *_ in state:
         with open(file, "rb") as opened:
@@ -79,7 +79,7 @@ def _digest_in_state(state: tuple) -> str:
     return total.hexdigest()
 
 
-def _buffers(path: str) -> list:
+def _buffers(path: str) -> list[Any]:
     """The other files that hold the content of a glTF file."""
     if Path(path).suffix.lower() != ".gltf":
         return []
@@ -116,7 +116,7 @@ class Cache:
 
     def __init__(self, size: int) -> None:
         self.size = size
-        self._entries: OrderedDict = OrderedDict()
+        self._entries: OrderedDict[Any, Any] = OrderedDict()
         self._lock = threading.Lock()
 
     def get(self, key: Any, make: Callable[[], Any]) -> Any:

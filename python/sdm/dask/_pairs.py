@@ -27,8 +27,8 @@ _sites = _meshes.Cache(2)
 
 
 def map_pairs(
-    pairs: Iterable,
-    folder: "str | os.PathLike",
+    pairs: Iterable[Any],
+    folder: "str | os.PathLike[str]",
     *,
     resolution: "int | None" = None,
     precision: "float | None" = None,
@@ -93,10 +93,10 @@ def map_pairs(
         "folder": os.path.abspath(os.fsdecode(folder)), "threads": threads, "run": uuid.uuid4().hex,
     }  # fmt: skip
     for name in ("records", "maps", "attempts"):
-        Path(work["folder"], name).mkdir(parents=True, exist_ok=True)
+        Path(str(work["folder"]), name).mkdir(parents=True, exist_ok=True)
 
     # A mesh in memory that occurs in several pairs is sent once.
-    sent: dict = {}
+    sent: dict[int, Any] = {}
 
     def argument(mesh: Any) -> Any:
         if isinstance(mesh, (str, os.PathLike)):
@@ -122,7 +122,7 @@ def map_pairs(
     return dask.dataframe.from_delayed(partitions, meta=_partition([], 0, columns), verify_meta=False)
 
 
-def _limits(tolerance: Any) -> "list | None":
+def _limits(tolerance: Any) -> "list[Any] | None":
     if tolerance is None:
         return None
     low, high = (-tolerance, tolerance) if np.ndim(tolerance) == 0 else tolerance
@@ -139,7 +139,7 @@ def _matrix(transform: Any) -> Any:
         return sdm.Error("the transform must be a 4 × 4 matrix")
 
 
-def _columns(formats: list) -> dict:
+def _columns(formats: list[Any]) -> dict[str, Any]:
     texts, files = ("o1", "o2", "verdict"), [suffix[1:] for suffix in formats]
     return {
         **dict.fromkeys(texts, "object"), **dict.fromkeys((*_NUMBERS, *_BOUNDS), "float64"),
@@ -148,14 +148,14 @@ def _columns(formats: list) -> dict:
     }  # fmt: skip
 
 
-def _partition(rows: list, first: int, columns: dict) -> pd.DataFrame:
+def _partition(rows: list[Any], first: int, columns: dict[str, Any]) -> pd.DataFrame:
     empty = {"object": "", "float64": np.nan, "int64": 0}
     values = {name: [row.get(name, empty[kind]) for row in rows] for name, kind in columns.items()}
     index = pd.RangeIndex(first, first + len(rows))
     return pd.DataFrame({name: pd.Series(values[name], index, dtype=kind) for name, kind in columns.items()})
 
 
-def map_pair(names: tuple, o1: Any, o2: Any, transform: Any, work: dict) -> dict:
+def map_pair(names: tuple[Any, ...], o1: Any, o2: Any, transform: Any, work: dict[str, Any]) -> dict[str, Any]:
     """Returns the row of a pair: from its record, or by computing the map."""
     row = {"o1": names[0], "o2": names[1]}
     try:
@@ -182,7 +182,7 @@ def map_pair(names: tuple, o1: Any, o2: Any, transform: Any, work: dict) -> dict
 
 
 @contextlib.contextmanager
-def _attempt(key: str, work: dict) -> Iterator[None]:
+def _attempt(key: str, work: dict[str, Any]) -> Iterator[None]:
     """Raises sdm.Error where several workers have not survived the block for this pair. Dask would give up the whole table."""
     folder = Path(work["folder"], "attempts", f"{key}-{work['run']}")
     folder.mkdir(exist_ok=True)
@@ -204,7 +204,7 @@ def _attempt(key: str, work: dict) -> Iterator[None]:
         folder.rmdir()
 
 
-def _computed(names: tuple, meshes: tuple, digests: tuple, transform: Any, key: str, work: dict) -> dict:
+def _computed(names: tuple[Any, ...], meshes: tuple[Any, ...], digests: tuple[Any, ...], transform: Any, key: str, work: dict[str, Any]) -> dict[str, Any]:
     began = time.perf_counter()
     options = dict(work["map"])
     with _meshes.naming(names[0]):

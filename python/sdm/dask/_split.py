@@ -38,13 +38,13 @@ class Parts:
     """Names the content of the mesh and how it was divided."""
 
     @classmethod
-    def open(cls, folder: "str | os.PathLike") -> "Parts":
+    def open(cls, folder: "str | os.PathLike[str]") -> "Parts":
         """Returns the parts in a folder that split() has written. Raises sdm.Error if it has not been completed."""
         folder = os.path.abspath(os.fsdecode(folder))
         about = _files.read_json(Path(folder, "parts.json"))
         if about is None:
             raise sdm.Error(f"{folder} has no parts.json; split() writes it after all parts")
-        arrays = {name: np.array(about.pop(name)) for name in ("low", "high", "part_faces")}
+        arrays: dict[str, Any] = {name: np.array(about.pop(name)) for name in ("low", "high", "part_faces")}
         return cls(folder=folder, **arrays, **about)
 
     def __len__(self) -> int:
@@ -55,7 +55,7 @@ class Parts:
         with self._file(part) as arrays:
             return sdm.Mesh(arrays["positions"], arrays["triangles"])
 
-    def numbers(self, part: int) -> tuple:
+    def numbers(self, part: int) -> tuple[Any, ...]:
         """Reads the numbers of a part's vertices, edges and faces in the whole mesh: three uint32 arrays that increase."""
         with self._file(part) as arrays:
             return arrays["vertices"], arrays["edges"], arrays["faces"]
@@ -65,7 +65,7 @@ class Parts:
 
 
 def split(
-    mesh: Any, folder: "str | os.PathLike", *, faces_per_part: int = 1_000_000, faces: "object | None" = None
+    mesh: Any, folder: "str | os.PathLike[str]", *, faces_per_part: int = 1_000_000, faces: "object | None" = None
 ) -> Parts:
     """Divides a mesh into spatial parts of at most ``faces_per_part`` faces, which it writes to a folder.
 
@@ -110,7 +110,7 @@ def split(
     return Parts.open(folder)
 
 
-def _arrays(mesh: Any, faces: Any) -> tuple:
+def _arrays(mesh: Any, faces: Any) -> tuple[Any, ...]:
     def array(value: Any) -> Any:
         if isinstance(value, (str, os.PathLike)):
             try:
@@ -130,7 +130,7 @@ def _arrays(mesh: Any, faces: Any) -> tuple:
     return positions, triangles
 
 
-def _chunks(ids: "np.ndarray | None", triangles: Any) -> Iterator[tuple]:
+def _chunks(ids: "np.ndarray | None", triangles: Any) -> Iterator[tuple[Any, ...]]:
     """Yields (face numbers, their corners), in increasing order."""
     for first in range(0, len(triangles) if ids is None else len(ids), _CHUNK):
         chosen = np.arange(first, min(first + _CHUNK, len(triangles))) if ids is None else np.array(ids[first : first + _CHUNK])
@@ -169,16 +169,17 @@ def _checked(positions: Any, triangles: Any, faces_per_part: int) -> str:
 
 def _has_area(positions: Any, corners: np.ndarray) -> np.ndarray:
     a, b, c = (np.asarray(positions[corners[:, k]], np.float64) for k in range(3))
-    return (np.cross(b - a, c - a) != 0).any(axis=1)
+    area: np.ndarray = (np.cross(b - a, c - a) != 0).any(axis=1)
+    return area
 
 
 def _centroids(positions: Any, corners: np.ndarray) -> np.ndarray:
     """From sorted corners, so that duplicate faces have the same one, and stay together."""
     corners = np.sort(corners, axis=1)
-    return sum(np.asarray(positions[corners[:, k]], np.float64) / 3 for k in range(3))
+    return np.asarray(sum(np.asarray(positions[corners[:, k]], np.float64) / 3 for k in range(3)))
 
 
-def _divided(positions: Any, triangles: Any, ids: Any, largest: int, work: Path, name: str) -> list:
+def _divided(positions: Any, triangles: Any, ids: Any, largest: int, work: Path, name: str) -> list[Any]:
     """Returns files with the increasing face numbers of parts. Faces are ordered by the cells of a grid, along a Z-order
     curve; parts are runs of cells. A cell with too many faces has a grid of its own."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
@@ -238,10 +239,10 @@ def _runs(counts: np.ndarray, largest: int) -> np.ndarray:
     return runs
 
 
-def _with_area(lists: list, positions: Any, triangles: Any) -> list:
+def _with_area(lists: list[Any], positions: Any, triangles: Any) -> list[Any]:
     """Joins parts that have no face with an area, which are no mesh of their own, to the one before or after."""
-    result: list = []
-    without: list = []
+    result: list[Any] = []
+    without: list[Any] = []
     for members in lists:
         if any(_has_area(positions, corners).any() for _, corners in _chunks(members, triangles)):
             result.append(np.sort(np.concatenate([*without, members])) if without else members)
@@ -253,7 +254,7 @@ def _with_area(lists: list, positions: Any, triangles: Any) -> list:
     return result
 
 
-def _write_part(number: int, ids: Any, positions: Any, triangles: Any, folder: Path) -> tuple:
+def _write_part(number: int, ids: Any, positions: Any, triangles: Any, folder: Path) -> tuple[Any, ...]:
     """Returns (lower corner, upper corner, number of faces)."""
     faces = np.array(ids)
     corners = np.asarray(triangles[faces], np.int64)
@@ -311,7 +312,7 @@ def _number_edges(parts: int, vertices: int, most: int, folder: Path, work: Path
         for file, first, begin, end in zip(files, before, cuts, cuts[1:]):
             if begin < end:
                 numbers.append(first + np.searchsorted(np.memmap(file, np.uint64, "r"), edges[begin:end]))
-        numbers = np.concatenate(numbers) if numbers else np.empty(0)
+        joined = np.concatenate(numbers) if numbers else np.empty(0)
         with _files.replacing(folder / f"part-{part:06}.npz") as partial:
-            np.savez(partial, edges=numbers.astype(np.uint32), **kept)
+            np.savez(partial, edges=joined.astype(np.uint32), **kept)
     return before[-1]

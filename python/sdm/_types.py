@@ -1,0 +1,16 @@
+"""The words that arguments and results have, for type checkers."""
+
+from typing import Literal
+
+#: How inside and outside are distinguished.
+Sign = Literal["automatic", "none", "exact", "winding", "side"]
+#: What computes: engines() lists those of this build.
+Engine = Literal["cpu", "gl", "reference"]
+#: The kinds of an atlas.
+Atlas = Literal["charts", "triangles", "uv"]
+#: Whether a tolerance is met.
+Verdict = Literal["pass", "fail", "not decided"]
+#: How sure a number is.
+Certainty = Literal["exact", "bounded", "estimate"]
+#: The colours of distances.
+Colormap = Literal["automatic", "viridis", "sequential", "diverging", "paper2006"]
