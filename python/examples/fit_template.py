@@ -46,7 +46,7 @@ def fit(template, scan, steps=60, samples=50_000, log=print):
         from_scan = sdm.torch.point_to_surface(points, vertices, faces, sites=sites)
         loss = from_scan + sdm.torch.point_to_surface(vertices, scan)
         loss.backward()
-        for _ in range(1 + 8 * (steps - 1 - step) // steps):
+        for _ in range(1 + 4 * (steps - 1 - step) // steps):
             vertices.grad = matrix @ vertices.grad
         optimizer.step()
         if step % 10 == 0:

@@ -71,29 +71,110 @@ def _indices(tensor: torch.Tensor) -> np.ndarray:
     return tensor.detach().cpu().contiguous().numpy()
 
 
+def _sites_of(vertices: torch.Tensor | None, faces: torch.Tensor | None, options: _Options) -> Any:
+    """The Sites of one mesh: those that do not change, or new or refitted ones."""
+    sites = options.sites
+    if vertices is None or faces is None:
+        return sites
+    if sites is None:
+        return Sites(_array(vertices), _indices(faces))
+    if not np.array_equal(sites.vertices, _array(vertices)):
+        sites.refit(_array(vertices))
+    return sites
+
+
 def _found(points: torch.Tensor, vertices: torch.Tensor | None, faces: torch.Tensor | None, options: _Options) -> Any:
-    """The arrays of the closest points, the corners of their faces and, of Sites that do not change, their positions."""
+    """What the search of one mesh, or of a batch of them, finds."""
     query: dict[str, Any] = {"sign": options.sign, "max_distance": options.max_distance, "gradients": True}
     p = _array(points)
-    sites: Any = options.sites
-    if vertices is None or (vertices.dim() == 2 and faces is not None and faces.dim() == 2):
-        if vertices is not None and faces is not None:
-            if sites is None:
-                sites = Sites(_array(vertices), _indices(faces))
-            elif not np.array_equal(sites.vertices, _array(vertices)):
-                sites.refit(_array(vertices))
-        found: Any = sites.closest_points(p.reshape(-1, 3), **query)
-        corners = sites.faces[np.where(found.face == NONE, 0, found.face)]
-    else:
-        assert faces is not None
-        shapes, shared = _array(vertices), _indices(faces)
-        if shared.ndim > 2:
-            shared = shared.reshape(-1, *shared.shape[-2:])
-        found = closest_points_batch(
-            shapes.reshape(-1, *shapes.shape[-2:]), shared, p.reshape(-1, *p.shape[-2:]), **query
+    if vertices is None or faces is None or (vertices.dim() == 2 and faces.dim() == 2):
+        return _sites_of(vertices, faces, options).closest_points(p.reshape(-1, 3), **query)
+    shapes, shared = _array(vertices), _indices(faces)
+    if shared.ndim > 2:
+        shared = shared.reshape(-1, *shared.shape[-2:])
+    return closest_points_batch(shapes.reshape(-1, *shapes.shape[-2:]), shared, p.reshape(-1, *p.shape[-2:]), **query)
+
+
+def _tensors(found: Any, points: torch.Tensor, sites: Sites | None) -> tuple[torch.Tensor, ...]:
+    """(face, barycentric, gradient, corners, positions) of what was found; positions: of corners of Sites that do not
+    change, else empty."""
+    shape, real = points.shape[:-1], torch.float32 if points.device.type == "mps" else torch.float64
+    corners, _ = found.vertex_gradients()
+    positions = np.empty((len(found), 0)) if sites is None else sites.vertices[corners]
+    face = np.where(found.face == NONE, -1, found.face.astype(np.int64))
+    weights = np.where(np.isnan(found.barycentric), 0.0, found.barycentric)
+    return (
+        torch.from_numpy(face).to(points.device).reshape(shape),
+        torch.from_numpy(weights).to(points.device, real).reshape(*shape, 3),
+        torch.from_numpy(np.ascontiguousarray(found.gradient)).to(points.device, real).reshape(*shape, 3),
+        torch.from_numpy(corners.astype(np.int64)).to(points.device).reshape(*shape, 3),
+        torch.from_numpy(positions).to(points.device, real).reshape(*shape, *positions.shape[1:]),
+    )
+
+
+def _distances(found: Any, points: torch.Tensor) -> torch.Tensor:
+    return torch.from_numpy(np.ascontiguousarray(found.distance)).to(points).reshape(points.shape[:-1])
+
+
+def _pull_back(
+    points: Any, vertices: Any, tensors: tuple[torch.Tensor, ...], upstream: torch.Tensor, needed: Any
+) -> tuple[Any, ...]:
+    """The derivatives by the points and the vertices, from those by the distances, by tensors that have derivatives."""
+    weights, gradient, corners, positions = tensors
+    if torch.is_grad_enabled():  # derivatives of this may be needed
+        if vertices is not None:
+            positions = _corner_positions(vertices, corners).to(weights)
+        gradient, weights = _moving(points.to(weights), positions, weights, gradient)
+    upstream = upstream.to(gradient.dtype)
+    of_points = of_vertices = None
+    if needed[0]:
+        of_points = _gradients.of_points(gradient, upstream).to(points.dtype)
+    if needed[1]:
+        parts = _gradients.of_corners(gradient, weights, upstream)
+        shape = vertices.shape
+        if len(shape) > 2:  # one vertex after the other, over the batch
+            items = torch.arange(shape[:-2].numel(), device=corners.device).reshape(*shape[:-2], 1, 1)
+            corners = corners + shape[-2] * items
+        zeros = torch.zeros(shape.numel() // 3, 3, dtype=parts.dtype, device=parts.device)
+        sums = zeros.index_add(0, corners.reshape(-1), parts.reshape(-1, 3))
+        of_vertices = sums.reshape(shape).to(vertices.dtype)
+    return of_points, of_vertices, None, None
+
+
+class _Distance(torch.autograd.Function):
+    """Distances to one mesh, outside of torch.func: what was found stays in the library, which applies the chain rule."""
+
+    @staticmethod
+    def forward(ctx: Any, points: torch.Tensor, vertices: Any, faces: Any, options: _Options) -> torch.Tensor:
+        ctx.found, ctx.still = _found(points, vertices, faces, options), options.sites if vertices is None else None
+        ctx.save_for_backward(points, vertices)
+        return _distances(ctx.found, points)
+
+    @staticmethod
+    def backward(ctx: Any, upstream: torch.Tensor) -> tuple[Any, ...]:
+        points, vertices = ctx.saved_tensors
+        values = None
+        if not torch.is_grad_enabled() and not _under_func():
+            try:
+                values = _array(upstream)
+            except RuntimeError:  # a batch, of torch.autograd.grad(is_grads_batched=True)
+                pass
+        if values is None:
+            tensors = _tensors(ctx.found, points, ctx.still)[1:]
+            return _pull_back(points, vertices, tensors, upstream, ctx.needs_input_grad)
+        count = len(vertices) if ctx.needs_input_grad[1] else 0
+        of_points, of_vertices = ctx.found._pull_back(values.reshape(-1), count)
+        return (
+            torch.from_numpy(of_points).to(points).reshape(points.shape) if ctx.needs_input_grad[0] else None,
+            torch.from_numpy(of_vertices).to(vertices) if ctx.needs_input_grad[1] else None,
+            None,
+            None,
         )
-        corners = found.corners
-    return found, corners, sites.vertices[corners] if vertices is None else np.empty((len(found), 0))
+
+
+def _under_func() -> bool:
+    """Whether tensors may stand for others, as under torch.func and torch.vmap."""
+    return getattr(torch._C, "_are_functorch_transforms_active", lambda: True)()
 
 
 class _Query(torch.autograd.Function):
@@ -104,18 +185,9 @@ class _Query(torch.autograd.Function):
 
     @staticmethod
     def forward(points: torch.Tensor, vertices: Any, faces: Any, options: _Options) -> tuple[torch.Tensor, ...]:
-        found, corners, positions = _found(points, vertices, faces, options)
-        shape, real = points.shape[:-1], torch.float32 if points.device.type == "mps" else torch.float64
-        face = np.where(found.face == NONE, -1, found.face.astype(np.int64))
-        weights = np.where(np.isnan(found.barycentric), 0.0, found.barycentric)
-        return (
-            torch.from_numpy(np.ascontiguousarray(found.distance)).to(points).reshape(shape),
-            torch.from_numpy(face).to(points.device).reshape(shape),
-            torch.from_numpy(weights).to(points.device, real).reshape(*shape, 3),
-            torch.from_numpy(np.ascontiguousarray(found.gradient)).to(points.device, real).reshape(*shape, 3),
-            torch.from_numpy(corners.astype(np.int64)).to(points.device).reshape(*shape, 3),
-            torch.from_numpy(positions).to(points.device, real).reshape(*shape, *positions.shape[1:]),
-        )
+        found = _found(points, vertices, faces, options)
+        still = options.sites if vertices is None else None
+        return _distances(found, points), *_tensors(found, points, still)
 
     @staticmethod
     def setup_context(ctx: Any, inputs: Any, output: Any) -> None:
@@ -125,25 +197,8 @@ class _Query(torch.autograd.Function):
 
     @staticmethod
     def backward(ctx: Any, upstream: torch.Tensor, *_: Any) -> tuple[Any, ...]:
-        points, vertices, weights, gradient, corners, positions = ctx.saved_tensors
-        if torch.is_grad_enabled():  # derivatives of this may be needed
-            if vertices is not None:
-                positions = _corner_positions(vertices, corners).to(weights)
-            gradient, weights = _moving(points.to(weights), positions, weights, gradient)
-        upstream = upstream.to(gradient.dtype)
-        of_points = of_vertices = None
-        if ctx.needs_input_grad[0]:
-            of_points = _gradients.of_points(gradient, upstream).to(points.dtype)
-        if ctx.needs_input_grad[1]:
-            parts = _gradients.of_corners(gradient, weights, upstream)
-            shape = vertices.shape
-            if len(shape) > 2:  # one vertex after the other, over the batch
-                items = torch.arange(shape[:-2].numel(), device=corners.device).reshape(*shape[:-2], 1, 1)
-                corners = corners + shape[-2] * items
-            zeros = torch.zeros(shape.numel() // 3, 3, dtype=parts.dtype, device=parts.device)
-            sums = zeros.index_add(0, corners.reshape(-1), parts.reshape(-1, 3))
-            of_vertices = sums.reshape(shape).to(vertices.dtype)
-        return of_points, of_vertices, None, None
+        points, vertices, *tensors = ctx.saved_tensors
+        return _pull_back(points, vertices, tuple(tensors), upstream, ctx.needs_input_grad)
 
     @staticmethod
     def vmap(info: Any, in_dims: Any, points: Any, vertices: Any, faces: Any, options: _Options) -> tuple[Any, Any]:
@@ -176,11 +231,12 @@ def _with_batch(rows: torch.Tensor, has_first: bool, batch: torch.Size) -> torch
     return rows.reshape(*first, *([1] * missing), *rows.shape[len(first) :]).expand(*batch, *rows.shape[-2:])
 
 
-def _query(points: torch.Tensor, mesh: Any, faces: Any, sites: Any, sign: Sign, max_distance: float) -> Any:
+def _arguments(points: torch.Tensor, mesh: Any, faces: Any, sites: Any, sign: Sign, max_distance: float) -> tuple[Any, ...]:
+    """Those of _Query.apply()."""
     if isinstance(mesh, Sites):
         if faces is not None or sites is not None:
             raise Error("Sites have faces of their own; leave out faces and sites")
-        return _Query.apply(points, None, None, _Options(mesh, sign, max_distance))
+        return points, None, None, _Options(mesh, sign, max_distance)
     if faces is None:
         raise Error("vertices need faces")
     if mesh.dim() > 2 or faces.dim() > 2:
@@ -190,7 +246,7 @@ def _query(points: torch.Tensor, mesh: Any, faces: Any, sites: Any, sign: Sign, 
         points = points.expand(*batch, *points.shape[-2:])
         mesh = mesh.expand(*batch, *mesh.shape[-2:])
         faces = faces if faces.dim() == 2 else faces.expand(*batch, *faces.shape[-2:])
-    return _Query.apply(points, mesh, faces, _Options(sites, sign, max_distance))
+    return points, mesh, faces, _Options(sites, sign, max_distance)
 
 
 def distance(
@@ -208,7 +264,10 @@ def distance(
     are those of Sites.closest_points(); points farther away have an infinite distance, with the derivative 0. Raises
     sdm.Error as Sites does.
     """
-    found: torch.Tensor = _query(points, vertices, faces, sites, sign, max_distance)[0]
+    arguments = _arguments(points, vertices, faces, sites, sign, max_distance)
+    of_one = arguments[1] is None or (arguments[1].dim() == 2 and arguments[2].dim() == 2)
+    plain = of_one and not _under_func()
+    found: torch.Tensor = _Distance.apply(*arguments) if plain else _Query.apply(*arguments)[0]
     return found
 
 
@@ -268,7 +327,7 @@ def closest_points(
     They are those of the site that was found: closest points jump where several are equally close. Raises sdm.Error as Sites
     does.
     """
-    found, face, weights, _, corners, still = _query(points, vertices, faces, sites, sign, max_distance)
+    found, face, weights, _, corners, still = _Query.apply(*_arguments(points, vertices, faces, sites, sign, max_distance))
     positions = still if isinstance(vertices, Sites) else _corner_positions(vertices, corners).to(weights)
     barycentric = _differentiable(weights, points.to(weights), positions)
     point = (barycentric[..., None] * positions).sum(-2)
@@ -327,7 +386,9 @@ def _one_way(a: Surface, b: Surface, samples: Samples, b_sites: Sites | None, sq
     corners = _corner_positions(vertices, faces[samples.face])
     points = (samples.barycentric.to(corners)[..., None] * corners).sum(-2)
     mesh, mesh_faces = (b, None) if isinstance(b, Sites) else b
-    far, _, _, _, closest, still = _query(points, mesh, mesh_faces, b_sites, "none", float("inf"))
+    far, _, _, _, closest, still = _Query.apply(
+        *_arguments(points, mesh, mesh_faces, b_sites, "none", float("inf"))
+    )
     there = _normals((still if isinstance(mesh, Sites) else _corner_positions(mesh, closest)).to(corners))
     cosine = torch.nn.functional.cosine_similarity(_normals(corners), there, dim=-1, eps=1e-30)
     return (far.square() if squared else far).mean(), (1 - cosine.abs()).mean()

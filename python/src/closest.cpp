@@ -162,4 +162,22 @@ nb::object PyClosestPoints::vertex_gradients() const {
                         array_of<double>(std::move(derivatives), {size(), 3, 3}));
 }
 
+nb::object PyClosestPoints::pull_back(nb::handle upstream, std::size_t count) const {
+  require_gradients();
+  const Lengths by_distance(upstream, "upstream", size());
+  const auto lock = use();
+  std::vector<Vec3> of_points(size()), of_vertices(count);
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (found.closest[i].type == SiteType::none) continue;
+    of_points[i] = by_distance.get()[i] * gradients[i];
+    const Triangle corners = corners_of(i);
+    const Vec3 weights = barycentric_of(i);
+    for (int k = 0; k < 3; ++k)
+      if (weights[k] != 0 && corners[k] < count)
+        of_vertices[corners[k]] = of_vertices[corners[k]] - weights[k] * of_points[i];
+  }
+  return nb::make_tuple(array_of<double>(std::move(of_points), {size(), 3}),
+                        array_of<double>(std::move(of_vertices), {count, 3}));
+}
+
 }  // namespace sdm::python

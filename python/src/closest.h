@@ -74,6 +74,9 @@ struct PyClosestPoints {
   nb::object site_type();
   nb::object gradient();
   [[nodiscard]] nb::object vertex_gradients() const;
+  /// The derivatives of a function by the points, (n, 3), and by `count` vertices, (count, 3), from those by
+  /// the distances: the chain rule of python/sdm/_gradients.py, in one pass.
+  [[nodiscard]] nb::object pull_back(nb::handle upstream, std::size_t count) const;
 
  private:
   [[nodiscard]] Vec3 barycentric_of(std::size_t i) const;

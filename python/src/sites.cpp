@@ -108,6 +108,9 @@ there is no closest point. Raises Error without gradients.
 >>> vertices, derivatives = closest.vertex_gradients()
 >>> closest.gradient[0].tolist(), float(derivatives[0, :, 2].sum().round(12))
 ([0.0, 0.0, 1.0], -1.0))")
+      .def("_pull_back", &PyClosestPoints::pull_back, nb::arg("upstream"), nb::arg("count"),
+           nb::sig("def _pull_back(self, upstream: object, count: int) -> "
+                   "tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]"))
       .def("__len__", [](const PyClosestPoints& self) { return self.size(); })
       .def("__repr__", [](const PyClosestPoints& self) {
         return nb::str("sdm.ClosestPoints({} points)").format(self.size());

@@ -163,6 +163,9 @@ def test_derivatives_by_finite_differences(sign):
     of_vertices = np.zeros_like(vertices)
     np.add.at(of_vertices, where, sdm._gradients.of_corners(found.gradient, found.barycentric, upstream))
     np.testing.assert_allclose(of_vertices, np.einsum("n,nvx->vx", upstream, by_vertices), atol=1e-6)
+    of_points, in_one_pass = found._pull_back(upstream, len(vertices))
+    np.testing.assert_allclose(of_points, sdm._gradients.of_points(found.gradient, upstream), atol=1e-14)
+    np.testing.assert_allclose(in_one_pass, of_vertices, atol=1e-13)
 
 
 def test_derivatives_are_0_on_the_surface():

@@ -1,6 +1,7 @@
 """sdm.torch, where torch is installed; tests/long torch runs it. The chain rule is tested without torch in test_closest_points.py."""
 
 import importlib.util
+import time
 from pathlib import Path
 
 import numpy as np
@@ -127,6 +128,16 @@ def test_second_derivatives(sign):
     torch.testing.assert_close(hessian[:, :, 2, 1], differences, rtol=0, atol=1e-7)
 
 
+def test_derivatives_in_one_batch():
+    """Jacobians that are computed at once, for which backward() is called with a batch."""
+    vertices, faces = tensors(meshes.box())
+    points = random_points(6)
+    function = lambda p, v: st.distance(p, v, faces)  # noqa: E731
+    at_once = torch.autograd.functional.jacobian(function, (points, vertices), vectorize=True)
+    singly = torch.autograd.functional.jacobian(function, (points, vertices))
+    torch.testing.assert_close(at_once, singly)
+
+
 @pytest.mark.parametrize("dtype", [torch.bfloat16, torch.float16, torch.float32])
 def test_other_types(dtype):
     vertices, faces = tensors(meshes.box())
@@ -211,14 +222,31 @@ def test_wrong_arguments():
             call()
 
 
-def test_fit_template():
+def test_fit_template(monkeypatch):
     path = Path(__file__).resolve().parents[1] / "examples" / "fit_template.py"
     spec = importlib.util.spec_from_file_location("fit_template", path)
     example = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(example)
     vertices, faces = meshes.sphere(steps=5)
     scan = vertices * (1 + 0.3 * vertices[:, :1]) * [1, 1.3, 1.7] + 0.3, faces
-    lines = []
+    lines, used, found = [], [], st._found
+
+    def measured(*arguments):
+        begin = time.process_time()
+        result = found(*arguments)
+        used.append(time.process_time() - begin)
+        return result
+
+    monkeypatch.setattr(st, "_found", measured)
+    example.fit(meshes.sphere(steps=5), scan, steps=2, log=print)  # what PyTorch imports at first
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)
+    used.clear()
+    begin = time.process_time()
+    with sdm.thread_limit(1):
+        example.fit(meshes.sphere(steps=5), scan, steps=20, log=print)
+    torch.set_num_threads(threads)
+    assert time.process_time() - begin < 1.6 * sum(used)  # processor time, of some 1.3 times that of the queries
     fitted = example.fit(meshes.sphere(steps=4), scan, steps=40, samples=5000, log=lines.append)
     assert len(lines) == 4
     assert np.sqrt(np.mean(sdm.closest_points(*scan, fitted).distance ** 2)) < 0.01

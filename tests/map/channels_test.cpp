@@ -50,8 +50,8 @@ TEST(Channels, AreCompleteAndHaveNamesOfTheirOwn) {
 }
 
 TEST(Channels, LayersAreInTheOrderOfTheTable) {
-  EXPECT_THAT(channel_layers(),
-              ElementsAre("distance", "vector", "site", "face", "position", "normal", "closest"));
+  EXPECT_THAT(channel_layers(), ElementsAre("distance", "vector", "site", "face", "position", "barycentric",
+                                            "normal", "closest"));
   EXPECT_THAT(default_channel_layers(), ElementsAre("distance", "vector", "site", "face"));
 }
 
@@ -82,6 +82,7 @@ TEST_F(ChannelsOfMap, AreThoseOfItsArraysAndMeshes) {
   const auto site_type = read<SiteType>("site_type", texels);
   const auto face = read<std::uint32_t>("face", texels);
   const auto position = read<Vec3>("position", texels);
+  const auto weights = read<Vec3>("barycentric", texels);
   const auto at_boundary = read<float>("boundary", texels);
   for (std::size_t i = 0; i < texels.size(); ++i) {
     const std::uint32_t t = texels[i];
@@ -94,6 +95,10 @@ TEST_F(ChannelsOfMap, AreThoseOfItsArraysAndMeshes) {
     ASSERT_EQ(site_type[i], map.site_type[t]);
     ASSERT_EQ(face[i], surface.texel_faces()[t]);
     ASSERT_EQ(position[i], surface.texel_point(t));
+    Vec3 sum{};
+    for (int k = 0; k < 3; ++k)
+      sum = sum + weights[i][k] * surface.mesh().positions[surface.mesh().triangles[face[i]][k]];
+    ASSERT_LT(norm(sum - position[i]), 1e-12);
     ASSERT_EQ(at_boundary[i], boundary[t]);
   }
 }
