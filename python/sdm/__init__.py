@@ -12,6 +12,7 @@ the units of the meshes. Distances are negative inside a closed mesh where they 
 array([[1. , 0.5, 0.5]])
 """
 
+from . import _core
 from ._core import (
     Alignment,
     BoundedLength,
@@ -75,15 +76,15 @@ from ._core import (
     time_of_contact,
     weld,
 )
-from ._core import version as __version__
 from ._batches import BatchItem, ClosestPointsBatch, closest_points_batch
 from ._closest_points import NONE, SiteType, closest_points
 from ._distance_map import DistanceMap, MapBounds
 from ._maps import map, self_map, thickness
 from ._metrics import BoundedNumber, SurfaceMetrics, mask_surface, surface_metrics
 
+__version__: str = _core.version
+
 __all__ = [
-    "__version__",
     "Alignment",
     "BatchItem",
     "BoundedLength",
