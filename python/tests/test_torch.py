@@ -13,6 +13,7 @@ import sdm
 torch = pytest.importorskip("torch")
 
 import sdm.torch as st  # noqa: E402
+from sdm import _torch_search  # noqa: E402
 
 
 def tensors(mesh, noise=0.05, seed=3):
@@ -229,7 +230,7 @@ def test_fit_template(monkeypatch):
     spec.loader.exec_module(example)
     vertices, faces = meshes.sphere(steps=5)
     scan = vertices * (1 + 0.3 * vertices[:, :1]) * [1, 1.3, 1.7] + 0.3, faces
-    lines, used, found = [], [], st._found
+    lines, used, found = [], [], _torch_search._found
 
     def measured(*arguments):
         begin = time.process_time()
@@ -237,7 +238,7 @@ def test_fit_template(monkeypatch):
         used.append(time.process_time() - begin)
         return result
 
-    monkeypatch.setattr(st, "_found", measured)
+    monkeypatch.setattr(_torch_search, "_found", measured)
     example.fit(meshes.sphere(steps=5), scan, steps=2, log=print)  # what PyTorch imports at first
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
