@@ -183,11 +183,13 @@ void bind_map(nb::module_& module) {
       nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
       nb::arg("facing").none() = nb::none(), nb::arg("progress") = nb::none(),
       nb::sig(
-          "def compute_map(surface: Surface, sites: Sites, *, engine: " SDM_ENGINE " = 'cpu', sign: "
-          "" SDM_SIGN " = 'automatic', "
+          "def compute_map(surface: Surface, sites: Sites, *, engine: " SDM_ENGINE " = 'cpu', sign: " SDM_SIGN
+          " = 'automatic', "
           "max_distance: float = ..., facing: float | None = None, progress: collections.abc.Callable[[str, "
           "float], bool | None] | None = None) -> Map"));
+}
 
+void bind_other_maps(nb::module_& module) {
   module.def(
       "compute_self_map",
       [](nb::handle surface, nb::handle sites, nb::handle rest, std::uint32_t rings,
@@ -201,9 +203,6 @@ void bind_map(nb::module_& module) {
       nb::sig("def compute_self_map(surface: Surface, sites: Sites, rest: object, *, rings: int = 1, "
               "geodesic: float | None = None, max_distance: float = ..., progress: "
               "collections.abc.Callable[[str, float], bool | None] | None = None) -> Map"));
-}
-
-void bind_other_maps(nb::module_& module) {
   module.def(
       "compute_along",
       [](nb::handle surface, nb::handle sites, nb::handle along, double max_distance, nb::handle progress) {

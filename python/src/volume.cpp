@@ -276,8 +276,8 @@ void bind_volume(nb::module_& module) {
       nb::arg("sign") = "automatic", nb::arg("max_distance") = kInfinity, nb::arg("sites") = false,
       nb::arg("progress") = nb::none(),
       nb::sig("def distance_field(mesh: object, *, spacing: float | None = None, shape: tuple[int, int, int] "
-              "| None = None, bounds: object = None, margin: float | None = None, sign: "
-              "" SDM_SIGN " = 'automatic', max_distance: float = ..., sites: bool = False, progress: "
+              "| None = None, bounds: object = None, margin: float | None = None, sign: " SDM_SIGN
+              " = 'automatic', max_distance: float = ..., sites: bool = False, progress: "
               "collections.abc.Callable[[str, float], bool | None] | None = None) -> DistanceField"),
       R"(Computes the distances from the points of a regular grid to a mesh.
 
