@@ -34,7 +34,7 @@ void bind_times_of_contact(nb::module_& module) {
                    nb::sig("def bodies(self) -> numpy.typing.NDArray[numpy.uint32]"),
                    "The indices of O1 and O2, (n, 2) uint32, the smaller one first.")
       .def_prop_ro("parts", contact_column(&T::parts, [](const Pair& p) { return p.parts; }),
-                   nb::sig("def parts(self) -> numpy.ndarray"),
+                   nb::sig("def parts(self) -> numpy.typing.NDArray[numpy.uint32]"),
                    "The parts of O1 and O2 that come into contact first, (n, 2) uint32; see Compound.")
       .def_prop_ro(
           "time", contact_column(&T::time, [](const Pair& p) { return p.time_of_contact.time; }),
