@@ -130,6 +130,7 @@ int run(SequenceCommand command) {
   checkpoint.begin({hash_of(first[0]), hash_of(first[1])}, {command.pair.o1, command.pair.o2}, count);
   choose_colors(command, count, progress);
   SequenceFiles files(command, out, first);
+  if (command.outputs.player) files.set_checksums({bodies[0].xxh3(), bodies[1].xxh3()});
   const std::array<sdm::AtlasOptions, 2> atlases = layouts(command, checkpoint, count, progress);
   checkpoint.set_resolution(atlases[0].resolution);
   FrameLoop loop(command, {std::move(bodies), count, atlases, {.engine = engine}, notes}, checkpoint, files,

@@ -19,6 +19,7 @@ class Body {
   [[nodiscard]] const std::string& input() const { return input_; }
   [[nodiscard]] std::size_t frames() const { return sequence_.frame_count(); }
   [[nodiscard]] bool still() const { return frames() == 1; }
+  [[nodiscard]] std::string xxh3() const { return sequence_.xxh3(); }
 
   /// Reads a frame of a moving body. Throws sdm::Error.
   void read(std::size_t frame);

@@ -24,6 +24,7 @@ FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& si
   const sdm::CertifiedVerdict verdict = sdm::certify_tolerance(
       surface, sites, map, at_vertices, *tolerance, {.error_bound = error_bound, .accuracy = accuracy});
   result.verdict = verdict.verdict;
+  result.certified = verdict.certified;
   result.exceeded_area_fraction = verdict.exceeded_area_fraction;
   return result;
 }
@@ -33,6 +34,7 @@ Json to_json(const FrameDistances& d) {
   if (d.verdict) {
     json["verdict"] = sdm::name_of(*d.verdict);
     json["exceeded_area_fraction"] = d.exceeded_area_fraction;
+    json["certified"] = d.certified;
   }
   return json;
 }
@@ -46,6 +48,7 @@ FrameDistances distances_from(const Json& json) {
   for (const sdm::Verdict verdict : {sdm::Verdict::pass, sdm::Verdict::fail, sdm::Verdict::not_decided})
     if (json.at("verdict") == sdm::name_of(verdict)) d.verdict = verdict;
   d.exceeded_area_fraction = json.at("exceeded_area_fraction");
+  d.certified = json.value("certified", false);
   return d;
 }
 

@@ -12,6 +12,7 @@ struct FrameDistances {
   double min = 0, mean = 0, max = 0;      ///< of texels and vertices; `mean` of texels, weighted by area
   std::optional<sdm::Verdict> verdict{};  ///< of the tolerance, if there is one
   double exceeded_area_fraction = 0;      ///< of it
+  bool certified = false;                 ///< the verdict is proven
 
   [[nodiscard]] sdm::Verdict judged() const { return verdict.value_or(sdm::Verdict::pass); }
 };

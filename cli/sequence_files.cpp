@@ -123,6 +123,7 @@ void SequenceFiles::write_temporal(const sdm::TemporalMaps& temporal, const Movi
 void SequenceFiles::write_collected(const std::vector<Frame>& frames) {
   const PairCommand& pair = command_.pair;
   sdm::PlayerOptions options{.names = {pair.o1, pair.o2},
+                             .xxh3 = xxh3_,
                              .units = pair.units,
                              .up = command_.picture.up,
                              .colors = command_.picture};
@@ -131,6 +132,7 @@ void SequenceFiles::write_collected(const std::vector<Frame>& frames) {
     options.verdicts.emplace().tolerance = *command_.picture.tolerance;
     for (const Frame& frame : frames) options.verdicts->of_frames.push_back(frame.verdict());
     options.verdicts->of_all = verdict_of(frames);
+    options.verdicts->certified = is_certified(frames);
   }
   if (command_.outputs.player) {
     player_->write(folder_ / "player.html", player_panels(frames, pair.units), options);

@@ -1,12 +1,14 @@
 // The files of `sdm sequence`.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "output_folder.h"
@@ -26,6 +28,8 @@ class SequenceFiles {
   /// `first`: the bodies in their first frames. `command` and `out` must outlive the files.
   SequenceFiles(const SequenceCommand& command, OutputFolder& out, const std::array<sdm::Mesh, 2>& first);
 
+  /// Of the files of both inputs, for player.html.
+  void set_checksums(std::array<std::string, 2> xxh3) { xxh3_ = std::move(xxh3); }
   /// Adds a line to frames.jsonl, and with --json to the standard output.
   void add_line(const nlohmann::ordered_json& json);
   /// Writes all maps of a frame or, if it throws, none.
@@ -51,5 +55,6 @@ class SequenceFiles {
   std::ofstream lines_;
   std::optional<sdm::SequencePlayer> player_;
   std::size_t animated_frames_ = 0;  // in animation.glb
+  std::array<std::string, 2> xxh3_;  // of both inputs
   std::string listed_;
 };

@@ -118,6 +118,17 @@ sdm::Verdict verdict_of(const std::vector<Frame>& frames) {
   return verdict;
 }
 
+bool is_certified(const std::vector<Frame>& frames) {
+  const sdm::Verdict verdict = verdict_of(frames);
+  bool any = false, all = true;
+  for (const Frame& frame : frames)
+    for (const auto& d : frame.distances) {
+      if (!d || d->judged() != verdict) continue;
+      any |= d->certified, all &= d->certified;
+    }
+  return any && (all || verdict == sdm::Verdict::fail);
+}
+
 Json to_json(const BadFrame& frame) {
   return {{"frame", frame.index}, {"error", frame.fault}};
 }

@@ -53,6 +53,8 @@ struct Frame {
 
 /// The verdict on all frames; a pass without a tolerance.
 [[nodiscard]] sdm::Verdict verdict_of(const std::vector<Frame>& frames);
+/// Whether that is proven: PASS in each frame, FAIL in one.
+[[nodiscard]] bool is_certified(const std::vector<Frame>& frames);
 
 /// A frame that could not be used.
 struct BadFrame {

@@ -68,6 +68,10 @@ class SDM_API MeshSequence {
   [[nodiscard]] std::size_t frame_count() const;
   /// The name of a frame in [0, frame_count()), for messages: "walk_0007.ply", "frame 7 of motion.npy", ...
   [[nodiscard]] std::string frame_name(std::size_t frame) const;
+  /// The XXH3 checksum, of 64 bits in hexadecimal, of the bytes of all files of the sequence, one file after
+  /// the other in the order of their numbers; of a mesh file with an NPY file, that of the mesh first. Of one
+  /// file it is file_xxh3(). Reads all files again; throws if one cannot be read.
+  [[nodiscard]] std::string xxh3() const;
 
   /// Reads the positions of a frame, one for each vertex of mesh(); they are valid until the next call.
   /// Frames may be read in any order. Throws if the frame is out of range, missing or damaged, if a

@@ -104,6 +104,19 @@ TEST(Sequence, FilesAreSortedByNumber) {
   EXPECT_EQ(sequence.frame_name(2), "walk_10.obj");
 }
 
+TEST(Sequence, ChecksumsAreOfAllFilesInTheirOrder) {
+  const Mesh mesh = tetrahedron();
+  const Frames frames = frames_of(mesh, 3);
+  const std::string folder = fresh("checksums");
+  std::string all;
+  for (const auto& [t, number] : {std::pair{0, "8"}, {1, "9"}, {2, "11"}}) {  // 10 is missing
+    all += obj(at(mesh, frames[t]));
+    write(std::string("checksums/a") + number + ".obj", obj(at(mesh, frames[t])));
+  }
+  EXPECT_EQ(MeshSequence(folder).xxh3(), file_xxh3(write("checksums.all", all)));
+  EXPECT_EQ(MeshSequence(folder + "a9.obj").xxh3(), file_xxh3(folder + "a9.obj"));
+}
+
 TEST(Sequence, PatternsMatchPrintfNames) {
   const Mesh mesh = tetrahedron();
   const std::string folder = fresh("printf");

@@ -30,6 +30,7 @@ class SingleFile : public FrameSource {
   }
   std::size_t count() const override { return 1; }
   std::string name(std::size_t) const override { return file_.filename().string(); }
+  std::vector<fs::path> files() const override { return {file_}; }
   void read(std::size_t, std::vector<Vec3>& positions) override { positions = positions_; }
 
  private:
@@ -55,6 +56,13 @@ class FileFrames : public FrameSource {
   std::string name(std::size_t frame) const override {
     const fs::path file = files_.file(frame);
     return file.empty() ? fmt::format("number {}", files_.number(frame)) : file.filename().string();
+  }
+
+  std::vector<fs::path> files() const override {
+    std::vector<fs::path> files;
+    for (std::size_t i = 0; i < files_.count(); ++i)
+      if (fs::path file = files_.file(i); !file.empty()) files.push_back(std::move(file));
+    return files;
   }
 
   bool has_polygons() const override { return true; }

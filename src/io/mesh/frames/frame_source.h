@@ -24,6 +24,8 @@ class FrameSource {
   [[nodiscard]] virtual std::string polygons_name() const { return {}; }
   [[nodiscard]] virtual std::size_t count() const = 0;
   [[nodiscard]] virtual std::string name(std::size_t frame) const = 0;
+  /// Returns the files of all frames, in their order; without those that are missing.
+  [[nodiscard]] virtual std::vector<std::filesystem::path> files() const = 0;
   /// Reads the positions of all vertices in the file. Only their number is checked.
   virtual void read(std::size_t frame, std::vector<Vec3>& positions) = 0;
   /// Whether frames have polygons of their own, which may differ from those of the first.

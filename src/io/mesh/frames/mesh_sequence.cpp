@@ -7,9 +7,11 @@
 #include <optional>
 #include <utility>
 
+#include "core/checksum.h"
 #include "core/memory.h"
 #include "geometry/vec.h"
 #include "io/file/file_bytes.h"
+#include "io/file/file_xxh3.h"
 #include "io/mesh/frames/changing_mesh.h"
 #include "io/mesh/frames/frame_source.h"
 #include "io/mesh/read_polygons.h"
@@ -137,6 +139,14 @@ std::size_t MeshSequence::frame_count() const {
 
 std::string MeshSequence::frame_name(std::size_t frame) const {
   return impl_->source->name(frame);
+}
+
+std::string MeshSequence::xxh3() const try {
+  core::Checksum checksum;
+  for (const std::filesystem::path& file : impl_->source->files()) io::add_file(checksum, file);
+  return core::hex_text(checksum.value());
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the checksum of a sequence");
 }
 
 std::span<const Vec3> MeshSequence::positions(std::size_t frame) try {

@@ -81,6 +81,7 @@ class NpyFrames : public FrameSource {
   std::string name(std::size_t frame) const override {
     return fmt::format("frame {} of {}", frame, npy_name_.filename().string());
   }
+  std::vector<fs::path> files() const override { return {mesh_name_, npy_name_}; }
 
   void read(std::size_t frame, std::vector<Vec3>& positions) override {
     if (header_.fortran_order)

@@ -76,8 +76,8 @@ std::vector<std::vector<Displaced>> targets_of(const GltfDocument& document, con
 
 class GltfFrames : public FrameSource {
  public:
-  GltfFrames(const GltfDocument& document, std::string file_name, std::optional<double> rate)
-      : file_name_(std::move(file_name)) {
+  GltfFrames(const GltfDocument& document, std::filesystem::path file, std::optional<double> rate)
+      : file_(std::move(file)) {
     const auto samplers = weight_samplers(list_of(document.root(), "animations"));
     const std::vector<GltfInstance> instances = gltf_instances(document);
     std::set<std::size_t> animated;
@@ -112,8 +112,9 @@ class GltfFrames : public FrameSource {
   std::size_t count() const override { return count_; }
 
   std::string name(std::size_t frame) const override {
-    return fmt::format("{} at {:g} s", file_name_, time(frame));
+    return fmt::format("{} at {:g} s", file_.filename().string(), time(frame));
   }
+  std::vector<std::filesystem::path> files() const override { return {file_}; }
 
   void read(std::size_t frame, std::vector<Vec3>& positions) override {
     positions = rest_;
@@ -146,7 +147,7 @@ class GltfFrames : public FrameSource {
     return interval_ == 0 ? key_times_[frame] : key_times_.front() + interval_ * static_cast<double>(frame);
   }
 
-  std::string file_name_;
+  std::filesystem::path file_;
   PolygonMesh polygons_;
   std::vector<Vec3> rest_;
   std::vector<WeightTrack> tracks_;  // one for each animated node
@@ -163,7 +164,7 @@ std::unique_ptr<FrameSource> gltf_frames(std::string_view bytes, const std::file
   try {
     const GltfDocument document(bytes, file.parent_path());
     if (list_of(document.root(), "animations").empty()) return nullptr;
-    return std::make_unique<GltfFrames>(document, file.filename().string(), rate);
+    return std::make_unique<GltfFrames>(document, file, rate);
   } catch (const json::exception& fault) {
     throw_gltf_fault(fault);
   }

@@ -102,6 +102,7 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
   Json page = common_json(options.up);
   page["units"] = options.units;
   page["names"] = options.names;
+  page["xxh3"] = options.xxh3;
   page["origin"] = box.lo, page["step"] = step;
   page["reach"] = reach;
   page["added"] = content.added, page["stride"] = content.stride;
@@ -114,6 +115,7 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
   page["scale"] = scale_json(color_scale(fixed));
   if (options.verdicts) {
     page["verdict"] = name_of(options.verdicts->of_all);
+    page["certified"] = options.verdicts->certified;
     page["tolerance"] = {{"lower", options.verdicts->tolerance.lo},
                          {"upper", options.verdicts->tolerance.hi}};
     page["verdicts"] = Json::array();

@@ -25,11 +25,14 @@ struct PlayerVerdicts {
   Tolerance tolerance{};
   Verdict of_all = Verdict::pass;
   std::vector<Verdict> of_frames;  ///< one for each frame added
+  bool certified = false;          ///< of_all is proven
 };
 
 /// Options of a SequencePlayer.
 struct PlayerOptions {
   std::array<std::string, 2> names{"O1", "O2"};
+  std::array<std::string, 2>
+      xxh3{};  ///< player.html: of the files, as of MeshSequence::xxh3(); empty: unknown
   std::string units{};
   UpAxis up = UpAxis::y;
   /// Colormap, range and tolerance, of all frames. Default: as fixed_colors() chooses from the distances of
