@@ -20,7 +20,8 @@
 
 namespace sdm {
 
-/// A region whose distances are all beyond the limit on the same side, or which has no distances.
+/// A region whose distances are all beyond the limit on the same side, or which has no distances. All its
+/// faces are judged by the same rows of a table.
 struct Place {
   /// Of all its samples the one that is farthest beyond its limit; NaN where a tolerance asks for values, and
   /// the samples have none.
@@ -68,7 +69,8 @@ struct PlacesOptions {
 
 /// Returns the places of a map: connected regions of texels and vertices out of the tolerances of their faces
 /// by more than the accuracy, or without a value; or, without a tolerance or where nothing is out of it, at
-/// or beyond the 99th percentile of |d| and the accuracy. Regions beyond opposite limits are separate. Texels
+/// or beyond the 99th percentile of |d| and the accuracy. Regions beyond opposite limits, or of
+/// faces that other rows of the table judge, are separate. Texels
 /// are connected if they are among the eight around each other in a chart of the atlas, or at the same point
 /// of an edge between charts, up to a texel and a half; vertices with the texels around them. A place is
 /// small if its area is less than 1e-5 of that of all texels, or than that of four texels of mean size. Areas

@@ -174,6 +174,36 @@ TEST(Places, AreOutOfTheLimitsOfTheirGroups) {
   EXPECT_EQ(none.limits, Tolerance(3));
 }
 
+// A region across a border of groups, which is a seam of the atlas in places, is one place for each group
+// that refuses it, and one place where the same rows judge both sides.
+TEST(Places, EndAtTheBordersOfGroups) {
+  const Field field = caps_field({{{1, 0, 0}, 0.4, 2}});
+  for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles}) {
+    const Surface surface(sphere(3), {.kind = kind, .resolution = 256});
+    FaceNames names{"group", {"north", "south"}, {}};
+    for (const Triangle& t : surface.mesh().triangles) {
+      double z = 0;
+      for (const std::uint32_t v : t) z += surface.mesh().positions[v][2];
+      names.of_face.push_back(z > 0 ? 0 : 1);
+    }
+    const auto find = [&](std::optional<Tolerance> of_all, const std::vector<GroupTolerance>& table) {
+      return find_places(surface, map_of(surface, field), at_vertices(surface.mesh(), field),
+                         {.tolerance = of_all, .table = table, .p99_abs = 3, .names = {&names, 1}});
+    };
+    const Places both = find({}, {{"south", Tolerance(0.5)}, {"north", Tolerance(1)}});
+    ASSERT_EQ(both.large.count, 2u);
+    EXPECT_EQ(both.largest[0].group, "south");
+    EXPECT_EQ(both.largest[0].limits, Tolerance(0.5));
+    EXPECT_LT(both.largest[0].point[2], 0.1);
+    EXPECT_EQ(both.largest[1].group, "north");
+    EXPECT_EQ(both.largest[1].limits, Tolerance(1));
+    EXPECT_NEAR(both.largest[0].area, both.largest[1].area, 0.15 * both.largest[0].area);
+    const Places one = find({}, {{"south", Tolerance(0.5)}, {"north", Tolerance(3)}});
+    EXPECT_EQ(one.large.count, 1u);
+    EXPECT_EQ(find(Tolerance(0.5), {}).large.count, 1u);
+  }
+}
+
 TEST(Places, OfSamplesWithoutAValueAreListedAfterTheOthers) {
   const Surface surface(sphere(3), {.resolution = 256});
   const double nan = std::nan("");

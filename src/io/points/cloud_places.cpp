@@ -24,10 +24,10 @@ CloudPlaces::CloudPlaces(const PointDistances& found, const PointDistancesOption
 }
 
 void CloudPlaces::add(const MeasuredPoint& point, std::uint64_t number) {
-  const int side = finite(point.point) ? limits_.side(point.distance, point.face) : 0;
-  if (side == 0) return;
+  const int kind = finite(point.point) ? limits_.kind(point.distance, point.face) : 0;
+  if (kind == 0) return;
   cells_.add(
-      point.point, side,
+      point.point, kind,
       {.points = 1,
        .distance = point.distance,
        .excess = std::isnan(point.distance) ? 0 : map::excess(point.distance, limits_.limits(point.face)),

@@ -29,8 +29,10 @@ class FaceTolerances {
                  std::span<const GroupTolerance> table);
 
   /// any_distance() of a face that no tolerance judges. Of kNone, that of the whole surface.
-  [[nodiscard]] const Tolerance& of(std::uint32_t face) const {
-    return tolerances_[number_.empty() || face == kNone ? 0 : number_[face]];
+  [[nodiscard]] const Tolerance& of(std::uint32_t face) const { return tolerances_[rows_of(face)]; }
+  /// The same number for faces that the same rows name; 0 of those that no row names, and of kNone.
+  [[nodiscard]] std::uint32_t rows_of(std::uint32_t face) const {
+    return number_.empty() || face == kNone ? 0 : number_[face];
   }
   [[nodiscard]] bool has_any() const { return has_any_; }
 

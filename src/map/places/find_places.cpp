@@ -39,8 +39,8 @@ class PlaceSearch {
         blocks_((width_ / kBlock + 1) * (height_ / kBlock + std::size_t{1})) {
     for (std::uint32_t texel = 0; texel < owners_.size(); ++texel)
       if (owners_[texel] != kNone)
-        if (const int side = limits.side(map.distance[texel], owners_[texel]); side != 0) {
-          member_of_texel_[texel] = add(texel, side);
+        if (const int kind = limits.kind(map.distance[texel], owners_[texel]); kind != 0) {
+          member_of_texel_[texel] = add(texel, kind);
           blocks_[block(texel % width_, texel / width_)] = 1;
         }
     add_vertices(vertex_distances, limits);
@@ -67,8 +67,8 @@ class PlaceSearch {
     return std::size_t{y / kBlock} * (width_ / kBlock + 1) + x / kBlock;
   }
 
-  std::uint32_t add(std::uint32_t id, int side) {
-    ids_.push_back(id), sides_.push_back(static_cast<std::uint8_t>(side));
+  std::uint32_t add(std::uint32_t id, int kind) {
+    ids_.push_back(id), kinds_.push_back(kind);
     return static_cast<std::uint32_t>(ids_.size() - 1);
   }
 
@@ -78,18 +78,18 @@ class PlaceSearch {
     for (std::uint32_t face = 0; face < triangles.size(); ++face) {
       if (is_removed(triangles[face])) continue;
       for (const std::uint32_t vertex : triangles[face]) {
-        const int side = limits.side(distances[vertex], face);
-        if (side == 0) continue;
+        const int kind = limits.kind(distances[vertex], face);
+        if (kind == 0) continue;
         if (member_of_vertex_.empty()) member_of_vertex_.assign(distances.size(), kNone);
         if (member_of_vertex_[vertex] != kNone) continue;
-        member_of_vertex_[vertex] = add(vertex, side);
+        member_of_vertex_[vertex] = add(vertex, kind);
         vertex_faces_.push_back(face);
       }
     }
   }
 
   void unite(std::uint32_t a, std::uint32_t b) {
-    if (sides_[a] == sides_[b]) sets_.unite(a, b);
+    if (kinds_[a] == kinds_[b]) sets_.unite(a, b);
   }
 
   // Each texel with those of its chart to the left and in the row above.
@@ -222,15 +222,16 @@ class PlaceSearch {
     };
     for (std::size_t i = 0; i <= steps; ++i) {
       const double t = static_cast<double>(i) / static_cast<double>(steps);
-      std::array<std::uint32_t, 4> there{kNone, kNone, kNone, kNone};  // one by each side of the limits
+      there_.clear();  // one of each kind
+      const auto unite_with_kind = [&](std::uint32_t n) {
+        const auto other = std::ranges::find(there_, kinds_[n], [&](auto m) { return kinds_[m]; });
+        if (other != there_.end()) unite(*other, n);
+        return other != there_.end();
+      };
       for_each_near(charts_[a.face], point(a, t), [&](std::uint32_t n) {
-        std::uint32_t& of_side = there[sides_[n]];
-        if (of_side == kNone) of_side = n;
-        unite(of_side, n);
+        if (!unite_with_kind(n)) there_.push_back(n);
       });
-      for_each_near(charts_[b.face], point(b, t), [&](std::uint32_t n) {
-        if (const std::uint32_t other = there[sides_[n]]; other != kNone) unite(other, n);
-      });
+      for_each_near(charts_[b.face], point(b, t), [&](std::uint32_t n) { unite_with_kind(n); });
     }
   }
 
@@ -240,8 +241,9 @@ class PlaceSearch {
   std::vector<std::uint32_t> member_of_texel_, member_of_vertex_;
   std::vector<std::uint8_t> blocks_;         ///< 1 with a member
   std::vector<std::uint32_t> ids_;           ///< of members: texels, ascending, then vertices
-  std::vector<std::uint8_t> sides_;          ///< of members
+  std::vector<int> kinds_;                   ///< of members
   std::vector<std::uint32_t> vertex_faces_;  ///< of members that are vertices: one face each
+  std::vector<std::uint32_t> there_;         ///< members at a point of a seam
   DisjointSets sets_;
 };
 

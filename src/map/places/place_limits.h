@@ -40,6 +40,14 @@ class PlaceLimits {
     if (!std::isfinite(d) || !(std::abs(d) > accuracy_)) return 0;
     return d >= of_all_.hi ? 1 : d <= of_all_.lo ? 2 : 0;
   }
+  /// What samples of one place have in common: side() and the rows that judge the face; 0 if the sample
+  /// belongs to no place.
+  [[nodiscard]] int kind(double d, std::uint32_t face) const {
+    constexpr int kSides = 4;
+    const int of_side = side(d, face);
+    return of_side == 0 || !by_tolerance_ ? of_side
+                                          : of_side + kSides * static_cast<int>(tolerances_.rows_of(face));
+  }
   /// Those of a face.
   [[nodiscard]] const Tolerance& limits(std::uint32_t face) const {
     return by_tolerance_ ? tolerances_.of(face) : of_all_;
