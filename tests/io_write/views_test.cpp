@@ -7,8 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "geometry/vec.h"
@@ -290,6 +293,33 @@ TEST(Views, ShowWhatFailsByTheLimitsOfItsGroup) {
   const auto [out, within] = warm_and_green({-0.1, 0.1});
   EXPECT_GT(out, 15);
   EXPECT_GT(within, 0);
+}
+
+// So do the picture of the atlas, and its texture in a model.
+TEST(FaceScales, AreThoseOfTheAtlasAndOfModels) {
+  const CubeScene scene;
+  const TemporaryFolder folder;
+  std::vector<std::uint32_t> halves(12, 0);
+  std::fill(halves.begin() + 6, halves.end(), kNone);
+  const std::vector<FaceNames> names{{.kind = "group", .names = {"some"}, .of_face = halves}};
+  const std::vector<GroupTolerance> table{{"some", Tolerance(-0.1, 0.1)}};
+  const auto has = [&](const PictureOptions& options, Rgb color) {
+    write_distance_png(folder / "atlas.png", scene.surface, scene.map, options);
+    return std::ranges::count(read_png(folder / "atlas.png").colors, color) > 100;
+  };
+  EXPECT_TRUE(has({.table = table, .names = names}, kUnjudged));
+  EXPECT_TRUE(has({.table = table, .names = names}, kAbove[2]));
+  EXPECT_FALSE(has({}, kUnjudged));
+  const auto texture = [&](const PictureOptions& options) {
+    write_glb(folder / "model.glb", scene.surface, scene.map, scene.vertices, options);
+    std::ifstream file(folder / "model.glb", std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    const std::size_t begin = bytes.find("\x89PNG");
+    std::ofstream(folder / "texture.png", std::ios::binary) << bytes.substr(begin);
+    return read_png(folder / "texture.png").colors;
+  };
+  EXPECT_GT(std::ranges::count(texture({.table = table, .names = names}), kUnjudged), 100);
+  EXPECT_EQ(std::ranges::count(texture({}), kUnjudged), 0);
 }
 
 TEST(Views, StateTheVerdictInItsColour) {

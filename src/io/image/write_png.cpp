@@ -2,6 +2,7 @@
 #include "io/file/atomic_file.h"
 #include "io/image/pictures/atlas_picture.h"
 #include "io/image/pictures/color_scale.h"
+#include "io/image/pictures/face_scales.h"
 #include "io/image/pictures/legend.h"
 #include "io/image/pictures/png.h"
 #include "io/image/pictures/site_legend.h"
@@ -46,6 +47,7 @@ void write_map_png(const std::filesystem::path& file, const AtlasPicture& pictur
 void write_distance_png(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                         const PictureOptions& options) try {
   const ColorScale scale = color_scale(surface, map, options);
+  const FaceScales of_faces(scale, options);
   const AtlasPicture picture(surface, options.largest);
   float least = std::numeric_limits<float>::infinity(), most = -least;
   for (const float d : map.distance)
@@ -53,9 +55,11 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
   LegendText text = legend_text(map, least, most, scale, options.units);
   if (least <= most)  // views.png and the reports have those of the vertices too
     for (std::size_t i = 0; i < 2; ++i) text.notes[i] += " (texels)";
+  of_faces.describe(text);
   write_map_png(
-      file, picture, [&](std::size_t texel) { return scale(map.distance[texel]); },
-      draw_legend(scale, text, picture.height()));
+      file, picture,
+      [&](std::size_t texel) { return of_faces(surface.texel_faces()[texel], map.distance[texel]); },
+      draw_legend(of_faces.of_legend(), text, picture.height()));
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
 }

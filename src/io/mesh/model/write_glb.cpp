@@ -1,10 +1,11 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
+#include "atlas/gutter.h"
 #include "io/file/atomic_file.h"
 #include "io/image/pictures/atlas_picture.h"
 #include "io/image/pictures/color_scale.h"
-#include "atlas/gutter.h"
+#include "io/image/pictures/face_scales.h"
 #include "io/image/pictures/png.h"
 #include "io/mesh/model/glb_model.h"
 #include "io/mesh/model/model_vertices.h"
@@ -86,21 +87,28 @@ void add_primitive(GlbModel& glb, const Model& model, const ModelVertices& verti
 /// The coloured map with its gutters filled. Corners of charts extend beyond the texels that the chart owns,
 /// and small charts own hardly any: the free texels that are blended at a vertex get the vertex's own
 /// distance.
-std::string texture_png(const Surface& surface, const DistanceMap& map, const ColorScale& scale,
+std::string texture_png(const Surface& surface, const DistanceMap& map, const FaceScales& scales,
                         const AtlasPicture& picture, std::span<const float> vertex_distances) {
   const std::uint32_t n = picture.width(), rows = picture.height();
   const Mesh& mesh = surface.mesh();
   std::vector<std::uint32_t> shown(std::size_t{n} * rows);  // texels
   std::vector<float> distance(shown.size());
+  std::vector<std::uint32_t> owner(scales.by_group() ? shown.size() : 0, kNone);  // the face of each pixel
   parallel_for(rows, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t pixel = begin * n; pixel < end * n; ++pixel) {
       shown[pixel] =
           picture.texel(static_cast<std::uint32_t>(pixel % n), static_cast<std::uint32_t>(pixel / n));
-      if (shown[pixel] != kNone) distance[pixel] = map.distance[shown[pixel]];
+      if (shown[pixel] == kNone) continue;
+      distance[pixel] = map.distance[shown[pixel]];
+      if (!owner.empty()) owner[pixel] = surface.texel_faces()[shown[pixel]];
     }
   });
   // Free pixels beside corners, found in parallel, are filled in the order of the faces.
-  using Seed = std::pair<std::size_t, float>;
+  struct Seed {
+    std::size_t pixel;
+    float distance;
+    std::uint32_t face;
+  };
   constexpr std::size_t kFaces = 1 << 15;
   std::vector<std::vector<Seed>> seeds((mesh.triangles.size() + kFaces - 1) / kFaces);
   parallel_for(seeds.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -116,19 +124,24 @@ std::string texture_png(const Surface& surface, const DistanceMap& map, const Co
             if (!(x >= 0 && y >= 0 && x < n && y < rows)) continue;
             const std::size_t pixel = static_cast<std::size_t>(y) * n + static_cast<std::size_t>(x);
             if (shown[pixel] == kNone)
-              seeds[face / kFaces].emplace_back(pixel, vertex_distances[mesh.triangles[face][k]]);
+              seeds[face / kFaces].push_back(
+                  {pixel, vertex_distances[mesh.triangles[face][k]], static_cast<std::uint32_t>(face)});
           }
     }
   });
   for (const std::vector<Seed>& some : seeds)
-    for (const auto& [pixel, d] : some)
-      if (std::exchange(shown[pixel], 0) == kNone) distance[pixel] = d;
+    for (const auto& [pixel, d, face] : some) {
+      if (std::exchange(shown[pixel], 0) != kNone) continue;
+      distance[pixel] = d;
+      if (!owner.empty()) owner[pixel] = face;
+    }
   const atlas::Gutter gutter(n, shown);
   std::ostringstream png;
   write_png(png, n, rows, [&](std::uint32_t y, std::span<Rgb> pixels) {
     for (std::uint32_t x = 0; x < n; ++x) {
       const std::uint32_t source = gutter.source(x, y);
-      pixels[x] = source == kNone ? kBackground : scale(distance[source]);
+      pixels[x] =
+          source == kNone ? kBackground : scales(owner.empty() ? kNone : owner[source], distance[source]);
     }
   });
   return std::move(png).str();
@@ -189,7 +202,7 @@ GlbModel make_model(const Surface& surface, const DistanceMap& map, std::span<co
                     const PictureOptions& options) {
   const Mesh& mesh = surface.mesh();
   const AtlasPicture picture(surface, options.largest);
-  const ColorScale scale = color_scale(surface, map, options);
+  const FaceScales scales(color_scale(surface, map, options), options);
   ShadingNormals normals;
   std::array<ModelVertices, 2> vertices;
   std::string png;
@@ -198,7 +211,7 @@ GlbModel make_model(const Surface& surface, const DistanceMap& map, std::span<co
                       const auto faces = faces_by_distance(mesh, vertex_distances);
                       for (int k = 0; k < 2; ++k) vertices[k] = model_vertices(surface, normals, faces[k]);
                     },
-                    [&] { png = texture_png(surface, map, scale, picture, vertex_distances); }});
+                    [&] { png = texture_png(surface, map, scales, picture, vertex_distances); }});
   const Model model{
       .mesh = mesh,
       .normals = normals,
