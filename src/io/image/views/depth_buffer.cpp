@@ -18,7 +18,7 @@ Vec2 flat(const Vec3& p) {
 }
 
 /// The samples whose centres are from `lo` to `hi`, of `count`: from `first` up to before `second`.
-std::pair<std::uint32_t, std::uint32_t> samples(double lo, double hi, std::uint32_t count) {
+inline std::pair<std::uint32_t, std::uint32_t> samples(double lo, double hi, std::uint32_t count) {
   // Both ends are rounded by a conversion to int, which is one instruction; std::ceil() is a call.
   const double most = count;
   const double first = std::clamp(lo - 0.5, -1.0, most), last = std::clamp(hi - 0.5, -1.0, most - 1);
@@ -59,6 +59,8 @@ void DepthBuffer::draw(std::uint32_t face, const Triangle& triangle) {
   const auto [farthest, nearest] = std::minmax({p[0][2], p[1][2], p[2][2]});
   if (!(right > 0 && left < width_ && bottom > 0 && top < height_)) return;  // outside of the picture
   const auto [first_row, end_row] = samples(top - kMargin, bottom + kMargin, height_);
+  const auto columns = samples(left - kMargin, right + kMargin, width_);
+  if (first_row == end_row || columns.first == columns.second) return;  // between samples
   const double area = cross(flat(p[1]) - flat(p[0]), flat(p[2]) - flat(p[0]));
   if (area == 0) return;  // seen edge-on
   const double side = area > 0 ? 1 : -1;
@@ -93,6 +95,11 @@ void DepthBuffer::draw(std::uint32_t face, const Triangle& triangle) {
       if (depth > depth_[sample]) depth_[sample] = depth, face_[sample] = face;
     }
   }
+}
+
+bool DepthBuffer::is_back(const Triangle& triangle) const {
+  const Vec2 p = flat(corners_[triangle[0]]);
+  return cross(flat(corners_[triangle[1]]) - p, flat(corners_[triangle[2]]) - p) > 0;  // rows count downwards
 }
 
 Vec3 DepthBuffer::weights(std::size_t sample, const Triangle& triangle) const {

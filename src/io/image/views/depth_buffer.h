@@ -38,6 +38,8 @@ class DepthBuffer {
   [[nodiscard]] float depth(std::size_t sample) const { return depth_[sample]; }
   /// The weights of the corners of a face at a sample.
   [[nodiscard]] Vec3 weights(std::size_t sample, const Triangle& triangle) const;
+  /// Whether the viewer sees the back of a face: its corners are clockwise.
+  [[nodiscard]] bool is_back(const Triangle& triangle) const;
 
  private:
   void draw(std::uint32_t face, const Triangle& triangle);

@@ -36,26 +36,22 @@ Rgb rgb(const Color& c) {
 /// darker.
 class Light {
  public:
-  explicit Light(const Projection& p)
-      : towards_(p.towards), from_(normalized(-0.35 * p.right + 0.5 * p.up + 0.8 * p.towards)) {}
+  explicit Light(const Projection& p) : from_(normalized(-0.35 * p.right + 0.5 * p.up + 0.8 * p.towards)) {}
 
-  [[nodiscard]] double operator()(const Mesh& mesh, const ShadingNormals& normals, std::uint32_t face,
-                                  const Vec3& weights) const {
-    const Triangle& t = mesh.triangles[face];
-    const Vec3 flat =
-        cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]);
+  /// `back`: of the face the viewer sees the back.
+  [[nodiscard]] double operator()(const ShadingNormals& normals, std::uint32_t face, const Vec3& weights,
+                                  bool back) const {
     Vec3 normal{};
     for (int k = 0; k < 3; ++k) {
       const Vec3f& n = normals.normals[normals.corner[face][k]];
       normal += weights[k] * Vec3{n[0], n[1], n[2]};
     }
-    const bool back = dot(flat, towards_) < 0;
     const double lit = std::max(0.0, (back ? -1 : 1) * dot(normalized(normal), from_));
     return (back ? 0.5 : 0.62) + 0.38 * lit;
   }
 
  private:
-  Vec3 towards_, from_;
+  Vec3 from_;
 };
 
 /// The colour of a point of a face: that of the texel there or, at the border of a chart, of a neighbouring
@@ -138,18 +134,22 @@ class Renderer {
 
   [[nodiscard]] Rgb pixel(std::uint32_t x, std::uint32_t y) const {
     if (is_background(x, y)) return kViewBackground;
-    Color sum{}, last{};
-    std::size_t last_sample = 0;
-    bool any = false;
+    struct Seen {
+      std::uint32_t face, ghost_face;
+      Color color;
+    };
+    std::array<Seen, std::size_t{kSamples} * kSamples> seen;
+    std::size_t count = 0;
+    Color sum{};
     for (std::uint32_t row = 0; row < kSamples; ++row)
       for (std::uint32_t column = 0; column < kSamples; ++column) {
         const std::size_t sample = sample_at(x, y) + std::size_t{row} * part_.width() + column;
+        const std::uint32_t face = part_.face(sample), ghost_face = ghost_ ? ghost_->face(sample) : kNone;
         // Samples of a pixel in the same face have almost the same colour.
-        if (!any || part_.face(sample) != part_.face(last_sample) ||
-            (ghost_ && ghost_->face(sample) != ghost_->face(last_sample)))
-          last = sample_color(sample);
-        last_sample = sample, any = true;
-        sum = sum + last;
+        std::size_t i = 0;
+        while (i < count && (seen[i].face != face || seen[i].ghost_face != ghost_face)) ++i;
+        if (i == count) seen[count++] = {face, ghost_face, sample_color(sample)};
+        sum = sum + seen[i].color;
       }
     sum = (1.0 / (kSamples * kSamples)) * sum;
     return rgb(is_outline(x, y) ? mix(sum, color(kInk), kOutline) : sum);
@@ -164,8 +164,10 @@ class Renderer {
       return ghost;
     if (face == kNone)
       return ghost_face == kNone ? color(kViewBackground) : mix(color(kViewBackground), ghost, 0.75);
-    const Vec3 weights = part_.weights(sample, mesh().triangles[face]);
-    const Color part = light_(mesh(), scene_.normals, face, weights) * color(color_at(scene_, face, weights));
+    const Triangle& corners = mesh().triangles[face];
+    const Vec3 weights = part_.weights(sample, corners);
+    const Color part = light_(scene_.normals, face, weights, part_.is_back(corners)) *
+                       color(color_at(scene_, face, weights));
     const bool veiled =
         ghost_face != kNone && ghost_->depth(sample) > part_.depth(sample) + kVeilFrom / projection_.scale;
     return veiled ? mix(part, ghost, kVeil) : part;
@@ -174,7 +176,7 @@ class Renderer {
   [[nodiscard]] Color other_color(std::size_t sample, std::uint32_t face) const {
     const Triangle& t = scene_.other->triangles[face];
     const Vec3 weights = ghost_->weights(sample, t);
-    const double light = light_(*scene_.other, scene_.other_normals, face, weights);
+    const double light = light_(scene_.other_normals, face, weights, ghost_->is_back(t));
     // Pale on every side, so that it is never darker than the part.
     if (scene_.other_distances.empty()) return (0.7 + 0.3 * light) * color(kGhost);
     double distance = 0;
