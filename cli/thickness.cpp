@@ -84,13 +84,13 @@ std::string limits_in_words(const ThicknessCommand& command) {
 std::string verdict_in_words(const ThicknessCommand& command, const sdm::Summary& summary) {
   switch (summary.tolerance->verdict) {
     case sdm::Verdict::pass:
-      return fmt::format("every texel has {}; between the texels, an estimate", limits_in_words(command));
+      return fmt::format("every measured point has {}; between them, an estimate", limits_in_words(command));
     case sdm::Verdict::fail:
       return summary.tolerance->reason == sdm::VerdictReason::exceeded
-                 ? fmt::format("a texel does not have {}", limits_in_words(command))
+                 ? fmt::format("a measured point does not have {}", limits_in_words(command))
                  : sdm::verdict_text(summary);
     default:
-      return fmt::format("some texel is as close to the limit, {}, as a thickness is accurate, {}{}",
+      return fmt::format("a measured point is as close to the limit, {}, as a thickness is accurate, {}{}",
                          limits_in_words(command), number(summary.evidence.accuracy, 2),
                          unit_suffix(summary.units));
   }
@@ -172,8 +172,9 @@ ThicknessResult measure(ThicknessCommand& command, const Input& input, double im
   ThicknessResult result{sdm::summarize_thickness(surface, map, options), {}};
   result.summary.notes = input.notes;
   if (auto note = note_on_unit(command.picture.units)) result.summary.notes.push_back(std::move(*note));
-  write_files(command, input, surface, maps, at_vertices,
-              sdm::fixed_colors(command.picture, *result.summary.colors), folder);
+  sdm::PictureOptions picture = sdm::fixed_colors(command.picture, *result.summary.colors);
+  if (const auto verdict = judged(result.summary, {})) picture.verdict.emplace(*verdict);
+  write_files(command, input, surface, maps, at_vertices, picture, folder);
   const double export_ms = watch.lap();
   const sdm::ReportTimes times{.import = import_ms,
                                .atlas = atlas_ms,

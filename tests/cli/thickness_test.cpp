@@ -5,11 +5,14 @@
 #include <sdm/sdm.h>
 #include <sdm/thickness.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/samples.h"
+#include "io_write/read_png.h"
 #include "support/run_sdm.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"
@@ -72,15 +75,16 @@ TEST_F(ThicknessCommandTest, JudgesLimitsByItsTexels) {
   Outcome outcome = run(part, {"--min", "0.4", "--units", "mm"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out,
-              HasSubstr("PASS: every texel has at least 0.4 mm; between the texels, an estimate"));
+              HasSubstr("PASS: every measured point has at least 0.4 mm; between them, an estimate"));
   outcome = run(part, {"--min", "0.6"});
   EXPECT_EQ(outcome.code, 3);
   EXPECT_THAT(outcome.out, HasSubstr("does not have at least 0.6; 0.5 at ("));
   outcome = run(part, {"--min", "0.5"});
   EXPECT_EQ(outcome.code, 4);
-  EXPECT_THAT(outcome.out, HasSubstr("NOT DECIDED: some texel is as close to the limit, at least 0.5, as"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("NOT DECIDED: a measured point is as close to the limit, at least 0.5, as"));
   EXPECT_EQ(Json::parse(run(part, {"--min", "0.4", "--json"}).out)["tolerance"]["text"],
-            "every texel has at least 0.4; between the texels, an estimate");
+            "every measured point has at least 0.4; between them, an estimate");
   EXPECT_EQ(run(part, {"--max", "6.1"}).code, 0);
   const Json open_above = Json::parse(run(part, {"--min", "0.4", "--json"}).out);
   EXPECT_TRUE(open_above["tolerance"]["upper"].is_null());
@@ -92,6 +96,13 @@ TEST_F(ThicknessCommandTest, JudgesLimitsByItsTexels) {
   EXPECT_EQ(report["tolerance"]["verdict"], "FAIL");
   EXPECT_EQ(report["tolerance"]["nearest_limit"], "upper");
   EXPECT_EQ(report["thickness"]["max"], 5);
+}
+
+TEST_F(ThicknessCommandTest, StatesItsVerdictInViews) {
+  for (const auto& [limit, color] : {std::pair("0.4", io::Rgb{0, 97, 61}), {"0.6", io::Rgb{163, 19, 14}}}) {
+    (void)run(part, {"--min", limit, "--write", "views"});
+    EXPECT_GT(std::ranges::count(read_png(out + "/views.png").colors, color), 1000) << limit;
+  }
 }
 
 TEST_F(ThicknessCommandTest, AnUpperLimitAloneListsTheThickestPlaces) {
