@@ -15,7 +15,19 @@ function bundle(file) {
     charset: 'utf8',
     legalComments: 'inline',
   });
-  return outputFiles[0].text.trim().replace(/\n[\t ]+/g, '\n'); // shaders are indented
+  return outputFiles[0].text.trim();
+}
+
+/// Takes comments, indentation and blanks beside signs from shaders, the only text of several lines but for licences. A line
+/// with a backtick or an end of a licence may have code of the program, as have the first and the last, and keeps its blanks.
+function withShortShaders(text) {
+  const lines = text.replace(/\n[\t ]+/g, '\n').split('\n');
+  const short = lines.map((line, i) => {
+    if (i === 0 || i === lines.length - 1 || /`|\/\*\*|^\*/.test(line)) return line;
+    const code = line.replace(/\/\/.*/, '').trim();
+    return code.startsWith('#') || code.includes('${') ? code : code.replace(/ *([=*/(),;<>{}?:&|]) */g, '$1');
+  });
+  return short.filter((line) => line !== '').join('\n');
 }
 
 // Functions as the replacements: in a string, $& and the like have a meaning.
@@ -29,5 +41,5 @@ for (const [name, [title, program]] of Object.entries(pages))
       .replace('<!-- title -->', title)
       .replace('<!-- content -->\n', () => read(`${name}.html`))
       .replace('/* style */', () => bundle('page.css'))
-      .replace('/* program */', () => bundle(program)),
+      .replace('/* program */', () => withShortShaders(bundle(program))),
   );

@@ -1,5 +1,6 @@
 // Labels at points of the part that stay, with their values.
-import { byId, make, makeSvg } from './dom';
+import { byId, make } from './dom';
+import { Label } from './label';
 import { place } from './numbers';
 import type { Vec } from './page_data';
 import type { View } from './view';
@@ -13,10 +14,7 @@ export interface Callout {
 
 interface Placed extends Callout {
   number: number;
-  hidden: boolean;
-  label: HTMLElement;
-  dot: SVGElement;
-  line: SVGElement;
+  label: Label;
   item: HTMLElement;
 }
 
@@ -44,14 +42,10 @@ export class Callouts {
       ` at ${place(callout.point, this.size)}${this.unit}${callout.detail ? `, ${callout.detail}` : ''} `,
       make('button', { type: 'button', class: 'remove', click: remove, 'aria-label': `Remove callout ${number}` }, '×'),
     );
-    const label = make('div', { class: 'callout' }, make('b', {}, String(number)), ` ${value}`);
-    const dot = makeSvg('circle', { r: 4 });
-    const line = makeSvg('line', {});
-    byId('labels').append(label);
-    byId('leaders').append(line, dot);
+    const label = new Label(this.view, make('b', {}, String(number)), ` ${value}`);
     byId('callout-list').append(item);
     byId('callouts').classList.remove('empty');
-    this.placed.push({ ...callout, number, hidden: false, label, dot, line, item });
+    this.placed.push({ ...callout, number, label, item });
     this.update();
   }
 
@@ -64,43 +58,24 @@ export class Callouts {
     const index = this.placed.findIndex((c) => c.number === number);
     if (index < 0) return;
     const [callout] = this.placed.splice(index, 1);
-    for (const element of [callout.label, callout.dot, callout.line, callout.item]) element.remove();
+    callout.label.remove();
+    callout.item.remove();
     byId('callouts').classList.toggle('empty', this.placed.length === 0);
     this.view.canvas.focus();
   }
 
   /// After each picture: labels follow the points; soon after the last one, those behind the part fade.
   update(): void {
-    const { clientWidth, clientHeight } = this.view.canvas;
-    const most = byId('legend').offsetLeft - 4; // labels are beside the legend
-    for (const c of this.placed) {
-      const { x, y, behind } = this.view.place(c.at);
-      const isCutAway = this.view.isCutAway(c.at);
-      c.item.classList.toggle('cut-away', isCutAway);
-      const width = c.label.offsetWidth;
-      const right = x < clientWidth * 0.6 && x + 26 + width <= most;
-      const lx = right ? Math.max(x + 26, 4) : Math.max(Math.min(x - 26, most), width + 4);
-      const ly = Math.min(Math.max(y - 30, 14), clientHeight - 14);
-      c.label.style.transform = `translate(${lx}px, ${ly}px) translate(${right ? '0' : '-100%'}, -50%)`;
-      c.dot.setAttribute('cx', String(x));
-      c.dot.setAttribute('cy', String(y));
-      c.line.setAttribute('x1', String(x));
-      c.line.setAttribute('y1', String(y));
-      c.line.setAttribute('x2', String(lx));
-      c.line.setAttribute('y2', String(ly));
-      for (const element of [c.label, c.dot, c.line]) {
-        element.classList.toggle('outside', behind || isCutAway);
-        element.classList.toggle('behind', c.hidden);
-      }
+    for (const { label, at, item } of this.placed) {
+      const isCutAway = this.view.isCutAway(at);
+      item.classList.toggle('cut-away', isCutAway);
+      label.show(isCutAway ? null : at);
     }
     window.clearTimeout(this.timer);
     if (this.placed.length > 0) this.timer = window.setTimeout(() => this.findHidden(), 120);
   }
 
   private findHidden(): void {
-    for (const c of this.placed) {
-      c.hidden = this.view.isHidden(c.at);
-      for (const element of [c.label, c.dot, c.line]) element.classList.toggle('behind', c.hidden);
-    }
+    for (const { label, at } of this.placed) label.mark('behind', this.view.isHidden(at));
   }
 }

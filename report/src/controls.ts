@@ -101,7 +101,7 @@ export function startOf(report: Report, area: AreaByValue, ghostShown: boolean, 
   const [lo, hi] = report.colors?.range ?? [least < 0 ? -largest : least, Math.max(most, least + largest * 1e-6)];
   return {
     scale: {
-      mode: (byGroup ? 'tolerance' : report.colors?.map ?? (least < 0 && most > 0 ? 'diverging' : 'viridis')) as Mode,
+      mode: (byGroup && report.colors?.by_group !== false ? 'tolerance' : report.colors?.map ?? (least < 0 && most > 0 ? 'diverging' : 'viridis')) as Mode,
       lo,
       hi: hi > lo ? hi : lo + 1,
       ...(limitsOf(report) ?? { lower: -Infinity, upper: Infinity }),
@@ -320,7 +320,7 @@ export function makeControls(
     modeRow,
     sliders.reach.element, sliders.lo.element, sliders.hi.element,
     ...(limits || canJudge(report) ? [...limitSliders.map(({ element }) => element), make('p', { id: 'what-if', role: 'status', 'aria-live': 'polite' })] : []),
-    ...(report.group_tolerances ? [make('p', { id: 'table-limits', class: 'hint' }, 'This tolerance is for the whole part. The groups keep the limits of their table.')] : []),
+    ...(report.group_tolerances ? [make('p', { id: 'table-limits', class: 'hint' }, `This tolerance is for the whole part. The groups keep the limits of their table${byGroup ? '' : ', which the colours do not show'}.`)] : []),
     viewRow, sectionRow, sectionDetails, ...(isCloud ? [widthRow] : []), ...(hasGhost ? [ghostRow] : []), ...(hasCoverage ? [coverageRow] : []),
     resetButton,
   );

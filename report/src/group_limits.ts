@@ -1,7 +1,14 @@
 // The limits of each triangle by a table of tolerances, and the scales of their bands.
 import type { Scale } from './color_scale';
 import type { Model, Report } from './page_data';
-import type { Limits } from './verdict';
+import type { GroupName } from './group_table';
+import { isLimited, type Limits } from './verdict';
+
+/// The names of the kind of a group, and the number that its triangles have there.
+function numberOf(model: Model, group: GroupName | null) {
+  const named = group && model.names.find((n) => n.kind === group.kind);
+  return { named, number: named ? named.names.indexOf(group.group) + 1 : 0 };
+}
 
 const kNoLimit: Limits = { lower: -Infinity, upper: Infinity };
 
@@ -54,21 +61,37 @@ export class GroupLimits {
     return scale.mode === 'tolerance' ? banded(scale, common(this.sets[set], scale)) : scale;
   }
 
-  /// That of the row of a group.
-  scaleOfGroup(report: Report, kind: string, group: string, scale: Scale): Scale {
-    const row = report.group_tolerances!.groups.find((g) => g.kind === kind && g.group === group)!;
-    return banded(scale, common({ lower: row.lower ?? -Infinity, upper: row.upper ?? Infinity }, scale));
+  /// The sets of all triangles, or of those of a group.
+  setsOf(model: Model, group: GroupName | null): number[] {
+    const { named, number } = numberOf(model, group);
+    return [...new Set(this.ofTriangle.filter((_, t) => !named || named.ofTriangle[t] === number))];
   }
 
-  /// In units of the limits, for a legend of all of them: from 0 if none has a lower one below.
-  relative(scale: Scale): { scale: Scale; lower: boolean; upper: boolean; someHaveNone: boolean } {
-    const used = new Set(this.ofTriangle);
-    const limits = [...used].map((set) => common(this.sets[set], scale));
-    const [lower, upper] = [limits.some((l) => l.lower > -Infinity), limits.some((l) => l.upper < Infinity)];
+  /// The limits that several sets have in units of these, from 0 if none has a lower one below: a scale for the legend of
+  /// all of them. Of sets with the same limits it is theirs.
+  joined(sets: number[], scale: Scale): { scale: Scale; isRelative: boolean; lower: boolean; upper: boolean; someHaveNone: boolean } {
+    const limits = sets.map((set) => common(this.sets[set], scale));
+    const judged = limits.filter(isLimited);
+    const [lower, upper] = [judged.some((l) => l.lower > -Infinity), judged.some((l) => l.upper < Infinity)];
+    const isRelative = judged.some((l) => l.lower !== judged[0].lower || l.upper !== judged[0].upper);
+    const relative = { ...scale, lower: lower ? -1 : -Infinity, upper: upper ? 1 : Infinity, lo: lower ? -2 : 0, hi: upper ? 2 : 0, accuracy: 0 };
     return {
-      scale: { ...scale, lower: lower ? -1 : -Infinity, upper: upper ? 1 : Infinity, lo: lower ? -2 : 0, hi: upper ? 2 : 0, accuracy: 0 },
-      lower, upper,
-      someHaveNone: limits.some((l) => l.lower === -Infinity && l.upper === Infinity),
+      scale: isRelative || judged.length === 0 ? relative : banded(scale, judged[0]),
+      isRelative, lower, upper,
+      someHaveNone: judged.length < limits.length,
     };
+  }
+
+  /// The share of the area of the part that no limit is for.
+  unjudged({ position, triangle }: Model): number {
+    const area = [0, 0]; // without limits, and all
+    const edge = (t: number, k: number) => [0, 1, 2].map((i) => position[3 * triangle[3 * t + k] + i] - position[3 * triangle[3 * t] + i]);
+    this.ofTriangle.forEach((set, t) => {
+      const [a, b] = [edge(t, 1), edge(t, 2)];
+      const size = Math.hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+      area[1] += size;
+      if (!isLimited(this.sets[set])) area[0] += size;
+    });
+    return area[1] > 0 ? area[0] / area[1] : 0;
   }
 }

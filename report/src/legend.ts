@@ -61,19 +61,22 @@ function draw(scale: Scale, colors: Colors, title: string, labelsOf: (apart: num
 
 const noValueKey = (colors: Colors, noValue: boolean): [Vec, string][] => (noValue ? [[colors.no_value[0], 'no value']] : []);
 
+const titleOf = (quantity: string, unit: string) => (unit ? `${quantity} in ${unit}` : quantity);
+const nameOf = (scale: Scale, unit: string) => `Colour scale from ${text(ends(scale)[0])} to ${text(ends(scale)[1])} ${unit}`;
+
 export function drawLegend(scale: Scale, colors: Colors, quantity: string, unit: string, noValue: boolean): void {
-  draw(scale, colors, unit ? `${quantity} in ${unit}` : quantity, (apart) => scaleLabels(scale, apart), noValueKey(colors, noValue));
-  byId('legend').setAttribute('aria-label', `Colour scale from ${text(ends(scale)[0])} to ${text(ends(scale)[1])} ${unit}`);
+  draw(scale, colors, titleOf(quantity, unit), (apart) => scaleLabels(scale, apart), noValueKey(colors, noValue));
+  byId('legend').setAttribute('aria-label', nameOf(scale, unit));
 }
 
-/// The legend of bands that are those of each group: in units of its limits.
-export function drawGroupLegend(scale: Scale, limits: GroupLimits, colors: Colors, quantity: string, noValue: boolean): void {
-  const { scale: relative, lower, upper, someHaveNone } = limits.relative(scale);
+/// The legend of bands of these sets of limits: with their numbers if all have the same, otherwise in units of their limits.
+export function drawGroupLegend(scale: Scale, limits: GroupLimits, sets: number[], colors: Colors, quantity: string, unit: string, noValue: boolean): void {
+  const { scale: joined, isRelative, lower, upper, someHaveNone } = limits.joined(sets, scale);
   const labels: ScaleLabel[] = [];
   if (lower) labels.push({ value: -1, text: 'lower', isLimit: true });
   if (upper) labels.push({ value: 1, text: 'upper', isLimit: true });
   const keys = noValueKey(colors, noValue);
   if (someHaveNone) keys.unshift([colors.unjudged[0], 'no limits']);
-  draw(relative, colors, `${quantity}, by the limits of each group`, () => labels, keys);
-  byId('legend').setAttribute('aria-label', `Colour scale of each group from ${lower ? 'below its lower limit' : 'its least value'} to ${upper ? 'above its upper limit' : 'its largest value'}`);
+  draw(joined, colors, isRelative ? `${quantity}, by the limits of each group` : titleOf(quantity, unit), (apart) => (isRelative ? labels : scaleLabels(joined, apart)), keys);
+  byId('legend').setAttribute('aria-label', isRelative ? `Colour scale of each group from ${lower ? 'below its lower limit' : 'its least value'} to ${upper ? 'above its upper limit' : 'its largest value'}` : nameOf(joined, unit));
 }

@@ -10,7 +10,7 @@ import { drawHistogram } from './histogram';
 import { GroupLimits } from './group_limits';
 import { drawGroupLegend, drawLegend } from './legend';
 import { showMade } from './made';
-import { exactText, place } from './numbers';
+import { exactText, percent, place } from './numbers';
 import { openPage } from './open_page';
 import { Listed, listedPlaces, onlyThickest, showPlaces } from './places';
 import { PageData, readReport, Report, Vec } from './page_data';
@@ -21,7 +21,7 @@ import { copyOfPage, csvOf, download, pageWith, readSaved, Saved } from './saved
 import { SectionView } from './section_view';
 import { showWithoutPicture } from './without_picture';
 import { boxOf, Subject, toFile, toScene } from './subject';
-import { howSure } from './sure';
+import { howSure, sayHowSure } from './sure';
 import { Surface } from './surface';
 import { inputsOf, showFields, showInputs, showMethod, showMore, showNumbers, showOmissions, titleOf } from './tables';
 import { isCloud, isSigned, outsideOf, unitOf, verdictOf, whatIf } from './verdict';
@@ -31,9 +31,7 @@ import { capital, named, quantityOf } from './words';
 function showVerdict(report: Report): void {
   const { verdict, sentence } = verdictOf(report);
   showBadge(verdict);
-  const sure = howSure(report, verdict);
-  byId('sure').hidden = !sure;
-  if (sure) byId('sure').replaceChildren('How sure: ', make('b', {}, sure[0]), ` – ${sure[1]}`);
+  showSure(report);
   const tile = report.atlas?.udim ? ' This page is of one tile of the texture; the verdict on all tiles is in report.json in the folder above.' : '';
   const doubts = verdict === 'FAIL' || verdict === 'NOT DECIDED' ? (report.doubts ?? []).map((doubt) => ` ${capital(doubt.text)}.`).join('') : '';
   const notes = report.notes?.length ?? 0;
@@ -61,6 +59,14 @@ function sectionWords({ part, other, factor }: SectionView): string {
   if (!other) return `The thick line is the profile of the part in the colours of its values.${inside}`;
   const gap = `${factor > 1 ? `${factor} times ` : ''}as long as the gap to the reference`;
   return `Thick line in colours: the part. Dark line: the reference. Thin lines towards it: ${gap} in this plane.${other.isClosed && part.isClosed ? ' Orange: only the part; blue: only the reference; grey: both.' : inside}`;
+}
+
+/// `unjudged`: the share of the area that no limit is for, once it is known.
+function showSure(report: Report, unjudged = 0): void {
+  const sure = howSure(report, verdictOf(report).verdict);
+  byId('sure').hidden = !sure;
+  const rest = unjudged > 0 && !report.tolerance ? ` About ${percent(unjudged)} of the area has no limits and is not judged.` : '';
+  if (sure) sayHowSure(sure, rest);
 }
 
 class Page {
@@ -92,6 +98,7 @@ class Page {
     const limits = surface && new GroupLimits(report, surface.model);
     this.limits = limits && limits.count > 1 ? limits : null;
     this.subject = this.cloud ?? new Surface(surface!.model, surface!.map, page.colors, measured?.closed ?? false, this.unit, this.limits);
+    if (this.limits) showSure(report, this.limits.unjudged(surface!.model));
     this.section = this.makeSection();
     this.view = new View(byId('view'), this.subject, ghost, this.section, page.up, () => this.callouts?.update());
     this.callouts = new Callouts(this.view, (d) => this.valueText(d), this.unit, this.subject.size, (at) => this.lookAt(at));
@@ -124,6 +131,10 @@ class Page {
     }
     for (const callout of saved.callouts) this.callouts.add(callout);
     this.view.pose = saved.camera;
+  }
+
+  get firstPicture(): Promise<void> {
+    return this.view.firstPicture;
   }
 
   private makeSection(): SectionView {
@@ -209,9 +220,9 @@ class Page {
     const { colors } = this.data.page;
     if (coverage) return drawCoverageLegend(report);
     const hasGaps = [report.beyond_max_distance, report.without_match, report.texels_without_value].some((n) => Number(n ?? 0) > 0);
-    const byGroup = limits !== null && scale.mode === 'tolerance';
-    if (byGroup && !group) drawGroupLegend(scale, limits, colors, quantityOf(report), hasGaps);
-    else drawLegend(byGroup ? limits.scaleOfGroup(report, group!.kind, group!.group, scale) : scale, colors, quantityOf(report), report.units ?? '', hasGaps);
+    const unit = report.units ?? '';
+    if (limits !== null && scale.mode === 'tolerance') drawGroupLegend(scale, limits, limits.setsOf(this.data.surface!.model, group ?? null), colors, quantityOf(report), unit, hasGaps);
+    else drawLegend(scale, colors, quantityOf(report), unit, hasGaps);
   }
 
   /// The cut surface of a section that is new faces the viewer.

@@ -1,9 +1,10 @@
 // How a page begins: with the data in it, or with the reason why that cannot be shown.
 import { byId } from './dom';
 
-/// Calls `open`, and keeps what it makes under `name`, for tests. If that fails, the message in the view names the
+/// Calls `open`, keeps what it makes under `name`, for tests, and takes the message in the view away when the first
+/// picture is there. If that fails, the message in the view names the
 /// `subject` that cannot be shown, with an advice.
-export async function openPage(name: string, subject: string, advice: string, open: () => Promise<object>): Promise<void> {
+export async function openPage(name: string, subject: string, advice: string, open: () => Promise<{ firstPicture: Promise<void> }>): Promise<void> {
   const message = byId('message');
   const fail = (text: string) => {
     message.textContent = `${text} ${advice}`;
@@ -14,7 +15,10 @@ export async function openPage(name: string, subject: string, advice: string, op
     return;
   }
   try {
-    Object.assign(window, { [name]: await open() });
+    const page = await open();
+    Object.assign(window, { [name]: page });
+    message.textContent = 'Drawing…';
+    await page.firstPicture;
     message.remove();
     document.documentElement.dataset.ready = '';
   } catch (error) {

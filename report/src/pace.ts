@@ -9,6 +9,7 @@ const kRest = 250; // milliseconds without a change, after which the picture is 
 export class Pace {
   moving = false; ///< pictures are coarse
   ratio = 0.5; ///< of coarse pictures, relative to fine ones
+  complete = (): void => {}; ///< called when a picture is complete
   private fine = 0; // milliseconds of the last fine picture
   private pending = false; // a picture is not complete
   private timer = 0;
@@ -40,7 +41,7 @@ export class Pace {
     const { moving } = this;
     const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
-    if (!sync) return;
+    if (!sync) return this.complete();
     const begin = performance.now();
     this.pending = true;
     const look = () => {
@@ -51,6 +52,7 @@ export class Pace {
       }
       gl.deleteSync(sync);
       this.pending = false;
+      this.complete();
       this.took(performance.now() - begin, moving);
     };
     window.setTimeout(look, 0);

@@ -63,6 +63,10 @@ class Player {
     showVerdict(data, pick);
   }
 
+  get firstPicture(): Promise<void> {
+    return this.view.firstPicture;
+  }
+
   /// Shows the frame of the worst place, with this in front.
   private showWorst(): void {
     if (!this.worst) return;
@@ -234,6 +238,6 @@ function describe(data: PlayerData): void {
 void openPage('sdmPlayer', 'bodies', 'Is WebGL 2 on in this browser?', async () => {
   const data = await readPlayer();
   describe(data);
-  showMade([0, 1].map((which) => ({ file: nameOf(data, which) })), data.page);
+  showMade([0, 1].map((which) => ({ file: nameOf(data, which), xxh3: data.page.xxh3?.[which] })), data.page);
   return new Player(data);
 });

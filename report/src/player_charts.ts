@@ -79,7 +79,7 @@ export class Chart {
       ...curves.map(({ name, values }, i) =>
         make('span', {}, ...(curves.length > 1 ? [swatch(i), ` ${name} `] : []), `${text(values[place])}${values[place] === null ? '' : this.unit}`),
       ),
-      ...(this.hasSigns() ? [make('span', {}, make('span', { class: 'negative', 'aria-hidden': 'true' }), 'negative')] : []),
+      ...(this.hasSigns() ? [make('span', {}, make('span', { class: 'negative', 'aria-hidden': 'true' }), 'frames with negative values')] : []),
     );
   }
 

@@ -20,6 +20,7 @@ interface PlayerJson {
   up: 'y' | 'z';
   units: string;
   names: [string, string];
+  xxh3?: [string, string]; ///< of the files; empty: unknown
   origin: Vec;
   step: number;
   reach: number; ///< distances are from −reach to reach
@@ -31,6 +32,7 @@ interface PlayerJson {
   colors: Colors;
   scale: Scale;
   verdict?: Verdict; ///< on all frames, if there is a tolerance
+  certified?: boolean; ///< the verdict is proven
   tolerance?: { lower: number; upper: number };
   verdicts?: Verdict[]; ///< on each of them
   arrays: ArrayIndex;

@@ -3,6 +3,7 @@ import { showBadge } from './badge';
 import { byId, make } from './dom';
 import { count, signedText } from './numbers';
 import { hasSigns, PlayerData } from './player_data';
+import { howSureOfFrames, sayHowSure } from './sure';
 import { limitsIn, type Limits } from './verdict';
 
 interface Extreme {
@@ -50,5 +51,6 @@ export function showVerdict(data: PlayerData, show: (place: number) => void): vo
       `: ${signedText(worst.distance, signed, 3)}${unit}.`,
     );
   byId('judged').hidden = false;
+  sayHowSure(howSureOfFrames(verdict, page.certified ?? false));
   document.title = `${verdict}: ${document.title}`;
 }

@@ -1,5 +1,5 @@
 // The place and the frame that a player opens on, and its mark in the picture.
-import { byId, make, makeSvg } from './dom';
+import { Label } from './label';
 import type { Vec } from './page_data';
 import { distancesOf, PlayerData } from './player_data';
 import type { Viewer } from './viewer';
@@ -36,18 +36,14 @@ export function worstOf(data: PlayerData): Worst | null {
   return hi.distance <= 0 ? hi : lo;
 }
 
-/// A label at a point of the scene.
+/// A label at a point of the scene that stays where it is.
 export class Mark {
-  private readonly label: HTMLElement;
-  private readonly dot = makeSvg('circle', { r: 4 });
-  private readonly line = makeSvg('line', {});
+  private readonly label: Label;
   private at: Vec | null = null;
 
-  constructor(private readonly viewer: Viewer, text: string) {
-    this.label = make('div', { class: 'callout' }, text);
-    byId('labels').append(this.label);
-    byId('leaders').append(this.line, this.dot);
-    this.show(null);
+  constructor(viewer: Viewer, text: string) {
+    this.label = new Label(viewer, text);
+    this.update();
   }
 
   /// Moves the mark; null: hides it.
@@ -58,14 +54,6 @@ export class Mark {
 
   /// After each picture.
   update(): void {
-    const { clientWidth, clientHeight } = this.viewer.canvas;
-    const { x, y, behind } = this.viewer.place(this.at ?? [0, 0, 0]);
-    const right = x < clientWidth * 0.6;
-    const lx = Math.min(Math.max(x + (right ? 26 : -26), 4), clientWidth - 4);
-    const ly = Math.min(Math.max(y - 30, 14), clientHeight - 14);
-    this.label.style.transform = `translate(${lx}px, ${ly}px) translate(${right ? '0' : '-100%'}, -50%)`;
-    for (const [name, value] of Object.entries({ cx: x, cy: y })) this.dot.setAttribute(name, String(value));
-    for (const [name, value] of Object.entries({ x1: x, y1: y, x2: lx, y2: ly })) this.line.setAttribute(name, String(value));
-    for (const element of [this.label, this.dot, this.line]) element.classList.toggle('outside', behind || this.at === null);
+    this.label.show(this.at);
   }
 }

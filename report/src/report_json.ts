@@ -47,7 +47,7 @@ export interface Report {
   atlas?: { kind: string; resolution: number; rows?: number; udim?: number | null; charts: number; texels: number };
   engine?: string;
   max_distance?: number | null;
-  colors?: { map: string; range: [number, number]; range_from: string };
+  colors?: { map: string; range: [number, number]; range_from: string; by_group?: boolean }; ///< with a table: bands by it
   measured?: { kind: string; text: string };
   sign?: { method: string; reason: string };
   distance?: Record<string, number | string | null>;

@@ -1,9 +1,17 @@
 // How sure a verdict is, in a word and a clause.
+import { byId, make } from './dom';
 import type { Report } from './page_data';
 import { isCloud, type Verdict } from './verdict';
 
+type Sure = [word: string, why: string];
+
+export function sayHowSure([word, why]: Sure, more = ''): void {
+  byId('sure').replaceChildren('How sure: ', make('b', {}, word), ` – ${why}${more}`);
+  byId('sure').hidden = false;
+}
+
 /// Nothing where nothing is judged.
-export function howSure(report: Report, verdict: Verdict): [word: string, why: string] | null {
+export function howSure(report: Report, verdict: Verdict): Sure | null {
   const { tolerance, group_tolerances: table } = report;
   const of = [...(tolerance ? [tolerance] : []), ...(table?.groups ?? [])].filter((t) => t.verdict === verdict);
   const certified = of.filter((t) => t.certified).length;
@@ -15,7 +23,7 @@ export function howSure(report: Report, verdict: Verdict): [word: string, why: s
       return ['an estimate', 'it depends on the sign of a distance, and signs are estimates here.'];
     case 'PASS':
       if (certified < of.length) return ['an estimate', 'it holds at the measured points; between them nothing is proven.'];
-      return ['proven', cloud ? 'for every point of the cloud; nothing is said between them.' : 'for every point, also between the measured ones.'];
+      return ['proven', cloud ? 'for every point of the cloud; nothing is said between them.' : `for every point${tolerance ? '' : ' that has a limit'}, also between the measured ones.`];
     case 'NOT DECIDED':
       return ['open', 'neither PASS nor FAIL is proven.'];
     case 'DOUBTFUL':
@@ -23,4 +31,11 @@ export function howSure(report: Report, verdict: Verdict): [word: string, why: s
     default:
       return null;
   }
+}
+
+/// Of a player: of the verdict on all frames.
+export function howSureOfFrames(verdict: Verdict, certified: boolean): Sure {
+  if (verdict === 'NOT DECIDED') return ['open', 'in some frame neither PASS nor FAIL is proven.'];
+  if (!certified) return ['an estimate', 'it depends on the sign of a distance, and signs are estimates here.'];
+  return ['proven', verdict === 'FAIL' ? 'a frame with a place that is out was found.' : 'for every point in every frame; nothing is said between frames.'];
 }

@@ -205,6 +205,20 @@ function withoutGroup(report: Report): string[] {
   return sentences;
 }
 
+/// The value that is farthest beyond the limits of its group, as a sentence.
+function worstOf(report: Report, { groups }: NonNullable<Report['group_tolerances']>): string {
+  let [worst, most] = ['', 0];
+  for (const { group, lower, upper, lowest, highest, witness } of groups) {
+    const limits = { lower: lower ?? -Infinity, upper: upper ?? Infinity };
+    for (const value of [lowest, highest, witness?.distance ?? null]) {
+      if (value === null || Math.max(value - limits.upper, limits.lower - value) <= most) continue;
+      most = Math.max(value - limits.upper, limits.lower - value);
+      worst = ` Worst: ${distanceText(value, report, isSigned(report))}${unitOf(report)} in ${group}, for which ${limitsText(limits, report)} is allowed.`;
+    }
+  }
+  return worst;
+}
+
 /// The verdict by the table of tolerances, in words.
 function ofGroups(report: Report): Stated | null {
   const table = report.group_tolerances;
@@ -214,10 +228,10 @@ function ofGroups(report: Report): Stated | null {
   const kMost = 5;
   const quoted = some.length > 1 ? some.map((name) => `“${name}”`) : some; // a name may be several words
   const names = quoted.slice(0, kMost).join(', ') + (some.length > kMost ? ' and others' : '');
-  const count = `${some.length} of ${table.groups.length} groups`;
+  const count = `${some.length} of ${table.groups.length} groups of the table of tolerances`;
   const words: Partial<Record<Verdict, string>> = {
-    FAIL: [...(some.length > 0 ? [`${count} of the table of tolerances fail: ${names}.`] : []), ...withoutGroup(report)].join(' '),
-    'NOT DECIDED': `${count} of the table of tolerances are not decided: ${names}.`,
+    FAIL: [...(some.length > 0 ? [`${count} ${some.length > 1 ? 'fail' : 'fails'}: ${names}.${worstOf(report, table)}`] : []), ...withoutGroup(report)].join(' '),
+    'NOT DECIDED': `${count} ${some.length > 1 ? 'are' : 'is'} not decided: ${names}.`,
     DOUBTFUL: `Every group of the table of tolerances is within its limits, but ${report.doubts?.map((d) => d.text).join('; ') ?? 'in doubt'}.`,
     PASS: 'Every group of the table of tolerances is within its limits.',
   };

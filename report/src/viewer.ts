@@ -16,6 +16,7 @@ export class Viewer {
   readonly canvas: HTMLCanvasElement;
   readonly camera = new PerspectiveCamera(30, 1, 0.01, 100);
   readonly scene = new Scene();
+  readonly firstPicture: Promise<void>; ///< is complete
   private readonly renderer: WebGLRenderer;
   private readonly controls: OrbitControls;
   private readonly pace: Pace;
@@ -33,6 +34,7 @@ export class Viewer {
     this.renderer = new WebGLRenderer({ canvas: this.canvas, context });
     this.renderer.setPixelRatio(this.finest);
     this.pace = new Pace(this.renderer.getContext() as WebGL2RenderingContext, () => this.draw(false), () => this.prepareCoarse());
+    this.firstPicture = new Promise((resolve) => (this.pace.complete = resolve));
     this.camera.up.set(0, up === 'y' ? 1 : 0, up === 'z' ? 1 : 0);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.zoomToCursor = true;

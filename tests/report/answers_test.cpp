@@ -46,6 +46,53 @@ TEST_F(Page, BandsAreThoseOfEachGroup) {
   }
 }
 
+// Faces of a row for their group and one for their material have what both accept.
+TEST_F(Page, LegendsHaveTheLimitsOfAllRowsOfAFace) {
+  std::string text = contents(o1);
+  text.insert(text.find("\nf "), "\nusemtl steel");
+  std::ofstream(o1) << text;
+  name_halves(o1);
+  const std::string table = folder / "table.csv";
+  std::ofstream(table) << "group,lower,upper\nring,-3,3\nsteel,-1,1.7\nsides,-1,1.5\n";
+  map({"--resolution", "64", "--tolerance-table", table});
+  EXPECT_TRUE(passes("legendOfGroup", page(), {"ring", "1.7"}));
+  EXPECT_TRUE(passes("legendOfGroup", page(), {"sides", "1.5"}));
+  std::ofstream(table) << "group,lower,upper\nring,-1,1.6\nsides,-1,1.6\n";
+  map({"--resolution", "64", "--tolerance-table", table});
+  EXPECT_TRUE(passes("legendOfGroup", page(), {"all", "1.6"}));
+}
+
+TEST_F(Page, SaysWhatNoGroupOfATableJudges) {
+  name_halves(o1);
+  const std::string table = folder / "table.csv";
+  for (const auto& [rows, words] :
+       {std::pair("ring,-3,3\n", "for every point that has a limit"), {"sides,-1,1.5\n", "proven"}}) {
+    std::ofstream(table) << "group,lower,upper\n" << rows;
+    map({"--resolution", "64", "--tolerance-table", table});
+    const std::string verdict = *rows == 'r' ? "PASS" : "FAIL";
+    EXPECT_TRUE(passes("isSure", page(), {verdict, words}));
+    EXPECT_TRUE(passes("isSure", page(), {verdict, "of the area has no limits and is not judged."}));
+  }
+  EXPECT_TRUE(passes("says", page(), {"Worst: 2.4", "in sides, for which -1 to 1.5 is allowed."}));
+}
+
+TEST_F(Page, KeepsTheColoursThatWereAskedFor) {
+  name_halves(o1);
+  const std::string table = folder / "table.csv";
+  std::ofstream(table) << "group,lower,upper\nring,-3,3\n";
+  EXPECT_EQ(map({"--resolution", "64", "--tolerance-table", table})["colors"]["by_group"], true);
+  EXPECT_TRUE(passes("opensIn", page(), {"tolerance"}));
+  EXPECT_EQ(
+      map({"--resolution", "64", "--tolerance-table", table, "--colormap", "viridis"})["colors"]["by_group"],
+      false);
+  EXPECT_TRUE(passes("opensIn", page(), {"viridis"}));
+}
+
+TEST_F(Page, IsReadyWithItsPicture) {
+  map({"--resolution", "64", "--tolerance", "2.3"});
+  EXPECT_TRUE(passes("isReadyWithItsPicture", page()));
+}
+
 TEST_F(Page, LegendsAreNotCrowded) {
   map({"--resolution", "64", "--tolerance", "2.3", "--units", "cm"});
   EXPECT_TRUE(passes("spacesLegend", page()));
@@ -81,6 +128,8 @@ TEST_F(Page, PlayersStateTheVerdict) {
   EXPECT_TRUE(
       passes("judgesFrames", failing,
              {"FAIL", "Out of the tolerance of 1.35 mm in 1 of 4 frames; worst in frame 0: 1.4 mm.", "0"}));
+  EXPECT_TRUE(passes("isSure", failing, {"FAIL", "a frame with a place that is out was found"}));
+  EXPECT_TRUE(passes("markBesideLegend", failing));
   EXPECT_TRUE(passes("charts", failing, {"Distance of part.obj", "Separation"}));
   EXPECT_TRUE(passes(
       "judgesFrames", played({"--tolerance", "2"}),

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sdm/io.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -85,7 +86,14 @@ TEST_F(Looks, ShowsAPlayerAtAllSizesAndOnPaper) {
   EXPECT_TRUE(looks("opens", player, {"5", "part.obj", "moving"}));
   EXPECT_TRUE(looks(
       "prints", player,
-      {folder / "player.pdf", "1", "Measured on", "Over time", "frame 5 (0 to 5)", "-Play", "-Display"}));
+      {folder / "player.pdf", "1", "Measured on", "part.obj (XXH3 " + file_xxh3(o1) + "), moving (XXH3 ",
+       "Over time", "frame 5 (0 to 5)", "-Play", "-Display"}));
+}
+
+// Programs of pages are not larger than they were without what they show today.
+TEST(Pages, AreSmall) {
+  EXPECT_LT(std::filesystem::file_size(SDM_REPORT_HTML "/page.html"), 686'000);
+  EXPECT_LT(std::filesystem::file_size(SDM_REPORT_HTML "/player.html"), 597'000);
 }
 
 }  // namespace

@@ -61,6 +61,54 @@ module.exports = {
     assert.ok(!(await page.innerText('#legend')).includes('group'));
   },
 
+  // A group that is chosen, or all, has this limit beside the bar.
+  async legendOfGroup(page, group, limit) {
+    if (group !== 'all') await page.click(`#groups-table button:text-is("${group}")`);
+    await settled(page);
+    const limits = await page.$$eval('#legend .of-limit', (list) => list.map((l) => l.textContent));
+    assert(limits.includes(limit), await page.innerText('#legend'));
+    assert((await page.getAttribute('#legend', 'aria-label')).startsWith('Colour scale from '));
+  },
+
+  async opensIn(page, mode) {
+    assert.strictEqual(await page.inputValue('#mode'), mode);
+  },
+
+  // When the page says that it is ready, the part is drawn, and no message is before it.
+  async isReadyWithItsPicture(page) {
+    const other = await page.context().newPage();
+    await other.addInitScript(() => {
+      new MutationObserver(() => {
+        const canvas = document.getElementById('canvas');
+        if (!('ready' in document.documentElement.dataset) || !canvas || 'opaque' in window) return;
+        const copy = document.createElement('canvas');
+        [copy.width, copy.height] = [canvas.width, canvas.height];
+        const context = copy.getContext('2d');
+        context.drawImage(canvas, 0, 0);
+        window.opaque = context.getImageData(0, 0, copy.width, copy.height).data.filter((x, i) => i % 4 === 3 && x > 250).length;
+        window.message = document.getElementById('message');
+      }).observe(document, { attributes: true, subtree: true });
+    });
+    await other.goto(page.url());
+    await other.waitForFunction(() => 'opaque' in window);
+    const [opaque, hasMessage] = await other.evaluate(() => [window.opaque, window.message !== null]);
+    assert(opaque > 1000, `${opaque} pixels are drawn`);
+    assert(!hasMessage);
+  },
+
+  // The label of the worst place is beside the legend, also in a narrow window, and differs from any colour behind it.
+  async markBesideLegend(page) {
+    await page.setViewportSize({ width: 420, height: 800 });
+    await settled(page);
+    const [label, tick, halo] = await page.evaluate(() => [
+      document.querySelector('.callout').getBoundingClientRect().right,
+      Math.min(...[...document.querySelectorAll('#legend .tick')].map((t) => t.getBoundingClientRect().left)),
+      getComputedStyle(document.querySelector('#leaders .halo')).stroke !== getComputedStyle(document.querySelector('#leaders line:not(.halo)')).stroke,
+    ]);
+    assert(label <= tick, `a label to ${label}, the legend from ${tick}`);
+    assert(halo);
+  },
+
   // The verdict on a sequence in the header of its player, in words that lead to its worst frame.
   async judgesFrames(page, verdict, words, worst) {
     const [badge, judged] = await inWindow(page, ['verdict', 'judged'], [1280, 800]);
