@@ -2,7 +2,7 @@
 import type { Scale } from './color_scale';
 import type { Model, Report } from './page_data';
 import type { GroupName } from './group_table';
-import { isLimited, type Limits } from './verdict';
+import { isLimited, realLimits, type Limits } from './verdict';
 
 /// The names of the kind of a group, and the number that its triangles have there.
 function numberOf(model: Model, group: GroupName | null) {
@@ -34,14 +34,14 @@ export class GroupLimits {
   readonly ofTriangle: Uint32Array;
   private readonly sets: Limits[] = [kNoLimit]; // the first is of triangles that no row names
 
-  constructor({ group_tolerances: table }: Report, { names, triangle }: Model) {
+  constructor(private readonly report: Report, { names, triangle }: Model) {
     this.ofTriangle = new Uint32Array(triangle.length / 3);
     const joined = new Map<string, number>();
-    table?.groups.forEach(({ kind, group, lower, upper }, row) => {
+    report.group_tolerances?.groups.forEach(({ kind, group, lower, upper }, row) => {
       const named = names.find((n) => n.kind === kind);
       const number = named ? named.names.indexOf(group) + 1 : 0;
       if (number === 0) return;
-      const limits = { lower: lower ?? -Infinity, upper: upper ?? Infinity };
+      const limits = realLimits({ lower: lower ?? -Infinity, upper: upper ?? Infinity }, report);
       named!.ofTriangle.forEach((n, t) => {
         if (n !== number) return;
         const before = this.ofTriangle[t];
@@ -70,7 +70,7 @@ export class GroupLimits {
   /// The limits that several sets have in units of these, from 0 if none has a lower one below: a scale for the legend of
   /// all of them. Of sets with the same limits it is theirs.
   joined(sets: number[], scale: Scale): { scale: Scale; isRelative: boolean; lower: boolean; upper: boolean; someHaveNone: boolean } {
-    const limits = sets.map((set) => common(this.sets[set], scale));
+    const limits = sets.map((set) => realLimits(common(this.sets[set], scale), this.report));
     const judged = limits.filter(isLimited);
     const [lower, upper] = [judged.some((l) => l.lower > -Infinity), judged.some((l) => l.upper < Infinity)];
     const isRelative = judged.some((l) => l.lower !== judged[0].lower || l.upper !== judged[0].upper);

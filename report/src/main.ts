@@ -10,7 +10,7 @@ import { drawHistogram } from './histogram';
 import { GroupLimits } from './group_limits';
 import { drawGroupLegend, drawLegend } from './legend';
 import { showMade } from './made';
-import { exactText, percent, place } from './numbers';
+import { exactText, place, text } from './numbers';
 import { openPage } from './open_page';
 import { Listed, listedPlaces, onlyThickest, showPlaces } from './places';
 import { PageData, readReport, Report, Vec } from './page_data';
@@ -65,7 +65,7 @@ function sectionWords({ part, other, factor }: SectionView): string {
 function showSure(report: Report, unjudged = 0): void {
   const sure = howSure(report, verdictOf(report).verdict);
   byId('sure').hidden = !sure;
-  const rest = unjudged > 0 && !report.tolerance ? ` About ${percent(unjudged)} of the area has no limits and is not judged.` : '';
+  const rest = unjudged > 0 && !report.tolerance ? ` About ${text(100 * unjudged, 2)}\u00a0% of the area has no limits and is not judged.` : '';
   if (sure) sayHowSure(sure, rest);
 }
 

@@ -22,6 +22,7 @@ export class Viewer {
   private readonly pace: Pace;
   private readonly finest = Math.min(2, window.devicePixelRatio); // pixel ratio
   private scheduled = false;
+  private fitted = [0, 0]; // to this size of the container, in pixels
   private radius = 1; // of what is shown
   private shown: { lo: Vec; hi: Vec } | null = null; // its box; without one, all of the ball is framed
 
@@ -34,7 +35,7 @@ export class Viewer {
     this.renderer = new WebGLRenderer({ canvas: this.canvas, context });
     this.renderer.setPixelRatio(this.finest);
     this.pace = new Pace(this.renderer.getContext() as WebGL2RenderingContext, () => this.draw(false), () => this.prepareCoarse());
-    this.firstPicture = new Promise((resolve) => (this.pace.complete = resolve));
+    this.firstPicture = new Promise((resolve) => (this.pace.complete = () => !this.scheduled && resolve()));
     this.camera.up.set(0, up === 'y' ? 1 : 0, up === 'z' ? 1 : 0);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.zoomToCursor = true;
@@ -53,10 +54,12 @@ export class Viewer {
       this.canvas.addEventListener(type, (event) => event.touches.length > 1 && event.cancelable && event.preventDefault(), { passive: false });
   }
 
-  /// Fits the picture to its place.
+  /// Fits the picture to its place, where that has another size: the canvas is empty until the next picture.
   resize(): void {
     const { clientWidth, clientHeight } = this.canvas.parentElement!;
-    if (clientWidth === 0 || clientHeight === 0) return;
+    const isSame = clientWidth === this.fitted[0] && clientHeight === this.fitted[1];
+    if (clientWidth === 0 || clientHeight === 0 || isSame) return;
+    this.fitted = [clientWidth, clientHeight];
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();

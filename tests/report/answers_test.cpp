@@ -48,6 +48,7 @@ TEST_F(Page, BandsAreThoseOfEachGroup) {
 
 // Faces of a row for their group and one for their material have what both accept.
 TEST_F(Page, LegendsHaveTheLimitsOfAllRowsOfAFace) {
+  o2 = write_obj(folder / "base.obj", moved(cube(4), {0, 0, kHeight - 4}));  // with signs
   std::string text = contents(o1);
   text.insert(text.find("\nf "), "\nusemtl steel");
   std::ofstream(o1) << text;
@@ -63,6 +64,7 @@ TEST_F(Page, LegendsHaveTheLimitsOfAllRowsOfAFace) {
 }
 
 TEST_F(Page, SaysWhatNoGroupOfATableJudges) {
+  o2 = write_obj(folder / "base.obj", moved(cube(4), {0, 0, kHeight - 4}));  // with signs
   name_halves(o1);
   const std::string table = folder / "table.csv";
   for (const auto& [rows, words] :
@@ -73,7 +75,7 @@ TEST_F(Page, SaysWhatNoGroupOfATableJudges) {
     EXPECT_TRUE(passes("isSure", page(), {verdict, words}));
     EXPECT_TRUE(passes("isSure", page(), {verdict, "of the area has no limits and is not judged."}));
   }
-  EXPECT_TRUE(passes("says", page(), {"Worst: 2.4", "in sides, for which -1 to 1.5 is allowed."}));
+  EXPECT_TRUE(passes("says", page(), {"Worst: +2.4", "in sides, for which -1 to 1.5 is allowed."}));
 }
 
 TEST_F(Page, KeepsTheColoursThatWereAskedFor) {
