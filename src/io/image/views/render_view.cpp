@@ -135,7 +135,7 @@ class Renderer {
   [[nodiscard]] Rgb pixel(std::uint32_t x, std::uint32_t y) const {
     if (is_background(x, y)) return kViewBackground;
     struct Seen {
-      std::uint32_t face, ghost_face;
+      std::uint32_t face, other_face;
       Color color;
     };
     std::array<Seen, std::size_t{kSamples} * kSamples> seen;
@@ -144,33 +144,38 @@ class Renderer {
     for (std::uint32_t row = 0; row < kSamples; ++row)
       for (std::uint32_t column = 0; column < kSamples; ++column) {
         const std::size_t sample = sample_at(x, y) + std::size_t{row} * part_.width() + column;
-        const std::uint32_t face = part_.face(sample), ghost_face = ghost_ ? ghost_->face(sample) : kNone;
+        const std::uint32_t face = part_.face(sample), other_face = seen_of_other(sample);
         // Samples of a pixel in the same face have almost the same colour.
         std::size_t i = 0;
-        while (i < count && (seen[i].face != face || seen[i].ghost_face != ghost_face)) ++i;
-        if (i == count) seen[count++] = {face, ghost_face, sample_color(sample)};
+        while (i < count && (seen[i].face != face || seen[i].other_face != other_face)) ++i;
+        if (i == count) seen[count++] = {face, other_face, sample_color(sample, other_face)};
         sum = sum + seen[i].color;
       }
     sum = (1.0 / (kSamples * kSamples)) * sum;
     return rgb(is_outline(x, y) ? mix(sum, color(kInk), kOutline) : sum);
   }
 
-  [[nodiscard]] Color sample_color(std::size_t sample) const {
+  /// The face of O2 that is seen at a sample, in front of O1 or beside it; kNone if there is none.
+  [[nodiscard]] std::uint32_t seen_of_other(std::size_t sample) const {
+    if (!ghost_ || ghost_->face(sample) == kNone) return kNone;
+    const double away = scene_.other_distances.empty() ? kVeilFrom / projection_.scale : 0;
+    const bool is_seen = part_.face(sample) == kNone || ghost_->depth(sample) > part_.depth(sample) + away;
+    return is_seen ? ghost_->face(sample) : kNone;
+  }
+
+  /// `other_face`: as of seen_of_other().
+  [[nodiscard]] Color sample_color(std::size_t sample, std::uint32_t other_face) const {
     const std::uint32_t face = part_.face(sample);
-    const std::uint32_t ghost_face = ghost_ ? ghost_->face(sample) : kNone;
-    const Color ghost = ghost_face != kNone ? other_color(sample, ghost_face) : Color{};
-    if (!scene_.other_distances.empty() && ghost_face != kNone &&
-        (face == kNone || ghost_->depth(sample) > part_.depth(sample)))
-      return ghost;
+    const bool is_solid = !scene_.other_distances.empty();  // O2
+    if (other_face != kNone && is_solid) return other_color(sample, other_face);
     if (face == kNone)
-      return ghost_face == kNone ? color(kViewBackground) : mix(color(kViewBackground), ghost, 0.75);
+      return other_face == kNone ? color(kViewBackground)
+                                 : mix(color(kViewBackground), other_color(sample, other_face), 0.75);
     const Triangle& corners = mesh().triangles[face];
     const Vec3 weights = part_.weights(sample, corners);
     const Color part = light_(scene_.normals, face, weights, part_.is_back(corners)) *
                        color(color_at(scene_, face, weights));
-    const bool veiled =
-        ghost_face != kNone && ghost_->depth(sample) > part_.depth(sample) + kVeilFrom / projection_.scale;
-    return veiled ? mix(part, ghost, kVeil) : part;
+    return other_face == kNone ? part : mix(part, other_color(sample, other_face), kVeil);
   }
 
   [[nodiscard]] Color other_color(std::size_t sample, std::uint32_t face) const {
