@@ -10,7 +10,7 @@ import { drawHistogram } from './histogram';
 import { GroupLimits } from './group_limits';
 import { drawGroupLegend, drawLegend } from './legend';
 import { showMade } from './made';
-import { exactText, place, text } from './numbers';
+import { exactText, place } from './numbers';
 import { openPage } from './open_page';
 import { Listed, listedPlaces, onlyThickest, showPlaces } from './places';
 import { PageData, readReport, Report, Vec } from './page_data';
@@ -21,7 +21,7 @@ import { copyOfPage, csvOf, download, pageWith, readSaved, Saved } from './saved
 import { SectionView } from './section_view';
 import { showWithoutPicture } from './without_picture';
 import { boxOf, Subject, toFile, toScene } from './subject';
-import { howSure, sayHowSure } from './sure';
+import { showSure } from './sure';
 import { Surface } from './surface';
 import { inputsOf, showFields, showInputs, showMethod, showMore, showNumbers, showOmissions, titleOf } from './tables';
 import { isCloud, isSigned, outsideOf, unitOf, verdictOf, whatIf } from './verdict';
@@ -59,14 +59,6 @@ function sectionWords({ part, other, factor }: SectionView): string {
   if (!other) return `The thick line is the profile of the part in the colours of its values.${inside}`;
   const gap = `${factor > 1 ? `${factor} times ` : ''}as long as the gap to the reference`;
   return `Thick line in colours: the part. Dark line: the reference. Thin lines towards it: ${gap} in this plane.${other.isClosed && part.isClosed ? ' Orange: only the part; blue: only the reference; grey: both.' : inside}`;
-}
-
-/// `unjudged`: the share of the area that no limit is for, once it is known.
-function showSure(report: Report, unjudged = 0): void {
-  const sure = howSure(report, verdictOf(report).verdict);
-  byId('sure').hidden = !sure;
-  const rest = unjudged > 0 && !report.tolerance ? ` About ${text(100 * unjudged, 2)}\u00a0% of the area has no limits and is not judged.` : '';
-  if (sure) sayHowSure(sure, rest);
 }
 
 class Page {
@@ -133,9 +125,7 @@ class Page {
     this.view.pose = saved.camera;
   }
 
-  get firstPicture(): Promise<void> {
-    return this.view.firstPicture;
-  }
+  get firstPicture(): Promise<void> { return this.view.firstPicture; }
 
   private makeSection(): SectionView {
     const { ghost } = this.data;

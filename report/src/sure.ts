@@ -1,7 +1,8 @@
 // How sure a verdict is, in a word and a clause.
 import { byId, make } from './dom';
+import { text } from './numbers';
 import type { Report } from './page_data';
-import { isCloud, type Verdict } from './verdict';
+import { isCloud, verdictOf, type Verdict } from './verdict';
 
 type Sure = [word: string, why: string];
 
@@ -11,7 +12,7 @@ export function sayHowSure([word, why]: Sure, more = ''): void {
 }
 
 /// Nothing where nothing is judged.
-export function howSure(report: Report, verdict: Verdict): Sure | null {
+function howSure(report: Report, verdict: Verdict): Sure | null {
   const { tolerance, group_tolerances: table } = report;
   const of = [...(tolerance ? [tolerance] : []), ...(table?.groups ?? [])].filter((t) => t.verdict === verdict);
   const certified = of.filter((t) => t.certified).length;
@@ -31,6 +32,14 @@ export function howSure(report: Report, verdict: Verdict): Sure | null {
     default:
       return null;
   }
+}
+
+/// `unjudged`: the share of the area that no limit is for, once it is known.
+export function showSure(report: Report, unjudged = 0): void {
+  const sure = howSure(report, verdictOf(report).verdict);
+  byId('sure').hidden = !sure;
+  const rest = unjudged > 0 && !report.tolerance ? ` About ${text(100 * unjudged, 2)}\u00a0% of the area has no limits and is not judged.` : '';
+  if (sure) sayHowSure(sure, rest);
 }
 
 /// Of a player: of the verdict on all frames.
