@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "bounds_text.h"
 #include "format.h"
 #include "proximity_report.h"
 
@@ -16,7 +17,8 @@ using Row = std::array<std::string, 5>;
 
 std::string words(const sdm::BoundedLength& length) {
   if (length.certainty == sdm::Certainty::bounded)
-    return fmt::format("{} ({} to {})", number(length.value), number(length.lower), number(length.upper));
+    return fmt::format("{} ({} to {})", number(length.value), lower_number(length.lower),
+                       upper_number(length.upper));
   return fmt::format("{} ({})", number(length.value), name(length.certainty));
 }
 

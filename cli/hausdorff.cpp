@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "bounds_text.h"
 #include "common_options.h"
 #include "exit_codes.h"
 #include "facing.h"
@@ -107,9 +108,7 @@ std::string distance_line(const std::string& what, const sdm::HausdorffDistance&
   const sdm::BoundedLength& d = h.distance;
   constexpr int kDigits = 9;
   const std::string bounds =
-      d.certainty == sdm::Certainty::bounded
-          ? fmt::format("   between {} and {}", number(d.lower, kDigits), number(d.upper, kDigits))
-          : std::string();
+      d.certainty == sdm::Certainty::bounded ? "   " + bounds_text(d.lower, d.upper, kDigits) : std::string();
   return fmt::format("  {:<11}{}{}{} ({})\n", what, number(d.value, kDigits), unit, bounds,
                      name(d.certainty));
 }

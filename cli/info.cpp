@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "bounds_text.h"
 #include "cad_options.h"
 #include "format.h"
 #include "notes.h"
@@ -100,13 +101,14 @@ nlohmann::ordered_json info_json(const std::string& file, const Info& all) {
 std::string text(bool value) {
   return value ? "yes" : "no";
 }
+constexpr int kInfoDigits = 9;
+
 std::string text(double value) {
-  return number(value, 9);
+  return number(value, kInfoDigits);
 }
 std::string text(const sdm::Vec3& p, double size) {
-  constexpr int kDigits = 9;
-  return fmt::format("{}  {}  {}", coordinate(p[0], size, kDigits), coordinate(p[1], size, kDigits),
-                     coordinate(p[2], size, kDigits));
+  return fmt::format("{}  {}  {}", coordinate(p[0], size, kInfoDigits), coordinate(p[1], size, kInfoDigits),
+                     coordinate(p[2], size, kInfoDigits));
 }
 
 std::string text(const FacePairs& pairs) {
@@ -120,7 +122,7 @@ std::string volume_text(const Info& info) {
   if (!info.is_solid()) return "none: not closed and orientable";
   if (!info.volume) return "not determined, as the self-intersections";
   if (info.volume->certainty == sdm::Certainty::exact) return text(info.volume->value);
-  return fmt::format("between {} and {}", text(info.volume->lower), text(info.volume->upper));
+  return bounds_text(info.volume->lower, info.volume->upper, kInfoDigits);
 }
 
 void print_table(std::ostream& out, const std::string& file, const Info& all) {

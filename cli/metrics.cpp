@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "bounds_text.h"
 #include "common_options.h"
 #include "exit_codes.h"
 #include "format.h"
@@ -78,6 +79,7 @@ MetricsAnswer decide_metrics(const InputPair& pair, const MetricsCommand& comman
   MetricsAnswer answer = measure_metrics(pair, command, options);
   for (int n = 0; n < kMostTries && answer.verdict() == sdm::Verdict::not_decided; ++n) {
     tighten(command, answer, options);
+    options.progress = [&](std::string_view, double fraction) { return progress("closer bounds", fraction); };
     answer = measure_metrics(pair, command, options);
   }
   return answer;
@@ -132,10 +134,9 @@ std::string metrics_summary(const MetricsCommand& command, const MetricsAnswer& 
                         sdm::name_of(answer.verdicts[i]));
   for (const sdm::NamedMetric& m : answer.named) {
     const sdm::BoundedNumber& n = m.number;
-    const std::string bounds =
-        n.certainty == sdm::Certainty::bounded
-            ? fmt::format("   between {} and {}", number(n.lower, kDigits), number(n.upper, kDigits))
-            : std::string();
+    const std::string bounds = n.certainty == sdm::Certainty::bounded
+                                   ? "   " + bounds_text(n.lower, n.upper, kDigits)
+                                   : std::string();
     text += fmt::format("  {:<{}}  {}{}{} ({})\n", m.name, width, number(n.value, kDigits),
                         unit_of(m, command.units), bounds, name(n.certainty));
   }

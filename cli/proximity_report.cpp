@@ -1,5 +1,6 @@
 #include "proximity_report.h"
 
+#include "bounds_text.h"
 #include "format.h"
 
 using Json = nlohmann::ordered_json;
@@ -65,10 +66,9 @@ std::string direction(const sdm::Vec3& v) {
 }
 
 std::string words(const sdm::BoundedNumber& length, const std::string& unit) {
-  const std::string bounds =
-      length.certainty == sdm::Certainty::bounded
-          ? fmt::format("   between {} and {}", number(length.lower), number(length.upper))
-          : std::string();
+  const std::string bounds = length.certainty == sdm::Certainty::bounded
+                                 ? "   " + bounds_text(length.lower, length.upper)
+                                 : std::string();
   return fmt::format("{}{}{} ({})\n", number(length.value), unit, bounds, name(length.certainty));
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "bounds_text.h"
 #include "exit_codes.h"
 #include "format.h"
 #include "group_tolerances.h"
@@ -182,9 +183,9 @@ const char* side_word(const sdm::SignUsed& sign) {
 std::string coverage_line(const sdm::Summary& summary) {
   if (!summary.coverage) return {};
   const sdm::Coverage& c = *summary.coverage;
-  return fmt::format("  coverage  {} % of O2 have a measured point within {}{} (between {} and {} %)\n",
+  return fmt::format("  coverage  {} % of O2 have a measured point within {}{} ({} %)\n",
                      number(100 * c.value, 4), number(c.reach), unit_suffix(summary.units),
-                     number(100 * c.lower, 4), number(100 * c.upper, 4));
+                     bounds_text(100 * c.lower, 100 * c.upper, 4));
 }
 
 std::string doubt_lines(std::span<const sdm::Doubt> doubts, std::size_t column) {

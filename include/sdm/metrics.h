@@ -24,7 +24,8 @@ struct MetricsOptions {
   std::vector<double> tolerances{};     ///< distances ≥ 0, in units of the meshes
   /// Bounds of average distances and percentiles are at most this far apart, by default kRelative of their
   /// value; > 0, in units of the meshes. At least kLeast of the diagonal of the box of both meshes is used,
-  /// as distances are found in single precision.
+  /// as distances are found in single precision. Also that of the Hausdorff distance, for which
+  /// HausdorffOptions::kPrecision of the diagonal is used if that is less, and no least one.
   std::optional<double> precision{};
   double fraction_precision = 1e-3;  ///< of fractions of the area; > 0
   /// Parts that a surface is divided into, at most, beside its faces: then the bounds stay farther apart.
@@ -75,7 +76,8 @@ struct SurfaceMetrics {
 /// distances are infinite and fractions 0; these are exact.
 ///
 /// Throws sdm::Error if a mesh is unusable for another reason (see validate) or its faces have no area, for
-/// options out of range, or if there is not enough memory; Cancelled. Cost: building the sites of both, the
+/// options out of range, or if there is not enough memory; Cancelled. Progress is one step, "metrics", whose
+/// fraction never decreases. Cost: building the sites of both, the
 /// Hausdorff distance, a search for each vertex, and a few for each face; more parts where surfaces cross and
 /// where they are closer than their curvature.
 [[nodiscard]] SDM_API SurfaceMetrics surface_metrics(const Mesh& a, const Mesh& b,

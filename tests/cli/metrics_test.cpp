@@ -5,6 +5,7 @@
 #include <sdm/metrics.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/samples.h"
 #include "support/run_sdm.h"
@@ -55,6 +56,31 @@ TEST_F(MetricsCommandTest, PrintsUnitsAndBounds) {
   EXPECT_THAT(text, HasSubstr("  nsd(0.5)            1 (exact)"));
   EXPECT_THAT(text, HasSubstr("normal_consistency  1 (estimate)"));
   EXPECT_EQ(metrics({"--quiet"}).out, "");
+}
+
+// At most a unit of the last of six digits farther apart.
+TEST_F(MetricsCommandTest, RoundsPrintedBoundsOutwards) {
+  const std::string ball = write_obj(folder / "ball.obj", sphere(2)),
+                    ring = write_obj(folder / "ring.obj", torus(16, 8));
+  const std::vector<std::string> command{"metrics", ball, ring, "--tolerance", "0.1,0.3"};
+  std::vector<std::string> as_json = command;
+  as_json.emplace_back("--json");
+  const Json json = Json::parse(run_sdm(as_json).out)["metrics"];
+  std::istringstream lines(run_sdm(command).out);
+  int bounded = 0;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string name, value, between, lower, conjunction, upper;
+    if (!(words >> name >> value >> between >> lower >> conjunction >> upper) || between != "between")
+      continue;
+    const double low = json[name]["lower"], high = json[name]["upper"];
+    EXPECT_LE(std::stod(lower), low) << line;
+    EXPECT_GE(std::stod(upper), high) << line;
+    EXPECT_NEAR(std::stod(lower), low, 1e-5 * low) << line;
+    EXPECT_NEAR(std::stod(upper), high, 1e-5 * high) << line;
+    ++bounded;
+  }
+  EXPECT_GE(bounded, 10);
 }
 
 TEST_F(MetricsCommandTest, FailsUnderConditions) {

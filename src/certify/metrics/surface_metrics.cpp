@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "certify/metrics/directed_search.h"
+#include "certify/metrics/staged_progress.h"
 #include "certify/metrics/sum.h"
 #include "core/memory.h"
 #include "geometry/rounding.h"
@@ -19,6 +20,9 @@
 
 namespace sdm {
 namespace {
+
+// Of the progress: the search for the largest distances takes about this much of the whole.
+constexpr double kOfHausdorff = 0.2;
 
 BoundedNumber exactly(double value) {
   return {.value = value, .certainty = Certainty::exact, .lower = value, .upper = value};
@@ -121,7 +125,9 @@ void limit_by_largest(const MetricsOptions& options, const metrics::Scale& scale
   }
 }
 
-std::array<DirectedMetrics, 2> both_directions(const Mesh& a, const Mesh& b, const MetricsOptions& options) {
+std::array<DirectedMetrics, 2> both_directions(const Mesh& a, const Mesh& b, MetricsOptions options) {
+  metrics::StagedProgress progress(std::move(options.progress));
+  options.progress = progress.stage(kOfHausdorff);
   const std::array sites{Sites(a), Sites(b)};
   Box box = bounds(a);
   extend(box, bounds(b));
@@ -136,10 +142,12 @@ std::array<DirectedMetrics, 2> both_directions(const Mesh& a, const Mesh& b, con
       symmetric_hausdorff(sites[0], sites[1], {.precision = precision, .progress = options.progress});
   std::array<DirectedMetrics, 2> from;
   for (int i = 0; i < 2; ++i) {
+    options.progress = progress.stage(kOfHausdorff + (1 + i) * (1 - kOfHausdorff) / 2);
     from[i] = metrics::DirectedSearch(sites[i].mesh(), internals(sites[1 - i]), options, scale).run();
     from[i].hausdorff = hausdorff.from[i].distance;
     limit_by_largest(options, scale, from[i]);
   }
+  progress.finish();
   return from;
 }
 
