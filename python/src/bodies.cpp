@@ -6,12 +6,11 @@
 #include <limits>
 #include <string>
 
+#include "arrays.h"
 #include "proximity.h"
 
 namespace sdm::python {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct PySeparations {
   std::vector<PairSeparation> pairs;

@@ -31,7 +31,8 @@ nb::dlpack::dtype dtype_of(ChannelType type) {
   return {};
 }
 
-nb::object array_of(const Channel& channel, const PyMap& map, const std::byte* values, nb::handle owner) {
+nb::object channel_array(const Channel& channel, const PyMap& map, const std::byte* values,
+                         nb::handle owner) {
   const std::size_t components = channel.components();
   const std::size_t shape[] = {map.rows(), map.map.resolution, components};
   return nb::cast(ReadOnly(values, components > 1 ? 3 : 2, shape, owner, nullptr, dtype_of(channel.type)));
@@ -74,14 +75,15 @@ struct PyMapChannels {
 
  private:
   [[nodiscard]] nb::object made(const Channel& channel) const {
-    if (channel.stored != nullptr) return array_of(channel, *map, channel.stored(map->map).data(), object);
+    if (channel.stored != nullptr)
+      return channel_array(channel, *map, channel.stored(map->map).data(), object);
     const auto lock = channel.needs_shape ? map->use_surface() : map->use_texels();
     std::optional<std::shared_lock<std::shared_mutex>> sites_lock;
     if (channel.needs_sites) sites_lock = map->use_sites();
     auto values =
         std::make_unique<std::vector<std::byte>>(run_short([&] { return computed(channel, *map); }));
     const std::byte* data = values->data();
-    return array_of(channel, *map, data, detail::capsule_of(values.release()));
+    return channel_array(channel, *map, data, detail::capsule_of(values.release()));
   }
 };
 

@@ -5,6 +5,9 @@
 #include <sdm/sign.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "arrays.h"
 
 namespace sdm::python {
 namespace {

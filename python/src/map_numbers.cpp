@@ -9,17 +9,15 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
+#include "arrays.h"
 #include "map.h"
 #include "signatures.h"
 
 namespace sdm::python {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Whether distances change by no more than the point moves also where they change their sign.
 bool sign_is_continuous(const PyMap& self) {
@@ -110,7 +108,7 @@ BoundedLength hausdorff(const PyMap& self, std::optional<double> precision, nb::
   return result;
 }
 
-CertifiedVerdict check(const PyMap& self, nb::handle tolerance, nb::handle progress) {
+CertifiedVerdict check_tolerance(const PyMap& self, nb::handle tolerance, nb::handle progress) {
   if (!self.thickness && !self.along) self.require_other_mesh();
   const Tolerance accepted = tolerance_of(tolerance, self.map.sign.method);
   const auto lock = self.use_surface();
@@ -258,7 +256,7 @@ void bind_map_numbers(nb::module_& module, nb::class_<PyMap>& map) {
           })
       .def("bounds", &bounds, nb::sig("def bounds(self) -> tuple[float, float, float, float]"))
       .def("hausdorff", &hausdorff, nb::arg("precision").none(), nb::arg("progress").none())
-      .def("check", &check, nb::arg("tolerance").none(), nb::arg("progress").none());
+      .def("check", &check_tolerance, nb::arg("tolerance").none(), nb::arg("progress").none());
 }
 
 }  // namespace sdm::python

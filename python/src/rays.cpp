@@ -15,8 +15,6 @@
 namespace sdm::python {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 struct PyRayHits {
   std::vector<RayHit> hits;
   LazyArray t, face, barycentric;

@@ -22,8 +22,8 @@ void warn_of_unmatched(const HausdorffDistance& distance, const char* from, cons
   if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) < 0) throw nb::python_error();
 }
 
-BoundedLength hausdorff(nb::handle a, nb::handle b, std::optional<double> precision, bool one_sided,
-                        nb::handle facing, nb::handle progress) {
+BoundedLength hausdorff_of(nb::handle a, nb::handle b, std::optional<double> precision, bool one_sided,
+                           nb::handle facing, nb::handle progress) {
   const std::optional<double> angle = facing_of(facing);
   SitesInUse on(a), to(b);
   BoundedLength result;
@@ -50,7 +50,7 @@ void bind_hausdorff(nb::module_& module) {
           "def hausdorff(a: object, b: object, *, precision: "
           "float | None = None, one_sided: bool = False, facing: float | None = None, ") +
       kProgress + "BoundedLength";
-  module.def("hausdorff", &hausdorff, nb::arg("a").none(), nb::arg("b").none(), nb::kw_only(),
+  module.def("hausdorff", &hausdorff_of, nb::arg("a").none(), nb::arg("b").none(), nb::kw_only(),
              nb::arg("precision") = nb::none(), nb::arg("one_sided") = false,
              nb::arg("facing").none() = nb::none(), nb::arg("progress") = nb::none(),
              nb::sig(hausdorff_signature.c_str()),

@@ -11,7 +11,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,8 +22,6 @@
 
 namespace sdm::python {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct PyField {
   DistanceField field;
