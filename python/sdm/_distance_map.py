@@ -368,7 +368,7 @@ class DistanceMap(_core.MapChannels):
         )
 
     def plot(self, ax: object = None, *, kind: str = "surface", cmap: "str | None" = None, units: str = "") -> Any:
-        """Draws the map with matplotlib, which ``pip install sdm[viz]`` installs, and returns the axes.
+        """Draws the map with matplotlib, which ``pip install 'surface-distance-maps[viz]'`` installs, and returns the axes.
 
         ax: axes to draw into, three-dimensional ones for a surface; None: of a new figure. kind: 'surface': O1, each face
         in the colour of the mean distance of its vertices; 'atlas': the texels. cmap: a colour map of matplotlib; by

@@ -30,7 +30,7 @@ def plot(distance_map: Any, ax: Any, kind: str, cmap: "str | None", units: str) 
         import matplotlib.pyplot as plt
         from matplotlib.cm import ScalarMappable
     except ImportError:
-        raise Error("plot() needs matplotlib; install it with pip install sdm[viz]") from None
+        raise Error("plot() needs matplotlib; install it with pip install 'surface-distance-maps[viz]'") from None
 
     label = f"distance [{units}]" if units else "distance"
     if kind == "atlas":

@@ -2,7 +2,7 @@
 """check_recipes.py SOURCE_DIR: checks the recipes in packaging/ against each other and against the build.
 
 They have the version of the file VERSION, name options and presets that exist, and depend on what Debian's packages of the
-first part of debian-packages.txt are called elsewhere.
+library and the command in debian-packages.txt are called elsewhere.
 """
 
 import json

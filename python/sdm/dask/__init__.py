@@ -1,4 +1,4 @@
-"""Maps on many machines, with Dask: ``pip install sdm[dask]``.
+"""Maps on many machines, with Dask: ``pip install 'surface-distance-maps[dask]'``.
 
 =====================  ==========================================================================================
 map_pairs()            many pairs of meshes: a table of statistics, verdicts and files
