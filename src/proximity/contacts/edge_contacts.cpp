@@ -220,7 +220,7 @@ std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const 
                                                         double margin, double reach, double tolerance) {
   const sites::SitesData& sites = internals(other.sites());
   const Vec3 along = edge.b - edge.a;
-  found_.clear();
+  found_.clear(), in_contact_.clear();
   find_intervals(edge, other, margin);
   find_supports(edge, other, margin, reach, tolerance);
   const double rounding = kUnitDistanceRounding / sites.frame.scale;
@@ -235,6 +235,7 @@ std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const 
     }
     const bool from_a = edge.a_touches && first == intervals_.begin();
     const bool to_b = edge.b_touches && next == intervals_.end();
+    const auto first_found = static_cast<std::uint32_t>(found_.size());
     bool supported = false;
     for (const JoinedPart& part : parts_)
       if (part.from <= end && first->from <= part.to) {
@@ -256,6 +257,12 @@ std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const 
       }
       found_.push_back({.t = 0.5 * (from + to), .near_face = nearest->face});
     }
+    in_contact_.push_back({{from_a ? 0 : first->from, to_b ? 1 : end},
+                           from_a,
+                           to_b,
+                           first_found,
+                           static_cast<std::uint32_t>(found_.size()),
+                           first->face});
     first = next;
   }
   return found_;

@@ -46,6 +46,14 @@ class EdgeContacts {
   struct Part {
     double from, to;
   };
+  /// A part of the edge that is in contact as a whole.
+  struct InContact : Part {
+    bool from_a = false, to_b = false;             ///< whether it begins or ends with an end in contact
+    std::uint32_t first_found = 0, end_found = 0;  ///< of what find() found, these are on it
+    std::uint32_t near_face = kNone;               ///< one that is close to it
+  };
+  /// What find() has divided the edge into. Valid until its next call.
+  [[nodiscard]] std::span<const InContact> in_contact() const { return in_contact_; }
 
  private:
   /// What is within the margin of a face.
@@ -83,6 +91,7 @@ class EdgeContacts {
   std::vector<SupportedPart> supported_;
   std::vector<JoinedPart> parts_;
   std::vector<Found> found_;
+  std::vector<InContact> in_contact_;
 };
 
 }  // namespace sdm::contacts

@@ -8,6 +8,8 @@
 #include "geometry/barycentric.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
+#include "proximity/contacts/deepest_on_edge.h"
+#include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
 
 namespace sdm::contacts {
@@ -18,6 +20,10 @@ using sites::SitesData;
 // Edges with an end in contact have contacts between their ends only if they are longer than this part of the
 // smaller body: of shorter ones, the end is near enough.
 constexpr double kShortEdge = 1.0 / 16;
+// Of edges longer than kLongEdge, relative to the smaller body, each part in contact has a contact at least
+// half as deep as any of its points, but for a fraction of the length of the edge. Of others, no point is
+// deeper than the ends by more than half of that length.
+constexpr double kLongEdge = 2 * kShortEdge, kMuchDeeper = 2, kDeeper = 1.0 / 8;
 // How deep a face may be below the vertices and edges that it supports, relative to the smaller body.
 constexpr double kSupportReach = 1.0 / 8;
 // A corner at most this far, relative to the smaller body, from a face that cannot push it is flush with it.
@@ -270,13 +276,14 @@ void FeatureContacts::find_on_edge(std::uint32_t edge, bool a_touches, bool b_to
     }
   const SurfaceAround around{&sites, &to_other(), &from_other(), sites.topology.edge_faces(edge), {a, b}};
   std::uint64_t number = 0;
-  for (const EdgeContacts::Found& found : edge_contacts_.find(
-           {start, end, a_touches, b_touches, spokes_, around}, other(), query().limit, reach, tolerance())) {
-    Feature feature{.key = kEdge | number++ << kOnEdgeBit | edge,
-                    .site = edge,
-                    .edge = true,
-                    .point = {.at = start + found.t * (end - start)},
-                    .faces = faces};
+  const std::size_t before = features_.size();
+  const Feature on_edge{.key = kEdge | edge, .site = edge, .edge = true, .faces = faces};
+  const EdgeContacts::Edge in_other{start, end, a_touches, b_touches, spokes_, around};
+  for (const EdgeContacts::Found& found :
+       edge_contacts_.find(in_other, other(), query().limit, reach, tolerance())) {
+    Feature feature = on_edge;
+    feature.key |= number++ << kOnEdgeBit;
+    feature.point.at = start + found.t * (end - start);
     if (found.support.face == kNone)
       feature.point = measure_near(other(), feature.point.at, found.near_face);
     else if (found.way_out.place == WayOut::Place::beside)
@@ -285,6 +292,50 @@ void FeatureContacts::find_on_edge(std::uint32_t edge, bool a_touches, bool b_to
       feature.support = found.support;
     features_.push_back(feature);
   }
+  if (!other().solid() || norm(end - start) <= kLongEdge * query().size) return;
+  for (const EdgeContacts::InContact& part : edge_contacts_.in_contact())
+    deepen(in_other, part, before, on_edge, number);
+}
+
+// Of a part of an edge inside, the contacts at its ends, where faces support it and at its middle may all be
+// much shallower than a point between them: that has a contact then, in place of the middle.
+void FeatureContacts::deepen(const EdgeContacts::Edge& edge, const EdgeContacts::InContact& part,
+                             std::size_t before, Feature feature, std::uint64_t& number) {
+  const Vec3 along = edge.b - edge.a;
+  EdgeInside line{edge.a + part.from * along, edge.a + part.to * along};
+  const double rest = kDeeper * norm(along);
+  double known = 0;
+  Feature* middle = nullptr;
+  for (std::size_t i = before + part.first_found; i < before + part.end_found; ++i) {
+    Feature& found = features_[i];
+    const bool supported = found.support.face != kNone;
+    if (!supported && found.own_face == kNone) middle = &found;
+    known = std::max(known, -(supported ? found.support.height : found.point.distance));
+  }
+  // The distance to a face is convex, and bounds depths.
+  const auto from_face = [&](const Vec3& p) {
+    return sites::closest_on_face(internals(other().sites()), part.near_face, p).distance;
+  };
+  line.from_depth = from_face(line.from), line.to_depth = from_face(line.to);
+  const double most = std::max(line.from_depth, line.to_depth);
+  if (!part.from_a) line.from_depth = 0;
+  if (!part.to_b) line.to_depth = 0;
+  if (std::min(most, most_between(line)) <= kMuchDeeper * known + rest) return;
+  const auto measure_end = [&](const Vec3& end, double& depth) {
+    depth = std::max(0.0, -measure_near(other(), end, part.near_face).distance);
+    known = std::max(known, depth);
+  };
+  if (part.from_a) measure_end(line.from, line.from_depth);
+  if (part.to_b) measure_end(line.to, line.to_depth);
+  const SurfacePoint deepest = deep_point(other(), line, kMuchDeeper * known + rest, part.near_face);
+  if (deepest.face == kNone || !at_boundary(other(), deepest)) return;
+  if (middle != nullptr) {
+    middle->point = deepest;
+    return;
+  }
+  feature.key |= number++ << kOnEdgeBit;
+  feature.point = deepest;
+  features_.push_back(feature);
 }
 
 void FeatureContacts::add_contacts() {
