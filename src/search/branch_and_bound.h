@@ -44,6 +44,8 @@ class Parts {
     std::ranges::push_heap(open_);
   }
 
+  /// How many parts are neither settled nor taken.
+  [[nodiscard]] std::size_t open_count() const { return open_.size(); }
   [[nodiscard]] double lower() const { return lower_; }
   /// The largest value matters only where it may exceed this.
   [[nodiscard]] double enough() const { return lower_ + precision_; }

@@ -22,8 +22,10 @@ constexpr double kSameDirection = 0.9999;
 constexpr int kFirstDirections = 3;
 // So many parts of the boundary are found for a triangle before it is divided.
 constexpr std::uint32_t kMostCuts = 4;
-// If more parts have to be measured, walls may be thin.
-constexpr std::size_t kEasy = 256, kUnlimited = std::numeric_limits<std::size_t>::max();
+// If more parts have to be measured, walls may be thin. While fewer than so many parts are open for each that
+// has been measured, the search is likely to end before a new one would, and goes on up to kMostEasy.
+constexpr std::size_t kEasy = 256, kMostEasy = 1024, kOpenOfMeasured = 6;
+constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
 
 // Whether the part of the boundary that was found excludes the point for which it was found, even though its
 // distance is taken to be linear in the triangle. If not, the triangle is too large for that. `enough` is in
@@ -51,7 +53,12 @@ Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity,
     }
   budget_ = kEasy;
   search_all();
-  if (parts_.upper() > parts_.enough() && !within_budget()) {
+  const auto is_unfinished = [&] { return parts_.upper() > parts_.enough() && !within_budget(); };
+  while (is_unfinished() && budget_ < kMostEasy && parts_.open_count() < kOpenOfMeasured * measured_) {
+    budget_ *= 2;
+    search::branch_and_bound(*this, parts_);
+  }
+  if (is_unfinished()) {
     budget_ = kUnlimited;
     if (look_at_walls()) {
       parts_.start(parts_.lower(), precision);
