@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/intact.h"
+#include "core/kept.h"
 #include "mesh/crossings/ray_parity.h"
 #include "mesh/topology.h"
 #include "sites/frames/face_frames.h"
@@ -14,6 +15,10 @@
 #include "sites/regions.h"
 #include "tree/aabb_tree.h"
 #include "tree/wide_tree.h"
+
+namespace sdm::inside {
+struct ShapeSigns;
+}
 
 namespace sdm::sites {
 
@@ -60,6 +65,7 @@ class SitesData {
   LeafFrames frames;    ///< of the leaves of both
   Pseudonormals normals;
   std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a reliable normal
+  Kept<inside::ShapeSigns> signs;    ///< of the present shape: see inside::signs_of()
 
  private:
   /// Intermediate data of a refit, whose memory the next one reuses.

@@ -9,20 +9,13 @@
 namespace sdm::inside {
 
 FaceSides::FaceSides(const sites::SitesData& solid)
-    : solid_(&solid),
-      count_(solid.mesh.triangles.size()),
-      sides_(std::make_unique<std::atomic<Sides>[]>(count_)) {
-  forget();
-}
-
-void FaceSides::forget() {
+    : solid_(&solid), sides_(std::make_unique<std::atomic<Sides>[]>(solid.mesh.triangles.size())) {
   const Box box = bounds(solid_->mesh);
   double largest = 0;
   for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
   const double unit = 1 / solid_->frame.scale, rounding = 1e-14 * largest;
   offset_ = std::max(1e-9 * unit, rounding);
   if (offset_ > 0.25 * kClearance * unit) offset_ = 0;
-  for (std::size_t f = 0; f < count_; ++f) sides_[f].store(Sides::unknown, std::memory_order_relaxed);
 }
 
 Sides FaceSides::of_face(std::uint32_t face) const {

@@ -29,10 +29,8 @@ enum class Sides : std::uint8_t {
 /// do not depend on the order of calls.
 class FaceSides {
  public:
-  /// `solid` must be a solid, outlive this object, and not change until forget().
+  /// `solid` must be a solid, outlive this object, and not change.
   explicit FaceSides(const sites::SitesData& solid);
-  /// Starts anew, for new positions. Reuses the memory.
-  void forget();
 
   /// Cost: O(log n) for the first call, constant for others.
   [[nodiscard]] Sides of_face(std::uint32_t face) const;
@@ -49,7 +47,6 @@ class FaceSides {
   [[nodiscard]] Sides known_to_neighbour(std::uint32_t face) const;
 
   const sites::SitesData* solid_;
-  std::size_t count_;
   double offset_ = 0;
   std::unique_ptr<std::atomic<Sides>[]> sides_;
 };

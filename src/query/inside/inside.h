@@ -5,13 +5,11 @@
 
 #include <sdm/sign.h>
 
-#include <optional>
+#include <cstdint>
 #include <span>
 
-#include "query/inside/boundary_sites.h"
-#include "query/inside/face_sides.h"
+#include "query/inside/shape_signs.h"
 #include "query/inside/solid.h"
-#include "query/inside/winding_number.h"
 #include "sites/closest_packet.h"
 #include "sites/sites_data.h"
 
@@ -27,12 +25,12 @@ namespace sdm::inside {
 class InsideTest {
  public:
   /// `method` as chosen by choose_sign; `none` makes every answer "outside". `error`: the closest points of
-  /// packets are closest to within this length.
+  /// packets are closest to within this length. Cost: constant, but for the first test of a shape.
   InsideTest(const sites::SitesData& sites, SignMethod method, double error = 0);
-  /// Adapts to new positions of the sites. Reuses the memory.
+  /// Adapts to new positions of the sites.
   void refit();
 
-  /// `closest` is the closest point of the query (not used by the generalised winding number). On the
+  /// `closest` is the closest point of the query. The generalised winding number does without one. On the
   /// surface: outside.
   [[nodiscard]] bool operator()(const Vec3& query, const ClosestPoint& closest) const;
   /// A bit mask of the queries of a packet that are inside. Fastest if successive packets are near to each
@@ -50,17 +48,20 @@ class InsideTest {
   [[nodiscard]] bool inside_solid(const Vec3& query, const ClosestPoint& closest) const;
   /// The side of an open O2, as of SignMethod::side.
   [[nodiscard]] bool behind(const Vec3& query, const ClosestPoint& closest) const;
-  [[nodiscard]] bool inside_ball(const Vec3& query, const ClosestPoint& closest) const;
+  /// By known balls, or by a test that adds one. `distance` is that of the closest point, which closest()
+  /// returns.
+  template <class Closest>
+  [[nodiscard]] bool inside_ball(const Vec3& query, SiteType type, double distance,
+                                 const Closest& closest) const;
 
   const sites::SitesData& sites_;
   SignMethod method_;
-  Box box_;  ///< of O2: no point outside it is inside O2, even where rounding would decide
   double error_;
-  double clearance_ = 0;     ///< kClearance in units of the mesh
-  std::uint64_t shape_ = 0;  ///< unique, over all objects, for these positions
-  std::optional<FaceSides> sides_;
-  std::optional<WindingNumber> winding_;
-  BoundarySites boundary_;  ///< for SignMethod::side
+  const ShapeSigns* signs_ = nullptr;  ///< none without a method
+  // What the method needs.
+  const FaceSides* sides_ = nullptr;
+  const WindingNumber* winding_ = nullptr;
+  const BoundarySites* boundary_ = nullptr;
 };
 
 }  // namespace sdm::inside

@@ -9,26 +9,9 @@
 #include "query/inside/inside.h"
 
 namespace sdm {
-namespace {
-
-// The reason why O2 has no inside, as a clause; empty if it has one.
-std::string open_reason(const sites::SitesData& sites) {
-  if (sites.is_solid()) return {};
-  std::size_t boundary = 0, nonmanifold = 0;
-  for (std::size_t e = 0; e < sites.topology.edges.size(); ++e) {
-    boundary += sites.topology.edge_faces(e).size() == 1;
-    nonmanifold += sites.topology.edge_faces(e).size() > 2;
-  }
-  if (boundary > 0) return "O2 is open (" + std::to_string(boundary) + " boundary edges)";
-  if (nonmanifold > 0)
-    return "O2 is not manifold (" + std::to_string(nonmanifold) + " edges of more than two faces)";
-  return "O2 is not orientable";
-}
-
-}  // namespace
-
 SignUsed choose_sign(const Sites& sites, SignMethod asked) {
-  const std::string open = open_reason(internals(sites));
+  const sites::SitesData& data = internals(sites);
+  const std::string open = data.is_solid() ? std::string() : inside::signs_of(data).why_open;
   switch (asked) {
     case SignMethod::none:
       return {SignMethod::none, "asked for"};

@@ -1,9 +1,12 @@
 // The winding number of closed meshes, decided exactly.
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include "geometry/affine.h"
+#include "query/inside/oriented_faces.h"
 #include "sites/sites_data.h"
 
 namespace sdm::inside {
@@ -14,6 +17,18 @@ namespace sdm::inside {
 [[nodiscard]] std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, const Vec3& p,
                                          const Vec3& q);
 
+/// The sum of the signs with which the segment from p to q crosses faces moved by `pose`: 1 for each that it
+/// leaves through its outer side. Otherwise as the above, which it is for the faces of a closed mesh and a q
+/// outside.
+[[nodiscard]] std::optional<int> crossings(const OrientedFaces& faces, const Affine& pose, const Vec3& p,
+                                           const Vec3& q);
+
+/// A segment from a point to a point outside the box of the tree, moved by `pose`, for which crossings(q) is
+/// set: its value. 0 if the point is outside the box; empty if none of the first `most` segments has one.
+template <class Crossings>
+[[nodiscard]] std::optional<int> winding_by_segments(const FaceTree& faces, const Affine& pose,
+                                                     const Vec3& point, int most, const Crossings& crossings);
+
 /// The winding number of a solid moved by `pose` around a point that does not lie on its surface: 0 outside.
 /// Exact; 0 for a point on an edge. Cost: usually one call of the above.
 [[nodiscard]] int winding(const sites::SitesData& solid, const Affine& pose, const Vec3& point);
@@ -22,6 +37,35 @@ namespace sdm::inside {
 /// number around the point is not 0.
 [[nodiscard]] inline bool contains(const sites::SitesData& solid, const Affine& pose, const Vec3& point) {
   return winding(solid, pose, point) != 0;
+}
+
+template <class Crossings>
+std::optional<int> winding_by_segments(const FaceTree& faces, const Affine& pose, const Vec3& point, int most,
+                                       const Crossings& crossings) {
+  constexpr double kMargin = 1e-9;  // of the unit frame, far above rounding
+  // The shortest way out of the box is along one of the axes of the frame.
+  const tree::FloatBox& box = faces.tree.box(0);
+  const Vec3 p = faces.frame.to_unit(inverse(pose)(point));
+  int axis = 0;
+  double way = std::numeric_limits<double>::infinity();
+  bool up = false;
+  for (int k = 0; k < 3; ++k) {
+    const double below = p[k] - box.lo[k], above = box.hi[k] - p[k];
+    if (below < -kMargin || above < -kMargin) return 0;
+    if (below < way) way = below, axis = k, up = false;
+    if (above < way) way = above, axis = k, up = true;
+  }
+  const double length = (up ? 1 : -1) * (std::abs(way) + 0.01) / faces.frame.scale;
+  // Segments along (1, t, t²) that intersect an edge are skipped. Those that meet the same edge lie in one
+  // plane through the point, and no such plane contains more than two of them, so that only points on an edge
+  // need more than a few.
+  double t = 0.0137035999;
+  for (int i = 0; i < most; ++i, t += 0.0072973525) {
+    Vec3 along;
+    along[axis] = length, along[(axis + 1) % 3] = t * length, along[(axis + 2) % 3] = t * t * length;
+    if (const std::optional<int> turns = crossings(point + pose.linear(along))) return turns;
+  }
+  return {};
 }
 
 }  // namespace sdm::inside

@@ -1,97 +1,93 @@
 #include "query/inside/winding_number.h"
 
-#include <algorithm>
-#include <functional>
+#include <cmath>
+#include <limits>
+#include <memory>
 #include <numbers>
-#include <optional>
+#include <numeric>
+#include <utility>
 
 #include "core/cancellation.h"
-#include "geometry/vec.h"
-#include "query/inside/solid_angle.h"
-#include "tree/fold.h"
+#include "geometry/affine.h"
+#include "query/inside/closing_faces.h"
+#include "query/inside/solid.h"
 
 namespace sdm::inside {
 namespace {
 
-std::array<Vec3, 3> corners(const sites::SitesData& sites, std::uint32_t face) {
-  const Triangle& t = sites.mesh.triangles[face];
-  const auto& p = sites.mesh.positions;
-  const bool inverted = sites.inverted[face];
-  return {p[t[0]], p[t[inverted ? 2 : 1]], p[t[inverted ? 1 : 2]]};
+constexpr double kSphere = 4 * std::numbers::pi;
+constexpr double kNoLimit = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint32_t kLeafFaces = 4;
+
+bool certain(const SolidAngle& angle, double limit) {
+  return std::abs(angle.value - limit) > angle.error;
 }
 
 }  // namespace
 
-WindingNumber::WindingNumber(const sites::SitesData& sites)
-    : sites_(sites), dipoles_(sites.tree.nodes.size()) {
-  const auto add = [](Dipole& d, const Vec3& centre, const Vec3& moment, double area) {
-    d.centre += area * centre;
-    d.moment += moment;
-    d.area += area;
-  };
-  // `d` holds the sums over the subtree of a node, `box` is the box of the node.
-  const auto finish = [&](Dipole& d, const tree::FloatBox& box) {
-    const Vec3 lo{box.lo[0], box.lo[1], box.lo[2]}, hi{box.hi[0], box.hi[1], box.hi[2]};
-    const Vec3 middle = sites.frame.origin + (0.5 / sites.frame.scale) * (lo + hi);
-    d.centre = d.area > 0 ? (1 / d.area) * d.centre : middle;
-    Vec3 farthest;  // from the centre to the box's farthest corner
-    for (int k = 0; k < 3; ++k)
-      farthest[k] = 0.5 / sites.frame.scale * (hi[k] - lo[k]) + std::abs(d.centre[k] - middle[k]);
-    d.radius = norm(farthest);
-  };
-  Poll due(1024);
-  for_each_bottom_up(
-      sites.tree,
-      [&](std::uint32_t leaf) {
-        due();
-        for (const std::uint32_t face : sites.tree.items_of(leaf)) {
-          const auto [a, b, c] = corners(sites, face);
-          const Vec3 moment = 0.5 * cross(b - a, c - a);
-          add(dipoles_[leaf], (1.0 / 3) * (a + b + c), moment, norm(moment));
-        }
-        finish(dipoles_[leaf], sites.tree.box(leaf));
-      },
-      [&](std::uint32_t node, std::uint32_t left, std::uint32_t right) {
-        for (const Dipole& child : {dipoles_[left], dipoles_[right]})
-          add(dipoles_[node], child.centre, child.moment, child.area);
-        finish(dipoles_[node], sites.tree.box(node));
-      });
+WindingNumber::WindingNumber(const sites::SitesData& sites) : sites_(sites) {
+  std::vector<Triangle> closing = inside::closing_faces(sites);
+  if (2 * closing.size() <= sites.tree.items.size()) build_closing(std::move(closing));
+  if (!closing_.angles) (void)mesh_angles();
 }
 
-// The solid angle of a subtree is the integral of n·K(x − q) over its faces, K(r) = r / |r|³. The dipole
-// takes K at the centre c. By the mean value theorem K(x − q) differs from that by at most |x − c| times the
-// largest norm of K's derivative on the way, which is 2 / |r|³; thus the error is at most 2·area·radius /
-// (distance − radius)³.
+void WindingNumber::build_closing(std::vector<Triangle> triangles) {
+  closing_.triangles = std::move(triangles);
+  std::vector<tree::FloatBox> boxes;
+  boxes.reserve(closing_.triangles.size());
+  for (const Triangle& t : closing_.triangles) {
+    Box box;
+    for (const std::uint32_t v : t) extend(box, sites_.frame.to_unit(sites_.mesh.positions[v]));
+    boxes.push_back(tree::FloatBox::around(box));
+  }
+  std::vector<std::uint32_t> all(boxes.size());
+  std::iota(all.begin(), all.end(), 0u);
+  closing_.tree = tree::build_aabb_tree(boxes, std::move(all), kLeafFaces);
+  closing_.angles.emplace(closing_faces());
+}
+
+OrientedFaces WindingNumber::closing_faces() const {
+  return {{sites_.mesh.positions, closing_.triangles, sites_.frame, closing_.tree}, {}};
+}
+
+const SolidAngles& WindingNumber::mesh_angles() const {
+  return mesh_angles_.get([this] { return std::make_shared<const SolidAngles>(oriented_faces(sites_)); });
+}
+
+std::optional<int> WindingNumber::closed(const Vec3& q) const {
+  if (!closing_.angles) return {};
+  constexpr int kMostSegments = 4;
+  const OrientedFaces mesh = oriented_faces(sites_), closing = closing_faces();
+  return winding_by_segments(mesh.faces, {}, q, kMostSegments, [&](const Vec3& end) {
+    const std::optional<int> through_mesh = crossings(mesh, {}, q, end);
+    if (!through_mesh || closing.faces.tree.nodes.empty()) return through_mesh;
+    const std::optional<int> through_closing = crossings(closing, {}, q, end);
+    return through_closing ? std::optional(*through_mesh + *through_closing) : std::nullopt;
+  });
+}
+
 double WindingNumber::operator()(const Vec3& q, double error) const {
-  poll();
-  constexpr double kSphere = 4 * std::numbers::pi;
   if (sites_.tree.nodes.empty()) return 0;
-  const double error_per_area = kSphere * error / dipoles_[0].area;
-  const double angle = reduce(
-      sites_.tree, 0,
-      [&](std::uint32_t node) -> std::optional<double> {
-        const Dipole& d = dipoles_[node];
-        const Vec3 r = d.centre - q;
-        const double distance = norm(r), gap = distance - d.radius;
-        if (!(gap > 0 && 2 * d.radius <= error_per_area * gap * gap * gap)) return std::nullopt;
-        return dot(d.moment, r) / (distance * distance * distance);
-      },
-      [&](std::uint32_t leaf) {
-        double sum = 0;
-        for (const std::uint32_t face : sites_.tree.items_of(leaf)) {
-          const auto [a, b, c] = corners(sites_, face);
-          sum += solid_angle(a - q, b - q, c - q);
-        }
-        return sum;
-      },
-      std::plus<>());
-  return angle / kSphere;
+  poll();
+  if (const std::optional<int> number = closed(q)) {
+    const SolidAngle angle = closing_.angles->at(q, kNoLimit, kSphere * error).angle;
+    if (std::isfinite(angle.error)) return *number - angle.value / kSphere;
+  }
+  return mesh_angles().at(q, kNoLimit, kSphere * error).angle.value / kSphere;
 }
 
-bool WindingNumber::above_half(const Vec3& q) const {
-  for (const double error : {0.2, 0.02, 1e-3, 1e-5})
-    if (const double number = (*this)(q, error); std::abs(number - 0.5) > error) return number > 0.5;
-  return (*this)(q, 0) > 0.5;
+// The mesh has w = n − s/4π, with s the solid angle of the closing faces: w > 1/2 where s < 4π(n − 1/2).
+WindingNumber::Side WindingNumber::above_half(const Vec3& q) const {
+  if (sites_.tree.nodes.empty()) return {};
+  poll();
+  if (const std::optional<int> number = closed(q)) {
+    const double limit = kSphere * (*number - 0.5);
+    const SolidAngles::Sum sum = closing_.angles->at(q, limit, 0);
+    if (certain(sum.angle, limit)) return {sum.angle.value < limit, sum.reach};
+  }
+  const double limit = 0.5 * kSphere;
+  const SolidAngles::Sum sum = mesh_angles().at(q, limit, 0);
+  return {sum.angle.value > limit, certain(sum.angle, limit) ? sum.reach : 0};
 }
 
 }  // namespace sdm::inside

@@ -3,35 +3,59 @@
 
 #include <sdm/types.h>
 
+#include <optional>
 #include <vector>
 
+#include "core/kept.h"
+#include "query/inside/solid_angles.h"
 #include "sites/sites_data.h"
 
 namespace sdm::inside {
 
 /// How many times the mesh winds around a point (Jacobson, Kavan & Sorkine 2013): 1 inside and 0 outside a
-/// closed mesh, in between around an open one. Distant subtrees are replaced by dipoles (Barill et al. 2018),
-/// with a bound on the error of each.
+/// closed mesh, in between around an open one.
+///
+/// The faces of the mesh and those that close it (closing_faces.h) have a winding number that is an integer,
+/// and follows from the crossings of a segment, exactly. What remains is the solid angle of the closing
+/// faces: of few where boundaries are short, and of those near to the point at that. Where they would be more
+/// than half as many as the faces of the mesh, and where rounding leaves open on which side of them a point
+/// is, the solid angles of the mesh are summed instead.
 class WindingNumber {
  public:
   explicit WindingNumber(const sites::SitesData& sites);
+  WindingNumber(const WindingNumber&) = delete;
+  WindingNumber& operator=(const WindingNumber&) = delete;
 
-  /// The winding number around q to within `error` (and rounding, 1e-12). Cost: logarithmic for large errors,
-  /// linear for 0.
+  /// The winding number around q, which does not lie on the mesh, to within `error` and rounding. Cost:
+  /// logarithmic for large errors, at worst linear for 0.
   [[nodiscard]] double operator()(const Vec3& q, double error) const;
-  /// Whether it is above 1/2. Computed only as accurately as this takes.
-  [[nodiscard]] bool above_half(const Vec3& q) const;
+
+  struct Side {
+    bool above = false;  ///< whether the winding number is above 1/2
+    /// Nearer to q than this, all points have the same answer that a straight line leads to without meeting
+    /// the mesh.
+    double reach = 0;
+  };
+  /// The side of 1/2 on which the number around q is; as above.
+  [[nodiscard]] Side above_half(const Vec3& q) const;
 
  private:
-  struct Dipole {
-    Vec3 centre{};  ///< area-weighted mean of the faces' centroids
-    Vec3 moment{};  ///< sum of the faces' normals times areas
-    double area = 0;
-    double radius = 0;  ///< of a ball around the centre that contains the subtree
+  /// The closing faces.
+  struct Closing {
+    std::vector<Triangle> triangles;
+    tree::AabbTree tree;
+    std::optional<SolidAngles> angles;
   };
 
+  void build_closing(std::vector<Triangle> triangles);
+  [[nodiscard]] OrientedFaces closing_faces() const;
+  /// Of the closed surface; empty where no segment decides it.
+  [[nodiscard]] std::optional<int> closed(const Vec3& q) const;
+  [[nodiscard]] const SolidAngles& mesh_angles() const;
+
   const sites::SitesData& sites_;
-  std::vector<Dipole> dipoles_;  ///< one per node of the tree
+  Closing closing_;
+  Kept<SolidAngles> mesh_angles_;
 };
 
 }  // namespace sdm::inside

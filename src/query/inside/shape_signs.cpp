@@ -1,0 +1,54 @@
+#include "query/inside/shape_signs.h"
+
+#include <atomic>
+#include <memory>
+
+#include "query/inside/near_faces.h"
+
+namespace sdm::inside {
+namespace {
+
+std::uint64_t unique_number() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
+std::string open_reason(const sites::SitesData& sites) {
+  if (sites.is_solid()) return {};
+  std::size_t boundary = 0, nonmanifold = 0;
+  for (std::size_t e = 0; e < sites.topology.edges.size(); ++e) {
+    boundary += sites.topology.edge_faces(e).size() == 1;
+    nonmanifold += sites.topology.edge_faces(e).size() > 2;
+  }
+  if (boundary > 0) return "O2 is open (" + std::to_string(boundary) + " boundary edges)";
+  if (nonmanifold > 0)
+    return "O2 is not manifold (" + std::to_string(nonmanifold) + " edges of more than two faces)";
+  return "O2 is not orientable";
+}
+
+}  // namespace
+
+ShapeSigns::ShapeSigns(const sites::SitesData& sites)
+    : box(bounds(sites.mesh)),
+      clearance(kClearance / sites.frame.scale),
+      number(unique_number()),
+      why_open(open_reason(sites)),
+      sites_(sites) {}
+
+const FaceSides& ShapeSigns::sides() const {
+  return sides_.get([this] { return std::make_shared<const FaceSides>(sites_); });
+}
+const WindingNumber& ShapeSigns::winding() const {
+  return winding_.get([this] { return std::make_shared<const WindingNumber>(sites_); });
+}
+const BoundarySites& ShapeSigns::boundary() const {
+  return boundary_.get([this] {
+    return std::make_shared<const BoundarySites>(sites_.topology, sites_.mesh.positions.size());
+  });
+}
+
+const ShapeSigns& signs_of(const sites::SitesData& sites) {
+  return sites.signs.get([&] { return std::make_shared<const ShapeSigns>(sites); });
+}
+
+}  // namespace sdm::inside

@@ -1,0 +1,41 @@
+// What inside tests of one shape have in common.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/kept.h"
+#include "query/inside/boundary_sites.h"
+#include "query/inside/face_sides.h"
+#include "query/inside/winding_number.h"
+#include "sites/sites_data.h"
+
+namespace sdm::inside {
+
+/// Kept with the sites until they change, so that the tests of each query need not make it again. Each method
+/// has a part that is made when it is first used: for a solid, a byte for each face; for winding numbers of
+/// an open mesh, the closing faces with their tree, or 136 bytes for each node of the tree over its faces;
+/// for sides, a byte for each edge and vertex.
+struct ShapeSigns {
+  explicit ShapeSigns(const sites::SitesData& sites);
+
+  Box box;               ///< of O2: no point outside it is inside O2, even where rounding would decide
+  double clearance;      ///< kClearance in units of the mesh
+  std::uint64_t number;  ///< unique, over all objects
+  std::string why_open;  ///< the reason why O2 has no inside, as a clause; empty if it has one
+
+  [[nodiscard]] const FaceSides& sides() const;
+  [[nodiscard]] const WindingNumber& winding() const;
+  [[nodiscard]] const BoundarySites& boundary() const;
+
+ private:
+  const sites::SitesData& sites_;
+  Kept<FaceSides> sides_;
+  Kept<WindingNumber> winding_;
+  Kept<BoundarySites> boundary_;
+};
+
+/// Those of the present shape. Made by the first call; may be called concurrently.
+[[nodiscard]] const ShapeSigns& signs_of(const sites::SitesData& sites);
+
+}  // namespace sdm::inside
