@@ -1,9 +1,7 @@
 #include <sdm/closest_points.h>
 #include <sdm/error.h>
 
-#include <cmath>
 #include <new>
-#include <string>
 
 #include "core/memory.h"
 #include "geometry/barycentric.h"
@@ -19,11 +17,7 @@ std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec
   const std::shared_ptr<const Engine> engine = map::engine_of(options);
   if (options.facing)
     throw Error("closest_points() has no normals of the points; use closest_facing_points()");
-  using mesh::kMaxCoordinate;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (const double x : points[i])
-      if (!(std::abs(x) <= kMaxCoordinate))
-        throw Error("query point " + std::to_string(i) + " has a coordinate that is NaN or beyond 1e37");
+  mesh::validate_queries(points);
   std::vector<ClosestPoint> result(points.size());
   engine->scattered(sites, points, {options.max_distance, options.progress}, result);
   return result;

@@ -84,6 +84,13 @@ void mesh::validate_positions(std::span<const Vec3> positions, std::size_t count
   mesh::validate_positions(positions);
 }
 
+void mesh::validate_queries(std::span<const Vec3> points) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (const double x : points[i])
+      if (!(std::abs(x) <= kMaxCoordinate))
+        throw Error("query point " + std::to_string(i) + " has a coordinate that is NaN or beyond 1e37");
+}
+
 void mesh::validate_edited(const Mesh& mesh) {
   validate_counts(mesh);
   if (std::ranges::none_of(mesh.triangles, [&](const Triangle& t) { return has_area(mesh, t); }))

@@ -16,6 +16,9 @@ void validate_positions(std::span<const Vec3> positions);
 /// The same for new positions of `count` vertices; also throws if there are more or fewer.
 void validate_positions(std::span<const Vec3> positions, std::size_t count);
 
+/// The same for points that are asked about.
+void validate_queries(std::span<const Vec3> points);
+
 /// Throws as validate() does for what an edit with valid indices and coordinates may cause.
 void validate_edited(const Mesh& mesh);
 

@@ -20,8 +20,14 @@ FaceSides::FaceSides(const sites::SitesData& solid)
 
 Sides FaceSides::of_face(std::uint32_t face) const {
   Sides sides = sides_[face].load(std::memory_order_relaxed);
-  if (sides == Sides::unknown) sides_[face].store(sides = find(face), std::memory_order_relaxed);
+  if (sides == Sides::unknown || sides == kAsked)
+    sides_[face].store(sides = find(face), std::memory_order_relaxed);
   return sides;
+}
+
+bool FaceSides::first_asked(std::uint32_t face) const {
+  Sides unknown = Sides::unknown;
+  return sides_[face].compare_exchange_strong(unknown, kAsked, std::memory_order_relaxed);
 }
 
 Sides FaceSides::of_site(SiteType type, std::uint32_t site) const {
@@ -51,7 +57,7 @@ Sides FaceSides::known_to_neighbour(std::uint32_t face) const {
   for (const std::uint32_t edge : solid_->topology.face_edges[face])
     for (const std::uint32_t other : solid_->topology.edge_faces(edge)) {
       const Sides sides = sides_[other].load(std::memory_order_relaxed);
-      if (sides != Sides::unknown && sides != Sides::mixed) return sides;
+      if (sides != Sides::unknown && sides != kAsked && sides != Sides::mixed) return sides;
     }
   return Sides::unknown;
 }

@@ -34,6 +34,9 @@ class FaceSides {
 
   /// Cost: O(log n) for the first call, constant for others.
   [[nodiscard]] Sides of_face(std::uint32_t face) const;
+  /// Whether the sides of a face are not known, and this has not been asked before. Those of a face that few
+  /// queries ask for cost more than their winding numbers.
+  [[nodiscard]] bool first_asked(std::uint32_t face) const;
   /// How far beside a face that no other one meets its sides are determined: more than rounding, less than
   /// the distance of other faces. 0 if no such length exists, in a mesh that is far from the origin: then all
   /// sides are `mixed`.
@@ -43,6 +46,9 @@ class FaceSides {
   [[nodiscard]] Sides of_site(SiteType type, std::uint32_t site) const;
 
  private:
+  /// Not known, but asked for.
+  static constexpr Sides kAsked = static_cast<Sides>(0xFF);
+
   [[nodiscard]] Sides find(std::uint32_t face) const;
   [[nodiscard]] Sides known_to_neighbour(std::uint32_t face) const;
 

@@ -42,6 +42,11 @@ class Balls {
 };
 thread_local Balls balls;
 
+// The answer of a test of a solid: it holds wherever a ball that the surface does not meet leads.
+WindingNumber::Side of_solid(bool inside) {
+  return {inside, std::numeric_limits<double>::infinity()};
+}
+
 }  // namespace
 
 InsideTest::InsideTest(const sites::SitesData& sites, SignMethod method, double error)
@@ -77,34 +82,41 @@ bool InsideTest::behind(const Vec3& query, const ClosestPoint& closest) const {
   return dot(query - closest.point, sites::pseudonormal(sites_.normals, sites_.topology, closest)) < 0;
 }
 
-template <class Closest>
-bool InsideTest::inside_ball(const Vec3& query, SiteType type, double distance,
-                             const Closest& closest) const {
-  const bool solid = method_ == SignMethod::exact;
+template <class Test>
+bool InsideTest::inside_ball(const Vec3& query, SiteType type, double distance, const Test& test) const {
   const double radius = type == SiteType::none ? 0 : distance - std::max(signs_->clearance, error_);
-  if (radius > 0)
-    if (const auto known = balls.find(signs_->number, query, radius)) return *known;
-  if (!solid && distance == 0) return false;
-  const WindingNumber::Side side =
-      solid ? WindingNumber::Side{inside_solid(query, closest()), std::numeric_limits<double>::infinity()}
-            : winding_->above_half(query);
-  if (radius > 0) balls.add(signs_->number, {query, radius, side.reach, side.above});
+  if (!(radius > 0)) return test(false).above;
+  if (const auto known = balls.find(signs_->number, query, radius)) return *known;
+  const WindingNumber::Side side = test(true);
+  balls.add(signs_->number, {query, radius, side.reach, side.above});
   return side.above;
 }
 
-bool InsideTest::operator()(const Vec3& query, const ClosestPoint& closest) const {
+bool InsideTest::test(const Vec3& query, const ClosestPoint& closest, bool few) const {
   switch (method_) {
     case SignMethod::exact:
       if (closest.type == SiteType::none || !sdm::contains(signs_->box, query)) return false;
-      [[fallthrough]];
+      return inside_ball(query, closest.type, closest.distance, [&](bool clear) {
+        const bool direct = few && clear && sides_->first_asked(sites_.face_of(closest.type, closest.site));
+        return of_solid(direct ? winding(sites_, {}, query) != 0 : inside_solid(query, closest));
+      });
     case SignMethod::winding:
+      if (closest.distance == 0) return false;
       return inside_ball(query, closest.type, closest.distance,
-                         [&]() -> const ClosestPoint& { return closest; });
+                         [&](bool) { return winding_->above_half(query); });
     case SignMethod::side:
       return behind(query, closest);
     default:
       return false;
   }
+}
+
+bool InsideTest::operator()(const Vec3& query, const ClosestPoint& closest) const {
+  return test(query, closest, false);
+}
+
+bool InsideTest::of_few(const Vec3& query, const ClosestPoint& closest) const {
+  return test(query, closest, true);
 }
 
 bool InsideTest::at_boundary(const Vec3& query, const ClosestPoint& closest) const {
@@ -128,13 +140,12 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries,
   if (method_ == SignMethod::none) return inside;
   for (std::size_t i = 0; i < closest.count; ++i) {
     const Vec3& query = queries[i];
-    const auto closest_of_query = [&] { return closest.get(i, query); };
     bool is_inside = false;
-    if (method_ == SignMethod::side)
-      is_inside = behind(query, closest_of_query());
-    else if (method_ == SignMethod::winding ||
-             (closest.type[i] != SiteType::none && sdm::contains(signs_->box, query)))
-      is_inside = inside_ball(query, closest.type[i], closest.distance[i], closest_of_query);
+    if (method_ != SignMethod::exact)
+      is_inside = (*this)(query, closest.get(i, query));
+    else if (sdm::contains(signs_->box, query) && closest.type[i] != SiteType::none)
+      is_inside = inside_ball(query, closest.type[i], closest.distance[i],
+                              [&](bool) { return of_solid(inside_solid(query, closest.get(i, query))); });
     inside |= static_cast<std::uint32_t>(is_inside) << i;
   }
   return inside;

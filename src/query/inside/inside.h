@@ -33,6 +33,8 @@ class InsideTest {
   /// `closest` is the closest point of the query. The generalised winding number does without one. On the
   /// surface: outside.
   [[nodiscard]] bool operator()(const Vec3& query, const ClosestPoint& closest) const;
+  /// The same answer. Faster for queries of which most are the only one at their closest face.
+  [[nodiscard]] bool of_few(const Vec3& query, const ClosestPoint& closest) const;
   /// A bit mask of the queries of a packet that are inside. Fastest if successive packets are near to each
   /// other.
   [[nodiscard]] std::uint32_t operator()(std::span<const Vec3> queries,
@@ -48,11 +50,11 @@ class InsideTest {
   [[nodiscard]] bool inside_solid(const Vec3& query, const ClosestPoint& closest) const;
   /// The side of an open O2, as of SignMethod::side.
   [[nodiscard]] bool behind(const Vec3& query, const ClosestPoint& closest) const;
-  /// By known balls, or by a test that adds one. `distance` is that of the closest point, which closest()
-  /// returns.
-  template <class Closest>
-  [[nodiscard]] bool inside_ball(const Vec3& query, SiteType type, double distance,
-                                 const Closest& closest) const;
+  /// By known balls, or by test(), which returns a WindingNumber::Side and adds a ball. `type` and `distance`
+  /// are those of the closest point.
+  template <class Test>
+  [[nodiscard]] bool inside_ball(const Vec3& query, SiteType type, double distance, const Test& test) const;
+  [[nodiscard]] bool test(const Vec3& query, const ClosestPoint& closest, bool few) const;
 
   const sites::SitesData& sites_;
   SignMethod method_;

@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "mesh/validate.h"
 #include "query/inside/inside.h"
 
 namespace sdm {
@@ -41,10 +42,13 @@ SignUsed choose_sign(const Sites& sites, SignMethod asked) {
 std::vector<std::uint8_t> inside_flags(const Sites& sites, std::span<const Vec3> queries,
                                        std::span<const ClosestPoint> closest, SignMethod method) try {
   if (queries.size() != closest.size()) throw Error("inside_flags() needs one closest point for each query");
+  mesh::validate_queries(queries);
   const inside::InsideTest test(internals(sites), choose_sign(sites, method).method);
+  const bool few = queries.size() < sites.mesh().triangles.size();
   std::vector<std::uint8_t> result(queries.size());
   parallel_for(queries.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) result[i] = test(queries[i], closest[i]);
+    for (std::size_t i = begin; i < end; ++i)
+      result[i] = few ? test.of_few(queries[i], closest[i]) : test(queries[i], closest[i]);
   });
   return result;
 } catch (const std::bad_alloc&) {
