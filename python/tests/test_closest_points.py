@@ -108,6 +108,33 @@ def test_refit():
     np.testing.assert_array_equal(sites.vertices, moved)
 
 
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 1e38])
+def test_points_that_are_not_finite(bad):
+    vertices, faces = meshes.box()
+    for sites, sign in ((sdm.Sites(vertices, faces), "exact"), (sdm.Sites(vertices, faces[1:]), "winding")):
+        for k in range(3):
+            points = np.zeros((3, 3))
+            points[1, k] = bad
+            for call in (sites.closest_points, lambda p: sites.signed_distance(p, sign=sign),
+                         lambda p: sites.contains(p, sign=sign)):  # fmt: skip
+                for given in (points, points[1:2]):
+                    with pytest.raises(sdm.Error, match="query point .* NaN or beyond 1e37"):
+                        call(given)
+
+
+@pytest.mark.parametrize("faces_left", [None, 1])
+def test_signs_of_single_points_are_those_of_a_batch(faces_left):
+    vertices, faces = meshes.sphere()
+    sign = "exact" if faces_left is None else "winding"
+    sites = sdm.Sites(vertices, faces[faces_left:])
+    together = sites.signed_distance(POINTS, sign=sign)
+    single = [sites.signed_distance(p[None], sign=sign)[0] for p in POINTS]
+    np.testing.assert_allclose(single, together, rtol=0, atol=7e-6)
+    assert ((np.array(single) < 0) == (together < 0)).all() and (together < 0).any()
+    sites.refit(vertices + [5, 0, 0])
+    np.testing.assert_allclose(sites.signed_distance(POINTS + [5, 0, 0], sign=sign), together, rtol=0, atol=7e-6)
+
+
 def test_options_out_of_range():
     sites = sdm.Sites(meshes.box())
     for options in ({"sign": "inside"}, {"engine": "fast"}, {"engine": "gl"}, {"max_distance": 0}, {"max_distance": -1},
