@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/intact.h"
-#include "core/kept.h"
+#include "core/lazy/kept.h"
 #include "mesh/crossings/ray_parity.h"
 #include "mesh/topology.h"
 #include "sites/frames/face_frames.h"

@@ -5,6 +5,7 @@ cmake_minimum_required(VERSION 3.23)
 # each folder the folders that it includes.
 set(order
   core
+  core/lazy
   geometry
   geometry/lanes
   geometry/boxes
@@ -143,6 +144,7 @@ set(readers_of_nodes
   query/closest/descent.cpp            # appends all leaves within reach to a list, by vector instructions
   proximity/motion/parts.h             # nodes are divided into faces too, by time
   proximity/self/self_search.cpp       # marks the nodes whose faces are all excluded
+  query/inside/solid_angles.cpp        # the node of the largest error first, taken out of a sum again
   query/inside/solid_boundary.cpp      # faces are divided further, nearest first
   query/pairs/near_faces.cpp           # bounds the children of a pair, and marks those below a node
   query/pairs/pair_search.cpp          # bounds the children of a pair

@@ -1,8 +1,8 @@
+#include "atlas/gutter.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "io/file/atomic_file.h"
 #include "io/file/deflate.h"
-#include "atlas/gutter.h"
 
 #include <OpenEXR/openexr.h>
 #include <fmt/format.h>

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "atlas/gutter.h"
 #include "core/memory.h"
 #include "io/file/atomic_file.h"
 #include "io/image/pictures/color_scale.h"
-#include "atlas/gutter.h"
 #include "io/image/pictures/png.h"
 
 namespace sdm {

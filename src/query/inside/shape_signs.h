@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/kept.h"
+#include "core/lazy/kept.h"
 #include "query/inside/boundary_sites.h"
 #include "query/inside/face_sides.h"
 #include "query/inside/winding_number.h"

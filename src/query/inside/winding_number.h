@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/kept.h"
+#include "core/lazy/kept.h"
 #include "query/inside/solid_angles.h"
 #include "sites/sites_data.h"
 

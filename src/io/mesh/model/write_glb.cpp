@@ -1,7 +1,7 @@
+#include "atlas/gutter.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
-#include "atlas/gutter.h"
 #include "io/file/atomic_file.h"
 #include "io/image/pictures/atlas_picture.h"
 #include "io/image/pictures/color_scale.h"
