@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "atlas/gutter.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
-#include "io/image/pictures/gutter.h"
 
 namespace sdm::figures {
 namespace {
@@ -67,7 +67,7 @@ std::vector<Ray> rays_of(const View& view) {
   return rays;
 }
 
-std::uint32_t texel_at(const Surface& surface, const io::Gutter& gutter, std::uint32_t face,
+std::uint32_t texel_at(const Surface& surface, const atlas::Gutter& gutter, std::uint32_t face,
                        const Vec3& point) {
   const Vec2 uv = surface.to_atlas(face, point);
   const auto clamped = [](double x, std::uint32_t count) {
@@ -81,7 +81,7 @@ std::uint32_t texel_at(const Surface& surface, const io::Gutter& gutter, std::ui
 Scenery::Scenery(const View& view, std::span<const Shown> objects)
     : width_(view.width), height_(view.height) {
   const Merged all = merge(view, objects);
-  std::vector<io::Gutter> gutters;
+  std::vector<atlas::Gutter> gutters;
   for (const Shown& each : objects)
     gutters.emplace_back(each.surface->resolution(), each.surface->texel_faces());
   const std::vector<Ray> rays = rays_of(view);
