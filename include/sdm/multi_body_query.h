@@ -179,8 +179,9 @@ class SDM_API MultiBodyQuery {
   /// Returns the depths of the pairs that collide and of which one is a solid.
   [[nodiscard]] std::span<const PairDepth> penetration_depths();
   /// Returns the pairs that have contacts, within MultiBodyOptions::contact_margin; with
-  /// ignore_internal_edges, without those that are internal, at the cost of a sweep over the fixed bodies and
-  /// of a few tests of inside for each contact with a fixed body that has others beside it.
+  /// ignore_internal_edges, without those that are internal, at the cost of a sweep over the fixed bodies
+  /// and the parts of compounds, and of a few tests of inside for each contact with one that has others
+  /// beside it.
   [[nodiscard]] std::span<const PairContacts> contacts();
   /// The number of pairs, of parts if there are compounds, whose boxes were within `max_distance` of each
   /// other in the last call of separations().

@@ -151,7 +151,9 @@ class SDM_API ProximityQuery {
   ///  - both ends of each part of an edge that lies along a face of the other body, within the margin above
   ///    it, or below it inside the body;
   ///  - each other part of an edge inside the other body or within the margin that reaches no end in contact,
-  ///    at the middle of its points closest to the other surface. Edges are those of the boundary of an open
+  ///    at the middle of its points closest to the other surface, or at a deep point of the part, if the edge
+  ///    is longer than 1/8 of the size of the smaller body and other contacts of the part are much less deep.
+  ///    Edges are those of the boundary of an open
   ///    mesh and convex ones, not those between faces in a plane, and of edges shorter than 1/16 of the size
   ///    of the smaller body only those without an end in contact.
   /// So a box on a plate has contacts at its corners, and beams that cross where their edges cross.

@@ -51,10 +51,10 @@ struct SignUsed {
 
 /// Returns, for each query, whether it lies inside O2 (1) or not (0) according to `method`; all are 0 if no
 /// method is used. `closest` are the closest points of the queries, from closest_points with the same sites;
-/// exact returns 0 where there is no site, and points on O2 are not inside. What the method needs is kept
-/// with the sites until they change: the first call makes it, in linear time. Throws sdm::Error for a method
-/// that O2 does not allow, for a query with a coordinate that is NaN or beyond 1e37, if the numbers of
-/// queries and closest points differ, or if there is not enough memory.
+/// exact returns 0 where there is no site, and points on the boundary of the solid are not inside. What the
+/// method needs is kept with the sites until they change: the first call makes it, in O(n log n). Throws
+/// sdm::Error for a method that O2 does not allow, for a query with a coordinate that is NaN or beyond 1e37,
+/// if the numbers of queries and closest points differ, or if there is not enough memory.
 [[nodiscard]] SDM_API std::vector<std::uint8_t> inside_flags(const Sites& sites,
                                                              std::span<const Vec3> queries,
                                                              std::span<const ClosestPoint> closest,

@@ -37,8 +37,8 @@ struct AttributeArray {
 /// Options of transfer().
 struct TransferOptions {
   /// Whether the texels of no face get values too, so that filtering at the border of a chart does not blend
-  /// in a background: beside charts, within AtlasOptions::gutter or four texels, those of the nearest texel
-  /// that has one; elsewhere smooth ones.
+  /// in a background: beside charts, within 4 to 16 texels by AtlasOptions::gutter, those of the nearest
+  /// texel that has one; elsewhere smooth ones.
   bool fill = true;
   Progress progress{};
 };
@@ -49,8 +49,8 @@ struct TransferOptions {
 /// do, unless they are filled, those that no face owns.
 ///
 /// Of a point on an edge or a vertex, the face is any of those around it: values of faces and corners jump
-/// there. A value that is not finite makes those of the texels in its faces, and of the texels filled from
-/// them, not finite.
+/// there. A value that is not finite makes those of the texels in its faces not finite; from these, no texel
+/// is filled.
 ///
 /// Throws sdm::Error if the array does not fit O2, the map is not one from the surface to the sites, or there
 /// is not enough memory; Cancelled. Cost: linear in texels, all cores.

@@ -85,6 +85,8 @@ def _trimesh_scene(scene: Any) -> tuple[Any, ...]:
 
 
 def _vtk(data: Any) -> tuple[Any, ...]:
+    if data.GetPoints() is None:
+        raise Error("the data of vtk has no points")
     if data.GetStrips().GetNumberOfCells():
         raise Error("the data of vtk has triangle strips; triangulate it with vtkTriangleFilter first")
     polygons = data.GetPolys()

@@ -86,7 +86,8 @@ def _pull_back(
         if vertices is not None:
             positions = _corner_positions(vertices, corners).to(weights)
         gradient, weights = _moving(points.to(weights), positions, weights, gradient)
-    upstream = upstream.to(gradient.dtype)
+    # Points beyond the maximum distance have the derivative 0, whatever a function makes of their infinite distance.
+    upstream = torch.where((gradient != 0).any(-1), upstream.to(gradient.dtype), 0)
     of_points = of_vertices = None
     if needed[0]:
         of_points = _gradients.of_points(gradient, upstream).to(points.dtype)

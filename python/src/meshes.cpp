@@ -127,7 +127,9 @@ void bind_attributes(nb::module_& module) {
         run(nb::none(), [&](const Progress&) { read = read_mesh_file(name, {.attributes = true}); });
         nb::dict result;
         for (MeshAttribute& attribute : read.attributes) {
-          result[attribute.name.c_str()] = corner_values(attribute);
+          const nb::object key = nb::steal(PyUnicode_DecodeUTF8(
+              attribute.name.data(), static_cast<Py_ssize_t>(attribute.name.size()), "replace"));
+          result[key] = corner_values(attribute);
           attribute = {};
         }
         return result;

@@ -272,7 +272,7 @@ with sdm.thread_limit(1):  # oneTBB has its threads in the parent only
     print(os.waitpid(child, 0)[1])
 """
     tests = os.path.dirname(meshes.__file__)
-    result = subprocess.run([sys.executable, "-c", program, tests], capture_output=True, text=True, timeout=60)
+    result = subprocess.run([sys.executable, "-c", program, tests], capture_output=True, text=True, timeout=300)
     assert result.stdout.strip() == "0", result.stdout + result.stderr
 
 

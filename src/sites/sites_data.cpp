@@ -79,7 +79,7 @@ void SitesData::refit(std::span<const Vec3> positions) {
     tree::refit_leaves(tree, refit.boxes);
     tree::refit(wide, tree);
     frames.forget();
-    signs.forget();
+    signs.outdate();
     compute_regions(refit);
   });
 }

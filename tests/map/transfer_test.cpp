@@ -234,6 +234,10 @@ TEST_F(Transfer, CornersMayShareRows) {
     ASSERT_TRUE(std::isnan(with_gap[texel]) || with_gap[texel] == shared[texel]);
     in_gap += std::isnan(with_gap[texel]);
   }
+  // What is missing does not spread.
+  const auto filled = moved({of_vertices, 1, AttributeDomain::corner, rows}, /*fill=*/true);
+  for (std::size_t i = 0; i < filled.size(); ++i)
+    ASSERT_TRUE(surface.texel_faces()[i] != kNone || std::isfinite(filled[i])) << i;
   EXPECT_GT(in_gap, 0u);
   EXPECT_EQ(error_of([&] {
               (void)moved({of_vertices, 1, AttributeDomain::vertex, rows});

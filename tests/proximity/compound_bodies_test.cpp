@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/similarity.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 
@@ -66,7 +67,9 @@ struct Expected {
 Expected expected_of(const std::vector<Transform>& poses, const Compounds& bodies, std::size_t a,
                      std::size_t b) {
   const auto pose_of = [&](std::size_t body, std::size_t part) {
-    return body == 2 ? poses[body] : poses[body] * bodies[body][part].pose;  // 2 is a plain body
+    if (body == 2) return poses[body];  // a plain body
+    return mesh::Similarity::of(poses[body]).transform() *
+           mesh::Similarity::of(bodies[body][part].pose).transform();
   };
   Expected expected;
   for (std::uint32_t i = 0; i < bodies[a].size(); ++i)
@@ -227,6 +230,55 @@ TEST(CompoundBodies, TurnAboutTheMiddleOfAllParts) {
   then.set_poses(MultiBodyQuery(Compounds{row, {{box}}}).poses_at(motions_of_two, time));
   EXPECT_NEAR(then.separations()[0].separation.value, 0, 1e-5);
   EXPECT_EQ(then.separations()[0].parts[0], contacts[0].parts[0]);
+}
+
+// Within rounding of half a turn, the sign of an axis is that of rounding: parts must not choose it apart.
+TEST(CompoundBodies, TurnTheSameWayInHalfTurns) {
+  const Shape box(cube(0.1));
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (int round = 0; round < 60; ++round) {
+    const auto number = [&] { return normal(random); };
+    const Transform local =
+        Transform::translation({2, 0, 0}) * Transform::quaternion({number(), number(), number(), number()});
+    const std::vector<BodyPart> row{{box}, {box, local}};
+    const MultiBodyQuery world(Compounds{row, {{box}}});
+    // Not about the axis of the row, on which its parts would stay.
+    const Transform end = Transform::quaternion({0, 0.1 * number(), number(), number()});
+    const Transform middle = world.poses_at(std::array<Motion, 2>{{{Transform{}, end}, {}}}, 0.5)[0];
+    const Transform in_the_way = middle * local;
+    const std::array<Motion, 2> motions{{{Transform{}, end}, {in_the_way, in_the_way}}};
+    const auto contacts = world.time_of_contact(motions, 1e-6);
+    ASSERT_EQ(contacts.size(), 1u) << round;
+    ASSERT_LT(contacts[0].time_of_contact.time, 0.5) << round;
+  }
+}
+
+// A part that is deep inside a body is far from its surface, and another part, beyond the limit, is nearer.
+TEST(CompoundBodies, SeparationsWithinALimitAreThoseWithout) {
+  const Shape large(cube(10)), small(cube(0.5));
+  for (const double limit : {std::numeric_limits<double>::infinity(), 3.0, 1.0, 0.0}) {
+    MultiBodyQuery world(Compounds{{{large}}, {{small}, {small, Transform::translation({12.5, 0, 0})}}});
+    const auto separations = world.separations(limit);
+    ASSERT_EQ(separations.size(), 1u);
+    EXPECT_EQ(separations[0].separation.value, 2) << limit;
+    EXPECT_EQ(separations[0].parts, (PartPair{0, 1}));
+    EXPECT_TRUE(separations[0].colliding);
+  }
+}
+
+// A rotation rounded to float is corrected once, for the body, not for each part.
+TEST(CompoundBodies, StayRigidInPosesOfSinglePrecision) {
+  const Shape box(cube(0.5));
+  const Transform local = Transform::translation({100, 0, 0});
+  MultiBodyQuery world(Compounds{{{box}, {box, local}}});
+  Transform pose = Transform::rotation({10, 20, 30});
+  for (auto& row : pose.rows)
+    for (double& x : row) x = static_cast<float>(x);
+  world.set_pose(0, pose);
+  const Transform part = world.part_pose(0, 1), expected = world.pose(0) * local;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j) EXPECT_NEAR(part.rows[i][j], expected.rows[i][j], 1e-13);
 }
 
 TEST(CompoundBodies, HaveMapsToThem) {

@@ -105,7 +105,7 @@ TEST_F(Page, StatesTheLimitsOfWallsThatWereGiven) {
                                "0.001", "--units", "mm"});
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_TRUE(passes("says", page(),
-                     {"PASS", "Every texel has at least 0.001 mm; between the texels, an estimate."}));
+                     {"PASS", "Every measured point has at least 0.001 mm; between them, an estimate."}));
 }
 
 TEST_F(Page, IsSavedAsItIsShown) {

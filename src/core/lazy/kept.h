@@ -25,19 +25,30 @@ class Kept {
   Kept(const Kept&) = delete;
   Kept& operator=(const Kept&) = delete;
 
-  /// The value, which is valid until forget(). make() returns a std::shared_ptr to it, and may run parallel
-  /// loops, whose tasks are isolated: a thread that makes a value never waits for itself.
+  /// The value, which is valid until forget() or outdate(). make() returns a std::shared_ptr to it, and may
+  /// run parallel loops, whose tasks are isolated: a thread that makes a value never waits for itself.
   template <class Make>
   const Value& get(const Make& make) const {
+    return get(make, [&](Value&) { value_ = make(); });
+  }
+  /// The same; after outdate(), renew(value) makes the value again in the memory that it has.
+  template <class Make, class Renew>
+  const Value& get(const Make& make, const Renew& renew) const {
     if (const Value* const ready = ready_.load(std::memory_order_acquire)) return *ready;
     const std::lock_guard lock(making_);
-    if (!value_) {
-      value_ = make();
+    if (ready_.load(std::memory_order_relaxed) == nullptr) {
+      if (value_)
+        renew(*value_);
+      else
+        value_ = make();
       ready_.store(value_.get(), std::memory_order_release);
     }
     return *value_;
   }
-  /// Must not run beside get().
+  // Neither may run beside get().
+  /// The value is to be renewed.
+  void outdate() noexcept { ready_.store(nullptr); }
+  /// There is no value.
   void forget() noexcept {
     ready_.store(nullptr);
     value_.reset();
@@ -45,7 +56,7 @@ class Kept {
 
  private:
   mutable std::mutex making_;
-  mutable std::shared_ptr<const Value> value_;
+  mutable std::shared_ptr<Value> value_;
   mutable std::atomic<const Value*> ready_ = nullptr;
 };
 

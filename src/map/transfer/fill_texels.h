@@ -11,7 +11,7 @@ namespace sdm::map {
 enum class TexelState : std::uint8_t {
   free,     ///< no face; gets a value
   valued,   ///< a value, to be kept
-  missing,  ///< a face but no value; stays as it is
+  missing,  ///< a face but no value, or none that is finite; stays as it is
 };
 
 /// Sets the `components` values of each free texel: within `gutter` texels of valued ones to those of the

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <new>
 #include <string>
@@ -107,6 +108,9 @@ class Interpolation {
   const Mesh& mesh_;
 };
 
+/// The search for the nearest texel takes time that grows with the square of the width.
+constexpr std::uint32_t kWidestGutter = 16;
+
 /// A transfer in progress: the map and what its texels get.
 struct Texels {
   const Surface& surface;
@@ -123,22 +127,24 @@ void read_values(const AttributeArray& array, const Progress& progress, Texels& 
   const auto faces = texels.surface.texel_faces();
   const Interpolation interpolation(array, texels.sites.mesh());
   constexpr std::size_t kRowsOfRange = 8;  // of a range
-  parallel_for(texels.map.rows(), kRowsOfRange, progress, "transfer",
-               [&](std::size_t begin, std::size_t end) {
-                 ClosestOfTexels points(texels.surface, texels.sites, texels.map, texels.normals);
-                 for (std::size_t i = begin * resolution; i < end * resolution; ++i) {
-                   float* const values = &texels.values[i * array.components];
-                   const SurfacePoint point =
-                       faces[i] == kNone ? SurfacePoint{} : points.at(static_cast<std::uint32_t>(i));
-                   if (point.face == kNone) {
-                     texels.states[i] = faces[i] == kNone ? TexelState::free : TexelState::missing;
-                     std::fill_n(values, array.components, std::numeric_limits<float>::quiet_NaN());
-                   } else {
-                     texels.states[i] = TexelState::valued;
-                     interpolation.at<N>(point, values);
-                   }
-                 }
-               });
+  parallel_for(
+      texels.map.rows(), kRowsOfRange, progress, "transfer", [&](std::size_t begin, std::size_t end) {
+        ClosestOfTexels points(texels.surface, texels.sites, texels.map, texels.normals);
+        for (std::size_t i = begin * resolution; i < end * resolution; ++i) {
+          float* const values = &texels.values[i * array.components];
+          const SurfacePoint point =
+              faces[i] == kNone ? SurfacePoint{} : points.at(static_cast<std::uint32_t>(i));
+          if (point.face == kNone) {
+            texels.states[i] = faces[i] == kNone ? TexelState::free : TexelState::missing;
+            std::fill_n(values, array.components, std::numeric_limits<float>::quiet_NaN());
+          } else {
+            interpolation.at<N>(point, values);
+            const bool finite =
+                std::all_of(values, values + array.components, [](float x) { return std::isfinite(x); });
+            texels.states[i] = finite ? TexelState::valued : TexelState::missing;
+          }
+        }
+      });
 }
 
 }  // namespace
@@ -169,8 +175,9 @@ std::vector<float> transfer(const Surface& surface, const Sites& sites, const Di
       read_values<0>(array, options.progress, texels);
   }
   if (options.fill)
-    map::fill_free_texels(map.resolution, texels.states, std::max(atlas::kGutter, surface.gutter()),
-                          array.components, texels.values);
+    map::fill_free_texels(map.resolution, texels.states,
+                          std::clamp(surface.gutter(), atlas::kGutter, kWidestGutter), array.components,
+                          texels.values);
   return std::move(texels.values);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the values of a transfer");

@@ -73,7 +73,7 @@ BodyParts::BodyParts(std::vector<std::vector<BodyPart>> bodies, std::vector<Shap
     });
     for (BodyPart& part : parts) {
       shapes.push_back(std::move(part.shape));
-      local_.push_back(part.pose);
+      local_.push_back(mesh::Similarity::of(part.pose).transform());
       body_of_.push_back(body);
     }
     places_.push_back(place);
@@ -95,26 +95,27 @@ void BodyParts::require_one_shape(std::size_t body, const char* what) const {
 }
 
 Transform BodyParts::pose_of(std::uint32_t part, const Transform& body) const {
-  return compound(body_of_[part]) ? body * local_[part] : body;
+  return compound(body_of_[part]) ? mesh::Similarity::of(body).transform() * local_[part] : body;
 }
 
 std::vector<motion::DividedMotion> BodyParts::divided(std::span<const shape::PosedBody> parts,
                                                       std::span<const Motion> motions) const {
   std::vector<motion::DividedMotion> divided;
   divided.reserve(parts.size());
-  for (std::uint32_t part = 0; part < parts.size(); ++part) {
-    const std::uint32_t body = body_of_[part];
-    const Box& box = parts[part].body().box();
+  for (std::uint32_t body = 0; body < bodies(); ++body)
     on_behalf_of(body, [&] {
       if (!compound(body)) {
-        divided.emplace_back(motions[body], box);
+        divided.emplace_back(motions[body], parts[begin(body)].body().box());
         return;
       }
-      const Affine to_part = inverse(mesh::Similarity::of(local_[part]).map);
-      const Motion motion{pose_of(part, motions[body].from), pose_of(part, motions[body].to)};
-      divided.emplace_back(motion, around(to_part(centre(places_[body].box)), box));
+      const Box& whole = places_[body].box;
+      const motion::DividedMotion of_body(motions[body], whole);
+      for (std::uint32_t part = begin(body); part < end(body); ++part) {
+        const Affine to_part = inverse(mesh::Similarity::of(local_[part]).map);
+        divided.push_back(
+            of_body.of_part(local_[part], around(to_part(centre(whole)), parts[part].body().box())));
+      }
     });
-  }
   return divided;
 }
 

@@ -53,7 +53,7 @@ class BodyParts {
 
   /// The pose of a part of a body in that pose.
   [[nodiscard]] Transform pose_of(std::uint32_t part, const Transform& body) const;
-  /// Of each part, in bodies that make these motions; all turn about the centre of the box of their body.
+  /// Of each part, in bodies that make these motions; all turn with their body, about the centre of its box.
   /// Throws sdm::Error, naming the body, as Motion::at does.
   [[nodiscard]] std::vector<motion::DividedMotion> divided(std::span<const shape::PosedBody> parts,
                                                            std::span<const Motion> motions) const;

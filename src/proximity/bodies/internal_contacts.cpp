@@ -151,7 +151,7 @@ bool InternalContacts::into_neighbour(std::uint32_t body, const Exit& exit) cons
   return any;
 }
 
-// Whether another fixed body is beyond the face, beside the point: at the point itself, it may touch an edge
+// Whether a neighbour is beyond the face, beside the point: at the point itself, it may touch an edge
 // alone.
 bool InternalContacts::covered(std::uint32_t body, std::uint32_t face, const Vec3& point) const {
   const shape::PosedBody& posed = bodies_[body];
@@ -165,6 +165,7 @@ bool InternalContacts::covered(std::uint32_t body, std::uint32_t face, const Vec
   return std::ranges::any_of(neighbours(body), [&](const Sweep::Pair& pair) {
     const shape::PosedBody& other = bodies_[pair[1]];
     const Vec3 there = inverse(other.pose().map)(probe);
+    if (!sdm::contains(other.body().box(), there)) return false;
     constexpr double kAnywhere = std::numeric_limits<double>::infinity();
     const ClosestPoint closest = closest::closest_point(internals(other.body().sites()), there, kAnywhere);
     return other.body().inside()(there, closest);

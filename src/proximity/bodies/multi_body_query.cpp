@@ -173,16 +173,46 @@ struct MultiBodyQuery::Impl {
     complete(max_distance, is_unknown, [&](pair::PairAnswers& answers, std::size_t) {
       if (answers.within(max_distance)) (void)answers.separation(), (void)answers.colliding();
     });
-    separations.clear();
     candidates = 0;
-    for (const bodies::NearPair& pair : near.list()) {
-      if (pair.gap > max_distance) continue;
-      ++candidates;
-      if (pair.colliding || (pair.separation_known && pair.apart <= max_distance))
-        separations.push_back(
-            {pair.pair[0], pair.pair[1], *near.state(pair).known.separation, pair.colliding});
-    }
-    parts.merge(separations);
+    for (const bodies::NearPair& pair : near.list()) candidates += pair.gap <= max_distance;
+    const auto list_if = [&](const auto& is_listed) {
+      separations.clear();
+      for (const bodies::NearPair& pair : near.list())
+        if (is_listed(pair))
+          separations.push_back(
+              {pair.pair[0], pair.pair[1], *near.state(pair).known.separation, pair.colliding});
+      parts.merge(separations);
+    };
+    const auto is_near = [&](const bodies::NearPair& pair) {
+      return pair.gap <= max_distance &&
+             (pair.colliding || (pair.separation_known && pair.apart <= max_distance));
+    };
+    list_if(is_near);
+    if (!parts.any_compound()) return;
+
+    // A part inside another one may be farther from its surface than other parts of the same bodies are.
+    double reach = 0;
+    colliding.clear();
+    for (const PairSeparation& pair : separations)
+      if (pair.colliding && pair.separation.value > max_distance) {
+        colliding.push_back({pair.first, pair.second});
+        reach = std::max(reach, pair.separation.value);
+      }
+    if (colliding.empty()) return;
+    const auto is_contained = [&](const bodies::NearPair& pair) {
+      const std::array bodies{parts.body_of()[pair.pair[0]], parts.body_of()[pair.pair[1]]};
+      return std::ranges::binary_search(colliding, bodies, {}, [](const BodyPair& known) {
+        return std::array{known.first, known.second};
+      });
+    };
+    complete(
+        reach, [&](const bodies::NearPair& pair) { return is_contained(pair) && !pair.separation_known; },
+        [](pair::PairAnswers& answers, std::size_t) {
+          (void)answers.separation(), (void)answers.colliding();
+        });
+    list_if([&](const bodies::NearPair& pair) {
+      return is_near(pair) || (is_contained(pair) && pair.separation_known);
+    });
   }
 
   void find_depths() {

@@ -20,9 +20,10 @@ using sites::SitesData;
 // Edges with an end in contact have contacts between their ends only if they are longer than this part of the
 // smaller body: of shorter ones, the end is near enough.
 constexpr double kShortEdge = 1.0 / 16;
-// Of edges longer than kLongEdge, relative to the smaller body, each part in contact has a contact at least
-// half as deep as any of its points, but for a fraction of the length of the edge. Of others, no point is
-// deeper than the ends by more than half of that length.
+// Of edges longer than kLongEdge, relative to the smaller body, each part that ends at the surface of the
+// other body, or comes within the margin of it, has a contact at least half as deep as any of its points, but
+// for a fraction of the length of the edge. Of others, no point is deeper than the ends by more than half of
+// that length.
 constexpr double kLongEdge = 2 * kShortEdge, kMuchDeeper = 2, kDeeper = 1.0 / 8;
 // How deep a face may be below the vertices and edges that it supports, relative to the smaller body.
 constexpr double kSupportReach = 1.0 / 8;

@@ -33,6 +33,17 @@ DividedMotion::DividedMotion(const Motion& motion, const Box& box)
   find_rounding(0.5 * diagonal(box));
 }
 
+DividedMotion DividedMotion::of_part(const Transform& local, const Box& box) const {
+  DividedMotion part = *this;
+  part.from_ = mesh::Similarity::of(from_.transform() * local);
+  shape::check_posed(part.from_, box);
+  shape::check_posed(mesh::Similarity::of(at(1) * local), box);
+  part.middle_ = centre(box);
+  part.find_mesh_axis();
+  part.find_rounding(0.5 * diagonal(box));
+  return part;
+}
+
 // The axis and the angle of R = to · from⁻¹. Half of R − Rᵀ is the axis times the sine, and the trace is 1 +
 // 2 cosines. The error of the axis is that of rounding divided by the sine: of no effect where the angle is
 // small, but near 180° the axis is the largest column of R + I, which is twice its product with itself.
@@ -55,6 +66,12 @@ void DividedMotion::find_rotation(const mesh::Similarity& to) {
     if (dot(axis_, twice_sine) < 0) axis_ = -axis_;
   }
   axis_ = normalized(axis_);
+  find_mesh_axis();
+}
+
+void DividedMotion::find_mesh_axis() {
+  mesh_axis_ = {};
+  if (!turns()) return;
   for (int k = 0; k < 3; ++k) mesh_axis_ += axis_[k] * from_.map.rows[k];
   mesh_axis_ = normalized(mesh_axis_);
 }

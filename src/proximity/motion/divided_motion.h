@@ -19,6 +19,10 @@ class DividedMotion {
   DividedMotion(const Motion& motion, const Shape& shape);
   /// The same for a mesh with that box.
   DividedMotion(const Motion& motion, const Box& box);
+  /// That of a part of this body, whose pose in the frame of the body is `local`: it turns about the same
+  /// axis by the same angle, which it would not do for sure if that were found again from its own poses.
+  /// `box`: of the part, around the middle of the body. Throws sdm::Error as Motion::at does.
+  [[nodiscard]] DividedMotion of_part(const Transform& local, const Box& box) const;
 
   [[nodiscard]] bool rests() const { return angle_ == 0 && shift_ == Vec3{}; }
   [[nodiscard]] bool turns() const { return angle_ > 0; }
@@ -45,6 +49,7 @@ class DividedMotion {
 
  private:
   void find_rotation(const mesh::Similarity& to);
+  void find_mesh_axis();
   void find_rounding(double radius);
 
   mesh::Similarity from_;

@@ -29,8 +29,10 @@ enum class Sides : std::uint8_t {
 /// do not depend on the order of calls.
 class FaceSides {
  public:
-  /// `solid` must be a solid, outlive this object, and not change.
+  /// `solid` must be a solid, outlive this object, and not change until renew().
   explicit FaceSides(const sites::SitesData& solid);
+  /// Starts anew, for other positions. Reuses the memory.
+  void renew();
 
   /// Cost: O(log n) for the first call, constant for others.
   [[nodiscard]] Sides of_face(std::uint32_t face) const;

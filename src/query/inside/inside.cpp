@@ -84,7 +84,10 @@ bool InsideTest::behind(const Vec3& query, const ClosestPoint& closest) const {
 
 template <class Test>
 bool InsideTest::inside_ball(const Vec3& query, SiteType type, double distance, const Test& test) const {
-  const double radius = type == SiteType::none ? 0 : distance - std::max(signs_->clearance, error_);
+  // Distances of queries far from O2 may be too long by a fraction of themselves.
+  constexpr double kRelative = 4e-6;
+  const double far = method_ == SignMethod::winding ? kRelative * distance : 0;
+  const double radius = type == SiteType::none ? 0 : distance - far - std::max(signs_->clearance, error_);
   if (!(radius > 0)) return test(false).above;
   if (const auto known = balls.find(signs_->number, query, radius)) return *known;
   const WindingNumber::Side side = test(true);

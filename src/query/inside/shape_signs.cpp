@@ -35,20 +35,30 @@ ShapeSigns::ShapeSigns(const sites::SitesData& sites)
       why_open(open_reason(sites)),
       sites_(sites) {}
 
+// What follows from the faces alone, not from where they are, stays.
+void ShapeSigns::renew() {
+  box = bounds(sites_.mesh);
+  clearance = kClearance / sites_.frame.scale;
+  number = unique_number();
+  sides_.outdate();
+  winding_.forget();
+}
+
 const FaceSides& ShapeSigns::sides() const {
-  return sides_.get([this] { return std::make_shared<const FaceSides>(sites_); });
+  return sides_.get([this] { return std::make_shared<FaceSides>(sites_); },
+                    [](FaceSides& sides) { sides.renew(); });
 }
 const WindingNumber& ShapeSigns::winding() const {
-  return winding_.get([this] { return std::make_shared<const WindingNumber>(sites_); });
+  return winding_.get([this] { return std::make_shared<WindingNumber>(sites_); });
 }
 const BoundarySites& ShapeSigns::boundary() const {
-  return boundary_.get([this] {
-    return std::make_shared<const BoundarySites>(sites_.topology, sites_.mesh.positions.size());
-  });
+  return boundary_.get(
+      [this] { return std::make_shared<BoundarySites>(sites_.topology, sites_.mesh.positions.size()); });
 }
 
 const ShapeSigns& signs_of(const sites::SitesData& sites) {
-  return sites.signs.get([&] { return std::make_shared<const ShapeSigns>(sites); });
+  return sites.signs.get([&] { return std::make_shared<ShapeSigns>(sites); },
+                         [](ShapeSigns& signs) { signs.renew(); });
 }
 
 }  // namespace sdm::inside

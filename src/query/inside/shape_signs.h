@@ -14,10 +14,13 @@ namespace sdm::inside {
 
 /// Kept with the sites until they change, so that the tests of each query need not make it again. Each method
 /// has a part that is made when it is first used: for a solid, a byte for each face; for winding numbers of
-/// an open mesh, the closing faces with their tree, or 136 bytes for each node of the tree over its faces;
+/// an open mesh, the closing faces with their tree, and where they do not decide, 120 bytes for each node of
+/// the tree over its faces;
 /// for sides, a byte for each edge and vertex.
 struct ShapeSigns {
   explicit ShapeSigns(const sites::SitesData& sites);
+  /// For the same faces at other positions. Reuses the memory for solids.
+  void renew();
 
   Box box;               ///< of O2: no point outside it is inside O2, even where rounding would decide
   double clearance;      ///< kClearance in units of the mesh

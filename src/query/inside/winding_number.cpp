@@ -51,7 +51,7 @@ OrientedFaces WindingNumber::closing_faces() const {
 }
 
 const SolidAngles& WindingNumber::mesh_angles() const {
-  return mesh_angles_.get([this] { return std::make_shared<const SolidAngles>(oriented_faces(sites_)); });
+  return mesh_angles_.get([this] { return std::make_shared<SolidAngles>(oriented_faces(sites_)); });
 }
 
 std::optional<int> WindingNumber::closed(const Vec3& q) const {
@@ -71,7 +71,8 @@ double WindingNumber::operator()(const Vec3& q, double error) const {
   poll();
   if (const std::optional<int> number = closed(q)) {
     const SolidAngle angle = closing_.angles->at(q, kNoLimit, kSphere * error).angle;
-    if (std::isfinite(angle.error)) return *number - angle.value / kSphere;
+    // Near an edge of a closing face, the rounding of its angle may be large.
+    if (angle.error <= std::max(kSphere * error, 1e-10)) return *number - angle.value / kSphere;
   }
   return mesh_angles().at(q, kNoLimit, kSphere * error).angle.value / kSphere;
 }
