@@ -257,7 +257,7 @@ TEST(CompoundBodies, TurnTheSameWayInHalfTurns) {
 // A part that is deep inside a body is far from its surface, and another part, beyond the limit, is nearer.
 TEST(CompoundBodies, SeparationsWithinALimitAreThoseWithout) {
   const Shape large(cube(10)), small(cube(0.5));
-  for (const double limit : {std::numeric_limits<double>::infinity(), 3.0, 1.0, 0.0}) {
+  for (const double limit : {std::numeric_limits<double>::infinity(), 3.0, 1.0, 0.1}) {
     MultiBodyQuery world(Compounds{{{large}}, {{small}, {small, Transform::translation({12.5, 0, 0})}}});
     const auto separations = world.separations(limit);
     ASSERT_EQ(separations.size(), 1u);

@@ -112,7 +112,7 @@ SignUsed signs_of_others(std::span<const shape::PosedBody> bodies, std::size_t o
                       (bodies[on].body().solid() ? 1 : 0);
   return {solids > 0 ? SignMethod::exact : SignMethod::none, std::to_string(solids) + " of " +
                                                                  std::to_string(bodies.size() - 1) +
-                                                                 " other shapes are closed and orientable"};
+                                                                 " other bodies are closed and orientable"};
 }
 
 }  // namespace
