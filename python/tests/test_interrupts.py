@@ -31,7 +31,8 @@ def interrupt():
 
 try:
     threading.Timer({seconds}, interrupt).start()
-    {call}
+    for _ in range(100):  # one alone may be ready first, on a fast machine
+        {call}
     print("finished")
 except KeyboardInterrupt:
     print("interrupted", "soon" if time.process_time() - used["before"] < 4 * max(1, os.cpu_count() / 4) else "late")
@@ -67,5 +68,4 @@ def test_ctrl_c_ends_calls_without_progress(name):
     prepare, call = CALLS[name]
     program = PROGRAM.format(prepare=prepare, call=call, seconds=0.15)
     result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    # The call can be ready first, on a fast machine.
-    assert result.stdout.strip() in ("interrupted soon", "finished"), result.stdout + result.stderr
+    assert result.stdout.strip() == "interrupted soon", result.stdout + result.stderr

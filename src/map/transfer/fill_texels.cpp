@@ -12,7 +12,7 @@
 namespace sdm::map {
 namespace {
 
-constexpr std::size_t kRowsOfTask = 16;  // of a range
+constexpr std::size_t kRowsOfTask = 16;
 
 // An image of which each texel is the mean of four of the next finer one, with the share of it that has
 // values.
@@ -34,12 +34,12 @@ class Pyramid {
   }
 
   void push(std::span<const float> weights, std::span<const float> values) {
-    for (Level& level : levels_) {
-      const bool finest = &level == levels_.data();
-      const Level* below = &level - 1;
-      push(finest ? columns_ : below->columns, finest ? rows_ : below->rows,
-           finest ? weights : std::span<const float>(below->weights),
-           finest ? values : std::span<const float>(below->means), level);
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      if (i > 0)
+        push(levels_[i - 1].columns, levels_[i - 1].rows, levels_[i - 1].weights, levels_[i - 1].means,
+             levels_[i]);
+      else
+        push(columns_, rows_, weights, values, levels_[i]);
     }
   }
 

@@ -126,7 +126,7 @@ void read_values(const AttributeArray& array, const Progress& progress, Texels& 
   const std::uint32_t resolution = texels.map.resolution;
   const auto faces = texels.surface.texel_faces();
   const Interpolation interpolation(array, texels.sites.mesh());
-  constexpr std::size_t kRowsOfRange = 8;  // of a range
+  constexpr std::size_t kRowsOfRange = 8;
   parallel_for(
       texels.map.rows(), kRowsOfRange, progress, "transfer", [&](std::size_t begin, std::size_t end) {
         ClosestOfTexels points(texels.surface, texels.sites, texels.map, texels.normals);
