@@ -370,19 +370,17 @@ TEST(SurfaceMetrics, RefuseWhatHasNoAnswer) {
 TEST(SurfaceMetrics, ReportProgressThatNeverDecreases) {
   const Mesh a = torus(24, 12), b = moved(torus(20, 10), {0.3, 0.1, 0});
   double last = 0;
-  int calls = 0;
   const auto watch = [&](std::string_view step, double fraction) {
     EXPECT_EQ(step, "metrics");
     EXPECT_GE(fraction, last);
     last = fraction;
-    ++calls;
     return true;
   };
   (void)surface_metrics(a, b, {.precision = 1e-3, .progress = watch});
   EXPECT_EQ(last, 1);
-  for (const int at : {0, calls / 3, calls - 1}) {
-    int left = at;
-    const auto cancel = [&](std::string_view, double) { return left-- > 0; };
+  // How many reports there are depends on which thread is ready when.
+  for (const double at : {0.0, 0.3, 1.0}) {
+    const auto cancel = [&](std::string_view, double fraction) { return fraction < at; };
     EXPECT_THROW((void)surface_metrics(a, b, {.precision = 1e-3, .progress = cancel}), Cancelled) << at;
   }
 }
