@@ -55,6 +55,7 @@ set(order
   summary/verdict
   summary
   io/file
+  io/image/textures
   io/mesh/polygons
   io/mesh
   io/mesh/frames

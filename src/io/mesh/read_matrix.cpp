@@ -11,6 +11,7 @@
 #include "core/excerpt.h"
 #include "core/parse_number.h"
 #include "io/file/byte_scanner.h"
+#include "io/file/error_prefix.h"
 #include "io/file/file_bytes.h"
 #include "io/file/npy_header.h"
 #include "io/file/utf16.h"

@@ -6,6 +6,7 @@
 
 #include "core/checksum.h"
 #include "core/memory.h"
+#include "io/file/error_prefix.h"
 #include "io/file/file_bytes.h"
 #include "io/mesh/mesh_attributes.h"
 #include "io/mesh/read_polygons.h"

@@ -1,15 +1,11 @@
 // The polygons of a mesh file of any format.
 #pragma once
 
-#include <sdm/error.h>
 #include <sdm/tessellation.h>
 
 #include <filesystem>
-#include <new>
-#include <string>
 #include <string_view>
 
-#include "core/printable.h"
 #include "io/mesh/polygons/polygon_mesh.h"
 
 namespace sdm::io {
@@ -33,21 +29,5 @@ struct PolygonOptions {
 /// Reads the contents of a mesh file. Throws sdm::Error; the message does not name the file.
 [[nodiscard]] PolygonMesh read_polygons(std::string_view bytes, const std::filesystem::path& file,
                                         const PolygonOptions& options = {});
-
-/// Calls `read`. If it throws sdm::Error or runs out of memory, throws an sdm::Error whose message begins
-/// with `name`, unless that is empty. It is printable(), whatever the file contains.
-template <typename Read>
-auto with_error_prefix(const std::string& name, const Read& read) {
-  const auto prefix = [&] { return name.empty() ? "" : name + ": "; };
-  try {
-    return read();
-  } catch (const Cancelled&) {
-    throw;
-  } catch (const Error& fault) {
-    throw Error(printable(prefix() + fault.what()));
-  } catch (const std::bad_alloc&) {
-    throw Error(printable(prefix()) + "there is not enough memory to read it");
-  }
-}
 
 }  // namespace sdm::io

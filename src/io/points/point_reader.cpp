@@ -6,6 +6,7 @@
 
 #include "core/intact.h"
 #include "geometry/vec.h"
+#include "io/file/error_prefix.h"
 #include "io/mesh/read_polygons.h"
 #include "io/points/cloud_file.h"
 

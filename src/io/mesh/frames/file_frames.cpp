@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/file/error_prefix.h"
 #include "io/file/file_bytes.h"
 #include "io/mesh/frames/frame_source.h"
 #include "io/mesh/frames/numbered_files.h"

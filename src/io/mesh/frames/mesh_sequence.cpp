@@ -10,6 +10,7 @@
 #include "core/checksum.h"
 #include "core/memory.h"
 #include "geometry/vec.h"
+#include "io/file/error_prefix.h"
 #include "io/file/file_bytes.h"
 #include "io/file/file_xxh3.h"
 #include "io/mesh/frames/changing_mesh.h"

@@ -1,0 +1,53 @@
+#include <fmt/format.h>
+#include <sdm/error.h>
+#include <sdm/image.h>
+
+#include <algorithm>
+#include <new>
+#include <string_view>
+
+#include "core/memory.h"
+#include "io/file/error_prefix.h"
+#include "io/file/file_bytes.h"
+#include "io/image/textures/decoders.h"
+
+namespace sdm {
+
+namespace io {
+
+void check_size(std::size_t width, std::size_t height) {
+  constexpr std::size_t kMostPixels = std::size_t{1} << 28;
+  if (width == 0 || height == 0) throw Error("the picture has no pixels");
+  if (width > kMostPixels / height)
+    throw Error(fmt::format("the picture has {} × {} pixels, more than 2^28", width, height));
+}
+
+Image blank_image(std::size_t width, std::size_t height, std::uint32_t components, std::uint32_t bits) {
+  check_size(width, height);
+  const std::size_t size = width * height * components * (bits / 8);
+  require_memory(size, "a picture");
+  return {.width = static_cast<std::uint32_t>(width),
+          .height = static_cast<std::uint32_t>(height),
+          .components = components,
+          .bits = bits,
+          .bytes = std::vector<std::uint8_t>(size)};
+}
+
+}  // namespace io
+
+Image decode_image(std::span<const char> bytes) try {
+  const std::string_view start(bytes.data(), std::min<std::size_t>(bytes.size(), 16));
+  if (start.starts_with("\x89PNG\r\n\x1A\n")) return io::decode_png(bytes);
+  if (start.starts_with("\xFF\xD8\xFF")) return io::decode_jpeg(bytes);
+  if (start.starts_with("RIFF") && start.substr(std::min<std::size_t>(start.size(), 8)).starts_with("WEBP"))
+    return io::decode_webp(bytes);
+  throw Error("the picture is not PNG, JPEG or WebP");
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a picture");
+}
+
+Image read_image(const std::filesystem::path& file) {
+  return io::with_error_prefix(file.string(), [&] { return decode_image(io::read_bytes(file).view()); });
+}
+
+}  // namespace sdm

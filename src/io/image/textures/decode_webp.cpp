@@ -1,0 +1,23 @@
+#include <sdm/error.h>
+#include <webp/decode.h>
+
+#include "io/image/textures/decoders.h"
+
+namespace sdm::io {
+
+Image decode_webp(std::span<const char> bytes) {
+  const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  WebPBitstreamFeatures features;
+  if (WebPGetFeatures(data, bytes.size(), &features) != VP8_STATUS_OK)
+    throw Error("the WebP picture cannot be read: it is truncated or damaged");
+  if (features.has_animation != 0) throw Error("the WebP picture is animated; only still ones are textures");
+  Image image = blank_image(static_cast<std::size_t>(features.width),
+                            static_cast<std::size_t>(features.height), features.has_alpha != 0 ? 4 : 3, 8);
+  const auto decode = features.has_alpha != 0 ? WebPDecodeRGBAInto : WebPDecodeRGBInto;
+  if (decode(data, bytes.size(), image.bytes.data(), image.bytes.size(),
+             features.width * static_cast<int>(image.components)) == nullptr)
+    throw Error("the WebP picture cannot be read: it is truncated or damaged");
+  return image;
+}
+
+}  // namespace sdm::io
