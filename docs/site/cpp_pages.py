@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 PLAIN = re.compile(r"\(variable\)|\w+\((\w+ ?&&|const \w+ ?&)\)|operator=|operator==|~\w+\(\)")
 # Headers by subject, in the order of the reference.
 SUBJECTS = {
-    "Meshes": ["types", "vec", "bounds", "mesh", "mesh_attributes", "mesh_edit", "transform", "weld", "tessellation", "self_intersections", "solid", "convex_hull"],
+    "Meshes": ["types", "vec", "bounds", "mesh", "mesh_attributes", "material", "mesh_edit", "transform", "weld", "tessellation", "self_intersections", "solid", "convex_hull"],
     "Files": ["io", "image", "report", "points", "sequence", "field_files"],
     "Distance maps": ["surface", "atlas", "uv_tiles", "sites", "map", "distance_kind", "along", "sign", "engine", "gl",
                       "closest_points", "closest_in_parts", "facing", "vertex_distances"],

@@ -8,6 +8,7 @@
 #include <sdm/coverage.h>
 #include <sdm/group_verdicts.h>
 #include <sdm/map.h>
+#include <sdm/material.h>
 #include <sdm/mesh.h>
 #include <sdm/mesh_attributes.h>
 #include <sdm/part_statistics.h>
@@ -59,13 +60,17 @@ struct MeshFile {
   std::optional<Tessellation> tessellation{};  ///< of STEP and IGES
   std::string xxh3{};                          ///< as of file_xxh3()
   std::vector<MeshAttribute> attributes{};     ///< of glTF, OBJ and PLY
+  std::vector<Material> materials{};           ///< of glTF, and of the MTL files of OBJ
+  std::vector<TextureFile> textures{};         ///< that these refer to
+  /// For each triangle, the number of its material, or kNone; empty if there are no materials.
+  std::vector<std::uint32_t> face_materials{};
 };
 
 /// Options of read_mesh_file().
 struct MeshFileOptions {
   bool vertices = false;  ///< keep the vertices of the file: up to six times the memory of the mesh for STL
   TessellationOptions tessellation{};  ///< of STEP and IGES; other files consist of polygons
-  bool attributes = false;             ///< read MeshFile::attributes
+  bool attributes = false;             ///< read MeshFile::attributes, materials and textures
 };
 
 /// Reads a mesh as read_mesh() does, with the names of its faces.

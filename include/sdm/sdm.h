@@ -25,6 +25,7 @@
 #include <sdm/hausdorff.h>
 #include <sdm/islands.h>
 #include <sdm/map.h>
+#include <sdm/material.h>
 #include <sdm/mesh.h>
 #include <sdm/mesh_attributes.h>
 #include <sdm/mesh_edit.h>

@@ -59,6 +59,7 @@ set(order
   io/mesh/polygons
   io/mesh
   io/mesh/frames
+  io/mesh/gltf/document
   io/mesh/gltf
   io/mesh/cad
   io/mesh/cad/opencascade

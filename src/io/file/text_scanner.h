@@ -67,6 +67,16 @@ class TextScanner {
     while (in_word()) ++at_;
     return {start, static_cast<std::size_t>(at_ - start)};
   }
+  /// Reads up to the end of the line, without blanks there: the name of a file, of which blanks, a backslash
+  /// and '#' may be part.
+  std::string_view rest_of_line() {
+    const void* found = std::memchr(at_, newline_, remaining());
+    const char* const start = at_;
+    at_ = found ? static_cast<const char*>(found) : end_;
+    std::string_view text(start, static_cast<std::size_t>(at_ - start));
+    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+    return text;
+  }
   /// Skips the next word if it is `expected`. Returns whether it is.
   bool accept(std::string_view expected) {
     if (remaining() < expected.size() || std::memcmp(at_, expected.data(), expected.size()) != 0)

@@ -13,8 +13,10 @@ namespace sdm::io {
 
 /// Reads Wavefront OBJ: v, vt and f statements (polygons; indices are relative or count from 1), and names of
 /// faces by o, g and usemtl. Texture coordinates of an index out of range are left out, all of them, with a
-/// note. `attributes`: also vn and colours after the coordinates of v. All other statements are skipped.
-[[nodiscard]] PolygonMesh read_obj(std::string_view text, bool attributes = false);
+/// note. `attributes`: also vn, colours after the coordinates of v,
+/// and the materials of mtllib, looked up relative to `file`. All other statements are skipped.
+[[nodiscard]] PolygonMesh read_obj(std::string_view text, const std::filesystem::path& file,
+                                   bool attributes = false);
 
 /// Reads PLY, as text or binary of either byte order: the elements vertex (x, y, z, texture coordinates),
 /// face (vertex_indices, texcoord) and tristrips; `attributes`: all other numbers of vertices and faces,
@@ -37,7 +39,7 @@ namespace sdm::io {
 
 /// Reads glTF 2.0, as JSON or GLB: the triangles of all meshes of the default scene, in scene coordinates.
 /// External buffers are looked up relative to `file`. `attributes`: also those of vertices, tangents, joints
-/// and weights excepted.
+/// and weights excepted, and materials.
 [[nodiscard]] PolygonMesh read_gltf(std::string_view bytes, const std::filesystem::path& file,
                                     bool attributes = false);
 

@@ -68,4 +68,16 @@ std::vector<MeshAttribute> to_attributes(PolygonMesh& polygons, const std::vecto
   return result;
 }
 
+std::vector<std::uint32_t> materials_of_triangles(const PolygonMaterials& materials,
+                                                  const std::vector<std::uint32_t>& triangle_ends) {
+  std::vector<std::uint32_t> of_triangles;
+  std::uint32_t material = kNone;
+  auto run = materials.runs.begin();
+  for (std::uint32_t polygon = 0; polygon < triangle_ends.size(); ++polygon) {
+    for (; run != materials.runs.end() && run->first_polygon <= polygon; ++run) material = run->material;
+    of_triangles.resize(triangle_ends[polygon], material);
+  }
+  return of_triangles;
+}
+
 }  // namespace sdm::io

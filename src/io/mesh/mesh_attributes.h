@@ -18,4 +18,8 @@ namespace sdm::io {
                                                        const std::vector<std::uint32_t>& triangle_ends,
                                                        std::vector<std::string>& notes);
 
+/// Returns the material of each triangle. `triangle_ends`: as of to_mesh().
+[[nodiscard]] std::vector<std::uint32_t> materials_of_triangles(
+    const PolygonMaterials& materials, const std::vector<std::uint32_t>& triangle_ends);
+
 }  // namespace sdm::io

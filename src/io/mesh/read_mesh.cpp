@@ -67,6 +67,10 @@ MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions
     add_names("face", polygons.faces, triangle_ends, result.names);
     add_names("color", polygons.colors, triangle_ends, result.names);
     result.attributes = io::to_attributes(polygons, places, triangle_ends, result.notes);
+    if (!polygons.surfaces.list.empty())
+      result.face_materials = io::materials_of_triangles(polygons.surfaces, triangle_ends);
+    result.materials = std::move(polygons.surfaces.list);
+    result.textures = std::move(polygons.surfaces.textures);
     result.tessellation = std::move(polygons.tessellation);
     result.xxh3 = core::hex_text(checksum.value());
     if (options.vertices)

@@ -1,13 +1,18 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
 
+#include <algorithm>
 #include <array>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "core/excerpt.h"
+#include "io/file/file_below.h"
 #include "io/file/text_scanner.h"
 #include "io/mesh/formats.h"
+#include "io/mesh/read_mtl.h"
 
 namespace sdm::io {
 namespace {
@@ -32,7 +37,8 @@ std::uint32_t index_of(std::int64_t i, std::size_t count) {
 
 class ObjReader {
  public:
-  ObjReader(std::string_view text, bool attributes) : in_(text), with_attributes_(attributes) {
+  ObjReader(std::string_view text, std::filesystem::path folder, bool attributes)
+      : in_(text), folder_(std::move(folder)), with_attributes_(attributes) {
     normals_ = {.name = "normal", .components = 3, .domain = PolygonDomain::corner, .values = {}, .rows = {}};
     colors_ = {.name = "color", .components = 3, .domain = PolygonDomain::vertex, .values = {}, .rows = {}};
   }
@@ -48,6 +54,8 @@ class ObjReader {
         read_normal();
       else if (in_.accept("f"))
         read_face();
+      else if (with_attributes_ && in_.accept("mtllib"))
+        read_library();
       else if (in_.accept("usemtl"))
         read_name(mesh_.materials);
       else if (in_.accept("g"))
@@ -150,6 +158,32 @@ class ObjReader {
       if (row >= normals_.count()) row = kNone;
     if (!normals_.values.empty()) mesh_.attributes.push_back(std::move(normals_));
     if (has_colors_) mesh_.attributes.push_back(std::move(colors_));
+    add_materials();
+  }
+  // A library that cannot be had leaves its materials without colours.
+  void read_library() {
+    if (!in_.more_on_line()) return;
+    std::string name(in_.rest_of_line());
+    std::ranges::replace(name, '\\', '/');
+    try {
+      read_mtl(read_below(folder_, name, "library of materials").view(), folder_, mesh_.surfaces,
+               mesh_.notes);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& fault) {
+      mesh_.notes.push_back(fmt::format("the materials of {} are left out: {}", excerpt(name), fault.what()));
+    }
+  }
+  void add_materials() {
+    for (const PolygonNames::Run& run : mesh_.materials.runs()) {
+      std::uint32_t material = kNone;
+      if (run.name != kNone) {
+        const auto& list = mesh_.surfaces.list;
+        const auto found = std::ranges::find(list, mesh_.materials.names()[run.name], &Material::name);
+        if (found != list.end()) material = static_cast<std::uint32_t>(found - list.begin());
+      }
+      mesh_.surfaces.runs.push_back({run.first_polygon, material});
+    }
   }
   void check_other_statements() {
     if (mesh_.ends.empty()) {
@@ -173,6 +207,7 @@ class ObjReader {
 
   TextScanner in_;
   PolygonMesh mesh_;
+  std::filesystem::path folder_;
   bool with_attributes_, has_colors_ = false;
   PolygonAttribute normals_, colors_;
   HighestIndex highest_vertex_, highest_uv_;
@@ -182,8 +217,8 @@ class ObjReader {
 
 }  // namespace
 
-PolygonMesh read_obj(std::string_view text, bool attributes) {
-  return ObjReader(text, attributes).read();
+PolygonMesh read_obj(std::string_view text, const std::filesystem::path& file, bool attributes) {
+  return ObjReader(text, file.parent_path(), attributes).read();
 }
 
 }  // namespace sdm::io

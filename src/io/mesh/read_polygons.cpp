@@ -97,8 +97,8 @@ constexpr Format kFormats[] = {
      {".obj"},
      true,
      is_obj,
-     [](std::string_view bytes, const auto&, const auto& options) {
-       return read_obj(bytes, options.attributes);
+     [](std::string_view bytes, const auto& file, const auto& options) {
+       return read_obj(bytes, file, options.attributes);
      }},
     {"3DS",
      {".3ds"},

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "io/mesh/gltf/gltf_rows.h"
+#include "io/mesh/gltf/document/gltf_rows.h"
 
 namespace sdm::io {
 namespace {

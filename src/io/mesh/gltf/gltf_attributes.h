@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "io/mesh/gltf/gltf_document.h"
+#include "io/mesh/gltf/document/gltf_document.h"
 #include "io/mesh/gltf/gltf_skin.h"
 #include "io/mesh/polygons/polygon_attributes.h"
 

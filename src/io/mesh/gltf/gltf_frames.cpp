@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "io/mesh/frames/frame_source.h"
+#include "io/mesh/gltf/document/gltf_rows.h"
 #include "io/mesh/gltf/gltf_morph.h"
-#include "io/mesh/gltf/gltf_rows.h"
 #include "io/mesh/gltf/gltf_scene.h"
 #include "io/mesh/gltf/gltf_skin.h"
 #include "io/mesh/gltf/gltf_weights.h"

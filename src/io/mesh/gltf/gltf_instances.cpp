@@ -5,9 +5,9 @@
 
 #include <cstdint>
 
-#include "io/mesh/gltf/gltf_extensions.h"
+#include "io/mesh/gltf/document/gltf_extensions.h"
+#include "io/mesh/gltf/document/gltf_rows.h"
 #include "io/mesh/gltf/gltf_nodes.h"
-#include "io/mesh/gltf/gltf_rows.h"
 
 namespace sdm::io {
 namespace {

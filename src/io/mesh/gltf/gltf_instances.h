@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "io/mesh/gltf/gltf_document.h"
+#include "io/mesh/gltf/document/gltf_document.h"
 #include "io/mesh/gltf/gltf_transform.h"
 
 namespace sdm::io {

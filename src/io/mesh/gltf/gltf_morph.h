@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "io/mesh/gltf/document/gltf_rows.h"
 #include "io/mesh/gltf/gltf_instances.h"
-#include "io/mesh/gltf/gltf_rows.h"
 
 namespace sdm::io {
 

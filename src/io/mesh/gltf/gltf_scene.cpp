@@ -9,10 +9,10 @@
 #include <string>
 #include <utility>
 
+#include "io/mesh/gltf/document/gltf_extensions.h"
+#include "io/mesh/gltf/document/gltf_rows.h"
 #include "io/mesh/gltf/gltf_attributes.h"
-#include "io/mesh/gltf/gltf_extensions.h"
 #include "io/mesh/gltf/gltf_morph.h"
-#include "io/mesh/gltf/gltf_rows.h"
 #include "io/mesh/gltf/gltf_skin.h"
 
 namespace sdm::io {
@@ -144,14 +144,17 @@ void begin_names(const GltfDocument& document, const GltfInstance& instance, con
   const std::string node = name_of(document.item("nodes", instance.node), "");
   mesh.objects.begin(mesh.ends.size(), name_of(document.item("meshes", instance.mesh), node));
   std::string material;
-  if (const auto index = primitive.find("material");
-      index != primitive.end() && index->is_number_unsigned()) {
-    const auto materials = document.root().find("materials");
-    const std::string number = fmt::format("material {}", index->get<std::size_t>());
-    const bool exists = materials != document.root().end() && index->get<std::size_t>() < materials->size();
-    material = exists ? name_of(materials->at(index->get<std::size_t>()), number) : number;
+  std::uint32_t index = kNone;
+  if (const auto number = primitive.find("material");
+      number != primitive.end() && number->is_number_unsigned()) {
+    const json& materials = list_of(document.root(), "materials");
+    const auto i = number->get<std::size_t>();
+    const std::string otherwise = fmt::format("material {}", i);
+    material = i < materials.size() ? name_of(materials[i], otherwise) : otherwise;
+    if (i < materials.size()) index = static_cast<std::uint32_t>(i);
   }
   mesh.materials.begin(mesh.ends.size(), material);
+  mesh.surfaces.runs.push_back({static_cast<std::uint32_t>(mesh.ends.size()), index});
 }
 
 // Positions and indices without a place in the file.

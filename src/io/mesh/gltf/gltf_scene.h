@@ -4,7 +4,7 @@
 #include <set>
 #include <vector>
 
-#include "io/mesh/gltf/gltf_document.h"
+#include "io/mesh/gltf/document/gltf_document.h"
 #include "io/mesh/gltf/gltf_instances.h"
 #include "io/mesh/polygons/polygon_mesh.h"
 

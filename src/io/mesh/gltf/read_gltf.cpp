@@ -1,4 +1,5 @@
 #include "io/mesh/formats.h"
+#include "io/mesh/gltf/gltf_materials.h"
 #include "io/mesh/gltf/gltf_scene.h"
 
 namespace sdm::io {
@@ -6,7 +7,9 @@ namespace sdm::io {
 PolygonMesh read_gltf(std::string_view bytes, const std::filesystem::path& file, bool attributes) {
   try {
     const GltfDocument document(bytes, file.parent_path());
-    return read_gltf_scene(document, gltf_instances(document), {}, attributes);
+    PolygonMesh mesh = read_gltf_scene(document, gltf_instances(document), {}, attributes);
+    if (attributes) read_gltf_materials(document, file.parent_path(), mesh.surfaces, mesh.notes);
+    return mesh;
   } catch (const nlohmann::json::exception& fault) {
     throw_gltf_fault(fault);
   }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "io/mesh/polygons/polygon_attributes.h"
+#include "io/mesh/polygons/polygon_materials.h"
 
 namespace sdm::io {
 
@@ -41,6 +42,7 @@ struct PolygonMesh {
   std::vector<std::uint32_t> ends;        ///< for each polygon, one past its last corner
   PolygonNames objects, groups, materials, faces, colors;
   std::vector<PolygonAttribute> attributes;  ///< if asked for
+  PolygonMaterials surfaces;                 ///< if asked for
   std::optional<Tessellation> tessellation;  ///< of CAD
   std::vector<std::string> notes;            ///< what was left out, or may be wrong; see MeshFile::notes
 

@@ -1,4 +1,4 @@
-#include "io/mesh/gltf/gltf_extensions.h"
+#include "io/mesh/gltf/document/gltf_extensions.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/excerpt.h"
-#include "io/mesh/gltf/gltf_document.h"
+#include "io/mesh/gltf/document/gltf_document.h"
 
 namespace sdm::io {
 namespace {

@@ -17,7 +17,7 @@ class GltfBuffers {
  public:
   GltfBuffers() = default;
   /// Loads a list of buffers. `binary_chunk`: that of the GLB file, if any, which must outlive this object.
-  /// Throws sdm::Error for a file that is refused (file_of_uri) or cannot be read.
+  /// Throws sdm::Error for a file that is refused (file_below) or cannot be read.
   GltfBuffers(const nlohmann::json& buffers, std::optional<std::string_view> binary_chunk,
               const std::filesystem::path& folder);
 

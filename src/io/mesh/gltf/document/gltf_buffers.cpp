@@ -1,4 +1,4 @@
-#include "io/mesh/gltf/gltf_buffers.h"
+#include "io/mesh/gltf/document/gltf_buffers.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>
@@ -9,42 +9,15 @@
 #include <string>
 
 #include "core/excerpt.h"
-#include "io/mesh/gltf/gltf_document.h"
-#include "io/mesh/gltf/gltf_extensions.h"
-#include "io/mesh/gltf/gltf_uri.h"
+#include "io/file/file_below.h"
+#include "io/mesh/gltf/document/gltf_document.h"
+#include "io/mesh/gltf/document/gltf_extensions.h"
+#include "io/mesh/gltf/document/gltf_uri.h"
 
 namespace sdm::io {
 namespace {
 
 using nlohmann::json;
-
-FileBytes decode_base64(std::string_view text) {
-  const auto digit = [](char c) {
-    if (c >= 'A' && c <= 'Z') return c - 'A';
-    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-    if (c >= '0' && c <= '9') return c - '0' + 52;
-    if (c == '+' || c == '-') return 62;
-    if (c == '/' || c == '_') return 63;
-    throw Error("an embedded buffer is not valid base64");
-  };
-  while (text.ends_with('=')) text.remove_suffix(1);
-  FileBytes bytes;
-  bytes.size = text.size() * 3 / 4;
-  bytes.data = std::make_unique_for_overwrite<char[]>(bytes.size + 1);
-  std::uint32_t bits = 0;
-  for (std::size_t i = 0, out = 0; i < text.size(); ++i) {
-    bits = bits << 6 | static_cast<std::uint32_t>(digit(text[i]));
-    if (i % 4 != 0) bytes.data[out++] = static_cast<char>(bits >> (6 - 2 * (i % 4)) & 0xFF);
-  }
-  return bytes;
-}
-
-FileBytes decode_data_uri(std::string_view uri) {
-  constexpr std::string_view kBase64 = ";base64,";
-  const std::size_t comma = uri.find(kBase64);
-  if (comma == std::string_view::npos) throw Error("an embedded buffer is not base64");
-  return decode_base64(uri.substr(comma + kBase64.size()));
-}
 
 FileBytes read_buffer(const std::filesystem::path& file, std::string_view uri) {
   try {
@@ -69,7 +42,7 @@ GltfBuffers::GltfBuffers(const json& buffers, std::optional<std::string_view> bi
     } else if (const std::string& text = text_of(*uri, "the URI of a buffer"); is_data_uri(text)) {
       buffers_.push_back(held_.emplace_back(decode_data_uri(text)).view());
     } else {
-      const auto [file, is_new] = files.try_emplace(file_of_uri(text, folder));
+      const auto [file, is_new] = files.try_emplace(file_below(folder, decode_uri(text), "buffer"));
       if (is_new) file->second = held_.emplace_back(read_buffer(file->first, text)).view();
       buffers_.push_back(file->second);
     }

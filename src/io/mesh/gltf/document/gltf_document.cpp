@@ -1,4 +1,4 @@
-#include "io/mesh/gltf/gltf_document.h"
+#include "io/mesh/gltf/document/gltf_document.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>
@@ -11,8 +11,8 @@
 #include "core/excerpt.h"
 #include "core/memory.h"
 #include "io/file/byte_scanner.h"
-#include "io/mesh/gltf/gltf_extensions.h"
-#include "io/mesh/gltf/gltf_rows.h"
+#include "io/mesh/gltf/document/gltf_extensions.h"
+#include "io/mesh/gltf/document/gltf_rows.h"
 
 namespace sdm::io {
 namespace {
@@ -115,6 +115,16 @@ const json& GltfDocument::item(const char* list, std::size_t index) const {
   if (items == root_.end() || !items->is_array() || index >= items->size())
     throw Error(fmt::format("item {} of {} is referred to but does not exist", index, list));
   return (*items)[index];
+}
+
+std::string_view GltfDocument::view(std::size_t index) const {
+  const json& view = item("bufferViews", index);
+  const std::string_view buffer = buffers_[whole_number(view, "buffer")];
+  const std::size_t begin = whole_number(view, "byteOffset", 0), length = whole_number(view, "byteLength");
+  if (begin <= buffer.size() && length <= buffer.size() - begin) return buffer.substr(begin, length);
+  if (const std::string_view extension = gltf_compression(view); !extension.empty())
+    refuse_compressed(extension);
+  throw Error("a buffer view extends beyond its buffer");
 }
 
 std::vector<double> GltfDocument::numbers(std::size_t accessor) const {

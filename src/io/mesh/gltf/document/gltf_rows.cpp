@@ -1,4 +1,4 @@
-#include "io/mesh/gltf/gltf_rows.h"
+#include "io/mesh/gltf/document/gltf_rows.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>
@@ -10,8 +10,8 @@
 
 #include "core/excerpt.h"
 #include "io/file/byte_scanner.h"
-#include "io/mesh/gltf/gltf_document.h"
-#include "io/mesh/gltf/gltf_extensions.h"
+#include "io/mesh/gltf/document/gltf_document.h"
+#include "io/mesh/gltf/document/gltf_extensions.h"
 
 namespace sdm::io {
 namespace {
@@ -66,16 +66,9 @@ const ComponentType& component_type_of(std::size_t code) {
 
 GltfRows::Block GltfRows::block(const GltfDocument& document, const json& place, std::size_t component_type,
                                 bool normalized, std::size_t rows, std::size_t columns) {
-  const json& view = document.item("bufferViews", whole_number(place, "bufferView"));
-  const std::string_view buffer = document.buffers()[whole_number(view, "buffer")];
-  const std::size_t view_begin = whole_number(view, "byteOffset", 0),
-                    view_length = whole_number(view, "byteLength");
-  if (view_begin > buffer.size() || view_length > buffer.size() - view_begin) {
-    if (const std::string_view extension = gltf_compression(view); !extension.empty())
-      refuse_compressed(extension);
-    throw Error("a buffer view extends beyond its buffer");
-  }
-  const std::string_view bytes = buffer.substr(view_begin, view_length);
+  const std::size_t view_index = whole_number(place, "bufferView");
+  const json& view = document.item("bufferViews", view_index);
+  const std::string_view bytes = document.view(view_index);
 
   const ComponentType& type = component_type_of(component_type);
   const std::size_t begin = whole_number(place, "byteOffset", 0), row_bytes = columns * type.bytes,

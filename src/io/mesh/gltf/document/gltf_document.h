@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/mesh/gltf/gltf_buffers.h"
+#include "io/mesh/gltf/document/gltf_buffers.h"
 
 namespace sdm::io {
 
@@ -41,6 +41,8 @@ class GltfDocument {
   [[nodiscard]] std::size_t count(std::size_t accessor) const {
     return whole_number(item("accessors", accessor), "count");
   }
+  /// Returns the bytes of a buffer view. Throws if it extends beyond its buffer, or is compressed.
+  [[nodiscard]] std::string_view view(std::size_t index) const;
   /// Returns the numbers of an accessor, row by row. Their memory is charged.
   [[nodiscard]] std::vector<double> numbers(std::size_t accessor) const;
 

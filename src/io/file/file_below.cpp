@@ -1,13 +1,12 @@
-#include "io/mesh/gltf/gltf_uri.h"
+#include "io/file/file_below.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <algorithm>
-#include <charconv>
-#include <string>
 
 #include "core/excerpt.h"
+#include "io/file/error_prefix.h"
 
 namespace sdm::io {
 namespace {
@@ -50,44 +49,29 @@ bool is_inside(const fs::path& file, const fs::path& folder) {
   return in_folder == folder.end() && in_file != file.end();
 }
 
-[[noreturn]] void refuse(std::string_view path, std::string_view fault) {
+[[noreturn]] void refuse(std::string_view what, std::string_view path, std::string_view fault) {
   throw Error(fmt::format(
-      "the buffer '{}' is refused: {}; move it into the folder of the model, and name it relative "
-      "to that",
+      "the {} '{}' is refused: {}; move it into the folder of the model, and name it relative to that", what,
       excerpt(path), fault));
 }
 
 }  // namespace
 
-std::string decode_uri(std::string_view uri) {
-  std::string text;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    unsigned char code = 0;
-    if (uri[i] == '%' && i + 2 < uri.size() &&
-        std::from_chars(uri.data() + i + 1, uri.data() + i + 3, code, 16).ptr == uri.data() + i + 3) {
-      text += static_cast<char>(code);
-      i += 2;
-    } else {
-      text += uri[i];
-    }
-  }
-  return text;
-}
-
-bool is_data_uri(std::string_view uri) {
-  return uri.starts_with("data:");
-}
-
-fs::path file_of_uri(std::string_view uri, const fs::path& folder) {
-  const std::string path = decode_uri(uri);
-  if (const std::string_view fault = fault_of(path); !fault.empty()) refuse(path, fault);
+fs::path file_below(const fs::path& folder, std::string_view path, std::string_view what) {
+  if (const std::string_view fault = fault_of(path); !fault.empty()) refuse(what, path, fault);
   std::error_code error;
   const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
-  if (error) refuse(path, "the folder of the model cannot be resolved");
+  if (error) refuse(what, path, "the folder of the model cannot be resolved");
   fs::path file = fs::weakly_canonical(root / path, error);
-  if (error) refuse(path, "it cannot be resolved");
-  if (!is_inside(file, root)) refuse(path, "it is a link to a place outside of the folder of the model");
+  if (error) refuse(what, path, "it cannot be resolved");
+  if (!is_inside(file, root))
+    refuse(what, path, "it is a link to a place outside of the folder of the model");
   return file;
+}
+
+FileBytes read_below(const fs::path& folder, std::string_view path, std::string_view what) {
+  const fs::path file = file_below(folder, path, what);
+  return with_error_prefix(fmt::format("{} '{}'", what, excerpt(path)), [&] { return read_bytes(file); });
 }
 
 }  // namespace sdm::io

@@ -1,0 +1,169 @@
+#include "io/mesh/read_mtl.h"
+
+#include <fmt/format.h>
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "core/excerpt.h"
+#include "core/parse_number.h"
+#include "io/file/file_below.h"
+#include "io/file/text_scanner.h"
+#include "io/mesh/polygons/polygon_attributes.h"
+
+namespace sdm::io {
+namespace {
+
+// An option of a picture, and the most arguments that it takes. Those of numbers may be fewer.
+struct Option {
+  std::string_view name;
+  std::size_t arguments;
+  bool numbers;
+};
+constexpr Option kOptions[] = {{"-blendu", 1, false}, {"-blendv", 1, false},  {"-cc", 1, false},
+                               {"-clamp", 1, false},  {"-imfchan", 1, false}, {"-type", 1, false},
+                               {"-texres", 1, false}, {"-bm", 1, true},       {"-boost", 1, true},
+                               {"-mm", 2, true},      {"-o", 3, true},        {"-s", 3, true},
+                               {"-t", 3, true}};
+
+class MtlReader {
+ public:
+  MtlReader(std::string_view text, const std::filesystem::path& folder, PolygonMaterials& materials,
+            std::vector<std::string>& notes)
+      : in_(text), folder_(folder), materials_(materials), notes_(notes) {}
+
+  void read() {
+    for (; !in_.at_end(); in_.skip_line()) {
+      if (!in_.more_on_line()) continue;
+      if (in_.accept("newmtl"))
+        materials_.list.emplace_back().name = words_of_line();
+      else if (!materials_.list.empty())
+        read_statement(materials_.list.back());
+    }
+  }
+
+ private:
+  void read_statement(Material& material) {
+    if (in_.accept("Kd")) {
+      const auto color = light();
+      if (material.base_color_texture.texture == kNone) std::ranges::copy(color, material.base_color.begin());
+    } else if (in_.accept("Ke")) {
+      const auto color = light();
+      if (material.emissive_texture.texture == kNone) material.emissive = color;
+    } else if (in_.accept("d")) {
+      set_opacity(material, static_cast<float>(in_.number()));
+    } else if (in_.accept("Tr")) {
+      set_opacity(material, 1 - static_cast<float>(in_.number()));
+    } else if (in_.accept("Pm")) {
+      material.metallic = static_cast<float>(in_.number());
+    } else if (in_.accept("Pr")) {
+      material.roughness = static_cast<float>(in_.number());
+    } else if (in_.accept("map_Kd")) {
+      if (read_texture("map_Kd", material.base_color_texture))
+        std::fill_n(material.base_color.begin(), 3, 1.f);
+    } else if (in_.accept("map_Ke")) {
+      if (read_texture("map_Ke", material.emissive_texture)) material.emissive = {1, 1, 1};
+    } else if (in_.accept("norm")) {
+      read_texture("norm", material.normal_texture);
+    } else if (in_.accept("map_Bump") || in_.accept("map_bump") || in_.accept("bump")) {
+      leave_out("map_Bump", "heights are not read, only normals (norm)");
+    }
+  }
+
+  static void set_opacity(Material& material, float alpha) {
+    material.base_color[3] = alpha;
+    material.alpha_mode = alpha < 1 ? AlphaMode::blend : AlphaMode::opaque;
+  }
+
+  std::array<float, 3> light() {
+    std::array<float, 3> color{};
+    color.fill(linear_light(static_cast<float>(in_.number())));
+    for (std::size_t k = 1; k < 3 && in_.more_on_line(); ++k)
+      color[k] = linear_light(static_cast<float>(in_.number()));
+    return color;
+  }
+
+  // As of usemtl.
+  std::string words_of_line() {
+    std::string text;
+    while (in_.more_on_line()) text.append(text.empty() ? "" : " ").append(in_.word());
+    return text;
+  }
+
+  bool read_texture(const char* statement, TextureUse& use) {
+    TextureUse read;
+    std::string name = options_and_name(read);
+    std::ranges::replace(name, '\\', '/');
+    try {
+      read.texture = picture(name);
+      use = read;
+      return true;
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& fault) {
+      leave_out(statement, fault.what());
+      return false;
+    }
+  }
+  void leave_out(const char* statement, std::string_view fault) {
+    notes_.push_back(fmt::format("{} of the material {} is left out: {}", statement,
+                                 excerpt(materials_.list.back().name), fault));
+  }
+
+  std::string options_and_name(TextureUse& use) {
+    while (in_.more_on_line()) {
+      TextScanner after = in_;
+      const std::string_view word = after.word();
+      const Option* const option = std::ranges::find(kOptions, word, &Option::name);
+      if (option == std::end(kOptions)) return std::string(in_.rest_of_line());
+      in_ = after;
+      if (!option->numbers) {
+        if (in_.more_on_line() && in_.word() == "on" && option->name == "-clamp")
+          use.wrap = {TextureWrap::clamp, TextureWrap::clamp};
+        continue;
+      }
+      for (std::size_t i = 0; i < option->arguments; ++i) {
+        const auto number = next_number();
+        if (!number) break;
+        if (i < 2 && option->name == "-s") use.place[i][i] = *number;
+        if (i < 2 && option->name == "-o") use.place[i][2] = *number;
+      }
+    }
+    return {};
+  }
+
+  // Reads the next word if it is a number: the name of a file may begin with one.
+  std::optional<double> next_number() {
+    if (!in_.more_on_line()) return std::nullopt;
+    TextScanner after = in_;
+    const std::optional<double> number = parse_number(after.word());
+    if (number) in_ = after;
+    return number;
+  }
+
+  std::uint32_t picture(const std::string& name) {
+    const auto known = std::ranges::find(materials_.textures, name, &TextureFile::name);
+    if (known != materials_.textures.end())
+      return static_cast<std::uint32_t>(known - materials_.textures.begin());
+    const FileBytes bytes = read_below(folder_, name, "texture");
+    materials_.textures.push_back({.name = name, .bytes = {bytes.view().begin(), bytes.view().end()}});
+    return static_cast<std::uint32_t>(materials_.textures.size() - 1);
+  }
+
+  TextScanner in_;
+  const std::filesystem::path& folder_;
+  PolygonMaterials& materials_;
+  std::vector<std::string>& notes_;
+};
+
+}  // namespace
+
+void read_mtl(std::string_view text, const std::filesystem::path& folder, PolygonMaterials& materials,
+              std::vector<std::string>& notes) {
+  MtlReader(text, folder, materials, notes).read();
+}
+
+}  // namespace sdm::io
