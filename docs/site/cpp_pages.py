@@ -12,11 +12,11 @@ PLAIN = re.compile(r"\(variable\)|\w+\((\w+ ?&&|const \w+ ?&)\)|operator=|operat
 # Headers by subject, in the order of the reference.
 SUBJECTS = {
     "Meshes": ["types", "vec", "bounds", "mesh", "mesh_attributes", "material", "mesh_edit", "transform", "weld", "tessellation", "self_intersections", "solid", "convex_hull"],
-    "Files": ["io", "image", "report", "points", "sequence", "field_files"],
+    "Files": ["io", "image", "report", "points", "sequence", "field_files", "bake_files"],
     "Distance maps": ["surface", "atlas", "uv_tiles", "sites", "map", "distance_kind", "along", "sign", "engine", "gl",
                       "closest_points", "closest_in_parts", "facing", "vertex_distances"],
     "Results of maps": ["channels", "summary", "units", "statistics", "sampling_bound", "tolerance", "tolerance_proof",
-                         "certified_verdict", "group_verdicts", "tolerance_table", "coverage", "doubts", "part_statistics", "places", "islands", "combined_statistics", "temporal_maps", "transfer"],
+                         "certified_verdict", "group_verdicts", "tolerance_table", "coverage", "doubts", "part_statistics", "places", "islands", "combined_statistics", "temporal_maps", "transfer", "match", "bake"],
     "Proximity": ["proximity_query", "shape", "multi_body_query", "pose_query", "self_proximity_query", "thickness", "time_of_contact",
                   "hausdorff", "metrics"],
     "Other queries": ["align", "fit_check", "unit_check", "rays", "volume"],

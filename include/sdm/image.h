@@ -38,4 +38,9 @@ struct Image {
 /// decode_image() of a file, whose name the errors begin with.
 [[nodiscard]] SDM_API Image read_image(const std::filesystem::path& file);
 
+/// Returns a PNG file with these pixels; `srgb`: colours (of three or four components) are stated to be in
+/// sRGB. Made for speed rather than size. Throws sdm::Error if the picture has no pixels or its bytes are not
+/// those of its pixels, and if there is not enough memory. Cost: linear, all cores.
+[[nodiscard]] SDM_API std::vector<char> encode_png(const Image& image, bool srgb = true);
+
 }  // namespace sdm

@@ -5,6 +5,7 @@
 #include <sdm/along.h>
 #include <sdm/api.h>
 #include <sdm/atlas.h>
+#include <sdm/bake.h>
 #include <sdm/bounds.h>
 #include <sdm/cancellation.h>
 #include <sdm/certified_verdict.h>
@@ -25,6 +26,7 @@
 #include <sdm/hausdorff.h>
 #include <sdm/islands.h>
 #include <sdm/map.h>
+#include <sdm/match.h>
 #include <sdm/material.h>
 #include <sdm/mesh.h>
 #include <sdm/mesh_attributes.h>

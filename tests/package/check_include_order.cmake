@@ -38,6 +38,7 @@ set(order
   map/places
   map/transfer
   map
+  baking
   registration
   certify/hausdorff
   certify/metrics

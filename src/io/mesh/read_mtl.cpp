@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "baking/srgb.h"
 #include "core/excerpt.h"
 #include "core/parse_number.h"
 #include "io/file/file_below.h"
@@ -80,9 +81,9 @@ class MtlReader {
 
   std::array<float, 3> light() {
     std::array<float, 3> color{};
-    color.fill(linear_light(static_cast<float>(in_.number())));
+    color.fill(baking::linear_light(static_cast<float>(in_.number())));
     for (std::size_t k = 1; k < 3 && in_.more_on_line(); ++k)
-      color[k] = linear_light(static_cast<float>(in_.number()));
+      color[k] = baking::linear_light(static_cast<float>(in_.number()));
     return color;
   }
 

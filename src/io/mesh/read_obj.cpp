@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "baking/srgb.h"
 #include "core/excerpt.h"
 #include "io/file/file_below.h"
 #include "io/file/text_scanner.h"
@@ -91,7 +92,7 @@ class ObjReader {
     std::size_t count = 0;
     for (; in_.more_on_line(); ++count) {
       const auto x = static_cast<float>(in_.number());
-      if (count < 3) color[count] = linear_light(x);
+      if (count < 3) color[count] = baking::linear_light(x);
     }
     has_colors_ |= count == 3;
     if (count != 3) color.fill(std::numeric_limits<float>::quiet_NaN());

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <csetjmp>
+#include <utility>
 #include <vector>
 
 #include "core/parallel.h"
@@ -23,8 +24,9 @@ using Row = std::function<void(std::uint32_t y, std::span<std::uint8_t> bytes)>;
 struct Format {
   int color_type, bit_depth;
   std::uint32_t pixel_bytes;
+  bool srgb;  // numbers have no colour space
 };
-constexpr Format kColours{PNG_COLOR_TYPE_RGB, 8, 3}, kGrey{PNG_COLOR_TYPE_GRAY, 16, 2};
+constexpr Format kColours{PNG_COLOR_TYPE_RGB, 8, 3, true}, kGrey{PNG_COLOR_TYPE_GRAY, 16, 2, false};
 
 static_assert(sizeof(Rgb) == 3, "rows of Rgb are the bytes of the image");
 
@@ -50,9 +52,7 @@ bool write_header(const PngWriter& writer, std::uint32_t width, std::uint32_t he
   if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
   png_set_IHDR(writer.png, writer.info, width, height, format.bit_depth, format.color_type,
                PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  // Grey values are numbers, which have no colour space.
-  if (format.color_type == PNG_COLOR_TYPE_RGB)
-    png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (format.srgb) png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_write_info(writer.png, writer.info);
   return true;
 }
@@ -130,6 +130,20 @@ void write_png(std::ostream& stream, std::uint32_t width, std::uint32_t height,
                const std::function<void(std::uint32_t, std::span<Rgb>)>& row) {
   write(stream, width, height, kColours, [&](std::uint32_t y, std::span<std::uint8_t> bytes) {
     row(y, {reinterpret_cast<Rgb*>(bytes.data()), width});
+  });
+}
+
+void write_image_png(std::ostream& stream, const Image& image, bool srgb) {
+  constexpr int kTypes[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
+                            PNG_COLOR_TYPE_RGB_ALPHA};
+  const std::uint32_t pixel_bytes = image.components * image.bits / 8;
+  const Format format{kTypes[image.components - 1], static_cast<int>(image.bits), pixel_bytes,
+                      srgb && image.components >= 3};
+  const std::size_t row_bytes = std::size_t{pixel_bytes} * image.width;
+  write(stream, image.width, image.height, format, [&](std::uint32_t y, std::span<std::uint8_t> bytes) {
+    std::copy_n(&image.bytes[y * row_bytes], row_bytes, bytes.begin());
+    if (image.bits == 16)  // the more significant byte first
+      for (std::size_t i = 0; i < row_bytes; i += 2) std::swap(bytes[i], bytes[i + 1]);
   });
 }
 

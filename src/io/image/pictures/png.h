@@ -3,6 +3,8 @@
 
 #include "io/image/pictures/color_scale.h"
 
+#include <sdm/image.h>
+
 #include <cstdint>
 #include <functional>
 #include <ostream>
@@ -14,6 +16,9 @@ namespace sdm::io {
 /// any order. Optimised for speed rather than size. Does not check the stream, whose state records failures.
 void write_png(std::ostream& stream, std::uint32_t width, std::uint32_t height,
                const std::function<void(std::uint32_t y, std::span<Rgb> pixels)>& row);
+
+/// The same for a picture with 1 to 4 components of 8 or 16 bits; `srgb`: colours are stated to be in sRGB.
+void write_image_png(std::ostream& stream, const Image& image, bool srgb);
 
 /// The same for 16-bit grey values, which are numbers, not brightnesses: the file has no colour space.
 void write_gray_png(std::ostream& stream, std::uint32_t width, std::uint32_t height,

@@ -7,6 +7,7 @@
 #include "io/image/pictures/color_scale.h"
 #include "io/image/pictures/face_scales.h"
 #include "io/image/pictures/png.h"
+#include "io/mesh/model/drawn_surface.h"
 #include "io/mesh/model/glb_model.h"
 #include "io/mesh/model/model_vertices.h"
 #include "io/mesh/model/shading_normals.h"
@@ -34,53 +35,15 @@ using namespace io;
 
 namespace {
 
-/// What the primitives have in common.
-struct Model {
-  const Mesh& mesh;
-  const ShadingNormals& normals;
-  Placement place;
-  Vec2 extent;  ///< the width and height of the texture, in texels of the atlas
-  std::span<const float> vertex_distances;
-};
-
-void add_primitive(GlbModel& glb, const Model& model, const ModelVertices& vertices, bool with_distances) {
+void add_primitive(GlbModel& glb, const DrawnSurface& drawn, const ModelVertices& vertices,
+                   std::span<const float> vertex_distances) {
   if (vertices.triangles.empty()) return;
-  const std::size_t count = vertices.place.size();
-  const auto vertex = [&](std::size_t i) { return model.normals.vertex[vertices.normal[i]]; };
-  tinygltf::Primitive primitive;
-  primitive.mode = TINYGLTF_MODE_TRIANGLES;
-  primitive.material = 0;
-  primitive.indices = glb.add_accessor<Triangle>(
-      vertices.triangles.size(), TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-      TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, [&](std::size_t i, Triangle& t) { t = vertices.triangles[i]; });
-  const auto add_attribute = [&]<class Element>(const char* name, int type, Element /*kind*/,
-                                                const auto& fill) {
-    return primitive.attributes[name] = glb.add_accessor<Element>(count, type, TINYGLTF_COMPONENT_TYPE_FLOAT,
-                                                                  TINYGLTF_TARGET_ARRAY_BUFFER, fill);
-  };
-  const auto position = [&](std::size_t i, Vec3f& q) {
-    const Vec3 p = model.mesh.positions[vertex(i)] - model.place.origin;
-    for (int k = 0; k < 3; ++k) q[k] = static_cast<float>(p[k]);
-  };
-  auto& accessor = glb.model.accessors[add_attribute("POSITION", TINYGLTF_TYPE_VEC3, Vec3f{}, position)];
-  Vec3f lo, hi, q;
-  lo.fill(std::numeric_limits<float>::infinity()), hi.fill(-std::numeric_limits<float>::infinity());
-  for (std::size_t i = 0; i < count; ++i) {
-    position(i, q);
-    for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], q[k]), hi[k] = std::max(hi[k], q[k]);
-  }
-  accessor.minValues.assign(lo.begin(), lo.end());
-  accessor.maxValues.assign(hi.begin(), hi.end());
-  add_attribute("NORMAL", TINYGLTF_TYPE_VEC3, Vec3f{},
-                [&](std::size_t i, Vec3f& n) { n = model.normals.normals[vertices.normal[i]]; });
-  add_attribute("TEXCOORD_0", TINYGLTF_TYPE_VEC2, std::array<float, 2>{},  // in [0, 1], v down
-                [&](std::size_t i, std::array<float, 2>& uv) {
-                  for (int k = 0; k < 2; ++k)
-                    uv[k] = static_cast<float>(std::clamp(vertices.place[i][k] / model.extent[k], 0.0, 1.0));
-                });
-  if (with_distances)
-    add_attribute("_DISTANCE", TINYGLTF_TYPE_SCALAR, 0.0f,
-                  [&](std::size_t i, float& d) { d = model.vertex_distances[vertex(i)]; });
+  tinygltf::Primitive primitive = primitive_of(glb, drawn, vertices);
+  if (!vertex_distances.empty())
+    primitive.attributes["_DISTANCE"] = glb.add_accessor<float>(
+        vertices.place.size(), TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_FLOAT,
+        TINYGLTF_TARGET_ARRAY_BUFFER,
+        [&](std::size_t i, float& d) { d = vertex_distances[drawn.normals.vertex[vertices.normal[i]]]; });
   glb.model.meshes[0].primitives.push_back(primitive);
 }
 
@@ -163,39 +126,19 @@ std::array<std::vector<std::uint32_t>, 2> faces_by_distance(const Mesh& mesh,
 }
 
 void add_material(GlbModel& glb, const std::string& png, bool unlit) {
-  tinygltf::Model& model = glb.model;
-  tinygltf::Image image;
-  image.bufferView = glb.add_view(png.size(), 0);
-  std::ranges::copy(png, glb.view_bytes(image.bufferView));
-  image.mimeType = "image/png";
-  model.images.push_back(image);
   // No mip levels: they would blend charts that are neighbours only in the atlas.
-  tinygltf::Sampler sampler;
-  sampler.minFilter = sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
-  sampler.wrapS = sampler.wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
-  model.samplers.push_back(sampler);
-  tinygltf::Texture texture;
-  texture.sampler = 0;
-  texture.source = 0;
-  model.textures.push_back(texture);
+  const int texture = add_png(glb, png, TINYGLTF_TEXTURE_FILTER_LINEAR);
   tinygltf::Material material;
   material.name = "distance";
   material.doubleSided = true;
-  material.pbrMetallicRoughness.baseColorTexture.index = 0;
+  material.pbrMetallicRoughness.baseColorTexture.index = texture;
   material.pbrMetallicRoughness.metallicFactor = 0;  // matt: highlights would hide colours
   material.pbrMetallicRoughness.roughnessFactor = 1;
   if (unlit) {
     material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object{});
-    model.extensionsUsed.push_back("KHR_materials_unlit");
+    glb.model.extensionsUsed.push_back("KHR_materials_unlit");
   }
-  model.materials.push_back(material);
-}
-
-void add_scene(GlbModel& glb, const Placement& place, UpAxis up) {
-  tinygltf::Node node = placed_node(place, up);
-  node.name = "O1";
-  node.mesh = 0;
-  glb.add_scene({node});
+  glb.model.materials.push_back(material);
 }
 
 GlbModel make_model(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
@@ -212,22 +155,20 @@ GlbModel make_model(const Surface& surface, const DistanceMap& map, std::span<co
                       for (int k = 0; k < 2; ++k) vertices[k] = model_vertices(surface, normals, faces[k]);
                     },
                     [&] { png = texture_png(surface, map, scales, picture, vertex_distances); }});
-  const Model model{
+  const DrawnSurface drawn{
       .mesh = mesh,
       .normals = normals,
       .place = placement(bounds(mesh), options.units),
-      .extent = {1.0 * picture.width() * picture.step(), 1.0 * picture.height() * picture.step()},
-      .vertex_distances = vertex_distances};
+      .extent = {1.0 * picture.width() * picture.step(), 1.0 * picture.height() * picture.step()}};
   GlbModel glb;
   glb.model.meshes.emplace_back().name = "O1";
   std::size_t bytes = png.size();
-  for (const ModelVertices& part : vertices)
-    bytes += part.triangles.size() * sizeof(Triangle) + part.place.size() * 9 * sizeof(float);
+  for (const ModelVertices& part : vertices) bytes += bytes_of(part) + part.place.size() * sizeof(float);
   glb.reserve(bytes);
-  add_primitive(glb, model, vertices[0], true);
-  add_primitive(glb, model, vertices[1], false);
+  add_primitive(glb, drawn, vertices[0], vertex_distances);
+  add_primitive(glb, drawn, vertices[1], {});
   add_material(glb, png, options.unlit);
-  add_scene(glb, model.place, options.up);
+  glb.add_scene({drawn_node(drawn.place, options.up)});
   return glb;
 }
 

@@ -22,7 +22,4 @@ struct PolygonAttribute {
   [[nodiscard]] std::size_t count() const { return values.size() / components; }
 };
 
-/// The intensity in linear light of a colour component in sRGB, both from 0 to 1 (IEC 61966-2-1).
-[[nodiscard]] float linear_light(float srgb);
-
 }  // namespace sdm::io

@@ -1,0 +1,45 @@
+/// The files of baking: pictures of textures, and models that contain them. Every function throws an
+/// sdm::Error that names the file and the fault.
+///
+/// Threads: the functions may be called concurrently, unless two of them write the same file.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/bake.h>
+#include <sdm/image.h>
+#include <sdm/io.h>
+#include <sdm/material.h>
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace sdm {
+
+/// decode_image() of all textures, for MeshLook::pictures. One that is damaged becomes an empty image, with a
+/// line in `notes`. Also throws sdm::Error if there is not enough memory. Cost: linear, all cores, a core for
+/// each picture.
+[[nodiscard]] SDM_API std::vector<Image> decode_textures(std::span<const TextureFile> textures,
+                                                         std::vector<std::string>& notes);
+
+/// A channel as a picture: encode_png(to_image()) of it.
+struct BakedTexture {
+  BakeChannel channel = BakeChannel::base_color;
+  std::vector<char> png;
+};
+
+/// Options of write_baked_glb().
+struct BakedModelOptions {
+  Material material{};    ///< the factors of what has no texture, and what alpha means
+  std::string units{};    ///< as of write_glb()
+  UpAxis up = UpAxis::y;  ///< as of write_glb()
+};
+
+/// A model of O1 with textures on its atlas, in one lit material, and normals that are smooth except across
+/// edges of more than 40°. Any viewer displays it. Also throws sdm::Error if the model exceeds 4 GB, and if
+/// there is not enough memory. Cost: linear.
+SDM_API void write_baked_glb(const std::filesystem::path& file, const Surface& surface,
+                             std::span<const BakedTexture> textures, const BakedModelOptions& options = {});
+
+}  // namespace sdm

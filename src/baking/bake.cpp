@@ -1,0 +1,148 @@
+#include <sdm/bake.h>
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <utility>
+
+#include "atlas/gutter.h"
+#include "baking/look_reader.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "map/transfer/fill_texels.h"
+
+namespace sdm {
+namespace {
+
+using baking::ChannelLook;
+using map::TexelState;
+
+/// The search for the nearest texel takes time that grows with the square of the width.
+constexpr std::uint32_t kWidestGutter = 16;
+constexpr std::size_t kRowsOfRange = 8;
+
+void require_fitting(const Surface& surface, const Sites& sites, const TexelMatches& matches) {
+  const std::size_t texels = surface.texel_faces().size();
+  if (matches.resolution != surface.resolution() || matches.face.size() != texels ||
+      matches.kind.size() != texels || matches.barycentric.size() != texels)
+    throw Error("the matches belong to another surface: their number of texels differs");
+  const std::size_t faces = sites.mesh().triangles.size();
+  for (std::size_t i = 0; i < texels; ++i)
+    if (matches.face[i] != kNone && (matches.face[i] >= faces || surface.texel_faces()[i] == kNone))
+      throw Error("the matches belong to other meshes: one is on a face that does not exist");
+}
+
+SurfacePoint match_of(const TexelMatches& matches, std::size_t texel) {
+  const auto& [b, c] = matches.barycentric[texel];
+  return {matches.face[texel], {1 - double{b} - c, b, c}};
+}
+
+std::vector<float> values_of(const ChannelLook& look, const Surface& surface, const TexelMatches& matches,
+                             const Progress& progress) {
+  const std::uint32_t resolution = matches.resolution;
+  const auto owners = surface.texel_faces();
+  std::vector<float> values(owners.size() * look.components, std::numeric_limits<float>::quiet_NaN());
+  parallel_for(surface.rows(), kRowsOfRange, progress, "bake", [&](std::size_t begin, std::size_t end) {
+    baking::LookReader reader(look);
+    std::uint32_t owner = kNone;
+    std::array<Vec3, 2> sides{};
+    for (std::size_t i = begin * resolution; i < end * resolution; ++i) {
+      if (matches.face[i] == kNone) continue;
+      if (owners[i] != owner) owner = owners[i], sides = surface.texel_edges(owner);
+      reader.at(match_of(matches, i), sides, &values[i * look.components]);
+    }
+  });
+  return values;
+}
+
+std::vector<TexelState> states_of(const TexelMatches& matches) {
+  std::vector<TexelState> states(matches.face.size());
+  std::ranges::transform(matches.face, states.begin(), [](std::uint32_t face) {
+    return face == kNone ? TexelState::free : TexelState::valued;
+  });
+  return states;
+}
+
+}  // namespace
+
+std::string_view name_of(BakeChannel channel) {
+  switch (channel) {
+    case BakeChannel::base_color:
+      return "base_color";
+    case BakeChannel::metallic_roughness:
+      return "metallic_roughness";
+    case BakeChannel::occlusion:
+      return "occlusion";
+    case BakeChannel::emissive:
+      return "emissive";
+  }
+  return {};
+}
+
+std::vector<BakeChannel> varying_channels(const Mesh& mesh, const MeshLook& look) {
+  baking::require_fitting(mesh, look);
+  const auto used = baking::used_materials(look);
+  const auto textured = [&](TextureUse Material::*use) {
+    return std::ranges::any_of(used, [&](const Material* m) {
+      return (m->*use).texture != kNone && look.pictures[(m->*use).texture].width > 0;
+    });
+  };
+  const auto differ = [&](auto Material::*factor) {
+    return std::ranges::any_of(used, [&](const Material* m) { return m->*factor != used.front()->*factor; });
+  };
+  const bool colors = std::ranges::count(look.attributes, "color", &MeshAttribute::name) > 0;
+  std::vector<BakeChannel> channels;
+  if (colors || textured(&Material::base_color_texture) || differ(&Material::base_color) ||
+      differ(&Material::alpha_mode))
+    channels.push_back(BakeChannel::base_color);
+  if (textured(&Material::metallic_roughness_texture) || differ(&Material::metallic) ||
+      differ(&Material::roughness))
+    channels.push_back(BakeChannel::metallic_roughness);
+  if (textured(&Material::occlusion_texture)) channels.push_back(BakeChannel::occlusion);
+  if (textured(&Material::emissive_texture) || differ(&Material::emissive))
+    channels.push_back(BakeChannel::emissive);
+  return channels;
+}
+
+Material common_material(const MeshLook& look) {
+  Material material;
+  const auto used = baking::used_materials(look);
+  if (used.empty()) return material;
+  material = *used.front();
+  for (const Material* other : used)
+    if (material.alpha_mode == AlphaMode::opaque && other->alpha_mode != AlphaMode::opaque)
+      material.alpha_mode = other->alpha_mode, material.alpha_cutoff = other->alpha_cutoff;
+  material.name.clear();
+  for (TextureUse Material::*use :
+       {&Material::base_color_texture, &Material::metallic_roughness_texture, &Material::normal_texture,
+        &Material::occlusion_texture, &Material::emissive_texture})
+    material.*use = {};
+  return material;
+}
+
+std::vector<BakedChannel> bake(const Surface& surface, const Sites& sites, const TexelMatches& matches,
+                               const MeshLook& look, std::span<const BakeChannel> channels,
+                               const BakeOptions& options) try {
+  require_fitting(surface, sites, matches);
+  baking::require_fitting(sites.mesh(), look);
+  baking::Pictures pictures(look);
+  const std::vector<TexelState> states = options.fill ? states_of(matches) : std::vector<TexelState>();
+  std::vector<BakedChannel> baked;
+  for (const BakeChannel channel : channels) {
+    const ChannelLook of_channel(sites.mesh(), look, channel, pictures);
+    BakedChannel& result = baked.emplace_back(channel, matches.resolution, of_channel.components,
+                                              values_of(of_channel, surface, matches, options.progress));
+    if (options.fill)
+      map::fill_free_texels(matches.resolution, states,
+                            std::clamp(surface.gutter(), atlas::kGutter, kWidestGutter), result.components,
+                            result.values);
+  }
+  return baked;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the baked textures");
+}
+
+}  // namespace sdm

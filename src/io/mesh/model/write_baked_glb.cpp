@@ -1,0 +1,112 @@
+#include <sdm/bake_files.h>
+#include <sdm/error.h>
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <new>
+#include <vector>
+
+#include "core/memory.h"
+#include "io/file/atomic_file.h"
+#include "io/mesh/model/drawn_surface.h"
+
+namespace sdm {
+
+using namespace io;
+
+namespace {
+
+const char* alpha_mode_name(AlphaMode mode) {
+  switch (mode) {
+    case AlphaMode::opaque:
+      break;
+    case AlphaMode::mask:
+      return "MASK";
+    case AlphaMode::blend:
+      return "BLEND";
+  }
+  return "OPAQUE";
+}
+
+template <class Factors>
+std::vector<double> numbers(const Factors& factors) {
+  std::vector<double> result;
+  for (const float factor : factors) result.push_back(std::clamp(double{factor}, 0.0, 1.0));
+  return result;
+}
+
+tinygltf::Material material_of(const Material& factors) {
+  tinygltf::Material material;
+  material.name = "baked";
+  material.doubleSided = true;  // so that open meshes have a back
+  material.alphaMode = alpha_mode_name(factors.alpha_mode);
+  if (factors.alpha_mode == AlphaMode::mask) material.alphaCutoff = factors.alpha_cutoff;
+  material.emissiveFactor = numbers(factors.emissive);
+  tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
+  surface.baseColorFactor = numbers(factors.base_color);
+  surface.metallicFactor = std::clamp(factors.metallic, 0.f, 1.f);
+  surface.roughnessFactor = std::clamp(factors.roughness, 0.f, 1.f);
+  return material;
+}
+
+// A texture contains its factor.
+void set_texture(tinygltf::Material& material, BakeChannel channel, int texture) {
+  tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
+  switch (channel) {
+    case BakeChannel::base_color:
+      surface.baseColorTexture.index = texture;
+      surface.baseColorFactor.assign(4, 1);
+      break;
+    case BakeChannel::metallic_roughness:
+      surface.metallicRoughnessTexture.index = texture;
+      surface.metallicFactor = surface.roughnessFactor = 1;
+      break;
+    case BakeChannel::occlusion:
+      material.occlusionTexture.index = texture;
+      break;
+    case BakeChannel::emissive:
+      material.emissiveTexture.index = texture;
+      material.emissiveFactor.assign(3, 1);
+      break;
+  }
+}
+
+// Faces whose corners are not the same vertex, which the validator reports.
+std::vector<std::uint32_t> drawn_faces(const Mesh& mesh) {
+  std::vector<std::uint32_t> faces;
+  for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face)
+    if (const auto& [a, b, c] = mesh.triangles[face]; a != b && b != c && c != a) faces.push_back(face);
+  return faces;
+}
+
+}  // namespace
+
+void write_baked_glb(const std::filesystem::path& file, const Surface& surface,
+                     std::span<const BakedTexture> textures, const BakedModelOptions& options) try {
+  AtomicFile out(file);
+  const Mesh& mesh = surface.mesh();
+  const ShadingNormals normals = shading_normals(mesh);
+  const ModelVertices vertices = model_vertices(surface, normals, drawn_faces(mesh));
+  const DrawnSurface drawn{.mesh = mesh,
+                           .normals = normals,
+                           .place = placement(bounds(mesh), options.units),
+                           .extent = {1.0 * surface.resolution(), 1.0 * surface.rows()}};
+  GlbModel glb;
+  glb.model.meshes.emplace_back().name = "O1";
+  std::size_t bytes = bytes_of(vertices);
+  for (const BakedTexture& texture : textures) bytes += texture.png.size();
+  glb.reserve(bytes);
+  glb.model.meshes[0].primitives.push_back(primitive_of(glb, drawn, vertices));
+  tinygltf::Material material = material_of(options.material);
+  for (const BakedTexture& texture : textures)
+    set_texture(material, texture.channel,
+                add_png(glb, texture.png, TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR));
+  glb.model.materials.push_back(material);
+  glb.add_scene({drawn_node(drawn.place, options.up)});
+  tinygltf::TinyGLTF().WriteGltfSceneToStream(&glb.model, out.stream(), false, true);
+  out.commit();
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("writing " + file.string());
+}
+
+}  // namespace sdm
