@@ -4,15 +4,16 @@
 
 #include "option_checks.h"
 
-void add_facing_option(CLI::App& app, std::optional<double>& facing, const std::string& sample) {
+void add_facing_option(CLI::App& app, std::optional<double>& facing, const std::string& sample,
+                       const std::string& other) {
   app.add_option_function<std::string>(
          "--facing",
          [&facing](const std::string& angle) { facing = angle.empty() ? 90 : *parse_number(angle); },
          fmt::format(
-             "Measure to the closest of the faces of O2 that face the same way: whose normal is within "
+             "Measure to the closest of the faces of {} that face the same way: whose normal is within "
              "ANGLE degrees of that of the {}, 90 unless given. For thin walls, where the closest "
              "point may be on the other skin",
-             sample))
+             other, sample))
       ->expected(0, 1)
       ->check(number("an angle above 0 and up to 180", [](double x) { return x > 0 && x <= 180; }))
       ->type_name("[ANGLE]");

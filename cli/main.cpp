@@ -1,4 +1,5 @@
 // The sdm command.
+#include "bake.h"
 #include "bodies.h"
 #include "completion.h"
 #include "devices.h"
@@ -81,6 +82,7 @@ int run(int argc, char** argv) {
     add_sequence_command(app);
     add_self_command(app);
     add_thickness_command(app);
+    add_bake_command(app);
     add_volume_command(app);
     add_info_command(app);
     add_devices_command(app);

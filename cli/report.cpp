@@ -72,6 +72,8 @@ Input load_input(const std::string& role, const std::string& file, const std::st
   input.names = std::move(read.names);
   input.vertices = std::move(read.vertices);
   input.tessellation = std::move(read.tessellation);
+  input.look = {std::move(read.materials), std::move(read.textures), std::move(read.face_materials),
+                std::move(read.attributes)};
   if (input.tessellation) input.notes.push_back(sdm::note_on(*input.tessellation, file));
   for (const std::string& note : read.notes) input.notes.push_back(fmt::format("{}: {}", file, note));
   if (const auto note = note_on_precision(file, input.mesh.positions, size_of(sdm::bounds(input.mesh))))

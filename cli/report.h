@@ -13,6 +13,14 @@
 #include <string>
 #include <vector>
 
+/// How the faces of a file look, as of sdm::MeshFile.
+struct InputLook {
+  std::vector<sdm::Material> materials{};
+  std::vector<sdm::TextureFile> textures{};
+  std::vector<std::uint32_t> face_materials{};
+  std::vector<sdm::MeshAttribute> attributes{};
+};
+
 /// A mesh of the command line, after its transform.
 struct Input {
   std::string role;  ///< "o1", "o2", or "mesh" if it is the only one
@@ -27,6 +35,7 @@ struct Input {
   std::vector<sdm::FaceNames> names{};
   std::vector<std::string> notes{};             ///< on the file
   std::optional<sdm::FileVertices> vertices{};  ///< of the file, without the transform, if requested
+  InputLook look{};                             ///< if attributes were requested
 };
 
 /// Sets input.info, which to_json() needs, unless it is set.

@@ -1,0 +1,28 @@
+#include "bake_surface.h"
+
+#include <fmt/format.h>
+#include <sdm/bake.h>
+
+#include <utility>
+
+#include "format.h"
+
+BakeSurface bake_surface(const Input& low, const BakeLayout& layout) {
+  BakeSurface result;
+  if (!layout.kind) {
+    sdm::BakeAtlas atlas = sdm::bake_atlas(low.mesh, layout.atlas);
+    if (!atlas.fault.empty())
+      result.notes.push_back(fmt::format("{}: {}, so it got an atlas of charts{}", low.file, atlas.fault,
+                                         low.mesh.corner_uvs.empty() ? "" : "; --atlas uv uses them"));
+    result.surface = std::make_unique<sdm::Surface>(std::move(atlas.surface));
+    return result;
+  }
+  sdm::AtlasOptions options = layout.atlas;
+  options.kind = *layout.kind;
+  result.surface = std::make_unique<sdm::Surface>(low.mesh, options);
+  if (const double overlap = sdm::overlap_of(*result.surface); overlap > 0)
+    result.notes.push_back(fmt::format(
+        "{}: {} % of the texels of faces lie in another face too: each has what its first face has", low.file,
+        number(100 * overlap, 2)));
+  return result;
+}

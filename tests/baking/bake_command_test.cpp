@@ -1,0 +1,245 @@
+// `sdm bake`.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/bake_files.h>
+#include <sdm/io.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/run_sdm.h"
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using Json = nlohmann::json;
+
+void write_text(const std::filesystem::path& file, std::string_view text) {
+  std::ofstream(file, std::ios::binary).write(text.data(), static_cast<std::streamsize>(text.size()));
+}
+
+/// With texture coordinates, if it has them.
+std::string obj_of(const Mesh& mesh, const std::string& first_lines = "") {
+  std::ostringstream out;
+  out.precision(17);
+  out << first_lines;
+  for (const Vec3& p : mesh.positions) out << "v " << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+  for (const auto& uvs : mesh.corner_uvs)
+    for (const Vec2& uv : uvs) out << "vt " << uv[0] << ' ' << uv[1] << '\n';
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    out << 'f';
+    for (std::size_t k = 0; k < 3; ++k) {
+      out << ' ' << mesh.triangles[f][k] + 1;
+      if (!mesh.corner_uvs.empty()) out << '/' << 3 * f + k + 1;
+    }
+    out << '\n';
+  }
+  return out.str();
+}
+
+/// Red grows to the right, green to the top, in sRGB.
+Image gradient() {
+  Image image{.width = 256, .height = 256, .components = 3, .bits = 8, .bytes = {}};
+  for (int y = 0; y < 256; ++y)
+    for (int x = 0; x < 256; ++x)
+      for (const int value : {x, 255 - y, 128}) image.bytes.push_back(static_cast<std::uint8_t>(value));
+  return image;
+}
+
+struct BakeCommandTest : ::testing::Test {
+  TemporaryFolder folder;
+  std::string high = folder / "high.obj", low = folder / "low.obj", out = folder / "out";
+
+  void SetUp() override {
+    const std::vector<char> png = encode_png(gradient());
+    write_text(folder / "picture.png", {png.data(), png.size()});
+    write_text(folder / "high.mtl", "newmtl painted\nPm 0.25\nPr 0.5\nmap_Kd picture.png\n");
+    write_text(high, obj_of(height_field(40), "mtllib high.mtl\nusemtl painted\n"));
+    Mesh coarse = height_field(8);
+    coarse.corner_uvs.clear();
+    write_text(low, obj_of(coarse));
+  }
+  [[nodiscard]] Outcome run(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"bake", high, low, "-o", out, "--resolution", "128"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_sdm(arguments);
+  }
+  [[nodiscard]] std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(out))
+      names.push_back(entry.path().filename());
+    std::ranges::sort(names);
+    return names;
+  }
+};
+
+// The model is read again: at the corners of its faces its picture has the colour of the place in HIGH's.
+TEST_F(BakeCommandTest, ModelsLookLikeTheDetailedMesh) {
+  const Outcome outcome = run();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(files(), ElementsAre("baked.glb", "base_color.png", "report.json"));
+  EXPECT_THAT(outcome.out, HasSubstr("base_color, 128 x 128 texels"));
+  const MeshFile model = read_mesh_file(out + "/baked.glb", {.attributes = true});
+  EXPECT_THAT(model.notes, IsEmpty());
+  ASSERT_EQ(model.materials.size(), 1u);
+  const Material& material = model.materials[0];
+  EXPECT_EQ(material.metallic, 0.25f);
+  EXPECT_EQ(material.roughness, 0.5f);
+  EXPECT_EQ(material.base_color[0], 1);
+  ASSERT_EQ(model.textures.size(), 1u);
+  const Image image = decode_image(model.textures[0].bytes);
+  EXPECT_EQ(image.bytes, read_image(out + "/base_color.png").bytes);
+  ASSERT_EQ(image.width, 128u);
+  for (std::size_t f = 0; f < model.mesh.triangles.size(); ++f) {
+    Vec3 p{};
+    Vec2 uv{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      p = p + (1.0 / 3) * model.mesh.positions[model.mesh.triangles[f][k]];
+      uv = uv + (1.0 / 3) * model.mesh.corner_uvs[f][k];
+    }
+    const auto x = static_cast<std::uint32_t>(uv[0] * 128), y = static_cast<std::uint32_t>((1 - uv[1]) * 128);
+    // Within a texel, and what the coarse mesh is off.
+    EXPECT_NEAR(image.value(x, y, 0), p[0], 0.03) << f;
+    EXPECT_NEAR(image.value(x, y, 1), p[1], 0.03) << f;
+    EXPECT_NEAR(image.value(x, y, 2), 128 / 255.0, 0.002) << f;
+  }
+}
+
+TEST_F(BakeCommandTest, ReportsStateWhatWasFound) {
+  const Outcome outcome = run({"--max-distance", "0.01", "--json", "--units", "mm"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json report = Json::parse(outcome.out);
+  EXPECT_EQ(report, Json::parse(std::ifstream(out + "/report.json")));
+  EXPECT_EQ(report["high"]["triangles"], 3200);
+  EXPECT_EQ(report["low"]["triangles"], 128);
+  EXPECT_EQ(report["atlas"]["kind"], "charts");
+  EXPECT_EQ(report["textures"]["base_color"]["file"], "base_color.png");
+  EXPECT_EQ(report["textures"]["base_color"]["values"], "sRGB");
+  const Json& texels = report["texels"];
+  EXPECT_GT(texels["too_far"], 0);
+  EXPECT_GT(texels["closest"], texels["too_far"]);
+  EXPECT_EQ(texels["closest"].get<int>() + texels["too_far"].get<int>(),
+            report["atlas"]["texels"].get<int>());
+  EXPECT_EQ(report["max_distance"], 0.01);
+  EXPECT_TRUE(report["facing"].is_null());
+  const Json facing = Json::parse(run({"--facing", "--json"}).out);
+  EXPECT_EQ(facing["facing"], 90);
+  EXPECT_EQ(facing["texels"]["facing"], facing["atlas"]["texels"]);
+}
+
+TEST_F(BakeCommandTest, ChannelsAreThoseThatDifferOrThatAreAskedFor) {
+  write_text(folder / "high.mtl",
+             "newmtl painted\nPm 0.25\nPr 0.5\nmap_Kd picture.png\nmap_Ke picture.png\n");
+  ASSERT_EQ(run().code, 0);
+  EXPECT_THAT(files(), ElementsAre("baked.glb", "base_color.png", "emissive.png", "report.json"));
+  ASSERT_EQ(run({"--channels", "metallic_roughness,occlusion"}).code, 0);
+  EXPECT_THAT(files(), ElementsAre("baked.glb", "metallic_roughness.png", "occlusion.png", "report.json"));
+  const Image image = read_image(out + "/metallic_roughness.png");
+  EXPECT_EQ(std::vector(image.bytes.begin(), image.bytes.begin() + 3),
+            (std::vector<std::uint8_t>{255, 128, 64}));
+  const Outcome unknown = run({"--channels", "gloss"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err,
+              HasSubstr("gloss is not one of base_color, metallic_roughness, occlusion, emissive"));
+}
+
+TEST_F(BakeCommandTest, UvsAreUsedIfTheyAreUsable) {
+  const auto kind = [&](const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Json report = Json::parse(outcome.out);
+    return report["atlas"]["kind"].get<std::string>() + report["notes"].dump();
+  };
+  const Mesh with_uvs = height_field(8);
+  write_text(low, obj_of(with_uvs));
+  EXPECT_EQ(kind(), "uv[]");
+  Mesh beyond = with_uvs, twice = with_uvs;
+  for (auto& uvs : beyond.corner_uvs)
+    for (Vec2& uv : uvs) uv = 2.0 * uv;
+  write_text(low, obj_of(beyond));
+  EXPECT_THAT(kind(), HasSubstr("charts[\"" + low + ": its UVs leave [0, 1], so it got an atlas of charts"));
+  for (std::size_t f = twice.corner_uvs.size() / 2; f < twice.corner_uvs.size(); ++f)
+    for (Vec2& uv : twice.corner_uvs[f]) uv[1] -= 0.5;
+  write_text(low, obj_of(twice));
+  EXPECT_THAT(kind(), HasSubstr("charts[\"" + low + ": faces overlap in its UVs, so it got"));
+  EXPECT_THAT(kind({"--atlas", "uv"}), HasSubstr("uv[\"" + low + ": "));
+}
+
+TEST_F(BakeCommandTest, FailuresAreOneSentenceAndLeaveNothing) {
+  const auto error = [&](const std::vector<std::string>& more) {
+    const Outcome outcome = run(more);
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_FALSE(std::filesystem::exists(out));
+    return outcome.err;
+  };
+  EXPECT_THAT(
+      error({"--transform-low", "translate:9:0:0", "--max-distance", "1"}),
+      HasSubstr("is close enough to a texel (--max-distance 1) of " + low + ": nothing can be baked"));
+  write_text(high, obj_of(height_field(8)));
+  EXPECT_THAT(error({}), HasSubstr(high + " has neither materials nor colours of vertices"));
+  write_text(high, obj_of(height_field(8), "mtllib none.mtl\n"));
+  EXPECT_THAT(error({}), HasSubstr("has neither materials"));
+}
+
+TEST_F(BakeCommandTest, TexturesThatAreMissingOrDamagedAreNotes) {
+  std::filesystem::remove(folder / "picture.png");
+  const Outcome missing = run();
+  EXPECT_EQ(missing.code, 0) << missing.err;
+  EXPECT_THAT(missing.out, HasSubstr("map_Kd of the material painted is left out"));
+  write_text(folder / "picture.png", "\x89PNG\r\n\x1a\nand so on");
+  const Outcome damaged = run();
+  EXPECT_EQ(damaged.code, 0) << damaged.err;
+  EXPECT_THAT(damaged.out, HasSubstr("the texture picture.png is left out"));
+  EXPECT_THAT(damaged.out, HasSubstr("base_color"));
+}
+
+// Colours of vertices, as of scans: in PLY sRGB.
+TEST_F(BakeCommandTest, ColorsOfVerticesAreBaked) {
+  std::ostringstream ply;
+  const Mesh mesh = height_field(10);
+  ply << "ply\nformat ascii 1.0\nelement vertex " << mesh.positions.size()
+      << "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
+         "property uchar blue\nelement face "
+      << mesh.triangles.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const Vec3& p : mesh.positions) ply << p[0] << ' ' << p[1] << ' ' << p[2] << " 200 100 50\n";
+  for (const Triangle& t : mesh.triangles) ply << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
+  high = folder / "high.ply";
+  write_text(high, ply.str());
+  const Outcome outcome = run();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Image image = read_image(out + "/base_color.png");
+  for (std::size_t i = 0; i < image.bytes.size(); ++i)
+    ASSERT_EQ(image.bytes[i], (std::array{200, 100, 50})[i % 3]) << i;
+}
+
+TEST_F(BakeCommandTest, ModelsPassTheKhronosValidator) {
+  write_text(folder / "high.mtl", "newmtl painted\nd 0.5\nPm 0.25\nmap_Kd picture.png\nmap_Ke picture.png\n");
+  std::string models;
+  for (const char* channels : {"base_color,emissive", "metallic_roughness,occlusion"}) {
+    out = folder / channels;
+    ASSERT_EQ(run({"--channels", channels, "--units", "mm", "--up", "z"}).code, 0);
+    models += " '" + out + "/baked.glb'";
+  }
+  const std::string install =
+      "cd '" SDM_VALIDATOR_FOLDER "' && flock package.json npm ci --silent --no-audit --no-fund";
+  ASSERT_EQ(std::system(install.c_str()), 0) << "npm is needed to install the validator";
+  const std::string validate = "cd '" SDM_VALIDATOR_FOLDER "' && node '" SDM_VALIDATOR_SCRIPT "'" + models;
+  EXPECT_EQ(std::system(validate.c_str()), 0);
+}
+
+}  // namespace
+}  // namespace sdm::test
