@@ -15,6 +15,7 @@ array([[1. , 0.5, 0.5]])
 from . import _core
 from ._core import (
     Alignment,
+    Baked,
     BoundedLength,
     Cancelled,
     ClosestPoints,
@@ -76,6 +77,7 @@ from ._core import (
     time_of_contact,
     weld,
 )
+from ._baking import bake
 from ._batches import BatchItem, ClosestPointsBatch, closest_points_batch
 from ._closest_points import NONE, SiteType, closest_points
 from ._distance_map import DistanceMap, MapBounds
@@ -86,6 +88,7 @@ __version__: str = _core.version
 
 __all__ = [
     "Alignment",
+    "Baked",
     "BatchItem",
     "BoundedLength",
     "BoundedNumber",
@@ -137,6 +140,7 @@ __all__ = [
     "align_321",
     "align_points",
     "alignment_doubts",
+    "bake",
     "closest_points",
     "closest_points_batch",
     "convex_hull",

@@ -26,6 +26,7 @@ NB_MODULE(_core, module) {
   bind_metrics(module);
   bind_time_of_contact(module);
   bind_volume(module);
+  bind_baking(module);
   bind_points(module);
   bind_scenes(module);
   bind_pickle();

@@ -91,6 +91,7 @@ void bind_edit(nb::class_<PySurface>& surface);
 /// Adds pickling to the types above and to those of proximity.h and map.h, after all are bound.
 void bind_pickle();
 
+void bind_baking(nb::module_& module);
 void bind_batches(nb::module_& module);
 void bind_errors(nb::module_& module);
 void bind_meshes(nb::module_& module);
