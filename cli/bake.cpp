@@ -129,7 +129,7 @@ sdm::TexelMatches match(const BakeCommand& command, const Input& high, const Inp
                                                   [&] { sites = std::make_unique<sdm::Sites>(high.mesh); }});
                            const sdm::DistanceMap map =
                                sdm::compute_map(*result.low.surface, *sites, command.map);
-                           matches = sdm::closest_matches(*result.low.surface, *sites, map);
+                           matches = sdm::matches_of(*result.low.surface, *sites, map);
                          }});
   result.matches = counts_of(matches);
   check_matches(command, result.matches);

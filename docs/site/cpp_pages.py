@@ -16,7 +16,7 @@ SUBJECTS = {
     "Distance maps": ["surface", "atlas", "uv_tiles", "sites", "map", "distance_kind", "along", "sign", "engine", "gl",
                       "closest_points", "closest_in_parts", "facing", "vertex_distances"],
     "Results of maps": ["channels", "summary", "units", "statistics", "sampling_bound", "tolerance", "tolerance_proof",
-                         "certified_verdict", "group_verdicts", "tolerance_table", "coverage", "doubts", "part_statistics", "places", "islands", "combined_statistics", "temporal_maps", "transfer", "match", "bake"],
+                         "certified_verdict", "group_verdicts", "tolerance_table", "coverage", "doubts", "part_statistics", "places", "islands", "combined_statistics", "temporal_maps", "match", "transfer", "bake"],
     "Proximity": ["proximity_query", "shape", "multi_body_query", "pose_query", "self_proximity_query", "thickness", "time_of_contact",
                   "hausdorff", "metrics"],
     "Other queries": ["align", "fit_check", "unit_check", "rays", "volume"],

@@ -1,40 +1,111 @@
-/// Matches: the point of O2 that belongs to each texel of O1, for what is read there.
+/// Matches: for each texel of O1's atlas, the point of O2 whose attributes belong there, also where O2 has
+/// thin walls.
 ///
-/// Threads: plain values; the functions may be called concurrently.
+/// Threads: the functions may be called concurrently, also with the same Surface and Sites.
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/engine.h>
 #include <sdm/map.h>
+#include <sdm/mesh_attributes.h>
+#include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
+#include <sdm/types.h>
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
 #include <vector>
 
 namespace sdm {
 
-/// How the point of O2 that belongs to a texel was found.
+/// How the point of O2 that belongs to a texel was found, or why there is none.
 enum class MatchKind : std::uint8_t {
   none,        ///< no face of O1 owns the texel
   closest,     ///< the closest point
   facing,      ///< the closest point of the faces that face as the sample does
   ray,         ///< the nearest hit along the interpolated normal, outwards or inwards, that faces as it does
   too_far,     ///< unmatched: nothing within the largest distance
-  facing_away  ///< unmatched: no face faces as the sample does (within the largest distance)
+  facing_away  ///< unmatched: no face faces as the sample does, at any distance
 };
 
-/// For each texel of the atlas of O1 (resolution · rows, row 0 at the top): a point of O2.
+/// For each texel of the atlas of O1 (resolution · rows(), row 0 at the top): a point of O2.
 struct TexelMatches {
-  std::uint32_t resolution = 0;
+  std::uint32_t resolution = 0;  ///< texels per row
   std::vector<MatchKind> kind;
   std::vector<std::uint32_t> face;                ///< of O2; kNone without a point
   std::vector<std::array<float, 2>> barycentric;  ///< shares of the face's corners 1 and 2
+
+  /// Texels per column, as Surface::rows().
+  [[nodiscard]] std::uint32_t rows() const {
+    return resolution == 0 ? 0 : static_cast<std::uint32_t>(kind.size() / resolution);
+  }
+  /// The number of texels of a kind. Cost: linear.
+  [[nodiscard]] std::size_t count(MatchKind of) const {
+    return static_cast<std::size_t>(std::count(kind.begin(), kind.end(), of));
+  }
+  /// The point of a texel; no face without one. Its weights are not negative.
+  [[nodiscard]] SurfacePoint point(std::size_t texel) const {
+    if (face[texel] == kNone) return {};
+    const double b = barycentric[texel][0], c = barycentric[texel][1];
+    return {face[texel], {{std::max(0.0, 1 - b - c), b, c}}};
+  }
 };
 
-/// Returns the points where the vectors of a map end. Throws sdm::Error if the map is not one from the
-/// surface to the sites, or there is not enough memory. Cost: linear in texels, all cores.
-[[nodiscard]] SDM_API TexelMatches closest_matches(const Surface& surface, const Sites& sites,
-                                                   const DistanceMap& map);
+/// Which point of O2 belongs to a texel.
+enum class MatchMethod : std::uint8_t {
+  closest,  ///< the closest one; of a thin wall, that may be one of its other skin
+  facing,   ///< the closest one of the faces that face as the sample does
+  ray       ///< the nearest hit along the normal of O1, of those faces; where there is none, as `facing`
+};
+
+/// Options of match_texels().
+struct MatchOptions {
+  MatchMethod method = MatchMethod::facing;
+  /// Of `facing` and `ray`, in degrees, above 0 and up to 180: allowed are the faces of O2 whose normal is
+  /// within it of the normal of the sample's face, as closest_facing_points() has it.
+  double facing = 90;
+  /// Of `ray`, greater than 0, in units of the meshes: how far along the normal, to either side, hits are
+  /// searched for. Beyond a part of O1, hits may belong to another part of O2.
+  double cage = std::numeric_limits<double>::infinity();
+  /// Greater than 0, in units of the meshes. Points of O2 farther than this do not match.
+  double max_distance = std::numeric_limits<double>::infinity();
+  /// Of `ray`: normals at the corners of O1's faces, such as those of its file; null: smooth_normals(), which
+  /// leave no gap between the rays of faces that meet at an edge.
+  const MeshAttribute* normals = nullptr;
+  std::shared_ptr<const Engine> engine{};  ///< null: the cpu engine
+  Progress progress{};
+};
+
+/// Finds, for each texel, its point of O2.
+///
+/// Closest points are those of compute_map(), with its precision; on an edge or a vertex, the face is the one
+/// around it that faces most as the sample does, if the method takes facing into account, otherwise any.
+/// Of `ray`, let n be the normal of the texel, interpolated between the corners of its face; its length does
+/// not matter, and where it is 0, n is the normal of the face. The match is the point p + t n̂ with the least
+/// |t| ≤ min(cage, max_distance) that lies on an allowed face; of two with opposite t, the one on the side to
+/// which the normal of the sample's face points, which is outwards if O1 is closed and orientable. Which
+/// lines meet which faces is exact, as of first_hits(): faces that are not allowed are passed, and no other
+/// is lost beside them. Texels without such a point have kind `facing`, `too_far` or `facing_away`.
+///
+/// Throws sdm::Error for options out of range, for normals that do not fit O1, as compute_map() does, and if
+/// there is not enough memory; Cancelled. Cost: that of a map; of `ray`, two rays for each texel, and two
+/// searches for each texel without a hit; all cores.
+[[nodiscard]] SDM_API TexelMatches match_texels(const Surface& surface, const Sites& sites,
+                                                const MatchOptions& options = {});
+
+/// Returns the points at the ends of the vectors of a map from this surface to these sites: kind `closest`,
+/// `facing` or, of maps along lines, `ray`. Throws sdm::Error for a map of thickness or of another surface or
+/// of other sites, as far as it shows, and if there is not enough memory; Cancelled. Cost: linear, all cores.
+[[nodiscard]] SDM_API TexelMatches matches_of(const Surface& surface, const Sites& sites,
+                                              const DistanceMap& map, const Progress& progress = {});
+
+/// Throws sdm::Error unless the matches have the texels of the surface, and faces of the sites. Cost: linear.
+SDM_API void require_matches(const Surface& surface, const Sites& sites, const TexelMatches& matches);
 
 }  // namespace sdm

@@ -1,9 +1,11 @@
 /// What a mesh has at the corners of its faces, besides positions and texture coordinates: normals, colours,
 /// and numbers of any name.
 ///
-/// Threads: plain values.
+/// Threads: plain values; the function may be called concurrently, also with the same mesh.
 #pragma once
 
+#include <sdm/api.h>
+#include <sdm/mesh.h>
 #include <sdm/types.h>
 
 #include <cstddef>
@@ -26,5 +28,12 @@ struct MeshAttribute {
   /// has for its vertices share them.
   std::shared_ptr<const std::vector<Triangle>> rows;
 };
+
+/// Returns the attribute `normal` of a mesh whose file has none: at each vertex, the mean of the normals of
+/// its faces, weighted by their angles there, of length 1. Faces that differ by more than `crease` degrees
+/// from the first one of a vertex do not share its normal; from 180 on, all do. Normals point to the side
+/// from which the corners of faces are counter-clockwise; faces without area take those of others, or (0, 0,
+/// 1). Throws sdm::Error for a negative angle, or if there is not enough memory. Cost: linear.
+[[nodiscard]] SDM_API MeshAttribute smooth_normals(const Mesh& mesh, double crease = 180);
 
 }  // namespace sdm

@@ -6,6 +6,7 @@
 
 #include <sdm/api.h>
 #include <sdm/map.h>
+#include <sdm/match.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
@@ -56,6 +57,12 @@ struct TransferOptions {
 /// is not enough memory; Cancelled. Cost: linear in texels, all cores.
 [[nodiscard]] SDM_API std::vector<float> transfer(const Surface& surface, const Sites& sites,
                                                   const DistanceMap& map, const AttributeArray& array,
+                                                  const TransferOptions& options = {});
+
+/// The same at the points of matches from this surface to these sites; texels without one hold NaN. Also
+/// throws if a match is on a face that O2 does not have.
+[[nodiscard]] SDM_API std::vector<float> transfer(const Surface& surface, const Sites& sites,
+                                                  const TexelMatches& matches, const AttributeArray& array,
                                                   const TransferOptions& options = {});
 
 }  // namespace sdm

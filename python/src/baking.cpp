@@ -133,7 +133,7 @@ nb::object baked_from(nb::handle file, nb::handle mesh, nb::handle low, const st
     BakeAtlas laid = laid_out(on, {.resolution = resolution, .progress = report}, kind);
     if (!laid.fault.empty()) notes.push_back("low: " + laid.fault + ", so it got an atlas of charts");
     const Sites sites(look.file.mesh);
-    TexelMatches matches = closest_matches(laid.surface, sites, compute_map(laid.surface, sites, options));
+    TexelMatches matches = matches_of(laid.surface, sites, compute_map(laid.surface, sites, options));
     if (std::ranges::all_of(matches.face, [](std::uint32_t face) { return face == kNone; }))
       throw Error("no point of high is close enough to a texel of low, or faces one: nothing can be baked");
     const auto chosen = channels_of(channels, look);

@@ -93,7 +93,7 @@ struct Baking : ::testing::Test {
                                                 bool fill = true) const {
     const Sites sites(high);
     const DistanceMap map = compute_map(surface, sites, {.max_distance = max_distance});
-    return bake(surface, sites, closest_matches(surface, sites, map), look(), channels, {.fill = fill});
+    return bake(surface, sites, matches_of(surface, sites, map), look(), channels, {.fill = fill});
   }
   [[nodiscard]] BakedChannel baked(BakeChannel channel, bool fill = true) const {
     return baked(std::vector{channel}, fill).front();
@@ -206,7 +206,7 @@ TEST_F(Baking, EveryFaceHasItsMaterial) {
     face_materials[f] = f < face_materials.size() / 2 ? 0 : f + 1 < face_materials.size() ? 1 : kNone;
   EXPECT_EQ(varying_channels(high, look()), std::vector{BakeChannel::base_color});
   const Sites sites(high);
-  const TexelMatches matches = closest_matches(surface, sites, compute_map(surface, sites));
+  const TexelMatches matches = matches_of(surface, sites, compute_map(surface, sites));
   const BakedChannel result = baked(BakeChannel::base_color);
   for (const std::uint32_t texel : surface.sample_texels()) {
     const std::uint32_t material = face_materials[matches.face[texel]];
@@ -221,7 +221,7 @@ TEST_F(Baking, WithoutAMatchTexelsHaveNoValueUnlessTheyAreFilled) {
   materials[0].base_color = {0.5f, 0.5f, 0.5f, 1};
   const Sites sites(high);
   const TexelMatches matches =
-      closest_matches(surface, sites, compute_map(surface, sites, {.max_distance = max_distance}));
+      matches_of(surface, sites, compute_map(surface, sites, {.max_distance = max_distance}));
   const BakedChannel open = baked(BakeChannel::base_color, false), filled = baked(BakeChannel::base_color);
   std::size_t matched = 0, too_far = 0;
   for (std::size_t i = 0; i < matches.kind.size(); ++i) {
@@ -298,7 +298,7 @@ TEST_F(Baking, FurtherTextureCoordinatesAreThoseOfTheAttribute) {
 
 TEST_F(Baking, WhatDoesNotFitIsRefused) {
   const Sites sites(high);
-  TexelMatches matches = closest_matches(surface, sites, compute_map(surface, sites));
+  TexelMatches matches = matches_of(surface, sites, compute_map(surface, sites));
   const auto error = [&] {
     return error_of([&] { return bake(surface, sites, matches, look(), kBakeChannels); });
   };

@@ -43,7 +43,7 @@ double wrong_share(double thickness, std::optional<double> facing) {
   std::vector<std::uint32_t> of_faces(high.triangles.size(), 1);
   std::fill_n(of_faces.begin(), of_faces.size() / 2, 0);
   const TexelMatches matches =
-      closest_matches(low, sites, compute_map(low, sites, {.sign = SignMethod::none, .facing = facing}));
+      matches_of(low, sites, compute_map(low, sites, {.sign = SignMethod::none, .facing = facing}));
   const BakedChannel baked = bake(low, sites, matches, {.materials = materials, .face_materials = of_faces},
                                   std::vector{BakeChannel::base_color})
                                  .front();

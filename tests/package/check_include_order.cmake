@@ -37,6 +37,7 @@ set(order
   map/statistics
   map/places
   map/transfer
+  map/match
   map
   baking
   registration

@@ -29,6 +29,16 @@ SurfacePoint on_edge(const Mesh& mesh, std::uint32_t face, const std::array<std:
 
 }  // namespace
 
+std::uint32_t face_that_faces(const sites::SitesData& data, SiteType type, std::uint32_t site,
+                              const Vec3& normal) {
+  if (type == SiteType::face) return site;
+  const std::span<const std::uint32_t> faces =
+      type == SiteType::edge ? data.topology.edge_faces(site) : data.vertex_faces.of(site);
+  return *std::ranges::max_element(faces, {}, [&](std::uint32_t face) {
+    return data.sliver[face] != 0 ? -2 : dot(normal, facing::outward_normal(data, face));
+  });
+}
+
 ClosestOfTexels::ClosestOfTexels(const Surface& surface, const Sites& sites, const DistanceMap& map,
                                  std::span<const Vec3> normals)
     : surface_(internals(surface)),
@@ -46,7 +56,8 @@ SurfacePoint ClosestOfTexels::at(std::uint32_t texel) {
   if (ends_elsewhere_) return end_of_vector(texel, query);
   if (type != site_.type || number != site_.number) read(type, number);
   if (type == SiteType::face) return in_face(query);
-  const std::uint32_t face = normals_.empty() ? site_.face : face_as(normals_[owner]);
+  const std::uint32_t face =
+      normals_.empty() ? site_.face : face_that_faces(data_, type, number, normals_[owner]);
   if (type == SiteType::vertex) return at_vertex(data_.mesh, face, site_.ends[0]);
   return on_edge(data_.mesh, face, site_.ends, std::clamp(dot(query - site_.origin, site_.along), 0.0, 1.0));
 }
@@ -78,15 +89,6 @@ SurfacePoint ClosestOfTexels::in_face(const Vec3& query) const {
   const SurfacePoint found{site_.face, site_.frame.weights(query)};
   if (*std::ranges::min_element(found.barycentric) > kBesideSides) return found;
   return {site_.face, site_.frame.weights(sites::closest_on_face(data_, site_.face, query).point)};
-}
-
-std::uint32_t ClosestOfTexels::face_as(const Vec3& normal) const {
-  const std::span<const std::uint32_t> faces = site_.type == SiteType::edge
-                                                   ? data_.topology.edge_faces(site_.number)
-                                                   : data_.vertex_faces.of(site_.number);
-  return *std::ranges::max_element(faces, {}, [&](std::uint32_t face) {
-    return data_.sliver[face] != 0 ? -2 : dot(normal, facing::outward_normal(data_, face));
-  });
 }
 
 SurfacePoint ClosestOfTexels::end_of_vector(std::uint32_t texel, const Vec3& point) const {

@@ -11,6 +11,10 @@
 
 namespace sdm::map {
 
+/// The face of a site whose outward normal has the largest product with this one; of several, the first.
+[[nodiscard]] std::uint32_t face_that_faces(const sites::SitesData& data, SiteType type, std::uint32_t site,
+                                            const Vec3& normal);
+
 /// Finds the points texel by texel. Consecutive texels often have the same closest site, of which the last
 /// one is kept: a walk along rows is fastest, and each thread needs a walk of its own.
 class ClosestOfTexels {
@@ -37,7 +41,6 @@ class ClosestOfTexels {
 
   void read(SiteType type, std::uint32_t number);
   [[nodiscard]] SurfacePoint in_face(const Vec3& query) const;
-  [[nodiscard]] std::uint32_t face_as(const Vec3& normal) const;
   /// Where the vector ends, on a face that need not be closest there.
   [[nodiscard]] SurfacePoint end_of_vector(std::uint32_t texel, const Vec3& point) const;
 

@@ -1,4 +1,5 @@
 #include <sdm/error.h>
+#include <sdm/match.h>
 #include <sdm/transfer.h>
 
 #include <algorithm>
@@ -111,40 +112,65 @@ class Interpolation {
 /// The search for the nearest texel takes time that grows with the square of the width.
 constexpr std::uint32_t kWidestGutter = 16;
 
-/// A transfer in progress: the map and what its texels get.
+/// A transfer in progress: what texels get.
 struct Texels {
   const Surface& surface;
   const Sites& sites;
-  const DistanceMap& map;
-  std::vector<Vec3> normals;  ///< of O1's faces, if the map is of faces that face them
   std::vector<TexelState> states;
   std::vector<float> values;
 };
 
-template <std::size_t N>
-void read_values(const AttributeArray& array, const Progress& progress, Texels& texels) {
-  const std::uint32_t resolution = texels.map.resolution;
+/// `points_of()` returns a function of a texel with a face, for the texels of one thread, row by row.
+template <std::size_t N, class PointsOf>
+void read_values(const AttributeArray& array, const PointsOf& points_of, const Progress& progress,
+                 Texels& texels) {
+  const std::uint32_t resolution = texels.surface.resolution();
   const auto faces = texels.surface.texel_faces();
   const Interpolation interpolation(array, texels.sites.mesh());
   constexpr std::size_t kRowsOfRange = 8;
-  parallel_for(
-      texels.map.rows(), kRowsOfRange, progress, "transfer", [&](std::size_t begin, std::size_t end) {
-        ClosestOfTexels points(texels.surface, texels.sites, texels.map, texels.normals);
-        for (std::size_t i = begin * resolution; i < end * resolution; ++i) {
-          float* const values = &texels.values[i * array.components];
-          const SurfacePoint point =
-              faces[i] == kNone ? SurfacePoint{} : points.at(static_cast<std::uint32_t>(i));
-          if (point.face == kNone) {
-            texels.states[i] = faces[i] == kNone ? TexelState::free : TexelState::missing;
-            std::fill_n(values, array.components, std::numeric_limits<float>::quiet_NaN());
-          } else {
-            interpolation.at<N>(point, values);
-            const bool finite =
-                std::all_of(values, values + array.components, [](float x) { return std::isfinite(x); });
-            texels.states[i] = finite ? TexelState::valued : TexelState::missing;
-          }
-        }
-      });
+  parallel_for(texels.states.size() / resolution, kRowsOfRange, progress, "transfer",
+               [&](std::size_t begin, std::size_t end) {
+                 auto point_of = points_of();
+                 for (std::size_t i = begin * resolution; i < end * resolution; ++i) {
+                   float* const values = &texels.values[i * array.components];
+                   const SurfacePoint point =
+                       faces[i] == kNone ? SurfacePoint{} : point_of(static_cast<std::uint32_t>(i));
+                   if (point.face == kNone) {
+                     texels.states[i] = faces[i] == kNone ? TexelState::free : TexelState::missing;
+                     std::fill_n(values, array.components, std::numeric_limits<float>::quiet_NaN());
+                   } else {
+                     interpolation.at<N>(point, values);
+                     const bool finite = std::all_of(values, values + array.components,
+                                                     [](float x) { return std::isfinite(x); });
+                     texels.states[i] = finite ? TexelState::valued : TexelState::missing;
+                   }
+                 }
+               });
+}
+
+template <class PointsOf>
+std::vector<float> transfer_from(const Surface& surface, const Sites& sites, const PointsOf& points_of,
+                                 const AttributeArray& array, const TransferOptions& options) {
+  const std::size_t count = surface.texel_faces().size();
+  Texels texels{surface, sites, std::vector<TexelState>(count), std::vector<float>(count * array.components)};
+  switch (array.components) {
+    case 1:
+      read_values<1>(array, points_of, options.progress, texels);
+      break;
+    case 3:
+      read_values<3>(array, points_of, options.progress, texels);
+      break;
+    case 4:
+      read_values<4>(array, points_of, options.progress, texels);
+      break;
+    default:
+      read_values<0>(array, points_of, options.progress, texels);
+  }
+  if (options.fill)
+    map::fill_free_texels(surface.resolution(), texels.states,
+                          std::clamp(surface.gutter(), atlas::kGutter, kWidestGutter), array.components,
+                          texels.values);
+  return std::move(texels.values);
 }
 
 }  // namespace
@@ -154,31 +180,25 @@ std::vector<float> transfer(const Surface& surface, const Sites& sites, const Di
   require_fitting(array, sites.mesh());
   if (map.distance.size() != surface.texel_faces().size() || map.resolution != surface.resolution())
     throw Error("the map belongs to another surface: its number of texels differs");
-  const bool facing = map.measured.kind == DistanceKind::facing;
-  Texels texels{surface,
-                sites,
-                map,
-                facing ? facing::outward_normals(surface.mesh()) : std::vector<Vec3>(),
-                std::vector<TexelState>(map.distance.size()),
-                std::vector<float>(map.distance.size() * array.components)};
-  switch (array.components) {
-    case 1:
-      read_values<1>(array, options.progress, texels);
-      break;
-    case 3:
-      read_values<3>(array, options.progress, texels);
-      break;
-    case 4:
-      read_values<4>(array, options.progress, texels);
-      break;
-    default:
-      read_values<0>(array, options.progress, texels);
-  }
-  if (options.fill)
-    map::fill_free_texels(map.resolution, texels.states,
-                          std::clamp(surface.gutter(), atlas::kGutter, kWidestGutter), array.components,
-                          texels.values);
-  return std::move(texels.values);
+  const std::vector<Vec3> normals = map.measured.kind == DistanceKind::facing
+                                        ? facing::outward_normals(surface.mesh())
+                                        : std::vector<Vec3>();
+  const auto points_of = [&] {
+    return [points = ClosestOfTexels(surface, sites, map, normals)](std::uint32_t texel) mutable {
+      return points.at(texel);
+    };
+  };
+  return transfer_from(surface, sites, points_of, array, options);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the values of a transfer");
+}
+
+std::vector<float> transfer(const Surface& surface, const Sites& sites, const TexelMatches& matches,
+                            const AttributeArray& array, const TransferOptions& options) try {
+  require_fitting(array, sites.mesh());
+  require_matches(surface, sites, matches);
+  const auto points_of = [&] { return [&](std::uint32_t texel) { return matches.point(texel); }; };
+  return transfer_from(surface, sites, points_of, array, options);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the values of a transfer");
 }

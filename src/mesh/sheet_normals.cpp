@@ -1,28 +1,34 @@
-#include "io/mesh/model/shading_normals.h"
+#include "mesh/sheet_normals.h"
 
+#include <sdm/error.h>
+#include <sdm/mesh_attributes.h>
 #include <sdm/mesh_edit.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <new>
+#include <numbers>
 #include <utility>
 
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
 
-namespace sdm::io {
+namespace sdm {
+namespace mesh {
 namespace {
 
-constexpr double kCrease = 0.766;  // the cosine of 40°
 // The most sheets searched for each corner: the tip of a cone of a million faces must not take 10^12 steps.
 constexpr int kMostSheets = 64;
 
-struct FaceShape {
+struct SheetFace {
   Vec3f normal{};                 ///< zero without area
   std::array<float, 3> angles{};  ///< at the corners
 };
 
-FaceShape shape_of(const Mesh& mesh, const Triangle& triangle) {
-  FaceShape shape;
+SheetFace shape_of(const Mesh& mesh, const Triangle& triangle) {
+  SheetFace shape;
   std::array<Vec3, 3> edges;  // edges[k] from corner k to the next one
   for (int k = 0; k < 3; ++k) edges[k] = mesh.positions[triangle[(k + 1) % 3]] - mesh.positions[triangle[k]];
   const Vec3 normal = normalized(cross(edges[0], edges[1]));
@@ -43,15 +49,15 @@ double cosine(const Vec3f& a, const Vec3f& b) {
 
 }  // namespace
 
-ShadingNormals shading_normals(const Mesh& mesh) {
-  std::vector<FaceShape> shapes(mesh.triangles.size());
+SheetNormals sheet_normals(const Mesh& mesh, double crease) {
+  std::vector<SheetFace> shapes(mesh.triangles.size());
   constexpr std::size_t kGrain = 1024;
   parallel_for(mesh.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t face = begin; face < end; ++face)
       if (!is_removed(mesh.triangles[face])) shapes[face] = shape_of(mesh, mesh.triangles[face]);
   });
 
-  ShadingNormals result;
+  SheetNormals result;
   result.corner.resize(mesh.triangles.size(), {kNone, kNone, kNone});
   std::vector<Vec3f> first_face;  // of each sheet; zero while it has only faces without area
   std::vector<Vec3> sums;
@@ -61,8 +67,7 @@ ShadingNormals shading_normals(const Mesh& mesh) {
     if (is_removed(mesh.triangles[face])) continue;
     const Vec3f& normal = shapes[face].normal;
     const auto fits = [&](std::uint32_t sheet) {
-      return normal == Vec3f{} || first_face[sheet] == Vec3f{} ||
-             cosine(first_face[sheet], normal) >= kCrease;
+      return normal == Vec3f{} || first_face[sheet] == Vec3f{} || cosine(first_face[sheet], normal) >= crease;
     };
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t vertex = mesh.triangles[face][k];
@@ -94,4 +99,20 @@ ShadingNormals shading_normals(const Mesh& mesh) {
   return result;
 }
 
-}  // namespace sdm::io
+}  // namespace mesh
+
+MeshAttribute smooth_normals(const Mesh& mesh, double crease) try {
+  if (!(crease >= 0)) throw Error("the angle of creases must be at least 0 degrees");
+  constexpr double kAnyCosine = -2, kHalfTurn = 180;
+  const double cosine = crease >= kHalfTurn ? kAnyCosine : std::cos(crease * std::numbers::pi / kHalfTurn);
+  mesh::SheetNormals sheets = mesh::sheet_normals(mesh, cosine);
+  MeshAttribute normals{.name = "normal", .components = 3, .values = {}, .rows = nullptr};
+  normals.values.reserve(3 * sheets.normals.size());
+  for (const Vec3f& n : sheets.normals) normals.values.insert(normals.values.end(), n.begin(), n.end());
+  normals.rows = std::make_shared<const std::vector<Triangle>>(std::move(sheets.corner));
+  return normals;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the normals of a mesh");
+}
+
+}  // namespace sdm
