@@ -6,6 +6,7 @@
 #include <sdm/api.h>
 #include <sdm/atlas.h>
 #include <sdm/bake.h>
+#include <sdm/baked_geometry.h>
 #include <sdm/bounds.h>
 #include <sdm/cancellation.h>
 #include <sdm/certified_verdict.h>

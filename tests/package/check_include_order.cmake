@@ -54,6 +54,8 @@ set(order
   proximity/self
   proximity/thickness
   proximity
+  baking/geometry/mikktspace
+  baking/geometry
   summary/verdict
   summary
   io/file

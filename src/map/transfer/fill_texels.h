@@ -1,9 +1,14 @@
 // Values for the texels that no face owns.
 #pragma once
 
+#include <sdm/surface.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+
+#include "atlas/gutter.h"
 
 namespace sdm::map {
 
@@ -13,6 +18,13 @@ enum class TexelState : std::uint8_t {
   valued,   ///< a value, to be kept
   missing,  ///< a face but no value, or none that is finite; stays as it is
 };
+
+/// How far the values of the texels of a surface extend. The search for the nearest texel takes time that
+/// grows with the square of it.
+[[nodiscard]] inline std::uint32_t gutter_of_values(const Surface& surface) {
+  constexpr std::uint32_t kWidestGutter = 16;
+  return std::clamp(surface.gutter(), atlas::kGutter, kWidestGutter);
+}
 
 /// Sets the `components` values of each free texel: within `gutter` texels of valued ones to those of the
 /// nearest, elsewhere by push-pull (Gortler et al., The Lumigraph, 1996, 3.4): the means of ever larger

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "atlas/gutter.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "map/transfer/closest_of_texels.h"
@@ -109,9 +108,6 @@ class Interpolation {
   const Mesh& mesh_;
 };
 
-/// The search for the nearest texel takes time that grows with the square of the width.
-constexpr std::uint32_t kWidestGutter = 16;
-
 /// A transfer in progress: what texels get.
 struct Texels {
   const Surface& surface;
@@ -167,9 +163,8 @@ std::vector<float> transfer_from(const Surface& surface, const Sites& sites, con
       read_values<0>(array, points_of, options.progress, texels);
   }
   if (options.fill)
-    map::fill_free_texels(surface.resolution(), texels.states,
-                          std::clamp(surface.gutter(), atlas::kGutter, kWidestGutter), array.components,
-                          texels.values);
+    map::fill_free_texels(surface.resolution(), texels.states, map::gutter_of_values(surface),
+                          array.components, texels.values);
   return std::move(texels.values);
 }
 

@@ -10,8 +10,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
-#include "query/rays/hemisphere.h"
-#include "query/rays/trace.h"
+#include "query/rays/hemisphere_rays.h"
 #include "surface/surface_data.h"
 
 namespace sdm {
@@ -36,33 +35,6 @@ double free_distance(float distance, double error) {
   return std::isnan(distance) ? 0 : std::max(0.0, std::abs(static_cast<double>(distance)) - error);
 }
 
-/// Working memory for the rays of one sample.
-struct SampleRays {
-  std::vector<Vec3> directions;
-  std::vector<Ray> rays;
-  std::vector<std::uint8_t> occluded;
-  rays::Scratch scratch;
-
-  /// The fraction of rays from a point that are free.
-  float visibility(const sites::SitesData& sites, const Ray& first, const Vec3& normal, std::uint64_t seed,
-                   std::uint32_t texel) {
-    rays::cosine_hemisphere(normal, seed, texel, directions);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      rays[i] = first;
-      rays[i].direction = directions[i];
-    }
-    rays::occluded(sites, rays, scratch, occluded.data());
-    const auto hits = std::count(occluded.begin(), occluded.end(), 1);
-    return static_cast<float>(1 - static_cast<double>(hits) / static_cast<double>(rays.size()));
-  }
-
-  void resize(std::size_t count) {
-    directions.resize(count);
-    rays.resize(count);
-    occluded.resize(count);
-  }
-};
-
 }  // namespace
 
 std::vector<double> free_distances(const Surface& surface, const Sites& sites, const DistanceMap& map) {
@@ -75,18 +47,15 @@ std::vector<double> free_distances(const Surface& surface, const Sites& sites, c
 
 std::vector<float> ambient_occlusion(const Surface& surface, const Sites& sites, const DistanceMap& map,
                                      const AmbientOcclusionOptions& options) try {
-  constexpr std::uint32_t kMostRays = 1 << 16;
   constexpr std::size_t kGrain = 16;
   check_resolution(surface, map, "ambient_occlusion");
-  if (options.rays < 1 || options.rays > kMostRays)
-    throw Error("ambient_occlusion() needs 1 to 65536 rays for each sample");
-  if (!(options.max_distance > 0)) throw Error("ambient_occlusion() needs a max_distance greater than 0");
+  rays::check_options(options, "ambient_occlusion");
   const surface::SurfaceData& on = internals(surface);
   const double error = largest_error(surface, sites);
   std::vector<float> result(map.distance.size(), std::numeric_limits<float>::quiet_NaN());
   parallel_for(on.samples.size(), kGrain, options.progress, "ambient occlusion",
                [&](std::size_t begin, std::size_t end) {
-                 thread_local SampleRays some;
+                 thread_local rays::HemisphereRays some;
                  thread_local std::vector<Vec3> points;
                  some.resize(options.rays);
                  points.resize(end - begin);

@@ -1,0 +1,93 @@
+/// The geometry of O2 at the points that belong to O1's texels, as textures of O1: normals, tangent-space
+/// normals, displacements, positions, ambient occlusion and thickness.
+///
+/// Threads: the functions may be called concurrently, also with the same surface, sites and matches.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/match.h>
+#include <sdm/mesh_attributes.h>
+#include <sdm/progress.h>
+#include <sdm/rays.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
+#include <sdm/thickness.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace sdm {
+
+// All functions return values for each texel, in rows as of TexelMatches; texels without a point hold NaN,
+// until fill_texels(). They throw sdm::Error if the matches are not from this surface to these sites, or if
+// there is not enough memory; Cancelled. Their cost is linear in texels, all cores, unless stated otherwise.
+
+/// Returns the normals of O2 at the matches, of length 1, in the coordinates of the meshes: three numbers a
+/// texel. `normals`: at the corners of O2's faces, those of its file or smooth_normals(), which with a crease
+/// of 0 are those of faces. Where Sites turns a face of a closed mesh outwards and the normals do not agree
+/// with that, they are turned too. Also throws if the normals do not fit O2.
+[[nodiscard]] SDM_API std::vector<float> matched_normals(const Surface& surface, const Sites& sites,
+                                                         const TexelMatches& matches,
+                                                         const MeshAttribute& normals,
+                                                         const Progress& progress = {});
+
+/// Returns the matched points of O2: three numbers a texel.
+[[nodiscard]] SDM_API std::vector<float> matched_positions(const Surface& surface, const Sites& sites,
+                                                           const TexelMatches& matches,
+                                                           const Progress& progress = {});
+
+/// Returns how far the matches q are along the normal of O1: (q − p)·n, with p the texel's surface point and
+/// n, of length 1, the normal interpolated between the corners of its face. Negative below the surface of O1.
+/// Of MatchKind::ray with the same normals, p + displacement · n is the match. Also throws if the normals do
+/// not fit O1.
+[[nodiscard]] SDM_API std::vector<float> matched_displacements(const Surface& surface, const Sites& sites,
+                                                               const TexelMatches& matches,
+                                                               const MeshAttribute& normals,
+                                                               const Progress& progress = {});
+
+/// Returns, for each matched point of O2, the fraction of rays that do not meet O2: an estimate, as of
+/// ambient_occlusion(), of its outward face there. Rays start 1e-6 of the diagonal of O2 above the point;
+/// faces nearer than that occlude nothing. Also throws for options out of range. Cost: options.rays rays a
+/// texel.
+[[nodiscard]] SDM_API std::vector<float> matched_occlusion(const Surface& surface, const Sites& sites,
+                                                           const TexelMatches& matches,
+                                                           const AmbientOcclusionOptions& options = {});
+
+/// Returns the wall thickness of O2 at the matches, as of thickness_maps(); NaN where nothing ends it. Also
+/// throws unless O2 is closed and orientable. Cost: a ray for each texel; of balls, also a search.
+[[nodiscard]] SDM_API std::vector<float> matched_thickness(const Surface& surface, const Sites& sites,
+                                                           const TexelMatches& matches,
+                                                           ThicknessMethod method,
+                                                           const ThicknessOptions& options = {});
+
+/// Whether this build has tangents(): they need the source of MikkTSpace, which the build fetches.
+[[nodiscard]] SDM_API bool has_tangents();
+
+/// Returns the attribute `tangent` of O1 in its atlas, by MikkTSpace (M. S. Mikkelsen), as Blender, Unity,
+/// Unreal and glTF's TANGENT have it: four components at each corner of a face, the unit tangent, towards the
+/// right of the texture, and w, 1 or −1: the bitangent, towards the upper side of the texture, is w ·
+/// cross(normal, tangent). `normals`: at the corners of O1's faces, those that the model is drawn with.
+/// Corners have the same row where all four components are equal and the vertex is the same; removed faces
+/// have none (kNone). Throws sdm::Error if the normals do not fit, without MikkTSpace, or if there is not
+/// enough memory. Cost: O(n log n) in faces, one core.
+[[nodiscard]] SDM_API MeshAttribute tangents(const Surface& surface, const MeshAttribute& normals);
+
+/// Returns object-space normals, such as matched_normals(), in the tangent space of O1: three numbers x, y, z
+/// a texel, of length 1. With the normal n and the tangent t interpolated between the corners of the texel's
+/// face, neither made longer nor shorter, and b = w · cross(n, t), the given normal has the direction of x t
+/// + y b + z n, as MikkTSpace demands. `normals` and `tangents` are what the model is drawn with. NaN where
+/// the given normal is. Throws sdm::Error if an array does not fit, or if there is not enough memory;
+/// Cancelled.
+[[nodiscard]] SDM_API std::vector<float> tangent_space_normals(const Surface& surface,
+                                                               const MeshAttribute& normals,
+                                                               const MeshAttribute& tangents,
+                                                               std::span<const float> object_normals,
+                                                               const Progress& progress = {});
+
+/// Gives the texels of no face values, as TransferOptions::fill does. `values`: `components` numbers for each
+/// texel; those of a texel that are not all finite are none. Throws sdm::Error for another number of values,
+/// or if there is not enough memory.
+SDM_API void fill_texels(const Surface& surface, std::size_t components, std::span<float> values);
+
+}  // namespace sdm

@@ -1,0 +1,112 @@
+#include <sdm/baked_geometry.h>
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <vector>
+
+#include "atlas/gutter.h"
+#include "baking/geometry/texel_walk.h"
+#include "core/memory.h"
+#include "geometry/vec.h"
+#include "map/match/corner_normals.h"
+#include "map/transfer/fill_texels.h"
+#include "query/facing/outward_normals.h"
+#include "sites/sites_data.h"
+
+namespace sdm {
+namespace {
+
+using baking::kNoValue;
+
+void store_vector(const Vec3& vector, std::uint32_t texel, std::vector<float>& values) {
+  for (int k = 0; k < 3; ++k) values[3 * std::size_t{texel} + k] = static_cast<float>(vector[k]);
+}
+
+struct NoState {};
+
+/// Whether the normals of a face that Sites has turned outwards point inwards.
+bool points_inwards(const sites::SitesData& data, const map::CornerNormals& normals, std::uint32_t face) {
+  if (data.inverted[face] == 0) return false;
+  const Vec3 outward = facing::outward_normal(data, face);
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) sum += dot(normals.of_corner(face, k), outward);
+  return sum < 0;
+}
+
+}  // namespace
+
+std::vector<float> matched_normals(const Surface& surface, const Sites& sites, const TexelMatches& matches,
+                                   const MeshAttribute& normals, const Progress& progress) try {
+  require_matches(surface, sites, matches);
+  const sites::SitesData& data = internals(sites);
+  const map::CornerNormals corners(data.mesh, normals, "the other mesh");
+  std::vector<float> values(3 * matches.face.size(), kNoValue);
+  baking::for_each_texel(
+      surface, progress, "normals", [] { return NoState(); },
+      [&](std::uint32_t texel, NoState&) {
+        const SurfacePoint point = matches.point(texel);
+        if (point.face == kNone) return;
+        const Vec3 normal = normalized(corners.at(point.face, point.barycentric));
+        store_vector(points_inwards(data, corners, point.face) ? -normal : normal, texel, values);
+      });
+  return values;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the normals of matches");
+}
+
+std::vector<float> matched_positions(const Surface& surface, const Sites& sites, const TexelMatches& matches,
+                                     const Progress& progress) try {
+  require_matches(surface, sites, matches);
+  const Mesh& mesh = sites.mesh();
+  std::vector<float> values(3 * matches.face.size(), kNoValue);
+  baking::for_each_texel(
+      surface, progress, "positions", [] { return NoState(); },
+      [&](std::uint32_t texel, NoState&) {
+        const SurfacePoint point = matches.point(texel);
+        if (point.face != kNone) store_vector(baking::position_of(mesh, point), texel, values);
+      });
+  return values;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the positions of matches");
+}
+
+std::vector<float> matched_displacements(const Surface& surface, const Sites& sites,
+                                         const TexelMatches& matches, const MeshAttribute& normals,
+                                         const Progress& progress) try {
+  require_matches(surface, sites, matches);
+  const map::CornerNormals corners(surface.mesh(), normals, "the surface");
+  std::vector<float> values(matches.face.size(), kNoValue);
+  baking::for_each_texel(
+      surface, progress, "displacements", [&] { return baking::TexelPlaces(internals(surface)); },
+      [&](std::uint32_t texel, baking::TexelPlaces& places) {
+        const SurfacePoint point = matches.point(texel);
+        if (point.face == kNone || surface.texel_faces()[texel] == kNone) return;
+        const auto place = places.at(texel);
+        const Vec3 way = baking::position_of(sites.mesh(), point) - place.point;
+        values[texel] = static_cast<float>(dot(way, normalized(corners.at(place.face, place.weights))));
+      });
+  return values;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the displacements of matches");
+}
+
+void fill_texels(const Surface& surface, std::size_t components, std::span<float> values) try {
+  const auto faces = surface.texel_faces();
+  if (components == 0 || values.size() != components * faces.size())
+    throw Error("values to fill must be the same number for each texel of the surface");
+  std::vector<map::TexelState> states(faces.size());
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const auto of_texel = values.subspan(i * components, components);
+    const bool finite = std::ranges::all_of(of_texel, [](float x) { return std::isfinite(x); });
+    states[i] = faces[i] == kNone ? map::TexelState::free
+                : finite          ? map::TexelState::valued
+                                  : map::TexelState::missing;
+  }
+  map::fill_free_texels(surface.resolution(), states, map::gutter_of_values(surface), components, values);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the values of texels");
+}
+
+}  // namespace sdm

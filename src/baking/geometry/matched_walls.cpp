@@ -1,0 +1,62 @@
+#include <sdm/baked_geometry.h>
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <new>
+#include <vector>
+
+#include "baking/geometry/texel_walk.h"
+#include "core/memory.h"
+#include "geometry/vec.h"
+#include "proximity/thickness/thickness_search.h"
+#include "query/facing/outward_normals.h"
+#include "query/rays/hemisphere_rays.h"
+
+namespace sdm {
+
+std::vector<float> matched_occlusion(const Surface& surface, const Sites& sites, const TexelMatches& matches,
+                                     const AmbientOcclusionOptions& options) try {
+  require_matches(surface, sites, matches);
+  rays::check_options(options, "matched_occlusion");
+  constexpr double kAbove = 1e-6;  // of the diagonal: more than the rounding of points
+  const sites::SitesData& data = internals(sites);
+  const double above = kAbove * diagonal(bounds(data.mesh));
+  std::vector<float> values(matches.face.size(), baking::kNoValue);
+  baking::for_each_texel(
+      surface, options.progress, "ambient occlusion", [&] { return rays::HemisphereRays(options.rays); },
+      [&](std::uint32_t texel, rays::HemisphereRays& rays) {
+        const SurfacePoint point = matches.point(texel);
+        if (point.face == kNone) return;
+        const Vec3 normal = facing::outward_normal(data, point.face);
+        if (normal == Vec3{}) return;
+        const Ray first{baking::position_of(data.mesh, point) + above * normal, {}, 0, options.max_distance};
+        values[texel] = rays.visibility(data, first, normal, options.seed, texel);
+      });
+  return values;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the ambient occlusion of matches");
+}
+
+std::vector<float> matched_thickness(const Surface& surface, const Sites& sites, const TexelMatches& matches,
+                                     ThicknessMethod method, const ThicknessOptions& options) try {
+  require_matches(surface, sites, matches);
+  const sites::SitesData& data = internals(sites);
+  const thickness::Walls walls(data, options.angle);
+  std::vector<float> values(matches.face.size(), baking::kNoValue);
+  baking::for_each_texel(
+      surface, options.progress, "thickness", [&] { return thickness::WallSearch(walls); },
+      [&](std::uint32_t texel, thickness::WallSearch& search) {
+        const SurfacePoint point = matches.point(texel);
+        if (point.face == kNone || !walls.measures(point.face)) return;
+        const Vec3 from = baking::position_of(data.mesh, point);
+        search.start(point.face, {&from, 1});
+        const thickness::WallEnd& ray = search.rays()[0];
+        const auto end = method == ThicknessMethod::ray ? ray : search.ball(from, ray);
+        if (end.face != kNone) values[texel] = static_cast<float>(end.thickness);
+      });
+  return values;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the thickness of matches");
+}
+
+}  // namespace sdm

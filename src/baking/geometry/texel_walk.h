@@ -1,0 +1,64 @@
+// Walks over the texels of a surface, for what is baked.
+#pragma once
+
+#include <sdm/match.h>
+
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "core/parallel.h"
+#include "geometry/barycentric.h"
+#include "geometry/triangle.h"
+#include "surface/surface_data.h"
+
+namespace sdm::baking {
+
+inline constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
+
+/// Where texels are on their faces. The face of the last one is kept.
+class TexelPlaces {
+ public:
+  explicit TexelPlaces(const surface::SurfaceData& surface) : surface_(surface) {}
+
+  struct Place {
+    std::uint32_t face;
+    Vec3 point, weights;
+  };
+  [[nodiscard]] Place at(std::uint32_t texel) {
+    const std::uint32_t face = surface_.texel_faces[texel];
+    if (face != face_) {
+      face_ = face;
+      frame_ = BarycentricFrame(corners_of(surface_.mesh, face));
+    }
+    const Vec3 point = surface_.texel_point(face, texel);
+    return {face, point, frame_.weights(point)};
+  }
+
+ private:
+  const surface::SurfaceData& surface_;
+  std::uint32_t face_ = kNone;
+  BarycentricFrame frame_;
+};
+
+/// Calls body(texel, state) for the texels of whole rows, in parallel; make_state() makes what one thread
+/// keeps.
+template <class MakeState, class Body>
+void for_each_texel(const Surface& surface, const Progress& progress, std::string_view step,
+                    const MakeState& make_state, const Body& body) {
+  constexpr std::size_t kRowsOfTask = 8;
+  const std::size_t width = surface.resolution();
+  parallel_for(surface.rows(), kRowsOfTask, progress, step, [&](std::size_t begin, std::size_t end) {
+    auto state = make_state();
+    for (std::size_t i = begin * width; i < end * width; ++i) body(static_cast<std::uint32_t>(i), state);
+  });
+}
+
+/// The point of the mesh that a SurfacePoint is.
+[[nodiscard]] inline Vec3 position_of(const Mesh& mesh, const SurfacePoint& point) {
+  const auto [a, b, c] = corners_of(mesh, point.face);
+  return point.barycentric[0] * a + point.barycentric[1] * b + point.barycentric[2] * c;
+}
+
+}  // namespace sdm::baking
