@@ -64,6 +64,7 @@ from ._core import (
     distance_field,
     engines,
     fit_to_unit,
+    has_tangents,
     hausdorff,
     make_scan,
     measure_points,
@@ -73,6 +74,7 @@ from ._core import (
     read_points,
     remove_islands,
     scene,
+    smooth_normals,
     thread_limit,
     time_of_contact,
     weld,
@@ -82,6 +84,7 @@ from ._batches import BatchItem, ClosestPointsBatch, closest_points_batch
 from ._closest_points import NONE, SiteType, closest_points
 from ._distance_map import DistanceMap, MapBounds
 from ._maps import map, self_map, thickness
+from ._matches import Matches, MatchKind, match, tangents
 from ._metrics import BoundedNumber, SurfaceMetrics, mask_surface, surface_metrics
 
 __version__: str = _core.version
@@ -110,6 +113,8 @@ __all__ = [
     "GroupVerdicts",
     "MadeScan",
     "MapBounds",
+    "MatchKind",
+    "Matches",
     "Mesh",
     "MultiBodyQuery",
     "NONE",
@@ -148,10 +153,12 @@ __all__ = [
     "distance_field",
     "engines",
     "fit_to_unit",
+    "has_tangents",
     "hausdorff",
     "make_scan",
     "map",
     "mask_surface",
+    "match",
     "measure_points",
     "read",
     "read_attributes",
@@ -160,7 +167,9 @@ __all__ = [
     "remove_islands",
     "scene",
     "self_map",
+    "smooth_normals",
     "surface_metrics",
+    "tangents",
     "thickness",
     "thread_limit",
     "time_of_contact",

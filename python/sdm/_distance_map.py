@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._attributes import transferred
 from ._closest_points import NONE
 from ._core import (
     BoundedLength,
@@ -212,19 +213,7 @@ class DistanceMap(_core.MapChannels):
         >>> heights.shape, bool(np.all(np.abs(heights) <= 1.0001))
         ((64, 64), True)
         """
-        array = np.asarray(values)
-        if np.ma.isMaskedArray(values) or array.dtype.kind not in "biuf":
-            raise TypeError(f"values must be an array of real numbers, without a mask, not {array.dtype}")
-        axes = 2 if domain == "corner" else 1
-        if array.ndim < axes or (domain == "corner" and array.shape[1] != 3):
-            raise Error(
-                f"values of domain '{domain}' have the shape {'(faces, 3, ...)' if axes == 2 else '(rows, ...)'}, "
-                f"not {array.shape}"
-            )
-        components = array.shape[axes:]
-        rows = np.ascontiguousarray(array, np.float32).reshape(int(np.prod(array.shape[:axes])), -1 if array.size else 0)
-        filled = self._core.transfer(rows, domain, fill, progress)
-        return filled.reshape(*filled.shape[:2], *components)
+        return transferred(self._core.transfer, values, domain, fill, progress)
 
     def free_distances(self) -> "npt.NDArray[np.float64]":
         """Returns, for each texel, a radius within which there is no point of O2, (H, W) float64; 0 without a value.

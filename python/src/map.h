@@ -104,6 +104,11 @@ struct PyMap {
 [[nodiscard]] std::optional<std::array<double, 2>> range_of(
     const std::optional<std::pair<double, double>>& range);
 
+/// Rows of values to transfer.
+using TransferRows = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+/// The array of rows of the domain 'vertex', 'face' or 'corner'. Throws sdm::Error for another one.
+[[nodiscard]] AttributeArray attribute_of(const TransferRows& rows, const char* domain);
+
 void bind_channels(nb::module_& module);
 void bind_other_maps(nb::module_& module);
 void bind_map_numbers(nb::module_& module, nb::class_<PyMap>& map);

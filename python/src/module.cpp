@@ -17,6 +17,7 @@ NB_MODULE(_core, module) {
   bind_surface(module);
   bind_groups(module);
   bind_map(module);
+  bind_matches(module);
   bind_parts(module);
   bind_proximity(module);
   bind_bodies(module);

@@ -75,6 +75,10 @@ struct PySurface {
 /// Accepts whatever python/sdm/_meshes.py does. `faces`: None, or the second array of a mesh given as two.
 [[nodiscard]] Mesh mesh_of(nb::handle mesh, nb::handle faces);
 
+/// (faces, 3, components) float32, or (faces, 3): a row for each corner of each face, NaN where there is
+/// none.
+[[nodiscard]] nb::object corner_values(const MeshAttribute& attribute);
+
 // Options by their names in Python. All throw sdm::Error for an unknown one.
 [[nodiscard]] std::shared_ptr<const Engine> engine_of(const char* name);
 [[nodiscard]] SignMethod sign_of(const char* name);
@@ -100,6 +104,7 @@ void bind_sites(nb::module_& module);
 void bind_surface(nb::module_& module);
 void bind_groups(nb::module_& module);
 void bind_map(nb::module_& module);
+void bind_matches(nb::module_& module);
 void bind_parts(nb::module_& module);
 void bind_proximity(nb::module_& module);
 void bind_bodies(nb::module_& module);

@@ -218,7 +218,7 @@ void bind_arrays(nb::class_<PySurface>& type) {
           },
           nb::sig("def uvs(self) -> numpy.typing.NDArray[numpy.float64]"),
           "The place of each corner of each face in the atlas, (m, 3, 2) float64: u to the right and v "
-          "downwards, in units of the width of the atlas; "
+          "downwards, in texels; "
           "NaN for faces without area. A new array at each access.")
       .def_prop_ro(
           "texel_faces",

@@ -18,14 +18,11 @@ AttributeDomain domain_of(std::string_view name) {
   throw Error("domain must be 'vertex', 'face' or 'corner', not '" + std::string(name) + "'");
 }
 
-using Rows = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-
-nb::object transferred(const PyMap& self, const Rows& rows, const char* domain, bool fill,
+nb::object transferred(const PyMap& self, const TransferRows& rows, const char* domain, bool fill,
                        nb::handle progress) {
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
-  const AttributeArray array{
-      .values = {rows.data(), rows.size()}, .components = rows.shape(1), .domain = domain_of(domain)};
+  const AttributeArray array = attribute_of(rows, domain);
   std::vector<float> values;
   run(progress, [&](const Progress& report) {
     values = transfer(self.on->surface, self.to->sites, self.map, array, {.fill = fill, .progress = report});
@@ -34,6 +31,10 @@ nb::object transferred(const PyMap& self, const Rows& rows, const char* domain, 
 }
 
 }  // namespace
+
+AttributeArray attribute_of(const TransferRows& rows, const char* domain) {
+  return {.values = {rows.data(), rows.size()}, .components = rows.shape(1), .domain = domain_of(domain)};
+}
 
 void bind_map_transfer(nb::class_<PyMap>& map) {
   map.def("transfer", &transferred, nb::arg("values"), nb::arg("domain"), nb::arg("fill"),

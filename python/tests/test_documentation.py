@@ -69,6 +69,15 @@ def test_pages(page, tmp_path, monkeypatch):
     assert (tmp_path / "distance.png").stat().st_size > 10_000
 
 
+def test_matching_page(tmp_path, monkeypatch):
+    shutil.copy(MESHES / "bunny.obj", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    for block in blocks("docs/matching.md"):
+        exec(compile(block, "docs/matching.md", "exec"), names)
+    assert names["displacements"].shape == (256, 256) and np.nanmin(names["displacements"]) < 0
+
+
 def test_robotics_page():
     names = {}
     for block in blocks("docs/robotics.md"):
