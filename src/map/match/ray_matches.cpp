@@ -50,17 +50,21 @@ class NormalRays {
     for (const std::uint32_t texel : texels) {
       const Vec3 p = matching_.surface.texel_point(texel);
       const Vec3 n = normalized(matching_.normals.at(face, frame.weights(p)));
-      const Vec3 outwards = dot(n, facing) < 0 ? -n : n;
-      rays_.push_back({.origin = p, .direction = outwards, .t_max = matching_.reach});
-      rays_.push_back({.origin = p, .direction = -outwards, .t_max = matching_.reach});
+      rays_.push_back({.origin = p, .direction = dot(n, facing) < 0 ? -n : n, .t_max = matching_.reach});
     }
-    hits_.resize(rays_.size());
     const auto allows = [&](std::size_t, std::uint32_t other) {
       return matching_.allowed.allows(facing, other);
     };
-    rays::first_hits(matching_.sites, rays_, rays::filter(allows), scratch_, hits_.data());
-    for (std::size_t i = 0; i < texels.size(); ++i)
-      found_[i] = hits_[2 * i].t <= hits_[2 * i + 1].t ? hits_[2 * i] : hits_[2 * i + 1];
+    rays::first_hits(matching_.sites, rays_, rays::filter(allows), scratch_, found_.data());
+    // Inwards, only as far as the hit outwards.
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      rays_[i].direction = -rays_[i].direction;
+      rays_[i].t_max = std::min(matching_.reach, found_[i].t);
+    }
+    inwards_.resize(rays_.size());
+    rays::first_hits(matching_.sites, rays_, rays::filter(allows), scratch_, inwards_.data());
+    for (std::size_t i = 0; i < rays_.size(); ++i)
+      if (inwards_[i].t < found_[i].t) found_[i] = inwards_[i];
   }
   /// Without a face where there is none.
   [[nodiscard]] std::span<const RayHit> hits() const { return found_; }
@@ -69,7 +73,7 @@ class NormalRays {
   const RayMatching& matching_;
   rays::Scratch scratch_;
   std::vector<Ray> rays_;
-  std::vector<RayHit> hits_, found_;
+  std::vector<RayHit> found_, inwards_;
 };
 
 void match_along_rays(const RayMatching& matching, const Progress& progress, TexelMatches& matches) {
