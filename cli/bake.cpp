@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sdm/bake_files.h>
+#include <sdm/baked_geometry.h>
 #include <sdm/threads.h>
 #include <sdm/version.h>
 
@@ -40,10 +41,17 @@ struct MatchCounts {
   [[nodiscard]] std::size_t unmatched() const { return too_far + facing_away; }
 };
 
+/// Tangent-space normals as a PNG, with what the model needs to be drawn with it.
+struct NormalMap {
+  std::vector<char> png{};  ///< empty: not asked for
+  sdm::MeshAttribute normals{}, tangents{};
+};
+
 struct BakeResult {
   BakeSurface low{};
   MatchCounts matches{};
   std::vector<sdm::BakedTexture> textures{};
+  NormalMap normal_map{};
   Notes notes{};
   BakeTimes time{};
 };
@@ -75,6 +83,7 @@ MatchCounts counts_of(const sdm::TexelMatches& matches) {
 std::vector<std::filesystem::path> files_of_baking() {
   std::vector<std::filesystem::path> files{"report.json", "baked.glb"};
   for (const sdm::BakeChannel channel : sdm::kBakeChannels) files.emplace_back(picture_name(channel));
+  files.emplace_back(fmt::format("{}.png", kNormalMap));
   return files;
 }
 
@@ -91,7 +100,7 @@ std::array<Input, 2> load(const BakeCommand& command) {
       {[&] {
          inputs[0] =
              load_input("high", command.high, command.transform_high, {false, command.tessellation, true});
-         require_look(inputs[0]);
+         if (!command.channels || !command.channels->empty()) require_look(inputs[0]);
        },
        [&] {
          inputs[1] = load_input("low", command.low, command.transform_low, {false, command.tessellation});
@@ -127,13 +136,34 @@ sdm::TexelMatches match(const BakeCommand& command, const Input& high, const Inp
                          [&] {
                            sdm::run_concurrently({[&] { result.low = bake_surface(low, command.layout); },
                                                   [&] { sites = std::make_unique<sdm::Sites>(high.mesh); }});
-                           const sdm::DistanceMap map =
-                               sdm::compute_map(*result.low.surface, *sites, command.map);
-                           matches = sdm::matches_of(*result.low.surface, *sites, map);
+                           sdm::MatchOptions options = match_options(command);
+                           options.progress = command.map.progress;
+                           matches = sdm::match_texels(*result.low.surface, *sites, options);
                          }});
   result.matches = counts_of(matches);
   check_matches(command, result.matches);
   return matches;
+}
+
+/// The normals of HIGH, those of its file if it has any, in the tangent space of LOW as it is drawn.
+NormalMap normal_map_of(const BakeCommand& command, const Input& high, const sdm::Sites& sites,
+                        const sdm::TexelMatches& matches, BakeResult& result) {
+  constexpr double kCrease = 40;
+  const sdm::Surface& surface = *result.low.surface;
+  NormalMap map{.png = {}, .normals = sdm::smooth_normals(surface.mesh(), kCrease), .tangents = {}};
+  map.tangents = sdm::tangents(surface, map.normals);
+  const auto own = std::ranges::find(high.look.attributes, "normal", &sdm::MeshAttribute::name);
+  const bool has_own = own != high.look.attributes.end();
+  if (has_own && !command.transform_high.empty())
+    result.notes.push_back(fmt::format(
+        "{}: its normals are not moved by --transform-high; smooth ones are baked", command.high));
+  std::vector<float> normals = sdm::matched_normals(
+      surface, sites, matches,
+      has_own && command.transform_high.empty() ? *own : sdm::smooth_normals(sites.mesh()));
+  normals = sdm::tangent_space_normals(surface, map.normals, map.tangents, normals, command.map.progress);
+  sdm::fill_texels(surface, 3, normals);
+  map.png = sdm::encode_png(sdm::normal_map_image(surface, normals), false);
+  return map;
 }
 
 void write_files(const BakeCommand& command, const BakeResult& result, const sdm::Material& material,
@@ -143,9 +173,20 @@ void write_files(const BakeCommand& command, const BakeResult& result, const sdm
     work.emplace_back([&] {
       write_text(folder / picture_name(texture.channel), {texture.png.data(), texture.png.size()});
     });
+  const NormalMap& normal_map = result.normal_map;
+  const bool with_normals = !normal_map.png.empty();
+  if (with_normals)
+    work.emplace_back([&] {
+      write_text(folder / fmt::format("{}.png", kNormalMap), {normal_map.png.data(), normal_map.png.size()});
+    });
   work.emplace_back([&] {
     sdm::write_baked_glb(folder / "baked.glb", *result.low.surface, result.textures,
-                         {.material = material, .units = command.units, .up = command.up});
+                         {.material = material,
+                          .units = command.units,
+                          .up = command.up,
+                          .normals = with_normals ? &normal_map.normals : nullptr,
+                          .normal_map = normal_map.png,
+                          .tangents = with_normals ? &normal_map.tangents : nullptr});
   });
   sdm::run_concurrently(work);
 }
@@ -166,6 +207,7 @@ BakeResult bake_into(const BakeCommand& command, const Input& high, const Input&
        sdm::bake(*result.low.surface, *sites, matches, look, channels, {.progress = command.map.progress}))
     result.textures.push_back(
         {baked.channel, sdm::encode_png(sdm::to_image(baked), is_color(baked.channel))});
+  if (command.normal_map) result.normal_map = normal_map_of(command, high, *sites, matches, result);
   result.time.bake = watch.lap();
 
   progress.step("export");
@@ -196,15 +238,22 @@ Json report_of(const BakeCommand& command, const Input& high, const Input& low, 
                 {"overlapping_texels", surface.overlapping_texels()}}}};
   const bool limited = std::isfinite(command.map.max_distance);
   report["max_distance"] = limited ? Json(command.map.max_distance) : Json();
-  report["facing"] = command.map.facing ? Json(*command.map.facing) : Json();
+  const sdm::MatchOptions matching = match_options(command);
+  const bool facing = matching.method != sdm::MatchMethod::closest;
+  report["match"] = name_of(matching.method);
+  report["facing"] = facing ? Json(matching.facing) : Json();
+  report["cage"] = command.cage ? Json(*command.cage) : Json();
   report["texels"] = {{"closest", counts.closest},
                       {"facing", counts.facing},
+                      {"ray", counts.ray},
                       {"too_far", counts.too_far},
                       {"facing_away", counts.facing_away}};
   Json& textures = report["textures"] = Json::object();
   for (const sdm::BakedTexture& texture : result.textures)
     textures[std::string(sdm::name_of(texture.channel))] = {
         {"file", picture_name(texture.channel)}, {"values", is_color(texture.channel) ? "sRGB" : "linear"}};
+  if (!result.normal_map.png.empty())
+    textures[kNormalMap] = {{"file", fmt::format("{}.png", kNormalMap)}, {"values", "tangent space"}};
   report["notes"] = result.notes;
   report["time_ms"] = {{"import", result.time.import},
                        {"match", result.time.match},
@@ -221,9 +270,13 @@ std::string text_of(const BakeCommand& command, const BakeResult& result) {
   std::string names;
   for (const sdm::BakedTexture& texture : result.textures)
     names.append(names.empty() ? "" : ", ").append(sdm::name_of(texture.channel));
+  const bool with_normals = !result.normal_map.png.empty();
+  if (with_normals) names.append(names.empty() ? "" : ", ").append(kNormalMap);
   text += fmt::format("  baked     {}, {} x {} texels\n", names, surface.resolution(), surface.rows());
   text += fmt::format("  texels    {} have a point of HIGH{}\n", counts.matched(),
-                      counts.facing > 0 ? " on a face that faces them" : "");
+                      counts.facing + counts.ray > 0 ? " on a face that faces them" : "");
+  if (counts.ray > 0)
+    text += fmt::format("            {} of them by a ray along the normal of LOW\n", counts.ray);
   if (counts.too_far > 0)
     text += fmt::format("            {} are farther than --max-distance, and filled\n", counts.too_far);
   if (counts.facing_away > 0)
@@ -231,6 +284,7 @@ std::string text_of(const BakeCommand& command, const BakeResult& result) {
   text += note_lines(result.notes, 12);
   std::string files = "baked.glb ";
   for (const sdm::BakedTexture& texture : result.textures) files += picture_name(texture.channel) + " ";
+  if (with_normals) files += fmt::format("{}.png ", kNormalMap);
   return text + result_lines(12, result.time.total, command.out.string(), files);
 }
 
@@ -279,6 +333,7 @@ void add_bake_command(CLI::App& app) {
     }
     check_units(command->units, command->high, command->transform_high);
     check_units(command->units, command->low, command->transform_low);
+    (void)match_options(*command);
     run_baking(*command);
   });
 }

@@ -4,6 +4,7 @@
 #include <sdm/bake.h>
 #include <sdm/io.h>
 #include <sdm/map.h>
+#include <sdm/match.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -25,13 +26,25 @@ struct BakeCommand : RunOptions {
   std::filesystem::path out;
   BakeLayout layout;
   sdm::MapOptions map;
+  std::optional<sdm::MatchMethod> match{};  ///< nothing: `facing` if map.facing is given, else `closest`
+  std::optional<double> cage{};
   std::optional<std::vector<sdm::BakeChannel>> channels{};  ///< nothing: those that differ
+  bool normal_map = false;                                  ///< besides the channels
   std::string units;
   sdm::UpAxis up = sdm::UpAxis::y;
 };
 
 /// The options set `command`, which must outlive the parsing.
 void add_options(CLI::App& app, BakeCommand& command);
+
+/// How points of HIGH are found. Throws CLI::ValidationError for options that exclude each other.
+[[nodiscard]] sdm::MatchOptions match_options(const BakeCommand& command);
+
+/// The word of a method.
+[[nodiscard]] std::string name_of(sdm::MatchMethod method);
+
+/// The channel of tangent-space normals, which is no sdm::BakeChannel.
+inline constexpr const char* kNormalMap = "normal";
 
 /// The names of the pictures of all channels.
 [[nodiscard]] std::string picture_name(sdm::BakeChannel channel);

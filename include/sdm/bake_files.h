@@ -34,11 +34,16 @@ struct BakedModelOptions {
   Material material{};    ///< the factors of what has no texture, and what alpha means
   std::string units{};    ///< as of write_glb()
   UpAxis up = UpAxis::y;  ///< as of write_glb()
+  /// Three components at each corner of O1's faces; null: smooth except across edges of more than 40°.
+  const MeshAttribute* normals = nullptr;
+  /// A PNG of normal_map_image(), and the tangents() that it was made with, from the same normals; or
+  /// neither.
+  std::span<const char> normal_map{};
+  const MeshAttribute* tangents = nullptr;
 };
 
-/// A model of O1 with textures on its atlas, in one lit material, and normals that are smooth except across
-/// edges of more than 40°. Any viewer displays it. Also throws sdm::Error if the model exceeds 4 GB, and if
-/// there is not enough memory. Cost: linear.
+/// A model of O1 with textures on its atlas, in one lit material. Any viewer displays it. Also throws
+/// sdm::Error if the model exceeds 4 GB, and if there is not enough memory. Cost: linear.
 SDM_API void write_baked_glb(const std::filesystem::path& file, const Surface& surface,
                              std::span<const BakedTexture> textures, const BakedModelOptions& options = {});
 

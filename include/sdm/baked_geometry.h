@@ -5,6 +5,7 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/image.h>
 #include <sdm/match.h>
 #include <sdm/mesh_attributes.h>
 #include <sdm/progress.h>
@@ -84,6 +85,11 @@ namespace sdm {
                                                                const MeshAttribute& tangents,
                                                                std::span<const float> object_normals,
                                                                const Progress& progress = {});
+
+/// Returns tangent_space_normals() as a picture of `bits`, 8 or 16, a number: (x + 1) / 2 and so on, as glTF
+/// has it. Texels without a normal are (0, 0, 1). Throws sdm::Error for another number of bits or of normals.
+[[nodiscard]] SDM_API Image normal_map_image(const Surface& surface, std::span<const float> normals,
+                                             std::uint32_t bits = 8);
 
 /// Gives the texels of no face values, as TransferOptions::fill does. `values`: `components` numbers for each
 /// texel; those of a texel that are not all finite are none. Throws sdm::Error for another number of values,

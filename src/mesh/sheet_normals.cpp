@@ -99,6 +99,31 @@ SheetNormals sheet_normals(const Mesh& mesh, double crease) {
   return result;
 }
 
+SheetNormals sheet_normals(const Mesh& mesh, const MeshAttribute& normals) {
+  SheetNormals result;
+  result.corner.resize(mesh.triangles.size(), {kNone, kNone, kNone});
+  // The sheets of each row of the attribute are a linked list: first[row], next[sheet], ...
+  std::vector<std::uint32_t> first(normals.values.size() / 3, kNone), next;
+  for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
+    if (is_removed(mesh.triangles[face])) continue;
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = mesh.triangles[face][k], row = (*normals.rows)[face][k];
+      std::uint32_t sheet = first[row];
+      for (int looked_at = 1; sheet != kNone && result.vertex[sheet] != vertex; ++looked_at)
+        sheet = looked_at < kMostSheets ? next[sheet] : kNone;
+      if (sheet == kNone) {
+        sheet = static_cast<std::uint32_t>(result.vertex.size());
+        const float* const n = &normals.values[3 * std::size_t{row}];
+        result.vertex.push_back(vertex);
+        result.normals.push_back({n[0], n[1], n[2]});
+        next.push_back(std::exchange(first[row], sheet));
+      }
+      result.corner[face][k] = sheet;
+    }
+  }
+  return result;
+}
+
 }  // namespace mesh
 
 MeshAttribute smooth_normals(const Mesh& mesh, double crease) try {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sdm/mesh.h>
+#include <sdm/mesh_attributes.h>
 
 #include <array>
 #include <cstdint>
@@ -21,5 +22,9 @@ struct SheetNormals {
 /// `crease`: the cosine of its angle; −2 joins all faces. Removed faces have no normals (kNone). Faces
 /// without area take the normals of others, or (0, 0, 1). Cost: linear.
 [[nodiscard]] SheetNormals sheet_normals(const Mesh& mesh, double crease);
+
+/// Those of an attribute of three components: a sheet is formed by the corners at a vertex that share a row.
+/// It fits the mesh, and each corner of a face that is not removed has a row. Cost: linear.
+[[nodiscard]] SheetNormals sheet_normals(const Mesh& mesh, const MeshAttribute& normals);
 
 }  // namespace sdm::mesh

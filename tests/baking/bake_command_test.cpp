@@ -2,13 +2,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/bake_files.h>
+#include <sdm/baked_geometry.h>
+#include <sdm/closest_points.h>
 #include <sdm/io.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -56,6 +61,34 @@ Image gradient() {
     for (int x = 0; x < 256; ++x)
       for (const int value : {x, 255 - y, 128}) image.bytes.push_back(static_cast<std::uint8_t>(value));
   return image;
+}
+
+/// The tangents of the corners of a model of one primitive, which readers of meshes leave out.
+std::vector<std::array<float, 4>> corner_tangents(const std::string& glb) {
+  std::ifstream file(glb, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, &bytes[at], sizeof(value));
+    return value;
+  };
+  const std::uint32_t json_size = number(12);
+  const Json model = Json::parse(bytes.substr(20, json_size));
+  const std::size_t binary = 20 + json_size + 8;
+  const auto begin_of = [&](const Json& accessor) {
+    const Json& view =
+        model["bufferViews"]
+             [model["accessors"][accessor.get<std::size_t>()]["bufferView"].get<std::size_t>()];
+    return binary + view.value("byteOffset", std::size_t{0});
+  };
+  const Json& primitive = model["meshes"][0]["primitives"][0];
+  const std::size_t indices = begin_of(primitive["indices"]),
+                    tangents = begin_of(primitive["attributes"]["TANGENT"]);
+  std::vector<std::array<float, 4>> result(
+      model["accessors"][primitive["indices"].get<std::size_t>()]["count"].get<std::size_t>());
+  for (std::size_t i = 0; i < result.size(); ++i)
+    std::memcpy(result[i].data(), &bytes[tangents + 16 * number(indices + 4 * i)], 16);
+  return result;
 }
 
 struct BakeCommandTest : ::testing::Test {
@@ -152,7 +185,81 @@ TEST_F(BakeCommandTest, ChannelsAreThoseThatDifferOrThatAreAskedFor) {
   const Outcome unknown = run({"--channels", "gloss"});
   EXPECT_EQ(unknown.code, 2);
   EXPECT_THAT(unknown.err,
-              HasSubstr("gloss is not one of base_color, metallic_roughness, occlusion, emissive"));
+              HasSubstr("gloss is not one of base_color, metallic_roughness, occlusion, emissive, normal"));
+}
+
+TEST_F(BakeCommandTest, RaysAreUsedWithinTheCage) {
+  const auto report = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--json", "--match", "ray"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return Json::parse(outcome.out);
+  };
+  const Json all = report({}), few = report({"--cage", "0.001", "--facing", "80"});
+  EXPECT_EQ(all["match"], "ray");
+  EXPECT_EQ(all["facing"], 90);
+  EXPECT_TRUE(all["cage"].is_null());
+  EXPECT_GT(all["texels"]["ray"].get<double>(), 0.9 * all["atlas"]["texels"].get<double>());
+  EXPECT_EQ(few["facing"], 80);
+  EXPECT_EQ(few["cage"], 0.001);
+  EXPECT_LT(few["texels"]["ray"].get<int>(), all["texels"]["ray"].get<int>());
+  EXPECT_EQ(few["texels"]["ray"].get<int>() + few["texels"]["facing"].get<int>(),
+            few["atlas"]["texels"].get<int>());
+  EXPECT_THAT(run({"--match", "ray"}).out, HasSubstr("of them by a ray along the normal of LOW"));
+  EXPECT_EQ(run({"--cage", "1"}).code, 2);
+  EXPECT_EQ(run({"--match", "closest", "--facing"}).code, 2);
+  EXPECT_EQ(run({"--match", "nearest"}).code, 2);
+}
+
+// The model is read as a renderer reads it: the colour of its normal map, in its normals and tangents.
+TEST_F(BakeCommandTest, NormalMapsShadeTheCoarseMeshAsTheDetailedOne) {
+  if (!has_tangents()) GTEST_SKIP() << "without MikkTSpace";
+  write_text(high, obj_of(height_field(40)));  // nothing but a shape
+  ASSERT_EQ(run({"--channels", "normal", "--match", "ray"}).code, 0);
+  EXPECT_THAT(files(), ElementsAre("baked.glb", "normal.png", "report.json"));
+  const MeshFile model = read_mesh_file(out + "/baked.glb", {.attributes = true});
+  const auto found = std::ranges::find(model.attributes, "normal", &MeshAttribute::name);
+  ASSERT_NE(found, model.attributes.end());
+  const MeshAttribute& normals = *found;
+  const auto tangents = corner_tangents(out + "/baked.glb");
+  ASSERT_EQ(tangents.size(), 3 * model.mesh.triangles.size());
+  const Image image = read_image(out + "/normal.png");
+  const Mesh detailed = height_field(40);
+  const MeshAttribute wanted = smooth_normals(detailed);
+  const Sites sites(detailed);
+  std::size_t compared = 0;
+  double sum = 0;
+  for (std::size_t f = 0; f < model.mesh.triangles.size(); ++f) {
+    Vec3 p{}, n{}, t{};
+    Vec2 uv{};
+    double w = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float* const normal = &normals.values[3 * (*normals.rows)[f][k]];
+      const auto& tangent = tangents[3 * f + k];
+      p = p + (1.0 / 3) * model.mesh.positions[model.mesh.triangles[f][k]];
+      n = n + (1.0 / 3) * Vec3{normal[0], normal[1], normal[2]};
+      t = t + (1.0 / 3) * Vec3{tangent[0], tangent[1], tangent[2]};
+      uv = uv + (1.0 / 3) * model.mesh.corner_uvs[f][k];
+      w = tangent[3];
+    }
+    const auto x = static_cast<std::uint32_t>(uv[0] * 128), y = static_cast<std::uint32_t>((1 - uv[1]) * 128);
+    Vec3 stored{};
+    for (std::uint32_t k = 0; k < 3; ++k) stored[k] = 2.0 * image.value(x, y, k) - 1;
+    const Vec3 read = normalized(stored[0] * t + stored[1] * (w * cross(n, t)) + stored[2] * n);
+    // The normal of the detailed mesh along that of the coarse one, about a texel beside.
+    const ClosestPoint near = closest_points(sites, std::vector{p})[0];
+    Vec3 normal{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float* const at = &wanted.values[3 * (*wanted.rows)[near.face][k]];
+      normal = normal + Vec3{at[0], at[1], at[2]};
+    }
+    ++compared;
+    sum += dot(read, normalized(normal));
+    EXPECT_GT(dot(read, normalized(normal)), 0.97) << f;
+  }
+  EXPECT_EQ(compared, 128u);
+  EXPECT_GT(sum / static_cast<double>(compared), 0.995);
 }
 
 TEST_F(BakeCommandTest, UvsAreUsedIfTheyAreUsable) {
@@ -229,7 +336,8 @@ TEST_F(BakeCommandTest, ColorsOfVerticesAreBaked) {
 TEST_F(BakeCommandTest, ModelsPassTheKhronosValidator) {
   write_text(folder / "high.mtl", "newmtl painted\nd 0.5\nPm 0.25\nmap_Kd picture.png\nmap_Ke picture.png\n");
   std::string models;
-  for (const char* channels : {"base_color,emissive", "metallic_roughness,occlusion"}) {
+  for (const char* channels : {"base_color,emissive", "metallic_roughness,occlusion",
+                               has_tangents() ? "base_color,normal" : "occlusion"}) {
     out = folder / channels;
     ASSERT_EQ(run({"--channels", channels, "--units", "mm", "--up", "z"}).code, 0);
     models += " '" + out + "/baked.glb'";

@@ -42,12 +42,18 @@ tinygltf::Primitive primitive_of(GlbModel& glb, const DrawnSurface& drawn, const
                   for (int k = 0; k < 2; ++k)
                     uv[k] = static_cast<float>(std::clamp(vertices.place[i][k] / drawn.extent[k], 0.0, 1.0));
                 });
+  if (drawn.tangents != nullptr)
+    add_attribute("TANGENT", TINYGLTF_TYPE_VEC4, std::array<float, 4>{},
+                  [&](std::size_t i, std::array<float, 4>& tangent) {
+                    std::copy_n(&drawn.tangents->values[4 * std::size_t{vertices.tangent[i]}], 4,
+                                tangent.begin());
+                  });
   return primitive;
 }
 
 std::size_t bytes_of(const ModelVertices& vertices) {
-  constexpr std::size_t kFloats = 3 + 3 + 2;
-  return vertices.triangles.size() * sizeof(Triangle) + vertices.place.size() * kFloats * sizeof(float);
+  const std::size_t floats = 3 + 3 + 2 + (vertices.tangent.empty() ? 0 : 4);
+  return vertices.triangles.size() * sizeof(Triangle) + vertices.place.size() * floats * sizeof(float);
 }
 
 int add_png(GlbModel& glb, std::span<const char> png, int smaller) {

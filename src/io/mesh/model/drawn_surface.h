@@ -17,11 +17,12 @@ struct DrawnSurface {
   const Mesh& mesh;
   const ShadingNormals& normals;
   Placement place;
-  Vec2 extent;  ///< the width and height of its textures, in texels of the atlas
+  Vec2 extent;                              ///< the width and height of its textures, in texels of the atlas
+  const MeshAttribute* tangents = nullptr;  ///< or null
 };
 
-/// Adds the accessors of a primitive with POSITION, NORMAL and TEXCOORD_0, of the first material, and returns
-/// it: more attributes may follow. There is at least one triangle.
+/// Adds the accessors of a primitive with POSITION, NORMAL, TEXCOORD_0 and, if there are tangents, TANGENT,
+/// of the first material, and returns it: more attributes may follow. There is at least one triangle.
 [[nodiscard]] tinygltf::Primitive primitive_of(GlbModel& glb, const DrawnSurface& drawn,
                                                const ModelVertices& vertices);
 

@@ -20,7 +20,7 @@ bool same(const Vec2& a, const Vec2& b) {
 }  // namespace
 
 ModelVertices model_vertices(const Surface& surface, const ShadingNormals& normals,
-                             std::span<const std::uint32_t> faces) {
+                             std::span<const std::uint32_t> faces, const MeshAttribute* tangents) {
   const auto charts = surface.face_charts();
   ModelVertices result;
   // The vertices of each normal are a linked list: first[normal], next[vertex], ...
@@ -33,12 +33,18 @@ ModelVertices model_vertices(const Surface& surface, const ShadingNormals& norma
     for (int corner = 0; corner < 3; ++corner) {
       const std::uint32_t normal = normals.corner[face][corner];
       const Vec2& place = corners[corner];
+      const std::uint32_t tangent = tangents == nullptr ? kNone : (*tangents->rows)[face][corner];
+      const auto fits = [&](std::uint32_t vertex) {
+        return same(result.place[vertex], place) &&
+               (tangents == nullptr || result.tangent[vertex] == tangent);
+      };
       std::uint32_t vertex = first[normal];
       for (int looked_at = 0; vertex != kNone; vertex = next[vertex])
-        if (same(result.place[vertex], place) || ++looked_at == kMostSplits) break;
-      if (vertex == kNone || !same(result.place[vertex], place)) {
+        if (fits(vertex) || ++looked_at == kMostSplits) break;
+      if (vertex == kNone || !fits(vertex)) {
         vertex = static_cast<std::uint32_t>(result.place.size());
         result.place.push_back(place);
+        if (tangents != nullptr) result.tangent.push_back(tangent);
         result.normal.push_back(normal);
         next.push_back(std::exchange(first[normal], vertex));
       }
