@@ -54,9 +54,10 @@ struct ProximityOptions {
   /// Contacts are reported for points inside the other body or within this distance of it; ≥ 0, in units of
   /// the meshes.
   double contact_margin = 0;
-  /// Leaves out contacts() that push a body across an edge between faces that continue each other, as where
-  /// it slides over the triangles of a floor: of edges and vertices whose faces are flat or concave, those
-  /// that are not along a normal of these. Convex edges keep theirs.
+  /// Leaves out contacts(), and separating_contacts() but for kExitContact, that push a body across an edge
+  /// between faces that continue each other, as where it slides over the triangles of a floor: of edges and
+  /// vertices whose faces are flat or concave, those that are not along a normal of these. Convex edges keep
+  /// theirs.
   bool ignore_internal_edges = false;
 };
 
@@ -152,10 +153,10 @@ class SDM_API ProximityQuery {
   ///    it, or below it inside the body;
   ///  - each other part of an edge inside the other body or within the margin that reaches no end in contact,
   ///    at the middle of its points closest to the other surface, or at a deep point of the part, if the edge
-  ///    is longer than 1/8 of the size of the smaller body and other contacts of the part are much less deep.
-  ///    Edges are those of the boundary of an open
-  ///    mesh and convex ones, not those between faces in a plane, and of edges shorter than 1/16 of the size
-  ///    of the smaller body only those without an end in contact.
+  ///    is longer than 1/8 of the size of the smaller body and other contacts of the part are much less deep:
+  ///    also of an edge that is inside as a whole. Edges are those of the boundary of an open mesh and convex
+  ///    ones, not those between faces in a plane, and of edges shorter than 1/16 of the size of the smaller
+  ///    body only those without an end in contact.
   /// So a box on a plate has contacts at its corners, and beams that cross where their edges cross.
   ///
   /// Where a surface lies along a face of the other body, to about 3 degrees, the face carries the vertices

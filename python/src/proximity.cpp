@@ -366,8 +366,8 @@ depth_precision: the bounds on the penetration depth are at most this far apart,
 diagonal of the smaller body's box.
 contact_margin: contacts are reported for points inside the other body or within this distance.
 ≥ 0. Both in units of the meshes.
-ignore_internal_edges: leave out contacts() that push a body across an edge between faces that continue each
-other, as where it slides over the triangles of a floor.
+ignore_internal_edges: leave out contacts() and separating_contacts() that push a body across an edge between
+faces that continue each other, as where it slides over the triangles of a floor.
 
 A closed, orientable body is a solid; any other one is a surface without an inside. All results are
 in space, with both bodies in their poses, and are computed by the first call after a body has moved.

@@ -159,7 +159,12 @@ std::span<const Contact> ProximityQuery::separating_contacts(std::optional<std::
   return with_memory([&]() -> std::span<const Contact> {
     std::vector<Contact>& contacts = impl_->separating_contacts;
     if (impl_->answers.colliding()) {
-      contacts = separate::contacts_after(impl_->bodies[0], impl_->bodies[1], out, impl_->contact_margin);
+      bodies::ExternalContacts external;
+      separate::ContactFilter filter;
+      if (impl_->external_contacts)
+        filter = [&](const auto& bodies, const auto& all) { return external.of(bodies, all); };
+      contacts =
+          separate::contacts_after(impl_->bodies[0], impl_->bodies[1], out, impl_->contact_margin, filter);
     } else {
       const std::span<const Contact> apart = impl_->contacts();
       contacts.assign(apart.begin(), apart.end());

@@ -9,6 +9,7 @@
 #include <map>
 #include <numeric>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -224,6 +225,52 @@ TEST(DeepContacts, OfAnEdgeWithAnEndNearTheSurfaceAreDeep) {
   for (const Contact& c : query.contacts()) deepest = std::max(deepest, c.depth);
   EXPECT_GT(deepest, 0.5 * query.penetration_depth()->lower);
   EXPECT_LE(deepest, query.penetration_depth()->upper);
+}
+
+// The same, as the box moves by small steps: other contacts of these edges come and go, and the deep points
+// keep their ids.
+TEST(DeepContacts, OfAnEdgeKeepTheirIds) {
+  const Blocks u{{{-1, -1, -0.29}, {1, -0.66, 0.29}},
+                 {{-1, -1, -0.29}, {-0.66, 1, 0.29}},
+                 {{0.66, -1, -0.29}, {1, 1, 0.29}}};
+  const Blocks box{{{-0.667, -1.03, -0.92}, {0.06, -0.3, 1.08}}};
+  ProximityQuery query(UnionMesh(u).mesh(), UnionMesh(box).mesh());
+  std::set<std::uint64_t> deep;
+  std::set<std::size_t> counts;
+  constexpr int kSteps = 100;
+  for (int step = 0; step <= kSteps; ++step) {
+    const double s = static_cast<double>(step) / kSteps;
+    query.set_pose(1, Transform::translation({0.02 * s - 0.01, 0.02 - 0.05 * s, 0.1 * s}) *
+                          Transform::rotation({3 * s, 2 * s, 5 * s - 2}));
+    std::size_t count = 0;
+    for (const Contact& c : query.contacts()) {
+      count += c.depth > 0.2;
+      if (c.depth > 0.2) deep.insert(c.id);
+    }
+    EXPECT_EQ(count, 2u) << "at step " << step;
+    counts.insert(query.contacts().size());
+  }
+  EXPECT_EQ(deep.size(), 2u);
+  EXPECT_GE(counts.size(), 3u);
+}
+
+// A rod in a box, whose ends are little below the surface: only its edges are deep.
+TEST(DeepContacts, OfAnEdgeInsideAreDeep) {
+  for (const double beyond : {0.01, 0.05, 0.3}) {
+    const double half = 1 + beyond;
+    const Blocks rod{{{-1, -0.02, -0.02}, {1, 0.02, 0.02}}}, box{{{-half, -half, -half}, {half, half, half}}};
+    ProximityQuery query(UnionMesh(rod).mesh(), UnionMesh(box).mesh());
+    query.set_pose(0, Transform::rotation({0, 1, 2}));
+    std::set<std::uint64_t> ids;
+    double deepest = 0;
+    for (const Contact& c : query.contacts()) {
+      deepest = std::max(deepest, c.depth);
+      ids.insert(c.id);
+    }
+    EXPECT_GT(deepest, 0.5 * query.penetration_depth()->lower);
+    EXPECT_LE(deepest, query.penetration_depth()->upper);
+    EXPECT_EQ(ids.size(), query.contacts().size());
+  }
 }
 
 TEST(DeepContacts, AreInEachRegionOfAnOverlap) {

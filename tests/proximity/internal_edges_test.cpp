@@ -197,6 +197,31 @@ TEST(InternalEdges, AreThoseOfAWorldInAQueryOfTwo) {
   EXPECT_GT(left_out, 0u);
 }
 
+// Beside a box that is moved up out of a floor, vertices of the floor are closest to the walls of the box.
+TEST(InternalEdges, AreNoneOfTheContactsThatPushApart) {
+  const Shape box(brick({-0.6, -0.6, 0}, {0.6, 0.6, 0.6}));
+  const Shape floor(solid_of(floor_of([](int, int) { return 0.0; })));
+  ProximityQuery plain(box, floor, {.contact_margin = kSlideMargin});
+  ProximityQuery pair(box, floor, {.contact_margin = kSlideMargin, .ignore_internal_edges = true});
+  const auto sideways = [](std::span<const Contact> contacts) {
+    return std::ranges::count_if(contacts,
+                                 [](const Contact& c) { return std::abs(c.normal[2]) < kVertical; });
+  };
+  std::ptrdiff_t left_out = 0;
+  for (int step = 0; step <= 20; ++step) {
+    // A corner of a tile is 0.01 beside the box.
+    const Transform pose = Transform::translation({3.39, 3.5 + step / 20.0, -0.03});
+    plain.set_pose(0, pose), pair.set_pose(0, pose);
+    ASSERT_TRUE(pair.colliding());
+    left_out += sideways(plain.separating_contacts());
+    EXPECT_EQ(sideways(pair.separating_contacts()), 0);
+    EXPECT_GE(pair.separating_contacts().size(), 4u);
+    EXPECT_EQ(pair.separating_contacts().size() + sideways(plain.separating_contacts()),
+              plain.separating_contacts().size());
+  }
+  EXPECT_GT(left_out, 0);
+}
+
 // Regression: the faces along the ridge of a rod have corners of a third of a degree at its ends, and were
 // taken for flat there.
 TEST(InternalEdges, KeepTheRidgeOfAThinRod) {

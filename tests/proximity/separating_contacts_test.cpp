@@ -150,7 +150,7 @@ TEST(SeparatingContacts, AreNoDeeperThanTheWayOutAtAFartherWall) {
   SeparatingTranslation out;
   out.translation = {0.015, 0, 0};
   out.value = out.upper = 0.015;
-  const std::vector<Contact> contacts = separate::contacts_after(block, walls, out, 0);
+  const std::vector<Contact> contacts = separate::contacts_after(block, walls, out, 0, {});
   const auto exit = std::ranges::find(contacts, ProximityQuery::kExitContact, &Contact::id);
   ASSERT_NE(exit, contacts.end());
   EXPECT_NEAR(dot(exit->normal, exit->point2 - exit->point1), 0.018, 1e-12);

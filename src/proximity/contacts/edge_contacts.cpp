@@ -196,7 +196,8 @@ void EdgeContacts::add_support(const Edge& edge, const shape::Body& other, std::
 
 // An end of a supported part, by the nearest of the faces that support it there. Returns false if this is not
 // the way out of the surface beside it.
-bool EdgeContacts::add_end(const Edge& edge, const shape::Body& other, double t, double tolerance) {
+bool EdgeContacts::add_end(const Edge& edge, const shape::Body& other, double t, std::uint32_t number,
+                           double tolerance) {
   if ((edge.a_touches && t < kSamePoint) || (edge.b_touches && t > 1 - kSamePoint)) return true;
   for (const Found& end : found_)
     if (end.support.face != kNone && std::abs(end.t - t) < kSamePoint) return true;
@@ -212,7 +213,7 @@ bool EdgeContacts::add_end(const Edge& edge, const shape::Body& other, double t,
     way_out = way_out_.find(edge.around, other, nearest, point, tolerance);
     if (way_out.place == WayOut::Place::none) return false;
   }
-  found_.push_back({.t = t, .support = nearest, .way_out = way_out});
+  found_.push_back({.t = t, .support = nearest, .way_out = way_out, .number = number});
   return true;
 }
 
@@ -224,6 +225,7 @@ std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const 
   find_intervals(edge, other, margin);
   find_supports(edge, other, margin, reach, tolerance);
   const double rounding = kUnitDistanceRounding / sites.frame.scale;
+  std::uint32_t number = 0;  // of a supported end, whether it is found or not
   for (auto first = intervals_.begin(); first != intervals_.end();) {
     auto next = first;
     double end = first->to;
@@ -240,8 +242,9 @@ std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const 
     for (const JoinedPart& part : parts_)
       if (part.from <= end && first->from <= part.to) {
         const double from = std::max(part.from, first->from), to = std::min(part.to, end);
-        supported |= add_end(edge, other, from, tolerance);
-        if (to > from + kSamePoint) supported |= add_end(edge, other, to, tolerance);
+        supported |= add_end(edge, other, from, number, tolerance);
+        if (to > from + kSamePoint) supported |= add_end(edge, other, to, number + 1, tolerance);
+        number += 2;
       }
     if (!from_a && !to_b && !supported) {
       const auto nearest = std::min_element(

@@ -34,6 +34,7 @@ class EdgeContacts {
     Support support{};                ///< if a face supports the edge here
     WayOut way_out{};                 ///< where that is
     std::uint32_t near_face = kNone;  ///< without a support: a face close to it
+    std::uint32_t number = 0;         ///< with one: of this end among those of all supported parts
   };
   /// The ends of the supported parts, but for ends of the edge in contact. For each part of the edge in
   /// contact that is not supported and reaches no end in contact, the middle between the first and the last
@@ -83,7 +84,8 @@ class EdgeContacts {
                      double tolerance);
   void add_support(const Edge& edge, const shape::Body& other, std::uint32_t face, double margin,
                    double reach);
-  [[nodiscard]] bool add_end(const Edge& edge, const shape::Body& other, double t, double tolerance);
+  [[nodiscard]] bool add_end(const Edge& edge, const shape::Body& other, double t, std::uint32_t number,
+                             double tolerance);
 
   FacesNearEdge faces_;
   WayOutFinder way_out_;

@@ -1,15 +1,12 @@
 #include "proximity/contacts/feature_contacts.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
 #include "geometry/barycentric.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
-#include "proximity/contacts/deepest_on_edge.h"
-#include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
 
 namespace sdm::contacts {
@@ -17,45 +14,14 @@ namespace {
 
 using sites::SitesData;
 
-// Edges with an end in contact have contacts between their ends only if they are longer than this part of the
-// smaller body: of shorter ones, the end is near enough.
-constexpr double kShortEdge = 1.0 / 16;
-// Of edges longer than kLongEdge, relative to the smaller body, each part that ends at the surface of the
-// other body, or comes within the margin of it, has a contact at least half as deep as any of its points, but
-// for a fraction of the length of the edge. Of others, no point is deeper than the ends by more than half of
-// that length.
-constexpr double kLongEdge = 2 * kShortEdge, kMuchDeeper = 2, kDeeper = 1.0 / 8;
-// How deep a face may be below the vertices and edges that it supports, relative to the smaller body.
-constexpr double kSupportReach = 1.0 / 8;
 // A corner at most this far, relative to the smaller body, from a face that cannot push it is flush with it.
 constexpr double kFlush = 1.0 / 16;
 // The sine of the angle by which all edges at a corner fall off behind its normal; 0.58 in a cube.
 constexpr double kCorner = 0.25;
 constexpr double kDirection = 1e-9;  // relative to the smaller body: the shortest vector with a direction
-// The sine of the angle between faces below which their edge is flat: its points are in contact no sooner
-// than those of the faces.
-constexpr double kFlat = 1e-4;
-
 // What a contact is of, in the upper bits of its number.
-constexpr std::uint64_t kPart = std::uint64_t{1} << 60, kEdge = std::uint64_t{2} << 60;
-constexpr int kBodyBit = 63, kOnEdgeBit = 32;  // of the number of a contact on an edge
-
-// Whether the edge may be closer to another body than both faces beside it: if it is an edge of the boundary,
-// or convex.
-bool is_sharp(const SitesData& sites, std::uint32_t edge) {
-  const std::span<const std::uint32_t> faces = sites.topology.edge_faces(edge);
-  if (faces.size() != 2) return true;
-  const auto [a, b] = sites.topology.edges[edge];
-  const Vec3& start = sites.mesh.positions[a];
-  const Vec3& normal = sites.normals.face[faces[0]];
-  for (const std::uint32_t corner : sites.mesh.triangles[faces[1]]) {
-    if (corner == a || corner == b) continue;
-    const Vec3 side = sites.mesh.positions[corner] - start;
-    const double height = dot(normal, side), flat = kFlat * norm(side);
-    return sites.is_solid() ? height < -flat : std::abs(height) > flat;
-  }
-  return true;
-}
+constexpr std::uint64_t kPart = std::uint64_t{1} << 60;
+constexpr int kBodyBit = 63;
 
 Vec3 weights_in(const Mesh& mesh, std::uint32_t face, const Vec3& p) {
   const auto& [a, b, c] = mesh.triangles[face];
@@ -81,6 +47,7 @@ void FeatureContacts::find_at_vertices(ContactCandidates& candidates, Regions re
     find_deepest(regions.subspan(first, last - first));
     first = last;
   }
+  for (const ContactRegion& region : regions) find_inside_edges(region);
   add_contacts();
 }
 
@@ -229,114 +196,6 @@ void FeatureContacts::find_support(Feature& feature) {
   if (way_out.place == WayOut::Place::here) feature.support = support;
   if (way_out.place == WayOut::Place::beside)
     feature.point = way_out.point, feature.own_face = way_out.own_face;
-}
-
-// Only edges of near faces pass through the surface or are within the margin of it, and those that have an
-// end in contact have others only if they are long.
-void FeatureContacts::find_at_edges(ContactCandidates& candidates, std::span<const std::uint32_t> leaves) {
-  start(candidates);
-  const SitesData& sites = internals(on().sites());
-  OneSidedVertices& vertices = candidates_->vertices();
-  const double shortest = kShortEdge * query().size;
-  for (const std::uint32_t leaf : leaves) {
-    const std::uint32_t first = sites.regions.leaves[leaf];
-    for (std::uint32_t near = candidates_->near_faces(leaf); near != 0; near &= near - 1) {
-      const std::uint32_t place = first + static_cast<std::uint32_t>(std::countr_zero(near));
-      const std::uint32_t face = sites.regions.owners[place].face;
-      for (const std::uint32_t edge : sites.topology.face_edges[face]) {
-        if (edge == kNone || sites.topology.edge_faces(edge)[0] != face) continue;
-        const auto [a, b] = sites.topology.edges[edge];
-        const double length = to_other().scale * norm(sites.mesh.positions[b] - sites.mesh.positions[a]);
-        if (!(length > 0) || !is_sharp(sites, edge)) continue;
-        const Triangle &corners = sites.mesh.triangles[face], &places = sites.regions.places.corners[place];
-        bool touches[2] = {};
-        for (int k = 0; k < 3; ++k) {
-          if (corners[k] == a) touches[0] = vertices.in_contact(places[k], face_);
-          if (corners[k] == b) touches[1] = vertices.in_contact(places[k], face_);
-        }
-        const bool is_long = length > shortest;
-        if ((touches[0] || touches[1]) && !is_long) continue;
-        find_on_edge(edge, touches[0], touches[1], is_long ? kSupportReach * query().size : 0);
-      }
-    }
-  }
-  add_contacts();
-}
-
-void FeatureContacts::find_on_edge(std::uint32_t edge, bool a_touches, bool b_touches, double reach) {
-  const SitesData& sites = internals(on().sites());
-  const auto [a, b] = sites.topology.edges[edge];
-  const Vec3 start = to_other().map(sites.mesh.positions[a]), end = to_other().map(sites.mesh.positions[b]);
-  spokes_.clear();
-  Box faces;
-  for (const std::uint32_t beside : sites.topology.edge_faces(edge))
-    for (const std::uint32_t corner : sites.mesh.triangles[beside]) {
-      extend(faces, sites.mesh.positions[corner]);
-      if (corner != a && corner != b)
-        spokes_.push_back(to_other().map.linear(sites.mesh.positions[corner] - sites.mesh.positions[a]));
-    }
-  const SurfaceAround around{&sites, &to_other(), &from_other(), sites.topology.edge_faces(edge), {a, b}};
-  std::uint64_t number = 0;
-  const std::size_t before = features_.size();
-  const Feature on_edge{.key = kEdge | edge, .site = edge, .edge = true, .faces = faces};
-  const EdgeContacts::Edge in_other{start, end, a_touches, b_touches, spokes_, around};
-  for (const EdgeContacts::Found& found :
-       edge_contacts_.find(in_other, other(), query().limit, reach, tolerance())) {
-    Feature feature = on_edge;
-    feature.key |= number++ << kOnEdgeBit;
-    feature.point.at = start + found.t * (end - start);
-    if (found.support.face == kNone)
-      feature.point = measure_near(other(), feature.point.at, found.near_face);
-    else if (found.way_out.place == WayOut::Place::beside)
-      feature.point = found.way_out.point, feature.own_face = found.way_out.own_face;
-    else
-      feature.support = found.support;
-    features_.push_back(feature);
-  }
-  if (!other().solid() || norm(end - start) <= kLongEdge * query().size) return;
-  for (const EdgeContacts::InContact& part : edge_contacts_.in_contact())
-    deepen(in_other, part, before, on_edge, number);
-}
-
-// Of a part of an edge inside, the contacts at its ends, where faces support it and at its middle may all be
-// much shallower than a point between them: that has a contact then, in place of the middle.
-void FeatureContacts::deepen(const EdgeContacts::Edge& edge, const EdgeContacts::InContact& part,
-                             std::size_t before, Feature feature, std::uint64_t& number) {
-  const Vec3 along = edge.b - edge.a;
-  EdgeInside line{edge.a + part.from * along, edge.a + part.to * along};
-  const double rest = kDeeper * norm(along);
-  double known = 0;
-  Feature* middle = nullptr;
-  for (std::size_t i = before + part.first_found; i < before + part.end_found; ++i) {
-    Feature& found = features_[i];
-    const bool supported = found.support.face != kNone;
-    if (!supported && found.own_face == kNone) middle = &found;
-    known = std::max(known, -(supported ? found.support.height : found.point.distance));
-  }
-  // The distance to a face is convex, and bounds depths.
-  const auto from_face = [&](const Vec3& p) {
-    return sites::closest_on_face(internals(other().sites()), part.near_face, p).distance;
-  };
-  line.from_depth = from_face(line.from), line.to_depth = from_face(line.to);
-  const double most = std::max(line.from_depth, line.to_depth);
-  if (!part.from_a) line.from_depth = 0;
-  if (!part.to_b) line.to_depth = 0;
-  if (std::min(most, most_between(line)) <= kMuchDeeper * known + rest) return;
-  const auto measure_end = [&](const Vec3& end, double& depth) {
-    depth = std::max(0.0, -measure_near(other(), end, part.near_face).distance);
-    known = std::max(known, depth);
-  };
-  if (part.from_a) measure_end(line.from, line.from_depth);
-  if (part.to_b) measure_end(line.to, line.to_depth);
-  const SurfacePoint deepest = deep_point(other(), line, kMuchDeeper * known + rest, part.near_face);
-  if (deepest.face == kNone || !at_boundary(other(), deepest)) return;
-  if (middle != nullptr) {
-    middle->point = deepest;
-    return;
-  }
-  feature.key |= number++ << kOnEdgeBit;
-  feature.point = deepest;
-  features_.push_back(feature);
 }
 
 void FeatureContacts::add_contacts() {

@@ -47,8 +47,11 @@ class FeatureContacts {
   void find_each(const ContactRegion& region);
   void find_on_edge(std::uint32_t edge, bool a_touches, bool b_touches, double reach);
   void find_support(Feature& feature);
-  void deepen(const EdgeContacts::Edge& edge, const EdgeContacts::InContact& part, std::size_t before,
-              Feature feature, std::uint64_t& number);
+  [[nodiscard]] EdgeContacts::InContact whole_edge() const;
+  void find_inside_edges(const ContactRegion& region);
+  void find_on_inside_edge(std::uint32_t edge);
+  void deepen(const EdgeContacts::Edge& edge, const EdgeContacts::InContact& part, std::size_t first,
+              const Feature& feature);
   void add_contacts();
   void add_contact(const Feature& feature);
   void extend_by_star(Box& box, std::uint32_t vertex) const;

@@ -8,6 +8,9 @@
 
 namespace sdm::contacts {
 
+/// How deep a face may be below the vertices and edges that it supports, relative to the smaller body.
+inline constexpr double kSupportReach = 1.0 / 8;
+
 /// A face, and the height above it, negative below.
 struct Support {
   std::uint32_t face = kNone;

@@ -42,7 +42,7 @@ double depth_along(const Contact& c, const Vec3& t) {
 }
 
 // The contact of the closest points after the translation, along it.
-Contact exit_contact(const std::array<const shape::PosedBody*, 2>& bodies, const pairs::FacePair& faces,
+Contact exit_contact(const std::array<shape::PosedBody, 2>& bodies, const pairs::FacePair& faces,
                      const std::array<Vec3, 2>& closest, const Vec3& t) {
   Contact exit{.point1 = closest[0] - t,
                .point2 = closest[1],
@@ -50,9 +50,9 @@ Contact exit_contact(const std::array<const shape::PosedBody*, 2>& bodies, const
                .id = ProximityQuery::kExitContact};
   exit.depth = depth_along(exit, t);
   for (int body = 0; body < 2; ++body) {
-    const Mesh& mesh = internals(bodies[body]->body().sites()).mesh;
+    const Mesh& mesh = internals(bodies[body].body().sites()).mesh;
     const auto& [a, b, c] = mesh.triangles[faces[body]];
-    const Vec3 p = inverse(bodies[body]->pose().map)(closest[body]);
+    const Vec3 p = inverse(bodies[body].pose().map)(closest[body]);
     exit.on[body] = {faces[body], barycentric(mesh.positions[a], mesh.positions[b], mesh.positions[c], p)};
   }
   return exit;
@@ -63,21 +63,22 @@ Contact exit_contact(const std::array<const shape::PosedBody*, 2>& bodies, const
 // After the translation t, contact i lets O1 move where n_i·x ≥ −g_i, with its normal n_i and the gap g_i
 // there. So before it, the distance to go along n_i is n_i·t − g_i.
 std::vector<Contact> contacts_after(const shape::PosedBody& o1, const shape::PosedBody& o2,
-                                    const SeparatingTranslation& out, double contact_margin) {
+                                    const SeparatingTranslation& out, double contact_margin,
+                                    const ContactFilter& filter) {
   Box box = o1.box();
   extend(box, o2.box());
   const Vec3& t = out.translation;
-  shape::PosedBody moved = o1;
-  moved.set_pose(Transform::translation(t) * o1.pose().transform());
+  std::array bodies{o1, o2};
+  bodies[0].set_pose(Transform::translation(t) * o1.pose().transform());
   pair::PairAnswers apart(0, std::nullopt);
-  apart.begin(moved, o2);
+  apart.begin(bodies[0], bodies[1]);
   pair::PairAnswers answers(
       contact_margin + apart.separation().value + kGapOfTranslation * out.value + kGapOfSize * diagonal(box),
       std::nullopt);
   const pairs::FacePair closest = apart.known().closest_faces;
-  answers.begin(moved, o2, {.closest_faces = closest});
-  std::vector<Contact> contacts{exit_contact({&moved, &o2}, closest, *apart.separation().witness, t)};
-  for (Contact c : answers.contacts()) {
+  answers.begin(bodies[0], bodies[1], {.closest_faces = closest});
+  std::vector<Contact> contacts{exit_contact(bodies, closest, *apart.separation().witness, t)};
+  for (Contact c : filter ? filter(bodies, answers.contacts()) : answers.contacts()) {
     c.point1 = c.point1 - t;
     c.normal += Vec3{};  // no −0
     c.depth = depth_along(c, t);
