@@ -3,12 +3,16 @@
 #include <sdm/sdm.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "geometry/vec.h"
 #include "query/inside/solid.h"
 #include "query/shape/body.h"
+#include "query/shape/column_box.h"
 #include "sites/sites_data.h"
 #include "support/shapes.h"
 
@@ -173,6 +177,61 @@ TEST(WallDepth, DoesNotEndInsideOfSolidsThatAreInsideOut) {
       }
     }
   }
+}
+
+// In the unit frame, eight at a time, nothing is excluded that is in the box around a column, also far from
+// the origin.
+TEST(WallColumns, AreComparedWithAllFacesInTheirBox) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const auto vector = [&] { return Vec3{normal(random), normal(random), normal(random)}; };
+  std::size_t in_box = 0, found = 0, faces = 0;
+  for (const double far : {0.0, 1e6}) {
+    Mesh mesh = sphere(3);
+    for (Vec3& p : mesh.positions) p = 2.0 * p + far * Vec3{1, -2, 0.5};
+    const Sites built(mesh);
+    const sites::SitesData& sites = internals(built);
+    for (int column = 0; column < 200; ++column) {
+      const Vec3 u = normalized(vector()), v = normalized(cross(u, vector())), w = cross(u, v);
+      const Vec3 origin = mesh.positions[column] + 0.01 * vector();
+      const Vec3 lo{-0.3, -0.1 * std::abs(normal(random)), -0.1},
+          hi{0.2, 0.1, 0.1 * std::abs(normal(random))};
+      const std::array axes{u, v, w};
+      const shape::ColumnBox box(sites.frame, origin, axes, lo, hi);
+      std::vector<std::uint8_t> meets(mesh.triangles.size());
+      const auto visit = [&](const auto& self, std::uint32_t number) -> void {
+        const tree::WideTree::Node& node = sites.wide.nodes[number];
+        for (std::uint32_t near = box.meets(node); near != 0; near &= near - 1) {
+          const std::uint32_t child = node.child[std::countr_zero(near)];
+          if (!tree::WideTree::is_leaf(child)) {
+            self(self, child);
+            continue;
+          }
+          const std::uint32_t leaf = tree::WideTree::leaf_number(child);
+          const std::uint32_t lanes = box.meets(sites.regions.bounds[leaf]);
+          for (std::uint32_t i = sites.regions.leaves[leaf]; i < sites.regions.leaves[leaf + 1]; ++i)
+            meets[sites.regions.owners[i].face] = lanes >> (i - sites.regions.leaves[leaf]) & 1;
+        }
+      };
+      visit(visit, 0);
+      for (std::size_t face = 0; face < meets.size(); ++face) {
+        bool overlaps = true;
+        for (int a = 0; a < 3; ++a) {
+          double least = 1e30, most = -1e30;
+          for (const std::uint32_t corner : mesh.triangles[face]) {
+            const double at = dot(axes[a], mesh.positions[corner] - origin);
+            least = std::min(least, at), most = std::max(most, at);
+          }
+          overlaps &= least <= hi[a] && most >= lo[a];
+        }
+        EXPECT_LE(overlaps, meets[face] != 0);
+        in_box += overlaps, found += meets[face];
+        ++faces;
+      }
+    }
+  }
+  EXPECT_GT(in_box, 100u);
+  EXPECT_LT(found, faces / 10);
 }
 
 }  // namespace

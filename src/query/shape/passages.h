@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,9 +14,10 @@
 
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
+#include "query/shape/column_box.h"
 #include "query/shape/wall_column.h"
 #include "sites/sites_data.h"
-#include "tree/visit.h"
+#include "tree/wide_tree.h"
 
 namespace sdm::shape {
 
@@ -34,13 +36,8 @@ class Passages {
         most_(most),
         error_(kDoubleRounding * (1 / solid.frame.scale + norm(column.origin))),
         faces_(faces) {
-    const auto enter = [&](tree::Subtree subtree) {
-      return !overflow_ && may_pass(solid.tree.box(subtree.root));
-    };
-    tree::visit(solid.tree, tree::InOrder{enter, [&](std::uint32_t leaf) {
-                                            for (const std::uint32_t face : solid.tree.items_of(leaf))
-                                              add(face);
-                                          }});
+    if (!solid.wide.nodes.empty())
+      visit(0, {solid.frame, column.origin, column.axes, {lo(0), lo(1), lo(2)}, {hi(0), hi(1), hi(2)}});
   }
 
   /// Whether there are too many.
@@ -76,20 +73,21 @@ class Passages {
 
   [[nodiscard]] double lo(int axis) const { return (axis == 0 ? limits_.lo : column_.lo[axis]) - error_; }
   [[nodiscard]] double hi(int axis) const { return (axis == 0 ? limits_.hi : column_.hi[axis]) + error_; }
-  [[nodiscard]] bool may_pass(const tree::FloatBox& box) const {
-    Vec3 middle, half;
-    for (int k = 0; k < 3; ++k) {
-      middle[k] = solid_.frame.origin[k] + 0.5 * (double{box.lo[k]} + box.hi[k]) / solid_.frame.scale;
-      half[k] = (0.5 * (double{box.hi[k]} - box.lo[k]) + kSingleRounding) / solid_.frame.scale;
+  // A node of the wide tree, and all below it.
+  void visit(std::uint32_t node, const ColumnBox& box) {
+    const tree::WideTree::Node& wide = solid_.wide.nodes[node];
+    for (std::uint32_t near = box.meets(wide); near != 0 && !overflow_; near &= near - 1) {
+      const std::uint32_t child = wide.child[std::countr_zero(near)];
+      if (!tree::WideTree::is_leaf(child)) {
+        visit(child, box);
+        continue;
+      }
+      const std::uint32_t leaf = tree::WideTree::leaf_number(child), first = solid_.regions.leaves[leaf];
+      const std::uint32_t used = (1u << (solid_.regions.leaves[leaf + 1] - first)) - 1;
+      for (std::uint32_t faces = box.meets(solid_.regions.bounds[leaf]) & used; faces != 0;
+           faces &= faces - 1)
+        add(solid_.regions.owners[first + std::countr_zero(faces)].face);
     }
-    middle = middle - column_.origin;
-    for (const int a : {1, 2, 0}) {
-      const Vec3& u = column_.axes[a];
-      const double at = dot(u, middle);
-      const double reach = std::abs(u[0]) * half[0] + std::abs(u[1]) * half[1] + std::abs(u[2]) * half[2];
-      if (at + reach < lo(a) || at - reach > hi(a)) return false;
-    }
-    return true;
   }
 
   void add(std::uint32_t face) {
