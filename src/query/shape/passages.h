@@ -17,7 +17,7 @@
 #include "query/shape/column_box.h"
 #include "query/shape/wall_column.h"
 #include "sites/sites_data.h"
-#include "tree/wide_tree.h"
+#include "tree/visit.h"
 
 namespace sdm::shape {
 
@@ -36,8 +36,10 @@ class Passages {
         most_(most),
         error_(kDoubleRounding * (1 / solid.frame.scale + norm(column.origin))),
         faces_(faces) {
-    if (!solid.wide.nodes.empty())
-      visit(0, {solid.frame, column.origin, column.axes, {lo(0), lo(1), lo(2)}, {hi(0), hi(1), hi(2)}});
+    thread_local std::vector<tree::OpenNode> stack;
+    const Search search{
+        *this, {solid.frame, column.origin, column.axes, {lo(0), lo(1), lo(2)}, {hi(0), hi(1), hi(2)}}};
+    tree::visit(solid.wide, stack, search);
   }
 
   /// Whether there are too many.
@@ -73,22 +75,24 @@ class Passages {
 
   [[nodiscard]] double lo(int axis) const { return (axis == 0 ? limits_.lo : column_.lo[axis]) - error_; }
   [[nodiscard]] double hi(int axis) const { return (axis == 0 ? limits_.hi : column_.hi[axis]) + error_; }
-  // A node of the wide tree, and all below it.
-  void visit(std::uint32_t node, const ColumnBox& box) {
-    const tree::WideTree::Node& wide = solid_.wide.nodes[node];
-    for (std::uint32_t near = box.meets(wide); near != 0 && !overflow_; near &= near - 1) {
-      const std::uint32_t child = wide.child[std::countr_zero(near)];
-      if (!tree::WideTree::is_leaf(child)) {
-        visit(child, box);
-        continue;
-      }
-      const std::uint32_t leaf = tree::WideTree::leaf_number(child), first = solid_.regions.leaves[leaf];
-      const std::uint32_t used = (1u << (solid_.regions.leaves[leaf + 1] - first)) - 1;
-      for (std::uint32_t faces = box.meets(solid_.regions.bounds[leaf]) & used; faces != 0;
-           faces &= faces - 1)
-        add(solid_.regions.owners[first + std::countr_zero(faces)].face);
+
+  // The policy of the search for faces in the box around the column.
+  struct Search {
+    Passages& passages;
+    ColumnBox box;
+
+    bool enter(const tree::OpenNode&) const { return !passages.overflow_; }
+    std::uint32_t bound(const tree::OpenNode&, const tree::WideTree::Node& node) const {
+      return box.meets(node);
     }
-  }
+    void leaf(const tree::OpenNode& open) const {
+      const sites::Regions& regions = passages.solid_.regions;
+      const std::uint32_t leaf = open.leaf_number(), first = regions.leaves[leaf];
+      const std::uint32_t used = (1u << (regions.leaves[leaf + 1] - first)) - 1;
+      for (std::uint32_t near = box.meets(regions.bounds[leaf]) & used; near != 0; near &= near - 1)
+        passages.add(regions.owners[first + static_cast<std::uint32_t>(std::countr_zero(near))].face);
+    }
+  };
 
   void add(std::uint32_t face) {
     Polygon polygon;
