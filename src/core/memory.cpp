@@ -1,8 +1,8 @@
 #include "core/memory.h"
 
-#include <sstream>
 #include <string>
 
+#include "core/number_text.h"
 #include "core/platform.h"
 
 namespace sdm::core {
@@ -10,11 +10,9 @@ namespace sdm::core {
 void require_memory(std::size_t bytes, std::string_view purpose) {
   const std::size_t available = available_memory();
   if (bytes <= available) return;
-  std::ostringstream message;
-  message.precision(3);
-  message << purpose << " needs " << static_cast<double>(bytes) / 1e9 << " GB of memory and "
-          << static_cast<double>(available) / 1e9 << " GB are available";
-  throw Error(message.str());
+  const auto gigabytes = [](std::size_t count) { return number_text(static_cast<double>(count) / 1e9, 3); };
+  throw Error(std::string(purpose) + " needs " + gigabytes(bytes) + " GB of memory and " +
+              gigabytes(available) + " GB are available");
 }
 
 Error out_of_memory(std::string_view purpose) {

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <fstream>
 #include <string>
-#else
+#elif !defined(__wasm__)
 #include <random>
 #endif
 
@@ -57,6 +57,17 @@ std::size_t available_memory() {
 
 std::uint64_t process_number() {
   return static_cast<std::uint64_t>(getpid());
+}
+
+#elif defined(__wasm__)
+
+// What the memory of the module may still grow by. Free blocks within it are not counted.
+std::size_t available_memory() {
+  return std::numeric_limits<std::size_t>::max() - (__builtin_wasm_memory_size(0) << 16);
+}
+
+std::uint64_t process_number() {
+  return 0;  // there are no other processes
 }
 
 #else

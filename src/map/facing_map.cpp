@@ -1,16 +1,14 @@
-#include "map/facing_map.h"
 
+#include "map/facing_map.h"
 #include <sdm/error.h>
 #include <sdm/facing.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <new>
-
 #include "core/memory.h"
+#include "core/number_text.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
 #include "map/map_writer.h"
@@ -81,11 +79,9 @@ void compute_facing_map(const Surface& surface, const Sites& sites, const MapOpt
 MeasuredDistance measured_distance(const MapOptions& options) {
   if (!options.facing) return {};
   facing::check_angle(*options.facing);
-  std::array<char, 32> angle{};
-  std::snprintf(angle.data(), angle.size(), "%.6g", *options.facing);
   return {DistanceKind::facing,
-          std::string("distance to the closest of the faces that face the same way, within ") + angle.data() +
-              "°",
+          "distance to the closest of the faces that face the same way, within " +
+              number_text(*options.facing, 6) + "°",
           options.facing};
 }
 

@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+
+#include "core/number_text.h"
 
 namespace sdm {
 namespace {
-
-std::string digits_of(double number, int digits) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, number);
-  return text.data();
-}
 
 /// Two units, the first one larger.
 struct UnitNames {
@@ -30,23 +25,24 @@ Doubt unit_doubt(const OtherUnit& unit) {
   const std::string o1 = grows ? names.larger : names.smaller, o2 = grows ? names.smaller : names.larger;
   constexpr double kLeastShown = 1e-5;
   constexpr int kExact = 15;  // digits: ratios of units are decimal numbers, or their inverses
-  const std::string misfit = unit.misfit < kLeastShown ? "less than 0.001" : digits_of(100 * unit.misfit, 2);
+  const std::string misfit =
+      unit.misfit < kLeastShown ? "less than 0.001" : number_text(100 * unit.misfit, 2);
   return {DoubtReason::other_unit,
-          "O1 fits O2 far better " + digits_of(ratio, 4) + " times as " + (grows ? "large" : "small") +
+          "O1 fits O2 far better " + number_text(ratio, 4) + " times as " + (grows ? "large" : "small") +
               ", as if it was in " + o1 + " and O2 in " + o2 + " (to " + misfit +
-              " % of its size, instead of " + digits_of(100 * unit.misfit_as_given, 2) + " %)",
+              " % of its size, instead of " + number_text(100 * unit.misfit_as_given, 2) + " %)",
           // Not --units-o1 and --units-o2: these also scale O2 where --units names another unit, so that a
           // tolerance would mean another length than in this run.
-          "--transform-o1 scale:" + digits_of(unit.factor, kExact) +
+          "--transform-o1 scale:" + number_text(unit.factor, kExact) +
               ", after the steps it already has, converts O1 alone"};
 }
 
 Doubt mirror_doubt(const MirroredFit& fit) {
   constexpr double kLeastShown = 1e-5;
-  const std::string misfit = fit.misfit < kLeastShown ? "less than 0.001" : digits_of(100 * fit.misfit, 2);
+  const std::string misfit = fit.misfit < kLeastShown ? "less than 0.001" : number_text(100 * fit.misfit, 2);
   return {DoubtReason::mirrored,
           "O1 fits O2 far better mirrored (to " + misfit + " % of its size, instead of " +
-              digits_of(100 * fit.misfit_as_given, 2) + " %)",
+              number_text(100 * fit.misfit_as_given, 2) + " %)",
           "compare it with the part of the other hand, or mirror it by --transform-o1 matrix:FILE"};
 }
 
@@ -61,7 +57,7 @@ std::vector<Doubt> doubts_of(const Alignment& alignment, const std::optional<Oth
   if (alignment.fraction_fitting < kLeast)
     doubts.push_back(
         {DoubtReason::poor_fit,
-         digits_of(100 * (1 - alignment.fraction_fitting), 3) +
+         number_text(100 * (1 - alignment.fraction_fitting), 3) +
              " % of the samples of the aligned O1 do not fit O2",
          "start the alignment elsewhere (--align-from), or give the parts that belong together"});
   const auto free = std::ranges::count_if(alignment.freedoms, &DegreeOfFreedom::free);
@@ -76,9 +72,9 @@ std::vector<Doubt> doubts_of(const Alignment& alignment, const std::optional<Oth
 std::optional<Doubt> doubt_of(const Coverage& coverage, double least) {
   if (!(coverage.value < least)) return std::nullopt;
   return Doubt{DoubtReason::low_coverage,
-               "only " + digits_of(100 * coverage.value, 3) +
-                   " % of the area of O2 have a measured point within " + digits_of(coverage.reach, 5) +
-                   ", less than " + digits_of(100 * least, 3) + " %",
+               "only " + number_text(100 * coverage.value, 3) +
+                   " % of the area of O2 have a measured point within " + number_text(coverage.reach, 5) +
+                   ", less than " + number_text(100 * least, 3) + " %",
                "measure the rest, or choose a lower --min-coverage"};
 }
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "core/number_text.h"
 #include "geometry/vec.h"
 
 namespace sdm {
@@ -18,9 +18,7 @@ std::string text_of(double number, int digits) {
     const double unit = std::pow(10, std::floor(std::log10(std::abs(number))) + 1 - digits);
     return std::to_string(std::lround(unit * std::round(number / unit)));
   }
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, number);
-  return text.data();
+  return number_text(number, digits);
 }
 
 bool is_empty(const Box& box) {

@@ -1,16 +1,14 @@
 #include <sdm/summary.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
+
+#include "core/number_text.h"
 
 namespace sdm {
 namespace {
 
 std::string short_text(double number, int digits = 5) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, number);
-  return text.data();
+  return number_text(number, digits);
 }
 
 std::string with_unit(double length, const std::string& units, int digits = 5) {

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "atlas/packing/too_small.h"
+#include "core/number_text.h"
 #include "geometry/vec.h"
 
 namespace sdm {
@@ -42,12 +42,9 @@ Progress trial_progress(const Progress& progress, int trial) {
 }
 
 [[noreturn]] void throw_unreachable(double precision, double resolution) {
-  std::ostringstream message;
-  message.precision(2);
-  message << "a precision of " << precision << " takes about " << resolution / kMost
-          << " times the maximum of 32768 texels per side; use " << 1.1 * precision * resolution / kMost
-          << " or more";
-  throw Error(message.str());
+  throw Error("a precision of " + number_text(precision, 2) + " takes about " +
+              number_text(resolution / kMost, 2) + " times the maximum of 32768 texels per side; use " +
+              number_text(1.1 * precision * resolution / kMost, 2) + " or more");
 }
 
 }  // namespace

@@ -1,0 +1,12 @@
+# Downloads a file of a known content: cmake -DURL=... -DFILE=... -DSHA256=... -P download.cmake
+file(DOWNLOAD ${URL} ${FILE} TLS_VERIFY ON STATUS status)
+list(GET status 0 failed)
+if(failed)
+  list(GET status 1 reason)
+  message(FATAL_ERROR "${URL} was not downloaded: ${reason}")
+endif()
+file(SHA256 ${FILE} checksum)
+if(NOT checksum STREQUAL SHA256)
+  file(REMOVE ${FILE})
+  message(FATAL_ERROR "${URL} has other content than expected: SHA-256 ${checksum}")
+endif()

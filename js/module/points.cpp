@@ -1,0 +1,92 @@
+// Closest points of any points, their signs, and rays.
+#include <sdm/closest_points.h>
+#include <sdm/rays.h>
+#include <sdm/sign.h>
+
+#include "module/arguments.h"
+#include "module/result.h"
+
+namespace sdm::js {
+
+namespace {
+
+/// Points, distances, faces, barycentric coordinates of corners 1 and 2, sites and their types.
+void add_closest(Result& result, const Sites& sites, std::span<const Vec3> queries,
+                 const std::vector<ClosestPoint>& closest) {
+  const std::size_t count = closest.size();
+  std::vector<Vec3> points(count);
+  std::vector<double> distances(count), barycentric(2 * count);
+  std::vector<std::uint32_t> faces(count), numbers(count);
+  std::vector<SiteType> types(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ClosestPoint& one = closest[i];
+    const bool found = one.type != SiteType::none;
+    points[i] = found ? one.point : Vec3{NAN, NAN, NAN};
+    distances[i] = one.distance;
+    const SurfacePoint on = found ? point_on_face(sites, one.type, one.site, queries[i]) : SurfacePoint{};
+    faces[i] = on.face;
+    barycentric[2 * i] = on.barycentric[1];
+    barycentric[2 * i + 1] = on.barycentric[2];
+    numbers[i] = one.site;
+    types[i] = one.type;
+  }
+  result.add(std::move(points));
+  result.add(std::move(distances));
+  result.add(std::move(faces));
+  result.add(std::move(barycentric));
+  result.add(std::move(numbers));
+  result.add(std::move(types));
+}
+
+}  // namespace
+
+SDM_EXPORT(sdm_closest_points)
+Result* closest_points(const Sites* sites, const double* data, std::uint32_t count, double max_distance) {
+  return guarded([&](Result& result) {
+    const auto queries = points(data, count);
+    const auto closest =
+        sdm::closest_points(*sites, queries, {.max_distance = max_distance, .progress = host_progress()});
+    add_closest(result, *sites, queries, closest);
+  });
+}
+
+SDM_EXPORT(sdm_signed_distance)
+Result* signed_distance(const Sites* sites, const double* data, std::uint32_t count, std::uint32_t method) {
+  return guarded([&](Result& result) {
+    const auto queries = points(data, count);
+    const SignUsed used = choose_sign(*sites, static_cast<SignMethod>(method));
+    const auto closest = sdm::closest_points(*sites, queries, {.progress = host_progress()});
+    const auto inside = inside_flags(*sites, queries, closest, used.method);
+    std::vector<double> distances(count);
+    for (std::size_t i = 0; i < count; ++i)
+      distances[i] = inside[i] ? -closest[i].distance : closest[i].distance;
+    result.add(std::move(distances));
+    result.add_numbers(static_cast<int>(used.method));
+    result.add_text(used.reason);
+  });
+}
+
+/// Origins and directions, three numbers each. Parameters, faces, barycentric coordinates of corners 1 and 2.
+SDM_EXPORT(sdm_first_hits)
+Result* first_hits(const Sites* sites, const double* origins, const double* directions, std::uint32_t count,
+                   double t_min, double t_max) {
+  return guarded([&](Result& result) {
+    std::vector<Ray> rays(count);
+    const auto from = points(origins, count), along = points(directions, count);
+    for (std::size_t i = 0; i < count; ++i) rays[i] = {from[i], along[i], t_min, t_max};
+    const std::vector<RayHit> hits = sdm::first_hits(*sites, rays, {.progress = host_progress()});
+    std::vector<double> t(count), barycentric(2 * count);
+    std::vector<std::uint32_t> faces(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      t[i] = hits[i].t;
+      faces[i] = hits[i].face;
+      barycentric[2 * i] = hits[i].barycentric[1];
+      barycentric[2 * i + 1] = hits[i].barycentric[2];
+    }
+    result.add(std::move(t));
+    result.add(std::move(faces));
+    result.add(std::move(barycentric));
+  });
+}
+
+}  // namespace sdm::js

@@ -1,0 +1,79 @@
+// Results of the exported functions, as JavaScript reads them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#define SDM_EXPORT(name) extern "C" __attribute__((export_name(#name)))
+
+namespace sdm::js {
+
+/// An array in the memory of the module.
+struct View {
+  const void* data = nullptr;
+  std::uint32_t bytes = 0;
+};
+
+/// Arrays that a function returns, or why there are none. JavaScript reads the public members by their
+/// offsets (js/src/module.ts), copies the arrays and frees the result with sdm_free_result().
+class Result {
+ public:
+  enum class Error : std::uint32_t { none, input, cancelled, memory };
+  Error error = Error::none;
+  View message;  ///< of an error, in UTF-8
+  std::uint32_t count = 0;
+  View arrays[12];
+
+  template <class T>
+  void add(std::vector<T> values) {
+    auto kept = std::make_shared<std::vector<T>>(std::move(values));
+    add_view(std::as_bytes(std::span(*kept)));
+    kept_.push_back(std::move(kept));
+  }
+  /// Numbers, as one array of double.
+  template <class... Numbers>
+  void add_numbers(Numbers... numbers) {
+    add(std::vector<double>{static_cast<double>(numbers)...});
+  }
+  void add_text(std::string_view text) { add(std::vector<char>(text.begin(), text.end())); }
+  /// An object that JavaScript keeps by its address, until it calls the function that frees it.
+  template <class T>
+  void add_object(std::unique_ptr<T> object) {
+    add_numbers(reinterpret_cast<std::uintptr_t>(object.release()));
+  }
+  void fail(Error kind, std::string text) {
+    error = kind;
+    text_ = std::move(text);
+    message = {text_.data(), static_cast<std::uint32_t>(text_.size())};
+  }
+
+ private:
+  void add_view(std::span<const std::byte> bytes) {
+    arrays[count++] = {bytes.data(), static_cast<std::uint32_t>(bytes.size())};
+  }
+  std::vector<std::shared_ptr<void>> kept_;
+  std::string text_;
+};
+
+void fail_with_current_exception(Result& result);
+
+/// Calls compute(result) and turns exceptions into errors.
+template <class Compute>
+Result* guarded(const Compute& compute) {
+  auto* result = new Result;
+  try {
+    compute(*result);
+  } catch (...) {
+    fail_with_current_exception(*result);
+  }
+  return result;
+}
+
+}  // namespace sdm::js

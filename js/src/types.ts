@@ -1,0 +1,43 @@
+// Types of arguments and results.
+
+export type NumberArray = Float64Array | Float32Array | Uint32Array | Int32Array | Uint16Array | Uint8Array;
+
+/** Three numbers for each point: an array of numbers, typed or not. */
+export type Points = ArrayLike<number>;
+/** Three indices of vertices for each triangle, counter-clockwise seen from outside; null: consecutive vertices. */
+export type Indices = ArrayLike<number> | null;
+
+/** Called with the current step and the fraction of it that is done; returning false cancels the call. */
+export type Progress = (step: string, fraction: number) => boolean | void;
+
+/** Why a call failed: its arguments, its signal, memory, or a fault of the library. */
+export type ErrorKind = 'input' | 'cancelled' | 'memory' | 'internal';
+
+export class SdmError extends Error {
+  constructor(
+    readonly kind: ErrorKind,
+    message: string,
+  ) {
+    super(message);
+    this.name = 'SdmError';
+  }
+}
+
+export type SignMethod = 'automatic' | 'none' | 'exact' | 'winding' | 'side';
+export const kSignMethods: readonly SignMethod[] = ['automatic', 'none', 'exact', 'winding', 'side'];
+export type AtlasKind = 'charts' | 'triangles' | 'uv';
+export const kAtlasKinds: readonly AtlasKind[] = ['charts', 'triangles', 'uv'];
+export type SiteType = 'vertex' | 'edge' | 'face';
+export type Certainty = 'exact' | 'bounded' | 'estimate';
+
+export type Point = [number, number, number];
+
+/** A length with its bounds: lower ≤ truth ≤ upper. */
+export interface BoundedLength {
+  value: number;
+  lower: number;
+  upper: number;
+  certainty: Certainty;
+  /** A point of each surface that are `value` apart. */
+  witness: [Point, Point] | null;
+}
