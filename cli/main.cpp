@@ -16,6 +16,7 @@
 #include "scene.h"
 #include "self.h"
 #include "sequence.h"
+#include "simplify.h"
 #include "terminal_text.h"
 #include "thickness.h"
 #include "usage_error.h"
@@ -84,6 +85,7 @@ int run(int argc, char** argv) {
     add_thickness_command(app);
     add_bake_command(app);
     add_volume_command(app);
+    add_simplify_command(app);
     add_info_command(app);
     add_devices_command(app);
     add_scene_command(app);

@@ -28,7 +28,7 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 # Loaded when they are needed: the font of legends, OpenGL for --engine gl, and a software renderer for it.
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "fonts-dejavu-core, libegl1, libgl1, libgl1-mesa-dri")
 
-set(sdm_devel_depends libtbb-dev libhwy-dev)
+set(sdm_devel_depends libtbb-dev libhwy-dev libmeshoptimizer-dev)
 if(SDM_BUILD_GL)
   list(APPEND sdm_devel_depends libepoxy-dev)
 endif()

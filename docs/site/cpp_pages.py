@@ -19,7 +19,7 @@ SUBJECTS = {
                          "certified_verdict", "group_verdicts", "tolerance_table", "coverage", "doubts", "part_statistics", "places", "islands", "combined_statistics", "temporal_maps", "match", "transfer", "bake",
                          "baked_geometry"],
     "Proximity": ["proximity_query", "shape", "multi_body_query", "pose_query", "self_proximity_query", "thickness", "time_of_contact",
-                  "hausdorff", "metrics"],
+                  "hausdorff", "metrics", "simplify"],
     "Other queries": ["align", "fit_check", "unit_check", "rays", "volume"],
     "Errors, progress and threads": ["error", "progress", "cancellation", "threads"],
 }  # fmt: skip

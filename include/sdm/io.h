@@ -91,9 +91,16 @@ struct MeshFileOptions {
 /// throws sdm::Error for numbers that are not finite, and for a singular matrix.
 [[nodiscard]] SDM_API Transform read_matrix(const std::filesystem::path& file);
 
-/// Writes the positions, in double precision, and the triangles as binary PLY; read_mesh returns them
-/// bit-identical.
+/// Writes the positions, in double precision, the triangles and, if the mesh has them, the texture
+/// coordinates of corners as binary PLY; read_mesh returns them bit-identical.
 SDM_API void write_ply(const std::filesystem::path& file, const Mesh& mesh);
+
+/// Writes a mesh in the format that the extension names: .ply as write_ply() does; .obj with all digits;
+/// .stl, binary, without texture coordinates; .glb. The latter two keep positions, and GLB texture
+/// coordinates, in single precision. Also throws sdm::Error for another extension.
+SDM_API void write_mesh(const std::filesystem::path& file, const Mesh& mesh);
+/// Whether write_mesh() rounds positions to float. Throws sdm::Error as it does for another extension.
+[[nodiscard]] SDM_API bool is_written_in_single_precision(const std::filesystem::path& file);
 
 /// The axis of the mesh that points up in model.glb, whose own vertical axis is y.
 enum class UpAxis { y, z };

@@ -45,6 +45,7 @@
 #include <sdm/self_proximity_query.h>
 #include <sdm/shape.h>
 #include <sdm/sign.h>
+#include <sdm/simplify.h>
 #include <sdm/sites.h>
 #include <sdm/solid.h>
 #include <sdm/statistics.h>

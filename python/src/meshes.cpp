@@ -98,6 +98,15 @@ reverses the faces, so that they keep facing outwards.
 >>> mesh = sdm.Mesh(box).transformed(np.diag([2, 1, 1, 1]))
 >>> mesh.vertices.max(axis=0)
 array([2., 1., 1.]))")
+      .def(
+          "save",
+          [](const PyMesh& self, nb::handle file) {
+            const std::filesystem::path name = path_of(file);
+            run(nb::none(), [&](const Progress&) { write_mesh(name, self.mesh); });
+          },
+          nb::arg("file").none(), nb::sig("def save(self, file: str | os.PathLike[str]) -> None"),
+          R"(Writes the mesh in the format of the extension: .ply and .obj keep all digits, .stl and .glb
+single precision; .stl has no texture coordinates.)")
       .def("__repr__", [](const PyMesh& self) {
         return nb::str("sdm.Mesh({} vertices, {} faces)")
             .format(self.mesh.positions.size(), self.mesh.triangles.size());

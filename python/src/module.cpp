@@ -24,6 +24,7 @@ NB_MODULE(_core, module) {
   bind_alignments(module);
   bind_poses(module);
   bind_surfaces(module);
+  bind_simplify(module);
   bind_metrics(module);
   bind_time_of_contact(module);
   bind_volume(module);

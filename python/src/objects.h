@@ -110,6 +110,7 @@ void bind_proximity(nb::module_& module);
 void bind_bodies(nb::module_& module);
 void bind_alignments(nb::module_& module);
 void bind_poses(nb::module_& module);
+void bind_simplify(nb::module_& module);
 void bind_surfaces(nb::module_& module);
 void bind_time_of_contact(nb::module_& module);
 void bind_volume(nb::module_& module);

@@ -45,6 +45,7 @@ set(order
   certify/metrics
   certify/tolerance
   certify/depth
+  simplify
   volume
   proximity/contacts
   proximity/pair

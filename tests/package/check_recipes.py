@@ -25,7 +25,7 @@ CONDA = {
     "glmark2-data": None,
 }  # fmt: skip
 # vcpkg's ports for those that sdm::sdm needs.
-VCPKG = {"libtbb-dev": "tbb", "libhwy-dev": "highway", "libboost-dev": "boost-multiprecision", "libeigen3-dev": "eigen3",
+VCPKG = {"libtbb-dev": "tbb", "libhwy-dev": "highway", "libmeshoptimizer-dev": "meshoptimizer", "libboost-dev": "boost-multiprecision", "libeigen3-dev": "eigen3",
          "libxxhash-dev": "xxhash", "libepoxy-dev": "libepoxy"}  # fmt: skip
 
 faults = []

@@ -1,0 +1,287 @@
+#include "simplify.h"
+
+#include <fmt/format.h>
+#include <sdm/error.h>
+#include <sdm/io.h>
+#include <sdm/simplify.h>
+#include <sdm/version.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bounds_text.h"
+#include "cad_options.h"
+#include "common_options.h"
+#include "exit_codes.h"
+#include "format.h"
+#include "notes.h"
+#include "option_checks.h"
+#include "output_folder.h"
+#include "print.h"
+#include "progress_line.h"
+#include "proximity_report.h"
+#include "report.h"
+#include "stopwatch.h"
+#include "unit_options.h"
+#include "weld.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// --triangles: a number, or a share of those of the mesh.
+struct TriangleTarget {
+  double value = 0;
+  bool is_percent = false;
+
+  [[nodiscard]] std::size_t of(std::size_t triangles) const {
+    const double count = is_percent ? value / 100 * static_cast<double>(triangles) : value;
+    return std::max<std::size_t>(1, static_cast<std::size_t>(count));
+  }
+};
+
+std::optional<TriangleTarget> parse_triangles(std::string text) {
+  TriangleTarget target;
+  if (text.ends_with('%')) {
+    text.pop_back();
+    const auto share = parse_number(text);
+    if (!share || !(*share > 0 && *share <= 100)) return std::nullopt;
+    return TriangleTarget{*share, true};
+  }
+  constexpr std::int64_t kMost = std::int64_t{1} << 30;
+  const auto count = parse_whole_number(text);
+  if (!count || *count < 1 || *count > kMost) return std::nullopt;
+  return TriangleTarget{static_cast<double>(*count), false};
+}
+
+struct SimplifyCommand : RunOptions {
+  std::string mesh, units;
+  fs::path out, report;  // empty: no report
+  std::optional<double> max_deviation;
+  std::optional<TriangleTarget> triangles;
+  unsigned lods = 0;
+  std::optional<sdm::WeldOptions> weld;
+  sdm::TessellationOptions tessellation;
+
+  /// The file of a level of detail; 0 is the finest.
+  [[nodiscard]] fs::path file(std::size_t level) const {
+    if (level == 0) return out;
+    return out.parent_path() /
+           fmt::format("{}_lod{}{}", out.stem().string(), level, out.extension().string());
+  }
+};
+
+struct SimplifyOutcome {
+  Input input;
+  std::size_t triangles = 0;  ///< of the input
+  std::vector<sdm::Simplified> levels;
+  sdm::SimplifyReport report;
+  Notes notes;
+  double import_ms = 0, output_ms = 0;
+};
+
+/// A sentence on a level that does not have what was asked for.
+std::optional<std::string> note_on_level(const SimplifyCommand& command, std::size_t level,
+                                         const sdm::Simplified& simplified) {
+  if (!simplified.stopped) return std::nullopt;
+  const std::string file = command.file(level).string();
+  const std::string same = level == 0 ? "the mesh itself, with all its triangles" : "the level before it";
+  if (command.max_deviation)
+    return fmt::format("{} is {}: no collapse of edges keeps the deviation within {}", file, same,
+                       number(*command.max_deviation * std::ldexp(1, static_cast<int>(level))));
+  return fmt::format(
+      "{} has {} triangles, more than asked for: borders, seams and non-manifold edges permit no further "
+      "collapse, or nothing with an area would be left",
+      file, simplified.mesh.triangles.size());
+}
+
+std::vector<sdm::Simplified> simplify_levels(const SimplifyCommand& command, const sdm::Mesh& mesh,
+                                             sdm::SimplifyReport& report, const sdm::Progress& progress) {
+  sdm::Simplifier simplifier(mesh);
+  std::vector<sdm::Simplified> levels;
+  levels.reserve(command.lods + 1);
+  for (unsigned level = 0; level <= command.lods; ++level) {
+    const sdm::SimplifyOptions options{.from = levels.empty() ? nullptr : &levels.back(),
+                                       .single_precision = sdm::is_written_in_single_precision(command.out),
+                                       .progress = progress};
+    const double factor = std::ldexp(1, static_cast<int>(level));
+    if (command.max_deviation) {
+      levels.push_back(simplifier.to_deviation(factor * *command.max_deviation, options));
+    } else {
+      const auto count = static_cast<double>(command.triangles->of(mesh.triangles.size()));
+      levels.push_back(
+          simplifier.to_triangles(static_cast<std::size_t>(std::max(1.0, count / factor)), options));
+    }
+  }
+  report = simplifier.report();
+  return levels;
+}
+
+SimplifyOutcome simplify_mesh(const SimplifyCommand& command, const sdm::Progress& progress) {
+  Stopwatch watch;
+  SimplifyOutcome outcome;
+  outcome.input = load_input("mesh", command.mesh, "", {.tessellation = command.tessellation});
+  check_deflection(command.tessellation, {&outcome.input});
+  if (command.weld) weld(outcome.input, *command.weld);
+  if (command.json || !command.report.empty()) inspect(outcome.input);
+  outcome.triangles = outcome.input.mesh.triangles.size();
+  outcome.notes = outcome.input.notes;
+  if (auto note = note_on_unit(command.units)) outcome.notes.push_back(std::move(*note));
+  outcome.import_ms = watch.lap();
+  try {
+    outcome.levels = simplify_levels(command, outcome.input.mesh, outcome.report, progress);
+  } catch (const sdm::Cancelled&) {
+    throw;
+  } catch (const sdm::Error& error) {
+    throw sdm::Error(fmt::format("{}: {}", command.mesh, error.what()));
+  }
+  for (std::size_t i = 0; i < outcome.levels.size(); ++i)
+    if (auto note = note_on_level(command, i, outcome.levels[i])) outcome.notes.push_back(std::move(*note));
+  return outcome;
+}
+
+Json level_json(const SimplifyCommand& command, std::size_t level, const sdm::Simplified& simplified) {
+  return {{"file", command.file(level).string()},
+          {"vertices", simplified.mesh.positions.size()},
+          {"triangles", simplified.mesh.triangles.size()},
+          {"deviation", to_json(simplified.deviation)},
+          {"estimate", {{"value", simplified.estimate}, {"kind", "estimate"}, {"of", "meshoptimizer"}}},
+          {"stopped", simplified.stopped}};
+}
+
+Json report_of(const SimplifyCommand& command, const SimplifyOutcome& outcome) {
+  Json json;
+  json["version"] = sdm::kVersion;
+  json["mesh"] = to_json(outcome.input);
+  json["units"] = command.units;
+  json["max_deviation"] = command.max_deviation ? Json(*command.max_deviation) : Json();
+  json["max_triangles"] = command.triangles ? Json(command.triangles->of(outcome.triangles)) : Json();
+  json["levels"] = Json::array();
+  for (std::size_t i = 0; i < outcome.levels.size(); ++i)
+    json["levels"].push_back(level_json(command, i, outcome.levels[i]));
+  json["candidates"] = outcome.report.candidates;
+  json["notes"] = outcome.notes;
+  json["time_ms"] = {{"import", outcome.import_ms},
+                     {"sites", outcome.report.sites_ms},
+                     {"collapse", outcome.report.collapse_ms},
+                     {"deviation", outcome.report.deviation_ms},
+                     {"output", outcome.output_ms}};
+  return json;
+}
+
+std::string summary(const SimplifyCommand& command, const SimplifyOutcome& outcome) {
+  std::string text = fmt::format("{}: {} triangles\n", command.mesh, outcome.triangles);
+  const std::string unit = unit_suffix(command.units);
+  for (std::size_t i = 0; i < outcome.levels.size(); ++i) {
+    const sdm::Simplified& level = outcome.levels[i];
+    const std::size_t count = level.mesh.triangles.size();
+    const sdm::BoundedLength& d = level.deviation;
+    text += fmt::format("  result     {}: {} triangles, {} %\n", command.file(i).string(), count,
+                        number(100 * static_cast<double>(count) / static_cast<double>(outcome.triangles), 3));
+    const std::string between =
+        d.certainty == sdm::Certainty::exact ? std::string() : "  " + bounds_text(d.lower, d.upper);
+    text += fmt::format("  deviation  {}{}{} ({})\n", number(d.value), unit, between, name(d.certainty));
+    text += fmt::format("  estimate   {}{}, of meshoptimizer, no bound\n", number(level.estimate), unit);
+  }
+  return text + note_lines(outcome.notes, 13);
+}
+
+void run(const SimplifyCommand& command) {
+  limit_threads(command.threads);
+  OutputFolder out(fs::absolute(command.out).parent_path());  // found before anything is computed
+  ProgressLine progress(command.quiet);
+  progress.step("import");
+  SimplifyOutcome outcome;
+  out.fill([&] {
+    outcome = simplify_mesh(command, progress.callback());
+    progress.step("output");
+    Stopwatch watch;
+    for (std::size_t i = 0; i < outcome.levels.size(); ++i)
+      sdm::write_mesh(out.staging() / command.file(i).filename(), outcome.levels[i].mesh);
+    outcome.output_ms = watch.lap();
+  });
+  if (!command.report.empty()) write_whole(command.report, to_text(report_of(command, outcome)));
+  print(
+      command, [&] { return report_of(command, outcome); }, [&] { return summary(command, outcome); });
+}
+
+void add_targets(CLI::App& app, SimplifyCommand& command) {
+  CLI::Option* const deviation =
+      app.add_option("--max-deviation", command.max_deviation,
+                     "As few triangles as are found for which no point of the result is farther than D from "
+                     "the mesh, "
+                     "and none of the mesh farther from the result: certified, not sampled")
+          ->check(positive_number())
+          ->type_name("D");
+  app.add_option_function<std::string>(
+         "--triangles", [&command](const std::string& text) { command.triangles = parse_triangles(text); },
+         "At most so many triangles, or P percent of those of the mesh; how far the result deviates is "
+         "certified")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            return parse_triangles(text)
+                       ? std::string()
+                       : text + " is neither a whole number, 1 or more, nor a share such as 5%";
+          },
+          ""))
+      ->excludes(deviation)
+      ->type_name("N|P%");
+  app.add_option(
+         "--lods", command.lods,
+         "So many further levels of detail, each with twice the deviation or half of the triangles of "
+         "the one before, as NAME_lod1, NAME_lod2, ... beside the output")
+      ->transform(whole_number(0, 16))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+std::string check_extension(const std::string& file) {
+  try {
+    (void)sdm::is_written_in_single_precision(file);
+    return {};
+  } catch (const sdm::Error& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+void add_simplify_command(CLI::App& app) {
+  CLI::App* simplify =
+      app.add_subcommand("simplify", "Reduce a mesh to fewer triangles, with a certified deviation");
+  simplify->footer(
+      "The deviation is the symmetric Hausdorff distance of result and mesh, between certified bounds. "
+      "Vertices are some of those of the mesh, with their texture coordinates; seams and borders stay. "
+      "Normals, colours and materials are not kept. Where no mesh with fewer triangles keeps D, the result "
+      "is "
+      "the mesh itself, and a note says so.\n\n"
+      "Example, a chain of three levels of detail:\n"
+      "  sdm simplify scan.glb --max-deviation 0.1 --lods 2 -o low.glb");
+  const auto command = std::make_shared<SimplifyCommand>();
+  SimplifyCommand& c = *command;
+  simplify->add_option("MESH", c.mesh, fmt::format("The mesh ({})", sdm::mesh_format_names()))->required();
+  simplify->add_option("-o,--output", c.out, "The result, as PLY, OBJ, STL or GLB by its extension")
+      ->required()
+      ->check(CLI::Validator(check_extension, ""))
+      ->type_name("FILE");
+  add_targets(*simplify, c);
+  add_weld_option(*simplify, c.weld, "the mesh");
+  add_deflection_option(*simplify, c.tessellation);
+  simplify->add_option("--report", c.report, "Write what --json prints to a file, too")
+      ->check(non_empty())
+      ->type_name("FILE");
+  simplify->add_option("--units", c.units, "Units of the mesh, for printed values")->type_name("NAME");
+  add_run_options(*simplify, c, "JSON instead of a summary");
+  simplify->callback([command] {
+    if (!command->max_deviation && !command->triangles)
+      throw CLI::ValidationError("sdm simplify", "--max-deviation or --triangles is required");
+    check_units(command->units, command->mesh, "");
+    run(*command);
+  });
+}

@@ -1,0 +1,6 @@
+// `sdm simplify`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+void add_simplify_command(CLI::App& app);

@@ -1,0 +1,89 @@
+/// Simplification: fewer triangles, with a certificate of how far the result is from the mesh.
+///
+/// Threads: functions of different objects may be called concurrently; those of one object one after the
+/// other.
+#pragma once
+
+#include <sdm/api.h>
+#include <sdm/bounds.h>
+#include <sdm/mesh.h>
+#include <sdm/progress.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+namespace sdm {
+
+/// A mesh with fewer triangles than another one, the input.
+struct Simplified {
+  /// Its vertices are vertices of the input, in their order; faces wind as those of the input. Texture
+  /// coordinates are those of the vertices that are left, seams stay seams.
+  Mesh mesh;
+  /// The symmetric Hausdorff distance of the mesh and the input: no point of either one is farther than
+  /// `upper` from the other one, and a point of one is `lower` from it. `value` is `lower`.
+  BoundedLength deviation{};
+  /// What meshoptimizer says of the same: its own error of the collapses, no bound. Where it simplified in
+  /// steps, their sum.
+  double estimate = 0;
+  /// No more triangles could go, although more were to: the borders, seams or non-manifold edges that are
+  /// left permit no collapse, or none keeps the deviation.
+  bool stopped = false;
+};
+
+/// Options of Simplifier::to_deviation() and to_triangles().
+struct SimplifyOptions {
+  /// An earlier result of the same object to go on from, such as the finer one in a chain of levels of
+  /// detail: the result has no more triangles. Null: the input.
+  const Simplified* from = nullptr;
+  /// Positions of the result are rounded to float, as STL and glTF keep them; `deviation` is that of the
+  /// rounded mesh.
+  bool single_precision = false;
+  Progress progress{};
+};
+
+/// What the calls so far have cost. Phases that run beside each other count twice.
+struct SimplifyReport {
+  double sites_ms = 0;         ///< the search structure of the input
+  double collapse_ms = 0;      ///< meshoptimizer
+  double deviation_ms = 0;     ///< certificates
+  std::size_t candidates = 0;  ///< meshes that were measured
+};
+
+/// Simplifies a mesh by collapsing edges (meshoptimizer's quadric simplifier), and proves how far the results
+/// are from it. What all results need of the mesh is made once.
+class SDM_API Simplifier {
+ public:
+  /// Vertices at the same position are welded, faces that repeat a corner left out. Throws sdm::Error if the
+  /// mesh is unusable (see validate) or there is not enough memory. Cost: linear.
+  explicit Simplifier(const Mesh& mesh);
+  ~Simplifier();
+  Simplifier(Simplifier&&) noexcept;
+  Simplifier& operator=(Simplifier&&) noexcept;
+
+  /// Returns a mesh whose deviation is certified to be at most `max_deviation`, greater than 0, in units of
+  /// the mesh. Edges are collapsed in steps, each of which goes on from the last mesh that keeps the limit,
+  /// until these remove few triangles: about as few are left as the simplifier reaches, though not provably
+  /// the fewest. Where no collapse keeps the limit, the result is the input, or `from`, and `stopped`.
+  ///
+  /// Throws sdm::Error for a limit that is not a positive number, one that rounding to float or `from`
+  /// exceeds, or if there is not enough memory; Cancelled. Cost: the sites of the input, once; the closest
+  /// points of its vertices for each of some 3 to 8 candidates, and of points of one or a few results, dense
+  /// enough to tell whether they keep the limit.
+  [[nodiscard]] Simplified to_deviation(double max_deviation, const SimplifyOptions& options = {});
+
+  /// Returns a mesh of at most `triangles`, at least 1, with its certified deviation, whose bounds are about
+  /// 1 % apart: by effort, which is limited, and at most to 1e-6 of the diagonal of the mesh. More are left
+  /// where `stopped` says so, and where fewer would have no area.
+  ///
+  /// Errors as above. Cost: the sites of the input, once, and one candidate.
+  [[nodiscard]] Simplified to_triangles(std::size_t triangles, const SimplifyOptions& options = {});
+
+  [[nodiscard]] const SimplifyReport& report() const;
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace sdm

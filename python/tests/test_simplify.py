@@ -1,0 +1,55 @@
+"""Fewer triangles, with a certified deviation."""
+
+import meshes
+import numpy as np
+import pytest
+
+import sdm
+
+
+def test_limits_are_kept():
+    given = sdm.Mesh(meshes.sphere(steps=4))
+    coarse, deviation = sdm.simplify(given, triangles=100)
+    assert 1 <= len(coarse.faces) <= 100
+    assert deviation.certainty == "bounded" and 0 < deviation.lower <= deviation.upper
+    truth = sdm.hausdorff(given, coarse)
+    assert truth.lower <= deviation.upper and deviation.lower <= truth.upper
+    finer, kept = sdm.simplify(given, max_deviation=deviation.lower / 2)
+    assert kept.upper <= deviation.lower / 2 and len(finer.faces) > len(coarse.faces)
+    known = {tuple(p) for p in given.vertices}
+    assert all(tuple(p) in known for p in finer.vertices)
+
+
+def test_soups_are_welded_and_the_input_is_kept():
+    vertices, faces = meshes.sphere()
+    soup = np.asarray(vertices)[np.asarray(faces)].reshape(-1, 3)
+    coarse, deviation = sdm.simplify((soup, np.arange(len(soup)).reshape(-1, 3)), triangles=60)
+    assert len(coarse.faces) <= 60 and deviation.upper < 1
+    with pytest.warns(RuntimeWarning, match="the mesh itself"):
+        same, zero = sdm.simplify(meshes.sphere(), max_deviation=1e-9)
+    assert len(same.faces) == len(faces) and zero.upper == 0
+
+
+def test_result_is_saved(tmp_path):
+    coarse, _ = sdm.simplify(meshes.sphere(), triangles=100)
+    for name in ("low.ply", "low.obj", "low.glb", "low.stl"):
+        coarse.save(tmp_path / name)
+        assert len(sdm.read(tmp_path / name).faces) == len(coarse.faces)
+    with pytest.raises(sdm.Error, match="extension"):
+        coarse.save(tmp_path / "low.xyz")
+
+
+def test_errors():
+    with pytest.raises(sdm.Error, match="either"):
+        sdm.simplify(meshes.box())
+    with pytest.raises(sdm.Error, match="either"):
+        sdm.simplify(meshes.box(), max_deviation=1, triangles=2)
+    for limit in (0, -1, np.nan):
+        with pytest.raises(sdm.Error, match="greater than 0"):
+            sdm.simplify(meshes.box(), max_deviation=limit)
+    with pytest.raises(sdm.Error, match="triangles"):
+        sdm.simplify(meshes.box(), triangles=0)
+    with pytest.raises(TypeError):
+        sdm.simplify(meshes.box(), triangles=1.5)
+    with pytest.raises(sdm.Cancelled):
+        sdm.simplify(meshes.sphere(), triangles=50, progress=lambda step, fraction: False)

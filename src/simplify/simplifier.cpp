@@ -1,0 +1,244 @@
+#include <sdm/error.h>
+#include <sdm/simplify.h>
+#include <sdm/sites.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <optional>
+#include <utility>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/stopwatch.h"
+#include "geometry/vec.h"
+#include "simplify/certificate.h"
+#include "simplify/collapse.h"
+#include "simplify/wedges.h"
+
+namespace sdm {
+namespace {
+
+using namespace simplify;
+
+// Collapses in several steps deviate less than in one, as each has the errors of a mesh that is smoother than
+// that before: on a scan of a bunny reduced to 1 %, by a quarter. With a count, there are two, the first of
+// which ends at this multiple of the count. With a limit, these are the errors of the first ones relative to
+// it, and steps go on from the last mesh that keeps the limit while they remove at least this share of its
+// triangles.
+constexpr std::size_t kFirstTriangles = 4;
+constexpr double kFirstError = 0.42, kSecondError = 0.5, kLarger = 1.15, kSmaller = 0.8, kWorthwhile = 0.04;
+constexpr double kMostError = 8;
+constexpr int kMostSteps = 12, kMostFailures = 2, kMostHalvings = 10;
+
+bool has_area(const Mesh& mesh) {
+  return std::ranges::any_of(mesh.triangles, [&](const Triangle& t) {
+    const Vec3& a = mesh.positions[t[0]];
+    return squared_norm(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a)) > 0;
+  });
+}
+
+}  // namespace
+
+/// The input, what is made of it once, and the steps of a simplification.
+class Simplifier::State {
+ public:
+  explicit State(const Mesh& mesh) {
+    validate(mesh);
+    wedges_ = wedges_of(mesh);
+    mesh_ = {mesh.positions, mesh.triangles, {}};
+  }
+
+  Simplified to_deviation(double limit, const SimplifyOptions& options);
+  Simplified to_triangles(std::size_t count, const SimplifyOptions& options);
+  [[nodiscard]] const SimplifyReport& report() const { return report_; }
+
+ private:
+  /// A mesh on the way: what is left of the wedges, and its deviation, complete or of the points of the
+  /// input.
+  struct Step : Simplified {
+    std::vector<Triangle> triangles;
+  };
+
+  /// Makes the sites of the input beside the first collapses. The result has no triangles if none has an
+  /// area.
+  Step collapsed(const Wedges& wedges, const Step& from, const CollapseLimit& limit,
+                 const SimplifyOptions& options);
+  void measure_input(Step& step, double limit, const SimplifyOptions& options);
+  void measure_result(Step& step, double limit, const SimplifyOptions& options);
+  /// Ever coarser meshes to which no point of the input is farther than the limit.
+  std::vector<Step> coarser(const Wedges& wedges, const Step& start, double limit,
+                            const SimplifyOptions& options);
+  /// The input, or what is to be simplified further, as it is.
+  Simplified unchanged(double limit, const SimplifyOptions& options);
+  void make_sites();
+
+  Mesh mesh_;  // until there are sites
+  Wedges wedges_;
+  std::optional<Sites> sites_;
+  SimplifyReport report_;
+};
+
+void Simplifier::State::make_sites() {
+  if (sites_) return;
+  Stopwatch watch;
+  sites_.emplace(mesh_);
+  mesh_ = {};
+  report_.sites_ms += watch.lap();
+}
+
+Simplifier::State::Step Simplifier::State::collapsed(const Wedges& wedges, const Step& from,
+                                                     const CollapseLimit& limit,
+                                                     const SimplifyOptions& options) {
+  Step step;
+  parallel_invoke(
+      [&] {
+        Stopwatch watch;
+        Collapsed result = collapse(wedges, from.triangles, limit);
+        step.triangles = std::move(result.triangles);
+        step.estimate = from.estimate + result.estimate;
+        step.mesh = mesh_of(wedges, step.triangles, options.single_precision);
+        if (!has_area(step.mesh)) step.mesh = {}, step.triangles.clear();
+        report_.collapse_ms += watch.lap();
+      },
+      [&] { make_sites(); });
+  return step;
+}
+
+void Simplifier::State::measure_input(Step& step, double limit, const SimplifyOptions& options) {
+  Stopwatch watch;
+  step.deviation = deviation_of_input(*sites_, step.mesh, {limit, step.estimate}, options.progress);
+  report_.deviation_ms += watch.lap();
+  ++report_.candidates;
+}
+
+void Simplifier::State::measure_result(Step& step, double limit, const SimplifyOptions& options) {
+  Stopwatch watch;
+  step.deviation =
+      with_deviation_of_result(step.deviation, *sites_, step.mesh, {limit, step.estimate}, options.progress);
+  report_.deviation_ms += watch.lap();
+}
+
+Simplified Simplifier::State::unchanged(double limit, const SimplifyOptions& options) {
+  if (options.from != nullptr) return *options.from;
+  make_sites();
+  Step step{{.mesh = mesh_of(wedges_, wedges_.triangles, options.single_precision)}, {}};
+  step.deviation.certainty = Certainty::exact;
+  if (options.single_precision) {
+    if (!has_area(step.mesh))
+      throw Error("nothing is left of the mesh when its positions are rounded to float");
+    measure_input(step, limit, options);
+    measure_result(step, limit, options);
+  }
+  return step;
+}
+
+std::vector<Simplifier::State::Step> Simplifier::State::coarser(const Wedges& wedges, const Step& start,
+                                                                double limit,
+                                                                const SimplifyOptions& options) {
+  std::vector<Step> steps;
+  // From the last mesh that keeps the limit, collapses up to `low` remove too few triangles, and those up to
+  // `high` exceed the limit.
+  double error = kFirstError * limit, low = 0, high = kNoLimit;
+  int failures = 0;
+  for (int n = 0; n < kMostSteps && failures <= (steps.empty() ? kMostHalvings : kMostFailures); ++n) {
+    const Step& last = steps.empty() ? start : steps.back();
+    Step step = collapsed(wedges, last, {0, error}, options);
+    const auto before = static_cast<double>(last.triangles.size());
+    if (static_cast<double>(step.triangles.size()) > (1 - kWorthwhile) * before) {
+      low = error;
+      if (high < kLarger * low || low > kMostError * limit) break;
+      error = high < kNoLimit ? std::sqrt(low * high) : 2 * error;
+      continue;
+    }
+    bool passes = !step.triangles.empty();
+    if (passes) {
+      measure_input(step, limit, options);
+      passes = step.deviation.upper <= limit;
+    }
+    if (passes) {
+      error = steps.empty() ? std::max(kSecondError * limit, error) : kLarger * error;
+      low = 0, high = kNoLimit;
+      steps.push_back(std::move(step));
+    } else {
+      high = error, ++failures;
+      error = low > 0 ? std::sqrt(low * high) : (steps.empty() ? 0.5 : kSmaller) * error;
+    }
+  }
+  return steps;
+}
+
+Simplified Simplifier::State::to_deviation(double limit, const SimplifyOptions& options) {
+  const Wedges finer = options.from != nullptr ? wedges_of(options.from->mesh) : Wedges{};
+  const Wedges& wedges = options.from != nullptr ? finer : wedges_;
+  Step start{{}, wedges.triangles};
+  if (options.from != nullptr) start.estimate = options.from->estimate;
+  std::vector<Step> steps = coarser(wedges, start, limit, options);
+  for (; !steps.empty(); steps.pop_back()) {
+    Step& step = steps.back();
+    measure_result(step, limit, options);
+    if (step.deviation.upper <= limit) return std::move(step);
+  }
+  Simplified result = unchanged(limit, options);
+  result.stopped = true;
+  if (result.deviation.upper <= limit) return result;
+  throw Error(
+      options.from != nullptr
+          ? "the mesh to go on from deviates by more than the limit"
+          : "the positions of the mesh rounded to float are not certain to deviate by the limit at most");
+}
+
+Simplified Simplifier::State::to_triangles(std::size_t count, const SimplifyOptions& options) {
+  const Wedges finer = options.from != nullptr ? wedges_of(options.from->mesh) : Wedges{};
+  const Wedges& wedges = options.from != nullptr ? finer : wedges_;
+  if (wedges.triangles.size() <= count) return unchanged(kNoLimit, options);
+  Step start{{}, wedges.triangles};
+  if (options.from != nullptr) start.estimate = options.from->estimate;
+  Step step;
+  // Where nothing with an area is left, more triangles are.
+  for (std::size_t most = count; step.triangles.empty() && most < start.triangles.size(); most *= 2) {
+    step = start;
+    for (const std::size_t end : {kFirstTriangles * most, most})
+      if (step.triangles.size() > end) step = collapsed(wedges, step, {end, kNoLimit}, options);
+  }
+  const bool none = step.triangles.empty() || step.triangles.size() == start.triangles.size();
+  Simplified result;
+  if (none) {
+    result = unchanged(kNoLimit, options);
+  } else {
+    measure_input(step, kNoLimit, options);
+    measure_result(step, kNoLimit, options);
+    result = std::move(step);
+  }
+  result.stopped = result.mesh.triangles.size() > count;
+  return result;
+}
+
+Simplifier::Simplifier(const Mesh& mesh) try : state_(std::make_unique<State>(mesh)) {
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("simplification");
+}
+Simplifier::~Simplifier() = default;
+Simplifier::Simplifier(Simplifier&&) noexcept = default;
+Simplifier& Simplifier::operator=(Simplifier&&) noexcept = default;
+
+Simplified Simplifier::to_deviation(double max_deviation, const SimplifyOptions& options) try {
+  if (!(max_deviation > 0 && std::isfinite(max_deviation)))
+    throw Error("the largest deviation of a simplified mesh must be a number greater than 0");
+  return state_->to_deviation(max_deviation, options);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("simplification");
+}
+
+Simplified Simplifier::to_triangles(std::size_t triangles, const SimplifyOptions& options) try {
+  if (triangles == 0) throw Error("a simplified mesh must be allowed at least one triangle");
+  return state_->to_triangles(triangles, options);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("simplification");
+}
+
+const SimplifyReport& Simplifier::report() const {
+  return state_->report();
+}
+
+}  // namespace sdm

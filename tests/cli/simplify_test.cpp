@@ -1,0 +1,121 @@
+// `sdm simplify`.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/hausdorff.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/samples.h"
+#include "support/run_sdm.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+struct SimplifyRun : ::testing::Test {
+  TemporaryFolder folder;
+  Mesh mesh = sphere(4);
+  std::string input = write_obj(folder / "sphere.obj", mesh);
+  std::string out = folder / "low.ply";
+
+  [[nodiscard]] Outcome run(std::vector<std::string> more) const {
+    std::vector<std::string> arguments{"simplify", input, "-o", out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_sdm(arguments);
+  }
+};
+
+TEST_F(SimplifyRun, KeepsTheLimitInTheFile) {
+  for (const char* name : {"low.ply", "low.obj", "low.stl", "low.glb"}) {
+    out = folder / name;
+    const Outcome done = run({"--max-deviation", "0.02", "--json"});
+    ASSERT_EQ(done.code, 0) << done.err;
+    const Json json = Json::parse(done.out);
+    const Json& level = json["levels"][0];
+    const Mesh low = read_mesh(out);
+    EXPECT_EQ(level["file"], out);
+    EXPECT_EQ(level["triangles"], low.triangles.size());
+    EXPECT_LT(low.triangles.size(), mesh.triangles.size() / 2);
+    EXPECT_LE(level["deviation"]["upper"], 0.02);
+    const SymmetricHausdorff truth = symmetric_hausdorff(Sites(read_mesh(input)), Sites(low));
+    EXPECT_LE(truth.larger.distance.lower, level["deviation"]["upper"]) << name;
+    EXPECT_GE(truth.larger.distance.upper, level["deviation"]["lower"]) << name;
+    EXPECT_EQ(level["estimate"]["kind"], "estimate");
+    EXPECT_GT(level["estimate"]["value"], 0);
+    for (const char* step : {"import", "sites", "collapse", "deviation", "output"})
+      EXPECT_GT(json["time_ms"][step], 0) << step;
+  }
+}
+
+TEST_F(SimplifyRun, WritesLevelsOfDetailAndTheReport) {
+  const Outcome done =
+      run({"--triangles", "50%", "--lods", "2", "--units", "mm", "--report", folder / "report.json"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(names_in(folder.path()),
+              ElementsAre("low.ply", "low_lod1.ply", "low_lod2.ply", "report.json", "sphere.obj"));
+  const Json json = Json::parse(contents(folder / "report.json"));
+  EXPECT_EQ(json["max_triangles"], mesh.triangles.size() / 2);
+  EXPECT_EQ(json["max_deviation"], nullptr);
+  EXPECT_EQ(json["mesh"]["triangles"], mesh.triangles.size());
+  ASSERT_EQ(json["levels"].size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Json& level = json["levels"][i];
+    EXPECT_LE(level["triangles"], mesh.triangles.size() >> (i + 1));
+    EXPECT_EQ(read_mesh(level["file"].get<std::string>()).triangles.size(), level["triangles"]);
+    if (i == 0) continue;
+    EXPECT_GE(level["deviation"]["upper"], json["levels"][i - 1]["deviation"]["lower"]);
+  }
+  EXPECT_THAT(done.out, HasSubstr("deviation  "));
+  EXPECT_THAT(done.out, HasSubstr(" mm, of meshoptimizer, no bound"));
+}
+
+TEST_F(SimplifyRun, SaysThatNothingKeepsTheLimit) {
+  const Outcome done = run({"--max-deviation", "1e-9"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("is the mesh itself, with all its triangles"));
+  EXPECT_EQ(read_mesh(out).triangles, read_mesh(input).triangles);
+}
+
+TEST_F(SimplifyRun, RefusesBadTargets) {
+  for (const std::vector<std::string>& options :
+       std::vector<std::vector<std::string>>{{},
+                                             {"--max-deviation", "0"},
+                                             {"--max-deviation", "nan"},
+                                             {"--max-deviation", "-1"},
+                                             {"--triangles", "0"},
+                                             {"--triangles", "0%"},
+                                             {"--triangles", "101%"},
+                                             {"--triangles", "1.5"},
+                                             {"--triangles", "10", "--max-deviation", "1"},
+                                             {"--triangles", "10", "--lods", "-1"},
+                                             {"--triangles", "10", "--report", ""}}) {
+    const Outcome done = run(options);
+    EXPECT_EQ(done.code, 2) << done.out;
+    EXPECT_THAT(done.err, HasSubstr("sdm: error: "));
+  }
+  out = folder / "low.xyz";
+  const Outcome other = run({"--triangles", "10"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr(".ply, .obj, .stl or .glb"));
+  EXPECT_THAT(names_in(folder.path()), ElementsAre("sphere.obj"));
+}
+
+TEST_F(SimplifyRun, LeavesNothingAfterAFailure) {
+  std::ofstream(input) << "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const Outcome empty = run({"--triangles", "10"});
+  EXPECT_EQ(empty.code, 1);
+  EXPECT_THAT(empty.err, HasSubstr("sphere.obj"));
+  write_obj(input, moved(sphere(3), {1e7, 0, 0}));  // floats are 1 apart there
+  out = folder / "low.glb";
+  const Outcome coarse = run({"--max-deviation", "0.001"});
+  EXPECT_EQ(coarse.code, 1) << coarse.out;
+  EXPECT_THAT(coarse.err, HasSubstr("float"));
+  EXPECT_THAT(names_in(folder.path()), ElementsAre("sphere.obj"));
+}
+
+}  // namespace
+}  // namespace sdm::test

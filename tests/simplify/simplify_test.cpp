@@ -1,0 +1,263 @@
+// Simplifier: certificates against dense samples of an independent distance, limits, and what must survive.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sdm/error.h>
+#include <sdm/hausdorff.h>
+#include <sdm/simplify.h>
+#include <sdm/vec.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+
+#include "support/error_of.h"
+#include "support/hausdorff_oracle.h"
+#include "support/meshes.h"
+#include "support/noise.h"
+#include "support/oracle.h"
+#include "support/points.h"
+#include "support/shapes.h"
+
+namespace sdm::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+double box_diagonal(const Mesh& mesh) {
+  return scene_diagonal(mesh, mesh);
+}
+
+/// The largest distance from samples of A, its vertices among them, to B.
+double sampled(const Mesh& a, const Mesh& b) {
+  std::mt19937 random(7);
+  constexpr std::size_t kSamples = 10'000;
+  const oracle::CgalDistance distance(b);
+  double largest = 0;
+  for (const Vec3& p : random_surface_points(a, kSamples, random)) largest = std::max(largest, distance(p));
+  for (const Triangle& t : a.triangles)
+    for (const std::uint32_t v : t) largest = std::max(largest, distance(a.positions[v]));
+  return largest;
+}
+
+void expect_vertices_of(const Mesh& input, const Mesh& result) {
+  const std::set<Vec3> known(input.positions.begin(), input.positions.end());
+  for (const Vec3& p : result.positions) ASSERT_TRUE(known.contains(p));
+  EXPECT_NO_THROW(validate(result));
+}
+
+/// Bounds contain what samples and an independent search find, and the witness is of both meshes.
+void expect_certificate(const Mesh& input, const Simplified& simplified) {
+  const BoundedLength& d = simplified.deviation;
+  double coordinate = 0;
+  for (const double x : bounds(input).hi) coordinate = std::max(coordinate, std::abs(x));
+  for (const double x : bounds(input).lo) coordinate = std::max(coordinate, std::abs(x));
+  const double rounding = 1e-9 * box_diagonal(input) + 4e-12 * coordinate;
+  EXPECT_LE(d.lower, d.upper);
+  EXPECT_LE(sampled(input, simplified.mesh), d.upper + rounding);
+  EXPECT_LE(sampled(simplified.mesh, input), d.upper + rounding);
+  const SymmetricHausdorff truth =
+      symmetric_hausdorff(Sites(input), Sites(simplified.mesh), {.precision = 1e-4 * box_diagonal(input)});
+  EXPECT_LE(d.lower, truth.larger.distance.upper);
+  EXPECT_GE(d.upper, truth.larger.distance.lower);
+  if (!d.witness) return;
+  EXPECT_NEAR(norm((*d.witness)[0] - (*d.witness)[1]), d.lower, rounding);
+  EXPECT_LE(oracle::CgalDistance(input)((*d.witness)[0]), rounding);
+  EXPECT_LE(oracle::CgalDistance(simplified.mesh)((*d.witness)[1]), rounding);
+}
+
+struct Case {
+  const char* name;
+  Mesh mesh;
+};
+
+std::vector<Case> cases() {
+  std::vector<Case> result;
+  result.push_back({"sphere", sphere(5)});
+  result.push_back({"torus, without seams", ring(80)});
+  result.push_back({"torus, with seams", torus(90, 60)});
+  result.push_back({"noisy sphere", with_noise(sphere(5), 0.2)});
+  result.push_back({"open height field", height_field(70)});
+  result.push_back({"Moebius band", band(300, true)});
+  result.push_back({"two parts", joined(sphere(4), moved(ring(50), {4, 0, 0}))});
+  result.push_back({"every face with vertices of its own", taken_apart(sphere(4), 0)});
+  result.push_back({"duplicates, flipped and degenerate faces", with_defects(ring(40))});
+  result.push_back({"far from the origin", moved(sphere(4), {1e6, -3e6, 2e6})});
+  result.push_back({"fandisk", load("fandisk.off")});
+  return result;
+}
+
+TEST(Simplifier, CertificatesHoldAndLimitsAreKept) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const double size = box_diagonal(c.mesh);
+    Simplifier simplifier(c.mesh);
+    for (const double share : {0.002, 0.02}) {
+      const Simplified s = simplifier.to_deviation(share * size);
+      EXPECT_LE(s.deviation.upper, share * size);
+      EXPECT_EQ(s.stopped, s.deviation.upper == 0) << "of a mesh that is not simplified";
+      expect_vertices_of(c.mesh, s.mesh);
+      expect_certificate(c.mesh, s);
+    }
+    const std::size_t count = c.mesh.triangles.size() / 5;
+    const Simplified s = simplifier.to_triangles(count);
+    EXPECT_TRUE(s.stopped || s.mesh.triangles.size() <= count) << s.mesh.triangles.size();
+    EXPECT_GT(s.estimate, 0);
+    expect_vertices_of(c.mesh, s.mesh);
+    expect_certificate(c.mesh, s);
+    EXPECT_LE(s.deviation.upper - s.deviation.lower, 0.02 * s.deviation.upper + 2e-6 * size);
+  }
+}
+
+TEST(Simplifier, ReducesSmoothMeshesFar) {
+  const Mesh mesh = sphere(5);
+  Simplifier simplifier(mesh);
+  const Simplified s = simplifier.to_deviation(0.01);
+  // A sphere by n equilateral triangles deviates by about 7.3 / n, if vertices are on it.
+  EXPECT_LT(s.mesh.triangles.size(), 2000);
+  EXPECT_GT(s.deviation.upper, 0.006) << "much of the limit is used";
+  EXPECT_TRUE(inspect(s.mesh).closed);
+  EXPECT_TRUE(inspect(s.mesh).oriented);
+}
+
+TEST(Simplifier, LevelsAreMonotone) {
+  const Mesh mesh = with_noise(torus(100, 60), 0.1);
+  Simplifier simplifier(mesh);
+  std::vector<Simplified> levels;
+  levels.reserve(4);
+  for (int i = 0; i < 4; ++i) {
+    const double limit = 0.01 * std::ldexp(1, i);
+    levels.push_back(simplifier.to_deviation(limit, {.from = i > 0 ? &levels[i - 1] : nullptr}));
+    EXPECT_LE(levels[i].deviation.upper, limit);
+    expect_certificate(mesh, levels[i]);
+    if (i == 0) continue;
+    EXPECT_LE(levels[i].mesh.triangles.size(), levels[i - 1].mesh.triangles.size());
+    EXPECT_GE(levels[i].estimate, levels[i - 1].estimate);
+    expect_vertices_of(levels[i - 1].mesh, levels[i].mesh);
+  }
+  const Simplified fewer = simplifier.to_triangles(500, {.from = &levels[0]});
+  EXPECT_LE(fewer.mesh.triangles.size(), 500U);
+  expect_certificate(mesh, fewer);
+}
+
+// A point of a torus of height z = sin v and around by u has these texture coordinates.
+TEST(Simplifier, KeepsTextureCoordinatesAndSeams) {
+  const Mesh mesh = torus(96, 64);
+  std::set<std::pair<Vec3, Vec2>> corners;
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+    for (int k = 0; k < 3; ++k) corners.insert({mesh.positions[mesh.triangles[f][k]], mesh.corner_uvs[f][k]});
+  Simplifier simplifier(mesh);
+  for (const Simplified& s : {simplifier.to_triangles(1500), simplifier.to_deviation(0.02)}) {
+    ASSERT_EQ(s.mesh.corner_uvs.size(), s.mesh.triangles.size());
+    EXPECT_LT(s.mesh.triangles.size(), mesh.triangles.size() / 2);
+    EXPECT_TRUE(inspect(s.mesh).closed) << "seams are no gaps";
+    for (std::size_t f = 0; f < s.mesh.triangles.size(); ++f)
+      for (int k = 0; k < 3; ++k)
+        EXPECT_TRUE(corners.contains({s.mesh.positions[s.mesh.triangles[f][k]], s.mesh.corner_uvs[f][k]}));
+    // No face spans a seam: their texture coordinates would be torn.
+    for (const auto& uv : s.mesh.corner_uvs)
+      for (int k = 0; k < 2; ++k)
+        EXPECT_LT(std::max({uv[0][k], uv[1][k], uv[2][k]}) - std::min({uv[0][k], uv[1][k], uv[2][k]}), 0.5);
+  }
+}
+
+TEST(Simplifier, KeepsBordersAndWinding) {
+  const Mesh mesh = height_field(60);
+  Simplifier simplifier(mesh);
+  const Simplified s = simplifier.to_deviation(0.01 * box_diagonal(mesh));
+  EXPECT_FALSE(s.stopped);
+  const auto upwards = [](const Mesh& m) {
+    double area = 0;
+    for (const Triangle& t : m.triangles) {
+      const Vec3 &a = m.positions[t[0]], &b = m.positions[t[1]], &c = m.positions[t[2]];
+      area += cross(b - a, c - a)[2] / 2;
+    }
+    return area;
+  };
+  EXPECT_NEAR(upwards(s.mesh), upwards(mesh), 0.02 * std::abs(upwards(mesh)));
+  EXPECT_TRUE(inspect(s.mesh).oriented);
+}
+
+TEST(Simplifier, FlatSurfacesNeedFewTriangles) {
+  Mesh mesh = height_field(80);
+  for (Vec3& p : mesh.positions) p[2] = 0;
+  mesh.corner_uvs.clear();
+  Simplifier simplifier(mesh);
+  const Simplified s = simplifier.to_deviation(1e-4 * box_diagonal(mesh));
+  EXPECT_LE(s.mesh.triangles.size(), 100U);
+  EXPECT_LE(s.deviation.upper, 1e-4 * box_diagonal(mesh));
+  EXPECT_LE(simplifier.to_triangles(200).deviation.upper, 2e-6 * box_diagonal(mesh));
+}
+
+TEST(Simplifier, NeverReturnsNothing) {
+  for (const Mesh& mesh : {sphere(3), cube(), tetrahedron(), single_triangle(), square(1, 0)}) {
+    Simplifier simplifier(mesh);
+    for (const Simplified& s :
+         {simplifier.to_triangles(1), simplifier.to_deviation(100 * box_diagonal(mesh))}) {
+      EXPECT_GE(s.mesh.triangles.size(), 1U);
+      EXPECT_NO_THROW(validate(s.mesh));
+      expect_certificate(mesh, s);
+    }
+  }
+}
+
+TEST(Simplifier, ReturnsTheInputWhereNothingKeepsTheLimit) {
+  const Mesh mesh = with_noise(sphere(3), 0.3);
+  Simplifier simplifier(mesh);
+  const Simplified s = simplifier.to_deviation(1e-7);
+  EXPECT_TRUE(s.stopped);
+  EXPECT_EQ(s.mesh.triangles, mesh.triangles);
+  EXPECT_EQ(s.mesh.positions, mesh.positions);
+  EXPECT_EQ(s.deviation.upper, 0);
+  EXPECT_EQ(s.deviation.certainty, Certainty::exact);
+  const Simplified all = simplifier.to_triangles(1'000'000);
+  EXPECT_EQ(all.mesh.triangles, mesh.triangles);
+  EXPECT_FALSE(all.stopped) << "there are no more than that";
+}
+
+TEST(Simplifier, MeasuresWhatRoundingToFloatMoves) {
+  const Mesh mesh = moved(sphere(4), {1e6, 0, 0});  // floats are 1/16 apart there
+  Simplifier simplifier(mesh);
+  const Simplified s = simplifier.to_triangles(500, {.single_precision = true});
+  for (const Vec3& p : s.mesh.positions)
+    for (const double x : p) EXPECT_EQ(x, static_cast<float>(x));
+  EXPECT_GT(s.deviation.lower, 0.02);
+  expect_certificate(mesh, s);
+  EXPECT_THAT(error_of([&] { return simplifier.to_deviation(1e-3, {.single_precision = true}); }),
+              HasSubstr("rounded to float"));
+}
+
+TEST(Simplifier, RefusesWhatIsNoTarget) {
+  Simplifier simplifier(cube());
+  for (const double limit :
+       {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    EXPECT_THAT(error_of([&] { return simplifier.to_deviation(limit); }), HasSubstr("greater than 0"));
+  EXPECT_THAT(error_of([&] { return simplifier.to_triangles(0); }), HasSubstr("at least one triangle"));
+  EXPECT_THROW(Simplifier(Mesh{}), Error);
+  EXPECT_THROW(
+      Simplifier(
+          Mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, .triangles = {{0, 1, 2}}, .corner_uvs = {}}),
+      Error);
+}
+
+TEST(Simplifier, IsCancelled) {
+  const Mesh mesh = sphere(5);
+  Simplifier simplifier(mesh);
+  EXPECT_THROW(
+      (void)simplifier.to_deviation(0.01, {.progress = [](std::string_view, double) { return false; }}),
+      Cancelled);
+  EXPECT_FALSE(simplifier.to_deviation(0.01).mesh.triangles.empty()) << "usable afterwards";
+}
+
+TEST(Simplifier, ReportsWhatItCost) {
+  Simplifier simplifier(sphere(5));
+  (void)simplifier.to_triangles(500);
+  const SimplifyReport& report = simplifier.report();
+  EXPECT_GT(report.sites_ms, 0);
+  EXPECT_GT(report.collapse_ms, 0);
+  EXPECT_GT(report.deviation_ms, 0);
+  EXPECT_EQ(report.candidates, 1U);
+}
+
+}  // namespace
+}  // namespace sdm::test
