@@ -9,7 +9,7 @@
 namespace sdm::simplify {
 
 /// Triangles that cover all points of the mesh with a distance to B above `limit`, up to rounding of their
-/// corners: at most 1e-14 of the coordinates. Faces are divided into four until they are as small as the
+/// corners: at most 1e-13 of the coordinates. Faces are divided into four until they are as small as the
 /// faces of B near them; then what is above such a face is cut off. What is surely within the limit is left
 /// out; the rest is returned once no division helps. The middles of all pieces are measured together, which
 /// costs a tenth of single searches.

@@ -21,11 +21,11 @@ namespace {
 
 using namespace simplify;
 
-// Collapses in several steps deviate less than in one, as each has the errors of a mesh that is smoother than
-// that before: on a scan of a bunny reduced to 1 %, by a quarter. With a count, there are two, the first of
-// which ends at this multiple of the count. With a limit, these are the errors of the first ones relative to
-// it, and steps go on from the last mesh that keeps the limit while they remove at least this share of its
-// triangles.
+// Collapses in several steps mostly deviate less than in one, as each has the errors of a mesh that is
+// smoother than that before: on a scan of a bunny reduced to 1 %, by a quarter. With a count, there are two,
+// the first of which ends at this multiple of the count. With a limit, these are the errors of the first ones
+// relative to it, and steps go on from the last mesh that keeps the limit while they remove at least this
+// share of its triangles.
 constexpr std::size_t kFirstTriangles = 4;
 constexpr double kFirstError = 0.42, kSecondError = 0.5, kLarger = 1.15, kSmaller = 0.8, kWorthwhile = 0.04;
 constexpr double kMostError = 8;

@@ -57,7 +57,7 @@ void expect_certificate(const Mesh& input, const Simplified& simplified) {
   EXPECT_LE(sampled(input, simplified.mesh), d.upper + rounding);
   EXPECT_LE(sampled(simplified.mesh, input), d.upper + rounding);
   const SymmetricHausdorff truth =
-      symmetric_hausdorff(Sites(input), Sites(simplified.mesh), {.precision = 1e-4 * box_diagonal(input)});
+      symmetric_hausdorff(Sites(input), Sites(simplified.mesh), {.precision = 1e-3 * box_diagonal(input)});
   EXPECT_LE(d.lower, truth.larger.distance.upper);
   EXPECT_GE(d.upper, truth.larger.distance.lower);
   if (!d.witness) return;
