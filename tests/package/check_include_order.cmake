@@ -6,6 +6,7 @@ cmake_minimum_required(VERSION 3.23)
 set(order
   core
   core/lazy
+  core/numbers
   geometry
   geometry/lanes
   geometry/boxes

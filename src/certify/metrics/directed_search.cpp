@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "certify/hausdorff/vertex_search.h"
-#include "certify/metrics/sum.h"
 #include "core/cancellation.h"
+#include "core/numbers/compensated_sum.h"
 #include "core/parallel.h"
 #include "geometry/rounding.h"
 #include "geometry/spatial_order.h"
@@ -80,7 +80,7 @@ DirectedMetrics DirectedSearch::run() {
 void DirectedSearch::make_parts() {
   const std::vector<MeasuredPoint> vertices = measure_vertices(a_, b_, scale_.accuracy, options_.progress);
   parts_.reserve(a_.triangles.size());
-  Sum area_of_all, error;
+  CompensatedSum area_of_all, error;
   for (std::uint32_t f = 0; f < a_.triangles.size(); ++f) {
     const Triangle& t = a_.triangles[f];
     if (hausdorff::repeats_corner(t)) continue;
@@ -103,7 +103,7 @@ void DirectedSearch::make_parts() {
 // fraction of the whole, a mean is off by that fraction of the largest distance, at most.
 void DirectedSearch::sum_up() {
   poll();
-  Sum mean_low, mean_high, square_low, square_high;
+  CompensatedSum mean_low, mean_high, square_low, square_high;
   largest_ = 0;
   for (const Part& part : parts_) {
     const Linear low = part.lower(), high = part.upper();
@@ -131,7 +131,7 @@ double DirectedSearch::limit(double tolerance) const {
 BoundedNumber DirectedSearch::within(double tolerance) const {
   const double t = limit(tolerance);
   poll();
-  Sum low, high;
+  CompensatedSum low, high;
   bool all = true, any = false;
   for (const Part& part : parts_) {
     const double surely = part.upper().fraction_within(t), maybe = part.lower().fraction_within(t);
@@ -161,7 +161,7 @@ double DirectedSearch::quantile(double fraction, Linear (Part::*bound)() const) 
   };
   std::vector<Piece> open;
   double lo = kInfinity, hi = 0;
-  Sum below;
+  CompensatedSum below;
   for (const Part& part : parts_) {
     open.push_back({(part.*bound)(), part.area});
     lo = std::min(lo, std::max(0.0, open.back().bound.least())),
@@ -172,7 +172,7 @@ double DirectedSearch::quantile(double fraction, Linear (Part::*bound)() const) 
   for (int n = 0; n < kHalvings && lo < hi; ++n) {
     poll();
     const double middle = lo + (hi - lo) / 2;
-    Sum area = below;
+    CompensatedSum area = below;
     for (const Piece& piece : open) area += piece.area * piece.bound.fraction_within(middle);
     (area.value() >= asked ? hi : lo) = middle;
     // Pieces that are wholly below `lo` count from now on, those above `hi` do not.

@@ -12,7 +12,7 @@
 
 #include "certify/metrics/directed_search.h"
 #include "certify/metrics/staged_progress.h"
-#include "certify/metrics/sum.h"
+#include "core/numbers/compensated_sum.h"
 #include "core/memory.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle.h"
@@ -89,7 +89,7 @@ void check(const MetricsOptions& options) {
 }
 
 double area_of(const Mesh& mesh) {
-  metrics::Sum area;
+  CompensatedSum area;
   for (const Triangle& t : mesh.triangles) {
     if (is_removed(t)) continue;
     const auto [p, q, r] = corners_of(mesh.positions, t);

@@ -42,6 +42,7 @@ void join_vertices(const std::vector<Vec3>& positions, std::vector<NetEdge>& edg
   std::ranges::sort(vertices);
   vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
   std::vector<std::uint32_t> by_position = vertices, first(vertices.size());
+  poll();
   std::ranges::stable_sort(by_position, {}, [&](std::uint32_t v) { return positions[v]; });
   const auto index_of = [&](std::uint32_t v) {
     return static_cast<std::size_t>(std::ranges::lower_bound(vertices, v) - vertices.begin());
@@ -54,6 +55,7 @@ void join_vertices(const std::vector<Vec3>& positions, std::vector<NetEdge>& edg
     for (std::uint32_t& end : edge.ends) end = first[index_of(end)];
     if (edge.ends[0] > edge.ends[1]) std::swap(edge.ends[0], edge.ends[1]), edge.passes *= -1;
   }
+  poll();
   std::ranges::sort(edges, {}, &NetEdge::ends);
   std::vector<NetEdge> joined;
   for (const NetEdge& edge : edges) {
@@ -79,9 +81,13 @@ void fill(std::span<const std::uint32_t> loop, std::vector<Triangle>& faces) {
 
 }  // namespace
 
-std::vector<Triangle> closing_faces(const sites::SitesData& sites) {
+std::optional<std::vector<Triangle>> closing_faces(const sites::SitesData& sites, std::size_t most) {
   std::vector<NetEdge> edges = net_edges(sites);
   join_vertices(sites.mesh.positions, edges);
+  // A loop of k edges takes k − 2 faces, and none has fewer than three.
+  std::size_t boundary = 0;
+  for (const NetEdge& edge : edges) boundary += static_cast<std::size_t>(std::abs(edge.passes));
+  if (boundary > 3 * most) return {};
   const std::size_t vertices = sites.mesh.positions.size();
   // As often as the passes of an edge say, its end beside its start.
   CompressedRows<std::uint32_t> next = make_rows<std::uint32_t>(vertices, [&](const auto& put) {
@@ -109,6 +115,7 @@ std::vector<Triangle> closing_faces(const sites::SitesData& sites) {
         path.push_back(v);
       }
     }
+  if (faces.size() > most) return {};
   return faces;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "geometry/morton_order.h"
 #include "mesh/validate.h"
 #include "query/inside/inside.h"
 
@@ -46,9 +47,13 @@ std::vector<std::uint8_t> inside_flags(const Sites& sites, std::span<const Vec3>
   const inside::InsideTest test(internals(sites), choose_sign(sites, method).method);
   const bool few = queries.size() < sites.mesh().triangles.size();
   std::vector<std::uint8_t> result(queries.size());
+  // Neighbours take over answers, and meet the same parts of the mesh.
+  const std::vector<std::uint32_t> order = morton_order(queries, bounds(sites.mesh()));
   parallel_for(queries.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t i = order[k];
       result[i] = few ? test.of_few(queries[i], closest[i]) : test(queries[i], closest[i]);
+    }
   });
   return result;
 } catch (const std::bad_alloc&) {

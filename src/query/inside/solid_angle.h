@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "geometry/vec.h"
 
@@ -15,30 +16,66 @@ struct SolidAngle {
   double value = 0, error = 0;
 };
 
-/// The signed solid angle of triangle (a, b, c) seen from the origin, in [−2π, 2π], positive where it runs
-/// clockwise as seen from there: over a closed mesh around the origin the angles sum to 4π (van Oosterom &
-/// Strackee 1983). The error bounds the rounding: it is infinite where the origin is so near to the triangle
-/// that its side is not known.
-///
-/// With u = 2⁻⁵³ and L = |a||b||c|, coordinates that are differences have relative errors u, so that the
-/// numerator and the denominator are computed within 64·u·L. Half of the angle is that of the point
-/// (denominator, numerator): an error of the point turns it by at most π/2 times the error over the distance
-/// from 0.
-inline SolidAngle bounded_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
+/// The signed solid angle of triangle (a, b, c) seen from the origin, in [−2π, 2π], is positive where it runs
+/// clockwise as seen from there: over a closed mesh around the origin the angles sum to 4π. Half of it is the
+/// argument of a complex number (van Oosterom & Strackee 1983).
+struct HalfSolidAngle {
+  double real = 0, imaginary = 0;
+  double distance = 0;  ///< from 0
+  /// Of the whole angle: bounds the rounding. Infinite where the origin is so near to the triangle that its
+  /// side is not known.
+  double error = 0;
+};
+
+/// With u = 2⁻⁵³ and L = |a||b||c|, coordinates that are differences have relative errors u, so that both
+/// parts are computed within 64·u·L. An error of the number turns it by at most π/2 times the error over its
+/// distance from 0.
+inline HalfSolidAngle half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double la = norm(a), lb = norm(b), lc = norm(c), product = la * lb * lc;
-  const double numerator = dot(a, cross(b, c));
-  const double denominator = product + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+  const double imaginary = dot(a, cross(b, c));
+  const double real = product + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
   const double error = 64 * 0x1p-53 * product;
-  const double distance = std::sqrt(numerator * numerator + denominator * denominator);
-  const double value = 2 * std::atan2(numerator, denominator);
-  const bool either_side = denominator <= error && std::abs(numerator) <= error;
-  if (either_side || !(distance > 8 * error)) return {value, std::numeric_limits<double>::infinity()};
-  return {value, 8 * error / distance};
+  const double distance = std::sqrt(imaginary * imaginary + real * real);
+  const bool either_side = real <= error && std::abs(imaginary) <= error;
+  if (either_side || !(distance > 8 * error))
+    return {real, imaginary, distance, std::numeric_limits<double>::infinity()};
+  return {real, imaginary, distance, 8 * error / distance};
 }
 
-/// The same without the error.
+/// The whole angle without the error.
 inline double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return bounded_solid_angle(a, b, c).value;
+  const HalfSolidAngle half = half_solid_angle(a, b, c);
+  return 2 * std::atan2(half.imaginary, half.real);
 }
+
+/// A sum of solid angles with one arctangent for all of them: the argument of a product is the sum of the
+/// arguments, but for whole turns, which are counted.
+class SolidAngleSum {
+ public:
+  void add(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const HalfSolidAngle half = half_solid_angle(a, b, c);
+    // A product turns by at most 4·u by its own rounding and that of its factor.
+    error_ += half.error + 8 * 0x1p-53;
+    if (std::isinf(half.error)) return;
+    const double re = half.real / half.distance, im = half.imaginary / half.distance;
+    const double real = real_ * re - imaginary_ * im, imaginary = real_ * im + imaginary_ * re;
+    // Two arguments of the same sign may exceed ±π together. That of a triangle is never ±π, where its error
+    // is infinite, so that two do not make a whole turn.
+    if (imaginary_ >= 0 && im >= 0)
+      turns_ += imaginary < 0 ? 1 : 0;
+    else if (imaginary_ < 0 && im < 0)
+      turns_ -= imaginary > 0 || (imaginary == 0 && real < 0) ? 1 : 0;
+    real_ = real, imaginary_ = imaginary;
+  }
+  [[nodiscard]] SolidAngle sum() const {
+    const double value = 2 * (2 * std::numbers::pi * turns_ + std::atan2(imaginary_, real_));
+    return {value, error_ + 4 * 0x1p-53 * std::abs(value)};
+  }
+
+ private:
+  double real_ = 1, imaginary_ = 0;
+  int turns_ = 0;
+  double error_ = 0;
+};
 
 }  // namespace sdm::inside

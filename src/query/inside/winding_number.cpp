@@ -26,8 +26,8 @@ bool certain(const SolidAngle& angle, double limit) {
 }  // namespace
 
 WindingNumber::WindingNumber(const sites::SitesData& sites) : sites_(sites) {
-  std::vector<Triangle> closing = inside::closing_faces(sites);
-  if (2 * closing.size() <= sites.tree.items.size()) build_closing(std::move(closing));
+  if (auto closing = inside::closing_faces(sites, sites.tree.items.size() / 2))
+    build_closing(std::move(*closing));
   if (!closing_.angles) (void)mesh_angles();
 }
 

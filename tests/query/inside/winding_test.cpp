@@ -13,6 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "query/inside/solid_angle.h"
+#include "query/inside/solid_angles.h"
 #include "query/inside/winding_number.h"
 #include "sites/sites_data.h"
 #include "support/meshes.h"
@@ -20,6 +22,8 @@
 
 namespace sdm {
 namespace {
+
+constexpr double kFullAngle = 4 * std::numbers::pi;
 
 using Extended = std::array<long double, 3>;
 
@@ -165,6 +169,61 @@ TEST(Winding, IsTheSumOfSolidAnglesWithinTheErrorAskedFor) {
       for (const double error : {0.2, 1e-2, 1e-4, 0.0})
         ASSERT_NEAR(winding(q, error), exact, error + 1e-11) << q[0] << ' ' << q[1] << ' ' << q[2];
     }
+  }
+}
+
+// Bounds on the rounding of expansions hold where coordinates have few digits left.
+TEST(Winding, IsTheSumOfSolidAnglesFarFromTheOrigin) {
+  constexpr double kFar = 1e6;
+  const Vec3 offset{kFar, -2 * kFar, 0.7 * kFar};
+  for (const auto& [name, mesh] : open_meshes()) {
+    SCOPED_TRACE(name);
+    const Sites sites(test::moved(mesh, offset));
+    const inside::WindingNumber winding(internals(sites));
+    const inside::SolidAngles angles(inside::oriented_faces(internals(sites)));
+    for (const Vec3& p : query_points(mesh, 10)) {
+      const Vec3 q = p + offset;
+      if (distance_of(sites, q) < 1e-8) continue;
+      const double exact = brute_force(sites, q);
+      for (const double error : {0.2, 1e-2, 1e-4, 1e-8, 0.0}) {
+        ASSERT_NEAR(winding(q, error), exact, error + 1e-11) << p[0] << ' ' << p[1] << ' ' << p[2];
+        const inside::SolidAngle sum =
+            angles.at(q, std::numeric_limits<double>::quiet_NaN(), kFullAngle * error).angle;
+        ASSERT_NEAR(sum.value, kFullAngle * exact, sum.error)
+            << error << ": " << p[0] << ' ' << p[1] << ' ' << p[2];
+      }
+    }
+  }
+}
+
+TEST(Winding, SumsOfAnglesCountTurns) {
+  const Mesh ball = test::sphere(2);
+  inside::SolidAngleSum sum;
+  double expected = 0;
+  const auto add = [&](bool reverse) {
+    for (const auto& [a, b, c] : ball.triangles) {
+      const auto &p = ball.positions[a], &q = ball.positions[reverse ? c : b],
+                 &r = ball.positions[reverse ? b : c];
+      sum.add(p, q, r);
+      expected += inside::solid_angle(p, q, r);
+      ASSERT_NEAR(sum.sum().value, expected, 1e-11);
+    }
+  };
+  for (int i = 0; i < 3; ++i) add(false);
+  EXPECT_NEAR(sum.sum().value, 3 * kFullAngle, sum.sum().error);
+  for (int i = 0; i < 8; ++i) add(true);
+  EXPECT_NEAR(sum.sum().value, -5 * kFullAngle, sum.sum().error);
+  EXPECT_LT(sum.sum().error, 1e-9);
+  // Each nearly a whole turn, from both sides of a large triangle.
+  const Vec3 x{1e3, 0, 1e-6}, y{-1e3, 1e3, 1e-6}, z{-1e3, -1e3, 1e-6};
+  inside::SolidAngleSum wide;
+  for (int i = 1; i <= 7; ++i) {
+    wide.add(x, y, z);
+    ASSERT_NEAR(wide.sum().value, i * inside::solid_angle(x, y, z), 1e-9);
+  }
+  for (int i = 6; i >= -7; --i) {
+    wide.add(x, z, y);
+    ASSERT_NEAR(wide.sum().value, i * inside::solid_angle(x, y, z), 1e-9);
   }
 }
 
