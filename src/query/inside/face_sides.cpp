@@ -8,18 +8,22 @@
 
 namespace sdm::inside {
 
+double offset_beside_faces(const sites::SitesData& sites) {
+  const Box box = bounds(sites.mesh);
+  double largest = 0;
+  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
+  const double unit = 1 / sites.frame.scale, rounding = 1e-14 * largest;
+  const double offset = std::max(1e-9 * unit, rounding);
+  return offset > 0.25 * kClearance * unit ? 0 : offset;
+}
+
 FaceSides::FaceSides(const sites::SitesData& solid)
     : solid_(&solid), sides_(std::make_unique<std::atomic<Sides>[]>(solid.mesh.triangles.size())) {
   renew();
 }
 
 void FaceSides::renew() {
-  const Box box = bounds(solid_->mesh);
-  double largest = 0;
-  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
-  const double unit = 1 / solid_->frame.scale, rounding = 1e-14 * largest;
-  offset_ = std::max(1e-9 * unit, rounding);
-  if (offset_ > 0.25 * kClearance * unit) offset_ = 0;
+  offset_ = offset_beside_faces(*solid_);
   for (std::size_t f = 0; f < solid_->mesh.triangles.size(); ++f)
     sides_[f].store(Sides::unknown, std::memory_order_relaxed);
 }

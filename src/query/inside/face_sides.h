@@ -19,6 +19,10 @@ enum class Sides : std::uint8_t {
   mixed      ///< not the same everywhere, because other faces intersect the piece or are too near
 };
 
+/// How far beside a face that no other one meets its sides are determined: more than rounding, less than the
+/// distance of other faces. 0 if no such length exists, in a mesh that is far from the origin. Cost: linear.
+[[nodiscard]] double offset_beside_faces(const sites::SitesData& sites);
+
 /// Those of a face, by the winding number on its outer side: that of the inner side is larger by 1.
 [[nodiscard]] inline Sides sides_by_winding(int outer) {
   return outer == 0 ? Sides::boundary : outer == -1 ? Sides::reversed : Sides::buried;
@@ -39,9 +43,7 @@ class FaceSides {
   /// Whether the sides of a face are not known, and this has not been asked before. Those of a face that few
   /// queries ask for cost more than their winding numbers.
   [[nodiscard]] bool first_asked(std::uint32_t face) const;
-  /// How far beside a face that no other one meets its sides are determined: more than rounding, less than
-  /// the distance of other faces. 0 if no such length exists, in a mesh that is far from the origin: then all
-  /// sides are `mixed`.
+  /// offset_beside_faces(); if 0, all sides are `mixed`.
   [[nodiscard]] double offset() const { return offset_; }
   /// The sides of the faces around a site, if they are all the same: then the pseudonormal of the site
   /// separates these sides. Otherwise `mixed`, also for a vertex where several fans of faces touch.

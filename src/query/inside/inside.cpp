@@ -106,7 +106,7 @@ bool InsideTest::test(const Vec3& query, const ClosestPoint& closest, bool few) 
     case SignMethod::winding:
       if (closest.distance == 0) return false;
       return inside_ball(query, closest.type, closest.distance,
-                         [&](bool) { return winding_->above_half(query); });
+                         [&](bool) { return winding_->above_half(query, closest, few); });
     case SignMethod::side:
       return behind(query, closest);
     default:

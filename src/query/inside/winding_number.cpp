@@ -44,6 +44,7 @@ void WindingNumber::build_closing(std::vector<Triangle> triangles) {
   std::iota(all.begin(), all.end(), 0u);
   closing_.tree = tree::build_aabb_tree(boxes, std::move(all), kLeafFaces);
   closing_.angles.emplace(closing_faces());
+  sides_.emplace(sites_, closing_faces());
 }
 
 OrientedFaces WindingNumber::closing_faces() const {
@@ -78,17 +79,31 @@ double WindingNumber::operator()(const Vec3& q, double error) const {
 }
 
 // The mesh has w = n − s/4π, with s the solid angle of the closing faces: w > 1/2 where s < 4π(n − 1/2).
-WindingNumber::Side WindingNumber::above_half(const Vec3& q) const {
-  if (sites_.tree.nodes.empty()) return {};
-  poll();
-  if (const std::optional<int> number = closed(q)) {
-    const double limit = kSphere * (*number - 0.5);
+WindingNumber::Side WindingNumber::above_half(const Vec3& q, std::optional<int> closed) const {
+  if (closed) {
+    const double limit = kSphere * (*closed - 0.5);
     const SolidAngles::Sum sum = closing_.angles->at(q, limit, 0);
     if (certain(sum.angle, limit)) return {sum.angle.value < limit, sum.reach};
   }
   const double limit = 0.5 * kSphere;
   const SolidAngles::Sum sum = mesh_angles().at(q, limit, 0);
   return {sum.angle.value > limit, certain(sum.angle, limit) ? sum.reach : 0};
+}
+
+WindingNumber::Side WindingNumber::above_half(const Vec3& q) const {
+  if (sites_.tree.nodes.empty()) return {};
+  poll();
+  return above_half(q, closed(q));
+}
+
+WindingNumber::Side WindingNumber::above_half(const Vec3& q, const ClosestPoint& closest, bool few) const {
+  if (sites_.tree.nodes.empty()) return {};
+  poll();
+  const auto direct = [this](const Vec3& point) { return closed(point); };
+  std::optional<int> number;
+  const bool in_box = norm(tree::gap(sites_.tree.box(0), sites_.frame.to_unit(q))) == 0;
+  if (sides_ && in_box) number = (*sides_)(q, closest, few, direct);
+  return above_half(q, number ? number : direct(q));
 }
 
 }  // namespace sdm::inside

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/lazy/kept.h"
+#include "query/inside/open_sides.h"
 #include "query/inside/solid_angles.h"
 #include "sites/sites_data.h"
 
@@ -38,6 +39,9 @@ class WindingNumber {
   };
   /// The side of 1/2 on which the number around q is; as above.
   [[nodiscard]] Side above_half(const Vec3& q) const;
+  /// The same, faster where the number beside the closest site is known. `few`: most queries are the only one
+  /// at their closest face.
+  [[nodiscard]] Side above_half(const Vec3& q, const ClosestPoint& closest, bool few) const;
 
  private:
   /// The closing faces.
@@ -51,10 +55,13 @@ class WindingNumber {
   [[nodiscard]] OrientedFaces closing_faces() const;
   /// Of the closed surface; empty where no segment decides it.
   [[nodiscard]] std::optional<int> closed(const Vec3& q) const;
+  /// With the number of the closed surface.
+  [[nodiscard]] Side above_half(const Vec3& q, std::optional<int> closed) const;
   [[nodiscard]] const SolidAngles& mesh_angles() const;
 
   const sites::SitesData& sites_;
   Closing closing_;
+  std::optional<OpenSides> sides_;  ///< if there are closing faces
   Kept<SolidAngles> mesh_angles_;
 };
 

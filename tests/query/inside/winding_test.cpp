@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "geometry/vec.h"
 #include "query/inside/solid_angle.h"
 #include "query/inside/solid_angles.h"
 #include "query/inside/winding_number.h"
@@ -243,6 +244,35 @@ TEST(Winding, IsComparedWithOneHalfRightly) {
       ASSERT_EQ(inside[i] != 0, exact > 0.5) << i << ": " << exact;
     }
     EXPECT_GT(certain, points.size() / 2);
+  }
+}
+
+// Numbers beside faces are kept, once enough points ask for them.
+TEST(Winding, IsKnownBesideFaces) {
+  for (const auto& [name, mesh] : open_meshes()) {
+    SCOPED_TRACE(name);
+    const Sites sites(mesh);
+    std::vector<Vec3> points = query_points(mesh, 10);
+    const std::size_t step = 1 + mesh.triangles.size() / 30;
+    for (std::size_t f = 0; f < mesh.triangles.size(); f += step) {
+      const auto& [a, b, c] = mesh.triangles[f];
+      const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
+      const Vec3 normal = normalized(cross(q - p, r - p));
+      for (const Vec3& at : {(1.0 / 3) * (p + q + r), 0.5 * (p + q), p})
+        for (const double height : {1e-8, -1e-8, 1e-5, -1e-5, 1e-3, -1e-3})
+          points.push_back(at + height * normal);
+    }
+    std::vector<Vec3> many;
+    while (many.size() < mesh.triangles.size()) many.insert(many.end(), points.begin(), points.end());
+    const std::vector<ClosestPoint> closest = closest_points(sites, many);
+    const auto inside = inside_flags(sites, many, closest, SignMethod::winding);
+    const auto again = inside_flags(sites, many, closest, SignMethod::winding);
+    EXPECT_EQ(inside, again);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double exact = brute_force(sites, points[i]);
+      if (closest[i].distance < 1e-9 || std::abs(exact - 0.5) < 1e-11) continue;
+      ASSERT_EQ(inside[i] != 0, exact > 0.5) << i << ": " << exact << " at " << closest[i].distance;
+    }
   }
 }
 
