@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ._core import Error
 
@@ -17,7 +18,7 @@ def _is_masked(array: Any) -> bool:
     return isinstance(array, (list, tuple)) and any(map(_is_masked, array))
 
 
-def numpy_of(array: Any, name: str) -> np.ndarray:
+def numpy_of(array: Any, name: str) -> npt.NDArray[Any]:
     """An array of any kind as NumPy's, without a copy where that is possible."""
     if _is_masked(array):  # NumPy would take the numbers behind the mask
         raise Error(f"{name} has masked values; leave their rows out, or give them values with filled()")
@@ -37,7 +38,7 @@ def numpy_of(array: Any, name: str) -> np.ndarray:
         raise Error(f"{name} must be an array of numbers ({fault})") from None
 
 
-def _numbers(array: Any, name: str, kinds: str, what: str, shape: tuple[Any, ...]) -> np.ndarray:
+def _numbers(array: Any, name: str, kinds: str, what: str, shape: tuple[Any, ...]) -> npt.NDArray[Any]:
     numbers = numpy_of(array, name)
     fits = numbers.ndim == len(shape) and all(n in (m, None) for m, n in zip(numbers.shape, shape))
     if not fits:
@@ -48,27 +49,27 @@ def _numbers(array: Any, name: str, kinds: str, what: str, shape: tuple[Any, ...
     return numbers
 
 
-def _floats(array: Any, name: str, shape: tuple[Any, ...]) -> np.ndarray:
+def _floats(array: Any, name: str, shape: tuple[Any, ...]) -> npt.NDArray[Any]:
     numbers = _numbers(array, name, "fiu", "real numbers", shape)
     with np.errstate(over="ignore"):  # of longer floats: infinity, which the library rejects
         numbers = numbers.astype(np.float64, order="C", copy=False)
     return np.require(numbers, requirements=["C", "ALIGNED"])
 
 
-def points(array: Any, name: str) -> np.ndarray:
+def points(array: Any, name: str) -> npt.NDArray[Any]:
     return _floats(array, name, (None, 3))
 
 
-def stack(array: Any, name: str) -> np.ndarray:
+def stack(array: Any, name: str) -> npt.NDArray[Any]:
     """B arrays of points."""
     return _floats(array, name, (None, None, 3))
 
 
-def matrix(array: Any, name: str) -> np.ndarray:
+def matrix(array: Any, name: str) -> npt.NDArray[Any]:
     return _floats(array, name, (4, 4))
 
 
-def motion(poses: Any, name: str) -> np.ndarray:
+def motion(poses: Any, name: str) -> npt.NDArray[Any]:
     """The poses at the start and at the end: two of them, or one for both; None: the identity."""
     if poses is None:
         poses = np.eye(4)
@@ -80,7 +81,7 @@ def motion(poses: Any, name: str) -> np.ndarray:
     return _floats(numbers, name, (2, 4, 4))
 
 
-def poses(array: Any, name: str) -> np.ndarray:
+def poses(array: Any, name: str) -> npt.NDArray[Any]:
     """Matrices, or positions and quaternions."""
     numbers = numpy_of(array, name)
     if numbers.shape == (0,):  # a list without poses
@@ -91,7 +92,7 @@ def poses(array: Any, name: str) -> np.ndarray:
     return _floats(numbers, name, rows)
 
 
-def lengths(array: Any, name: str, count: int) -> np.ndarray:
+def lengths(array: Any, name: str, count: int) -> npt.NDArray[Any]:
     """One number for each of ``count`` items, from as many or from one for all."""
     numbers = numpy_of(array, name)
     if numbers.ndim == 0:
@@ -101,11 +102,11 @@ def lengths(array: Any, name: str, count: int) -> np.ndarray:
     return _floats(numbers, name, (None,))
 
 
-def corner_uvs(array: Any, name: str) -> np.ndarray:
+def corner_uvs(array: Any, name: str) -> npt.NDArray[Any]:
     return _floats(array, name, (None, 3, 2))
 
 
-def indices(array: Any, name: str) -> np.ndarray:
+def indices(array: Any, name: str) -> npt.NDArray[Any]:
     if np.shape(array) == (0,):  # a list without numbers has no integers
         return np.empty(0, np.uint32)
     numbers = _numbers(array, name, "iu", "integers", (None,))
@@ -115,7 +116,7 @@ def indices(array: Any, name: str) -> np.ndarray:
     return np.require(numbers.astype(np.uint32, copy=False), requirements=["C", "ALIGNED"])
 
 
-def triangles(array: Any, name: str) -> np.ndarray:
+def triangles(array: Any, name: str) -> npt.NDArray[Any]:
     numbers = _numbers(array, name, "iu", "integers", (None, 3))
     if numbers.size and numbers.dtype != np.uint32:
         outside = (numbers < 0) | (numbers > 0xFFFFFFFE)

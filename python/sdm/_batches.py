@@ -83,21 +83,22 @@ class ClosestPointsBatch(BatchItem):
         return f"sdm.ClosestPointsBatch({len(self)} items, {self.offsets[-1]} points)"
 
 
-def _items(arrays: object, name: str, dimensions: int = 3) -> tuple[list[Any], bool]:
-    """The arrays of all items, and whether they are parts of one array."""
+def _items(arrays: object, name: str) -> tuple[list[Any], int | None]:
+    """The arrays of all items, and the rows of each if they are parts of one array."""
     if isinstance(arrays, (list, tuple)):
-        return list(arrays), False
+        return [np.empty((0, 3)) if isinstance(a, (list, tuple)) and len(a) == 0 else a for a in arrays], None
     array = _arrays.numpy_of(arrays, name)
-    if array.ndim != dimensions:
-        raise Error(f"{name} must be a list of arrays or an array with {dimensions} dimensions, not {array.ndim}")
-    return list(_arrays.stack(array, name)), True
+    if array.ndim != 3:
+        raise Error(f"{name} must be a list of arrays or an array with 3 dimensions, not {array.ndim}")
+    stack = _arrays.stack(array, name)
+    return list(stack), stack.shape[1]
 
 
-def _is_points(array: object) -> bool:
-    """Whether it is n × 3 numbers, or a list of them, and no list of such arrays."""
+def _dimensions(array: object) -> int:
+    """Those of an array, or of lists in lists, whose lengths may differ; by the first that is not empty."""
     if isinstance(array, (list, tuple)):
-        return len(array) > 0 and not hasattr(array[0], "ndim") and np.ndim(array[0]) == 1
-    return getattr(array, "ndim", 0) == 2
+        return 1 + next((_dimensions(a) for a in array if not isinstance(a, (list, tuple)) or a), 0)
+    return int(getattr(array, "ndim", 0))
 
 
 def closest_points_batch(
@@ -136,16 +137,17 @@ def closest_points_batch(
     else:
         meshes, _ = _items(vertices, "vertices")
         shared = faces
-        if isinstance(faces, (list, tuple)) and not _is_points(faces) or getattr(faces, "ndim", 2) == 3:
+        if _dimensions(faces) == 3 or isinstance(faces, (list, tuple)) and not meshes:
             per_item, shared = list(faces), None  # type: ignore[call-overload]
             if len(per_item) != len(meshes):
                 raise Error(f"there are faces of {len(per_item)} items, but vertices of {len(meshes)}")
             meshes = list(zip(meshes, per_item))
-    if _is_points(points):
+    rows: int | None
+    if _dimensions(points) == 2:
         given = _arrays.points(points, "points")
-        items, stacked = [given] * len(meshes), True
+        items, rows = [given] * len(meshes), len(given)
     else:
-        items, stacked = _items(points, "points")
+        items, rows = _items(points, "points")
     if len(items) != len(meshes):
         raise Error(f"there are points of {len(items)} items, but {len(meshes)} meshes")
     found = _core.closest_points_batch(
@@ -153,8 +155,8 @@ def closest_points_batch(
     )
     counts = [len(item) for item in items]
     offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-    if stacked:
-        shape = (len(meshes), counts[0] if counts else 0)
+    if rows is not None:
+        shape = (len(meshes), rows)
         found = tuple(None if a is None else a.reshape(shape + a.shape[1:]) for a in found)
     names = (field.name for field in dataclasses.fields(BatchItem))
     return ClosestPointsBatch(**dict(zip(names, found)), offsets=offsets)

@@ -378,6 +378,6 @@ class DistanceMap(_core.MapChannels):
         return f"sdm.DistanceMap({width} × {height} texels, distance {s.min:.6g} to {s.max:.6g}, mean {s.mean:.6g})"
 
 
-def _frozen(array: np.ndarray) -> "npt.NDArray[Any]":
+def _frozen(array: npt.NDArray[Any]) -> "npt.NDArray[Any]":
     array.flags.writeable = False
     return array

@@ -4,6 +4,7 @@ import os
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ._arrays import numpy_of
 from ._core import Error, Mesh, read
@@ -13,12 +14,20 @@ _FORMS = (
 )
 
 
-def _of_corners(uvs: Any, vertices: Any, faces: np.ndarray) -> "np.ndarray | None":
+def _of_corners(uvs: Any, vertices: Any, faces: npt.NDArray[Any]) -> "npt.NDArray[Any] | None":
     """Texture coordinates of corners, from those of vertices."""
     if uvs is None or np.shape(uvs) != (len(vertices), 2) or len(faces) == 0:
         return None
-    corners: np.ndarray = numpy_of(uvs, "texture coordinates")[numpy_of(faces, "faces")]
+    corners: npt.NDArray[Any] = numpy_of(uvs, "texture coordinates")[numpy_of(faces, "faces")]
     return corners
+
+
+def _of_quads(points: Any, quads: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Two triangles of each quad, (q, 2, 3): by the diagonal from its first corner, or by the other one if the first lies
+    outside, as in a quad with a corner that is turned inwards."""
+    a, b, c, d = np.moveaxis(numpy_of(points, "vertices")[quads], 1, 0)
+    folded = (np.cross(b - a, c - a) * np.cross(c - a, d - a)).sum(-1) < 0
+    return np.where(folded[:, None, None], quads[:, [[0, 1, 3], [1, 2, 3]]], quads[:, [[0, 1, 2], [0, 2, 3]]])
 
 
 def _trimesh(mesh: Any) -> tuple[Any, ...]:
@@ -39,7 +48,7 @@ def _open3d_tensor(mesh: Any) -> tuple[Any, ...]:
 
 
 def _pyvista(mesh: Any) -> tuple[Any, ...]:
-    def all_triangles(faces: np.ndarray) -> bool:
+    def all_triangles(faces: npt.NDArray[Any]) -> bool:
         return len(faces) % 4 == 0 and bool((faces[::4] == 3).all())
 
     faces = numpy_of(mesh.faces, "faces")
@@ -59,8 +68,7 @@ def _meshio(mesh: Any) -> tuple[Any, ...]:
         if block.type == "triangle":
             triangles.append(numpy_of(block.data, "faces"))
         elif block.type == "quad":
-            corners = numpy_of(block.data, "faces")
-            triangles.append(corners[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3))
+            triangles.append(_of_quads(mesh.points, numpy_of(block.data, "faces")).reshape(-1, 3))
         elif block.type not in ("vertex", "line"):
             raise Error(f"the mesh of meshio has cells of type '{block.type}'; only triangles and quads are surfaces")
     return mesh.points, np.concatenate(triangles) if triangles else np.empty((0, 3), np.uint32), None
@@ -95,11 +103,12 @@ def _vtk(data: Any) -> tuple[Any, ...]:
     counts, begins = np.diff(ends), ends[:-1]
     if (counts > 4).any():
         raise Error("the data of vtk has polygons with five corners or more; triangulate it with vtkTriangleFilter first")
-    first = np.flatnonzero(counts >= 3)
-    second = np.flatnonzero(counts == 4)
-    order = np.argsort(np.concatenate([first, second]), kind="stable")
-    faces = np.concatenate([corners[begins[first, None] + [0, 1, 2]], corners[begins[second, None] + [0, 2, 3]]])[order]
-    return numpy_of(data.GetPoints().GetData(), "vertices"), faces, None
+    points = numpy_of(data.GetPoints().GetData(), "vertices")
+    three, four = np.flatnonzero(counts == 3), np.flatnonzero(counts == 4)
+    quads = _of_quads(points, corners[begins[four, None] + [0, 1, 2, 3]]).reshape(-1, 3)
+    order = np.argsort(np.concatenate([three, np.repeat(four, 2)]), kind="stable")
+    faces = np.concatenate([corners[begins[three, None] + [0, 1, 2]], quads])[order]
+    return points, faces, None
 
 
 def parts(mesh: Any, faces: object) -> "Mesh | tuple[Any, ...]":

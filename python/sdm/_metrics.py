@@ -103,8 +103,9 @@ def mask_surface(mask: object, spacing: float | Sequence[float] = 1.0) -> tuple[
             at[:, axis] += 1
             corners.append(np.stack([at, at + first, at + first + second, at + second], axis=1))
     quads = np.concatenate(corners)
-    shape = np.array(padded.shape) + 1
-    index, quad = np.unique(np.ravel_multi_index(quads.reshape(-1, 3).T, shape), return_inverse=True)
+    shape = tuple(n + 1 for n in padded.shape)
+    places = np.ravel_multi_index(list(quads.reshape(-1, 3).T), shape)
+    index, quad = np.unique(places, return_inverse=True)
     lattice = np.stack(np.unravel_index(index, shape), axis=1)
     quad = quad.reshape(-1, 4)
     faces = np.concatenate([quad[:, [0, 1, 2]], quad[:, [0, 2, 3]]])

@@ -6,6 +6,7 @@ import dataclasses
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import torch
 
 from . import _gradients
@@ -22,14 +23,16 @@ class _Options:  # no tuple, which torch.func would take apart
     max_distance: float
 
 
-def _array(tensor: torch.Tensor) -> np.ndarray:
-    return tensor.detach().to("cpu", torch.float64).contiguous().numpy()
+def _array(tensor: torch.Tensor) -> npt.NDArray[Any]:
+    array: npt.NDArray[Any] = tensor.detach().to("cpu", torch.float64).contiguous().numpy()
+    return array
 
 
-def _indices(tensor: torch.Tensor) -> np.ndarray:
+def _indices(tensor: torch.Tensor) -> npt.NDArray[Any]:
     if tensor.is_floating_point():
         raise Error(f"the faces must be integers, not {tensor.dtype}")
-    return tensor.detach().cpu().contiguous().numpy()
+    array: npt.NDArray[Any] = tensor.detach().cpu().contiguous().numpy()
+    return array
 
 
 def _sites_of(vertices: torch.Tensor | None, faces: torch.Tensor | None, options: _Options) -> Any:

@@ -8,7 +8,6 @@
 #include <map>
 #include <numeric>
 #include <optional>
-#include <shared_mutex>
 
 #include "map.h"
 
@@ -78,7 +77,7 @@ struct PyMapChannels {
     if (channel.stored != nullptr)
       return channel_array(channel, *map, channel.stored(map->map).data(), object);
     const auto lock = channel.needs_shape ? map->use_surface() : map->use_texels();
-    std::optional<std::shared_lock<std::shared_mutex>> sites_lock;
+    std::optional<Use> sites_lock;
     if (channel.needs_sites) sites_lock = map->use_sites();
     auto values =
         std::make_unique<std::vector<std::byte>>(run_short([&] { return computed(channel, *map); }));

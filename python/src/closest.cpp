@@ -71,8 +71,8 @@ PyClosestPoints::PyClosestPoints(Found stored, bool has_gradients, std::vector<V
       has_gradients_(has_gradients),
       stored_(std::move(faces)) {}
 
-std::shared_lock<std::shared_mutex> PyClosestPoints::use() const {
-  return sites ? sites->access.use() : std::shared_lock<std::shared_mutex>();
+Use PyClosestPoints::use() const {
+  return sites ? sites->access.use() : Use();
 }
 
 Vec3 PyClosestPoints::barycentric_of(std::size_t i) const {

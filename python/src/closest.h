@@ -9,12 +9,12 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <shared_mutex>
 #include <span>
 #include <vector>
 
 #include "arrays.h"
 #include "objects.h"
+#include "run.h"
 
 namespace sdm::python {
 
@@ -82,7 +82,7 @@ struct PyClosestPoints {
   [[nodiscard]] Vec3 barycentric_of(std::size_t i) const;
   [[nodiscard]] Triangle corners_of(std::size_t i) const;
   /// Keeps the sites from changing, if it has them.
-  [[nodiscard]] std::shared_lock<std::shared_mutex> use() const;
+  [[nodiscard]] Use use() const;
   void require_gradients() const;
 
   bool has_gradients_ = false;

@@ -216,25 +216,30 @@ void bind_map_files(nb::module_& module, nb::class_<PyMap>& map) {
                   "size: int = 2048, "
                   "progress: object = "
                   "None) -> None"))
-      .def("report", &report, nb::arg("at_vertices"), nb::kw_only(), nb::arg("colormap") = "automatic",
-           nb::arg("range") = nb::none(), nb::arg("tolerance") = nb::none(), nb::arg("units") = "",
-           nb::sig("def report(self, at_vertices: numpy.ndarray, *, colormap: " SDM_COLORMAP " = "
-                   "'automatic', range: "
-                   "tuple[float, float] | None = None, tolerance: float | tuple[float, float] | None = None, "
-                   "units: str = '') -> str"))
+      .def(
+          "report", &report, nb::arg("at_vertices"), nb::kw_only(), nb::arg("colormap") = "automatic",
+          nb::arg("range") = nb::none(), nb::arg("tolerance") = nb::none(), nb::arg("units") = "",
+          nb::sig("def report(self, at_vertices: numpy.typing.NDArray[typing.Any], *, colormap: " SDM_COLORMAP
+                  " = "
+                  "'automatic', range: "
+                  "tuple[float, float] | None = None, tolerance: float | tuple[float, float] | None = None, "
+                  "units: str = '') -> str"))
       .def("colors", &colors, nb::sig("def colors(self) -> tuple[str, float, float]"))
       .def("write_view", &write_view, nb::arg("file"), nb::arg("at_vertices"), nb::arg("towards"),
            nb::arg("other").none(), nb::kw_only(), nb::arg("colormap"), nb::arg("range").none(),
            nb::arg("tolerance").none(), nb::arg("units"), nb::arg("size"), nb::arg("up"), nb::arg("legend"),
-           nb::sig("def write_view(self, file: str, at_vertices: numpy.ndarray, towards: tuple[float, float, "
-                   "float], other: numpy.ndarray | None, *, colormap: " SDM_COLORMAP ", range: "
+           nb::sig("def write_view(self, file: str, at_vertices: numpy.typing.NDArray[typing.Any], towards: "
+                   "tuple[float, float, "
+                   "float], other: numpy.typing.NDArray[typing.Any] | None, *, colormap: " SDM_COLORMAP
+                   ", range: "
                    "tuple[float, float] | None, "
                    "tolerance: float | tuple[float, float] | None, units: str, size: int, up: str, legend: "
                    "bool) -> None"))
       .def("write_page", &write_page, nb::arg("file"), nb::arg("at_vertices"), nb::arg("report"),
            nb::kw_only(), nb::arg("up") = "y", nb::arg("largest") = HtmlOptions{}.largest,
            nb::arg("triangles") = HtmlOptions{}.triangles,
-           nb::sig("def write_page(self, file: str, at_vertices: numpy.ndarray, report: str, *, up: str = "
+           nb::sig("def write_page(self, file: str, at_vertices: numpy.typing.NDArray[typing.Any], report: "
+                   "str, *, up: str = "
                    "'y', largest: int = 1024, triangles: int = 400000) -> None"));
 }
 

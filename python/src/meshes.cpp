@@ -127,6 +127,16 @@ nb::object corner_values(const MeshAttribute& attribute) {
   return array_of<float>(std::move(values), {attribute.rows->size(), 3, n});
 }
 
+// The name, with a number if it is there already: several arrays of a file may have one name, or names that
+// are no UTF-8 and therefore look the same.
+nb::object key_of(const std::string& name, const nb::dict& present) {
+  const nb::object plain =
+      nb::steal(PyUnicode_DecodeUTF8(name.data(), static_cast<Py_ssize_t>(name.size()), "replace"));
+  nb::object key = plain;
+  for (int i = 2; present.contains(key); ++i) key = nb::str("{}_{}").format(plain, i);
+  return key;
+}
+
 void bind_attributes(nb::module_& module) {
   module.def(
       "read_attributes",
@@ -136,9 +146,7 @@ void bind_attributes(nb::module_& module) {
         run(nb::none(), [&](const Progress&) { read = read_mesh_file(name, {.attributes = true}); });
         nb::dict result;
         for (MeshAttribute& attribute : read.attributes) {
-          const nb::object key = nb::steal(PyUnicode_DecodeUTF8(
-              attribute.name.data(), static_cast<Py_ssize_t>(attribute.name.size()), "replace"));
-          result[key] = corner_values(attribute);
+          result[key_of(attribute.name, result)] = corner_values(attribute);
           attribute = {};
         }
         return result;
@@ -151,7 +159,7 @@ coordinates, by name: (faces, 3, components) float32, or (faces, 3) for one comp
 
 ``normal``: as in the file, moved as the faces are. ``color``: three or four components from 0 to 1 in linear light.
 ``uv1``, ``uv2``, ...: further texture coordinates of glTF. Other numbers of PLY and glTF by their names; of faces,
-where vertices have numbers of that name too, as ``face_...``. From OBJ, PLY, glTF and GLB; empty for other formats.
+where vertices have numbers of that name too, as ``face_...``; the second array of a name as ``..._2``. From OBJ, PLY, glTF and GLB; empty for other formats.
 The values are constant within faces where the file has one for each face. DistanceMap.transfer(values, 'corner')
 takes them. Raises Error, naming the file and the fault.
 
@@ -265,28 +273,7 @@ Raises Error if nothing would be left, and for limits out of range.
 1)");
 }
 
-void bind_meshes(nb::module_& module) {
-  nb::class_<PyMesh> type(
-      module, "Mesh", nb::is_weak_referenceable(),
-      R"(A triangle mesh: any triangle soup, open or closed, manifold or not. It does not change.
-
-Accepts the same forms of a mesh as every function of this package:
-
-- two arrays ``(vertices, faces)``: n × 3 numbers of any dtype, m × 3 integers
-- the path of an OBJ, PLY, STL, OFF, glTF, GLB, 3DS, STEP or IGES file
-- ``Mesh``, ``Sites``, ``Surface``
-- ``trimesh.Trimesh``, ``open3d.geometry.TriangleMesh``, ``open3d.t.geometry.TriangleMesh``,
-  ``pyvista.PolyData``, ``meshio.Mesh``
-
-Faces are counter-clockwise seen from outside. Raises Error for an object that is no mesh, for
-an index out of range, for coordinates that are NaN or beyond 1e37, and if no face has an area.
-
->>> mesh = sdm.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
->>> mesh.vertices.shape, mesh.faces.dtype
-((3, 3), dtype('uint32'))
->>> vertices, faces = mesh)");
-  bind_arrays(type);
-
+void bind_reading(nb::module_& module) {
   module.def(
       "fit_to_unit", [](nb::handle mesh) { return matrix(fit_to_unit(mesh_of(mesh, nb::none()))); },
       nb::arg("mesh").none(), nb::sig("def fit_to_unit(mesh: object) -> numpy.typing.NDArray[numpy.float64]"),
@@ -324,6 +311,30 @@ Traceback (most recent call last):
     ...
 sdm.Error: ...
 )");
+}
+
+void bind_meshes(nb::module_& module) {
+  nb::class_<PyMesh> type(
+      module, "Mesh", nb::is_weak_referenceable(),
+      R"(A triangle mesh: any triangle soup, open or closed, manifold or not. It does not change.
+
+Accepts the same forms of a mesh as every function of this package:
+
+- two arrays ``(vertices, faces)``: n × 3 numbers of any dtype, m × 3 integers
+- the path of an OBJ, PLY, STL, OFF, glTF, GLB, 3DS, STEP or IGES file
+- ``Mesh``, ``Sites``, ``Surface``
+- ``trimesh.Trimesh``, ``open3d.geometry.TriangleMesh``, ``open3d.t.geometry.TriangleMesh``,
+  ``pyvista.PolyData``, ``meshio.Mesh``
+
+Faces are counter-clockwise seen from outside. Raises Error for an object that is no mesh, for
+an index out of range, for coordinates that are NaN or beyond 1e37, and if no face has an area.
+
+>>> mesh = sdm.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+>>> mesh.vertices.shape, mesh.faces.dtype
+((3, 3), dtype('uint32'))
+>>> vertices, faces = mesh)");
+  bind_arrays(type);
+  bind_reading(module);
   bind_attributes(module);
   bind_weld(module);
   bind_convex_hull(module);

@@ -55,7 +55,7 @@ void bind_nearest_map(nb::module_& module) {
             if (n.part.empty()) return nb::none();
             return texels_of<std::uint32_t>(n.part, n.map, self);
           },
-          nb::sig("def part(self) -> numpy.ndarray | None"),
+          nb::sig("def part(self) -> numpy.typing.NDArray[numpy.uint32] | None"),
           "The part of that body, (H, W) uint32, or NONE; None if no body is a Compound.")
       .def_prop_ro(
           "valid",

@@ -101,11 +101,13 @@ void bind_parts(nb::module_& module) {
       },
       nb::arg("part"), nb::arg("vertices"), nb::arg("edges"), nb::arg("faces"), nb::arg("queries"),
       nb::arg("distance"), nb::arg("vector"), nb::arg("site"), nb::arg("site_type"), nb::arg("face"),
-      nb::sig("def merge_closest(part: Sites, vertices: numpy.ndarray, edges: numpy.ndarray, faces: "
-              "numpy.ndarray, queries: "
-              "object, distance: numpy.ndarray, vector: numpy.ndarray, site: numpy.ndarray, site_type: "
-              "numpy.ndarray, face: "
-              "numpy.ndarray) -> None"),
+      nb::sig("def merge_closest(part: Sites, vertices: numpy.typing.NDArray[typing.Any], edges: "
+              "numpy.typing.NDArray[typing.Any], faces: "
+              "numpy.typing.NDArray[typing.Any], queries: "
+              "object, distance: numpy.typing.NDArray[typing.Any], vector: numpy.typing.NDArray[typing.Any], "
+              "site: numpy.typing.NDArray[typing.Any], site_type: "
+              "numpy.typing.NDArray[typing.Any], face: "
+              "numpy.typing.NDArray[typing.Any]) -> None"),
       "Replaces closest points, in place, by those of a part of O2 that are closer; see "
       "sdm/closest_in_parts.h. vertices, edges, faces: their numbers in the whole O2, uint32, increasing.");
 }

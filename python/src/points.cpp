@@ -161,62 +161,63 @@ sdm.Error: ...
 )");
 }
 
+PointDistances measure(nb::handle cloud, nb::handle o2, nb::handle output, nb::handle motion,
+                       const char* engine, const char* sign, double max_distance, nb::handle facing,
+                       nb::handle along, nb::handle tolerance, const std::string& colormap,
+                       std::optional<std::pair<double, double>> range, nb::handle progress,
+                       const std::optional<std::vector<std::string>>& columns, const std::string& separator,
+                       const std::string& decimal, nb::handle tolerance_table, nb::handle names,
+                       nb::handle island_points) {
+  const std::filesystem::path from = path_of(cloud), ply = path_of(output);
+  SitesInUse to(o2);
+  PointDistancesOptions options{.map = {.engine = engine_of(engine),
+                                        .sign = sign_of(sign),
+                                        .max_distance = max_distance,
+                                        .facing = facing_of(facing)}};
+  if (!along.is_none()) {
+    if (options.map.facing || std::string_view(engine) != "cpu" || std::string_view(sign) != "automatic")
+      throw Error("sign, engine and facing do not apply to measure_points() with along");
+    options.map.engine = {};
+    options.along = along_of(along);
+  }
+  options.text = dialect_of(columns, separator, decimal);
+  if (!motion.is_none()) options.placement = transform(motion, "transform");
+  options.picture.colormap = colormap_of(colormap);
+  options.picture.range = range_of(range);
+  PointDistances result;
+  run(nb::none(), [&](const Progress&) { (void)to.get(); });
+  const SignMethod signs = options.along ? SignMethod::side : choose_sign(to.get(), options.map).method;
+  if (!tolerance.is_none()) options.picture.tolerance = tolerance_of(tolerance, signs);
+  std::vector<GroupTolerance> table;
+  std::vector<FaceNames> kinds;
+  if (!names.is_none()) kinds = names_of(names, to.get().mesh().triangles.size());
+  if (!tolerance_table.is_none()) {
+    table = table_of(tolerance_table, signs);
+    check_table(table, kinds);
+  }
+  options.names = kinds, options.table = table;
+  const auto least = static_cast<std::uint64_t>(integer_of(island_points, "island_points", 0));
+  run(progress, [&](const Progress& report) {
+    std::optional<CloudIslands> islands;
+    if (least > 0) {
+      islands.emplace(from, least, CloudIslandsOptions{.text = options.text, .progress = report});
+      options.islands = &*islands;
+    }
+    options.map.progress = report;
+    result = measure_points(from, to.get(), ply, options);
+  });
+  return result;
+}
+
 }  // namespace
 
 void bind_points(nb::module_& module) {
   bind_distances(module);
   bind_read_points(module);
   module.def(
-      "measure_points",
-      [](nb::handle cloud, nb::handle o2, nb::handle output, nb::handle motion, const char* engine,
-         const char* sign, double max_distance, nb::handle facing, nb::handle along, nb::handle tolerance,
-         const std::string& colormap, std::optional<std::pair<double, double>> range, nb::handle progress,
-         const std::optional<std::vector<std::string>>& columns, const std::string& separator,
-         const std::string& decimal, nb::handle tolerance_table, nb::handle names, nb::handle island_points) {
-        const std::filesystem::path from = path_of(cloud), ply = path_of(output);
-        SitesInUse to(o2);
-        PointDistancesOptions options{.map = {.engine = engine_of(engine),
-                                              .sign = sign_of(sign),
-                                              .max_distance = max_distance,
-                                              .facing = facing_of(facing)}};
-        if (!along.is_none()) {
-          if (options.map.facing || std::string_view(engine) != "cpu" ||
-              std::string_view(sign) != "automatic")
-            throw Error("sign, engine and facing do not apply to measure_points() with along");
-          options.map.engine = {};
-          options.along = along_of(along);
-        }
-        options.text = dialect_of(columns, separator, decimal);
-        if (!motion.is_none()) options.placement = transform(motion, "transform");
-        options.picture.colormap = colormap_of(colormap);
-        options.picture.range = range_of(range);
-        PointDistances result;
-        run(nb::none(), [&](const Progress&) { (void)to.get(); });
-        const SignMethod signs = options.along ? SignMethod::side : choose_sign(to.get(), options.map).method;
-        if (!tolerance.is_none()) options.picture.tolerance = tolerance_of(tolerance, signs);
-        std::vector<GroupTolerance> table;
-        std::vector<FaceNames> kinds;
-        if (!names.is_none()) kinds = names_of(names, to.get().mesh().triangles.size());
-        if (!tolerance_table.is_none()) {
-          table = table_of(tolerance_table, signs);
-          check_table(table, kinds);
-        }
-        options.names = kinds, options.table = table;
-        const auto least = static_cast<std::uint64_t>(integer_of(island_points, "island_points", 0));
-        run(progress, [&](const Progress& report) {
-          std::optional<CloudIslands> islands;
-          if (least > 0) {
-            islands.emplace(from, least, CloudIslandsOptions{.text = options.text, .progress = report});
-            options.islands = &*islands;
-          }
-          options.map.progress = report;
-          result = measure_points(from, to.get(), ply, options);
-        });
-        return result;
-      },
-      nb::arg("cloud").none(), nb::arg("o2").none(), nb::arg("output").none(), nb::kw_only(),
-      nb::arg("transform") = nb::none(), nb::arg("engine") = "cpu", nb::arg("sign") = "automatic",
-      nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
+      "measure_points", measure, nb::arg("cloud").none(), nb::arg("o2").none(), nb::arg("output").none(),
+      nb::kw_only(), nb::arg("transform") = nb::none(), nb::arg("engine") = "cpu",
+      nb::arg("sign") = "automatic", nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
       nb::arg("facing").none() = nb::none(), nb::arg("along") = nb::none(), nb::arg("tolerance") = nb::none(),
       nb::arg("colormap") = "automatic", nb::arg("range") = nb::none(), nb::arg("progress") = nb::none(),
       nb::arg("columns") = nb::none(), nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",

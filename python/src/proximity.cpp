@@ -300,20 +300,23 @@ if neither body is a solid. penetration_depth() is that of the deepest point, an
 >>> query.set_pose(0, [[1, 0, 0, 0.75], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
 >>> found = query.separating_translation()
 >>> round(found.value, 6), found.certainty, round(float(found.translation[0]), 6)
-(0.25, 'exact', 0.25))")
-      .def(
-          "contacts",
-          [](PyProximityQuery& self) {
-            const auto lock = self.access.change();
-            auto result = std::make_unique<PyContacts>();
-            run_sized(faces_of(self.query), [&] {
-              const auto contacts = self.query.contacts();
-              result->contacts.assign(contacts.begin(), contacts.end());
-            });
-            return result.release();
-          },
-          nb::rv_policy::take_ownership,
-          R"(Returns the contacts of both bodies: none if they are farther apart than the margin.
+(0.25, 'exact', 0.25))");
+}
+
+void bind_contact_answer(nb::class_<PyProximityQuery>& query) {
+  query.def(
+      "contacts",
+      [](PyProximityQuery& self) {
+        const auto lock = self.access.change();
+        auto result = std::make_unique<PyContacts>();
+        run_sized(faces_of(self.query), [&] {
+          const auto contacts = self.query.contacts();
+          result->contacts.assign(contacts.begin(), contacts.end());
+        });
+        return result.release();
+      },
+      nb::rv_policy::take_ownership,
+      R"(Returns the contacts of both bodies: none if they are farther apart than the margin.
 
 >>> query = sdm.ProximityQuery(box, box, contact_margin=0.1)
 >>> query.set_pose(0, [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1.05], [0, 0, 0, 1]])
@@ -382,6 +385,7 @@ False)");
   bind_motion(query);
   bind_edit(query);
   bind_answers(query);
+  bind_contact_answer(query);
   bind_separating_contacts(query);
   bind_self_proximity(module);
 }

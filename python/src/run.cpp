@@ -188,14 +188,14 @@ void run(nb::handle progress, const std::function<void(const Progress&)>& work) 
   if (failure) std::rethrow_exception(failure);
 }
 
-std::shared_lock<std::shared_mutex> Access::use() const {
-  std::shared_lock lock(mutex_, std::try_to_lock);
+Use Access::use() const {
+  Use lock(count_, std::try_to_lock);
   if (!lock) throw Error("the object is being changed by another call; wait for its end");
   return lock;
 }
 
-std::unique_lock<std::shared_mutex> Access::change() {
-  std::unique_lock lock(mutex_, std::try_to_lock);
+Change Access::change() {
+  Change lock(count_, std::try_to_lock);
   if (!lock) throw Error("the object is in use by another call; wait for its end");
   return lock;
 }

@@ -5,6 +5,7 @@
 #include <sdm/error.h>
 #include <sdm/progress.h>
 
+#include <atomic>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -46,15 +47,39 @@ auto run_sized(std::size_t size, Work work) {
   }
 }
 
+/// How many calls use an object, or that one changes it. Nothing waits, so that, unlike a mutex, it may be
+/// used several times by one thread, and given back by another one.
+class UseCount {
+ public:
+  bool try_lock_shared() {
+    int users = users_.load();
+    while (users != kChanged)
+      if (users_.compare_exchange_weak(users, users + 1)) return true;
+    return false;
+  }
+  void unlock_shared() { --users_; }
+  bool try_lock() {
+    int none = 0;
+    return users_.compare_exchange_strong(none, kChanged);
+  }
+  void unlock() { users_ = 0; }
+
+ private:
+  static constexpr int kChanged = -1;
+  std::atomic<int> users_ = 0;
+};
+using Use = std::shared_lock<UseCount>;
+using Change = std::unique_lock<UseCount>;
+
 /// Lets several calls use an object, or one change it. A call that would have to wait for another one throws
 /// sdm::Error instead, so that no callback can block itself.
 class Access {
  public:
-  [[nodiscard]] std::shared_lock<std::shared_mutex> use() const;
-  [[nodiscard]] std::unique_lock<std::shared_mutex> change();
+  [[nodiscard]] Use use() const;
+  [[nodiscard]] Change change();
 
  private:
-  mutable std::shared_mutex mutex_;
+  mutable UseCount count_;
 };
 
 }  // namespace sdm::python

@@ -5,7 +5,6 @@
 #include <sdm/sites.h>
 
 #include <optional>
-#include <shared_mutex>
 #include <utility>
 
 #include "objects.h"
@@ -32,7 +31,7 @@ class SitesInUse {
   }
 
  private:
-  std::shared_lock<std::shared_mutex> lock_;
+  Use lock_;
   const Sites* sites_ = nullptr;
   Mesh mesh_;
   std::optional<Sites> own_;

@@ -96,6 +96,31 @@ def test_empty_batches():
         assert len(batch) == 0 and list(batch) == [] and batch.offsets.tolist() == [0]
 
 
+def test_shapes_without_items_and_ragged_lists():
+    assert sdm.closest_points_batch([], np.empty((0, 5, 3))).distance.shape == (0, 5)
+    assert sdm.closest_points_batch([], np.zeros((7, 3))).point.shape == (0, 7, 3)
+    box, sphere = meshes.box(), meshes.sphere()
+    expected = sdm.closest_points(*sphere, [[0, 0, 3], [0, 0, 2]]).distance
+    for points in ([[], [[0, 0, 3], [0, 0, 2]]], [(), np.array([[0, 0, 3], [0, 0, 2.0]])]):
+        batch = sdm.closest_points_batch([box, sphere], points)
+        assert batch.offsets.tolist() == [0, 0, 2] and np.array_equal(batch[1].distance, expected)
+    assert sdm.closest_points_batch([box, sphere], [[], []]).distance.shape == (0,)
+    lists = [box[0].tolist(), sphere[0].tolist()], [box[1].tolist(), sphere[1].tolist()]
+    batch = sdm.closest_points_batch(*lists, [[[0, 0, 3]], [[0, 0, 3], [0, 0, 2]]])
+    assert np.array_equal(batch[1].distance, expected)
+    for ragged in ([[0, 0, 1], [0, 0]], [[[0, 0, 1]], [[0, 0, 1], [0, 0]]]):
+        with pytest.raises(sdm.Error, match="points.* must be an array of numbers"):
+            sdm.closest_points_batch([box, sphere], ragged)
+
+
+def test_sites_may_be_given_several_times():
+    sites = sdm.Sites(meshes.box())
+    batch = sdm.closest_points_batch([sites] * 40, [[2, 0.5, 0.5]])
+    assert (batch.distance == 1).all()
+    sites.refit(2 * meshes.box()[0])  # nothing is in use any more
+    assert sites.closest_points([[3, 0.5, 0.5]]).distance == 1
+
+
 def test_errors_name_the_item():
     box = meshes.box()
     points = np.zeros((2, 1, 3))

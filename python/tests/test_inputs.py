@@ -65,6 +65,8 @@ def test_poly_data_of_vtk():
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0.0]])
     both = sdm.Mesh(poly_data(square, Cells([0, 4, 7], [0, 1, 2, 3, 1, 4, 2])))
     assert both.faces.tolist() == [[0, 1, 2], [0, 2, 3], [1, 4, 2]]
+    arrow = np.array([[0, 0, 0], [3, 1, 0], [0, 3, 0], [1, 1, 0.0]])
+    assert sdm.Mesh(poly_data(arrow, Cells([0, 4], range(4)))).faces.tolist() == [[0, 1, 3], [1, 2, 3]]
     concave = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [1, 0.5, 0.0], [0, 2, 0]])
     with pytest.raises(sdm.Error, match="five corners or more"):
         sdm.Mesh(poly_data(concave, Cells([0, 5], range(5))))

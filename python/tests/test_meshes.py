@@ -61,6 +61,16 @@ def test_quads_of_meshio():
     np.testing.assert_array_equal(sdm.Mesh(quads).faces, [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5]])
 
 
+def test_quads_with_a_corner_that_is_turned_inwards():
+    points = np.array([[0, 0, 0], [3, 1, 0], [0, 3, 0], [1, 1, 0.0]])  # an arrow head, inwards at the last one
+    for turn in range(4):
+        quad = np.roll([0, 1, 2, 3], turn)
+        mesh = sdm.Mesh(SimpleNamespace(points=points, cells=[block("quad", quad[None])]))
+        a, b, c = np.moveaxis(points[mesh.faces], 1, 0)
+        areas = np.cross(b - a, c - a)[:, 2]
+        assert (areas > 0).all() and areas.sum() == 6  # twice that of the quad
+
+
 def test_texture_coordinates():
     expected = UVS[FACES]
     forms = [

@@ -99,6 +99,16 @@ def test_colours_of_a_file_are_transferred(tmp_path):
     np.testing.assert_allclose(found[m.valid], np.clip((m.position + m.vector)[m.valid], 0, 1), atol=1e-5)
 
 
+def test_arrays_of_a_file_keep_apart(tmp_path):
+    names = b"".join(b"property float " + name + b"\n" for name in (b"x", b"y", b"z", b"q\xff", b"q\xfe"))
+    (tmp_path / "a.ply").write_bytes(
+        b"ply\nformat ascii 1.0\nelement vertex 3\n" + names + b"element face 1\n"
+        b"property list uchar int vertex_indices\nend_header\n0 0 0 1 4\n1 0 0 2 5\n0 1 0 3 6\n3 0 1 2\n"
+    )
+    attributes = sdm.read_attributes(tmp_path / "a.ply")
+    assert {name: values.tolist() for name, values in attributes.items()} == {"q\ufffd": [[1, 2, 3]], "q\ufffd_2": [[4, 5, 6]]}
+
+
 def test_files_without_attributes_have_none(tmp_path):
     (tmp_path / "a.off").write_text("OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
     assert sdm.read_attributes(tmp_path / "a.off") == {}

@@ -91,7 +91,6 @@ distance_map.save("x.png", colormap="viridis")
 
 
 def test_mypy_is_content(tmp_path):
-    pytest.importorskip("mypy")
     (tmp_path / "user.py").write_text(USER)
     environment = {"MYPYPATH": str(Path(sdm.__file__).parents[1]), "PATH": "/usr/bin:/bin"}
     command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "pyproject.toml", "--strict"]

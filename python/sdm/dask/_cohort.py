@@ -8,6 +8,7 @@ from typing import Any
 
 import dask
 import numpy as np
+import numpy.typing as npt
 
 import sdm
 from sdm._arrays import numpy_of
@@ -27,20 +28,20 @@ class CohortStatistics:
     Arrays have a row for each row of texels, (H, W). Texels without a value in any copy hold NaN.
     """
 
-    count: np.ndarray
+    count: npt.NDArray[Any]
     """The number of copies with a value at the texel, uint32."""
-    mean: np.ndarray
+    mean: npt.NDArray[Any]
     """float64, to rounding."""
-    variance: np.ndarray
+    variance: npt.NDArray[Any]
     """Of the sample, divided by count − 1, float64, to rounding; NaN for a single copy."""
-    min: np.ndarray
+    min: npt.NDArray[Any]
     """float32, exact."""
-    max: np.ndarray
+    max: npt.NDArray[Any]
     """float32, exact."""
     low: float
     """The range of the bins."""
     high: float
-    bins: np.ndarray
+    bins: npt.NDArray[Any]
     """The number of copies below the range, in each of n bins of equal width, and above, (n + 2, H, W) integers."""
     errors: dict[int, Any]
     """Why copies are not part of this, by their number."""
@@ -50,7 +51,7 @@ class CohortStatistics:
         """The width of the widest bin; all are equal, to rounding."""
         return float(np.diff(_edges(self.low, self.high, len(self.bins) - 2)).max())
 
-    def quantile(self, q: float) -> "tuple[np.ndarray, np.ndarray]":
+    def quantile(self, q: float) -> "tuple[npt.NDArray[Any], npt.NDArray[Any]]":
         """Returns bounds (lower, upper), both (H, W) float64, on the q-quantile of the distances at each texel.
 
         The quantile is the smallest of them that at least the fraction q of all do not exceed, or the smallest one for q =
@@ -152,7 +153,7 @@ def _portable_copy(copy: Any) -> Any:
     return np.array(numpy_of(copy, "a copy"))
 
 
-def _vertices(copy: Any) -> np.ndarray:
+def _vertices(copy: Any) -> npt.NDArray[Any]:
     if isinstance(copy, np.ndarray):
         return copy
     path, number = copy
@@ -163,7 +164,7 @@ def _vertices(copy: Any) -> np.ndarray:
         raise sdm.Error(str(error) if path in str(error) else f"{path}: {error}") from None
 
 
-def _edges(low: float, high: float, bins: int) -> np.ndarray:
+def _edges(low: float, high: float, bins: int) -> npt.NDArray[Any]:
     return np.linspace(low, high, bins + 1)
 
 
@@ -178,7 +179,7 @@ class _Sums:
         self.bins = np.zeros((work["bins"] + 2, texels), work["counter"])
         self.errors: dict[int, Any] = {}
 
-    def add(self, distances: np.ndarray, edges: np.ndarray) -> None:
+    def add(self, distances: npt.NDArray[Any], edges: npt.NDArray[Any]) -> None:
         """Adds a copy; NaN where it has no value (Welford 1962)."""
         at = np.flatnonzero(np.isfinite(distances))
         values = distances[at].astype(np.float64)
@@ -255,12 +256,12 @@ def _finished(mesh: Any, sums: _Sums, work: dict[str, Any]) -> CohortStatistics:
     with sdm.thread_limit(work["threads"]), _surface(mesh, work) as surface:
         owned = surface.texel_faces != sdm.NONE
 
-    def image(values: np.ndarray, without: Any) -> np.ndarray:
+    def image(values: npt.NDArray[Any], without: Any) -> npt.NDArray[Any]:
         result = np.full((*values.shape[:-1], *owned.shape), without, values.dtype)
         result[..., owned] = values
         return result
 
-    def valued(values: np.ndarray) -> np.ndarray:
+    def valued(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
         return image(np.where(none, values.dtype.type(np.nan), values), np.nan)
 
     variance = np.full(len(sums.count), np.nan)

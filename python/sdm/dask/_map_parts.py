@@ -6,6 +6,7 @@ from typing import Any
 
 import dask
 import numpy as np
+import numpy.typing as npt
 
 import sdm
 from sdm import _core
@@ -23,15 +24,15 @@ class PartsMap:
     """The map of a surface to O2 in parts: the arrays of DistanceMap, unsigned. Arrays have a row for each row of texels;
     texels without a value hold NaN or NONE."""
 
-    distance: np.ndarray
+    distance: npt.NDArray[Any]
     """(H, W) float32."""
-    vector: np.ndarray
+    vector: npt.NDArray[Any]
     """From the texel's point to the closest point of O2, (H, W, 3) float32."""
-    site: np.ndarray
+    site: npt.NDArray[Any]
     """The closest vertex, edge or face, numbered as in the whole O2, (H, W) uint32."""
-    site_type: np.ndarray
+    site_type: npt.NDArray[Any]
     """(H, W) uint8."""
-    face: np.ndarray
+    face: npt.NDArray[Any]
     """The face of the surface that owns each texel, (H, W) uint32."""
     visits: int
     """How often a part of O2 was searched for a tile; tiles × parts if bounds exclude none."""
@@ -157,7 +158,7 @@ def _stored(found: dict[str, Any]) -> dict[str, Any]:
             "visits": found["visits"]}  # fmt: skip
 
 
-def _assembled(tiles: Iterable[Any], texels: np.ndarray, faces: np.ndarray) -> PartsMap:
+def _assembled(tiles: Iterable[Any], texels: npt.NDArray[Any], faces: npt.NDArray[Any]) -> PartsMap:
     result: dict[str, Any] = {
         "distance": np.full(faces.size, np.nan, np.float32), "vector": np.full((faces.size, 3), np.nan, np.float32),
         "site": np.full(faces.size, sdm.NONE, np.uint32), "site_type": np.full(faces.size, sdm.SiteType.NONE, np.uint8),
@@ -172,7 +173,7 @@ def _assembled(tiles: Iterable[Any], texels: np.ndarray, faces: np.ndarray) -> P
     return PartsMap(face=faces, visits=visits, tiles=count, **shaped)
 
 
-def closest_in_parts(queries: np.ndarray, parts: Parts, work: dict[str, Any]) -> dict[str, Any]:
+def closest_in_parts(queries: npt.NDArray[Any], parts: Parts, work: dict[str, Any]) -> dict[str, Any]:
     """The closest points of the whole O2, from those parts that bounds do not exclude."""
     count = len(queries)
     best: dict[str, Any] = {

@@ -13,6 +13,7 @@ from typing import Any
 from urllib.parse import unquote
 
 import numpy as np
+import numpy.typing as npt
 
 import sdm
 
@@ -48,7 +49,7 @@ def load(mesh: Any) -> Any:
 class _WithTexture:
     """Recognised as a mesh of open3d, whose texture coordinates are those of corners."""
 
-    def __init__(self, vertices: np.ndarray, triangles: np.ndarray, uvs: np.ndarray) -> None:
+    def __init__(self, vertices: npt.NDArray[Any], triangles: npt.NDArray[Any], uvs: npt.NDArray[Any]) -> None:
         self.vertices, self.triangles, self.triangle_uvs = vertices, triangles, uvs.reshape(-1, 2)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 import sdm
 from sdm._arrays import numpy_of
@@ -28,11 +29,11 @@ class Parts:
     """Of the whole mesh."""
     edges: int
     faces: int
-    low: np.ndarray
+    low: npt.NDArray[Any]
     """The lower corners of the boxes of all parts, (n, 3)."""
-    high: np.ndarray
+    high: npt.NDArray[Any]
     """The upper corners, (n, 3)."""
-    part_faces: np.ndarray
+    part_faces: npt.NDArray[Any]
     """The number of faces of each part, (n,)."""
     key: str
     """Names the content of the mesh and how it was divided."""
@@ -130,7 +131,7 @@ def _arrays(mesh: Any, faces: Any) -> tuple[Any, ...]:
     return positions, triangles
 
 
-def _chunks(ids: "np.ndarray | None", triangles: Any) -> Iterator[tuple[Any, ...]]:
+def _chunks(ids: "npt.NDArray[Any] | None", triangles: Any) -> Iterator[tuple[Any, ...]]:
     """Yields (face numbers, their corners), in increasing order."""
     for first in range(0, len(triangles) if ids is None else len(ids), _CHUNK):
         chosen = np.arange(first, min(first + _CHUNK, len(triangles))) if ids is None else np.array(ids[first : first + _CHUNK])
@@ -167,13 +168,13 @@ def _checked(positions: Any, triangles: Any, faces_per_part: int) -> str:
     return _files.key_of(digests=digests)
 
 
-def _has_area(positions: Any, corners: np.ndarray) -> np.ndarray:
+def _has_area(positions: Any, corners: npt.NDArray[Any]) -> npt.NDArray[Any]:
     a, b, c = (np.asarray(positions[corners[:, k]], np.float64) for k in range(3))
-    area: np.ndarray = (np.cross(b - a, c - a) != 0).any(axis=1)
+    area: npt.NDArray[Any] = (np.cross(b - a, c - a) != 0).any(axis=1)
     return area
 
 
-def _centroids(positions: Any, corners: np.ndarray) -> np.ndarray:
+def _centroids(positions: Any, corners: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """From sorted corners, so that duplicate faces have the same one, and stay together."""
     corners = np.sort(corners, axis=1)
     return np.asarray(sum(np.asarray(positions[corners[:, k]], np.float64) / 3 for k in range(3)))
@@ -188,7 +189,7 @@ def _divided(positions: Any, triangles: Any, ids: Any, largest: int, work: Path,
         low, high = np.minimum(low, centroids.min(axis=0)), np.maximum(high, centroids.max(axis=0))
     size = (high - low).max()
 
-    def cells(corners: np.ndarray) -> np.ndarray:
+    def cells(corners: npt.NDArray[Any]) -> npt.NDArray[Any]:
         at = (_centroids(positions, corners) - low) * ((_CELLS - 1e-6) / size)
         return _z_order(np.clip(at, 0, _CELLS - 1).astype(np.int64))
 
@@ -220,7 +221,7 @@ def _divided(positions: Any, triangles: Any, ids: Any, largest: int, work: Path,
     return result
 
 
-def _z_order(cells: np.ndarray) -> np.ndarray:
+def _z_order(cells: npt.NDArray[Any]) -> npt.NDArray[Any]:
     code = np.zeros(len(cells), np.int64)
     for bit in range(_CELLS.bit_length() - 1):
         for axis in range(3):
@@ -228,7 +229,7 @@ def _z_order(cells: np.ndarray) -> np.ndarray:
     return code
 
 
-def _runs(counts: np.ndarray, largest: int) -> np.ndarray:
+def _runs(counts: npt.NDArray[Any], largest: int) -> npt.NDArray[Any]:
     """The run of each cell: consecutive cells with no more than ``largest`` faces together, or one cell with more."""
     run, total, runs = 0, 0, np.zeros(len(counts), np.int64)
     for cell in np.flatnonzero(counts):
@@ -267,13 +268,14 @@ def _write_part(number: int, ids: Any, positions: Any, triangles: Any, folder: P
     return own.min(axis=0).tolist(), own.max(axis=0).tolist(), len(faces)
 
 
-def _edges_of(corners: np.ndarray) -> np.ndarray:
+def _edges_of(corners: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """The edges of a mesh as sdm numbers them: smaller · 2^32 + larger vertex, increasing. Faces that repeat a corner have
     none."""
     a, b, c = corners.astype(np.uint64).T
     proper = (a != b) & (b != c) & (c != a)
     ends = [(a[proper], b[proper]), (b[proper], c[proper]), (c[proper], a[proper])]
-    return np.unique(np.concatenate([np.minimum(*e) << np.uint64(32) | np.maximum(*e) for e in ends]))
+    edges: npt.NDArray[Any] = np.unique(np.concatenate([np.minimum(*e) << np.uint64(32) | np.maximum(*e) for e in ends]))
+    return edges
 
 
 def _number_edges(parts: int, vertices: int, most: int, folder: Path, work: Path) -> int:
@@ -286,7 +288,7 @@ def _number_edges(parts: int, vertices: int, most: int, folder: Path, work: Path
     for file in files:
         file.unlink(missing_ok=True)
 
-    def whole_edges(arrays: Any) -> np.ndarray:
+    def whole_edges(arrays: Any) -> npt.NDArray[Any]:
         return _edges_of(arrays["vertices"][arrays["triangles"]])
 
     for part in range(parts):
