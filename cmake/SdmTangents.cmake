@@ -1,8 +1,8 @@
-# MikkTSpace, the C source of tangents: Cargo downloads the crate that carries it into the build folder, once, and compares it
-# with the checksum in mikktspace/Cargo.lock. SDM_MIKKTSPACE_SOURCE names a folder that has mikktspace.c instead.
-set(SDM_TANGENTS AUTO CACHE STRING "Tangents by MikkTSpace: ON (needs Cargo), OFF, or AUTO: ON if its source is there or Cargo downloads it")
+# MikkTSpace, the C source of tangents, from the crate that carries it. SDM_MIKKTSPACE_SOURCE names a folder that has
+# mikktspace.c instead.
+set(SDM_TANGENTS AUTO CACHE STRING "Tangents by MikkTSpace: ON (its source is downloaded), OFF, or AUTO: ON if there is a network")
 set_property(CACHE SDM_TANGENTS PROPERTY STRINGS AUTO ON OFF)
-set(SDM_MIKKTSPACE_SOURCE "" CACHE PATH "A folder with mikktspace.c and mikktspace.h, in place of the one that Cargo downloads")
+set(SDM_MIKKTSPACE_SOURCE "" CACHE PATH "A folder with mikktspace.c and mikktspace.h, in place of those downloaded")
 mark_as_advanced(SDM_MIKKTSPACE_SOURCE)
 set(SDM_HAS_TANGENTS OFF)
 if(NOT SDM_TANGENTS)
@@ -12,26 +12,18 @@ endif()
 set(SDM_MIKKTSPACE_FOLDER ${SDM_MIKKTSPACE_SOURCE})
 set(sdm_reason "")
 if(NOT SDM_MIKKTSPACE_FOLDER)
-  set(SDM_MIKKTSPACE_FOLDER ${PROJECT_BINARY_DIR}/mikktspace/crates/mikktspace-sys-0.1.1/c_code)
-  find_program(CARGO cargo)
-  mark_as_advanced(CARGO)
-  if(NOT EXISTS ${SDM_MIKKTSPACE_FOLDER}/mikktspace.c AND CARGO)
-    message(STATUS "Downloading MikkTSpace")
-    # Copied, as Cargo may write beside its manifest.
-    file(COPY ${CMAKE_CURRENT_LIST_DIR}/mikktspace/ DESTINATION ${PROJECT_BINARY_DIR}/mikktspace/manifest)
-    execute_process(
-      COMMAND ${CARGO} vendor --quiet --locked --versioned-dirs
-              --manifest-path ${PROJECT_BINARY_DIR}/mikktspace/manifest/Cargo.toml
-              ${PROJECT_BINARY_DIR}/mikktspace/crates
-      WORKING_DIRECTORY ${PROJECT_BINARY_DIR} TIMEOUT 120 OUTPUT_QUIET ERROR_VARIABLE sdm_reason)
-  elseif(NOT CARGO)
-    set(sdm_reason "Cargo was not found")
+  set(sdm_folder ${PROJECT_BINARY_DIR}/mikktspace)
+  set(SDM_MIKKTSPACE_FOLDER ${sdm_folder}/mikktspace-sys-0.1.1/c_code)
+  sdm_download(https://static.crates.io/crates/mikktspace-sys/mikktspace-sys-0.1.1.crate ${sdm_folder}/source.tar.gz
+    4fe8e422f5a41c68485cbc0bf8e698e54c64d54355033be09667ff9bf786235c sdm_reason)
+  if(NOT sdm_reason AND NOT EXISTS ${SDM_MIKKTSPACE_FOLDER}/mikktspace.c)
+    file(ARCHIVE_EXTRACT INPUT ${sdm_folder}/source.tar.gz DESTINATION ${sdm_folder})
   endif()
 endif()
 if(EXISTS ${SDM_MIKKTSPACE_FOLDER}/mikktspace.c)
   set(SDM_HAS_TANGENTS ON)
 elseif(SDM_TANGENTS STREQUAL "AUTO")
-  message(STATUS "Without tangents: the source of MikkTSpace is not there (install cargo, or set SDM_MIKKTSPACE_SOURCE)")
+  message(STATUS "Without tangents: the source of MikkTSpace is not there (${sdm_reason})")
 else()
-  message(FATAL_ERROR "The source of MikkTSpace is not there (${sdm_reason}): install cargo (Debian), or build without tangents: -DSDM_TANGENTS=OFF")
+  message(FATAL_ERROR "The source of MikkTSpace is not there (${sdm_reason}): set SDM_MIKKTSPACE_SOURCE, or build without tangents: -DSDM_TANGENTS=OFF")
 endif()

@@ -2,18 +2,12 @@
 #include <sdm/error.h>
 #include <sdm/threads.h>
 
-#include <atomic>
-#include <chrono>
-#include <functional>
-#include <mutex>
 #include <numeric>
 #include <random>
 #include <set>
-#include <thread>
 
 #include "core/disjoint_sets.h"
 #include "core/memory.h"
-#include "core/parallel.h"
 #include "core/platform.h"
 #include "core/rows.h"
 #include "geometry/barycentric.h"
@@ -24,97 +18,6 @@
 
 namespace sdm {
 namespace {
-
-TEST(ParallelFor, VisitsEveryIndexOnceForAnyGrainAndThreadCount) {
-  for (unsigned threads : {1u, 2u, 5u})
-    for (std::size_t grain : {1u, 7u, 100000u}) {
-      const ThreadLimit limit(threads);
-      EXPECT_EQ(thread_count(), threads);
-      std::vector<std::atomic<int>> visits(10007);
-      parallel_for(visits.size(), grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) ++visits[i];
-      });
-      EXPECT_TRUE(std::all_of(visits.begin(), visits.end(), [](const auto& v) { return v == 1; }));
-    }
-}
-
-// Once, the end went unreported when the last to finish found another thread reporting.
-TEST(ParallelFor, ReportsProgressUpToTheEndAndPassesExceptionsOn) {
-  for (int repeat = 0; repeat < 20; ++repeat) {
-    double last = 0;
-    parallel_for(
-        1000, 10,
-        [&](std::string_view step, double fraction) {
-          EXPECT_EQ(step, "work");
-          EXPECT_GE(fraction, last);
-          if (last == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-          last = fraction;
-          return true;
-        },
-        "work", [](std::size_t, std::size_t) {});
-    EXPECT_EQ(last, 1);
-  }
-  EXPECT_THROW(parallel_for(100, 1, [](std::size_t, std::size_t) { throw Error("stop"); }), Error);
-}
-
-TEST(ParallelFor, StopsWhenProgressSaysSo) {
-  std::atomic<std::size_t> calls{0};
-  const auto work = [&](std::size_t, std::size_t) { ++calls; };
-  EXPECT_THROW(parallel_for(
-                   100000, 1, [](std::string_view, double) { return false; }, "work", work),
-               Cancelled);
-  EXPECT_LT(calls, 100000u);
-}
-
-// Once, a failing branch left loops in the other branch undone without telling it.
-TEST(ParallelInvoke, AnExceptionLeavesTheLoopsOfTheOtherBranchWhole) {
-  for (int repeat = 0; repeat < 50; ++repeat) {
-    std::atomic<int> expected{0}, visited{0};
-    const auto loops = [&] {
-      for (int loop = 0; loop < 100; ++loop) {
-        expected += 64;
-        parallel_for(64, 1, [&](std::size_t, std::size_t) { ++visited; });
-      }
-    };
-    EXPECT_THROW(parallel_invoke([] { throw Error("stop"); }, loops), Error);
-    EXPECT_EQ(visited, expected);
-    EXPECT_THROW(parallel_for(2, 1,
-                              [&](std::size_t begin, std::size_t) {
-                                if (begin == 0) throw Error("stop");
-                                loops();
-                              }),
-                 Error);
-    EXPECT_EQ(visited, expected);
-  }
-}
-
-// Regression: a thread waiting in a nested loop started another iteration of the outer loop while holding a
-// lock.
-TEST(ParallelTasks, RunsAllThatIsAddedAndPassesExceptionsOn) {
-  std::atomic<int> leaves{0};
-  const std::function<void(Tasks&, int)> split = [&](Tasks& tasks, int depth) {
-    if (depth == 0) {
-      ++leaves;
-      return;
-    }
-    tasks.add([&, depth] { split(tasks, depth - 1); });
-    split(tasks, depth - 1);
-  };
-  parallel_tasks([&](Tasks& tasks) { split(tasks, 10); });
-  EXPECT_EQ(leaves, 1024);
-  EXPECT_THROW(parallel_tasks([](Tasks& tasks) { tasks.add([] { throw Error("stop"); }); }), Error);
-}
-
-TEST(ParallelFor, AWaitingThreadTakesUpNoOtherWork) {
-  const ThreadLimit limit(4);
-  std::mutex mutex;
-  std::atomic<int> visits{0};
-  parallel_for(200, 1, [&](std::size_t, std::size_t) {
-    const std::lock_guard lock(mutex);
-    parallel_for(50, 1, [&](std::size_t, std::size_t) { ++visits; });
-  });
-  EXPECT_EQ(visits, 200 * 50);
-}
 
 TEST(Memory, RefusesWhatTheMachineDoesNotHave) {
   EXPECT_NO_THROW(require_memory(1 << 20, "a small map"));

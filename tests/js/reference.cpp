@@ -34,11 +34,16 @@ Mesh turned(Mesh mesh, const Vec3& degrees, const Vec3& offset, double scale = 1
 
 std::vector<Pair> pairs() {
   std::mt19937 random(7);
-  const std::vector<std::pair<std::string, Mesh>> shapes{
-      {"tetrahedron", tetrahedron()}, {"cube", cube()},           {"sphere", sphere(4)},
-      {"torus", torus(40, 20)},       {"wedge", wedge(0.1)},      {"spiral", spiral_ramp(3, 30)},
-      {"fan", fan(50)},               {"needles", needles(1e-3)}, {"field", height_field(24)},
-      {"soup", soup(300, random)}};
+  const std::vector<std::pair<std::string, Mesh>> shapes{{"tetrahedron", tetrahedron()},
+                                                         {"cube", cube()},
+                                                         {"sphere", sphere(4)},
+                                                         {"torus", torus(40, 20)},
+                                                         {"wedge", wedge(0.1)},
+                                                         {"spiral", spiral_ramp(3, 30)},
+                                                         {"fan", fan(50)},
+                                                         {"needles", needles(1e-3)},
+                                                         {"field", height_field(24)},
+                                                         {"soup", soup(300, random)}};
   std::vector<Pair> result;
   for (std::size_t i = 0; i < 2 * shapes.size(); ++i) {
     const auto& [name1, o1] = shapes[i % shapes.size()];
@@ -81,8 +86,8 @@ void write_mesh(const Files& files, const std::string& name, const Mesh& mesh) {
   files.write(name + ".indices", mesh.triangles);
 }
 
-/// The faces that have an area, with corners of their own, and an atlas that does not depend on the platform's rounding: texture
-/// coordinates, two for each vertex.
+/// The faces that have an area, with corners of their own, and an atlas that does not depend on the
+/// platform's rounding: texture coordinates, two for each vertex.
 Mesh with_fixed_atlas(const Mesh& mesh, const Files& files, const std::string& name) {
   const Mesh laid_out = with_own_uvs({mesh.positions, mesh.triangles, {}}, 128);
   Mesh result;
@@ -131,10 +136,11 @@ std::string write_pair(const Files& files, const Pair& pair, unsigned number) {
   const BoundedLength hausdorff = symmetric_hausdorff(Sites(pair.o1), sites).larger.distance;
   ProximityQuery query(pair.o1, pair.o2);
   std::array<char, 400> text{};
-  std::snprintf(text.data(), text.size(),
-                R"({"name": "%s", "hausdorff": [%.17g, %.17g], "separation": %.17g, "colliding": %s, "contacts": %zu})",
-                pair.name.c_str(), hausdorff.lower, hausdorff.upper, query.separation().value,
-                query.colliding() ? "true" : "false", query.contacts().size());
+  std::snprintf(
+      text.data(), text.size(),
+      R"({"name": "%s", "hausdorff": [%.17g, %.17g], "separation": %.17g, "colliding": %s, "contacts": %zu})",
+      pair.name.c_str(), hausdorff.lower, hausdorff.upper, query.separation().value,
+      query.colliding() ? "true" : "false", query.contacts().size());
   return text.data();
 }
 
@@ -142,6 +148,7 @@ std::string write_pair(const Files& files, const Pair& pair, unsigned number) {
 
 int main(int count, char** arguments) {
   if (count != 2) return std::cerr << "usage: js_reference FOLDER\n", 2;
+  std::filesystem::create_directories(arguments[1]);
   const Files files(arguments[1]);
   std::string json;
   unsigned number = 0;

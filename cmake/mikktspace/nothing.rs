@@ -1,1 +1,0 @@
-// Cargo wants a library to have a source.
