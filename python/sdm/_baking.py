@@ -6,13 +6,14 @@ from types import SimpleNamespace
 from typing import Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core
 from ._arrays import numpy_of
 from ._core import Baked, Error, Mesh
 
 
-def _linear(colors: Any) -> np.ndarray:
+def _linear(colors: Any) -> npt.NDArray[Any]:
     """Red, green and blue in linear light, of uint8 or of numbers from 0 to 1, in sRGB."""
     array = numpy_of(colors, "vertex_colors")
     if array.ndim != 2 or array.shape[1] not in (3, 4):
@@ -25,7 +26,7 @@ def _linear(colors: Any) -> np.ndarray:
     return np.ascontiguousarray(linear, np.float32)
 
 
-def _pixels(texture: Any) -> np.ndarray:
+def _pixels(texture: Any) -> npt.NDArray[Any]:
     pixels = np.asarray(texture)
     if pixels.dtype != np.uint8 or pixels.ndim not in (2, 3):
         raise Error("texture must be a picture of uint8 numbers, of shape (height, width) or (height, width, 1 to 4)")
