@@ -12,8 +12,8 @@
 
 #include "certify/metrics/directed_search.h"
 #include "certify/metrics/staged_progress.h"
-#include "core/numbers/compensated_sum.h"
 #include "core/memory.h"
+#include "core/numbers/compensated_sum.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle.h"
 #include "geometry/vec.h"

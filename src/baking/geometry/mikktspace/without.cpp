@@ -9,7 +9,8 @@ bool has_mikktspace() {
 }
 
 void set_tangents(std::span<std::array<MikkCorner, 3>> /*triangles*/) {
-  throw Error("this build of sdm has no tangents: build it with -DSDM_TANGENTS=ON, which downloads MikkTSpace");
+  throw Error(
+      "this build of sdm has no tangents: build it with -DSDM_TANGENTS=ON, which downloads MikkTSpace");
 }
 
 }  // namespace sdm::baking
