@@ -41,7 +41,7 @@ struct TriangleTarget {
   bool is_percent = false;
 
   [[nodiscard]] std::size_t of(std::size_t triangles) const {
-    const double count = is_percent ? value / 100 * static_cast<double>(triangles) : value;
+    const double count = is_percent ? value * static_cast<double>(triangles) / 100 : value;
     return std::max<std::size_t>(1, static_cast<std::size_t>(count));
   }
 };
@@ -281,6 +281,9 @@ void add_simplify_command(CLI::App& app) {
   simplify->callback([command] {
     if (!command->max_deviation && !command->triangles)
       throw CLI::ValidationError("sdm simplify", "--max-deviation or --triangles is required");
+    for (unsigned level = 0; !command->report.empty() && level <= command->lods; ++level)
+      if (fs::weakly_canonical(command->report) == fs::weakly_canonical(command->file(level)))
+        throw CLI::ValidationError("--report", "it names a file of -o, " + command->report.string());
     check_units(command->units, command->mesh, "");
     run(*command);
   });

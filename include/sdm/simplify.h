@@ -15,7 +15,8 @@
 
 namespace sdm {
 
-/// A mesh with fewer triangles than another one, the input.
+/// A mesh with fewer triangles than another one, the input. Vertices of the input with the same position are
+/// one, and faces that then have two equal corners are no part of its surface, as for readers of files.
 struct Simplified {
   /// Its vertices are vertices of the input, in their order; faces wind as those of the input. Texture
   /// coordinates are those of the vertices that are left, seams stay seams.
@@ -79,6 +80,7 @@ class SDM_API Simplifier {
   /// Errors as above. Cost: the sites of the input, once, and one candidate.
   [[nodiscard]] Simplified to_triangles(std::size_t triangles, const SimplifyOptions& options = {});
 
+  /// What the calls so far have taken.
   [[nodiscard]] const SimplifyReport& report() const;
 
  private:

@@ -100,8 +100,18 @@ export class Module {
 
   /** Calls an exported function, with arrays copied into the module and out of it. */
   call(name: string, values: Argument[], progress?: Progress): Result {
+    if (this.progress) throw new SdmError('input', 'the library was called by a callback of progress');
     const blocks: Address[] = [];
-    this.progress = progress;
+    // An exception of the callback must not pass through the module: the call is cancelled, and then it is thrown.
+    let failure: { error: unknown } | undefined;
+    this.progress = (step, fraction) => {
+      try {
+        return progress?.(step, fraction) !== false;
+      } catch (error) {
+        failure ??= { error };
+        return false;
+      }
+    };
     try {
       const numbers = values.map((value) => {
         if (value === null) return 0;
@@ -113,6 +123,8 @@ export class Module {
         return block;
       });
       return this.read(this.functions[name]!(...numbers) >>> 0);
+    } catch (error) {
+      throw failure ? failure.error : error;
     } finally {
       this.progress = undefined;
       for (const block of blocks) this.functions['sdm_free']!(block);
@@ -121,6 +133,7 @@ export class Module {
 
   /** Calls a function that returns no result. */
   plain(name: string, ...numbers: number[]): number {
+    if (this.progress) throw new SdmError('input', 'the library was called by a callback of progress');
     return this.functions[name]!(...numbers) >>> 0;
   }
 

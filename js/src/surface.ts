@@ -33,6 +33,13 @@ export function corners(indices: Indices, vertices: number): Uint32Array {
   return indices instanceof Uint32Array ? indices : Uint32Array.from(indices);
 }
 
+/** The number of a word among those that an option may have. */
+function wordNumber(words: readonly string[], word: string, option: string): number {
+  const number = words.indexOf(word);
+  if (number < 0) throw new SdmError('input', `${option} is ${JSON.stringify(word)}: it must be one of ${words.join(', ')}`);
+  return number;
+}
+
 function boundedLength(bytes: Bytes): BoundedLength {
   const [value, lower, upper, certainty, ...witness] = Array.from(float64(bytes)) as [number, number, number, number, ...number[]];
   const points: [Point, Point] = [witness.slice(0, 3) as Point, witness.slice(3, 6) as Point];
@@ -138,7 +145,7 @@ export class Sites extends Owned {
   /** Distances that are negative inside. Of an open mesh, `automatic` gives none a sign. */
   signedDistance(points: Points, options: { sign?: SignMethod; progress?: Progress } = {}): SignedDistances {
     const at = coordinates(points, 'points');
-    const method = kSignMethods.indexOf(options.sign ?? 'automatic');
+    const method = wordNumber(kSignMethods, options.sign ?? 'automatic', 'sign');
     const [distances, used, reason] = this.module.call('sdm_signed_distance', [this.handle, at, at.length / 3, method], options.progress);
     return { distances: float64(distances!), sign: kSignMethods[float64(used!)[0]!]!, reason: text(reason!) };
   }
@@ -214,7 +221,7 @@ export class Surface extends Owned {
       if (of.length * 3 !== at.length * 2) throw new SdmError('input', `uvs has ${of.length} numbers, but two are needed for each of ${at.length / 3} vertices`);
       uvs = Float64Array.from({ length: triangles.length * 2 }, (_, i) => of[triangles[i >> 1]! * 2 + (i & 1)]!);
     }
-    const kind = kAtlasKinds.indexOf(options.atlas ?? 'charts');
+    const kind = wordNumber(kAtlasKinds, options.atlas ?? 'charts', 'atlas');
     const [address] = module.call(
       'sdm_new_surface',
       [at, at.length / 3, triangles, triangles.length / 3, uvs, kind, options.resolution ?? 1024, options.gutter ?? 1], options.progress);
@@ -278,7 +285,7 @@ export class DistanceMap extends Owned {
 
   /** @internal */
   constructor(module: Module, private readonly surface: Surface, surfaceAddress: number, private readonly sites: Sites, options: MapOptions) {
-    const method = kSignMethods.indexOf(options.sign ?? 'automatic');
+    const method = wordNumber(kSignMethods, options.sign ?? 'automatic', 'sign');
     const [address, numbers, reason] = module.call(
       'sdm_new_map', [surfaceAddress, sites.handleIn(module), method, options.maxDistance ?? Infinity, options.facing ?? NaN], options.progress);
     super(module, float64(address!)[0]!, 'sdm_free_map');
@@ -320,7 +327,7 @@ export class DistanceMap extends Owned {
    */
   transfer(values: ArrayLike<number>, options: { components?: number; domain?: 'vertex' | 'face' | 'corner'; fill?: boolean } = {}): Float32Array {
     const rows: NumberArray = values instanceof Float32Array ? values : Float32Array.from(values);
-    const domain = ['vertex', 'face', 'corner'].indexOf(options.domain ?? 'vertex');
+    const domain = wordNumber(['vertex', 'face', 'corner'], options.domain ?? 'vertex', 'domain');
     const [result] = this.module.call('sdm_transfer', [
       this.surface.handleIn(this.module), this.sites.handleIn(this.module), this.handle, rows, rows.length, options.components ?? 1, domain,
       options.fill === false ? 0 : 1]);

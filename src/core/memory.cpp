@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/number_text.h"
+#include "core/numbers/number_text.h"
 #include "core/platform.h"
 
 namespace sdm::core {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <new>
 #include "core/memory.h"
-#include "core/number_text.h"
+#include "core/numbers/number_text.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
 #include "map/map_writer.h"

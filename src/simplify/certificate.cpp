@@ -69,7 +69,7 @@ BoundedLength with_deviation_of_result(const BoundedLength& of_input, const Site
   double settled = std::max(d.lower, question.precision);
   if (expected.limit < kNoLimit) {
     question.precision = kClose * expected.limit;
-    const double forgiven = expected.limit - question.precision - scale.precision;
+    const double forgiven = std::max(0.0, expected.limit - question.precision - scale.precision);
     settled = std::clamp(d.lower, kFarBelow * forgiven, forgiven);
     question.decision = hausdorff::Decision{settled, forgiven};
   }

@@ -38,6 +38,12 @@ bool has_area(const Mesh& mesh) {
   });
 }
 
+bool changes_by_rounding(const Mesh& mesh) {
+  return std::ranges::any_of(mesh.positions, [](const Vec3& p) {
+    return std::ranges::any_of(p, [](double x) { return x != static_cast<float>(x); });
+  });
+}
+
 }  // namespace
 
 /// The input, what is made of it once, and the steps of a simplification.
@@ -46,7 +52,8 @@ class Simplifier::State {
   explicit State(const Mesh& mesh) {
     validate(mesh);
     wedges_ = wedges_of(mesh);
-    mesh_ = {mesh.positions, mesh.triangles, {}};
+    mesh_ = mesh_of(wedges_, wedges_.triangles, false);
+    mesh_.corner_uvs = {};
   }
 
   Simplified to_deviation(double limit, const SimplifyOptions& options);
@@ -120,11 +127,15 @@ void Simplifier::State::measure_result(Step& step, double limit, const SimplifyO
 }
 
 Simplified Simplifier::State::unchanged(double limit, const SimplifyOptions& options) {
-  if (options.from != nullptr) return *options.from;
+  if (options.from != nullptr && !(options.single_precision && changes_by_rounding(options.from->mesh)))
+    return *options.from;
   make_sites();
-  Step step{{.mesh = mesh_of(wedges_, wedges_.triangles, options.single_precision)}, {}};
+  const Wedges finer = options.from != nullptr ? wedges_of(options.from->mesh) : Wedges{};
+  const Wedges& wedges = options.from != nullptr ? finer : wedges_;
+  Step step{{.mesh = mesh_of(wedges, wedges.triangles, false)}, {}};
   step.deviation.certainty = Certainty::exact;
-  if (options.single_precision) {
+  if (options.single_precision && changes_by_rounding(step.mesh)) {
+    step.mesh = mesh_of(wedges, wedges.triangles, true);
     if (!has_area(step.mesh))
       throw Error("nothing is left of the mesh when its positions are rounded to float");
     measure_input(step, limit, options);

@@ -117,9 +117,15 @@ Mesh mesh_of(const Wedges& wedges, std::span<const Triangle> triangles, bool sin
     mesh.positions.push_back(p);
   }
   mesh.triangles.reserve(triangles.size());
+  const auto same = [&](std::uint32_t a, std::uint32_t b) { return mesh.positions[a] == mesh.positions[b]; };
   for (const Triangle& t : triangles) {
-    Triangle& of_mesh = mesh.triangles.emplace_back();
+    Triangle of_mesh;
     for (int k = 0; k < 3; ++k) of_mesh[k] = place[wedges.vertex[t[k]]];
+    // Rounding may make corners equal: readers of the file ignore such a face.
+    if (single_precision &&
+        (same(of_mesh[0], of_mesh[1]) || same(of_mesh[1], of_mesh[2]) || same(of_mesh[2], of_mesh[0])))
+      continue;
+    mesh.triangles.push_back(of_mesh);
     if (!wedges.uvs.empty())
       mesh.corner_uvs.push_back({wedges.uvs[t[0]], wedges.uvs[t[1]], wedges.uvs[t[2]]});
   }

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/number_text.h"
+#include "core/numbers/number_text.h"
 
 namespace sdm {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/number_text.h"
+#include "core/numbers/number_text.h"
 #include "geometry/vec.h"
 
 namespace sdm {

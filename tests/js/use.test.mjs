@@ -75,6 +75,12 @@ test('a callback sees progress, and cancels', () => {
   surface.map(sites, { progress: (step, fraction) => void ((last = fraction), assert.equal(typeof step, 'string')) });
   assert.equal(last, 1);
   assert.throws(() => surface.map(sites, { progress: () => false }), (error) => error.kind === 'cancelled');
+  const fail = () => {
+    throw new RangeError('of the callback');
+  };
+  assert.throws(() => surface.map(sites, { progress: fail }), RangeError);
+  assert.throws(() => surface.map(sites, { progress: () => sites.dispose() }), isInputError(/callback of progress/));
+  assert.throws(() => surface.map(sites, { sign: 'exakt' }), isInputError(/sign is "exakt": it must be one of automatic, none/));
   assert.ok(surface.map(sites).statistics().texels > 0);
 });
 

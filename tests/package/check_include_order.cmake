@@ -4,9 +4,10 @@ cmake_minimum_required(VERSION 3.23)
 # circle nor an arrow that points up; and only the table of engines includes the gl engine. Prints the graph: for
 # each folder the folders that it includes.
 set(order
+  core/numbers
   core
   core/lazy
-  core/numbers
+  core/parallel
   geometry
   geometry/lanes
   geometry/boxes

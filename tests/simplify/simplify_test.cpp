@@ -227,6 +227,41 @@ TEST(Simplifier, MeasuresWhatRoundingToFloatMoves) {
               HasSubstr("rounded to float"));
 }
 
+// Once, a face whose corners became one when rounded counted as a point, which readers of the file do not
+// have.
+TEST(Simplifier, AFaceThatVanishesByRoundingIsNotInTheResult) {
+  Mesh speck = moved(single_triangle(), {});
+  for (Vec3& p : speck.positions) p = Vec3{1000.00001, 1000.00001, 1000.00001} + 1e-6 * p;
+  const Mesh mesh = joined(sphere(4), speck);
+  Simplifier simplifier(mesh);
+  const Simplified s = simplifier.to_triangles(500, {.single_precision = true});
+  EXPECT_GT(s.deviation.lower, 1000);
+  EXPECT_THAT(error_of([&] { return simplifier.to_deviation(0.05, {.single_precision = true}); }),
+              HasSubstr("rounded to float"));
+}
+
+// Once, the mesh itself was refused where rounding changes nothing.
+TEST(Simplifier, AMeshOfFloatsIsKeptExactlyWhateverTheLimit) {
+  const Mesh mesh = cube();
+  Simplifier simplifier(mesh);
+  const Simplified s = simplifier.to_deviation(1e-14, {.single_precision = true});
+  EXPECT_EQ(s.mesh.triangles.size(), mesh.triangles.size());
+  EXPECT_EQ(s.deviation.certainty, Certainty::exact);
+  EXPECT_EQ(s.deviation.upper, 0);
+}
+
+// Once, a face with two corners in the same place was part of the input and not of the result, whose
+// deviation was 0.
+TEST(Simplifier, FacesWithCornersInTheSamePlaceAreNoPartOfTheSurface) {
+  const Mesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {5, 0, 0}, {0, 0, 0}},
+                  .triangles = {{0, 1, 2}, {3, 4, 5}},
+                  .corner_uvs = {}};
+  Simplifier simplifier(mesh);
+  const Simplified s = simplifier.to_deviation(0.01);
+  EXPECT_EQ(s.mesh.triangles.size(), 1u);
+  EXPECT_EQ(s.deviation.upper, 0);
+}
+
 TEST(Simplifier, RefusesWhatIsNoTarget) {
   Simplifier simplifier(cube());
   for (const double limit :

@@ -69,7 +69,7 @@ class ColumnBox {
 
   static std::uint32_t not_beyond(const float (&beyond)[kWidth]) {
     std::uint32_t bits = 0;
-    for (int i = 0; i < kWidth; ++i) bits |= std::uint32_t{!(beyond[i] > 0)} << i;
+    for (int i = kWidth; i-- > 0;) bits = bits << 1 | std::uint32_t{!(beyond[i] > 0)};
     return bits;
   }
 

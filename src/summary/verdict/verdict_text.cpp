@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/number_text.h"
+#include "core/numbers/number_text.h"
 
 namespace sdm {
 namespace {

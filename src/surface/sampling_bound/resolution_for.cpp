@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "atlas/packing/too_small.h"
-#include "core/number_text.h"
+#include "core/numbers/number_text.h"
 #include "geometry/vec.h"
 
 namespace sdm {
