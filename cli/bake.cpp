@@ -161,7 +161,7 @@ NormalMap normal_map_of(const BakeCommand& command, const Input& high, const sdm
       surface, sites, matches,
       has_own && command.transform_high.empty() ? *own : sdm::smooth_normals(sites.mesh()));
   normals = sdm::tangent_space_normals(surface, map.normals, map.tangents, normals, command.map.progress);
-  sdm::fill_texels(surface, 3, normals);
+  sdm::fill_texels(surface, 3, normals, true);
   map.png = sdm::encode_png(sdm::normal_map_image(surface, normals), false);
   return map;
 }

@@ -49,7 +49,8 @@ struct MeshLook {
   std::span<const std::uint32_t> face_materials{};
   /// The pictures that materials refer to. An empty one (width 0): there is no such texture.
   std::span<const Image> pictures{};
-  /// `color` multiplies base colours; `uv1`, `uv2`, ... are further texture coordinates. Others are ignored.
+  /// `color` multiplies base colours; `uv1`, `uv2`, ... are further texture coordinates, `uv0`
+  /// the first ones if the mesh has none. Others are ignored.
   std::span<const MeshAttribute> attributes{};
 };
 

@@ -92,8 +92,10 @@ namespace sdm {
                                              std::uint32_t bits = 8);
 
 /// Gives the texels of no face values, as TransferOptions::fill does. `values`: `components` numbers for each
-/// texel; those of a texel that are not all finite are none. Throws sdm::Error for another number of values,
-/// or if there is not enough memory.
-SDM_API void fill_texels(const Surface& surface, std::size_t components, std::span<float> values);
+/// texel; those of a texel that are not all finite are none. `unmatched`: texels of a face that have none get
+/// some, too, as bake() does it; otherwise they stay as they are. Throws sdm::Error for another number of
+/// values, or if there is not enough memory.
+SDM_API void fill_texels(const Surface& surface, std::size_t components, std::span<float> values,
+                         bool unmatched = false);
 
 }  // namespace sdm

@@ -19,8 +19,9 @@ namespace sdm {
 /// around a vertex, where the file has several rows for it.
 struct MeshAttribute {
   /// `normal`, three components, as the file has them, moved as the faces are; `color`, three or four
-  /// components from 0 to 1, in linear light; `uv1`, `uv2`, ...: further sets of texture coordinates; others
-  /// as in the file. `face_color`, `face_...`: of faces, where vertices have an array of that name.
+  /// components from 0 to 1, in linear light; `uv1`, `uv2`, ...: further sets of texture coordinates; `uv0`:
+  /// those of Mesh::corner_uvs, which is empty then, where only some corners have them; others as in the
+  /// file. `face_color`, `face_...`: of faces, where vertices have an array of that name.
   std::string name;
   std::size_t components = 1;
   std::vector<float> values;  ///< row after row

@@ -18,14 +18,21 @@ bool shared() {
   return sdm_host_threads() > 1;
 }
 
-/// Waits while the word has the value, until it is woken or the time is over (-1: any). Wakes may be
-/// spurious.
+/// Waits while the word has the value, until it is woken or the time is over.
 void wait(int* word, int value, std::int64_t nanoseconds) {
-  if (!shared()) {
-    if (nanoseconds < 0) std::abort();  // nobody could change it
-    return;
-  }
-  __builtin_wasm_memory_atomic_wait32(word, value, nanoseconds);
+  if (shared()) __builtin_wasm_memory_atomic_wait32(word, value, nanoseconds);
+}
+
+/// The same without a time, but wakes may be spurious: callers look again. Node 20 loses notifications now
+/// and then where two threads contend, so that waits end by themselves, later and later while nothing
+/// happens.
+void wait(int* word, int value) {
+  constexpr std::int64_t kLeast = 1'000'000, kMost = 256'000'000;
+  constexpr int kTimedOut = 2;
+  thread_local std::int64_t patience = kLeast;
+  if (!shared()) std::abort();  // nobody could change it
+  const bool idle = __builtin_wasm_memory_atomic_wait32(word, value, patience) == kTimedOut;
+  patience = idle ? std::min(2 * patience, kMost) : kLeast;
 }
 void wake(int* word, unsigned count) {
   if (shared()) __builtin_wasm_memory_atomic_notify(word, count);
@@ -66,7 +73,7 @@ extern "C" __attribute__((export_name("sdm_run_thread"))) void sdm_run_thread(__
 int __libcpp_mutex_lock(__libcpp_mutex_t* m) {
   int free = 0;
   if (__atomic_compare_exchange_n(m, &free, 1, false, __ATOMIC_ACQUIRE, __ATOMIC_RELAXED)) return 0;
-  while (__atomic_exchange_n(m, 2, __ATOMIC_ACQUIRE) != 0) wait(m, 2, -1);
+  while (__atomic_exchange_n(m, 2, __ATOMIC_ACQUIRE) != 0) wait(m, 2);
   return 0;
 }
 bool __libcpp_mutex_trylock(__libcpp_mutex_t* m) {
@@ -126,7 +133,7 @@ int __libcpp_condvar_broadcast(__libcpp_condvar_t* c) {
 int __libcpp_condvar_wait(__libcpp_condvar_t* c, __libcpp_mutex_t* m) {
   const int before = __atomic_load_n(c, __ATOMIC_SEQ_CST);
   __libcpp_mutex_unlock(m);
-  wait(c, before, -1);
+  wait(c, before);
   return __libcpp_mutex_lock(m);
 }
 int __libcpp_condvar_timedwait(__libcpp_condvar_t* c, __libcpp_mutex_t* m, __libcpp_timespec_t* until) {
@@ -151,7 +158,7 @@ int __libcpp_execute_once(__libcpp_exec_once_flag* flag, void (*function)()) {
     __atomic_store_n(flag, 2, __ATOMIC_RELEASE);
     wake(flag, kAll);
   } else {
-    while (__atomic_load_n(flag, __ATOMIC_ACQUIRE) != 2) wait(flag, 1, -1);
+    while (__atomic_load_n(flag, __ATOMIC_ACQUIRE) != 2) wait(flag, 1);
   }
   return 0;
 }
@@ -184,7 +191,7 @@ int __libcpp_thread_create(__libcpp_thread_t* t, void* (*function)(void*), void*
   return 0;
 }
 int __libcpp_thread_join(__libcpp_thread_t* t) {
-  while (__atomic_load_n(&(*t)->ended, __ATOMIC_SEQ_CST) == 0) wait(&(*t)->ended, 0, -1);
+  while (__atomic_load_n(&(*t)->ended, __ATOMIC_SEQ_CST) == 0) wait(&(*t)->ended, 0);
   return __libcpp_thread_detach(t);
 }
 int __libcpp_thread_detach(__libcpp_thread_t* t) {

@@ -2,6 +2,7 @@
 #include <sdm/baked_geometry.h>
 #include <sdm/match.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -65,14 +66,10 @@ MeshAttribute corner_normals(nb::handle normals, const Mesh& mesh) {
   const auto given = nb::cast<CornerArray>(normals);
   MeshAttribute result{.name = "normal", .components = 3, .values = {}, .rows = nullptr};
   result.values.assign(given.data(), given.data() + given.size());
+  if (std::ranges::any_of(result.values, [](float x) { return std::isinf(x); }))
+    throw Error("normals must be finite, or NaN where there are none");
   std::vector<Triangle> rows(given.shape(0));
-  for (std::uint32_t f = 0; f < rows.size(); ++f)
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      float* const n = result.values.data() + 3 * (3 * std::size_t{f} + k);
-      const bool none = std::isnan(n[0]);
-      rows[f][k] = none ? kNone : 3 * f + k;
-      if (none) n[0] = n[1] = n[2] = 0;
-    }
+  for (std::uint32_t f = 0; f < rows.size(); ++f) rows[f] = {3 * f, 3 * f + 1, 3 * f + 2};
   result.rows = std::make_shared<const std::vector<Triangle>>(std::move(rows));
   return result;
 }

@@ -8,7 +8,6 @@
 #include <new>
 #include <utility>
 
-#include "atlas/gutter.h"
 #include "baking/look_reader.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -20,25 +19,7 @@ namespace {
 using baking::ChannelLook;
 using map::TexelState;
 
-/// The search for the nearest texel takes time that grows with the square of the width.
-constexpr std::uint32_t kWidestGutter = 16;
 constexpr std::size_t kRowsOfRange = 8;
-
-void require_fitting(const Surface& surface, const Sites& sites, const TexelMatches& matches) {
-  const std::size_t texels = surface.texel_faces().size();
-  if (matches.resolution != surface.resolution() || matches.face.size() != texels ||
-      matches.kind.size() != texels || matches.barycentric.size() != texels)
-    throw Error("the matches belong to another surface: their number of texels differs");
-  const std::size_t faces = sites.mesh().triangles.size();
-  for (std::size_t i = 0; i < texels; ++i)
-    if (matches.face[i] != kNone && (matches.face[i] >= faces || surface.texel_faces()[i] == kNone))
-      throw Error("the matches belong to other meshes: one is on a face that does not exist");
-}
-
-SurfacePoint match_of(const TexelMatches& matches, std::size_t texel) {
-  const auto& [b, c] = matches.barycentric[texel];
-  return {matches.face[texel], {1 - double{b} - c, b, c}};
-}
 
 std::vector<float> values_of(const ChannelLook& look, const Surface& surface, const TexelMatches& matches,
                              const Progress& progress) {
@@ -52,7 +33,7 @@ std::vector<float> values_of(const ChannelLook& look, const Surface& surface, co
     for (std::size_t i = begin * resolution; i < end * resolution; ++i) {
       if (matches.face[i] == kNone) continue;
       if (owners[i] != owner) owner = owners[i], sides = surface.texel_edges(owner);
-      reader.at(match_of(matches, i), sides, &values[i * look.components]);
+      reader.at(matches.point(i), sides, &values[i * look.components]);
     }
   });
   return values;
@@ -126,8 +107,11 @@ Material common_material(const MeshLook& look) {
 std::vector<BakedChannel> bake(const Surface& surface, const Sites& sites, const TexelMatches& matches,
                                const MeshLook& look, std::span<const BakeChannel> channels,
                                const BakeOptions& options) try {
-  require_fitting(surface, sites, matches);
+  require_matches(surface, sites, matches);
   baking::require_fitting(sites.mesh(), look);
+  constexpr std::size_t kMostNumbers = 4, kWithFilling = 2;  // of a texel
+  require_memory(channels.size() * matches.kind.size() * kMostNumbers * kWithFilling * sizeof(float),
+                 "baking these textures");
   baking::Pictures pictures(look);
   const std::vector<TexelState> states = options.fill ? states_of(matches) : std::vector<TexelState>();
   std::vector<BakedChannel> baked;
@@ -136,8 +120,7 @@ std::vector<BakedChannel> bake(const Surface& surface, const Sites& sites, const
     BakedChannel& result = baked.emplace_back(channel, matches.resolution, of_channel.components,
                                               values_of(of_channel, surface, matches, options.progress));
     if (options.fill)
-      map::fill_free_texels(matches.resolution, states,
-                            std::clamp(surface.gutter(), atlas::kGutter, kWidestGutter), result.components,
+      map::fill_free_texels(matches.resolution, states, map::gutter_of_values(surface), result.components,
                             result.values);
   }
   return baked;

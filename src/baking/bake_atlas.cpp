@@ -43,11 +43,12 @@ BakeAtlas bake_atlas(const Mesh& mesh, const AtlasOptions& options) {
     try {
       Surface surface = laid_out_as(mesh, options, AtlasKind::uv);
       if (!(overlap_of(surface) > kMostOverlap)) return {std::move(surface), {}};
+      fault = "faces overlap in its UVs";
     } catch (const Cancelled&) {
       throw;
-    } catch (const Error&) {  // they overlap too often to be laid out, or no face has a texel
+    } catch (const Error& error) {  // they overlap too often to be laid out, or no face has a texel
+      fault = std::string("its UVs cannot be used: ") + error.what();
     }
-    fault = "faces overlap in its UVs";
   }
   if (options.rows && *options.rows != options.resolution)
     throw Error("textures that are not square need UVs that can be used, but " + fault);

@@ -93,15 +93,16 @@ ChannelLook::ChannelLook(const Mesh& m, const MeshLook& l, BakeChannel c, Pictur
     Layer& layer = layers.emplace_back(&material, nullptr, texture_of(material, channel));
     layer.picture = pictures.prepare(layer.use, is_color(channel));
     if (layer.picture == nullptr) return;
-    if (layer.use.uv_set > 0)
+    if (layer.use.uv_set > 0 || mesh.corner_uvs.empty())
       layer.uvs.attribute = attribute_of(look, "uv" + std::to_string(layer.use.uv_set), 2, 2);
-    else if (!mesh.corner_uvs.empty())
+    else
       layer.uvs.mesh = &mesh;
   };
   const auto used = used_materials(look);
+  auto next = used.begin();  // in the order of the materials
   for (const Material& material : look.materials)
-    if (std::ranges::count(used, &material) > 0)
-      add(material);
+    if (next != used.end() && *next == &material)
+      add(material), ++next;
     else
       layers.push_back({&material, nullptr, {}, {}});
   add(kPlain);
@@ -191,7 +192,8 @@ void require_fitting(const Mesh& mesh, const MeshLook& look) {
   for (const Image& picture : look.pictures)
     if (const std::size_t bytes =
             std::size_t{picture.width} * picture.height * picture.components * (picture.bits == 16 ? 2 : 1);
-        picture.bytes.size() != bytes || picture.components > 4 || (bytes == 0 && picture.width > 0))
+        picture.bytes.size() != bytes || (picture.bits != 8 && picture.bits != 16) ||
+        picture.components > 4 || (bytes == 0 && picture.width > 0))
       throw Error("the bytes of a picture are not those of its pixels");
   for (const MeshAttribute& attribute : look.attributes) {
     if (!attribute.rows) continue;

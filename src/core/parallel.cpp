@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <thread>
 
 #include "core/cancellation.h"
 
@@ -19,6 +20,13 @@ void parallel_for(std::size_t count, std::size_t grain, const Progress& progress
   token.progress = &cancelled;
   const CancelBy by(token);
   std::mutex reporting;
+#ifdef __wasm__
+  // JavaScript's callback exists in the thread that calls, which works on every loop.
+  const auto caller = std::this_thread::get_id();
+  const auto may_report = [caller] { return std::this_thread::get_id() == caller; };
+#else
+  const auto may_report = [] { return true; };
+#endif
   std::size_t reported = 0;
   const auto report = [&] {
     reported = done.load();
@@ -28,6 +36,7 @@ void parallel_for(std::size_t count, std::size_t grain, const Progress& progress
     body(begin, end);
     done += end - begin;
     // A thread that finds another one reporting continues: the next report includes its share.
+    if (!may_report()) return;
     if (std::unique_lock lock(reporting, std::try_to_lock); lock.owns_lock()) report();
   });
   // The last thread to finish may have been one of those.

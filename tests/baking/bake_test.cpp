@@ -294,6 +294,12 @@ TEST_F(Baking, FurtherTextureCoordinatesAreThoseOfTheAttribute) {
   materials[0].base_color_texture.uv_set = 1;
   const BakedChannel second = baked(BakeChannel::base_color);
   for (std::size_t i = 0; i < first.values.size(); ++i) ASSERT_NEAR(first.values[i], second.values[i], 1e-5);
+  // The first ones are, too, where only some faces have them: the others have the factor.
+  attributes[0].name = "uv0";
+  materials[0].base_color_texture.uv_set = 0;
+  EXPECT_EQ(baked(BakeChannel::base_color).values, second.values);
+  (*rows)[0].fill(kNone);
+  EXPECT_NE(baked(BakeChannel::base_color).values, second.values);
 }
 
 TEST_F(Baking, WhatDoesNotFitIsRefused) {
@@ -322,7 +328,7 @@ TEST_F(Baking, WhatDoesNotFitIsRefused) {
   EXPECT_EQ(error(), "the attribute `color` belongs to another mesh");
   attributes.clear();
   matches.face[surface.sample_texels()[0]] = 8192;
-  EXPECT_EQ(error(), "the matches belong to other meshes: one is on a face that does not exist");
+  EXPECT_EQ(error(), "the matches name a face that the other mesh does not have");
   matches.face.pop_back();
   EXPECT_EQ(error(), "the matches belong to another surface: their number of texels differs");
 }

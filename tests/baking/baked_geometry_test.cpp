@@ -247,9 +247,22 @@ TEST(BakedGeometry, RefusesWhatDoesNotFit) {
   EXPECT_NE(error_of([&] { (void)matched_displacements(surface, sites, matches, of_sphere); }), "");
   const std::vector<float> few(12);
   EXPECT_NE(error_of([&] { (void)tangent_space_normals(surface, of_cube, of_cube, few); }), "");
-  MeshAttribute infinite = of_sphere;
-  infinite.values[0] = INFINITY;
-  EXPECT_NE(error_of([&] { (void)matched_normals(surface, sites, matches, infinite); }), "");
+}
+
+// As of a file in which some parts have no normals.
+TEST(BakedGeometry, NormalsThatAreNotFiniteAreThoseOfFaces) {
+  const Surface surface(cube(), {.resolution = 16});
+  const Sites sites(cube(2));
+  const TexelMatches matches = match_texels(surface, sites);
+  MeshAttribute none = smooth_normals(cube(2)), flat = smooth_normals(cube(2), 1);
+  std::ranges::fill(none.values, std::numeric_limits<float>::quiet_NaN());
+  const std::vector<float> normals = matched_normals(surface, sites, matches, none);
+  const std::vector<float> expected = matched_normals(surface, sites, matches, flat);
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    if (std::isnan(expected[i]))
+      EXPECT_TRUE(std::isnan(normals[i]));
+    else
+      EXPECT_NEAR(normals[i], expected[i], 1e-6);
 }
 
 }  // namespace

@@ -193,6 +193,13 @@ TEST(Images, CutAtEveryLengthIsAnErrorOfOneLine) {
     }
 }
 
+// Once, only a JPEG without its end was refused: one with the end behind half of its data came out grey.
+TEST(Images, AJpegWithoutItsMiddleIsRefused) {
+  const std::string file = jpeg(JCS_RGB, 3);
+  const std::string cut = file.substr(0, file.size() * 3 / 4) + "\xff\xd9";
+  EXPECT_THAT(error_of([&] { (void)decode_image(cut); }), HasSubstr("picture"));
+}
+
 TEST(Images, DamagedBytesAreReadOrRefused) {
   std::mt19937 random(7);
   for (const std::string& file : {png({PNG_COLOR_TYPE_RGBA, 16}), jpeg(JCS_RGB, 3), webp(3)})

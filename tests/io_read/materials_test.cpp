@@ -75,6 +75,38 @@ TEST_F(ObjWithMaterials, AreThoseOfItsLibrary) {
   EXPECT_THAT(file.notes, ElementsAre(HasSubstr("map_Bump of the material steel is left out")));
 }
 
+TEST_F(ObjWithMaterials, LibrariesAndPicturesAreReadOnceWhateverTheirNames) {
+  write("p.png", "picture");
+  write("c.mtl", "newmtl wood\nmap_Kd p.png\nmap_Ke ./p.png\n");
+  write("c.obj", "mtllib c.mtl\nmtllib ./c.mtl\nmtllib c.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  const MeshFile file = with_materials(folder.path() / "c.obj");
+  EXPECT_EQ(file.materials.size(), 1u);
+  EXPECT_EQ(file.textures.size(), 1u);
+  EXPECT_THAT(file.notes, IsEmpty());
+}
+
+TEST_F(ObjWithMaterials, AStatementThatCannotBeReadLeavesTheOthers) {
+  const MeshFile file =
+      read("newmtl wood\nd -halo 0.5\nKd spectral f.rfl\nPm nan\nPr 7\nnewmtl steel\nPm 1\n");
+  ASSERT_EQ(file.materials.size(), 2u);
+  EXPECT_EQ(file.materials[0].metallic, 0);
+  EXPECT_EQ(file.materials[0].roughness, 1);
+  EXPECT_EQ(file.materials[1].metallic, 1);
+  EXPECT_FALSE(file.notes.empty());
+}
+
+TEST_F(ObjWithMaterials, TextureCoordinatesOfSomeFacesAreAnAttribute) {
+  write("d.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.25 0.5\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\nf 1 3 4\n");
+  const MeshFile file = with_materials(folder.path() / "d.obj");
+  EXPECT_THAT(file.mesh.corner_uvs, IsEmpty());
+  ASSERT_EQ(file.attributes.size(), 1u);
+  const MeshAttribute& uvs = file.attributes[0];
+  EXPECT_EQ(uvs.name, "uv0");
+  EXPECT_EQ(uvs.values[2 * (*uvs.rows)[0][0]], 0.25f);
+  EXPECT_THAT((*uvs.rows)[1], ElementsAre(kNone, kNone, kNone));
+  EXPECT_THAT(file.notes, IsEmpty());
+}
+
 TEST_F(ObjWithMaterials, WhatCannotBeHadIsLeftOutWithANote) {
   const MeshFile file = read("newmtl wood\nKd 0 0 0\nmap_Kd none.png\nnewmtl steel\nmap_Kd ../outside.png\n");
   ASSERT_EQ(file.materials.size(), 2u);

@@ -84,6 +84,19 @@ test('a callback sees progress, and cancels', () => {
   assert.ok(surface.map(sites).statistics().texels > 0);
 });
 
+test('with threads, the callback is that of the thread that calls', async () => {
+  const shared = await start({ threads: 2 });
+  const { positions, indices } = ball(30), sites = new shared.Sites(positions, indices);
+  const surface = new shared.Surface(positions, indices, { resolution: 256 });
+  for (let i = 0; i < 20; ++i) {
+    let last = 0;
+    surface.map(sites, { progress: (_, fraction) => void (last = fraction) });
+    assert.equal(last, 1);
+  }
+  assert.throws(() => surface.map(sites, { progress: () => false }), (error) => error.kind === 'cancelled');
+  shared.stop();
+});
+
 test('10,000 refits take no memory', () => {
   const { positions, indices } = ball(10), sites = new sdm.Sites(positions, indices);
   const pair = new sdm.Pair({ positions, indices }, { positions, indices });

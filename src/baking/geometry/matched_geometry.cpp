@@ -92,7 +92,8 @@ std::vector<float> matched_displacements(const Surface& surface, const Sites& si
   throw out_of_memory("the displacements of matches");
 }
 
-void fill_texels(const Surface& surface, std::size_t components, std::span<float> values) try {
+void fill_texels(const Surface& surface, std::size_t components, std::span<float> values,
+                 bool unmatched) try {
   const auto faces = surface.texel_faces();
   if (components == 0 || values.size() != components * faces.size())
     throw Error("values to fill must be the same number for each texel of the surface");
@@ -100,9 +101,9 @@ void fill_texels(const Surface& surface, std::size_t components, std::span<float
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const auto of_texel = values.subspan(i * components, components);
     const bool finite = std::ranges::all_of(of_texel, [](float x) { return std::isfinite(x); });
-    states[i] = faces[i] == kNone ? map::TexelState::free
-                : finite          ? map::TexelState::valued
-                                  : map::TexelState::missing;
+    states[i] = faces[i] != kNone && finite      ? map::TexelState::valued
+                : faces[i] == kNone || unmatched ? map::TexelState::free
+                                                 : map::TexelState::missing;
   }
   map::fill_free_texels(surface.resolution(), states, map::gutter_of_values(surface), components, values);
 } catch (const std::bad_alloc&) {

@@ -14,7 +14,6 @@
 #include <functional>
 #include <mutex>
 #include <set>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -55,7 +54,7 @@ class Pool {
   void run(Job& job) {
     std::unique_lock lock(mutex_);
     jobs_.push_back(&job);
-    wake();
+    wake();  // does not throw
     for (;;) {
       if (job.has_parts()) work_on(job, lock);
       if (job.threads == 0 && !job.has_parts()) break;
@@ -127,7 +126,7 @@ class Pool {
   void wake() {
     try {
       for (; workers_ + 1 < limit_now(); ++workers_) std::thread([this] { wait_for_jobs(); }).detach();
-    } catch (const std::system_error&) {
+    } catch (const std::exception&) {
       // Those that there are do the work.
     }
     if (may_join()) added_.notify_all();

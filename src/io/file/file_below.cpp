@@ -38,7 +38,7 @@ std::string_view fault_of(std::string_view path) {
   if (path.find('\0') != std::string_view::npos) return "it contains a NUL";
   if (path.find('\\') != std::string_view::npos) return "it contains a backslash";
   if (path.starts_with('/')) return "it is absolute";
-  if (has_scheme(path)) return "it has a scheme other than data:";
+  if (has_scheme(path)) return "it has a scheme";
   if (has_parent_component(path)) return "it contains \"..\"";
   return {};
 }

@@ -28,6 +28,19 @@ std::shared_ptr<const Rows> rows_of_corners(const std::vector<Triangle>& places,
   return rows;
 }
 
+// Texture coordinates that some corners lack, which Mesh::corner_uvs cannot hold.
+MeshAttribute partial_uvs(const PolygonMesh& polygons, const std::vector<Triangle>& places) {
+  std::vector<float> values;
+  values.reserve(2 * polygons.uvs.size());
+  for (const Vec2& uv : polygons.uvs)
+    for (const double x : uv) values.push_back(static_cast<float>(x));
+  std::vector<std::uint32_t> row_of = polygons.corner_uvs;
+  for (std::uint32_t& row : row_of)
+    if (row >= polygons.uvs.size()) row = kNone;
+  return {
+      .name = "uv0", .components = 2, .values = std::move(values), .rows = rows_of_corners(places, row_of)};
+}
+
 std::shared_ptr<const Rows> rows_of_polygons(const std::vector<std::uint32_t>& triangle_ends) {
   auto rows = std::make_shared<Rows>();
   for (std::uint32_t polygon = 0; polygon < triangle_ends.size(); ++polygon)
@@ -42,6 +55,7 @@ std::vector<MeshAttribute> to_attributes(PolygonMesh& polygons, const std::vecto
                                          std::vector<std::string>& notes) {
   std::shared_ptr<const Rows> of_vertices, of_polygons;
   std::vector<MeshAttribute> result;
+  if (!uv_fault(polygons).empty()) result.push_back(partial_uvs(polygons, places));
   for (PolygonAttribute& attribute : polygons.attributes) {
     if (!fits(attribute, polygons)) {
       notes.push_back("the attribute `" + attribute.name + "` is left out: some faces have none");

@@ -12,7 +12,8 @@
 namespace sdm::io {
 
 /// Takes the attributes of the polygons, with the rows of each triangle's corners; those that do not cover
-/// all polygons are left out, with a note. `places`, `triangle_ends`: as of to_mesh().
+/// all polygons are left out, with a note. Texture coordinates that only some corners have are `uv0`.
+/// `places`, `triangle_ends`: as of to_mesh().
 [[nodiscard]] std::vector<MeshAttribute> to_attributes(PolygonMesh& polygons,
                                                        const std::vector<Triangle>& places,
                                                        const std::vector<std::uint32_t>& triangle_ends,

@@ -59,14 +59,16 @@ MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions
         .mesh = io::to_mesh(polygons, renumbered, triangle_ends, options.attributes ? &places : nullptr),
         .names = {},
         .notes = std::move(polygons.notes)};
-    if (std::string fault = io::uv_fault(polygons); !fault.empty()) result.notes.push_back(std::move(fault));
+    if (std::string fault = io::uv_fault(polygons); !fault.empty() && !options.attributes)
+      result.notes.push_back(std::move(fault));
     validate(result.mesh);
     add_names("object", polygons.objects, triangle_ends, result.names);
     add_names("group", polygons.groups, triangle_ends, result.names);
     add_names("material", polygons.materials, triangle_ends, result.names);
     add_names("face", polygons.faces, triangle_ends, result.names);
     add_names("color", polygons.colors, triangle_ends, result.names);
-    result.attributes = io::to_attributes(polygons, places, triangle_ends, result.notes);
+    if (options.attributes)
+      result.attributes = io::to_attributes(polygons, places, triangle_ends, result.notes);
     if (!polygons.surfaces.list.empty())
       result.face_materials = io::materials_of_triangles(polygons.surfaces, triangle_ends);
     result.materials = std::move(polygons.surfaces.list);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -42,7 +43,13 @@ class MtlReader {
       if (in_.accept("newmtl"))
         materials_.list.emplace_back().name = words_of_line();
       else if (!materials_.list.empty())
-        read_statement(materials_.list.back());
+        try {
+          read_statement(materials_.list.back());
+        } catch (const Cancelled&) {
+          throw;
+        } catch (const Error& fault) {
+          leave_out("a statement", fault.what());
+        }
     }
   }
 
@@ -55,13 +62,13 @@ class MtlReader {
       const auto color = light();
       if (material.emissive_texture.texture == kNone) material.emissive = color;
     } else if (in_.accept("d")) {
-      set_opacity(material, static_cast<float>(in_.number()));
+      set_opacity(material, factor());
     } else if (in_.accept("Tr")) {
-      set_opacity(material, 1 - static_cast<float>(in_.number()));
+      set_opacity(material, 1 - factor());
     } else if (in_.accept("Pm")) {
-      material.metallic = static_cast<float>(in_.number());
+      material.metallic = factor();
     } else if (in_.accept("Pr")) {
-      material.roughness = static_cast<float>(in_.number());
+      material.roughness = factor();
     } else if (in_.accept("map_Kd")) {
       if (read_texture("map_Kd", material.base_color_texture))
         std::fill_n(material.base_color.begin(), 3, 1.f);
@@ -79,11 +86,16 @@ class MtlReader {
     material.alpha_mode = alpha < 1 ? AlphaMode::blend : AlphaMode::opaque;
   }
 
+  float factor() {
+    const double number = in_.number();
+    if (!std::isfinite(number)) throw Error("a number is infinite or NaN");
+    return static_cast<float>(std::clamp(number, 0.0, 1.0));
+  }
+
   std::array<float, 3> light() {
     std::array<float, 3> color{};
-    color.fill(baking::linear_light(static_cast<float>(in_.number())));
-    for (std::size_t k = 1; k < 3 && in_.more_on_line(); ++k)
-      color[k] = baking::linear_light(static_cast<float>(in_.number()));
+    color.fill(baking::linear_light(factor()));
+    for (std::size_t k = 1; k < 3 && in_.more_on_line(); ++k) color[k] = baking::linear_light(factor());
     return color;
   }
 
@@ -99,7 +111,7 @@ class MtlReader {
     std::string name = options_and_name(read);
     std::ranges::replace(name, '\\', '/');
     try {
-      read.texture = picture(name);
+      read.texture = materials_.texture_in_file(folder_, name);
       use = read;
       return true;
     } catch (const Cancelled&) {
@@ -110,6 +122,7 @@ class MtlReader {
     }
   }
   void leave_out(const char* statement, std::string_view fault) {
+    if (!materials_.is_new_fault(fault)) return;
     notes_.push_back(fmt::format("{} of the material {} is left out: {}", statement,
                                  excerpt(materials_.list.back().name), fault));
   }
@@ -143,15 +156,6 @@ class MtlReader {
     const std::optional<double> number = parse_number(after.word());
     if (number) in_ = after;
     return number;
-  }
-
-  std::uint32_t picture(const std::string& name) {
-    const auto known = std::ranges::find(materials_.textures, name, &TextureFile::name);
-    if (known != materials_.textures.end())
-      return static_cast<std::uint32_t>(known - materials_.textures.begin());
-    const FileBytes bytes = read_below(folder_, name, "texture");
-    materials_.textures.push_back({.name = name, .bytes = {bytes.view().begin(), bytes.view().end()}});
-    return static_cast<std::uint32_t>(materials_.textures.size() - 1);
   }
 
   TextScanner in_;

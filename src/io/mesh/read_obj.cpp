@@ -167,6 +167,7 @@ class ObjReader {
     std::string name(in_.rest_of_line());
     std::ranges::replace(name, '\\', '/');
     try {
+      if (!libraries_.insert(file_below(folder_, name, "library of materials")).second) return;
       read_mtl(read_below(folder_, name, "library of materials").view(), folder_, mesh_.surfaces,
                mesh_.notes);
     } catch (const Cancelled&) {
@@ -176,14 +177,12 @@ class ObjReader {
     }
   }
   void add_materials() {
+    std::map<std::string_view, std::uint32_t> numbers;  // the first one of each name
+    for (const Material& material : mesh_.surfaces.list)
+      numbers.emplace(material.name, static_cast<std::uint32_t>(&material - mesh_.surfaces.list.data()));
     for (const PolygonNames::Run& run : mesh_.materials.runs()) {
-      std::uint32_t material = kNone;
-      if (run.name != kNone) {
-        const auto& list = mesh_.surfaces.list;
-        const auto found = std::ranges::find(list, mesh_.materials.names()[run.name], &Material::name);
-        if (found != list.end()) material = static_cast<std::uint32_t>(found - list.begin());
-      }
-      mesh_.surfaces.runs.push_back({run.first_polygon, material});
+      const auto found = run.name == kNone ? numbers.end() : numbers.find(mesh_.materials.names()[run.name]);
+      mesh_.surfaces.runs.push_back({run.first_polygon, found == numbers.end() ? kNone : found->second});
     }
   }
   void check_other_statements() {
@@ -209,6 +208,7 @@ class ObjReader {
   TextScanner in_;
   PolygonMesh mesh_;
   std::filesystem::path folder_;
+  std::set<std::filesystem::path> libraries_;  // that were read
   bool with_attributes_, has_colors_ = false;
   PolygonAttribute normals_, colors_;
   HighestIndex highest_vertex_, highest_uv_;

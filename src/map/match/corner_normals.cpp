@@ -24,8 +24,6 @@ CornerNormals::CornerNormals(const Mesh& mesh, const MeshAttribute& normals, con
       if (row != kNone && row >= count)
         throw Error(name + ": there are " + std::to_string(count) + " rows, but a corner refers to row " +
                     std::to_string(row));
-  if (!std::ranges::all_of(normals.values, [](float x) { return std::isfinite(x); }))
-    throw Error(name + " must be finite");
 }
 
 Vec3 CornerNormals::of_face(std::uint32_t face) const {
@@ -39,7 +37,8 @@ Vec3 CornerNormals::of_corner(std::uint32_t face, int corner) const {
   if (row == kNone) return of_face(face);
   const float* const n = normals_.values.data() + 3 * std::size_t{row};
   const Vec3 normal{n[0], n[1], n[2]};
-  return normal == Vec3{} ? of_face(face) : normal;
+  const bool known = std::isfinite(n[0]) && std::isfinite(n[1]) && std::isfinite(n[2]) && normal != Vec3{};
+  return known ? normal : of_face(face);
 }
 
 Vec3 CornerNormals::at(std::uint32_t face, const Vec3& weights) const {

@@ -27,8 +27,11 @@ struct JpegReader {
     jpeg.client_data = this;
     errors.error_exit = fail;
     errors.emit_message = [](j_common_ptr common, int level) {
-      // A file that ends early would be filled with grey.
-      if (level < 0 && common->err->msg_code == JWRN_JPEG_EOF) fail(common);
+      // Where data are damaged or missing, the picture would be filled with grey. Harmless are bytes between
+      // parts, and versions of headers.
+      const int code = common->err->msg_code;
+      if (level < 0 && code != JWRN_EXTRANEOUS_DATA && code != JWRN_JFIF_MAJOR && code != JWRN_ADOBE_XFORM)
+        fail(common);
     };
     errors.output_message = [](j_common_ptr) {};
   }

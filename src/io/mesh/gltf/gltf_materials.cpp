@@ -32,7 +32,8 @@ std::array<float, N> numbers_of(const json& object, const char* name, std::array
   const auto list = object.find(name);
   if (list == object.end() || !list->is_array() || list->size() != N) return otherwise;
   for (std::size_t k = 0; k < N; ++k)
-    if ((*list)[k].is_number()) otherwise[k] = (*list)[k].get<float>();
+    if ((*list)[k].is_number() && std::isfinite((*list)[k].get<float>()))
+      otherwise[k] = (*list)[k].get<float>();
   return otherwise;
 }
 
@@ -115,6 +116,7 @@ class MaterialReader {
     return {};
   }
   void leave_out(const char* name, const std::string& material, const std::string& fault) {
+    if (!materials_.is_new_fault(fault)) return;
     notes_.push_back(fmt::format("the {} of {} is left out: {}", name, excerpt(material), fault));
   }
 
@@ -157,11 +159,10 @@ class MaterialReader {
       file.bytes.assign(bytes.begin(), bytes.end());
     } else if (const std::string& text = text_of(*uri, "the URI of a picture"); is_data_uri(text)) {
       const FileBytes bytes = decode_data_uri(text);
+      document_.charge(bytes.view().size(), "the pictures");
       file.bytes.assign(bytes.view().begin(), bytes.view().end());
     } else {
-      file.name = decode_uri(text);
-      const FileBytes bytes = read_below(folder_, file.name, "texture");
-      file.bytes.assign(bytes.view().begin(), bytes.view().end());
+      return pictures_[image] = materials_.texture_in_file(folder_, decode_uri(text));
     }
     materials_.textures.push_back(std::move(file));
     return pictures_[image] = static_cast<std::uint32_t>(materials_.textures.size() - 1);

@@ -4,6 +4,11 @@
 #include <sdm/material.h>
 
 #include <cstdint>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace sdm::io {
@@ -18,6 +23,16 @@ struct PolygonMaterials {
   std::vector<Material> list;
   std::vector<TextureFile> textures;
   std::vector<Run> runs;
+
+  /// Returns the texture in a file below the folder, which is read once, whatever its names. Throws as
+  /// read_below().
+  std::uint32_t texture_in_file(const std::filesystem::path& folder, const std::string& name);
+
+  /// Whether a fault was not seen before: one note for each is enough.
+  bool is_new_fault(std::string_view fault) { return faults.emplace(fault).second; }
+
+  std::map<std::filesystem::path, std::uint32_t> files;  ///< the textures that were read
+  std::set<std::string, std::less<>> faults;
 };
 
 }  // namespace sdm::io
