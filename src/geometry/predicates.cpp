@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/double_double.h"
 #include "geometry/exact_integer.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
@@ -12,6 +13,28 @@ namespace {
 
 int sign(double x) {
   return (x > 0) - (x < 0);
+}
+
+// The error of a determinant in DoubleDouble: differences are exact, and each term has four roundings of
+// sums and two of products, less than 2⁻¹⁰⁰ of it together. Magnitudes of terms are in double precision.
+constexpr double kErrorOfDoubled = 0x1p-99;
+
+// The sign, or 0 if it is not certain.
+int certain_sign(const DoubleDouble& determinant, double magnitude) {
+  return std::abs(determinant.high) > kErrorOfDoubled * magnitude + kUnderflow ? sign(determinant.high) : 0;
+}
+
+// The sign of the determinant of the differences from a, in DoubleDouble; 0 if that is not certain.
+int by_doubled(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double magnitude) {
+  std::array<DoubleDouble, 3> u, v, w;
+  for (int k = 0; k < 3; ++k)
+    u[k] = exact_sum(b[k], -a[k]), v[k] = exact_sum(c[k], -a[k]), w[k] = exact_sum(d[k], -a[k]);
+  const auto term = [&](int k, int i, int j) { return w[k] * (u[i] * v[j] - u[j] * v[i]); };
+  return certain_sign(term(0, 1, 2) + term(1, 2, 0) + term(2, 0, 1), magnitude);
+}
+int by_doubled(const Vec2& a, const Vec2& b, const Vec2& c, double magnitude) {
+  const auto from_a = [&](const Vec2& p, int k) { return exact_sum(p[k], -a[k]); };
+  return certain_sign(from_a(b, 0) * from_a(c, 1) - from_a(b, 1) * from_a(c, 0), magnitude);
 }
 
 template <class Point, std::size_t count>
@@ -56,15 +79,17 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;  // no volume
   for (int k = 0; k < 3; ++k)
     if (a[k] == b[k] && a[k] == c[k] && a[k] == d[k]) return 0;  // as in a flat part of a drawing
+  if (const int found = by_doubled(a, b, c, d, magnitude); found != 0) return found;
   return exact(a, b, c, d);
 }
 
 int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
   const Vec2 u = b - a, v = c - a;
   const double plus = u[0] * v[1], minus = u[1] * v[0];
-  if (std::abs(plus - minus) > kError2 * (std::abs(plus) + std::abs(minus)) + kUnderflow)
-    return sign(plus - minus);
+  const double magnitude = std::abs(plus) + std::abs(minus);
+  if (std::abs(plus - minus) > kError2 * magnitude + kUnderflow) return sign(plus - minus);
   if (a == b || a == c || b == c) return 0;  // no area
+  if (const int found = by_doubled(a, b, c, magnitude); found != 0) return found;
   return exact(a, b, c);
 }
 

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "geometry/rounding.h"
+
 namespace sdm::mesh {
 namespace {
 
@@ -28,7 +30,7 @@ Similarity Similarity::of(const Transform& pose) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) result.map.rows[i][j] = pose.rows[i][j];
     result.map.offset[i] = pose.rows[i][3];
-    finite = finite && std::isfinite(norm(result.map.rows[i])) && std::isfinite(result.map.offset[i]);
+    finite = finite && std::isfinite(squared_norm(result.map.rows[i])) && std::isfinite(result.map.offset[i]);
   }
   std::array<Vec3, 3>& r = result.map.rows;
   const double determinant = pose.determinant();
@@ -36,20 +38,22 @@ Similarity Similarity::of(const Transform& pose) {
   if (std::abs(result.scale - 1) < 1e-12) result.scale = 1;  // rounding
   double error = finite && result.scale > 0 && std::isfinite(result.scale) ? 0 : 1;
   if (error == 0) {
-    for (Vec3& row : r) row = (1 / result.scale) * row;
+    if (result.scale != 1)
+      for (Vec3& row : r) row = (1 / result.scale) * row;
     const std::array<Vec3, 3> g = gram(r);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) error = std::max(error, std::abs(g[i][j] - (i == j ? 1 : 0)));
   }
   if (!(error <= kTolerance)) throw Error("a pose is not a rotation with a uniform scale and a translation");
   // Newton's iteration towards the nearest rotation, R ← (3 I − R Rᵀ) R / 2, squares the error.
-  for (int step = 0; step < 2; ++step) {
+  for (; error > kFewRoundings; error *= error) {
     std::array<Vec3, 3> g = gram(r);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) g[i][j] = 0.5 * ((i == j ? 3 : 0) - g[i][j]);
     r = {product(r, g[0]), product(r, g[1]), product(r, g[2])};
   }
-  for (Vec3& row : r) row = result.scale * row;
+  if (result.scale != 1)
+    for (Vec3& row : r) row = result.scale * row;
   return result;
 }
 

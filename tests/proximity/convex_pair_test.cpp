@@ -128,7 +128,12 @@ class ConvexPairs : public testing::Test {
     for (Simplex cold; Simplex * simplex : {&cold, &warm}) {
       ++tried_;
       pairs::FacePair hint = pairs::kNoFaces;
-      if (const auto found = convex.find_closest(kInfinite, *simplex, hint)) {
+      const auto found = convex.find_closest(kInfinite, *simplex, hint);
+      if (convex.found_overlap()) {
+        ++found_;
+        EXPECT_TRUE(colliding);
+      }
+      if (found) {
         ++found_;
         EXPECT_EQ(found->distance, expected.distance);
         EXPECT_EQ(found->point1, expected.point1);
@@ -140,7 +145,7 @@ class ConvexPairs : public testing::Test {
       for (const double factor : {0.5, 0.999, 1.001}) {
         const auto within = convex.find_closest(factor * expected.distance, *simplex, hint);
         if (within && !expected.intersecting) {
-          EXPECT_EQ(within->face1 != kNone, factor > 1) << factor;
+          EXPECT_EQ(within->face1 != kNone, factor * expected.distance >= expected.distance) << factor;
         }
       }
       if (const auto decided = convex.colliding(*simplex)) {
@@ -166,7 +171,32 @@ TEST_F(ConvexPairs, HaveTheAnswersOfSearches) {
     // Of five stands, one only touches, which is mostly decided, too.
     const bool extreme = name == "needles" || name == "flat boxes" || name == "far from the origin";
     EXPECT_GE(decided_, (extreme ? 6 : 9) * tried_ / 10);
-    EXPECT_GE(found_, extreme ? 0 : 3 * tried_ / 10);
+    EXPECT_GE(found_, (extreme ? 4 : 9) * tried_ / 10);
+  }
+}
+
+// Solids that are moved by a few roundings where they touch: by exact predicates of the features in contact.
+TEST_F(ConvexPairs, AreDecidedWithinRounding) {
+  for (const auto& [name, m1, m2] : pairs_of_convex_solids()) {
+    if (name == "needles" || name == "flat boxes" || name == "far from the origin") continue;
+    SCOPED_TRACE(name);
+    const Sites o1(m1), o2(m2);
+    const auto c1 = recognise(internals(o1)), c2 = recognise(internals(o2));
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> offset(-4e-15, 4e-15);
+    Simplex warm;
+    tried_ = found_ = decided_ = 0;
+    std::size_t stand = 0;
+    for (Affine pose : bench::random_poses(o1, o2, 100, random)) {
+      if (bench::kStands[stand++ % std::size(bench::kStands)] != bench::Stand::touching) continue;
+      for (int i = 0; i < 20; ++i) {
+        for (double& x : pose.offset) x += (i % 2 == 0 ? 1.0 : 0.1) * offset(random);
+        expect_same(o1, o2, *c1, *c2, pose, 1, warm);
+      }
+    }
+    EXPECT_GT(tried_, 0);
+    EXPECT_GE(decided_, 9 * tried_ / 10);
+    EXPECT_GE(found_, 9 * tried_ / 10);
   }
 }
 

@@ -176,6 +176,7 @@ TEST(Orientation, IsConsistentUnderPermutationAndScaling) {
     ASSERT_EQ(orientation(a, b, c), orientation(b, c, a));
     ASSERT_EQ(orientation(a, b, c), orientation(c, a, b));
     ASSERT_EQ(orientation(a, b, c), -orientation(b, a, c));
+    ASSERT_EQ(orientation(a, b, c), orientation(small * a, small * b, small * c));
     const Vec3 p{x, y, slope}, q{at(random), at(random), at(random)}, r{at(random), at(random), at(random)},
         s = q + r - p;
     const int sign = orientation(p, q, r, s);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "geometry/predicates.h"
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 #include "query/convex/touching.h"
@@ -26,6 +27,14 @@
 //
 // So the faces at the vertex, both faces at the edge, and the face, are those at distance d, to rounding, and
 // all others are farther. The result is that of the smallest numbers, as pairs::find_closest() has it.
+//
+// 4. Where the distance is no more than rounding, of a vertex and a face, or of two edges, u is the normal of
+//    the face, or of both edges, which does not depend on the distance. By 1 to 3, only faces at these
+//    features can have a point in common; and as all other vertices are beyond them by more than rounding,
+//    they have none if and only if the vertex is outside of the plane of the face, or one edge beyond the
+//    other: one exact predicate. If the vertex is on the inside by 4 r at most, an edge from it leaves
+//    through the face, within 4 r · size / h of the vertex; so does an edge through the faces of the other
+//    one.
 namespace sdm::convex {
 namespace {
 
@@ -64,6 +73,12 @@ Features features_at(const Triangle& triangle, std::span<const std::uint32_t> ve
   return result;
 }
 
+enum class Proven : std::uint8_t {
+  nothing,
+  apart,        // the features are closest, and have no point in common
+  intersecting  // those of the surfaces that are near each other are the features, which have one
+};
+
 // Finds the faces of the closest points, and proves that they are.
 class Proof {
  public:
@@ -73,6 +88,7 @@ class Proof {
         pair_(pair),
         scale_(scale),
         rounding_(rounding),
+        away_(simplex.away),
         features_{Feature(simplex, 0), Feature(simplex, 1)} {
     size_ = meshes[0]->size + scale * meshes[1]->size;
     for (int side = 0; side < 2; ++side) faces_[side] = meshes[side]->first_face[features_[side].vertex[0]];
@@ -81,7 +97,7 @@ class Proof {
   // Faces near the closest ones, or those.
   [[nodiscard]] const pairs::FacePair& faces() const { return faces_; }
 
-  std::optional<PointPair> find() {
+  Proven find() {
     const std::uint32_t n1 = features_[0].count, n2 = features_[1].count;
     if (n1 == 1 && n2 == 1) return of_vertices();
     if (n1 == 2 && n2 == 2) return of_edges();
@@ -90,7 +106,22 @@ class Proof {
       return features_[1 - vertex_side].count == 2 ? of_vertex_and_edge(vertex_side)
                                                    : of_vertex_and_face(vertex_side);
     }
-    return {};
+    return Proven::nothing;
+  }
+
+  // The closest points of both faces, which are those of the features. Requires Proven::apart.
+  [[nodiscard]] PointPair points_of_features() const {
+    Corners face[2];
+    Features at[2];
+    for (int side = 0; side < 2; ++side) {
+      const Feature& feature = features_[side];
+      std::array<std::uint32_t, 3> numbers{};
+      for (std::uint32_t i = 0; i < feature.count; ++i) numbers[i] = meshes_[side]->vertex[feature.vertex[i]];
+      face[side] = corners(side, faces_[side]);
+      if (feature.count < 3)
+        at[side] = features_at(triangle(side, faces_[side]), {numbers.data(), feature.count});
+    }
+    return closest_points(face[0], at[0], face[1], at[1]);
   }
 
  private:
@@ -141,65 +172,64 @@ class Proof {
     }
     return {};
   }
-  // The closest points of both faces, which are those of the features.
-  [[nodiscard]] PointPair points_of_features() const {
-    Corners face[2];
-    Features at[2];
-    for (int side = 0; side < 2; ++side) {
-      const Feature& feature = features_[side];
-      std::array<std::uint32_t, 3> numbers{};
-      for (std::uint32_t i = 0; i < feature.count; ++i) numbers[i] = meshes_[side]->vertex[feature.vertex[i]];
-      face[side] = corners(side, faces_[side]);
-      if (feature.count < 3)
-        at[side] = features_at(triangle(side, faces_[side]), {numbers.data(), feature.count});
-    }
-    return closest_points(face[0], at[0], face[1], at[1]);
+  // What features are that have this height above each other, to rounding, and are closest if it is positive.
+  // `exact_sign` computes the sign of the height where rounding may change it.
+  template <class ExactSign>
+  [[nodiscard]] Proven by_height(double height, const ExactSign& exact_sign) const {
+    if (height > kMany * rounding_) return Proven::apart;
+    if (!(height > -4 * rounding_)) return Proven::nothing;
+    return exact_sign() > 0 ? Proven::apart : Proven::intersecting;
   }
 
-  std::optional<PointPair> of_vertices() const {
+  Proven of_vertices() const {
     const Vec3 between = point(1, features_[1].vertex[0]) - point(0, features_[0].vertex[0]);
     const double distance = norm(between);
     const double u_error = 4 * rounding_ / distance;
-    if (!(u_error < kReliable)) return {};
+    if (!(u_error < kReliable)) return Proven::nothing;
     const Vec3 u = (1 / distance) * between;
     for (int side = 0; side < 2; ++side)
-      if (!highest(side, u, u_error, size_)) return {};
-    return points_of_features();
+      if (!highest(side, u, u_error, size_)) return Proven::nothing;
+    return Proven::apart;
   }
 
-  std::optional<PointPair> of_vertex_and_edge(int vertex_side) {
+  Proven of_vertex_and_edge(int vertex_side) {
     const int edge_side = 1 - vertex_side;
     const std::optional<Edge> e = edge(edge_side);
-    if (!e) return {};
+    if (!e) return Proven::nothing;
     const Vec3 p = point(vertex_side, features_[vertex_side].vertex[0]), along = e->along;
     const double squared = squared_norm(along), t = dot(p - e->from, along) / squared;
     const double lateral = std::min(t, 1 - t) * std::sqrt(squared);
     const Vec3 q = e->from + t * along, between = vertex_side == 0 ? q - p : p - q;
     const double distance = norm(between), u_error = 8 * rounding_ / distance;
-    if (!(u_error < kReliable) || !(lateral > 0) || !aside(lateral, distance)) return {};
+    if (!(u_error < kReliable) || !(lateral > 0) || !aside(lateral, distance)) return Proven::nothing;
     const Vec3 u = (1 / distance) * between;
-    if (!highest(vertex_side, u, u_error, lateral) || !highest(edge_side, u, u_error, lateral)) return {};
-    return points_of_features();
+    const bool proven = highest(vertex_side, u, u_error, lateral) && highest(edge_side, u, u_error, lateral);
+    return proven ? Proven::apart : Proven::nothing;
   }
 
-  std::optional<PointPair> of_edges() {
+  Proven of_edges() {
     const std::optional<Edge> e1 = edge(0), e2 = edge(1);
-    if (!e1 || !e2) return {};
+    if (!e1 || !e2) return Proven::nothing;
     const Vec3 &a = e1->along, &b = e2->along, n = cross(a, b), r = e2->from - e1->from;
     const double length1 = norm(a), length2 = norm(b), length = norm(n);
     const double sine = length / (length1 * length2);
     const double u_error = 8 * rounding_ / (sine * std::min(length1, length2));
-    if (!(u_error < kReliable)) return {};
+    if (!(u_error < kReliable)) return Proven::nothing;
     const double s = dot(cross(r, b), n) / (length * length), t = dot(cross(r, a), n) / (length * length);
     const double lateral = sine * std::min(std::min(s, 1 - s) * length1, std::min(t, 1 - t) * length2);
-    const double along_n = dot(r, n) / length, distance = std::abs(along_n);
-    if (!(lateral > 0) || !(distance > kMany * rounding_) || !aside(lateral, distance)) return {};
-    const Vec3 u = (1 / (along_n < 0 ? -length : length)) * n;
-    if (!highest(0, u, u_error, lateral) || !highest(1, u, u_error, lateral)) return {};
-    return points_of_features();
+    const int outwards = dot(n, away_) < 0 ? 1 : -1;
+    const double height = outwards * dot(r, n) / length;
+    if (!(lateral > 0) || !aside(lateral, std::abs(height))) return Proven::nothing;
+    const Vec3 u = (outwards / length) * n;
+    if (!highest(0, u, u_error, lateral) || !highest(1, u, u_error, lateral)) return Proven::nothing;
+    return by_height(height, [&] {
+      // The sign of −r·n.
+      return -outwards * orientation(e1->from, point(0, features_[0].vertex[1]), e2->from,
+                                     point(1, features_[1].vertex[1]));
+    });
   }
 
-  std::optional<PointPair> of_vertex_and_face(int vertex_side) {
+  Proven of_vertex_and_face(int vertex_side) {
     const Vec3 p = point(vertex_side, features_[vertex_side].vertex[0]);
     const int face_side = 1 - vertex_side;
     const ConvexMesh& mesh = *meshes_[face_side];
@@ -213,21 +243,21 @@ class Proof {
         for (const std::uint32_t face : spoke.faces) {
           if (face == tried || std::abs(dot(normal, mesh.normals[face])) < kSamePlane) continue;
           tried = face;
-          if (!is_over(vertex_side, p, face)) continue;
+          const Proven proven = of_vertex_over(vertex_side, p, face);
+          if (proven == Proven::nothing) continue;
           faces_[face_side] = face;
-          return points_of_features();
+          return proven;
         }
-    return {};
+    return Proven::nothing;
   }
   // Whether the face has the point closest to the vertex p.
-  [[nodiscard]] bool is_over(int vertex_side, const Vec3& p, std::uint32_t face) const {
+  [[nodiscard]] Proven of_vertex_over(int vertex_side, const Vec3& p, std::uint32_t face) const {
     const ConvexMesh& mesh = *meshes_[1 - vertex_side];
     const Corners c = corners(1 - vertex_side, face);
     const std::array<Vec3, 3> sides{c[1] - c[0], c[2] - c[1], c[0] - c[2]};
     const Vec3 n = mesh.outward * cross(sides[0], sides[1]), to = p - c[0];
-    const double along_n = dot(n, to);
-    if (!(along_n > 0)) return false;
-    const double length = norm(n), height = along_n / length;
+    const double length = norm(n), height = dot(n, to) / length;
+    if (!(height > -4 * rounding_)) return Proven::nothing;
     double lateral = size_, longest = 0;
     for (int k = 0; k < 3; ++k) {
       const double side = norm(sides[k]);
@@ -235,16 +265,17 @@ class Proof {
       lateral = std::min(lateral, mesh.outward * dot(cross(n, sides[k]), p - c[k]) / (length * side));
     }
     const double u_error = 8 * rounding_ * longest / length;
-    if (!(u_error < kReliable) || !(lateral > 0) || !aside(lateral, height)) return false;
-    if (!(height > kMany * rounding_ && lateral * mesh.inner_radius > 2 * kMany * rounding_ * mesh.size))
-      return false;
+    if (!(u_error < kReliable) || !(lateral > 0) || !aside(lateral, std::abs(height))) return Proven::nothing;
+    if (!(lateral * mesh.inner_radius > 2 * kMany * rounding_ * mesh.size)) return Proven::nothing;
     const Vec3 u = ((vertex_side == 0 ? -1 : 1) / length) * n;
-    return highest(vertex_side, u, u_error, lateral);
+    if (!highest(vertex_side, u, u_error, lateral)) return Proven::nothing;
+    return by_height(height, [&] { return mesh.outward * orientation(c[0], c[1], c[2], p); });
   }
 
   const std::array<const ConvexMesh*, 2> meshes_;
   const pairs::MeshPair& pair_;
   double scale_, rounding_, size_;
+  Vec3 away_;  // from O2 to O1
   Feature features_[2];
   pairs::FacePair faces_{};
 };
@@ -264,51 +295,36 @@ bool ConvexPair::centres_near() const {
   return reach > 0 && squared_norm(pair_.pose(o2_.centre) - o1_.centre) < reach * reach;
 }
 
-std::optional<pairs::Separation> ConvexPair::finish(const Simplex& simplex, pairs::FacePair& hint) const {
-  Proof proof({&o1_, &o2_}, pair_, scale_, rounding_, simplex);
-  const std::optional<PointPair> points = proof.find();
-  hint = proof.faces();
-  if (!points) return {};
-  return pairs::Separation{
-      std::sqrt(points->squared), false, points->point1, points->point2, hint[0], hint[1]};
-}
-
 std::optional<pairs::Separation> ConvexPair::find_closest(double bound, Simplex& simplex,
                                                           pairs::FacePair& hint) {
   found_overlap_ = centres_near();
   if (found_overlap_) return {};
   const SupportRequest request{o1_, o2_, pair_.pose, scale_, bound, rounding_};
   const Relation relation = search_by_supports(request, simplex);
-  switch (relation) {
-    case Relation::apart:
-      return pairs::Separation{};
-    case Relation::near: {
-      const std::optional<pairs::Separation> found = finish(simplex, hint);
-      return found && found->distance > bound ? pairs::Separation{} : found;
-    }
-    default:
-      found_overlap_ = relation == Relation::overlap;
-      return {};
-  }
+  if (relation == Relation::apart) return pairs::Separation{};
+  found_overlap_ = relation == Relation::overlap;
+  if (found_overlap_ || simplex.count == 0) return {};
+  Proof proof({&o1_, &o2_}, pair_, scale_, rounding_, simplex);
+  const Proven proven = proof.find();
+  found_overlap_ = proven == Proven::intersecting;
+  if (found_overlap_) return {};
+  hint = proof.faces();
+  if (proven == Proven::nothing) return {};
+  const PointPair points = proof.points_of_features();
+  const double distance = std::sqrt(points.squared);
+  if (distance > bound) return pairs::Separation{};
+  return pairs::Separation{distance, false, points.point1, points.point2, hint[0], hint[1]};
 }
 
 std::optional<bool> ConvexPair::colliding(Simplex& simplex) {
   if (centres_near()) return true;
   const SupportRequest request{o1_, o2_, pair_.pose, scale_, 0, rounding_};
-  switch (search_by_supports(request, simplex)) {
-    case Relation::apart:
-      return false;
-    case Relation::overlap:
-      return true;
-    case Relation::near: {
-      pairs::FacePair unused{};
-      const std::optional<pairs::Separation> found = finish(simplex, unused);
-      if (found && found->distance > kMany * rounding_) return false;
-      break;
-    }
-    default:
-      break;
-  }
+  const Relation relation = search_by_supports(request, simplex);
+  if (relation == Relation::apart) return false;
+  if (relation == Relation::overlap) return true;
+  if (simplex.count == 0) return {};
+  const Proven proven = Proof({&o1_, &o2_}, pair_, scale_, rounding_, simplex).find();
+  if (proven != Proven::nothing) return proven == Proven::intersecting;
   return touching(o1_, o2_, pair_, scale_, simplex, kMany * rounding_);
 }
 

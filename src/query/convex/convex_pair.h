@@ -28,7 +28,6 @@ class ConvexPair {
  private:
   // Whether the balls about the centres overlap, beyond rounding errors.
   [[nodiscard]] bool centres_near() const;
-  [[nodiscard]] std::optional<pairs::Separation> finish(const Simplex& simplex, pairs::FacePair& hint) const;
 
   const ConvexMesh &o1_, &o2_;
   const pairs::MeshPair& pair_;

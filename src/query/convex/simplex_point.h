@@ -40,6 +40,23 @@ struct SimplexPoints {
     }
   }
 
+  /// Keeps three of four points: those whose plane is nearest to the origin. Returns its unit normal, away
+  /// from the point left out; 0 if no three points have a plane.
+  Vec3 keep_nearest_face() {
+    double least = std::numeric_limits<double>::infinity();
+    int farthest = 3;
+    Vec3 outwards{};
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 &a = w((i + 1) % 4), n = cross(w((i + 2) % 4) - a, w((i + 3) % 4) - a);
+      const double length = norm(n), distance = std::abs(dot(n, a)) / length;
+      if (!(distance < least)) continue;
+      least = distance, farthest = i, outwards = ((dot(n, w(i) - a) > 0 ? -1 : 1) / length) * n;
+    }
+    for (int i = farthest; i < 3; ++i) points[i] = points[i + 1];
+    count = 3;
+    return outwards;
+  }
+
   /// The distance of the origin from the nearest plane of four points that enclose it, at most; negative if
   /// they do not.
   [[nodiscard]] double depth_of_origin() const {

@@ -81,9 +81,9 @@ class SupportSearch {
       if (along - error_ > r_.beyond) return keep(Relation::apart);
       if (known(p) || along > length - kConverged * length - kNoise * size_) return keep(Relation::near);
       simplex_.add(p);
-      if (!simplex_.reduce(v_)) return encloses_origin() ? Relation::overlap : Relation::unknown;
+      if (!simplex_.reduce(v_)) return encloses_origin() ? Relation::overlap : keep_nearest_face();
     }
-    return Relation::unknown;
+    return keep(Relation::unknown);
   }
 
  private:
@@ -151,6 +151,11 @@ class SupportSearch {
     return relation;
   }
 
+  // Of four points about the origin, which is within rounding of a face.
+  Relation keep_nearest_face() {
+    v_ = -simplex_.keep_nearest_face();
+    return keep(Relation::unknown);
+  }
   // Where the closest points are one, they have no direction between them: the last one was.
   Relation keep_touching() {
     v_ = -last_u_;

@@ -301,7 +301,7 @@ FacePair find_common_faces(const MeshPair& pair, PairWorkspace& workspace, const
 }
 
 Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace) {
-  const FacePair faces = find_common_faces(pair, workspace);
+  const FacePair faces = HWY_DYNAMIC_DISPATCH(FindCommonFaces)(pair, workspace);
   if (faces == kNoFaces) return {};
   const Vec3 point = common_point(pair.face1(faces[0]), pair.face2(faces[1]));
   return {0, true, point, point, faces[0], faces[1]};

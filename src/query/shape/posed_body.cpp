@@ -7,17 +7,18 @@
 
 namespace sdm::shape {
 
-void check_posed(const mesh::Similarity& pose, const Box& box) {
+Box check_posed(const mesh::Similarity& pose, const Box& box) {
   const Box posed = image(pose.map, box);
   for (int k = 0; k < 3; ++k)
     if (!(posed.lo[k] >= -mesh::kMaxCoordinate && posed.hi[k] <= mesh::kMaxCoordinate))
       throw Error("the pose moves it beyond 1e37, too far for the computation; use smaller values");
+  return posed;
 }
 
-mesh::Similarity PosedBody::checked_pose(const Transform& pose) const {
-  const auto result = mesh::Similarity::of(pose);
-  check_posed(result, body().box());
-  if (!(result.scale * diagonal(body().box()) > mesh::kMinSize))
+PosedBody::Placed PosedBody::checked_pose(const Transform& pose) const {
+  Placed result{.pose = mesh::Similarity::of(pose)};
+  result.box = check_posed(result.pose, body().box());
+  if (!(result.pose.scale * diagonal(body().box()) > mesh::kMinSize))
     throw Error("the pose makes it smaller than 1e-30, too small for the computation; scale it up");
   return result;
 }

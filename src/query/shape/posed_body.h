@@ -14,21 +14,28 @@
 namespace sdm::shape {
 
 /// Throws sdm::Error unless a body with that box has, in that pose, coordinates that meshes can have:
-/// distances are then finite.
-void check_posed(const mesh::Similarity& pose, const Box& box);
+/// distances are then finite. Returns a box that contains the posed body.
+Box check_posed(const mesh::Similarity& pose, const Box& box);
 
 class PosedBody {
  public:
+  /// A pose, and a box that contains the body in it.
+  struct Placed {
+    mesh::Similarity pose;
+    Box box{};
+  };
+
   explicit PosedBody(Shape shape) : shape_(std::move(shape)) { follow(); }
 
   /// Throws sdm::Error unless the pose is a Similarity that keeps the body where it can be computed with.
   /// Cost: constant.
   void set_pose(const Transform& pose) {
-    pose_ = checked_pose(pose);
-    follow();
+    const Placed placed = checked_pose(pose);
+    pose_ = placed.pose;
+    follow(placed.box);
   }
-  /// The pose that set_pose() would set. Throws as it does.
-  [[nodiscard]] mesh::Similarity checked_pose(const Transform& pose) const;
+  /// What set_pose() would set. Throws as it does.
+  [[nodiscard]] Placed checked_pose(const Transform& pose) const;
   /// Throws sdm::Error if another Shape shares the mesh.
   void require_own_shape() const;
   /// Throws sdm::Error for positions that are not valid for the mesh, and if another Shape shares it.
@@ -69,8 +76,9 @@ class PosedBody {
 
  private:
   void check_edit(const MeshEdit& edit) const;
-  void follow() {
-    box_ = image(pose_.map, body().box());
+  void follow() { follow(image(pose_.map, body().box())); }
+  void follow(const Box& box) {
+    box_ = box;
     const auto& [centre, radius] = body().ball();
     ball_ = {pose_.map(centre), pose_.scale * radius};
     ball_.radius += kFewRoundings * (norm(pose_.map.offset) + pose_.scale * (norm(centre) + radius));
