@@ -1,15 +1,12 @@
 import functools
 import json
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
-from ._attributes import transferred
 from ._closest_points import NONE
 from ._core import (
     BoundedLength,
@@ -17,14 +14,13 @@ from ._core import (
     Error,
     FaceNames,
     GroupVerdicts,
+    Map,
+    MapChannels,
     Places,
-    Sites,
-    Surface,
     ToleranceVerdict,
 )
+from ._texels import Progress, Texels, read_only
 from ._types import Colormap
-
-Progress = Callable[[str, float], "bool | None"]
 
 
 @dataclass(frozen=True)
@@ -41,7 +37,7 @@ class MapBounds:
     """Upper bound on the error of the distance at a texel, of the engine and of rounding to float32."""
 
 
-class DistanceMap(_core.MapChannels):
+class DistanceMap(MapChannels, Texels):
     """The distance from every texel of a surface (O1) to sites (O2). Returned by map(), self_map() and thickness().
 
     Its arrays are the channels of the map, with a row for each row of texels, row 0 at the top, and read-only. Texels without
@@ -51,34 +47,23 @@ class DistanceMap(_core.MapChannels):
     Notebooks show the surface in 3D, its picture and its numbers.
     """
 
-    def __init__(self, core: "_core.Map") -> None:
+    _core: Map
+
+    def __init__(self, core: Map) -> None:
         super().__init__(core)
         self._core = core
-
-    def __reduce__(self) -> "tuple[type, tuple[_core.Map]]":
-        return type(self), (self._core,)
-
-    @property
-    def surface(self) -> Surface:
-        """The surface on which distances are measured."""
-        return self._core.surface
-
-    @property
-    def sites(self) -> Sites:
-        """The sites that they are measured to."""
-        return self._core.sites
 
     @functools.cached_property
     def valid(self) -> "npt.NDArray[np.bool_]":
         """Whether a texel has a value, (H, W) bool."""
-        return _frozen(self.site != NONE)
+        return read_only(self.site != NONE)
 
     @functools.cached_property
     def closest_barycentric(self) -> "npt.NDArray[np.float64]":
         """Where the closest point is on ``closest_face``: the weights of its corners, (H, W, 3) float64, of the precision of
         ``closest_uv``; NaN without a value."""
         uv = self.closest_uv.astype(np.float64)
-        return _frozen(np.concatenate([1 - uv.sum(axis=2, keepdims=True), uv], axis=2))
+        return read_only(np.concatenate([1 - uv.sum(axis=2, keepdims=True), uv], axis=2))
 
     @property
     def sign(self) -> str:
@@ -187,33 +172,6 @@ class DistanceMap(_core.MapChannels):
         False
         """
         return self._core.places(tolerance, names, tolerance_table, progress)
-
-    def transfer(
-        self,
-        values: "npt.ArrayLike",
-        domain: Literal["vertex", "face", "corner"] = "vertex",
-        *,
-        fill: bool = True,
-        progress: "Progress | None" = None,
-    ) -> "npt.NDArray[np.float32]":
-        """Returns what O2 has at the closest point of each texel, such as its colours: (H, W, ...) float32.
-
-        values: real numbers, a row for each vertex of O2, each face, or each corner of each face, then of shape
-        (faces, 3, ...); further axes are components. domain: 'vertex', 'face' or 'corner', what the rows are of. Values of
-        vertices and corners are linear within faces. fill: whether the texels of no face get values too: beside charts
-        those of the nearest texel, elsewhere smooth ones, so that a texture can be filtered. Texels of a face without a
-        distance hold NaN. Colours are to be given in linear light.
-
-        On an edge or a vertex, the face is any of those around it, or with ``facing`` one that faces the sample. Raises
-        Error if the surface or the sites have been refitted, and for an array of another shape; Cancelled. Cost: linear in
-        texels, all cores.
-
-        >>> m = sdm.map(sphere, box, resolution=64)
-        >>> heights = m.transfer(sdm.Mesh(box).vertices[:, 2])
-        >>> heights.shape, bool(np.all(np.abs(heights) <= 1.0001))
-        ((64, 64), True)
-        """
-        return transferred(self._core.transfer, values, domain, fill, progress)
 
     def free_distances(self) -> "npt.NDArray[np.float64]":
         """Returns, for each texel, a radius within which there is no point of O2, (H, W) float64; 0 without a value.
@@ -376,8 +334,3 @@ class DistanceMap(_core.MapChannels):
         s = self.statistics()
         height, width = self.distance.shape
         return f"sdm.DistanceMap({width} × {height} texels, distance {s.min:.6g} to {s.max:.6g}, mean {s.mean:.6g})"
-
-
-def _frozen(array: npt.NDArray[Any]) -> "npt.NDArray[Any]":
-    array.flags.writeable = False
-    return array

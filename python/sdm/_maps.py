@@ -2,7 +2,8 @@ from typing import Literal
 
 from . import _core
 from ._core import Error, Mesh, Surface
-from ._distance_map import DistanceMap, Progress
+from ._distance_map import DistanceMap
+from ._texels import Progress
 from ._types import Atlas, Engine, Sign
 
 

@@ -1,15 +1,15 @@
 import enum
 import functools
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._attributes import Normals, corner_normals, transferred
+from ._attributes import Normals, corner_normals
 from ._closest_points import NONE
-from ._core import Error, Sites, Surface
-from ._distance_map import Progress
+from ._core import Error, Sites, Surface, TexelMatches
+from ._texels import Progress, Texels, read_only
 from ._types import Atlas, Engine
 
 
@@ -30,12 +30,12 @@ class MatchKind(enum.IntEnum):
     """Unmatched: no face of O2 faces as the sample does."""
 
 
-class Matches:
+class Matches(Texels):
     """For every texel of a surface (O1), the point of O2 that belongs there. Returned by match().
 
     Its arrays have a row for each row of texels, row 0 at the top, and are read-only. The methods return what O2 has at the
     points, as textures of O1: a new array of float32, in the units of the meshes. Texels of a face without a point hold NaN;
-    those of no face get values too with ``fill``, as of DistanceMap.transfer(). They raise Error if the surface or the sites
+    those of no face get values too with ``fill``, as of transfer(). They raise Error if the surface or the sites
     have been refitted or edited since, and Cancelled. Cost: linear in texels, all cores, unless stated otherwise.
 
     >>> matches = sdm.match(sphere, box, resolution=64)
@@ -43,24 +43,13 @@ class Matches:
     True
     """
 
-    def __init__(self, core: "_core.TexelMatches") -> None:
-        self._core = core
+    _core: TexelMatches
 
-    def __reduce__(self) -> "tuple[type, tuple[_core.TexelMatches]]":
-        return type(self), (self._core,)
+    def __init__(self, core: TexelMatches) -> None:
+        self._core = core
 
     def __repr__(self) -> str:
         return f"sdm.Matches({self.kind.shape[1]} × {self.kind.shape[0]} texels, {int(self.matched.sum())} matched)"
-
-    @property
-    def surface(self) -> Surface:
-        """The surface whose texels are matched."""
-        return self._core.surface
-
-    @property
-    def sites(self) -> Sites:
-        """The sites that they are matched with."""
-        return self._core.sites
 
     @property
     def kind(self) -> "npt.NDArray[np.uint8]":
@@ -75,7 +64,7 @@ class Matches:
     @functools.cached_property
     def matched(self) -> "npt.NDArray[np.bool_]":
         """Whether a texel has a point, (H, W) bool."""
-        return _read_only(self.face != NONE)
+        return read_only(self.face != NONE)
 
     @functools.cached_property
     def barycentric(self) -> "npt.NDArray[np.float64]":
@@ -83,23 +72,7 @@ class Matches:
         uv = self._core.uv.astype(np.float64)
         weights = np.concatenate([np.maximum(0, 1 - uv.sum(axis=2, keepdims=True)), uv], axis=2)
         weights[~self.matched] = np.nan
-        return _read_only(weights)
-
-    def transfer(
-        self,
-        values: "npt.ArrayLike",
-        domain: Literal["vertex", "face", "corner"] = "vertex",
-        *,
-        fill: bool = True,
-        progress: "Progress | None" = None,
-    ) -> "npt.NDArray[np.float32]":
-        """Returns what O2 has at the points, such as its colours: (H, W, ...). The arguments are those of DistanceMap.transfer().
-
-        >>> heights = sdm.match(sphere, box, resolution=64).transfer(sdm.Mesh(box).vertices[:, 2])
-        >>> heights.shape
-        (64, 64)
-        """
-        return transferred(self._core.transfer, values, domain, fill, progress)
+        return read_only(weights)
 
     def normals(
         self, of: Normals = "smooth", *, fill: bool = True, progress: "Progress | None" = None
@@ -250,8 +223,3 @@ def tangents(surface: Surface, normals: Normals = "smooth") -> "npt.NDArray[np.f
     >>> if sdm.has_tangents(): assert sdm.tangents(sdm.Surface(sphere, resolution=64)).shape == (len(sphere.faces), 3, 4)
     """
     return _core.corner_tangents(surface, corner_normals(normals, len(surface.vertices), surface.faces, "normals"))
-
-
-def _read_only(array: "npt.NDArray[Any]") -> "npt.NDArray[Any]":
-    array.flags.writeable = False
-    return array

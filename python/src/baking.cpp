@@ -16,14 +16,16 @@
 #include "arrays.h"
 #include "objects.h"
 #include "run.h"
+#include "values.h"
 
 namespace sdm::python {
 namespace {
 
 /// O1 with its textures.
 struct PyBaked {
+  AtlasOptions atlas;  ///< of the surface
   Surface surface;
-  TexelMatches matches;
+  std::vector<std::uint8_t> matched;  ///< for each texel, whether O2 has a point for it
   std::vector<BakedChannel> channels;
   Material material;
   std::vector<std::string> notes;
@@ -44,6 +46,87 @@ struct Look {
     return {file.materials, file.face_materials, pictures, file.attributes};
   }
 };
+
+/// What a PyBaked is stored by: its surface is laid out again.
+struct StoredBaked {
+  Mesh mesh;
+  AtlasOptions atlas;
+  std::vector<std::uint8_t> matched;
+  std::vector<BakedChannel> channels;
+  Material material;
+  std::vector<std::string> notes;
+};
+
+}  // namespace
+
+template <>
+inline constexpr auto kLast<AtlasKind> = AtlasKind::uv;
+template <>
+inline constexpr auto kMembers<AtlasOptions> =
+    std::tuple{&AtlasOptions::kind,        &AtlasOptions::resolution, &AtlasOptions::rows,
+               &AtlasOptions::max_stretch, &AtlasOptions::gutter,     &AtlasOptions::strict_uv};
+template <>
+inline constexpr auto kLast<BakeChannel> = BakeChannel::emissive;
+template <>
+inline constexpr auto kMembers<BakedChannel> = std::tuple{&BakedChannel::channel, &BakedChannel::resolution,
+                                                          &BakedChannel::components, &BakedChannel::values};
+template <>
+inline constexpr auto kLast<AlphaMode> = AlphaMode::blend;
+template <>
+inline constexpr auto kLast<TextureWrap> = TextureWrap::clamp;
+template <>
+inline constexpr auto kMembers<TextureUse> =
+    std::tuple{&TextureUse::texture, &TextureUse::uv_set, &TextureUse::place, &TextureUse::wrap};
+template <>
+inline constexpr auto kMembers<Material> = std::tuple{&Material::name,
+                                                      &Material::base_color,
+                                                      &Material::emissive,
+                                                      &Material::alpha_mode,
+                                                      &Material::alpha_cutoff,
+                                                      &Material::metallic,
+                                                      &Material::roughness,
+                                                      &Material::normal_scale,
+                                                      &Material::occlusion_strength,
+                                                      &Material::base_color_texture,
+                                                      &Material::metallic_roughness_texture,
+                                                      &Material::normal_texture,
+                                                      &Material::occlusion_texture,
+                                                      &Material::emissive_texture};
+template <>
+inline constexpr auto kMembers<StoredBaked> =
+    std::tuple{&StoredBaked::mesh,     &StoredBaked::atlas,    &StoredBaked::matched,
+               &StoredBaked::channels, &StoredBaked::material, &StoredBaked::notes};
+
+namespace {
+
+void check_stored(const StoredBaked& stored, const Surface& surface) {
+  const std::size_t texels = surface.texel_faces().size();
+  bool fits = stored.matched.size() == texels;
+  for (const BakedChannel& channel : stored.channels)
+    fits &= channel.resolution == surface.resolution() && channel.components >= 1 &&
+            channel.components <= 4 && channel.values.size() == channel.components * texels;
+  if (!fits) throw Error(kDamaged);
+}
+
+void bind_baked_state() {
+  bind_state<PyBaked>(
+      1,
+      [](const PyBaked& self) {
+        return nb::make_tuple(bytes_of(StoredBaked{self.surface.mesh(), self.atlas, self.matched,
+                                                   self.channels, self.material, self.notes}));
+      },
+      [](PyBaked* self, const nb::tuple& from) {
+        auto stored = value_of<StoredBaked>(from[0]);
+        validate(stored.mesh);
+        run_sized(stored.mesh.triangles.size(), [&] {
+          Surface surface(std::move(stored.mesh), stored.atlas);
+          check_stored(stored, surface);
+          new (self)
+              PyBaked{std::move(stored.atlas),    std::move(surface),         std::move(stored.matched),
+                      std::move(stored.channels), std::move(stored.material), std::move(stored.notes)};
+        });
+      });
+}
 
 using Colors = nb::ndarray<const float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Pixels = nb::ndarray<const std::uint8_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
@@ -130,17 +213,23 @@ nb::object baked_from(nb::handle file, nb::handle mesh, nb::handle low, const st
     if (look.file.materials.empty() &&
         std::ranges::count(look.file.attributes, "color", &MeshAttribute::name) == 0)
       throw Error("high has neither materials nor colours of vertices, so there is nothing to bake");
-    BakeAtlas laid = laid_out(on, {.resolution = resolution, .progress = report}, kind);
+    AtlasOptions layout{.resolution = resolution, .progress = report};
+    BakeAtlas laid = laid_out(on, layout, kind);
+    layout.kind = kind.value_or(laid.fault.empty() ? AtlasKind::uv : AtlasKind::charts);
+    layout.progress = {};
     if (!laid.fault.empty()) notes.push_back("low: " + laid.fault + ", so it got an atlas of charts");
     const Sites sites(look.file.mesh);
-    TexelMatches matches = matches_of(laid.surface, sites, compute_map(laid.surface, sites, options));
+    const TexelMatches matches = matches_of(laid.surface, sites, compute_map(laid.surface, sites, options));
     if (std::ranges::all_of(matches.face, [](std::uint32_t face) { return face == kNone; }))
       throw Error("no point of high is close enough to a texel of low, or faces one: nothing can be baked");
     const auto chosen = channels_of(channels, look);
     std::vector<BakedChannel> values =
         bake(laid.surface, sites, matches, look.get(), chosen, {.progress = report});
-    result = std::make_unique<PyBaked>(PyBaked{std::move(laid.surface), std::move(matches), std::move(values),
-                                               common_material(look.get()), std::move(notes)});
+    std::vector<std::uint8_t> matched(matches.face.size());
+    std::ranges::transform(matches.face, matched.begin(), [](std::uint32_t face) { return face != kNone; });
+    result =
+        std::make_unique<PyBaked>(PyBaked{std::move(layout), std::move(laid.surface), std::move(matched),
+                                          std::move(values), common_material(look.get()), std::move(notes)});
   });
   return nb::cast(result.release(), nb::rv_policy::take_ownership);
 }
@@ -210,10 +299,8 @@ void bind_baked(nb::module_& module) {
       .def_prop_ro(
           "matched",
           [](const PyBaked& self) {
-            std::vector<std::uint8_t> matched(self.matches.face.size());
-            std::ranges::transform(self.matches.face, matched.begin(),
-                                   [](std::uint32_t face) { return face != kNone; });
-            return array_of<std::uint8_t>(std::move(matched), {self.surface.rows(), self.matches.resolution});
+            std::vector<std::uint8_t> copy = self.matched;
+            return array_of<std::uint8_t>(std::move(copy), {self.surface.rows(), self.surface.resolution()});
           },
           nb::sig("def matched(self) -> numpy.typing.NDArray[numpy.uint8]"),
           "1 for each texel with a point of the detailed mesh, otherwise 0: its values are those of others, "
@@ -236,6 +323,7 @@ void bind_baked(nb::module_& module) {
         return nb::str("sdm.Baked({}, {} x {})")
             .format(names, self.surface.resolution(), self.surface.rows());
       });
+  bind_baked_state();
 }
 
 }  // namespace

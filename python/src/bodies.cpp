@@ -8,6 +8,7 @@
 
 #include "arrays.h"
 #include "proximity.h"
+#include "values.h"
 
 namespace sdm::python {
 namespace {
@@ -21,6 +22,22 @@ struct PyPenetrationDepths {
   std::vector<PairDepth> pairs;
   LazyArray bodies, parts, depth, depth_bounds;
 };
+
+}  // namespace
+
+template <>
+inline constexpr auto kMembers<PairSeparation> =
+    std::tuple{&PairSeparation::first, &PairSeparation::second, &PairSeparation::separation,
+               &PairSeparation::colliding, &PairSeparation::parts};
+template <>
+inline constexpr auto kMembers<PySeparations> = std::tuple{&PySeparations::pairs};
+template <>
+inline constexpr auto kMembers<PairDepth> =
+    std::tuple{&PairDepth::first, &PairDepth::second, &PairDepth::penetration_depth, &PairDepth::parts};
+template <>
+inline constexpr auto kMembers<PyPenetrationDepths> = std::tuple{&PyPenetrationDepths::pairs};
+
+namespace {
 
 // The query throws for one that is too large.
 std::size_t index_of(std::int64_t body) {
@@ -78,6 +95,7 @@ void bind_separations(nb::module_& module) {
       .def("__len__", [](const P& self) { return self.pairs.size(); })
       .def("__repr__",
            [](const P& self) { return nb::str("sdm.Separations({})").format(self.pairs.size()); });
+  bind_value<P>();
 }
 
 void bind_penetration_depths(nb::module_& module) {
@@ -103,6 +121,7 @@ void bind_penetration_depths(nb::module_& module) {
       .def("__len__", [](const P& self) { return self.pairs.size(); })
       .def("__repr__",
            [](const P& self) { return nb::str("sdm.PenetrationDepths({})").format(self.pairs.size()); });
+  bind_value<P>();
 }
 
 MultiBodyQuery query_of(nb::handle bodies, const MultiBodyOptions& options) {
@@ -360,6 +379,8 @@ array([[0, 1],
   bind_answers(query);
   bind_moving_bodies(module, query);
   bind_nearest(query);
+  bind_no_state<PyMultiBodyQuery>(
+      "a MultiBodyQuery cannot be pickled or copied; pickle its meshes or Shapes, and make another one");
 }
 
 }  // namespace sdm::python

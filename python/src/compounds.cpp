@@ -15,7 +15,7 @@ std::vector<BodyPart> parts_of(nb::handle body) {
 
 void bind_compound(nb::module_& module) {
   nb::class_<PyCompound>(
-      module, "Compound",
+      module, "Compound", nb::is_weak_referenceable(),
       R"(Several shapes that move as one body of MultiBodyQuery, as the links of a gripper or the tiles of a floor.
 
 shapes: each any form of a mesh (see Mesh), or a Shape. poses: of the shapes in the frame of the body, (n, 4, 4)
@@ -35,7 +35,11 @@ Error for no shape, and for another number of poses.
           "__init__",
           [](PyCompound* self, nb::handle shapes, nb::handle poses) {
             std::vector<BodyPart> parts;
-            for (const nb::handle shape : nb::iter(shapes)) parts.push_back({shape_of(shape)});
+            nb::list kept;
+            for (const nb::handle shape : nb::iter(shapes)) {
+              kept.append(nb::isinstance<PyShape>(shape) ? nb::borrow(shape) : nb::type<PyShape>()(shape));
+              parts.push_back({shape_of(kept[parts.size()])});
+            }
             if (parts.empty()) throw Error("a compound without shapes; give it one or more");
             if (!poses.is_none()) {
               const Poses all(poses, "poses");
@@ -44,7 +48,7 @@ Error for no shape, and for another number of poses.
                             std::to_string(all.get().size()) + " poses; give one for each");
               for (std::size_t i = 0; i < parts.size(); ++i) parts[i].pose = all.get()[i];
             }
-            new (self) PyCompound{std::move(parts)};
+            new (self) PyCompound{std::move(parts), nb::tuple(kept)};
           },
           nb::arg("shapes").none(), nb::arg("poses") = nb::none(),
           nb::sig(

@@ -2,6 +2,7 @@
 #include <nanobind/stl/unique_ptr.h>
 
 #include "objects.h"
+#include "stored.h"
 
 #include <algorithm>
 #include <array>
@@ -72,7 +73,7 @@ The message is one sentence that names the object, the fault and the remedy. A s
 >>> sdm.engines()[0]
 'cpu')");
 
-  nb::class_<PyThreadLimit>(module, "thread_limit",
+  nb::class_<PyThreadLimit>(module, "thread_limit", nb::is_weak_referenceable(),
                             R"(Limits the threads that the library uses while a ``with`` block runs.
 
 count: 0 means all cores. The smallest of several limits is in force, in all threads of
@@ -98,6 +99,7 @@ the process.
       .def(
           "__exit__", [](PyThreadLimit& self, const nb::args&) { self.limit.reset(); },
           nb::sig("def __exit__(self, *exception: object) -> None"));
+  bind_no_state<PyThreadLimit>("a thread_limit cannot be pickled or copied; make another one");
 }
 
 }  // namespace sdm::python

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "proximity.h"
+#include "values.h"
 
 namespace sdm::python {
 namespace {
@@ -10,6 +11,17 @@ struct PyTimesOfContact {
   std::vector<PairTimeOfContact> pairs;
   LazyArray bodies, parts, time, separation, witness, faces, normal, bounded;
 };
+
+}  // namespace
+
+template <>
+inline constexpr auto kMembers<PairTimeOfContact> =
+    std::tuple{&PairTimeOfContact::first, &PairTimeOfContact::second, &PairTimeOfContact::time_of_contact,
+               &PairTimeOfContact::parts};
+template <>
+inline constexpr auto kMembers<PyTimesOfContact> = std::tuple{&PyTimesOfContact::pairs};
+
+namespace {
 
 // A property with get(pair) of all pairs.
 template <class Get>
@@ -78,6 +90,7 @@ surfaces intersect at time 0.)")
       .def("__len__", [](const T& self) { return self.pairs.size(); })
       .def("__repr__",
            [](const T& self) { return nb::str("sdm.TimesOfContact({})").format(self.pairs.size()); });
+  bind_value<T>();
 }
 
 std::vector<Motion> motions_of(nb::handle starts, nb::handle ends) {

@@ -94,6 +94,8 @@ void bind_edit(nb::class_<PySurface>& surface);
 
 /// Adds pickling to the types above and to those of proximity.h and map.h, after all are bound.
 void bind_pickle();
+/// The same for results that are values of the library.
+void bind_result_states();
 
 void bind_baking(nb::module_& module);
 void bind_batches(nb::module_& module);

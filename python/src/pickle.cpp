@@ -1,5 +1,6 @@
-// Pickling and copying: objects are stored by what they were made from, and made again, which gives the same
-// object bit for bit but for memory of earlier queries.
+// Pickling and copying: objects that hold meshes are stored by what they were made from, and made again,
+// which gives the same object bit for bit but for memory of earlier queries. Others are stored by their
+// values (values.h).
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -206,7 +207,7 @@ void bind_nearest_map_state() {
       });
 }
 
-void bind_result_states() {
+void bind_closest_points_state() {
   bind_state<PyClosestPoints>(
       6,
       [](PyClosestPoints& self) {
@@ -225,60 +226,6 @@ void bind_result_states() {
             faces.corners.size() != n || faces.weights.size() != n)
           throw Error(kDamaged);
         new (self) PyClosestPoints({closest, inside}, with, gradients, std::move(faces));
-      });
-  bind_state<FaceNames>(
-      3, [](const FaceNames& self) { return nb::make_tuple(self.kind, self.names, packed(self.of_face)); },
-      [](FaceNames* self, const nb::tuple& from) {
-        FaceNames names{nb::cast<std::string>(from[0]), nb::cast<std::vector<std::string>>(from[1]),
-                        unpacked<std::uint32_t>(from[2])};
-        for (const std::uint32_t name : names.of_face)
-          if (name != kNone && name >= names.names.size()) throw Error(kDamaged);
-        new (self) FaceNames(std::move(names));
-      });
-}
-
-void bind_number_states() {
-  bind_state<DistanceStatistics>(
-      1, [](const DistanceStatistics& self) { return nb::make_tuple(packed(std::vector{self})); },
-      [](DistanceStatistics* self, const nb::tuple& from) {
-        const auto numbers = unpacked<DistanceStatistics>(from[0]);
-        if (numbers.size() != 1) throw Error(kDamaged);
-        new (self) DistanceStatistics(numbers.front());
-      });
-  bind_state<BoundedLength>(
-      5,
-      [](const BoundedLength& self) {
-        std::vector<std::array<Vec3, 2>> witness;
-        if (self.witness) witness.push_back(*self.witness);
-        return nb::make_tuple(self.value, static_cast<int>(self.certainty), self.lower, self.upper,
-                              packed(witness));
-      },
-      [](BoundedLength* self, const nb::tuple& from) {
-        const auto witness = unpacked<std::array<Vec3, 2>>(from[4]);
-        const auto certainty = enumerator<Certainty>(from[1], Certainty::estimate);
-        const std::array numbers{nb::cast<double>(from[0]), nb::cast<double>(from[2]),
-                                 nb::cast<double>(from[3])};
-        auto* made = new (self) BoundedLength;
-        made->value = numbers[0];
-        made->certainty = certainty;
-        made->lower = numbers[1], made->upper = numbers[2];
-        if (!witness.empty()) made->witness = witness.front();
-      });
-  bind_state<SeparatingTranslation>(
-      5,
-      [](const SeparatingTranslation& self) {
-        return nb::make_tuple(self.value, static_cast<int>(self.certainty), self.lower, self.upper,
-                              packed(std::vector{self.translation}));
-      },
-      [](SeparatingTranslation* self, const nb::tuple& from) {
-        const auto translation = unpacked<Vec3>(from[4]);
-        if (translation.size() != 1) throw Error(kDamaged);
-        SeparatingTranslation made;
-        made.value = nb::cast<double>(from[0]);
-        made.certainty = enumerator<Certainty>(from[1], Certainty::estimate);
-        made.lower = nb::cast<double>(from[2]), made.upper = nb::cast<double>(from[3]);
-        made.translation = translation.front();
-        new (self) SeparatingTranslation(made);
       });
 }
 
@@ -318,7 +265,23 @@ void bind_pickle() {
         const auto resolution = nb::cast<std::optional<std::uint32_t>>(from[1]);
         run_sized(mesh.triangles.size(), [&] { new (self) PyShape(mesh, resolution, {}); });
       });
-  bind_number_states();
+  bind_closest_points_state();
+  bind_state<PyCompound>(
+      2,
+      [](const PyCompound& self) {
+        std::vector<Transform> poses;
+        for (const BodyPart& part : self.parts) poses.push_back(part.pose);
+        return nb::make_tuple(self.shapes, packed(poses));
+      },
+      [](PyCompound* self, const nb::tuple& from) {
+        PyCompound made{.parts = {}, .shapes = nb::cast<nb::tuple>(from[0])};
+        const auto poses = unpacked<Transform>(from[1]);
+        for (const nb::handle shape : made.shapes)
+          made.parts.push_back({nb::cast<const PyShape&>(shape).shape});
+        if (made.parts.empty() || poses.size() != made.parts.size()) throw Error(kDamaged);
+        for (std::size_t i = 0; i < poses.size(); ++i) made.parts[i].pose = poses[i];
+        new (self) PyCompound(std::move(made));
+      });
   bind_result_states();
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "proximity.h"
+#include "stored.h"
 
 namespace sdm::python {
 namespace {
@@ -131,6 +132,8 @@ array([ 2., inf]))");
           "Sets the pose of an obstacle, as ProximityQuery.set_pose(). Initially the identity.")
       .def("__repr__", [](const PyPoseQuery&) { return "sdm.PoseQuery()"; });
   bind_answers_of_poses(query);
+  bind_no_state<PyPoseQuery>(
+      "a PoseQuery cannot be pickled or copied; pickle its meshes or Shapes, and make another one");
 }
 
 }  // namespace sdm::python

@@ -1,6 +1,7 @@
 // Proximity of two bodies.
 #include "proximity.h"
 #include "signatures.h"
+#include "stored.h"
 
 #include <nanobind/stl/optional.h>
 #include <sdm/error.h>
@@ -72,79 +73,6 @@ value.)")
         return nb::str("sdm.SeparatingTranslation({:.9g}, in [{:.9g}, {:.9g}])")
             .format(self.value, self.lower, self.upper);
       });
-}
-
-template <class Get>
-auto contact_column(LazyArray PyContacts::*array, Get get) {
-  return [array, get](PyContacts& self) {
-    return (self.*array).get([&] { return column(self.contacts, get); });
-  };
-}
-
-void bind_contacts(nb::module_& module) {
-  nb::class_<PyContacts>(
-      module, "Contacts", nb::is_weak_referenceable(),
-      R"(Contacts as arrays with one row each, sorted by patch, the patch with the deepest contact
-first, and by decreasing depth within a patch; those of many bodies first by pair of bodies.)")
-      .def_prop_ro("point1", contact_column(&PyContacts::point1, [](const Contact& c) { return c.point1; }),
-                   nb::sig("def point1(self) -> numpy.typing.NDArray[numpy.float64]"),
-                   "The points of O1, (n, 3) float64.")
-      .def_prop_ro("point2", contact_column(&PyContacts::point2, [](const Contact& c) { return c.point2; }),
-                   nb::sig("def point2(self) -> numpy.typing.NDArray[numpy.float64]"),
-                   "The points of O2, (n, 3) float64.")
-      .def_prop_ro("normal", contact_column(&PyContacts::normal, [](const Contact& c) { return c.normal; }),
-                   nb::sig("def normal(self) -> numpy.typing.NDArray[numpy.float64]"),
-                   R"(Unit vectors along which moving O1 separates it from O2, (n, 3) float64:
-(point2 - point1) / depth; where depth is 0, O2's outward normal. Those of separating_contacts() have their
-own direction and depth, see there.)")
-      .def_prop_ro(
-          "depth", contact_column(&PyContacts::depth, [](const Contact& c) { return c.depth; }),
-          nb::sig("def depth(self) -> numpy.typing.NDArray[numpy.float64]"),
-          R"(±|point2 - point1|, (n,) float64; positive if the point in contact is inside the other body.
-At most penetration_depth().upper; of separating_contacts(), at most separating_translation().upper.)")
-      .def_prop_ro(
-          "patch", contact_column(&PyContacts::patch, [](const Contact& c) { return c.patch; }),
-          nb::sig("def patch(self) -> numpy.typing.NDArray[numpy.uint32]"),
-          "The patch of each contact, (n,) uint32: contacts on connected parts of a surface share one.")
-      .def_prop_ro("faces",
-                   contact_column(&PyContacts::faces,
-                                  [](const Contact& c) {
-                                    return std::array{c.on[0].face, c.on[1].face};
-                                  }),
-                   nb::sig("def faces(self) -> numpy.typing.NDArray[numpy.uint32]"),
-                   "A face of O1 that contains point1 and one of O2 that contains point2, (n, 2) uint32.")
-      .def_prop_ro("barycentric",
-                   contact_column(&PyContacts::barycentric,
-                                  [](const Contact& c) {
-                                    return std::array{c.on[0].barycentric, c.on[1].barycentric};
-                                  }),
-                   nb::sig("def barycentric(self) -> numpy.typing.NDArray[numpy.float64]"),
-                   "The barycentric coordinates of the points in these faces, (n, 2, 3) float64.")
-      .def_prop_ro(
-          "id", contact_column(&PyContacts::id, [](const Contact& c) { return c.id; }),
-          nb::sig("def id(self) -> numpy.typing.NDArray[numpy.uint64]"),
-          R"(Identifies what is in contact, (n,) uint64: unique among the contacts of a pair of bodies, or of
-their parts, and the same in all frames.)")
-      .def_prop_ro(
-          "bodies",
-          [](PyContacts& self) -> nb::object {
-            if (!self.has_bodies) return nb::none();
-            return self.body.get([&] { return column(self.bodies, [](const auto& pair) { return pair; }); });
-          },
-          nb::sig("def bodies(self) -> numpy.typing.NDArray[numpy.uint32] | None"),
-          "The indices of O1 and O2, (n, 2) uint32, for MultiBodyQuery; otherwise None.")
-      .def_prop_ro(
-          "parts",
-          [](PyContacts& self) -> nb::object {
-            if (!self.has_bodies) return nb::none();
-            return self.part.get(
-                [&] { return column(self.parts, [](const PartPair& pair) { return pair; }); });
-          },
-          nb::sig("def parts(self) -> numpy.typing.NDArray[numpy.uint32] | None"),
-          "The parts of O1 and O2 (see Compound), (n, 2) uint32, for MultiBodyQuery; otherwise None.")
-      .def("__len__", [](const PyContacts& self) { return self.contacts.size(); })
-      .def("__repr__",
-           [](const PyContacts& self) { return nb::str("sdm.Contacts({})").format(self.contacts.size()); });
 }
 
 void bind_shape(nb::module_& module) {
@@ -387,6 +315,8 @@ False)");
   bind_answers(query);
   bind_contact_answer(query);
   bind_separating_contacts(query);
+  bind_no_state<PyProximityQuery>(
+      "a ProximityQuery cannot be pickled or copied; pickle its meshes or Shapes, and make another one");
   bind_self_proximity(module);
 }
 

@@ -49,6 +49,7 @@ struct PyShape {
 /// Several shapes that are one body, as of sdm.Compound.
 struct PyCompound {
   std::vector<BodyPart> parts;
+  nb::tuple shapes;  ///< the Shape of each part
 };
 
 /// The shape of a Shape, or a new one of any other mesh.
@@ -84,6 +85,7 @@ void bind_edit(nb::class_<PyProximityQuery>& query);
 /// Adds the method time_of_contact().
 void bind_moving_bodies(nb::module_& module, nb::class_<PyMultiBodyQuery>& query);
 void bind_compound(nb::module_& module);
+void bind_contacts(nb::module_& module);
 void bind_self_proximity(nb::module_& module);
 void bind_nearest_map(nb::module_& module);
 

@@ -11,6 +11,7 @@
 
 #include "arrays.h"
 #include "map.h"
+#include "values.h"
 
 namespace sdm::python {
 namespace {
@@ -19,6 +20,15 @@ struct PyRayHits {
   std::vector<RayHit> hits;
   LazyArray t, face, barycentric;
 };
+
+}  // namespace
+
+template <>
+inline constexpr auto kMembers<RayHit> = std::tuple{&RayHit::face, &RayHit::barycentric, &RayHit::t};
+template <>
+inline constexpr auto kMembers<PyRayHits> = std::tuple{&PyRayHits::hits};
+
+namespace {
 
 std::vector<Ray> rays_of(nb::handle origins, nb::handle directions, nb::handle t_min, nb::handle t_max) {
   const Points from(origins, "origins"), along(directions, "directions");
@@ -68,6 +78,7 @@ void bind_hits(nb::module_& module) {
                    "hits nothing.")
       .def("__len__", [](const H& self) { return self.hits.size(); })
       .def("__repr__", [](const H& self) { return nb::str("sdm.RayHits({})").format(self.hits.size()); });
+  bind_value<H>();
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "objects.h"
 #include "scenes/made_scan.h"
 #include "scenes/scene.h"
+#include "values.h"
 
 namespace sdm::python {
 namespace {
@@ -30,6 +31,18 @@ struct PySceneBody {
   bool moves = false, tears = false;
   nb::object mesh;
 };
+
+}  // namespace
+
+template <>
+inline constexpr auto kMembers<PySceneBody> =
+    std::tuple{&PySceneBody::name, &PySceneBody::moves, &PySceneBody::tears};
+template <>
+inline constexpr auto kMembers<MadeScan> =
+    std::tuple{&MadeScan::mesh,       &MadeScan::placement,   &MadeScan::size,  &MadeScan::dent_place,
+               &MadeScan::dent_depth, &MadeScan::dent_radius, &MadeScan::noise, &MadeScan::missing};
+
+namespace {
 
 SceneKind kind_of(const std::string& name) {
   constexpr std::pair<const char*, SceneKind> kKinds[] = {
@@ -63,6 +76,14 @@ void bind_scene(nb::module_& module) {
       .def("__repr__", [](const B& self) {
         return nb::str("sdm.SceneBody('{}', {!r})").format(self.name.c_str(), self.mesh);
       });
+  bind_state<B>(
+      2, [](const B& self) { return nb::make_tuple(bytes_of(self), self.mesh); },
+      [](B* self, const nb::tuple& from) {
+        B body = value_of<B>(from[0]);
+        body.mesh = from[1];
+        (void)nb::cast<const PyMesh&>(body.mesh);
+        new (self) B(std::move(body));
+      });
   using S = PyScene;
   nb::class_<S>(module, "Scene", nb::is_weak_referenceable(),
                 R"(A simulation of bodies that move and deform, frame by frame. Returned by scene().
@@ -81,6 +102,7 @@ Lengths are in metres, z is up. The frames are bit-identical in every run.)")
           "Advances to the next frame. Cost: about 10 ms; 100 ms for the cloth.")
       .def("__repr__",
            [](const S& self) { return nb::str("sdm.Scene({} bodies)").format(self.scene.bodies().size()); });
+  bind_no_state<S>("a Scene cannot be pickled or copied; pickle its bodies, or make another one");
   module.def(
       "scene",
       [](const std::string& name, nb::handle mesh) {
@@ -137,6 +159,7 @@ void bind_scenes(nb::module_& module) {
         return nb::str("sdm.MadeScan({} faces, dent {:.6g} deep)")
             .format(self.mesh.triangles.size(), self.dent_depth);
       });
+  bind_value<M>([](const M& scan) { validate(scan.mesh); });
   module.def(
       "make_scan",
       [](nb::handle part, std::size_t triangles, double noise, double dent, double tilt, double shift,

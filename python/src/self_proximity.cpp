@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "proximity.h"
+#include "stored.h"
 
 namespace sdm::python {
 namespace {
@@ -102,6 +103,8 @@ A call raises Error while another thread uses the object.
 True)");
   bind_mesh(query);
   bind_answers(query);
+  bind_no_state<PySelfProximityQuery>(
+      "a SelfProximityQuery cannot be pickled or copied; pickle its mesh, and make another one");
 }
 
 }  // namespace sdm::python

@@ -55,6 +55,15 @@ void bind_state(std::size_t count, State state, Make make) {
           nb::arg("state"), nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"));
 }
 
+/// Makes pickle and copy refuse the objects of a class: `sentence` says what to do instead.
+template <class Object>
+void bind_no_state(const char* sentence) {
+  nb::borrow<nb::class_<Object>>(nb::type<Object>())
+      .def(
+          "__reduce__", [sentence](nb::handle) -> nb::object { throw nb::type_error(sentence); },
+          nb::sig("def __reduce__(self) -> typing.NoReturn"));
+}
+
 /// An enumerator from 0 to the last one.
 template <class Enum>
 Enum enumerator(nb::handle number, Enum last) {

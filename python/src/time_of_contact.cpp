@@ -4,6 +4,7 @@
 
 #include "proximity.h"
 #include "signatures.h"
+#include "values.h"
 
 namespace sdm::python {
 namespace {
@@ -12,6 +13,14 @@ struct PyTimeOfContact {
   TimeOfContact found;
   std::array<Transform, 2> poses;  ///< at that time
 };
+
+}  // namespace
+
+template <>
+inline constexpr auto kMembers<PyTimeOfContact> =
+    std::tuple{&PyTimeOfContact::found, &PyTimeOfContact::poses};
+
+namespace {
 
 Motion motion_of(nb::handle poses, const char* name) {
   const auto [from, to] = motion(poses, name);
@@ -70,6 +79,7 @@ None if the surfaces intersect then.)")
         return nb::str("sdm.TimeOfContact({}, time={:.9g}, separation={:.6g})")
             .format(self.found.contact ? "contact" : "no contact", self.found.time, self.found.separation);
       });
+  bind_value<T>();
 }
 
 }  // namespace

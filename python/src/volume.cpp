@@ -18,7 +18,7 @@
 #include "arrays.h"
 #include "signatures.h"
 #include "sites_in_use.h"
-#include "stored.h"
+#include "values.h"
 
 namespace sdm::python {
 namespace {
@@ -76,6 +76,17 @@ nb::object points_of(const std::vector<Element>& values, const Grid& grid, nb::h
   return view_of<Scalar>(values, {grid.dims[2], grid.dims[1], grid.dims[0]}, owner);
 }
 
+}  // namespace
+
+template <>
+inline constexpr auto kMembers<FieldSample> =
+    std::tuple{&FieldSample::value, &FieldSample::certainty, &FieldSample::lower, &FieldSample::upper,
+               &FieldSample::magnitude};
+template <>
+inline constexpr auto kMembers<PyFieldSamples> = std::tuple{&PyFieldSamples::samples};
+
+namespace {
+
 void bind_samples(nb::module_& module) {
   using S = PyFieldSamples;
   const auto sample_column = [](LazyArray S::*array, double FieldSample::*member) {
@@ -101,6 +112,7 @@ void bind_samples(nb::module_& module) {
       .def("__len__", [](const S& self) { return self.samples.size(); })
       .def("__repr__",
            [](const S& self) { return nb::str("sdm.FieldSamples({})").format(self.samples.size()); });
+  bind_value<S>();
 }
 
 using F = PyField;

@@ -1,11 +1,13 @@
 """Objects are pickled and copied: the same values bit for bit, in this process and in another one."""
 
 import copy
+import enum
 import gc
 import os
 import pickle
 import subprocess
 import sys
+import tempfile
 import weakref
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
@@ -284,24 +286,123 @@ def test_joblib(pair):
 
 
 def public_objects(pair):
+    """An object of each public class, at least."""
+    mesh, box = sdm.Mesh(pair[0]), sdm.Mesh(pair[1])
+    yield from (mesh, sdm.Sites(mesh), sdm.Surface(mesh, resolution=64), sdm.Shape(mesh), sdm.Compound([mesh, sdm.Shape(box)]))
+    distance_map = sdm.map(sdm.Surface(mesh, resolution=32), sdm.Sites(box))
+    halves = sdm.FaceNames("group", ["a", "b"], np.arange(len(mesh.faces), dtype=np.uint32) % 2)
+    places, groups = distance_map.places(names=halves), distance_map.check_groups({"a": 0.1, "b": 2}, halves)
+    yield from (distance_map, distance_map.bounds, distance_map.statistics(), distance_map.hausdorff(), distance_map.check(2))
+    yield from (distance_map.check(0.1), halves, places, places.largest[0], groups, groups.groups[0])
+    yield from (sdm.match(mesh, box, resolution=32), sdm.MatchKind.RAY, sdm.SiteType.EDGE)
+    yield sdm.bake(mesh, box, vertex_colors=np.abs(mesh.vertices) / 9, resolution=32)
+    field, closest = sdm.distance_field(mesh, spacing=0.5), sdm.closest_points(mesh, [[0, 0, 3]])
+    batch = sdm.closest_points_batch([mesh], [[[0, 0, 3]]])
+    yield from (closest, batch, batch[0], field, field.sample([[0, 0, 0.1]]))
+    yield sdm.Sites(mesh).first_hits([[0, 0, 3], [9, 9, 9]], [[0, 0, -1], [0, 0, 1]])
+    query, bodies = sdm.ProximityQuery(*pair, contact_margin=0.1), sdm.MultiBodyQuery(list(pair), contact_margin=0.1)
+    yield from (query, bodies, sdm.PoseQuery(*pair), sdm.SelfProximityQuery(mesh), sdm.scene("letters"), sdm.thread_limit(1))
+    yield from (query.contacts(), bodies.contacts(), query.separating_translation(), query.penetration_depth())
+    yield from (bodies.separations(), bodies.penetration_depths(), nearest_map(pair))
+    there, back = np.eye(4), np.eye(4)
+    there[0, 3], back[0, 3] = 5, -5
+    yield sdm.time_of_contact(mesh, (there, back), box, None, tolerance=1e-6)
+    yield bodies.time_of_contact([there, np.eye(4)], [back, np.eye(4)], tolerance=1e-6)
+    metres, millimetres = mesh, (mesh.vertices * 1000, mesh.faces)
+    alignment = sdm.align(metres, millimetres)
+    yield from (alignment, alignment.freedoms[0], sdm.alignment_doubts(metres, millimetres, alignment)[0])
+    metrics = sdm.surface_metrics(mesh, box, precision=0.1)
+    yield from (metrics, metrics["hd"], sdm.coverage(box, mesh, 0.5), sdm.weld(box)[1], sdm.remove_islands(box, faces=1)[1])
+    yield from (sdm.scene("letters").bodies[0], sdm.make_scan(box, triangles=500))
+    yield from (sdm.Error("a fault"), sdm.Cancelled("cancelled"))
+    with tempfile.TemporaryDirectory() as folder:
+        cloud = os.path.join(folder, "points.xyz")
+        np.savetxt(cloud, mesh.vertices * 1.1)
+        distances = sdm.measure_points(cloud, box, os.path.join(folder, "out.ply"), tolerance=0.1, island_points=2,
+                                       tolerance_table={"all": 1}, names=sdm.FaceNames("group", ["all"], np.zeros(12, np.uint32)))  # fmt: skip
+        yield from (distances, distances.max)
+
+
+def nearest_map(pair):
+    return sdm.MultiBodyQuery([sdm.Shape(pair[0], resolution=32), pair[1]]).nearest_map(0)
+
+
+#: What pickle and copy refuse: objects that compute, and are no values.
+NOT_STORED = (sdm.ProximityQuery, sdm.MultiBodyQuery, sdm.PoseQuery, sdm.SelfProximityQuery, sdm.Scene, sdm.thread_limit)
+
+
+def assert_equal(a, b, name):
+    """Equal in all public properties, bit for bit."""
+    assert type(a) is type(b), name
+    if isinstance(a, np.ndarray):
+        assert a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes(), name
+    elif isinstance(a, dict):
+        assert_equal(list(a.items()), list(b.items()), name)
+    elif isinstance(a, (list, tuple)):
+        assert len(a) == len(b), name
+        for i, (x, y) in enumerate(zip(a, b)):
+            assert_equal(x, y, f"{name}[{i}]")
+    elif type(a).__module__ != "sdm" or isinstance(a, (enum.Enum, BaseException)):
+        assert repr(a) == repr(b), name  # also NaN
+    else:
+        assert repr(a) == repr(b), name
+        for key in dir(a):
+            if key.startswith("_") or callable(value := getattr(a, key)):
+                continue
+            assert_equal(value, getattr(b, key), f"{name}.{key}")
+
+
+def test_every_class_is_stored_or_refuses(pair):
+    classes = {value for name in sdm.__all__ if isinstance(value := getattr(sdm, name), type)}
+    for value in public_objects(pair):
+        name = type(value).__name__
+        classes.discard(type(value))
+        if isinstance(value, NOT_STORED):
+            for refused in (pickle.dumps, copy.copy, copy.deepcopy):
+                with pytest.raises(TypeError, match=f"^an? {name} cannot be pickled or copied; "):
+                    refused(value)
+            continue
+        for protocol in (2, pickle.HIGHEST_PROTOCOL):
+            assert_equal(value, pickle.loads(pickle.dumps(value, protocol)), name)
+        assert_equal(value, copy.deepcopy(value), name)
+    assert not classes, "without an object in public_objects()"
+
+
+def test_compounds_keep_their_shapes(pair):
+    shape = sdm.Shape(pair[1])
+    poses = np.array([np.eye(4)] * 2)
+    poses[1, 0, 3] = 3
+    expected = sdm.Compound([shape, shape], poses)
+    found, again_shape = pickle.loads(pickle.dumps((expected, shape)))
+    answers = [sdm.MultiBodyQuery([c, pair[0]]).separations() for c in (expected, found)]
+    assert_equal(answers[0], answers[1], "separations")
+    state = expected.__getstate__()
+    assert state[0][0] is state[0][1] is shape and len(found) == 2
+
+
+def test_damaged_values_are_refused(pair):
     distance_map = sdm.map(sdm.Surface(pair[0], resolution=32), sdm.Sites(pair[1]))
-    query, bodies = sdm.ProximityQuery(*pair, contact_margin=0.1), sdm.MultiBodyQuery(list(pair))
-    yield from (sdm.Mesh(pair[0]), sdm.Sites(pair[0]), sdm.Surface(pair[0], resolution=64))
-    yield from (sdm.Shape(pair[0]), distance_map, distance_map.statistics(), distance_map.hausdorff())
-    yield from (distance_map.check(2), distance_map.places(), sdm.closest_points(pair[0], [[0, 0, 3]]))
-    yield from (sdm.distance_field(pair[0], spacing=0.5), sdm.Sites(pair[0]).first_hits([[0, 0, 3]], [[0, 0, -1]]))
-    yield from (query, bodies, query.contacts(), query.separating_translation(), bodies.separations())
-    yield from (bodies.penetration_depths(), sdm.PoseQuery(*pair), sdm.SelfProximityQuery(pair[0]), sdm.align(pair[0], pair[0]))
-    yield from (sdm.closest_points_batch([pair[0]], [[[0, 0, 3]]]), sdm.FaceNames("group", ["a"], np.zeros(12, np.uint32)))
+    for value in (distance_map.check(2), distance_map.places(), distance_map.hausdorff(), sdm.align(*pair),
+                  sdm.ProximityQuery(*pair, contact_margin=1).contacts(),
+                  sdm.bake(pair[0], pair[1], vertex_colors=np.abs(pair[0].vertices) / 9, resolution=32)):  # fmt: skip
+        (state,) = value.__getstate__()
+        made = type(value).__new__(type(value))
+        for wrong in (state[:-1], state + b"\0", b"", state[: len(state) // 2]):
+            with pytest.raises(sdm.Error, match="damaged"):
+                made.__setstate__((wrong,))
+        for at in range(0, min(len(state), 400)):  # each byte: another value, or an error
+            try:
+                made.__setstate__((state[:at] + b"\xff" + state[at + 1 :],))
+            except sdm.Error:
+                continue
+            repr(made)
+            made = type(value).__new__(type(value))
 
 
 def test_weak_references(pair):
-    values = list(public_objects(pair))
-    while values:
-        value = values.pop()
-        reference = weakref.ref(value)
-        assert reference() is value
-        name = type(value).__name__
-        del value
-        gc.collect()
-        assert reference() is None, name
+    values = [value for value in public_objects(pair) if not isinstance(value, enum.Enum)]
+    references = [weakref.ref(value) for value in values]
+    assert all(reference() is value for reference, value in zip(references, values))
+    del values
+    gc.collect()
+    assert [type(reference()).__name__ for reference in references if reference() is not None] == []

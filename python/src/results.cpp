@@ -1,0 +1,203 @@
+// Pickling and copying of results that are values of the library: their members are listed here.
+#include <sdm/coverage.h>
+#include <sdm/doubts.h>
+#include <sdm/group_verdicts.h>
+#include <sdm/io.h>
+#include <sdm/islands.h>
+#include <sdm/places.h>
+#include <sdm/points.h>
+#include <sdm/weld.h>
+
+#include "objects.h"
+#include "values.h"
+
+namespace sdm::python {
+
+template <>
+inline constexpr auto kMembers<DistanceStatistics> = std::tuple{&DistanceStatistics::texels,
+                                                                &DistanceStatistics::negative_texels,
+                                                                &DistanceStatistics::negative_area_fraction,
+                                                                &DistanceStatistics::min,
+                                                                &DistanceStatistics::max,
+                                                                &DistanceStatistics::mean,
+                                                                &DistanceStatistics::rms,
+                                                                &DistanceStatistics::stddev,
+                                                                &DistanceStatistics::p01,
+                                                                &DistanceStatistics::p05,
+                                                                &DistanceStatistics::p50,
+                                                                &DistanceStatistics::p95,
+                                                                &DistanceStatistics::p99,
+                                                                &DistanceStatistics::mean_abs,
+                                                                &DistanceStatistics::max_abs,
+                                                                &DistanceStatistics::p50_abs,
+                                                                &DistanceStatistics::p95_abs,
+                                                                &DistanceStatistics::p99_abs};
+template <>
+inline constexpr auto kMembers<SeparatingTranslation> = std::tuple{
+    &SeparatingTranslation::value, &SeparatingTranslation::certainty, &SeparatingTranslation::lower,
+    &SeparatingTranslation::upper, &SeparatingTranslation::translation};
+template <>
+inline constexpr auto kMembers<CoverageMap> =
+    std::tuple{&CoverageMap::value, &CoverageMap::lower,   &CoverageMap::upper,
+               &CoverageMap::reach, &CoverageMap::of_face, &CoverageMap::pieces};
+template <>
+inline constexpr auto kMembers<CoveragePiece> =
+    std::tuple{&CoveragePiece::face, &CoveragePiece::corners, &CoveragePiece::covered};
+
+// Verdicts.
+template <>
+inline constexpr auto kLast<Verdict> = Verdict::doubtful;
+template <>
+inline constexpr auto kLast<VerdictReason> = VerdictReason::in_doubt;
+template <>
+inline constexpr auto kLast<Proof> = Proof::undecided;
+template <>
+inline constexpr auto kMembers<Tolerance> = std::tuple{&Tolerance::lo, &Tolerance::hi};
+template <>
+inline constexpr auto kMembers<ToleranceShares> =
+    std::tuple{&ToleranceShares::below, &ToleranceShares::within, &ToleranceShares::above,
+               &ToleranceShares::without_value};
+template <>
+inline constexpr auto kMembers<ToleranceWitness> =
+    std::tuple{&ToleranceWitness::point, &ToleranceWitness::closest, &ToleranceWitness::face,
+               &ToleranceWitness::closest_face, &ToleranceWitness::distance};
+template <>
+inline constexpr auto kMembers<ToleranceProof> = std::tuple{
+    &ToleranceProof::proof,        &ToleranceProof::witness,          &ToleranceProof::at_lower,
+    &ToleranceProof::undecided_by, &ToleranceProof::depends_on_signs, &ToleranceProof::faces_without_match};
+template <>
+inline constexpr auto kMembers<CertifiedVerdict> =
+    std::tuple{&CertifiedVerdict::verdict,        &CertifiedVerdict::reason,
+               &CertifiedVerdict::within,         &CertifiedVerdict::certified,
+               &CertifiedVerdict::margin,         &CertifiedVerdict::nearest_is_lower,
+               &CertifiedVerdict::deciding_bound, &CertifiedVerdict::tolerance,
+               &CertifiedVerdict::largest,        &CertifiedVerdict::exceeded_area_fraction,
+               &CertifiedVerdict::shares,         &CertifiedVerdict::proof};
+template <>
+inline constexpr auto kMembers<GroupVerdict> =
+    std::tuple{&GroupVerdict::kind, &GroupVerdict::group,  &GroupVerdict::faces,   &GroupVerdict::points,
+               &GroupVerdict::area, &GroupVerdict::lowest, &GroupVerdict::highest, &GroupVerdict::verdict};
+template <>
+inline constexpr auto kMembers<PointsWithoutGroup> =
+    std::tuple{&PointsWithoutGroup::beyond_max_distance, &PointsWithoutGroup::without_match};
+template <>
+inline constexpr auto kMembers<GroupVerdicts> =
+    std::tuple{&GroupVerdicts::groups, &GroupVerdicts::without_group, &GroupVerdicts::verdict};
+
+// Places.
+template <>
+inline constexpr auto kMembers<FaceNames> =
+    std::tuple{&FaceNames::kind, &FaceNames::names, &FaceNames::of_face};
+template <>
+inline constexpr auto kMembers<Place> = std::tuple{
+    &Place::distance, &Place::limits,   &Place::point, &Place::sample, &Place::face, &Place::samples,
+    &Place::area,     &Place::fraction, &Place::small, &Place::kind,   &Place::group};
+template <>
+inline constexpr auto kMembers<PlaceTotals> =
+    std::tuple{&PlaceTotals::count, &PlaceTotals::samples, &PlaceTotals::area, &PlaceTotals::fraction};
+template <>
+inline constexpr auto kMembers<Places> =
+    std::tuple{&Places::limits, &Places::by_tolerance, &Places::least_fraction,
+               &Places::large,  &Places::small,        &Places::largest};
+
+// Point clouds.
+template <>
+inline constexpr auto kLast<TextSeparator> = TextSeparator::semicolon;
+template <>
+inline constexpr auto kLast<DecimalMark> = DecimalMark::comma;
+template <>
+inline constexpr auto kLast<SignMethod> = SignMethod::side;
+template <>
+inline constexpr auto kLast<DistanceKind> = DistanceKind::thickness;
+template <>
+inline constexpr auto kMembers<TextDialect> = std::tuple{&TextDialect::separator, &TextDialect::decimal,
+                                                         &TextDialect::columns, &TextDialect::header_line};
+template <>
+inline constexpr auto kMembers<SignUsed> = std::tuple{&SignUsed::method, &SignUsed::reason};
+template <>
+inline constexpr auto kMembers<MeasuredDistance> =
+    std::tuple{&MeasuredDistance::kind, &MeasuredDistance::text, &MeasuredDistance::facing};
+template <>
+inline constexpr auto kMembers<PointExtreme> =
+    std::tuple{&PointExtreme::distance, &PointExtreme::point, &PointExtreme::index};
+template <>
+inline constexpr auto kMembers<PointIslands> =
+    std::tuple{&PointIslands::islands, &PointIslands::points, &PointIslands::apart, &PointIslands::reach};
+template <>
+inline constexpr auto kMembers<Box> = std::tuple{&Box::lo, &Box::hi};
+template <>
+inline constexpr auto kMembers<PointDistances> = std::tuple{&PointDistances::points,
+                                                            &PointDistances::invalid,
+                                                            &PointDistances::beyond_max_distance,
+                                                            &PointDistances::without_match,
+                                                            &PointDistances::has_normals,
+                                                            &PointDistances::format,
+                                                            &PointDistances::text,
+                                                            &PointDistances::sign,
+                                                            &PointDistances::measured,
+                                                            &PointDistances::distance,
+                                                            &PointDistances::min,
+                                                            &PointDistances::max,
+                                                            &PointDistances::beyond_tolerance,
+                                                            &PointDistances::beyond_with_either_sign,
+                                                            &PointDistances::islands,
+                                                            &PointDistances::places,
+                                                            &PointDistances::groups,
+                                                            &PointDistances::accuracy,
+                                                            &PointDistances::bounds};
+
+// Alignments.
+template <>
+inline constexpr auto kLast<DoubtReason> = DoubtReason::low_coverage;
+template <>
+inline constexpr auto kMembers<Doubt> = std::tuple{&Doubt::reason, &Doubt::text, &Doubt::remedy};
+template <>
+inline constexpr auto kMembers<DegreeOfFreedom> =
+    std::tuple{&DegreeOfFreedom::translation, &DegreeOfFreedom::rotation,       &DegreeOfFreedom::axis_point,
+               &DegreeOfFreedom::determined,  &DegreeOfFreedom::standard_error, &DegreeOfFreedom::free,
+               &DegreeOfFreedom::locked};
+template <>
+inline constexpr auto kMembers<AlignResiduals> =
+    std::tuple{&AlignResiduals::rms, &AlignResiduals::trimmed_rms};
+template <>
+inline constexpr auto kMembers<GroupResiduals> =
+    std::tuple{&GroupResiduals::samples, &GroupResiduals::rms, &GroupResiduals::largest};
+template <>
+inline constexpr auto kMembers<Alignment> = std::tuple{
+    &Alignment::transform,     &Alignment::before,           &Alignment::after,      &Alignment::samples,
+    &Alignment::fraction_used, &Alignment::fraction_fitting, &Alignment::iterations, &Alignment::converged,
+    &Alignment::centre,        &Alignment::gyration_radius,  &Alignment::freedoms,   &Alignment::groups};
+
+// Meshes.
+template <>
+inline constexpr auto kMembers<WeldReport> =
+    std::tuple{&WeldReport::tolerance, &WeldReport::largest_move, &WeldReport::joined_vertices,
+               &WeldReport::boundary_edges, &WeldReport::t_junctions};
+template <>
+inline constexpr auto kMembers<IslandReport> = std::tuple{&IslandReport::islands, &IslandReport::faces,
+                                                          &IslandReport::area, &IslandReport::area_fraction};
+
+void bind_result_states() {
+  bind_value<DistanceStatistics>();
+  bind_value<BoundedLength>();
+  bind_value<SeparatingTranslation>();
+  bind_value<CoverageMap>();
+  bind_value<CertifiedVerdict>();
+  bind_value<GroupVerdict>();
+  bind_value<GroupVerdicts>();
+  bind_value<FaceNames>([](const FaceNames& names) {
+    for (const std::uint32_t name : names.of_face)
+      if (name != kNone && name >= names.names.size()) throw Error(kDamaged);
+  });
+  bind_value<Place>();
+  bind_value<Places>();
+  bind_value<PointExtreme>();
+  bind_value<PointDistances>();
+  bind_value<Doubt>();
+  bind_value<DegreeOfFreedom>();
+  bind_value<Alignment>();
+  bind_value<WeldReport>();
+  bind_value<IslandReport>();
+}
+
+}  // namespace sdm::python
