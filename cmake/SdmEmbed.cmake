@@ -18,7 +18,12 @@ function(sdm_embed_files target)
     COMMENT "Embedding ${ARG_FILES}"
     VERBATIM)
   target_sources(${target} PRIVATE ${output})
-  # Of its own, so that it can be built without what the target depends on (./tidy).
-  add_custom_target(${target}_embedded DEPENDS ${output})
-  add_dependencies(${target} ${target}_embedded)
+  # Of its own, so that it can be built without what the target depends on (./tidy: sdm_embedded).
+  cmake_path(GET ARG_HEADER STEM header)
+  add_custom_target(${target}_${header} DEPENDS ${output})
+  add_dependencies(${target} ${target}_${header})
+  if(NOT TARGET sdm_embedded)
+    add_custom_target(sdm_embedded)
+  endif()
+  add_dependencies(sdm_embedded ${target}_${header})
 endfunction()

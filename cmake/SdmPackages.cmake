@@ -25,8 +25,8 @@ triangle mesh to another, with the direction and the closest vertex, edge or
 face. It inspects scans against their parts, and computes Hausdorff distances,
 separation, penetration depth and distance fields.")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
-# Loaded when they are needed: the font of legends, OpenGL for --engine gl, and a software renderer for it.
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "fonts-dejavu-core, libegl1, libgl1, libgl1-mesa-dri")
+# Loaded when they are needed: OpenGL for --engine gl, and a software renderer for it.
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "libegl1, libgl1, libgl1-mesa-dri")
 
 set(sdm_devel_depends libtbb-dev libhwy-dev libmeshoptimizer-dev)
 if(SDM_BUILD_GL)

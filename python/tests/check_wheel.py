@@ -22,6 +22,10 @@ assert np.allclose(np.linalg.norm(closest.point - bunny.vertices, axis=1), close
 
 distance_map.save("distance.png")
 distance_map.save("distance.html")
+# Letters that not every font has: a bare system has none.
+for name, units in (("micro.png", "µm"), ("umlaut.png", "äm")):
+    distance_map.save(name, units=units)
+assert Path("micro.png").read_bytes() != Path("umlaut.png").read_bytes(), "no letters in pictures"
 assert Path("distance.png").read_bytes().startswith(b"\x89PNG")
 assert "three.js" in Path("distance.html").read_text(encoding="utf-8")
 assert distance_map.report()["distance"]["max"] == statistics.max, distance_map.report().keys()
@@ -29,6 +33,6 @@ assert distance_map.report()["distance"]["max"] == statistics.max, distance_map.
 distribution = importlib.metadata.distribution("surface-distance-maps")
 assert distribution.version == sdm.__version__
 licenses = {file.parts[-2] for file in distribution.files if "licenses" in file.parts and len(file.parts) > 3}
-for package in ("libtbb12", "libopenexr-3-1-30", "libcairo2", "libeigen3-dev", "nanobind", "three"):
+for package in ("libtbb12", "fonts-dejavu-core", "libopenexr-3-1-30", "libcairo2", "libeigen3-dev", "nanobind", "three"):
     assert package in licenses, (package, licenses)
 print(f"surface-distance-maps {distribution.version} works: distance {statistics.min:.6g} to {statistics.max:.6g}")

@@ -269,6 +269,24 @@ def test_files(distance_map, tmp_path):
     assert not (tmp_path / "bad.png").exists()
 
 
+def test_pictures_need_no_fonts_of_the_machine(tmp_path):
+    """Nor a configuration of fontconfig, which warns without one."""
+    program = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import meshes, sdm
+sdm.map(meshes.sphere(), meshes.box(), resolution=32).save(sys.argv[2], units=sys.argv[3], size=64)
+"""
+    pictures = []
+    for units, fonts in (("µm", {}), ("µm", {"FONTCONFIG_FILE": "/nonexistent", "FONTCONFIG_PATH": "/nonexistent"}), ("äm", {})):
+        file = tmp_path / f"{len(pictures)}.png"
+        command = [sys.executable, "-c", program, os.path.dirname(meshes.__file__), str(file), units]
+        result = subprocess.run(command, env={**os.environ, **fonts}, capture_output=True, text=True, timeout=300)
+        assert result.returncode == 0 and result.stderr == "", result.stderr
+        pictures.append(file.read_bytes())
+    assert pictures[0] == pictures[1] != pictures[2]
+
+
 def page_data(page, key):
     """What a page contains as JSON."""
     return json.loads(re.search(f'<script type="application/json" id="{key}">(.*?)</script>', page, re.DOTALL)[1])

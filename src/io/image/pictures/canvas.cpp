@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <new>
 
+#include "io/image/pictures/font.h"
+
 namespace sdm::io {
 namespace {
 
@@ -44,8 +46,7 @@ void Canvas::set_color(Rgb color) {
 
 void Canvas::text(double x, double baseline, const std::string& text, double size, double room, bool bold,
                   double align) {
-  cairo_select_font_face(cairo(), "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
-                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  select_font(cairo(), bold);
   cairo_set_font_size(cairo(), size);
   cairo_text_extents_t extents;
   cairo_text_extents(cairo(), text.c_str(), &extents);
