@@ -199,3 +199,21 @@ def test_derivatives_are_0_on_the_surface():
     vertices, faces = meshes.box()
     found = sdm.closest_points(vertices, faces, [[1, 0.5, 0.25]], gradients=True)
     assert found.distance[0] == 0 and (found.gradient == 0).all()
+
+
+@pytest.mark.parametrize("shift", [3.0, 0.7, 0.0])
+def test_signs_of_many_and_of_few_points_agree(shift):
+    """Of many points, the sides of all faces are found at once; of few, of single ones, or by winding numbers. Apart,
+    intersecting and coincident solids."""
+    vertices, faces = meshes.sphere(steps=5)
+    mesh = np.concatenate([vertices, vertices + [shift, 0, 0]]), np.concatenate([faces, faces + len(vertices)])
+    random = np.random.default_rng(7)
+    corners = mesh[0][mesh[1][random.integers(len(mesh[1]), size=20_000)]]
+    on_faces = np.einsum("nk,nkx->nx", random.dirichlet((1, 1, 1), len(corners)), corners)
+    points = on_faces + random.normal(0, 0.02, on_faces.shape)
+    many = sdm.Sites(*mesh).contains(points)
+    few = [sdm.Sites(*mesh).contains(part) for part in np.array_split(points, 20)]
+    assert np.array_equal(many, np.concatenate(few))
+    centres = np.array([[0, 0, 0], [shift, 0, 0]])
+    inner, outer = (np.linalg.norm(points[:, None] - centres, axis=2).min(axis=1) < radius for radius in (0.995, 1.0))
+    assert many[inner].all() and not many[~outer].any()

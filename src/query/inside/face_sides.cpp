@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/cancellation.h"
 #include "geometry/vec.h"
 #include "query/inside/near_faces.h"
 #include "query/inside/solid.h"
@@ -26,10 +27,16 @@ void FaceSides::renew() {
   offset_ = offset_beside_faces(*solid_);
   for (std::size_t f = 0; f < solid_->mesh.triangles.size(); ++f)
     sides_[f].store(Sides::unknown, std::memory_order_relaxed);
+  found_ = 0;
 }
 
 Sides FaceSides::of_face(std::uint32_t face) const {
   Sides sides = sides_[face].load(std::memory_order_relaxed);
+  if (sides != Sides::unknown && sides != kAsked) return sides;
+  // The others may be asked meanwhile, and are found one by one then.
+  constexpr std::size_t kFew = 256;
+  if (found_.fetch_add(1, std::memory_order_relaxed) == kFew + solid_->mesh.triangles.size() / 8) find_all();
+  sides = sides_[face].load(std::memory_order_relaxed);
   if (sides == Sides::unknown || sides == kAsked)
     sides_[face].store(sides = find(face), std::memory_order_relaxed);
   return sides;
@@ -55,11 +62,50 @@ Sides FaceSides::find(std::uint32_t face) const {
   thread_local std::vector<std::uint32_t> near;
   find_near_faces(*solid_, face, near);
   if (!near.empty()) return Sides::mixed;
-  if (const Sides sides = known_to_neighbour(face); sides != Sides::unknown) return sides;
+  const Sides sides = known_to_neighbour(face);
+  return sides != Sides::unknown ? sides : beside(face);
+}
+
+// Of a face that no other one meets.
+Sides FaceSides::beside(std::uint32_t face) const {
   const auto& [a, b, c] = solid_->mesh.triangles[face];
   const std::vector<Vec3>& p = solid_->mesh.positions;
   const Vec3 beside = (1.0 / 3) * (p[a] + p[b] + p[c]) + offset_ * solid_->normals.face[face];
   return sides_by_winding(winding(*solid_, {}, beside));
+}
+
+void FaceSides::find_all() const {
+  if (offset_ == 0) return;
+  const std::vector<std::uint8_t> near = flag_faces_with_near(*solid_);
+  const auto open = [&](std::uint32_t face) {
+    return near[face] == 0 && solid_->sliver[face] == 0 && !solid_->topology.ignored(face);
+  };
+  std::vector<std::uint8_t> done(near.size());
+  std::vector<std::uint32_t> waiting;
+  Poll due(1024);
+  for (std::uint32_t first = 0; first < near.size(); ++first) {
+    if (done[first] != 0) continue;
+    done[first] = 1;
+    if (!open(first)) {
+      sides_[first].store(Sides::mixed, std::memory_order_relaxed);
+      continue;
+    }
+    const Sides sides = beside(first);
+    // Those of all faces that are connected by edges over which the winding number passes.
+    waiting.assign(1, first);
+    while (!waiting.empty()) {
+      due();
+      const std::uint32_t face = waiting.back();
+      waiting.pop_back();
+      sides_[face].store(sides, std::memory_order_relaxed);
+      for (const std::uint32_t edge : solid_->topology.face_edges[face])
+        for (const std::uint32_t other : solid_->topology.edge_faces(edge))
+          if (done[other] == 0 && open(other)) {
+            done[other] = 1;
+            waiting.push_back(other);
+          }
+    }
+  }
 }
 
 // No face comes between those of an edge if one of them is met by none.

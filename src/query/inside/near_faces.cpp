@@ -1,8 +1,11 @@
 #include "query/inside/near_faces.h"
 
 #include <algorithm>
+#include <atomic>
+#include <span>
 #include <utility>
 
+#include "core/parallel.h"
 #include "geometry/rounding.h"
 #include "tree/visit.h"
 
@@ -95,6 +98,73 @@ bool clear_of(const sites::SitesData& sites, std::uint32_t face, std::uint32_t o
   }
 }
 
+Box box_of_face(const Mesh& mesh, std::uint32_t face) {
+  const Triangle& t = mesh.triangles[face];
+  const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+  Box box;
+  for (int k = 0; k < 3; ++k)
+    box.lo[k] = std::min(std::min(a[k], b[k]), c[k]), box.hi[k] = std::max(std::max(a[k], b[k]), c[k]);
+  return box;
+}
+
+// Its box, enlarged by the clearance.
+Box reach_of_face(const sites::SitesData& sites, std::uint32_t face) {
+  const double margin = kClearance / sites.frame.scale;
+  const Box box = box_of_face(sites.mesh, face);
+  return {box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}};
+}
+
+bool meet(const tree::FloatBox& a, const tree::FloatBox& b) {
+  bool apart = false;
+  for (int k = 0; k < 3; ++k) apart = apart || a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k];
+  return !apart;
+}
+
+/// The pairs of near faces of which one is in a leaf, and the other one in it or in a later leaf.
+class NearPairs {
+ public:
+  NearPairs(const sites::SitesData& sites, std::vector<std::uint8_t>& flags) : sites_(sites), flags_(flags) {}
+
+  void flag(std::uint32_t leaf) {
+    reaches_.clear();
+    const std::span<const std::uint32_t> faces = sites_.tree.items_of(leaf);
+    for (const std::uint32_t face : faces) reaches_.push_back(reach_of_face(sites_, face));
+    for (std::size_t i = 0; i < faces.size(); ++i) compare(faces[i], reaches_[i], faces.subspan(i + 1));
+    // More than the clearance, and than its rounding.
+    constexpr float kMargin = 1.25F * static_cast<float>(kClearance);
+    tree::FloatBox reach = sites_.tree.box(leaf);
+    for (int k = 0; k < 3; ++k) reach.lo[k] -= kMargin, reach.hi[k] += kMargin;
+    waiting_.assign(1, 0);
+    while (!waiting_.empty()) {
+      const std::uint32_t index = waiting_.back();
+      waiting_.pop_back();
+      const tree::AabbTree::Node& node = sites_.tree.nodes[index];
+      if (!meet(node.box, reach)) continue;
+      if (!node.leaf()) {
+        waiting_.push_back(node.right);
+        if (node.right > leaf + 1) waiting_.push_back(index + 1);  // not if it only has earlier leaves
+      } else if (index > leaf) {
+        for (std::size_t i = 0; i < faces.size(); ++i)
+          compare(faces[i], reaches_[i], sites_.tree.items_of(index));
+      }
+    }
+  }
+
+ private:
+  void compare(std::uint32_t face, const Box& reach, std::span<const std::uint32_t> others) {
+    for (const std::uint32_t other : others) {
+      if (!overlap(reach, box_of_face(sites_.mesh, other)) || clear_of(sites_, face, other)) continue;
+      for (const std::uint32_t near : {face, other})
+        std::atomic_ref(flags_[near]).store(1, std::memory_order_relaxed);
+    }
+  }
+
+  const sites::SitesData& sites_;
+  std::vector<std::uint8_t>& flags_;
+  std::vector<Box> reaches_;
+  std::vector<std::uint32_t> waiting_;
+};
+
 }  // namespace
 
 Corners unit_corners(const sites::SitesData& sites, std::uint32_t face) {
@@ -125,31 +195,25 @@ bool apart(const Corners& a, const Corners& b) {
 
 void find_near_faces(const sites::SitesData& sites, std::uint32_t face, std::vector<std::uint32_t>& near) {
   near.clear();
-  const auto box_of = [&](std::uint32_t f) {
-    const Triangle& t = sites.mesh.triangles[f];
-    const Vec3 &a = sites.mesh.positions[t[0]], &b = sites.mesh.positions[t[1]],
-               &c = sites.mesh.positions[t[2]];
-    Box box;
-    for (int k = 0; k < 3; ++k)
-      box.lo[k] = std::min(std::min(a[k], b[k]), c[k]), box.hi[k] = std::max(std::max(a[k], b[k]), c[k]);
-    return box;
-  };
-  const double margin = kClearance / sites.frame.scale;
-  const Box box = box_of(face);
-  const Box reach{box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}};
+  const Box reach = reach_of_face(sites, face);
   const auto unit = tree::FloatBox::around({sites.frame.to_unit(reach.lo), sites.frame.to_unit(reach.hi)});
-  const auto enter = [&](tree::Subtree below) {
-    const tree::FloatBox& of = sites.tree.box(below.root);
-    bool apart = false;
-    for (int k = 0; k < 3; ++k) apart = apart || of.hi[k] < unit.lo[k] || unit.hi[k] < of.lo[k];
-    return !apart;
-  };
+  const auto enter = [&](tree::Subtree below) { return meet(sites.tree.box(below.root), unit); };
   const auto visit_leaf = [&](std::uint32_t leaf) {
     for (const std::uint32_t other : sites.tree.items_of(leaf))
-      if (other != face && overlap(reach, box_of(other)) && !clear_of(sites, face, other))
+      if (other != face && overlap(reach, box_of_face(sites.mesh, other)) && !clear_of(sites, face, other))
         near.push_back(other);
   };
   visit(sites.tree, tree::InOrder{enter, visit_leaf});
+}
+
+std::vector<std::uint8_t> flag_faces_with_near(const sites::SitesData& sites) {
+  std::vector<std::uint8_t> flags(sites.mesh.triangles.size());
+  parallel_for(sites.tree.nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    NearPairs pairs(sites, flags);
+    for (std::size_t node = begin; node < end; ++node)
+      if (sites.tree.nodes[node].leaf()) pairs.flag(static_cast<std::uint32_t>(node));
+  });
+  return flags;
 }
 
 }  // namespace sdm::inside
