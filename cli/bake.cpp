@@ -132,14 +132,18 @@ sdm::TexelMatches match(const BakeCommand& command, const Input& high, const Inp
                         std::unique_ptr<sdm::Sites>& sites, std::vector<sdm::Image>& pictures,
                         BakeResult& result) {
   sdm::TexelMatches matches;
-  sdm::run_concurrently({[&] { pictures = sdm::decode_textures(high.look.textures, result.notes); },
-                         [&] {
-                           sdm::run_concurrently({[&] { result.low = bake_surface(low, command.layout); },
-                                                  [&] { sites = std::make_unique<sdm::Sites>(high.mesh); }});
-                           sdm::MatchOptions options = match_options(command);
-                           options.progress = command.map.progress;
-                           matches = sdm::match_texels(*result.low.surface, *sites, options);
-                         }});
+  const sdm::MeshLook look{high.look.materials, high.look.face_materials, {}, {}};
+  const std::span<const sdm::BakeChannel> channels =
+      command.channels ? std::span<const sdm::BakeChannel>(*command.channels) : sdm::kBakeChannels;
+  sdm::run_concurrently(
+      {[&] { pictures = sdm::decode_textures(high.look.textures, look, channels, result.notes); },
+       [&] {
+         sdm::run_concurrently({[&] { result.low = bake_surface(low, command.layout); },
+                                [&] { sites = std::make_unique<sdm::Sites>(high.mesh); }});
+         sdm::MatchOptions options = match_options(command);
+         options.progress = command.map.progress;
+         matches = sdm::match_texels(*result.low.surface, *sites, options);
+       }});
   result.matches = counts_of(matches);
   check_matches(command, result.matches);
   return matches;

@@ -17,10 +17,13 @@
 
 namespace sdm {
 
-/// decode_image() of all textures, for MeshLook::pictures. One that is damaged becomes an empty image, with a
-/// line in `notes`. Also throws sdm::Error if there is not enough memory. Cost: linear, all cores, a core for
-/// each picture.
+/// decode_image() of the textures that these channels need of a look, whose pictures do not matter, for
+/// MeshLook::pictures; others become empty images, and so do damaged ones, with a line in `notes`. Throws
+/// sdm::Error if a face or a material refers to what does not exist, and if there is not enough memory. Cost:
+/// linear, all cores, a core for each picture.
 [[nodiscard]] SDM_API std::vector<Image> decode_textures(std::span<const TextureFile> textures,
+                                                         const MeshLook& look,
+                                                         std::span<const BakeChannel> channels,
                                                          std::vector<std::string>& notes);
 
 /// A channel as a picture: encode_png(to_image()) of it.

@@ -5,6 +5,7 @@
 
 #include <sdm/api.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -29,10 +30,16 @@ struct Image {
   }
 };
 
+/// The intensity in linear light of a colour component in sRGB (IEC 61966-2-1), both from 0 to 1.
+[[nodiscard]] inline float linear_light(float srgb) {
+  if (srgb <= 0.04045f) return srgb / 12.92f;
+  return std::pow((srgb + 0.055f) / 1.055f, 2.4f);
+}
+
 /// Decodes a PNG, JPEG or WebP file, by its content. Palettes become colours, fewer bits than 8 become 8, and
 /// CMYK becomes red, green and blue, as without a colour profile. Colour profiles and gamma are ignored, as
-/// glTF has it. Throws sdm::Error for other formats, for damaged and truncated files, for more than 2^28
-/// pixels, and if there is not enough memory. Cost: linear in pixels.
+/// glTF has it. Throws sdm::Error for other formats, for damaged and truncated files, for more than 100,000
+/// pixels a side or 2^28 in total, and if there is not enough memory. Cost: linear in pixels.
 [[nodiscard]] SDM_API Image decode_image(std::span<const char> bytes);
 
 /// decode_image() of a file, whose name the errors begin with.

@@ -208,7 +208,7 @@ nb::object baked_from(nb::handle file, nb::handle mesh, nb::handle low, const st
     if (path) {
       look.file = read_mesh_file(*path, {.attributes = true});
       notes = look.file.notes;
-      look.pictures = decode_textures(look.file.textures, notes);
+      look.pictures = decode_textures(look.file.textures, look.get(), kBakeChannels, notes);
     }
     if (look.file.materials.empty() &&
         std::ranges::count(look.file.attributes, "color", &MeshAttribute::name) == 0)

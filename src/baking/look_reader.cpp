@@ -11,20 +11,6 @@ namespace {
 
 const Material kPlain{};
 
-const TextureUse& texture_of(const Material& material, BakeChannel channel) {
-  switch (channel) {
-    case BakeChannel::base_color:
-      break;
-    case BakeChannel::metallic_roughness:
-      return material.metallic_roughness_texture;
-    case BakeChannel::occlusion:
-      return material.occlusion_texture;
-    case BakeChannel::emissive:
-      return material.emissive_texture;
-  }
-  return material.base_color_texture;
-}
-
 const MeshAttribute* attribute_of(const MeshLook& look, const std::string& name, std::size_t least,
                                   std::size_t most) {
   const auto found = std::ranges::find(look.attributes, name, &MeshAttribute::name);
@@ -64,6 +50,20 @@ Value interpolated(const std::array<Value, 3>& corners, const Vec3& weights) {
 }
 
 }  // namespace
+
+const TextureUse& texture_of(const Material& material, BakeChannel channel) {
+  switch (channel) {
+    case BakeChannel::base_color:
+      break;
+    case BakeChannel::metallic_roughness:
+      return material.metallic_roughness_texture;
+    case BakeChannel::occlusion:
+      return material.occlusion_texture;
+    case BakeChannel::emissive:
+      return material.emissive_texture;
+  }
+  return material.base_color_texture;
+}
 
 const MipChain* Pictures::prepare(const TextureUse& use, bool srgb) {
   if (use.texture == kNone || look_.pictures[use.texture].width == 0) return nullptr;

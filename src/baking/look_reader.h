@@ -86,6 +86,9 @@ class LookReader {
   std::array<Vec3, 2> derivatives_{};  ///< of x and y in the picture, by points of the plane of the face
 };
 
+/// The texture of a channel.
+[[nodiscard]] const TextureUse& texture_of(const Material& material, BakeChannel channel);
+
 /// Throws sdm::Error if the look does not fit the mesh.
 void require_fitting(const Mesh& mesh, const MeshLook& look);
 

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <type_traits>
 #include <utility>
 
-#include "baking/srgb.h"
 #include "core/parallel.h"
 
 namespace sdm::baking {
@@ -39,9 +40,14 @@ std::uint32_t wrapped(std::int64_t i, std::uint32_t count, TextureWrap wrap) {
   return static_cast<std::uint32_t>(rest < n ? rest : period - 1 - rest);
 }
 
+// Without the care of std::hypot() for squares beyond the range: these lengths are infinite, or 0.
+double length_of(const Vec2& side) {
+  return std::sqrt(side[0] * side[0] + side[1] * side[1]);
+}
+
 // A side beyond these lengths covers many copies of the picture, and so the mean of all of it.
 Vec2 limited(const Vec2& side, double most) {
-  const double length = std::hypot(side[0], side[1]);
+  const double length = length_of(side);
   if (length <= most) return side;
   return std::isfinite(length) ? (most / length) * side : Vec2{most, 0};
 }
@@ -50,6 +56,56 @@ int samples_along(double length, double spacing) {
   constexpr double kMost = 32;
   return static_cast<int>(std::clamp(std::ceil(length / spacing), 1.0, kMost));
 }
+
+// The numbers of a level, in the form that it has: of component k, number i.
+struct BytesOfFile {
+  const std::uint8_t* bytes;
+  std::array<const float*, 4> values;  // of each number, by component
+
+  float operator()(std::size_t i, std::size_t k) const { return values[k][bytes[i]]; }
+};
+struct WordsOfFile {
+  const std::uint8_t* bytes;
+  std::array<const float*, 4> values;
+
+  float operator()(std::size_t i, std::size_t k) const {
+    return values[k][bytes[2 * i] | bytes[2 * i + 1] << 8];
+  }
+};
+struct Words {
+  const std::uint16_t* numbers;
+
+  float operator()(std::size_t i, std::size_t) const { return static_cast<float>(numbers[i]); }
+};
+
+template <std::size_t N, class Numbers>
+void add_pixel(const Numbers& numbers, std::size_t pixel, float weight, std::array<float, 4>& sum) {
+  for (std::size_t k = 0; k < N; ++k) sum[k] += weight * numbers(pixel * N + k, k);
+}
+
+// Of numbers far from the largest ones: std::floor() is a call where SSE 4.1 is not assumed.
+std::int64_t floor_of(double x) {
+  const auto whole = static_cast<std::int64_t>(x);
+  return whole - (static_cast<double>(whole) > x ? 1 : 0);
+}
+
+// The four pixels around a place, and their shares.
+struct Bilinear {
+  std::array<std::size_t, 4> numbers;
+  std::array<float, 4> weights;
+
+  Bilinear(double x, double y, std::uint32_t width, std::uint32_t height,
+           const std::array<TextureWrap, 2>& wrap) {
+    const std::int64_t column = floor_of(x - 0.5), row = floor_of(y - 0.5);
+    const auto right = static_cast<float>(x - 0.5 - static_cast<double>(column)),
+               lower = static_cast<float>(y - 0.5 - static_cast<double>(row));
+    const std::size_t left = wrapped(column, width, wrap[0]), beside = wrapped(column + 1, width, wrap[0]),
+                      above = std::size_t{wrapped(row, height, wrap[1])} * width,
+                      below = std::size_t{wrapped(row + 1, height, wrap[1])} * width;
+    numbers = {above + left, above + beside, below + left, below + beside};
+    weights = {(1 - right) * (1 - lower), right * (1 - lower), (1 - right) * lower, right * lower};
+  }
+};
 
 }  // namespace
 
@@ -63,21 +119,25 @@ MipChain::MipChain(const Image& image, bool srgb) : image_(&image) {
   while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half(levels_.back()));
 }
 
-float MipChain::first_level(std::size_t number, std::uint32_t component) const {
-  const std::vector<float>& values = is_alpha(component) ? plain_ : colors_;
-  const auto& bytes = image_->bytes;
-  return values[image_->bits == 8 ? bytes[number] : bytes[2 * number] | bytes[2 * number + 1] << 8];
-}
-
-void MipChain::add(const Level& level, std::uint32_t x, std::uint32_t y, float weight,
-                   std::array<float, 4>& sum) const {
-  const std::uint32_t components = image_->components;
-  const std::size_t first = (std::size_t{y} * level.width + x) * components;
-  if (level.numbers.empty())
-    for (std::uint32_t k = 0; k < components; ++k) sum[k] += weight * first_level(first + k, k);
-  else
-    for (std::uint32_t k = 0; k < components; ++k)
-      sum[k] += weight * static_cast<float>(level.numbers[first + k]);
+template <class Call>
+void MipChain::with_numbers(const Level& level, const Call& call) const {
+  const auto with_count = [&](const auto& numbers) {
+    switch (image_->components) {
+      case 1:
+        return call(numbers, std::integral_constant<std::size_t, 1>{});
+      case 2:
+        return call(numbers, std::integral_constant<std::size_t, 2>{});
+      case 3:
+        return call(numbers, std::integral_constant<std::size_t, 3>{});
+      default:
+        return call(numbers, std::integral_constant<std::size_t, 4>{});
+    }
+  };
+  if (!level.numbers.empty()) return with_count(Words{level.numbers.data()});
+  std::array<const float*, 4> values{};
+  for (std::uint32_t k = 0; k < 4; ++k) values[k] = is_alpha(k) ? plain_.data() : colors_.data();
+  if (image_->bits == 8) return with_count(BytesOfFile{image_->bytes.data(), values});
+  with_count(WordsOfFile{image_->bytes.data(), values});
 }
 
 MipChain::Level MipChain::half(const Level& level) const {
@@ -88,59 +148,52 @@ MipChain::Level MipChain::half(const Level& level) const {
   for (std::uint32_t x = 0; x < next.width; ++x) columns[x] = cover_of(x, next.width, level.width);
   const float unit = level.numbers.empty() ? kWhite : 1;
   constexpr std::size_t kRowsOfRange = 16;
-  parallel_for(next.height, kRowsOfRange, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y) {
-      const Cover rows = cover_of(static_cast<std::uint32_t>(y), next.height, level.height);
-      for (std::size_t x = 0; x < next.width; ++x) {
-        const Cover& column = columns[x];
-        std::array<float, 4> sum{};
-        for (std::uint32_t i = 0; i < rows.count; ++i)
-          for (std::uint32_t j = 0; j < column.count; ++j)
-            add(level, column.first + j, rows.first + i, unit * rows.weights[i] * column.weights[j], sum);
-        for (std::uint32_t k = 0; k < components; ++k)
-          next.numbers[(y * next.width + x) * components + k] =
-              static_cast<std::uint16_t>(std::min(kWhite, sum[k] + 0.5f));
+  with_numbers(level, [&](const auto& numbers, auto count) {
+    constexpr std::size_t kCount = decltype(count)::value;
+    parallel_for(next.height, kRowsOfRange, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t y = begin; y < end; ++y) {
+        const Cover rows = cover_of(static_cast<std::uint32_t>(y), next.height, level.height);
+        for (std::size_t x = 0; x < next.width; ++x) {
+          const Cover& column = columns[x];
+          std::array<float, 4> sum{};
+          for (std::uint32_t i = 0; i < rows.count; ++i)
+            for (std::uint32_t j = 0; j < column.count; ++j)
+              add_pixel<kCount>(numbers, std::size_t{rows.first + i} * level.width + column.first + j,
+                                unit * rows.weights[i] * column.weights[j], sum);
+          for (std::uint32_t k = 0; k < components; ++k)
+            next.numbers[(y * next.width + x) * components + k] =
+                static_cast<std::uint16_t>(std::min(kWhite, sum[k] + 0.5f));
+        }
       }
-    }
+    });
   });
   return next;
-}
-
-void MipChain::add_bilinear(const Level& level, double x, double y, const std::array<TextureWrap, 2>& wrap,
-                            std::array<float, 4>& sum) const {
-  const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
-  const auto right_share = static_cast<float>(x - 0.5 - left),
-             lower_share = static_cast<float>(y - 0.5 - top);
-  const auto column = static_cast<std::int64_t>(left), row = static_cast<std::int64_t>(top);
-  const std::array<std::uint32_t, 2> xs{wrapped(column, level.width, wrap[0]),
-                                        wrapped(column + 1, level.width, wrap[0])},
-      ys{wrapped(row, level.height, wrap[1]), wrapped(row + 1, level.height, wrap[1])};
-  add(level, xs[0], ys[0], (1 - right_share) * (1 - lower_share), sum);
-  add(level, xs[1], ys[0], right_share * (1 - lower_share), sum);
-  add(level, xs[0], ys[1], (1 - right_share) * lower_share, sum);
-  add(level, xs[1], ys[1], right_share * lower_share, sum);
 }
 
 std::array<float, 4> MipChain::mean(const Place& place) const {
   constexpr double kSamples = 3;
   const double extent = std::max(image_->width, image_->height);
   const std::array<Vec2, 2> sides{limited(place.sides[0], 32 * extent), limited(place.sides[1], 32 * extent)};
-  const std::array<double, 2> lengths{std::hypot(sides[0][0], sides[0][1]),
-                                      std::hypot(sides[1][0], sides[1][1])};
+  const std::array<double, 2> lengths{length_of(sides[0]), length_of(sides[1])};
   const double spacing = std::max(1.0, std::min(lengths[0], lengths[1]) / kSamples);
   const std::array<int, 2> counts{samples_along(lengths[0], spacing), samples_along(lengths[1], spacing)};
   const double widest = std::max({1.0, lengths[0] / counts[0], lengths[1] / counts[1]});
-  const auto number = std::min<std::size_t>(levels_.size() - 1, static_cast<std::size_t>(std::log2(widest)));
+  const auto number = std::min<std::size_t>(levels_.size() - 1, static_cast<std::size_t>(std::ilogb(widest)));
   const Level& level = levels_[number];
   const Vec2 scale{level.width / static_cast<double>(image_->width),
                    level.height / static_cast<double>(image_->height)};
   std::array<float, 4> sum{};
-  for (int i = 0; i < counts[0]; ++i)
-    for (int j = 0; j < counts[1]; ++j) {
-      const Vec2 at =
-          place.centre + ((i + 0.5) / counts[0] - 0.5) * sides[0] + ((j + 0.5) / counts[1] - 0.5) * sides[1];
-      add_bilinear(level, at[0] * scale[0], at[1] * scale[1], place.wrap, sum);
-    }
+  with_numbers(level, [&](const auto& numbers, auto count) {
+    constexpr std::size_t kCount = decltype(count)::value;
+    for (int i = 0; i < counts[0]; ++i)
+      for (int j = 0; j < counts[1]; ++j) {
+        const Vec2 at = place.centre + ((i + 0.5) / counts[0] - 0.5) * sides[0] +
+                        ((j + 0.5) / counts[1] - 0.5) * sides[1];
+        const Bilinear pixels(at[0] * scale[0], at[1] * scale[1], level.width, level.height, place.wrap);
+        for (std::size_t n = 0; n < 4; ++n)
+          add_pixel<kCount>(numbers, pixels.numbers[n], pixels.weights[n], sum);
+      }
+  });
   const float unit = 1 / (static_cast<float>(counts[0] * counts[1]) * (level.numbers.empty() ? 1 : kWhite));
   for (float& value : sum) value *= unit;
   switch (image_->components) {

@@ -39,12 +39,10 @@ class MipChain {
   };
 
   [[nodiscard]] Level half(const Level& level) const;
-  [[nodiscard]] float first_level(std::size_t number, std::uint32_t component) const;
-  /// Adds a pixel, times the weight.
-  void add(const Level& level, std::uint32_t x, std::uint32_t y, float weight,
-           std::array<float, 4>& sum) const;
-  void add_bilinear(const Level& level, double x, double y, const std::array<TextureWrap, 2>& wrap,
-                    std::array<float, 4>& sum) const;
+  /// Calls call(numbers, count) with what reads the numbers of a level, and the number of components as a
+  /// constant.
+  template <class Call>
+  void with_numbers(const Level& level, const Call& call) const;
   [[nodiscard]] bool is_alpha(std::uint32_t component) const {
     return image_->components % 2 == 0 && component + 1 == image_->components;
   }

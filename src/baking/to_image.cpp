@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <new>
 
-#include "baking/srgb.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 
@@ -17,8 +16,7 @@ namespace {
 class SrgbBytes {
  public:
   SrgbBytes() {
-    for (std::size_t i = 0; i < 255; ++i)
-      ends_[i] = baking::linear_light((static_cast<float>(i) + 0.5f) / 255);
+    for (std::size_t i = 0; i < 255; ++i) ends_[i] = linear_light((static_cast<float>(i) + 0.5f) / 255);
     std::uint8_t byte = 0;
     for (std::size_t i = 0; i < kGuesses; ++i) {
       while (byte < 255 && static_cast<float>(i) / kGuesses >= ends_[byte]) ++byte;

@@ -41,6 +41,7 @@ std::uint32_t expected(std::uint32_t x, std::uint32_t y, std::uint32_t c, std::u
 struct PngOptions {
   int color_type = PNG_COLOR_TYPE_RGB, bits = 8;
   int interlace = PNG_INTERLACE_NONE;
+  bool transparent = false;  // of palettes: colour i has the opacity 255 - i
 };
 
 std::string png(const PngOptions& options) {
@@ -59,6 +60,9 @@ std::string png(const PngOptions& options) {
   for (std::uint32_t i = 0; i < 256; ++i)
     palette[i] = {static_cast<png_byte>(i), static_cast<png_byte>(255 - i), 7};
   if (options.color_type == PNG_COLOR_TYPE_PALETTE) png_set_PLTE(writer, info, palette.data(), 256);
+  std::vector<png_byte> opacities(256);
+  for (std::uint32_t i = 0; i < 256; ++i) opacities[i] = static_cast<png_byte>(255 - i);
+  if (options.transparent) png_set_tRNS(writer, info, opacities.data(), 256, nullptr);
   png_set_gAMA(writer, info, 1.0);  // to be ignored
   png_write_info(writer, info);
   const std::uint32_t channels = png_get_channels(writer, info);
@@ -80,7 +84,11 @@ std::string png(const PngOptions& options) {
   return file;
 }
 
-std::string jpeg(J_COLOR_SPACE space, int components, bool progressive = false) {
+struct JpegOptions {
+  bool progressive = false, adobe = true;
+};
+
+std::string jpeg(J_COLOR_SPACE space, int components, const JpegOptions& options = {}) {
   jpeg_compress_struct writer{};
   jpeg_error_mgr errors{};
   writer.err = jpeg_std_error(&errors);
@@ -94,7 +102,8 @@ std::string jpeg(J_COLOR_SPACE space, int components, bool progressive = false) 
   jpeg_set_quality(&writer, 100, TRUE);
   for (int c = 0; c < components; ++c)
     writer.comp_info[c].h_samp_factor = writer.comp_info[c].v_samp_factor = 1;
-  if (progressive) jpeg_simple_progression(&writer);
+  if (options.progressive) jpeg_simple_progression(&writer);
+  if (!options.adobe) writer.write_Adobe_marker = FALSE;
   jpeg_start_compress(&writer, TRUE);
   for (std::uint32_t y = 0; y < kHeight; ++y) {
     std::vector<JSAMPLE> row;
@@ -159,10 +168,19 @@ TEST(Images, PngOfAllKindsIsExact) {
   }
 }
 
+TEST(Images, PalettesMayBeTransparent) {
+  const Image image = decode_image(png({.color_type = PNG_COLOR_TYPE_PALETTE, .transparent = true}));
+  ASSERT_EQ(image.components, 4u);
+  for (std::uint32_t x = 0; x < kWidth; ++x) {
+    EXPECT_EQ(image.value(x, 3, 0), static_cast<float>(expected(x, 3, 0, 255)) / 255.f);
+    EXPECT_EQ(image.value(x, 3, 3), static_cast<float>(255 - expected(x, 3, 0, 255)) / 255.f);
+  }
+}
+
 TEST(Images, JpegIsThatOfItsEncoder) {
   expect_pixels(decode_image(jpeg(JCS_GRAYSCALE, 1)), 1, 8, 2.f / 255);
   expect_pixels(decode_image(jpeg(JCS_RGB, 3)), 3, 8, 4.f / 255);
-  expect_pixels(decode_image(jpeg(JCS_RGB, 3, true)), 3, 8, 4.f / 255);
+  expect_pixels(decode_image(jpeg(JCS_RGB, 3, {.progressive = true})), 3, 8, 4.f / 255);
 }
 
 // The encoder marks CMYK as Adobe's: the numbers are what each ink lets through.
@@ -177,6 +195,18 @@ TEST(Images, JpegOfFourInksBecomesColors) {
                     4.f / 255);
 }
 
+// Others than Adobe's programs store how much ink there is.
+TEST(Images, JpegOfFourInksThatIsNotOfAdobeIsNotInverted) {
+  const Image image = decode_image(jpeg(JCS_CMYK, 4, {.adobe = false}));
+  ASSERT_EQ(image.components, 3u);
+  const auto through = [](std::uint32_t ink) { return 1 - static_cast<float>(ink) / 255; };
+  for (std::uint32_t y = 0; y < kHeight; ++y)
+    for (std::uint32_t x = 0; x < kWidth; ++x)
+      for (std::uint32_t c = 0; c < 3; ++c)
+        ASSERT_NEAR(image.value(x, y, c), through(expected(x, y, c, 255)) * through(expected(x, y, 3, 255)),
+                    4.f / 255);
+}
+
 TEST(Images, WebpIsExactWithoutLoss) {
   expect_pixels(decode_image(webp(3)), 3, 8, 0);
   const Image image = decode_image(webp(4));
@@ -185,7 +215,8 @@ TEST(Images, WebpIsExactWithoutLoss) {
 }
 
 TEST(Images, CutAtEveryLengthIsAnErrorOfOneLine) {
-  for (const std::string& file : {png({}), jpeg(JCS_RGB, 3), jpeg(JCS_RGB, 3, true), webp(4)})
+  for (const std::string& file :
+       {png({}), jpeg(JCS_RGB, 3), jpeg(JCS_RGB, 3, {.progressive = true}), webp(4)})
     for (std::size_t length = 0; length + 12 < file.size(); length += 1 + length / 64) {
       const std::string message = error_of([&] { (void)decode_image(std::span(file).first(length)); });
       ASSERT_THAT(message, HasSubstr("picture")) << length << " of " << file.size();
@@ -216,21 +247,50 @@ TEST(Images, DamagedBytesAreReadOrRefused) {
     }
 }
 
-// Declares 100,000 pixels a side in a few bytes: refused before memory is taken.
-TEST(Images, TooLargeOnesAreRefused) {
+/// A PNG whose header declares another size than it has.
+std::string png_of_size(std::uint32_t width, std::uint32_t height) {
   std::string file = png({});
   const auto set = [&](std::size_t at, std::uint32_t value) {
     std::string bytes;
     put(bytes, value, std::endian::big);
     file.replace(at, 4, bytes);
   };
-  set(16, 100'000), set(20, 100'000);
+  set(16, width), set(20, height);
   std::string checked = file.substr(12, 17), crc;
   put(crc, static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(checked.data()), 17)),
       std::endian::big);
-  file.replace(29, 4, crc);
-  EXPECT_EQ(error_of([&] { (void)decode_image(file); }),
-            "the picture has 100000 × 100000 pixels, more than 2^28");
+  return file.replace(29, 4, crc);
+}
+
+/// The same of a JPEG, whose frame header is a marker, its length, the bits, then height and width.
+std::string jpeg_of_size(std::uint16_t width, std::uint16_t height) {
+  std::string file = jpeg(JCS_RGB, 3), size;
+  put(size, height, std::endian::big), put(size, width, std::endian::big);
+  return file.replace(file.find("\xff\xc0") + 5, 4, size);
+}
+
+/// The same of a lossless WebP: after "VP8L", the size of the chunk and a signature, 14 bits of width - 1 and
+/// 14 of height - 1.
+std::string webp_of_size(std::uint32_t width, std::uint32_t height) {
+  std::string file = webp(4), size;
+  put(size, (width - 1) | (height - 1) << 14 | 1u << 28, std::endian::little);
+  return file.replace(file.find("VP8L") + 9, 4, size);
+}
+
+// Declared in a few bytes: refused before memory is taken.
+TEST(Images, TooLargeOnesAreRefused) {
+  const auto refusal = [](const std::string& file) { return error_of([&] { (void)decode_image(file); }); };
+  EXPECT_EQ(refusal(png_of_size(100'000, 100'000)), "the picture has 100000 × 100000 pixels, more than 2^28");
+  EXPECT_EQ(refusal(png_of_size(1, 100'001)), "the picture has 1 × 100001 pixels, more than 100000 a side");
+  EXPECT_EQ(refusal(jpeg_of_size(65'000, 65'000)), "the picture has 65000 × 65000 pixels, more than 2^28");
+  // WebP permits 2^14 pixels a side at most; the data are missing.
+  EXPECT_THAT(refusal(webp_of_size(16'384, 16'384)), StartsWith("the WebP picture cannot be read"));
+}
+
+TEST(Images, ThoseWithoutPixelsAreRefused) {
+  for (const std::string& file :
+       {png_of_size(0, 5), png_of_size(5, 0), jpeg_of_size(0, 5), jpeg_of_size(5, 0)})
+    EXPECT_THAT(error_of([&] { (void)decode_image(file); }), HasSubstr("picture"));
 }
 
 TEST(Images, OfOtherFormatsAreRefusedByName) {

@@ -126,6 +126,54 @@ TEST_F(ObjWithMaterials, WhatCannotBeHadIsLeftOutWithANote) {
               ElementsAre(HasSubstr("line 2: expected a number")));
 }
 
+// Once, one of them left all of the file out.
+TEST_F(ObjWithMaterials, TextureCoordinatesThatDoNotExistLeaveTheOthers) {
+  write("e.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.25 0.5\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\nf 1/1 3/9 4/-7\n");
+  const MeshFile file = with_materials(folder.path() / "e.obj");
+  ASSERT_EQ(file.attributes.size(), 1u);
+  EXPECT_EQ(file.attributes[0].name, "uv0");
+  EXPECT_THAT((*file.attributes[0].rows)[1], ElementsAre(0, kNone, kNone));
+  EXPECT_THAT(file.notes, ElementsAre("texture coordinates that do not exist are left out: in line 9, a face "
+                                      "refers to number -7 of 3"));
+  EXPECT_THAT(read_mesh_file(folder.path() / "e.obj").notes,
+              ElementsAre(HasSubstr("the texture coordinates are left out: in line 9")));
+}
+
+// What a link, or an escaped name, leads to is looked at, not its text.
+TEST_F(ObjWithMaterials, LinksOutOfTheFolderAreRefused) {
+  const TemporaryFolder outside;
+  std::ofstream(outside.path() / "secret.png") << "secret";
+  write("inside.png", "picture");
+  std::filesystem::create_symlink(outside.path() / "secret.png", folder.path() / "link.png");
+  std::filesystem::create_symlink(outside.path(), folder.path() / "maps");
+  std::filesystem::create_symlink("inside.png", folder.path() / "other.png");
+  const MeshFile file = read(
+      "newmtl wood\nmap_Kd link.png\nmap_Ke other.png\nnewmtl steel\nmap_Kd maps/secret.png\nmap_Ke "
+      "%2e%2e/secret.png\n");
+  ASSERT_EQ(file.textures.size(), 1u);
+  EXPECT_EQ(text_of(file.textures[0]), "picture");
+  EXPECT_EQ(file.materials[0].emissive_texture.texture, 0u);
+  EXPECT_THAT(file.notes,
+              ElementsAre(HasSubstr("'link.png' is refused"), HasSubstr("'maps/secret.png' is refused"),
+                          HasSubstr("%2e%2e/secret.png")));
+}
+
+TEST_F(ObjWithMaterials, TextureCoordinatesThatAreAllTheSameAreANote) {
+  write("p.png", "picture");
+  write("f.mtl", "newmtl wood\nmap_Kd p.png\n");
+  for (const bool same : {true, false}) {
+    write("f.obj", std::string("mtllib f.mtl\nusemtl wood\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt ") +
+                       (same ? "0 0" : "0 1") + "\nf 1/1 2/2 3/1\n");
+    const MeshFile file = with_materials(folder.path() / "f.obj");
+    if (same)
+      EXPECT_THAT(file.notes,
+                  ElementsAre("all texture coordinates are the same: each texture has one colour"));
+    else
+      EXPECT_THAT(file.notes, IsEmpty());
+  }
+}
+
 struct GltfWithMaterials {
   GltfStore store;
   std::string position = store.vec3({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
@@ -204,6 +252,27 @@ TEST(GltfMaterials, TexturesThatCannotBeHadAreLeftOutWithANote) {
   EXPECT_THAT(notes(R"(,"textures":[{"source":0}],"images":[{"uri":7}])"),
               ElementsAre(HasSubstr("not text")));
   EXPECT_THAT(notes(R"(,"textures":[{"source":-1}],"images":[{}])"), ElementsAre(HasSubstr("source")));
+}
+
+TEST(GltfMaterials, PicturesOutOfTheFolderAreRefused) {
+  const TemporaryFolder outside;
+  std::ofstream(outside.path() / "secret.png") << "secret";
+  const GltfWithMaterials gltf;
+  const auto read = [&](const std::string& uri) {
+    return gltf.read(R"("emissiveTexture":{"index":0})",
+                     R"(,"textures":[{"source":0}],"images":[{"uri":")" + uri + R"("}])");
+  };
+  const auto folder = write_file("a.glb", "").parent_path();
+  const std::string link = "link to " + outside.path().filename().string();
+  std::filesystem::create_symlink(outside.path(), folder / link);
+  for (const std::string& uri :
+       {std::string("%2e%2e/secret.png"), std::string("%2E%2e%2Fsecret.png"),
+        std::string("a/%2e./../secret.png"), link + "/secret.png", outside.path().string() + "/secret.png"}) {
+    const MeshFile file = read(uri);
+    EXPECT_THAT(file.textures, IsEmpty()) << uri;
+    EXPECT_THAT(file.notes, ElementsAre(HasSubstr("is refused"))) << uri;
+  }
+  std::filesystem::remove(folder / link);
 }
 
 TEST(GltfMaterials, PicturesMayBeEmbeddedAsText) {

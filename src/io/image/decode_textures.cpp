@@ -3,25 +3,42 @@
 #include <sdm/error.h>
 #include <sdm/threads.h>
 
+#include <cstdint>
 #include <functional>
 #include <new>
+#include <set>
 
+#include "baking/look_reader.h"
 #include "core/excerpt.h"
 #include "core/memory.h"
+#include "io/image/textures/decoders.h"
 
 namespace sdm {
 
-std::vector<Image> decode_textures(std::span<const TextureFile> textures,
+std::vector<Image> decode_textures(std::span<const TextureFile> textures, const MeshLook& look,
+                                   std::span<const BakeChannel> channels,
                                    std::vector<std::string>& notes) try {
+  for (const std::uint32_t material : look.face_materials)
+    if (material != kNone && material >= look.materials.size())
+      throw Error(fmt::format("a face refers to material {} of {}", material, look.materials.size()));
+  std::set<std::uint32_t> needed;
+  for (const Material* material : baking::used_materials(look))
+    for (const BakeChannel channel : channels)
+      if (const std::uint32_t texture = baking::texture_of(*material, channel).texture; texture != kNone)
+        needed.insert(texture);
+  if (!needed.empty() && *needed.rbegin() >= textures.size())
+    throw Error(fmt::format("a material refers to texture {} of {}", *needed.rbegin(), textures.size()));
   std::vector<Image> images(textures.size());
   std::vector<std::string> faults(textures.size());
   std::vector<std::function<void()>> tasks;
-  for (std::size_t i = 0; i < textures.size(); ++i)
+  for (const std::uint32_t i : needed)
     tasks.emplace_back([&, i] {
       try {
         images[i] = decode_image(textures[i].bytes);
       } catch (const Cancelled&) {
         throw;
+      } catch (const io::PictureTooLarge& error) {
+        throw Error(fmt::format("the texture {}: {}", excerpt(textures[i].name), error.what()));
       } catch (const Error& error) {
         faults[i] = error.what();
       }

@@ -1,5 +1,6 @@
 #include "io/mesh/ply_attributes.h"
-#include "baking/srgb.h"
+
+#include <sdm/image.h>
 
 #include <algorithm>
 #include <string>
@@ -73,7 +74,7 @@ void PlyAttributes::add(const std::vector<double>& row) {
       const double number = row[column.places[k]];
       const bool is_light = column.most > 0 && k < 3;  // alpha is linear
       const auto value = static_cast<float>(column.most > 0 ? number / column.most : number);
-      column.attribute.values.push_back(is_light ? baking::linear_light(value) : value);
+      column.attribute.values.push_back(is_light ? linear_light(value) : value);
     }
 }
 

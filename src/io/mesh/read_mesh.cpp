@@ -1,6 +1,7 @@
 #include <sdm/io.h>
 
 #include <algorithm>
+#include <array>
 #include <new>
 #include <span>
 
@@ -31,6 +32,14 @@ void add_names(const char* kind, const io::PolygonNames& polygons,
       result.of_face[f] = runs[i].name;
   }
   all.push_back(std::move(result));
+}
+
+// Of a file with textures: whether all faces show one place of them.
+bool has_one_uv(const Mesh& mesh) {
+  return !mesh.corner_uvs.empty() &&
+         std::ranges::all_of(mesh.corner_uvs, [&](const std::array<Vec2, 3>& uvs) {
+           return std::ranges::all_of(uvs, [&](const Vec2& uv) { return uv == mesh.corner_uvs[0][0]; });
+         });
 }
 
 }  // namespace
@@ -73,6 +82,8 @@ MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions
       result.face_materials = io::materials_of_triangles(polygons.surfaces, triangle_ends);
     result.materials = std::move(polygons.surfaces.list);
     result.textures = std::move(polygons.surfaces.textures);
+    if (!result.textures.empty() && has_one_uv(result.mesh))
+      result.notes.push_back("all texture coordinates are the same: each texture has one colour");
     result.tessellation = std::move(polygons.tessellation);
     result.xxh3 = core::hex_text(checksum.value());
     if (options.vertices)

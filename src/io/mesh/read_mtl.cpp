@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sdm/error.h>
+#include <sdm/image.h>
 
 #include <algorithm>
 #include <array>
@@ -9,7 +10,6 @@
 #include <optional>
 #include <utility>
 
-#include "baking/srgb.h"
 #include "core/excerpt.h"
 #include "core/parse_number.h"
 #include "io/file/file_below.h"
@@ -94,8 +94,8 @@ class MtlReader {
 
   std::array<float, 3> light() {
     std::array<float, 3> color{};
-    color.fill(baking::linear_light(factor()));
-    for (std::size_t k = 1; k < 3 && in_.more_on_line(); ++k) color[k] = baking::linear_light(factor());
+    color.fill(linear_light(factor()));
+    for (std::size_t k = 1; k < 3 && in_.more_on_line(); ++k) color[k] = linear_light(factor());
     return color;
   }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
+#include <sdm/image.h>
 
 #include <algorithm>
 #include <array>
@@ -8,7 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "baking/srgb.h"
 #include "core/excerpt.h"
 #include "io/file/file_below.h"
 #include "io/file/text_scanner.h"
@@ -92,7 +92,7 @@ class ObjReader {
     std::size_t count = 0;
     for (; in_.more_on_line(); ++count) {
       const auto x = static_cast<float>(in_.number());
-      if (count < 3) color[count] = baking::linear_light(x);
+      if (count < 3) color[count] = linear_light(x);
     }
     has_colors_ |= count == 3;
     if (count != 3) color.fill(std::numeric_limits<float>::quiet_NaN());
@@ -148,10 +148,16 @@ class ObjReader {
     if (!impossible_uv_ && highest_uv_.at && highest_uv_.index >= mesh_.uvs.size())
       impossible_uv_ = {std::int64_t{highest_uv_.index} + 1, highest_uv_.at};
     if (!impossible_uv_) return;
-    mesh_.notes.push_back(
-        fmt::format("the texture coordinates are left out: in line {}, a face refers to number {} of {}",
-                    in_.line_of(impossible_uv_->second), impossible_uv_->first, mesh_.uvs.size()));
-    mesh_.uvs.clear(), mesh_.corner_uvs.clear();
+    mesh_.notes.push_back(fmt::format(
+        "{} left out: in line {}, a face refers to number {} of {}",
+        with_attributes_ ? "texture coordinates that do not exist are" : "the texture coordinates are",
+        in_.line_of(impossible_uv_->second), impossible_uv_->first, mesh_.uvs.size()));
+    if (!with_attributes_) {  // a mesh has them at all corners, attributes at some
+      mesh_.uvs.clear(), mesh_.corner_uvs.clear();
+      return;
+    }
+    for (std::uint32_t& row : mesh_.corner_uvs)
+      if (row >= mesh_.uvs.size()) row = kNone;
   }
   // Normals may follow the faces that refer to them; what does not exist is left out.
   void add_attributes() {

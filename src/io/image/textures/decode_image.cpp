@@ -3,6 +3,7 @@
 #include <sdm/image.h>
 
 #include <algorithm>
+#include <mutex>
 #include <new>
 #include <string_view>
 
@@ -15,9 +16,38 @@ namespace sdm {
 
 namespace io {
 
+namespace {
+
+std::mutex memory_mutex;
+std::size_t promised_memory = 0;
+
+// With the mutex locked.
+void require_picture_memory(std::size_t bytes) {
+  try {
+    require_memory(bytes + promised_memory, "a picture");
+  } catch (const Error& fault) {
+    throw PictureTooLarge(fault.what());
+  }
+}
+
+}  // namespace
+
+PromisedMemory::PromisedMemory(std::size_t bytes) : bytes_(bytes) {
+  const std::scoped_lock lock(memory_mutex);
+  require_picture_memory(bytes);
+  promised_memory += bytes;
+}
+
+PromisedMemory::~PromisedMemory() {
+  const std::scoped_lock lock(memory_mutex);
+  promised_memory -= bytes_;
+}
+
 void check_size(std::size_t width, std::size_t height) {
-  constexpr std::size_t kMostPixels = std::size_t{1} << 28;
+  constexpr std::size_t kMostPixels = std::size_t{1} << 28, kMostOfASide = 100'000;
   if (width == 0 || height == 0) throw Error("the picture has no pixels");
+  if (width > kMostOfASide || height > kMostOfASide)
+    throw Error(fmt::format("the picture has {} × {} pixels, more than 100000 a side", width, height));
   if (width > kMostPixels / height)
     throw Error(fmt::format("the picture has {} × {} pixels, more than 2^28", width, height));
 }
@@ -25,7 +55,9 @@ void check_size(std::size_t width, std::size_t height) {
 Image blank_image(std::size_t width, std::size_t height, std::uint32_t components, std::uint32_t bits) {
   check_size(width, height);
   const std::size_t size = width * height * components * (bits / 8);
-  require_memory(size, "a picture");
+  // Its pages are taken before another picture is looked at.
+  const std::scoped_lock lock(memory_mutex);
+  require_picture_memory(size);
   return {.width = static_cast<std::uint32_t>(width),
           .height = static_cast<std::uint32_t>(height),
           .components = components,
@@ -43,7 +75,7 @@ Image decode_image(std::span<const char> bytes) try {
     return io::decode_webp(bytes);
   throw Error("the picture is not PNG, JPEG or WebP");
 } catch (const std::bad_alloc&) {
-  throw out_of_memory("a picture");
+  throw io::PictureTooLarge(out_of_memory("a picture").what());
 }
 
 Image read_image(const std::filesystem::path& file) {

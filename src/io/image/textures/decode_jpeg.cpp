@@ -72,6 +72,15 @@ bool read_rows(JpegReader& reader, std::uint8_t* pixels, std::size_t row_bytes) 
   return true;
 }
 
+// What libjpeg keeps of a file whose parts are each of the whole picture: all coefficients.
+std::size_t coefficient_bytes(const jpeg_decompress_struct& jpeg) {
+  if (jpeg_has_multiple_scans(const_cast<jpeg_decompress_struct*>(&jpeg)) == FALSE) return 0;
+  std::size_t blocks = 0;
+  for (const jpeg_component_info& component : std::span(jpeg.comp_info, jpeg.num_components))
+    blocks += std::size_t{component.width_in_blocks} * component.height_in_blocks;
+  return blocks * sizeof(JBLOCK);
+}
+
 // Without a profile, light passes the inks one after another. Files of Adobe's programs, which are nearly
 // all, store the light that each ink lets through.
 Image without_inks(const Image& cmyk, bool inverted) {
@@ -93,6 +102,8 @@ Image decode_jpeg(std::span<const char> bytes) {
     if (!read) throw Error(fmt::format("the JPEG picture cannot be read: {}", reader.message.data()));
   };
   check(read_header(reader, bytes));
+  check_size(reader.jpeg.output_width, reader.jpeg.output_height);
+  const PromisedMemory coefficients(coefficient_bytes(reader.jpeg));
   Image image = blank_image(reader.jpeg.output_width, reader.jpeg.output_height,
                             static_cast<std::uint32_t>(reader.jpeg.output_components), 8);
   check(read_rows(reader, image.bytes.data(), image.bytes.size() / image.height));

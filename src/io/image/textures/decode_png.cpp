@@ -5,7 +5,6 @@
 #include <csetjmp>
 #include <cstring>
 #include <string>
-#include <vector>
 
 #include "io/image/textures/decoders.h"
 
@@ -50,17 +49,20 @@ bool read_header(PngReader& reader) {
   png_read_info(reader.png, reader.info);
   return true;
 }
-bool choose_format(PngReader& reader) {
+bool choose_format(PngReader& reader, int& passes) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   png_set_expand(reader.png);  // palettes, fewer than 8 bits, and transparent colours
   png_set_swap(reader.png);    // 16 bits: the lower byte first
-  png_set_interlace_handling(reader.png);
+  passes = png_set_interlace_handling(reader.png);
   png_read_update_info(reader.png, reader.info);
   return true;
 }
-bool read_rows(PngReader& reader, std::span<png_bytep> rows) {
+bool read_rows(PngReader& reader, Image& image, int passes) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
-  png_read_image(reader.png, rows.data());
+  const std::size_t row_bytes = image.bytes.size() / image.height;
+  for (int pass = 0; pass < passes; ++pass)
+    for (std::size_t y = 0; y < image.height; ++y)
+      png_read_row(reader.png, image.bytes.data() + y * row_bytes, nullptr);
   png_read_end(reader.png, nullptr);
   return true;
 }
@@ -74,14 +76,12 @@ Image decode_png(std::span<const char> bytes) {
   };
   check(read_header(reader));
   check_size(png_get_image_width(reader.png, reader.info), png_get_image_height(reader.png, reader.info));
-  check(choose_format(reader));
+  int passes = 1;
+  check(choose_format(reader, passes));
   Image image =
       blank_image(png_get_image_width(reader.png, reader.info), png_get_image_height(reader.png, reader.info),
                   png_get_channels(reader.png, reader.info), png_get_bit_depth(reader.png, reader.info));
-  const std::size_t row_bytes = image.bytes.size() / image.height;
-  std::vector<png_bytep> rows(image.height);
-  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = image.bytes.data() + y * row_bytes;
-  check(read_rows(reader, rows));
+  check(read_rows(reader, image, passes));
   return image;
 }
 

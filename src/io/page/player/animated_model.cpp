@@ -1,5 +1,7 @@
 #include "io/page/player/animated_model.h"
 
+#include <sdm/image.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,8 +26,7 @@ constexpr std::array<float, 3> kPlain{0.46f, 0.5f, 0.55f};  // linear, of a body
 
 /// glTF's vertex colours are linear.
 float linear(std::uint8_t value) {
-  const double s = value / 255.0;
-  return static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+  return linear_light(static_cast<float>(value) / 255);
 }
 
 struct Frames {
