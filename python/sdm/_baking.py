@@ -2,8 +2,7 @@
 
 import os
 from collections.abc import Callable, Sequence
-from types import SimpleNamespace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -11,50 +10,37 @@ import numpy.typing as npt
 from . import _core
 from ._arrays import numpy_of
 from ._core import Baked, Error, Mesh
+from ._looks import Appearance, look_of
+from ._types import Atlas, MatchMethod
 
 
-def _linear(colors: Any) -> npt.NDArray[Any]:
-    """Red, green and blue in linear light, of uint8 or of numbers from 0 to 1, in sRGB."""
-    array = numpy_of(colors, "vertex_colors")
-    if array.ndim != 2 or array.shape[1] not in (3, 4):
-        raise Error(f"vertex_colors must have the shape (vertices, 3) or (vertices, 4), not {array.shape}")
-    scale = np.iinfo(array.dtype).max if array.dtype in (np.uint8, np.uint16) else 1
-    srgb = array[:, :3].astype(np.float64) / scale
-    if not ((srgb >= 0) & (srgb <= 1)).all():
-        raise Error("vertex_colors must be uint8, uint16, or numbers from 0 to 1")
-    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
-    return np.ascontiguousarray(linear, np.float32)
-
-
-def _pixels(texture: Any) -> npt.NDArray[Any]:
-    pixels = np.asarray(texture)
-    if pixels.dtype != np.uint8 or pixels.ndim not in (2, 3):
-        raise Error("texture must be a picture of uint8 numbers, of shape (height, width) or (height, width, 1 to 4)")
-    return np.ascontiguousarray(pixels if pixels.ndim == 3 else pixels[:, :, None])
-
-
-def _with_uvs(mesh: Any, uvs: Any) -> Any:
-    """The mesh with texture coordinates of its vertices, (n, 2), or of the corners of its faces, (m, 3, 2)."""
+def _corner_uvs(mesh: Any, uvs: Any) -> npt.NDArray[Any]:
+    """Texture coordinates of the corners of faces, (m, 3, 2), from those or from those of vertices, (n, 2)."""
     vertices, faces = Mesh(mesh)
     corners = numpy_of(uvs, "uvs")
     if corners.shape == (len(vertices), 2):
         corners = corners[faces]
     if corners.shape != (len(faces), 3, 2):
         raise Error(f"uvs must have the shape (vertices, 2) or (faces, 3, 2), not {corners.shape}")
-    return SimpleNamespace(vertices=vertices, triangles=faces, triangle_uvs=corners.reshape(-1, 2))
+    return corners
 
 
-def _visual(mesh: Any) -> tuple[Any, Any]:
-    """The colours of vertices, and the texture, that a mesh of trimesh has."""
-    visual = getattr(mesh, "visual", None)
-    kind = getattr(visual, "kind", None)
-    if kind == "vertex":
-        return visual.vertex_colors, None  # type: ignore[union-attr]
-    if kind != "texture":
-        return None, None
-    material = getattr(visual, "material", None)
-    image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
-    return None, None if image is None else np.asarray(image.convert("RGB"))
+def _appearance(mesh: Any, vertex_colors: Any, face_colors: Any, texture: Any, uvs: Any) -> tuple[Any, Appearance]:
+    """What a mesh looks like: as the arguments state, otherwise as the object of another package does."""
+    if vertex_colors is not None and face_colors is not None:
+        raise Error("a mesh has vertex_colors or face_colors, not both")
+    own, look = look_of(mesh)
+    if vertex_colors is not None or face_colors is not None or texture is not None:
+        look = Appearance()
+    if vertex_colors is not None:
+        look.set_colors(vertex_colors, "vertex")
+    if face_colors is not None:
+        look.set_colors(face_colors, "face")
+    if texture is not None:
+        look.add_material(base_color_texture=look.add_picture(texture))
+    if uvs is not None:
+        look.uvs = _corner_uvs(own, uvs)
+    return own, look
 
 
 def bake(
@@ -62,13 +48,17 @@ def bake(
     low: Any,
     *,
     vertex_colors: Any = None,
+    face_colors: Any = None,
     texture: Any = None,
     uvs: Any = None,
     channels: "Sequence[str] | None" = None,
     resolution: int = 1024,
-    atlas: "Literal['charts', 'triangles', 'uv'] | None" = None,
-    max_distance: float = np.inf,
+    atlas: "Atlas | None" = None,
+    gutter: int = 1,
+    match: "MatchMethod | None" = None,
     facing: "float | None" = None,
+    cage: "float | None" = None,
+    max_distance: float = np.inf,
     progress: "Callable[[str, float], bool | None] | None" = None,
 ) -> Baked:
     """Bakes the materials, textures and colours of a detailed mesh into textures of a coarse one.
@@ -76,17 +66,25 @@ def bake(
     Each texel of ``low`` gets what ``high`` has at the closest point; textures are averaged in linear light over what
     the texel covers of them. Texels of no face, or without a point, are filled from others.
 
-    high: a path of glTF, GLB, OBJ or PLY, with its materials and colours; or any mesh, with one of the next two. Meshes
-        of trimesh bring their own.
-    vertex_colors: red, green and blue of each vertex in sRGB, uint8 or from 0 to 1; a fourth column is ignored.
-    texture: a picture, (height, width, 1 to 4) uint8, on the texture coordinates of the mesh, or on ``uvs``.
-    uvs: of the vertices, (n, 2), or of the corners of the faces, (m, 3, 2), with (0, 0) at the lower left.
+    high: a path of glTF, GLB, OBJ or PLY, with its materials and colours; or any mesh, with one of the next three. Meshes
+        and scenes of trimesh bring their materials, textures and colours; meshes of pyvista their colours, of uint8: the
+        active array of points or cells, or one that is named RGB, RGBA or colors.
+    vertex_colors, face_colors: red, green and blue in sRGB, uint8, uint16 or from 0 to 1; a fourth column is alpha.
+    texture: a picture, (height, width, 1 to 4) uint8, or one of Pillow or pyvista, on the texture coordinates of the mesh,
+        or on ``uvs``.
+    uvs: of the vertices, (n, 2), or of the corners of the faces, (m, 3, 2), with (0, 0) at the lower left; NaN at the
+        corners of faces without texture.
     low: the mesh that gets the textures: on its texture coordinates if they can be used, otherwise on an atlas
         (``Baked.corner_uvs``).
-    channels: of 'base_color', 'metallic_roughness', 'occlusion' and 'emissive'; by default base_color, and others that
-        differ between points of ``high``.
-    atlas: insists on a layout, as of ``map()``.
-    max_distance, facing: which points count, as of ``map()``. For thin walls, pass facing=90.
+    channels: of 'base_color', 'metallic_roughness', 'occlusion', 'emissive', and 'normal', the shape of ``high`` in the
+        tangent space of ``low``; by default base_color, and others, but not normal, that differ between points of ``high``.
+    resolution: texels a side. atlas: insists on a layout, as of ``map()``. gutter: free texels around charts.
+    match: 'closest', 'facing' or 'ray', as of ``match()``: the closest point, the closest one on faces that face as the
+        texel does, or the nearest hit of these along the normal of ``low``. By default closest, or facing if ``facing`` is
+        given. For thin walls, pass facing=90.
+    facing: of 'facing' and 'ray', the largest angle in degrees between the normals; by default 90.
+    cage: of 'ray', how far along the normal hits are searched for, to either side.
+    max_distance: points farther away do not count.
 
     Raises Error if ``high`` has nothing to bake, and if no texel has a point.
 
@@ -96,22 +94,21 @@ def bake(
     (['base_color'], array([255, 128,   0], dtype=uint8))
     """
     is_path = isinstance(high, (str, bytes, os.PathLike))
-    if is_path and not (vertex_colors is None and texture is None and uvs is None):
-        raise Error("vertex_colors, texture and uvs belong to a mesh that is given as arrays, not to a file")
-    if not is_path and vertex_colors is None and texture is None:
-        vertex_colors, texture = _visual(high)
-    if uvs is not None:
-        high = _with_uvs(high, uvs)
+    if is_path and any(given is not None for given in (vertex_colors, face_colors, texture, uvs)):
+        raise Error("colours, texture and uvs belong to a mesh that is given as arrays, not to a file")
+    mesh, look = (None, Appearance()) if is_path else _appearance(high, vertex_colors, face_colors, texture, uvs)
     return _core.bake(
         high if is_path else None,
-        None if is_path else high,
+        mesh,
+        look.compiled(),
         low,
-        None if vertex_colors is None else _linear(vertex_colors),
-        None if texture is None else _pixels(texture),
         None if channels is None else list(channels),
         resolution,
         atlas,
-        max_distance,
+        gutter,
+        match,
         facing,
+        cage,
+        max_distance,
         progress,
     )

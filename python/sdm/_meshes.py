@@ -1,6 +1,7 @@
 """Meshes in the forms of other packages, recognised by their attributes. None of the packages is imported."""
 
 import os
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -47,17 +48,23 @@ def _open3d_tensor(mesh: Any) -> tuple[Any, ...]:
     return mesh.vertex["positions"].cpu().numpy(), triangle["indices"].cpu().numpy(), uvs
 
 
-def _pyvista(mesh: Any) -> tuple[Any, ...]:
-    def all_triangles(faces: npt.NDArray[Any]) -> bool:
+def triangulated(mesh: Any) -> Any:
+    """A mesh of pyvista all of whose faces are triangles."""
+
+    def all_triangles(mesh: Any) -> bool:
+        faces = numpy_of(mesh.faces, "faces")
         return len(faces) % 4 == 0 and bool((faces[::4] == 3).all())
 
-    faces = numpy_of(mesh.faces, "faces")
-    if not all_triangles(faces):
+    if not all_triangles(mesh):
         mesh = mesh.triangulate()
-        faces = numpy_of(mesh.faces, "faces")
-    if not all_triangles(faces):
+    if not all_triangles(mesh):
         raise Error("the mesh of pyvista has faces that are no polygons; extract its surface first")
-    faces = faces.reshape(-1, 4)[:, 1:]
+    return mesh
+
+
+def _pyvista(mesh: Any) -> tuple[Any, ...]:
+    mesh = triangulated(mesh)
+    faces = numpy_of(mesh.faces, "faces").reshape(-1, 4)[:, 1:]
     uvs = getattr(mesh, "active_texture_coordinates", None)
     return mesh.points, faces, _of_corners(uvs, mesh.points, faces)
 
@@ -74,18 +81,26 @@ def _meshio(mesh: Any) -> tuple[Any, ...]:
     return mesh.points, np.concatenate(triangles) if triangles else np.empty((0, 3), np.uint32), None
 
 
-def _trimesh_scene(scene: Any) -> tuple[Any, ...]:
-    """The geometries with faces at all places that the graph has for them, one after the other."""
-    vertices, faces, count = [], [], 0
+def scene_parts(scene: Any) -> Iterator[tuple[Any, npt.NDArray[Any], npt.NDArray[Any]]]:
+    """The geometries with faces at all places that the graph of a scene of trimesh has for them, with the vertices there and
+    the faces, which a place that mirrors turns."""
     for node in scene.graph.nodes_geometry:
         place, name = scene.graph.get(node)
         geometry = scene.geometry[name]
         if not hasattr(geometry, "faces"):  # paths and point clouds
             continue
         matrix, positions = numpy_of(place, "transform"), numpy_of(geometry.vertices, "vertices")
-        corners = numpy_of(geometry.faces, "faces") + count
-        vertices.append(positions @ matrix[:3, :3].T + matrix[:3, 3])
-        faces.append(corners[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else corners)
+        corners = numpy_of(geometry.faces, "faces")
+        mirrors = np.linalg.det(matrix[:3, :3]) < 0
+        yield geometry, positions @ matrix[:3, :3].T + matrix[:3, 3], corners[:, ::-1] if mirrors else corners
+
+
+def _trimesh_scene(scene: Any) -> tuple[Any, ...]:
+    """All parts, one after the other."""
+    vertices, faces, count = [], [], 0
+    for _, positions, corners in scene_parts(scene):
+        vertices.append(positions)
+        faces.append(corners + count)
         count += len(positions)
     if not faces:
         raise Error("the scene of trimesh has no triangles")

@@ -8,6 +8,8 @@ Sign = Literal["automatic", "none", "exact", "winding", "side"]
 Engine = Literal["cpu", "gl", "reference"]
 #: The kinds of an atlas.
 Atlas = Literal["charts", "triangles", "uv"]
+#: Which point belongs to a texel.
+MatchMethod = Literal["closest", "facing", "ray"]
 #: Whether a tolerance is met.
 Verdict = Literal["pass", "fail", "not decided"]
 #: How sure a number is.

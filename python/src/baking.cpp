@@ -3,6 +3,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 #include <sdm/bake_files.h>
+#include <sdm/baked_geometry.h>
 #include <sdm/error.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "look.h"
 #include "objects.h"
 #include "run.h"
 #include "values.h"
@@ -21,29 +23,56 @@
 namespace sdm::python {
 namespace {
 
+constexpr const char* kNormalMap = "normal";
+
+/// The normals of O2 in the tangent space of O1, as it is drawn with these normals and tangents.
+struct NormalMap {
+  std::vector<float> values;
+  MeshAttribute normals, tangents;
+};
+
+/// Normals of O1 are smooth but at edges of more degrees.
+constexpr double kCrease = 40;
+
+NormalMap as_drawn(const Surface& surface, std::vector<float> values) {
+  NormalMap map{
+      .values = std::move(values), .normals = smooth_normals(surface.mesh(), kCrease), .tangents = {}};
+  map.tangents = tangents(surface, map.normals);
+  return map;
+}
+
 /// O1 with its textures.
 struct PyBaked {
   AtlasOptions atlas;  ///< of the surface
   Surface surface;
-  std::vector<std::uint8_t> matched;  ///< for each texel, whether O2 has a point for it
+  std::vector<MatchKind> kinds;  ///< of each texel
   std::vector<BakedChannel> channels;
+  std::optional<NormalMap> normal_map;
   Material material;
   std::vector<std::string> notes;
 
-  [[nodiscard]] const BakedChannel& channel(const std::string& name) const {
-    for (const BakedChannel& channel : channels)
-      if (name == name_of(channel.channel)) return channel;
-    throw Error("there is no channel '" + name + "'");
+  [[nodiscard]] const BakedChannel* find(const std::string& name) const {
+    const auto found = std::ranges::find_if(
+        channels, [&](const BakedChannel& channel) { return name == name_of(channel.channel); });
+    if (found == channels.end() && !(normal_map && name == kNormalMap))
+      throw Error("there is no channel '" + name + "'");
+    return found == channels.end() ? nullptr : &*found;
   }
-};
-
-/// What O2 looks like.
-struct Look {
-  MeshFile file;
-  std::vector<Image> pictures;
-
-  [[nodiscard]] MeshLook get() const {
-    return {file.materials, file.face_materials, pictures, file.attributes};
+  /// The values of a channel, and how many each texel has.
+  [[nodiscard]] std::pair<const std::vector<float>&, std::size_t> values(const std::string& name) const {
+    const BakedChannel* const channel = find(name);
+    if (channel == nullptr) return {normal_map->values, 3};
+    return {channel->values, channel->components};
+  }
+  [[nodiscard]] Image image(const std::string& name) const {
+    const BakedChannel* const channel = find(name);
+    return channel == nullptr ? normal_map_image(surface, normal_map->values) : to_image(*channel);
+  }
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const BakedChannel& channel : channels) names.emplace_back(name_of(channel.channel));
+    if (normal_map) names.emplace_back(kNormalMap);
+    return names;
   }
 };
 
@@ -51,8 +80,9 @@ struct Look {
 struct StoredBaked {
   Mesh mesh;
   AtlasOptions atlas;
-  std::vector<std::uint8_t> matched;
+  std::vector<MatchKind> kinds;
   std::vector<BakedChannel> channels;
+  std::vector<float> normal_map;  ///< empty: there is none
   Material material;
   std::vector<std::string> notes;
 };
@@ -93,15 +123,18 @@ inline constexpr auto kMembers<Material> = std::tuple{&Material::name,
                                                       &Material::occlusion_texture,
                                                       &Material::emissive_texture};
 template <>
+inline constexpr auto kLast<MatchKind> = MatchKind::facing_away;
+template <>
 inline constexpr auto kMembers<StoredBaked> =
-    std::tuple{&StoredBaked::mesh,     &StoredBaked::atlas,    &StoredBaked::matched,
-               &StoredBaked::channels, &StoredBaked::material, &StoredBaked::notes};
+    std::tuple{&StoredBaked::mesh,       &StoredBaked::atlas,    &StoredBaked::kinds, &StoredBaked::channels,
+               &StoredBaked::normal_map, &StoredBaked::material, &StoredBaked::notes};
 
 namespace {
 
 void check_stored(const StoredBaked& stored, const Surface& surface) {
   const std::size_t texels = surface.texel_faces().size();
-  bool fits = stored.matched.size() == texels;
+  bool fits =
+      stored.kinds.size() == texels && (stored.normal_map.empty() || stored.normal_map.size() == 3 * texels);
   for (const BakedChannel& channel : stored.channels)
     fits &= channel.resolution == surface.resolution() && channel.components >= 1 &&
             channel.components <= 4 && channel.values.size() == channel.components * texels;
@@ -112,8 +145,9 @@ void bind_baked_state() {
   bind_state<PyBaked>(
       1,
       [](const PyBaked& self) {
-        return nb::make_tuple(bytes_of(StoredBaked{self.surface.mesh(), self.atlas, self.matched,
-                                                   self.channels, self.material, self.notes}));
+        return nb::make_tuple(bytes_of(StoredBaked{
+            self.surface.mesh(), self.atlas, self.kinds, self.channels,
+            self.normal_map ? self.normal_map->values : std::vector<float>(), self.material, self.notes}));
       },
       [](PyBaked* self, const nb::tuple& from) {
         auto stored = value_of<StoredBaked>(from[0]);
@@ -121,38 +155,13 @@ void bind_baked_state() {
         run_sized(stored.mesh.triangles.size(), [&] {
           Surface surface(std::move(stored.mesh), stored.atlas);
           check_stored(stored, surface);
-          new (self)
-              PyBaked{std::move(stored.atlas),    std::move(surface),         std::move(stored.matched),
-                      std::move(stored.channels), std::move(stored.material), std::move(stored.notes)};
+          std::optional<NormalMap> normal_map;
+          if (!stored.normal_map.empty()) normal_map = as_drawn(surface, std::move(stored.normal_map));
+          new (self) PyBaked{std::move(stored.atlas),    std::move(surface),    std::move(stored.kinds),
+                             std::move(stored.channels), std::move(normal_map), std::move(stored.material),
+                             std::move(stored.notes)};
         });
       });
-}
-
-using Colors = nb::ndarray<const float, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-using Pixels = nb::ndarray<const std::uint8_t, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
-
-void add_colors(const Colors& colors, MeshFile& file) {
-  if (colors.shape(0) != file.mesh.positions.size())
-    throw Error("vertex_colors needs a row for each of " + std::to_string(file.mesh.positions.size()) +
-                " vertices, not " + std::to_string(colors.shape(0)));
-  file.attributes = {{.name = "color",
-                      .components = 3,
-                      .values = {colors.data(), colors.data() + colors.size()},
-                      .rows = std::make_shared<std::vector<Triangle>>(file.mesh.triangles)}};
-}
-
-void add_texture(const Pixels& pixels, Look& look) {
-  if (look.file.mesh.corner_uvs.empty()) throw Error("texture needs a mesh with texture coordinates");
-  if (pixels.size() == 0 || pixels.shape(2) > 4)
-    throw Error("texture must have the shape (height, width, 1 to 4) and at least one pixel");
-  look.pictures = {{.width = static_cast<std::uint32_t>(pixels.shape(1)),
-                    .height = static_cast<std::uint32_t>(pixels.shape(0)),
-                    .components = static_cast<std::uint32_t>(pixels.shape(2)),
-                    .bits = 8,
-                    .bytes = {pixels.data(), pixels.data() + pixels.size()}}};
-  look.file.materials.resize(1);
-  look.file.materials[0].base_color_texture.texture = 0;
-  look.file.face_materials.assign(look.file.mesh.triangles.size(), 0);
 }
 
 std::optional<AtlasKind> atlas_kind_of(const std::optional<std::string>& atlas) {
@@ -160,21 +169,40 @@ std::optional<AtlasKind> atlas_kind_of(const std::optional<std::string>& atlas) 
   return atlas_of(atlas->c_str());
 }
 
-std::vector<BakeChannel> channels_of(const std::optional<std::vector<std::string>>& names, const Look& look) {
-  std::vector<BakeChannel> channels;
-  if (!names) {
-    channels = varying_channels(look.file.mesh, look.get());
-    if (std::ranges::count(channels, BakeChannel::base_color) == 0)
-      channels.insert(channels.begin(), BakeChannel::base_color);
-    return channels;
-  }
+/// What is asked for: nothing for the channels that differ.
+struct Wanted {
+  std::optional<std::vector<BakeChannel>> channels;
+  bool normal_map = false;
+
+  [[nodiscard]] bool look() const { return !channels || !channels->empty(); }
+};
+
+Wanted wanted_of(const std::optional<std::vector<std::string>>& names) {
+  Wanted wanted;
+  if (!names) return wanted;
+  wanted.channels.emplace();
   for (const std::string& name : *names) {
     const auto* const found =
         std::ranges::find_if(kBakeChannels, [&](BakeChannel channel) { return name == name_of(channel); });
-    if (found == std::end(kBakeChannels))
-      throw Error("channels are base_color, metallic_roughness, occlusion and emissive, not '" + name + "'");
-    channels.push_back(*found);
+    if (found != std::end(kBakeChannels))
+      wanted.channels->push_back(*found);
+    else if (name == kNormalMap)
+      wanted.normal_map = true;
+    else
+      throw Error("channels are base_color, metallic_roughness, occlusion, emissive and normal, not '" +
+                  name + "'");
   }
+  if (names->empty()) throw Error("channels is empty: there is nothing to bake");
+  if (wanted.normal_map && !has_tangents())
+    throw Error("the channel 'normal' needs MikkTSpace, which this build does not have");
+  return wanted;
+}
+
+std::vector<BakeChannel> channels_of(const Wanted& wanted, const Look& look) {
+  if (wanted.channels) return *wanted.channels;
+  std::vector<BakeChannel> channels = varying_channels(look.file.mesh, look.get());
+  if (std::ranges::count(channels, BakeChannel::base_color) == 0)
+    channels.insert(channels.begin(), BakeChannel::base_color);
   return channels;
 }
 
@@ -184,52 +212,96 @@ BakeAtlas laid_out(const Mesh& mesh, AtlasOptions options, std::optional<AtlasKi
   return {Surface(mesh, options), {}};
 }
 
-/// `file`: of O2, or None for `mesh` with colours or a texture.
-nb::object baked_from(nb::handle file, nb::handle mesh, nb::handle low, const std::optional<Colors>& colors,
-                      const std::optional<Pixels>& texture,
+/// `match`: None for the closest point, or that of facing if it is given.
+MatchOptions match_options(const std::optional<std::string>& match, std::optional<double> facing,
+                           std::optional<double> cage, double max_distance) {
+  MatchOptions options{.method = match    ? match_method_of(*match)
+                                 : facing ? MatchMethod::facing
+                                          : MatchMethod::closest,
+                       .max_distance = max_distance};
+  if (facing && options.method == MatchMethod::closest)
+    throw Error("facing does not apply to match='closest'");
+  if (cage && options.method != MatchMethod::ray) throw Error("cage applies to match='ray'");
+  if (facing) options.facing = *facing;
+  if (cage) options.cage = *cage;
+  return options;
+}
+
+/// Reads a file with what its faces look like.
+void read_look(const std::filesystem::path& path, const Wanted& wanted, Look& look,
+               std::vector<std::string>& notes) {
+  look.file = read_mesh_file(path, {.attributes = true});
+  notes = look.file.notes;
+  const std::span<const BakeChannel> channels =
+      wanted.channels ? std::span<const BakeChannel>(*wanted.channels) : kBakeChannels;
+  look.pictures = decode_textures(look.file.textures, look.get(), channels, notes);
+}
+
+/// The normals of O2 are those of its file, or smooth ones.
+NormalMap normal_map_of(const Surface& surface, const Sites& sites, const TexelMatches& matches,
+                        const Look& look, const Progress& progress) {
+  const auto& attributes = look.file.attributes;
+  const auto own = std::ranges::find(attributes, "normal", &MeshAttribute::name);
+  NormalMap map = as_drawn(
+      surface, matched_normals(surface, sites, matches,
+                               own != attributes.end() ? *own : smooth_normals(sites.mesh()), progress));
+  map.values = tangent_space_normals(surface, map.normals, map.tangents, map.values, progress);
+  fill_texels(surface, 3, map.values, true);
+  return map;
+}
+
+std::unique_ptr<PyBaked> bake_look(const Look& look, BakeAtlas laid, const AtlasOptions& atlas,
+                                   const Wanted& wanted, const MatchOptions& options) {
+  if (wanted.look() && look.file.materials.empty() &&
+      std::ranges::count(look.file.attributes, "color", &MeshAttribute::name) == 0)
+    throw Error("high has neither materials nor colours of vertices, so there is nothing to bake");
+  const Sites sites(look.file.mesh);
+  TexelMatches matches = match_texels(laid.surface, sites, options);
+  if (std::ranges::all_of(matches.face, [](std::uint32_t face) { return face == kNone; }))
+    throw Error("no point of high is close enough to a texel of low, or faces one: nothing can be baked");
+  const auto chosen = channels_of(wanted, look);
+  std::vector<BakedChannel> channels =
+      bake(laid.surface, sites, matches, look.get(), chosen, {.progress = options.progress});
+  std::optional<NormalMap> normal_map;
+  if (wanted.normal_map) normal_map = normal_map_of(laid.surface, sites, matches, look, options.progress);
+  return std::make_unique<PyBaked>(PyBaked{.atlas = atlas,
+                                           .surface = std::move(laid.surface),
+                                           .kinds = std::move(matches.kind),
+                                           .channels = std::move(channels),
+                                           .normal_map = std::move(normal_map),
+                                           .material = common_material(look.get()),
+                                           .notes = {}});
+}
+
+/// `file`: of O2, or None for `mesh`, which looks as `appearance` has it.
+nb::object baked_from(nb::handle file, nb::handle mesh, const nb::dict& appearance, nb::handle low,
                       const std::optional<std::vector<std::string>>& channels, std::uint32_t resolution,
-                      const std::optional<std::string>& atlas, double max_distance, nb::handle facing,
-                      nb::handle progress) {
+                      const std::optional<std::string>& atlas, std::uint32_t gutter,
+                      const std::optional<std::string>& match, nb::handle facing, std::optional<double> cage,
+                      double max_distance, nb::handle progress) {
+  const Wanted wanted = wanted_of(channels);
+  MatchOptions options = match_options(match, facing_of(facing), cage, max_distance);
+  const std::optional<AtlasKind> kind = atlas_kind_of(atlas);
   Look look;
   std::optional<std::filesystem::path> path;
   if (!file.is_none())
     path = path_of(file);
   else
     look.file.mesh = mesh_of(mesh, nb::none());
-  if (colors) add_colors(*colors, look.file);
-  if (texture) add_texture(*texture, look);
+  add_look(appearance, look);
   const Mesh on = mesh_of(low, nb::none());
-  MapOptions options{.sign = SignMethod::none, .max_distance = max_distance, .facing = facing_of(facing)};
-  const std::optional<AtlasKind> kind = atlas_kind_of(atlas);
   std::unique_ptr<PyBaked> result;
   run(progress, [&](const Progress& report) {
     options.progress = report;
     std::vector<std::string> notes;
-    if (path) {
-      look.file = read_mesh_file(*path, {.attributes = true});
-      notes = look.file.notes;
-      look.pictures = decode_textures(look.file.textures, look.get(), kBakeChannels, notes);
-    }
-    if (look.file.materials.empty() &&
-        std::ranges::count(look.file.attributes, "color", &MeshAttribute::name) == 0)
-      throw Error("high has neither materials nor colours of vertices, so there is nothing to bake");
-    AtlasOptions layout{.resolution = resolution, .progress = report};
+    if (path) read_look(*path, wanted, look, notes);
+    AtlasOptions layout{.resolution = resolution, .gutter = gutter, .progress = report};
     BakeAtlas laid = laid_out(on, layout, kind);
     layout.kind = kind.value_or(laid.fault.empty() ? AtlasKind::uv : AtlasKind::charts);
     layout.progress = {};
     if (!laid.fault.empty()) notes.push_back("low: " + laid.fault + ", so it got an atlas of charts");
-    const Sites sites(look.file.mesh);
-    const TexelMatches matches = matches_of(laid.surface, sites, compute_map(laid.surface, sites, options));
-    if (std::ranges::all_of(matches.face, [](std::uint32_t face) { return face == kNone; }))
-      throw Error("no point of high is close enough to a texel of low, or faces one: nothing can be baked");
-    const auto chosen = channels_of(channels, look);
-    std::vector<BakedChannel> values =
-        bake(laid.surface, sites, matches, look.get(), chosen, {.progress = report});
-    std::vector<std::uint8_t> matched(matches.face.size());
-    std::ranges::transform(matches.face, matched.begin(), [](std::uint32_t face) { return face != kNone; });
-    result =
-        std::make_unique<PyBaked>(PyBaked{std::move(layout), std::move(laid.surface), std::move(matched),
-                                          std::move(values), common_material(look.get()), std::move(notes)});
+    result = bake_look(look, std::move(laid), layout, wanted, options);
+    result->notes = std::move(notes);
   });
   return nb::cast(result.release(), nb::rv_policy::take_ownership);
 }
@@ -256,70 +328,132 @@ void save_baked(const PyBaked& self, nb::handle file, const std::string& units, 
     std::vector<BakedTexture> textures;
     for (const BakedChannel& channel : self.channels)
       textures.push_back({channel.channel, encode_png(to_image(channel), is_color(channel.channel))});
-    write_baked_glb(path, self.surface, textures,
-                    {.material = self.material, .units = units, .up = up == "z" ? UpAxis::z : UpAxis::y});
+    BakedModelOptions options{
+        .material = self.material, .units = units, .up = up == "z" ? UpAxis::z : UpAxis::y};
+    std::vector<char> normal_map;
+    if (self.normal_map) {
+      normal_map = encode_png(self.image(kNormalMap), false);
+      options.normals = &self.normal_map->normals, options.tangents = &self.normal_map->tangents;
+      options.normal_map = normal_map;
+    }
+    write_baked_glb(path, self.surface, textures, options);
   });
 }
 
-void bind_baked(nb::module_& module) {
-  nb::class_<PyBaked>(module, "Baked", nb::is_weak_referenceable(),
-                      "Textures of a coarse mesh, baked by bake().")
-      .def_prop_ro(
-          "channels",
-          [](const PyBaked& self) {
-            std::vector<std::string> names;
-            for (const BakedChannel& channel : self.channels) names.emplace_back(name_of(channel.channel));
-            return names;
-          },
-          nb::sig("def channels(self) -> list[str]"), "The names of the channels that were baked.")
+nb::dict material_of(const PyBaked& self) {
+  const Material& material = self.material;
+  nb::dict result;
+  result["base_color"] = nb::make_tuple(material.base_color[0], material.base_color[1],
+                                        material.base_color[2], material.base_color[3]);
+  result["metallic"] = material.metallic, result["roughness"] = material.roughness;
+  result["emissive"] = nb::make_tuple(material.emissive[0], material.emissive[1], material.emissive[2]);
+  result["alpha_mode"] = material.alpha_mode == AlphaMode::opaque ? "OPAQUE"
+                         : material.alpha_mode == AlphaMode::mask ? "MASK"
+                                                                  : "BLEND";
+  result["alpha_cutoff"] = material.alpha_cutoff;
+  return result;
+}
+
+template <class Type>
+void bind_channels(nb::class_<Type>& type) {
+  type.def_prop_ro("channels", &PyBaked::names, nb::sig("def channels(self) -> list[str]"),
+                   "The names of the channels that were baked.")
       .def(
           "__getitem__",
           [](const PyBaked& self, const std::string& name) {
-            const BakedChannel& channel = self.channel(name);
-            std::vector<float> copy = channel.values;
+            const auto [values, components] = self.values(name);
+            std::vector<float> copy = values;
             return array_of<float>(std::move(copy),
-                                   {self.surface.rows(), channel.resolution, channel.components});
+                                   {self.surface.rows(), self.surface.resolution(), components});
           },
           nb::arg("channel"),
           nb::sig("def __getitem__(self, channel: str) -> numpy.typing.NDArray[numpy.float32]"),
-          "The values of a channel, (rows, resolution, k) float32 from 0 to 1, row 0 at the top. Colours are "
-          "in linear light: 3, or 4 with alpha; metallic_roughness has roughness and metallic, occlusion one "
-          "value. A new array. Raises Error for a channel that was not baked.")
+          R"(The values of a channel, (rows, resolution, k) float32, row 0 at the top, from 0 to 1.
+
+Colours are in linear light: 3, or 4 with alpha; metallic_roughness has roughness and metallic, occlusion one value.
+normal: vectors of length 1 in the tangent space of the coarse mesh. A new array. Raises Error for a channel that was
+not baked.)")
       .def(
           "image",
           [](const PyBaked& self, const std::string& name) {
-            Image image = to_image(self.channel(name));
+            Image image = self.image(name);
             return array_of<std::uint8_t>(std::move(image.bytes),
                                           {image.height, image.width, image.components});
           },
           nb::arg("channel"), nb::sig("def image(self, channel: str) -> numpy.typing.NDArray[numpy.uint8]"),
           "A channel as a picture, (rows, resolution, k) uint8, as textures of glTF have it: colours in "
           "sRGB, "
-          "roughness in green and metallic in blue. Raises Error for a channel that was not baked.")
-      .def_prop_ro(
-          "matched",
+          "roughness in green and metallic in blue, normals from 0 to 255. Raises Error for a channel that "
+          "was "
+          "not baked.");
+}
+
+template <class Type>
+void bind_mesh(nb::class_<Type>& type) {
+  type.def_prop_ro(
+          "mesh",
           [](const PyBaked& self) {
-            std::vector<std::uint8_t> copy = self.matched;
-            return array_of<std::uint8_t>(std::move(copy), {self.surface.rows(), self.surface.resolution()});
+            return nb::cast(new PyMesh{self.surface.mesh()}, nb::rv_policy::take_ownership);
           },
-          nb::sig("def matched(self) -> numpy.typing.NDArray[numpy.uint8]"),
-          "1 for each texel with a point of the detailed mesh, otherwise 0: its values are those of others, "
-          "(rows, resolution) uint8.")
+          nb::sig("def mesh(self) -> Mesh"), "The coarse mesh, with the texture coordinates that it had.")
       .def_prop_ro("corner_uvs", &uvs_of,
                    nb::sig("def corner_uvs(self) -> numpy.typing.NDArray[numpy.float64]"),
                    "The texture coordinates of the corners of the coarse mesh's faces, (m, 3, 2), (0, 0) at "
                    "the lower left.")
-      .def_ro("notes", &PyBaked::notes, "What could not be had, and whether the coarse mesh got an atlas.")
+      .def_prop_ro("material", &material_of, nb::sig("def material(self) -> dict[str, typing.Any]"),
+                   "The factors of the model's material, for what has no texture: base_color, metallic, "
+                   "roughness, emissive, in linear light, alpha_mode and alpha_cutoff, as glTF has them.")
       .def("save", &save_baked, nb::arg("file"), nb::arg("units") = "", nb::arg("up") = "y",
            nb::sig("def save(self, file: str | os.PathLike[str], units: str = '', up: typing.Literal['y', "
                    "'z'] = 'y') -> None"),
            "Writes the coarse mesh with its textures as GLB. units: m, cm, mm, um, in or ft scale it to "
-           "metres. "
-           "up: the axis of the mesh that points up. Raises Error, naming the file, if it cannot be written.")
+           "metres. up: the axis of the mesh that points up. Raises Error, naming the file, if it cannot be "
+           "written.");
+  const auto forwarded = [&](const char* name, const char* signature, const char* text) {
+    type.def(
+        name, [name](nb::handle self) { return nb::module_::import_("sdm._looks").attr(name)(self); },
+        nb::sig(signature), text);
+  };
+  forwarded("to_trimesh", "def to_trimesh(self) -> typing.Any",
+            "The coarse mesh as a mesh of trimesh, with its textures in a PBRMaterial. A vertex with several "
+            "texture coordinates becomes several. Needs trimesh and Pillow.");
+  forwarded("to_pyvista", "def to_pyvista(self) -> tuple[typing.Any, typing.Any]",
+            "The coarse mesh as (mesh, texture) of pyvista, for mesh.plot(texture=texture): with its texture "
+            "coordinates, and the base colour, None if that was not baked. Needs pyvista.");
+}
+
+void bind_baked(nb::module_& module) {
+  nb::class_<PyBaked> type(module, "Baked", nb::is_weak_referenceable(),
+                           "Textures of a coarse mesh, baked by bake().");
+  bind_channels(type);
+  bind_mesh(type);
+  type.def_prop_ro(
+          "matched",
+          [](const PyBaked& self) {
+            std::vector<std::uint8_t> matched(self.kinds.size());
+            std::ranges::transform(self.kinds, matched.begin(), [](MatchKind kind) {
+              return kind == MatchKind::closest || kind == MatchKind::facing || kind == MatchKind::ray;
+            });
+            return array_of<std::uint8_t>(std::move(matched),
+                                          {self.surface.rows(), self.surface.resolution()});
+          },
+          nb::sig("def matched(self) -> numpy.typing.NDArray[numpy.uint8]"),
+          "1 for each texel with a point of the detailed mesh, otherwise 0: its values are those of others, "
+          "(rows, resolution) uint8.")
+      .def_prop_ro(
+          "kind",
+          [](nb::handle self) {
+            const auto& baked = nb::cast<const PyBaked&>(self);
+            return view_of<std::uint8_t>(baked.kinds, {baked.surface.rows(), baked.surface.resolution()},
+                                         self);
+          },
+          nb::sig("def kind(self) -> numpy.typing.NDArray[numpy.uint8]"),
+          "How the point of each texel was found, or why there is none, (rows, resolution) uint8: see "
+          "MatchKind.")
+      .def_ro("notes", &PyBaked::notes, "What could not be had, and whether the coarse mesh got an atlas.")
       .def("__repr__", [](const PyBaked& self) {
         std::string names;
-        for (const BakedChannel& channel : self.channels)
-          names.append(names.empty() ? "" : ", ").append(name_of(channel.channel));
+        for (const std::string& name : self.names()) names.append(names.empty() ? "" : ", ").append(name);
         return nb::str("sdm.Baked({}, {} x {})")
             .format(names, self.surface.resolution(), self.surface.rows());
       });
@@ -330,13 +464,13 @@ void bind_baked(nb::module_& module) {
 
 void bind_baking(nb::module_& module) {
   bind_baked(module);
-  module.def("bake", &baked_from, nb::arg("file").none(), nb::arg("mesh").none(), nb::arg("low").none(),
-             nb::arg("colors").none(), nb::arg("texture").none(), nb::arg("channels").none(),
-             nb::arg("resolution"), nb::arg("atlas").none(), nb::arg("max_distance"),
-             nb::arg("facing").none(), nb::arg("progress").none(),
-             nb::sig("def bake(file: object, mesh: object, low: object, colors: object, texture: object, "
-                     "channels: object, resolution: int, atlas: object, max_distance: float, facing: object, "
-                     "progress: object) -> Baked"));
+  module.def("bake", &baked_from, nb::arg("file").none(), nb::arg("mesh").none(), nb::arg("appearance"),
+             nb::arg("low").none(), nb::arg("channels").none(), nb::arg("resolution"),
+             nb::arg("atlas").none(), nb::arg("gutter"), nb::arg("match").none(), nb::arg("facing").none(),
+             nb::arg("cage").none(), nb::arg("max_distance"), nb::arg("progress").none(),
+             nb::sig("def bake(file: object, mesh: object, appearance: dict[str, object], low: object, "
+                     "channels: object, resolution: int, atlas: object, gutter: int, match: object, facing: "
+                     "object, cage: object, max_distance: float, progress: object) -> Baked"));
 }
 
 }  // namespace sdm::python

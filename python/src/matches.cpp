@@ -74,13 +74,6 @@ MeshAttribute corner_normals(nb::handle normals, const Mesh& mesh) {
   return result;
 }
 
-MatchMethod method_of(std::string_view name) {
-  if (name == "closest") return MatchMethod::closest;
-  if (name == "facing") return MatchMethod::facing;
-  if (name == "ray") return MatchMethod::ray;
-  throw Error("method must be 'closest', 'facing' or 'ray', not '" + std::string(name) + "'");
-}
-
 ThicknessMethod thickness_method_of(std::string_view name) {
   if (name == "ball") return ThicknessMethod::ball;
   if (name == "ray") return ThicknessMethod::ray;
@@ -92,7 +85,7 @@ PyMatches* found_matches(nb::handle surface, nb::handle sites, const char* metho
   auto result = std::make_unique<PyMatches>(nb::borrow(surface), nb::borrow(sites));
   const auto locks = result->use();
   const MeshAttribute of_corners = corner_normals(normals, result->on->surface.mesh());
-  MatchOptions options{.method = method_of(method),
+  MatchOptions options{.method = match_method_of(method),
                        .facing = facing,
                        .cage = cage,
                        .max_distance = max_distance,
@@ -246,6 +239,13 @@ void bind_match_state() {
 }
 
 }  // namespace
+
+MatchMethod match_method_of(std::string_view name) {
+  if (name == "closest") return MatchMethod::closest;
+  if (name == "facing") return MatchMethod::facing;
+  if (name == "ray") return MatchMethod::ray;
+  throw Error("matches are 'closest', 'facing' or 'ray', not '" + std::string(name) + "'");
+}
 
 void bind_matches(nb::module_& module) {
   nb::class_<PyMatches> type(module, "TexelMatches", "The compiled part of Matches.");

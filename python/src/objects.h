@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "run.h"
@@ -83,6 +84,7 @@ struct PySurface {
 [[nodiscard]] std::shared_ptr<const Engine> engine_of(const char* name);
 [[nodiscard]] SignMethod sign_of(const char* name);
 [[nodiscard]] AtlasKind atlas_of(const char* name);
+[[nodiscard]] MatchMethod match_method_of(std::string_view name);
 
 /// Adds the method edit().
 void bind_edit(nb::class_<PySites>& sites);

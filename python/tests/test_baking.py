@@ -1,6 +1,7 @@
 """Textures of coarse meshes from detailed ones."""
 
 import json
+import pickle
 import struct
 import zlib
 from types import SimpleNamespace
@@ -100,6 +101,8 @@ def test_files(tmp_path, square):
 class Picture:
     """As of Pillow."""
 
+    mode = "P"
+
     def __init__(self, pixels):
         self.pixels = pixels
 
@@ -117,6 +120,176 @@ def test_meshes_of_trimesh_bring_their_looks(square):
     for material in (SimpleNamespace(image=Picture(picture)), SimpleNamespace(baseColorTexture=Picture(picture))):
         form.visual = SimpleNamespace(kind="texture", uv=mesh.vertices[:, :2], material=material)
         np.testing.assert_array_equal(sdm.bake(form, mesh, resolution=256).image("base_color"), picture)
+
+
+def test_materials_of_trimesh(square):
+    """Factors, alpha and several materials, in the form that trimesh has them."""
+    mesh, picture = square
+    form = SimpleNamespace(vertices=mesh.vertices, faces=mesh.faces)
+    glass = SimpleNamespace(baseColorTexture=Picture(picture), baseColorFactor=np.array([255, 51, 255, 128], np.uint8),
+                            alphaMode="BLEND", metallicFactor=0.0, roughnessFactor=0.25, emissiveFactor=[1, 0.5, 0])  # fmt: skip
+    plain = SimpleNamespace(image=None, diffuse=np.array([188, 0, 255, 255], np.uint8))
+    form.visual = SimpleNamespace(kind="texture", uv=mesh.vertices[:, :2], material=SimpleNamespace(materials=[glass, plain]),
+                                  face_materials=np.array([0, 1]))  # fmt: skip
+    baked = sdm.bake(form, mesh, resolution=256)
+    assert baked.channels == ["base_color", "metallic_roughness", "emissive"] and baked.material["alpha_mode"] == "BLEND"
+    color = baked["base_color"]
+    assert color.shape == (256, 256, 4)
+    lower, upper = color[192, 240], color[64, 16]  # of faces 0 and 1
+    expected = linear(picture[192, 240] / 255) * [1, 0.2, 1]
+    np.testing.assert_allclose(lower, [*expected, 128 / 255], atol=1e-3)
+    np.testing.assert_allclose(upper, [linear(188 / 255), 0, 1, 1], atol=1e-6)
+    np.testing.assert_allclose(baked["metallic_roughness"][192, 240], [0.25, 0], atol=1e-6)
+    np.testing.assert_allclose(baked["emissive"][192, 240], [1, 0.5, 0], atol=1e-6)
+
+
+def test_colors_of_faces_and_alpha(square):
+    mesh, _ = square
+    colors = np.array([[255, 0, 0, 255], [0, 255, 0, 51]], np.uint8)
+    form = SimpleNamespace(vertices=mesh.vertices, faces=mesh.faces, visual=SimpleNamespace(kind="face", face_colors=colors))
+    for baked in (sdm.bake(form, mesh, resolution=64), sdm.bake(mesh, mesh, face_colors=colors, resolution=64)):
+        image = baked.image("base_color")
+        assert image[48, 60].tolist() == [255, 0, 0, 255] and image[16, 4].tolist() == [0, 255, 0, 51]
+        assert baked.material["alpha_mode"] == "BLEND"
+    opaque = sdm.bake(mesh, mesh, face_colors=colors[:, :3], resolution=64)
+    assert opaque.image("base_color").shape == (64, 64, 3) and opaque.material["alpha_mode"] == "OPAQUE"
+
+
+def test_scenes_of_trimesh_bring_their_looks(square):
+    """Two squares beside each other, one with a picture, one with colours, which a mirror turns."""
+    mesh, picture = square
+    textured = SimpleNamespace(vertices=mesh.vertices, faces=mesh.faces)
+    material = SimpleNamespace(image=Picture(picture), diffuse=[255, 255, 255, 255])
+    textured.visual = SimpleNamespace(kind="texture", uv=mesh.vertices[:, :2], material=material)
+    colored = SimpleNamespace(vertices=mesh.vertices, faces=mesh.faces)
+    colored.visual = SimpleNamespace(kind="vertex", vertex_colors=np.tile(np.array([9, 99, 199, 255], np.uint8), (4, 1)))
+    places = {"a": (np.eye(4), "textured"), "b": (np.diag([-1.0, 1, 1, 1]), "colored")}
+    graph = SimpleNamespace(nodes_geometry=["a", "b"], get=places.get)
+    scene = SimpleNamespace(graph=graph, geometry={"textured": textured, "colored": colored})
+    wide = mesh.vertices * [2, 1, 1] - [1, 0, 0]
+    low = SimpleNamespace(vertices=wide, triangles=mesh.faces, triangle_uvs=mesh.corner_uvs.reshape(-1, 2))
+    image = sdm.bake(scene, low, resolution=512).image("base_color")
+    assert (image[:, :254] == [9, 99, 199]).all()
+    # At its borders the picture repeats.
+    np.testing.assert_allclose(image[4:508:2, 258:510].astype(int), picture[2:254, 2:254].astype(int), atol=2)
+
+
+class Data(dict):
+    """As the arrays of points or cells of pyvista."""
+
+    active_scalars_name = None
+
+
+def test_meshes_of_pyvista_bring_their_colors(square):
+    mesh, _ = square
+    faces = np.insert(mesh.faces, 0, 3, axis=1).ravel()
+    colors = np.tile(np.array([10, 200, 30], np.uint8), (4, 1))
+    other = np.tile(np.array([1, 2, 3], np.uint8), (4, 1))
+    for points, cells, active, expected in (
+        ({"RGB": colors, "normals": other}, {}, None, [10, 200, 30]),
+        ({"paint": other, "RGB": colors}, {}, "paint", [1, 2, 3]),
+        ({"Normals": other.astype(float)}, {"colors": colors[:2]}, None, [10, 200, 30]),
+    ):
+        form = SimpleNamespace(points=mesh.vertices, faces=faces, point_data=Data(points), cell_data=Data(cells))
+        form.point_data.active_scalars_name = active
+        assert (sdm.bake(form, mesh, resolution=64).image("base_color") == expected).all()
+    form = SimpleNamespace(points=mesh.vertices, faces=faces, point_data=Data(), cell_data=Data(temperature=np.zeros(2)))
+    with pytest.raises(sdm.Error, match="neither materials nor colours"):
+        sdm.bake(form, mesh, resolution=64)
+
+
+def test_trimesh_there_and_back(square):
+    trimesh = pytest.importorskip("trimesh")
+    image_of = pytest.importorskip("PIL.Image").fromarray
+    mesh, picture = square
+    material = trimesh.visual.material.PBRMaterial(
+        baseColorTexture=image_of(picture), metallicFactor=0.25, roughnessFactor=0.5, emissiveFactor=[0, 0, 0]
+    )
+    visual = trimesh.visual.TextureVisuals(uv=mesh.vertices[:, :2], material=material)
+    high = trimesh.Trimesh(mesh.vertices, mesh.faces, visual=visual, process=False)
+    for given in (high, trimesh.Scene([high])):
+        baked = sdm.bake(given, mesh, resolution=256)
+        np.testing.assert_array_equal(baked.image("base_color"), picture)
+        low = baked.to_trimesh()
+        np.testing.assert_allclose(low.triangles, mesh.vertices[mesh.faces])
+        np.testing.assert_array_equal(np.asarray(low.visual.material.baseColorTexture), picture)
+        assert low.visual.material.metallicFactor == 0.25 and low.visual.material.roughnessFactor == 0.5
+        np.testing.assert_array_equal(sdm.bake(low, mesh, resolution=256).image("base_color"), picture)
+    box = trimesh.creation.box()
+    box.visual.face_colors = np.tile([10, 20, 30, 255], (12, 1))
+    assert (sdm.bake(box, box, resolution=64).image("base_color") == [10, 20, 30]).all()
+    box.visual = trimesh.visual.ColorVisuals(box, vertex_colors=np.tile([30, 20, 10, 255], (8, 1)))
+    baked = sdm.bake(box, box, resolution=64)
+    assert (baked.image("base_color") == [30, 20, 10]).all()
+    assert baked.to_trimesh().area == pytest.approx(6)  # on an atlas: vertices are divided
+    assert len(baked.to_trimesh().export(file_type="glb")) > 1000
+
+
+def test_pyvista_there_and_back(square):
+    pyvista = pytest.importorskip("pyvista")
+    mesh, picture = square
+    high = pyvista.PolyData(mesh.vertices, np.insert(mesh.faces, 0, 3, axis=1).ravel())
+    high.active_texture_coordinates = mesh.vertices[:, :2]
+    baked = sdm.bake(high, mesh, texture=pyvista.Texture(picture), resolution=256)
+    np.testing.assert_array_equal(baked.image("base_color"), picture)
+    low, texture = baked.to_pyvista()
+    np.testing.assert_array_equal(sdm.bake(low, mesh, texture=texture, resolution=256).image("base_color"), picture)
+    cube = pyvista.Cube()  # of squares
+    cube.cell_data["RGB"] = np.tile(np.array([10, 20, 30], np.uint8), (6, 1))
+    assert (sdm.bake(cube, cube, resolution=64).image("base_color") == [10, 20, 30]).all()
+    ball = pyvista.Sphere()
+    ball.point_data["RGBA"] = np.tile(np.array([10, 20, 30, 255], np.uint8), (ball.n_points, 1))
+    assert (sdm.bake(ball, ball, resolution=64).image("base_color") == [10, 20, 30]).all()
+
+
+def test_matching():
+    """Two plates, 0.02 apart, back to back, in two colours; the coarse one, off by more than that."""
+    x, y = np.meshgrid(np.linspace(-1, 1, 9), np.linspace(-1, 1, 9))
+    grid = np.arange(81).reshape(9, 9)
+    a, b, c, d = (g.ravel() for g in (grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]))
+    up = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+    plate = np.stack([x.ravel(), y.ravel(), np.zeros(81)], axis=1)
+    high = (np.concatenate([plate + [0, 0, 0.01], plate - [0, 0, 0.01]]), np.concatenate([up, up[:, ::-1] + 81]))
+    colors = np.repeat(np.array([[255, 0, 0], [0, 0, 255]], np.uint8), 81, axis=0)
+    low = (plate - [0, 0, 0.05], up)  # below both, facing up
+
+    def share_of_red(**options):
+        baked = sdm.bake(high, low, vertex_colors=colors, resolution=64, **options)
+        kinds = set(np.unique(baked.kind[baked.matched == 1]))
+        return (baked.image("base_color")[baked.matched == 1, 0] == 255).mean(), kinds
+
+    assert share_of_red() == (0, {sdm.MatchKind.CLOSEST}) == share_of_red(match="closest")
+    assert share_of_red(facing=60) == (1, {sdm.MatchKind.FACING}) == share_of_red(match="facing")
+    assert share_of_red(match="ray") == (1, {sdm.MatchKind.RAY}) == share_of_red(match="ray", cage=0.1, facing=45)
+    assert share_of_red(match="ray", cage=0.03) == (1, {sdm.MatchKind.FACING})
+    for options, fault in (({"match": "nearest"}, "'closest', 'facing' or 'ray', not 'nearest'"), ({"cage": 1}, "cage applies to"),
+                           ({"match": "closest", "facing": 90}, "facing does not apply"), ({"match": "ray", "cage": -1}, "cage"),
+                           ({"channels": []}, "channels is empty")):  # fmt: skip
+        with pytest.raises(sdm.Error, match=fault):
+            share_of_red(**options)
+
+
+@pytest.mark.skipif(not sdm.has_tangents(), reason="without MikkTSpace")
+def test_normals(tmp_path):
+    high, low = meshes.sphere(steps=5), meshes.sphere(steps=2)
+    baked = sdm.bake(high, low, channels=["normal"], match="ray", resolution=256)
+    assert baked.channels == ["normal"] and baked.notes == ["low: it has no UVs, so it got an atlas of charts"]
+    matches = sdm.match(sdm.Mesh(low), sdm.Mesh(high), method="ray", resolution=256)
+    expected = matches.tangent_normals(of="smooth", normals=40.0, fill=False)
+    known = np.isfinite(expected[..., 0])
+    np.testing.assert_allclose(baked["normal"][known], expected[known], atol=1e-6)
+    np.testing.assert_allclose(baked.image("normal")[known] / 255, (expected[known] + 1) / 2, atol=0.51 / 255)
+    baked.save(tmp_path / "ball.glb")
+    data = (tmp_path / "ball.glb").read_bytes()
+    model = json.loads(data[20 : 20 + struct.unpack("<I", data[12:16])[0]])
+    again = pickle.loads(pickle.dumps(baked))
+    np.testing.assert_array_equal(again["normal"], baked["normal"])
+    np.testing.assert_array_equal(again.kind, baked.kind)
+    again.save(tmp_path / "again.glb")
+    assert (tmp_path / "again.glb").read_bytes() == data
+    assert "TANGENT" in model["meshes"][0]["primitives"][0]["attributes"] and "normalTexture" in model["materials"][0]
+    colored = sdm.bake(high, low, vertex_colors=np.full((len(high[0]), 3), 0.5), channels=["normal", "base_color"], resolution=64)
+    assert colored.channels == ["base_color", "normal"]
 
 
 def test_what_cannot_be_baked_is_an_error(tmp_path, square):

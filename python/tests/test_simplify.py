@@ -30,6 +30,24 @@ def test_soups_are_welded_and_the_input_is_kept():
     assert len(same.faces) == len(faces) and zero.upper == 0
 
 
+def test_levels_of_detail():
+    given = sdm.Mesh(meshes.sphere(steps=4))
+    one, deviation = sdm.simplify(given, triangles=200)
+    levels = sdm.simplify(given, triangles=200, lods=2)
+    assert len(levels) == 3 and levels[0][1].upper == deviation.upper
+    np.testing.assert_array_equal(levels[0][0].faces, one.faces)
+    for number, (mesh, bounds) in enumerate(levels):
+        assert 0 < len(mesh.faces) <= 200 // 2**number
+        truth = sdm.hausdorff(given, mesh)
+        assert truth.lower <= bounds.upper and bounds.lower <= truth.upper
+    limit = levels[0][1].upper
+    for number, (mesh, bounds) in enumerate(sdm.simplify(given, max_deviation=limit, lods=2)):
+        assert bounds.upper <= limit * 2**number
+    assert len(sdm.simplify(given, triangles=200, lods=0)) == 1
+    with pytest.raises(sdm.Error, match="lods"):
+        sdm.simplify(given, triangles=200, lods=-1)
+
+
 def test_result_is_saved(tmp_path):
     coarse, _ = sdm.simplify(meshes.sphere(), triangles=100)
     for name in ("low.ply", "low.obj", "low.glb", "low.stl"):
