@@ -54,3 +54,24 @@ def test_pile():
     lines = []
     energy, deepest = example.main(rings=30, log=lines.append)
     assert energy < 1e-3 and deepest < example.TUBE / 6, lines
+
+
+def test_textured_asset(tmp_path):
+    example = load("textured_asset")
+    coarse, deviation, baked = example.main(tmp_path / "asset.glb", triangles=1500, resolution=256)
+    vertices, faces, colors = example.shape()
+    sites = sdm.Sites(vertices, faces)
+    assert sites.closed and sites.orientable and len(faces) == 96_000
+    assert len(coarse.faces) <= 1500 and 0 < deviation.upper < 0.1
+    assert baked.matched.any() and "base_color" in baked.channels
+    # The model has the colour of the shape at the middle of its faces.
+    corners = coarse.vertices[coarse.faces].mean(axis=1)
+    uv = baked.corner_uvs.mean(axis=1) * 256
+    texels = baked.image("base_color")[255 - uv[:, 1].astype(int), uv[:, 0].astype(int)]
+    found = sites.closest_points(corners)
+    expected = (found.barycentric[:, :, None] * colors[faces[found.face]]).sum(axis=1)
+    error = np.abs(texels - expected)
+    assert np.mean(error[:, 1] < 12) > 0.98 and error[:, 0].mean() < 35  # the grooves are a few texels wide
+    assert (texels[:, 2] == 76).all()
+    model = sdm.bake(tmp_path / "asset.glb", coarse, resolution=64)  # which is read again
+    assert model.image("base_color").std() > 20
