@@ -27,6 +27,7 @@
 #include <sdm/hausdorff.h>
 #include <sdm/islands.h>
 #include <sdm/map.h>
+#include <sdm/map_samples.h>
 #include <sdm/match.h>
 #include <sdm/material.h>
 #include <sdm/mesh.h>

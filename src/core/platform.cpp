@@ -2,6 +2,12 @@
 
 #include <limits>
 
+#ifdef __wasm__
+#include <unistd.h>
+#else
+#include <random>
+#endif
+
 #ifdef __linux__
 #include <sys/resource.h>
 #include <unistd.h>
@@ -9,8 +15,6 @@
 #include <algorithm>
 #include <fstream>
 #include <string>
-#elif !defined(__wasm__)
-#include <random>
 #endif
 
 namespace sdm::core {
@@ -76,15 +80,22 @@ std::size_t available_memory() {
   return std::numeric_limits<std::size_t>::max();
 }
 
-// 64 random bits, drawn once.
 std::uint64_t process_number() {
-  static const std::uint64_t number = [] {
-    std::random_device random;
-    return std::uint64_t{random()} << 32 | random();
-  }();
+  static const std::uint64_t number = random_number();
   return number;
 }
 
 #endif
+
+std::uint64_t random_number() {
+#ifdef __wasm__
+  std::uint64_t number = 0;
+  static_cast<void>(getentropy(&number, sizeof number));  // does not fail for so few bytes
+  return number;
+#else
+  std::random_device random;
+  return std::uint64_t{random()} << 32 | random();
+#endif
+}
 
 }  // namespace sdm::core

@@ -13,6 +13,9 @@ namespace sdm::core {
 /// A number that no other process on this machine has at the same time.
 [[nodiscard]] std::uint64_t process_number();
 
+/// A number that nobody can foresee, from the system.
+[[nodiscard]] std::uint64_t random_number();
+
 }  // namespace sdm::core
 
 namespace sdm {

@@ -29,6 +29,7 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
   const inside::InsideTest is_inside(internals(sites), sign.method,
                                      engine_accuracy(engine->info(), surface.mesh(), sites.mesh()));
 
+  map::clear(map, surface);
   const map::MapWriter writer(map, surface);
   map.sign = sign;
   map.measured = {}, map.without_match = 0;

@@ -49,6 +49,7 @@ void compute_facing_map(const Surface& surface, const Sites& sites, const MapOpt
   map.sign = choose_sign(sites, options);
   map.measured = measured_distance(options);
   const bool is_signed = map.sign.method != SignMethod::none;
+  clear(map, surface);
   const MapWriter writer(map, surface);
   map.unmatched.assign(map.distance.size(), 0);
   SampleCounts counts;

@@ -21,9 +21,8 @@ void store_none(DistanceMap& map, std::size_t texel, std::size_t count) {
   std::fill_n(map.site_type.data() + texel, count, SiteType::none);
 }
 
-}  // namespace
-
-void clear(DistanceMap& map, const Surface& surface) {
+// Resizes the map; the values are unspecified.
+void resize(DistanceMap& map, const Surface& surface) {
   const std::span<const std::uint32_t> faces = surface.texel_faces();
   if (map.distance.capacity() < faces.size())
     require_memory(faces.size() * (sizeof(float) + sizeof(Vec3f) + sizeof(std::uint32_t) + sizeof(SiteType)),
@@ -34,9 +33,16 @@ void clear(DistanceMap& map, const Surface& surface) {
   map.vector.resize(faces.size());
   map.site.resize(faces.size());
   map.site_type.resize(faces.size());
+}
 
-  constexpr std::size_t kGrain = 1 << 16;
-  parallel_for(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+constexpr std::size_t kClearGrain = 1 << 16;
+
+}  // namespace
+
+void clear(DistanceMap& map, const Surface& surface) {
+  resize(map, surface);
+  const std::span<const std::uint32_t> faces = surface.texel_faces();
+  parallel_for(faces.size(), kClearGrain, [&](std::size_t begin, std::size_t end) {
     const auto last = faces.begin() + static_cast<std::ptrdiff_t>(end);
     for (auto owned = faces.begin() + static_cast<std::ptrdiff_t>(begin); owned != last;) {
       const auto free = std::find(owned, last, kNone);
@@ -46,8 +52,13 @@ void clear(DistanceMap& map, const Surface& surface) {
   });
 }
 
+void clear_all(DistanceMap& map, const Surface& surface) {
+  resize(map, surface);
+  parallel_for(map.distance.size(), kClearGrain,
+               [&](std::size_t begin, std::size_t end) { store_none(map, begin, end - begin); });
+}
+
 MapWriter::MapWriter(DistanceMap& map, const Surface& surface) : texels_(surface.sample_texels()), map_(map) {
-  clear(map, surface);
   distance_ = map.distance.data();
   vector_ = map.vector.data();
   site_ = map.site.data();

@@ -13,9 +13,12 @@ namespace sdm::map {
 /// all others are unspecified.
 void clear(DistanceMap& map, const Surface& surface);
 
+/// The same, but no texel has a value.
+void clear_all(DistanceMap& map, const Surface& surface);
+
 class MapWriter {
  public:
-  /// Clears the map. Both must outlive it.
+  /// The map has the size of the surface's atlas, by clear(). Both must outlive this.
   MapWriter(DistanceMap& map, const Surface& surface);
 
   /// Stores the closest points of the samples from `first` on; bit i of `inside` is set if the distance of

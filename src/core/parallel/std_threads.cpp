@@ -54,7 +54,8 @@ class Pool {
   void run(Job& job) {
     std::unique_lock lock(mutex_);
     jobs_.push_back(&job);
-    wake();  // does not throw
+    // The caller's job does not outlive this call: no exception leaves before its threads have.
+    wake();
     for (;;) {
       if (job.has_parts()) work_on(job, lock);
       if (job.threads == 0 && !job.has_parts()) break;
@@ -90,7 +91,7 @@ class Pool {
   [[nodiscard]] bool may_join() const { return busy_ + 1 < limit_now(); }
 
   /// Begins and ends with the lock held.
-  void work_on(Job& job, std::unique_lock<std::mutex>& lock) {
+  void work_on(Job& job, std::unique_lock<std::mutex>& lock) noexcept {
     ++job.threads;
     lock.unlock();
     std::exception_ptr error;
@@ -123,7 +124,7 @@ class Pool {
     }
   }
 
-  void wake() {
+  void wake() noexcept {
     try {
       for (; workers_ + 1 < limit_now(); ++workers_) std::thread([this] { wait_for_jobs(); }).detach();
     } catch (const std::exception&) {

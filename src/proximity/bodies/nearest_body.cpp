@@ -122,6 +122,7 @@ void map_nearest(std::span<const shape::PosedBody> bodies, std::size_t on, doubl
   const Surface& surface = bodies[on].body().surface();
   const Affine& pose = bodies[on].pose().map;
   const std::span<const std::uint32_t> texels = surface.sample_texels();
+  map::clear(nearest.map, surface);
   const map::MapWriter writer(nearest.map, surface);
   nearest.map.sign = signs_of_others(bodies, on);
   nearest.body.assign(surface.texel_faces().size(), kNone);

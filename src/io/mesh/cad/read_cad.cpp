@@ -18,7 +18,7 @@ namespace {
 using cad::CadFormat;
 using cad::CadShape;
 
-constexpr std::size_t kIgesLine = 80, kIgesSection = 72;  // characters; the column of the section's letter
+constexpr std::size_t kIgesSection = 72;  // the column of the section's letter
 constexpr double kMostAngle = std::numbers::pi / 2;
 
 PolygonMesh to_polygons(const CadShape& shape) {
@@ -95,18 +95,6 @@ PolygonMesh read(std::string_view bytes, const std::filesystem::path& file, CadF
 }
 
 }  // namespace
-
-bool is_step(std::string_view bytes) {
-  return bytes.substr(0, bytes.find_first_of(" ;\r\n")) == "ISO-10303-21";
-}
-
-bool is_iges(std::string_view bytes) {
-  if (bytes.size() <= kIgesLine || bytes[kIgesSection] != 'S') return false;
-  const std::string_view line = bytes.substr(0, kIgesLine), number = line.substr(kIgesSection + 1);
-  return line.find_first_of("\r\n") == std::string_view::npos &&
-         number.find_first_not_of(" 0") == number.size() - 1 && number.back() == '1' &&
-         (bytes[kIgesLine] == '\r' || bytes[kIgesLine] == '\n');
-}
 
 PolygonMesh read_step(std::string_view bytes, const std::filesystem::path& file,
                       const TessellationOptions& options) {

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <random>
 #include <string>
 
 #include "core/cancellation.h"
+#include "core/platform.h"
 #include "geometry/vec.h"
 #include "io/mesh/polygons/triangulate.h"
 
@@ -44,7 +44,7 @@ std::uint64_t mix(std::uint64_t h) {
 
 // Random, so that no file can be crafted to cause collisions in the hash table. Results do not depend on it.
 std::uint64_t hash_seed() {
-  static const std::uint64_t seed = std::uint64_t{std::random_device{}()} << 32 | std::random_device{}();
+  static const std::uint64_t seed = random_number();
   return seed;
 }
 

@@ -10,6 +10,7 @@
 #include "geometry/vec.h"
 #include "io/file/atomic_file.h"
 #include "io/image/pictures/color_scale.h"
+#include "io/page/report/compress_arrays.h"
 #include "io/page/report/embedded_page.h"
 #include "io/page/report/packed_arrays.h"
 #include "io/page/report/page_file.h"
@@ -121,6 +122,7 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
     page["verdicts"] = Json::array();
     for (const Verdict verdict : options.verdicts->of_frames) page["verdicts"].push_back(name_of(verdict));
   }
+  compress(arrays);
   put_page(out.stream(), kPlayerHtml.bytes, page, nullptr, arrays);
   out.commit();
 }

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "io/file/deflate.h"
 
 namespace sdm::io {
 namespace {
@@ -52,14 +51,15 @@ void PackedArrays::add(PackedArrays&& other) {
   std::ranges::move(other.arrays_, std::back_inserter(arrays_));
 }
 
-void PackedArrays::compress() {
+std::vector<std::vector<std::uint8_t>> PackedArrays::planes() const {
   std::vector<std::vector<std::uint8_t>> planes(kPlanes * arrays_.size());
   parallel_for(planes.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::vector<std::uint8_t> bytes = plane(arrays_[i / kPlanes].numbers, i % kPlanes);
-      if (!bytes.empty()) planes[i] = deflate_part(bytes, true);
-    }
+    for (std::size_t i = begin; i < end; ++i) planes[i] = plane(arrays_[i / kPlanes].numbers, i % kPlanes);
   });
+  return planes;
+}
+
+void PackedArrays::set_compressed(std::span<const std::vector<std::uint8_t>> planes) {
   std::vector<std::uint8_t> all;
   for (std::size_t a = 0; a < arrays_.size(); ++a) {
     nlohmann::ordered_json& entry = index_[arrays_[a].name];

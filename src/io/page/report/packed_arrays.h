@@ -30,12 +30,14 @@ class PackedArrays {
   /// Adds the arrays of another object.
   void add(PackedArrays&& other);
 
-  /// Compresses all planes. Cost: linear, all cores.
-  void compress();
+  /// The planes of all arrays, four each; a plane of zeros is empty. Cost: linear, all cores.
+  [[nodiscard]] std::vector<std::vector<std::uint8_t>> planes() const;
+  /// Takes planes() with each that is not empty compressed, as a stream of deflate (compress_arrays.h).
+  void set_compressed(std::span<const std::vector<std::uint8_t>> planes);
   /// The `count` of each array and the lengths of its four compressed planes, `bytes`, 0 for a plane of
-  /// zeros; planes follow each other in the order of the arrays. After compress().
+  /// zeros; planes follow each other in the order of the arrays. After set_compressed().
   [[nodiscard]] const nlohmann::ordered_json& index() const { return index_; }
-  /// The planes as text. After compress().
+  /// The planes as text. After set_compressed().
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:

@@ -52,8 +52,7 @@ Json common_json(UpAxis up) {
 }
 
 void put_page(std::ostream& out, std::string_view html, Json& page, const std::string* report,
-              PackedArrays& arrays) {
-  arrays.compress();
+              const PackedArrays& arrays) {
   page["arrays"] = arrays.index();
   const std::size_t middle = html.find(kDataPlace);
   out << html.substr(0, middle);

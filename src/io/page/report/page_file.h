@@ -19,9 +19,9 @@ namespace sdm::io {
 /// What all pages have: version, axis and colours.
 [[nodiscard]] nlohmann::ordered_json common_json(UpAxis up);
 
-/// Compresses the arrays, adds their index to `page`, and writes `html` with these and, unless null, the JSON
-/// text of a report in the place that it has for data.
+/// Adds the index of the arrays, which are compressed, to `page`, and writes `html` with these and, unless
+/// null, the JSON text of a report in the place that it has for data.
 void put_page(std::ostream& out, std::string_view html, nlohmann::ordered_json& page,
-              const std::string* report, PackedArrays& arrays);
+              const std::string* report, const PackedArrays& arrays);
 
 }  // namespace sdm::io

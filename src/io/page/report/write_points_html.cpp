@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "geometry/vec.h"
 #include "io/file/atomic_file.h"
+#include "io/page/report/compress_arrays.h"
 #include "io/page/report/embedded_page.h"
 #include "io/page/report/largest_by_cell.h"
 #include "io/page/report/page_file.h"
@@ -177,6 +178,7 @@ void write_points_html(const std::filesystem::path& file, const std::filesystem:
   if (options.other)
     page["ghost"] = add_ghost(arrays, *options.other, options.coverage, options.triangles_of_other);
   page["area"] = add_area(arrays, contents.by_value);
+  compress(arrays);
   put_page(out.stream(), kPageHtml.bytes, page, &report, arrays);
   out.commit();
 } catch (const std::bad_alloc&) {

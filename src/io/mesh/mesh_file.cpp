@@ -1,0 +1,71 @@
+#include "io/mesh/mesh_file.h"
+
+#include <algorithm>
+#include <array>
+
+#include "io/mesh/mesh_attributes.h"
+
+namespace sdm::io {
+namespace {
+
+// Adds the names of a kind, unless the file has none.
+void add_names(const char* kind, const PolygonNames& polygons,
+               const std::vector<std::uint32_t>& triangle_ends, std::vector<FaceNames>& all) {
+  if (polygons.names().empty()) return;
+  FaceNames result{.kind = kind, .names = polygons.names(), .of_face = {}};
+  const std::size_t triangles = triangle_ends.empty() ? 0 : triangle_ends.back();
+  const auto first_triangle = [&](std::size_t polygon) {
+    return polygon == 0 ? 0 : triangle_ends[std::min(polygon, triangle_ends.size()) - 1];
+  };
+  result.of_face.assign(triangles, kNone);
+  const auto& runs = polygons.runs();
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const std::size_t end = i + 1 < runs.size() ? first_triangle(runs[i + 1].first_polygon) : triangles;
+    for (std::size_t f = first_triangle(runs[i].first_polygon); f < end; ++f)
+      result.of_face[f] = runs[i].name;
+  }
+  all.push_back(std::move(result));
+}
+
+// Of a file with textures: whether all faces show one place of them.
+bool has_one_uv(const Mesh& mesh) {
+  return !mesh.corner_uvs.empty() &&
+         std::ranges::all_of(mesh.corner_uvs, [&](const std::array<Vec2, 3>& uvs) {
+           return std::ranges::all_of(uvs, [&](const Vec2& uv) { return uv == mesh.corner_uvs[0][0]; });
+         });
+}
+
+}  // namespace
+
+MeshFile to_mesh_file(PolygonMesh polygons, const MeshFileOptions& options) {
+  std::vector<std::uint32_t> renumbered, triangle_ends;
+  std::vector<Triangle> places;
+  MeshFile result{
+      .mesh = to_mesh(polygons, renumbered, triangle_ends, options.attributes ? &places : nullptr),
+      .names = {},
+      .notes = std::move(polygons.notes)};
+  if (std::string fault = uv_fault(polygons); !fault.empty() && !options.attributes)
+    result.notes.push_back(std::move(fault));
+  validate(result.mesh);
+  add_names("object", polygons.objects, triangle_ends, result.names);
+  add_names("group", polygons.groups, triangle_ends, result.names);
+  add_names("material", polygons.materials, triangle_ends, result.names);
+  add_names("face", polygons.faces, triangle_ends, result.names);
+  add_names("color", polygons.colors, triangle_ends, result.names);
+  if (options.attributes) result.attributes = to_attributes(polygons, places, triangle_ends, result.notes);
+  if (!polygons.surfaces.list.empty())
+    result.face_materials = materials_of_triangles(polygons.surfaces, triangle_ends);
+  result.materials = std::move(polygons.surfaces.list);
+  result.textures = std::move(polygons.surfaces.textures);
+  if (!result.textures.empty() && has_one_uv(result.mesh))
+    result.notes.push_back("all texture coordinates are the same: each texture has one colour");
+  result.tessellation = std::move(polygons.tessellation);
+  if (options.vertices)
+    result.vertices = FileVertices{.positions = std::move(polygons.positions),
+                                   .mesh_vertex = std::move(renumbered),
+                                   .corners = std::move(polygons.corners),
+                                   .ends = std::move(polygons.ends)};
+  return result;
+}
+
+}  // namespace sdm::io

@@ -1,0 +1,69 @@
+#include <sdm/map_samples.h>
+
+#include <atomic>
+#include <new>
+#include <string>
+
+#include "core/memory.h"
+#include "map/engine_of.h"
+#include "map/map_writer.h"
+#include "query/closest/blocks.h"
+#include "query/inside/inside.h"
+#include "surface/surface_data.h"
+
+namespace sdm {
+namespace {
+
+void check_part(const Surface& surface, const MapOptions& options, const SampleRange& range,
+                const DistanceMap& map) {
+  if (options.facing) throw Error("a map of what faces the samples is computed as a whole, not in parts");
+  if (map.distance.size() != surface.texel_faces().size() || map.resolution != surface.resolution())
+    throw Error("the map belongs to another surface");
+  const std::size_t samples = surface.sample_texels().size(), grain = sample_range_grain(surface);
+  const std::size_t end = range.first + range.count;
+  if (range.first > samples || range.count > samples - range.first || range.first % grain != 0 ||
+      (end % grain != 0 && end != samples))
+    throw Error("the range of samples from " + std::to_string(range.first) + " to " + std::to_string(end) +
+                " must begin and end at multiples of " + std::to_string(grain) + ", or at the last of the " +
+                std::to_string(samples) + " samples");
+}
+
+}  // namespace
+
+std::size_t sample_range_grain(const Surface& surface) {
+  return closest::block_size(surface.sample_texels().size());
+}
+
+DistanceMap empty_map(const Surface& surface) try {
+  DistanceMap map;
+  map::clear_all(map, surface);
+  return map;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a map");
+}
+
+void compute_samples(const Surface& surface, const Sites& sites, const MapOptions& options,
+                     const SampleRange& range, DistanceMap& map) try {
+  const std::shared_ptr<const Engine> engine = map::engine_of(options);
+  check_part(surface, options, range, map);
+  const SignUsed sign = choose_sign(sites, options.sign);
+  const inside::InsideTest is_inside(internals(sites), sign.method,
+                                     engine_accuracy(engine->info(), surface.mesh(), sites.mesh()));
+  const map::MapWriter writer(map, surface);
+  map.sign = sign;
+  map.measured = {}, map.without_match = 0;
+  std::atomic<std::size_t> beyond = 0;
+  closest::for_each_sample_block(
+      surface, range, options.progress, "map", [&](std::size_t begin, std::span<const Vec3> points) {
+        engine->closest_points(
+            sites, points, options.max_distance, [&](std::size_t first, const sites::ClosestPacket& closest) {
+              const auto of_packet = points.subspan(first, closest.count);
+              beyond += writer.store(begin + first, closest, is_inside(of_packet, closest));
+            });
+      });
+  map.beyond_max_distance = beyond;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a map");
+}
+
+}  // namespace sdm
