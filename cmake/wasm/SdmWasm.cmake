@@ -8,7 +8,7 @@ add_library(hwy::hwy ALIAS hwy)
 # By links, as /usr/include has the C library of the system besides.
 set(headers ${PROJECT_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${headers})
-foreach(header boost eigen3/Eigen xxhash.h)
+foreach(header boost eigen3/Eigen fmt nlohmann xxhash.h)
   get_filename_component(name ${header} NAME)
   if(NOT EXISTS /usr/include/${header})
     message(FATAL_ERROR "/usr/include/${header} was not found: run ./setup")

@@ -1,12 +1,15 @@
 // Surfaces, sites, and the maps of a surface to sites.
+#include <sdm/error.h>
 #include <sdm/hausdorff.h>
 #include <sdm/map.h>
+#include <sdm/map_samples.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
 #include <sdm/surface.h>
 #include <sdm/transfer.h>
 
 #include <cmath>
+#include <type_traits>
 
 #include "module/arguments.h"
 #include "module/lengths.h"
@@ -17,19 +20,27 @@ namespace sdm::js {
 SDM_EXPORT(sdm_new_surface)
 Result* new_surface(const double* positions, std::uint32_t vertices, const std::uint32_t* indices,
                     std::uint32_t triangles, const double* corner_uvs, std::uint32_t kind,
-                    std::uint32_t resolution, std::uint32_t gutter) {
+                    std::uint32_t resolution, std::uint32_t gutter, const std::uint8_t* stored_atlas,
+                    std::uint32_t stored_bytes) {
   return guarded([&](Result& result) {
     Mesh made = mesh(positions, vertices, indices, triangles);
     if (corner_uvs) {
       const std::span uvs(reinterpret_cast<const std::array<Vec2, 3>*>(corner_uvs), triangles);
       made.corner_uvs.assign(uvs.begin(), uvs.end());
     }
-    result.add_object(
-        std::make_unique<Surface>(std::move(made), AtlasOptions{.kind = static_cast<AtlasKind>(kind),
-                                                                .resolution = resolution,
-                                                                .gutter = gutter,
-                                                                .progress = host_progress()}));
+    const AtlasOptions options{.kind = static_cast<AtlasKind>(kind),
+                               .resolution = resolution,
+                               .gutter = gutter,
+                               .progress = host_progress()};
+    result.add_object(stored_atlas ? std::make_unique<Surface>(std::move(made), options,
+                                                               std::span(stored_atlas, stored_bytes))
+                                   : std::make_unique<Surface>(std::move(made), options));
   });
+}
+
+/// The atlas as bytes, for sdm_new_surface() in another module.
+SDM_EXPORT(sdm_stored_atlas) Result* stored_atlas(const Surface* surface) {
+  return guarded([&](Result& result) { result.add(surface->stored_atlas()); });
 }
 
 SDM_EXPORT(sdm_free_surface) void free_surface(Surface* surface) {
@@ -63,6 +74,13 @@ SDM_EXPORT(sdm_surface_atlas) Result* surface_atlas(const Surface* surface) {
   });
 }
 
+/// The number of samples, and that of which ranges begin and end at multiples.
+SDM_EXPORT(sdm_sample_counts) Result* sample_counts(const Surface* surface) {
+  return guarded([&](Result& result) {
+    result.add_numbers(surface->sample_texels().size(), sample_range_grain(*surface));
+  });
+}
+
 SDM_EXPORT(sdm_surface_samples) Result* surface_samples(const Surface* surface) {
   return guarded([&](Result& result) {
     const auto texels = surface->sample_texels();
@@ -91,19 +109,66 @@ Result* refit_sites(Sites* sites, const double* positions, std::uint32_t vertice
   return guarded([&](Result&) { sites->refit(points(positions, vertices)); });
 }
 
-SDM_EXPORT(sdm_new_map)
-Result* new_map(const Surface* surface, const Sites* sites, std::uint32_t sign, double max_distance,
-                double facing) {
+namespace {
+
+MapOptions map_options(std::uint32_t sign, double max_distance, double facing) {
+  MapOptions options{
+      .sign = static_cast<SignMethod>(sign), .max_distance = max_distance, .progress = host_progress()};
+  if (!std::isnan(facing)) options.facing = facing;
+  return options;
+}
+
+void add_sign(Result& result, const DistanceMap& map) {
+  result.add_numbers(static_cast<int>(map.sign.method));
+  result.add_text(map.sign.reason);
+}
+
+}  // namespace
+
+/// A map without values.
+SDM_EXPORT(sdm_new_map) Result* new_map(const Surface* surface) {
   return guarded([&](Result& result) {
-    MapOptions options{
-        .sign = static_cast<SignMethod>(sign), .max_distance = max_distance, .progress = host_progress()};
-    if (!std::isnan(facing)) options.facing = facing;
-    auto map = std::make_unique<DistanceMap>(compute_map(*surface, *sites, options));
-    const SignUsed sign_used = map->sign;
+    auto map = std::make_unique<DistanceMap>(empty_map(*surface));
     const double resolution = map->resolution, rows = map->rows();
     result.add_object(std::move(map));
-    result.add_numbers(resolution, rows, static_cast<int>(sign_used.method));
-    result.add_text(sign_used.reason);
+    result.add_numbers(resolution, rows);
+  });
+}
+
+SDM_EXPORT(sdm_compute_map)
+Result* compute_whole_map(DistanceMap* map, const Surface* surface, const Sites* sites, std::uint32_t sign,
+                          double max_distance, double facing) {
+  return guarded([&](Result& result) {
+    compute_map(*surface, *sites, map_options(sign, max_distance, facing), *map);
+    add_sign(result, *map);
+  });
+}
+
+SDM_EXPORT(sdm_compute_samples)
+Result* compute_range(DistanceMap* map, const Surface* surface, const Sites* sites, std::uint32_t sign,
+                      double max_distance, std::uint32_t first, std::uint32_t count) {
+  return guarded([&](Result& result) {
+    compute_samples(*surface, *sites, map_options(sign, max_distance, NAN), {first, count}, *map);
+    add_sign(result, *map);
+  });
+}
+
+/// The values of a range of samples, in their order: distances, vectors, sites, types of sites.
+SDM_EXPORT(sdm_map_samples)
+Result* map_samples(const DistanceMap* map, const Surface* surface, std::uint32_t first,
+                    std::uint32_t count) {
+  return guarded([&](Result& result) {
+    const auto all = surface->sample_texels();
+    if (map->distance.size() != surface->texel_faces().size() || first > all.size() ||
+        count > all.size() - first)
+      throw Error("the samples are not of this map");
+    const auto texels = all.subspan(first, count);
+    const auto add = [&](const auto& values) {
+      std::remove_cvref_t<decltype(values)> picked(texels.size());
+      for (std::size_t i = 0; i < texels.size(); ++i) picked[i] = values[texels[i]];
+      result.add(std::move(picked));
+    };
+    add(map->distance), add(map->vector), add(map->site), add(map->site_type);
   });
 }
 

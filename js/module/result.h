@@ -1,10 +1,14 @@
 // Results of the exported functions, as JavaScript reads them.
 #pragma once
 
+#include <sdm/cancellation.h>
+
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <new>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,7 +33,8 @@ class Result {
   Error error = Error::none;
   View message;  ///< of an error, in UTF-8
   std::uint32_t count = 0;
-  View arrays[12];
+  static constexpr std::size_t kMostArrays = 12;
+  View arrays[kMostArrays];
 
   template <class T>
   void add(std::vector<T> values) {
@@ -43,15 +48,25 @@ class Result {
     add(std::vector<double>{static_cast<double>(numbers)...});
   }
   void add_text(std::string_view text) { add(std::vector<char>(text.begin(), text.end())); }
-  /// An object that JavaScript keeps by its address, until it calls the function that frees it.
+  /// An object that JavaScript keeps by its address, until it calls the function that frees it. Of this
+  /// result until hand_over(), so that it is freed if what follows fails.
   template <class T>
   void add_object(std::unique_ptr<T> object) {
-    add_numbers(reinterpret_cast<std::uintptr_t>(object.release()));
+    add_numbers(reinterpret_cast<std::uintptr_t>(object.get()));
+    objects_.emplace_back(nullptr, [](void* of) { delete static_cast<T*>(of); });
+    objects_.back().reset(object.release());
+  }
+  void hand_over() noexcept {
+    for (auto& object : objects_) static_cast<void>(object.release());
   }
   void fail(Error kind, std::string text) {
-    error = kind;
     text_ = std::move(text);
-    message = {text_.data(), static_cast<std::uint32_t>(text_.size())};
+    fail_with_literal(kind, text_);
+  }
+  /// Takes no memory: the text has to stay.
+  void fail_with_literal(Error kind, std::string_view text) noexcept {
+    error = kind;
+    message = {text.data(), static_cast<std::uint32_t>(text.size())};
   }
 
  private:
@@ -59,17 +74,25 @@ class Result {
     arrays[count++] = {bytes.data(), static_cast<std::uint32_t>(bytes.size())};
   }
   std::vector<std::shared_ptr<void>> kept_;
+  std::vector<std::unique_ptr<void, void (*)(void*)>> objects_;
   std::string text_;
 };
 
-void fail_with_current_exception(Result& result);
+void fail_with_current_exception(Result& result) noexcept;
+/// Of a call for whose own result there is no memory. It is not freed.
+[[nodiscard]] Result* result_without_memory() noexcept;
+/// What the present call obeys, see sdm_obey().
+[[nodiscard]] const std::atomic<bool>& cancel_flag() noexcept;
 
 /// Calls compute(result) and turns exceptions into errors.
 template <class Compute>
-Result* guarded(const Compute& compute) {
-  auto* result = new Result;
+Result* guarded(const Compute& compute) noexcept {
+  auto* result = new (std::nothrow) Result;
+  if (!result) return result_without_memory();
   try {
+    const CancelScope scope(cancel_flag());
     compute(*result);
+    result->hand_over();
   } catch (...) {
     fail_with_current_exception(*result);
   }

@@ -1,4 +1,4 @@
-// What the modules import from JavaScript (js/src/host.ts).
+// What the modules import from JavaScript (js/src/module.ts).
 #pragma once
 
 extern "C" {
@@ -11,8 +11,6 @@ SDM_IMPORT(threads) int sdm_host_threads();
 SDM_IMPORT(start_thread) int sdm_host_start_thread(void* argument);
 /// Milliseconds since some time.
 SDM_IMPORT(now) double sdm_host_now();
-/// The program cannot go on.
-[[noreturn]] SDM_IMPORT(abort) void sdm_host_abort(const char* message, int length);
 /// Whether the caller wants the call to go on, from a callback of progress.
 SDM_IMPORT(progress) int sdm_host_progress(const char* step, int length, double fraction);
 }

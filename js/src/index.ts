@@ -1,66 +1,102 @@
 // The package sdm: exact distances between triangle meshes.
-import { Module } from './module.js';
-import * as bound from './surface.js';
-import { type Indices, type Points } from './types.js';
+import { Sdm } from './library.js';
+import { Module, type ModuleFile, type ModuleFiles, type ModuleName, canShareMemory, mayWait } from './module.js';
+import { SdmPool } from './pool.js';
+import { SdmError } from './types.js';
+import { SdmWorker } from './remote.js';
 
 export * from './types.js';
+export type { Sdm } from './library.js';
+export type { FaceNames, MeshFile, ReadMeshOptions } from './mesh_file.js';
+export type { PoolMap, PoolMapOptions, PoolSites, PoolSurface, SdmPool } from './pool.js';
+export type { Colormap, MapSummary, ReportOptions, SummaryOptions } from './report.js';
 export type {
-  Atlas, ClosestPoints, Contacts, Hausdorff, MapOptions, MapStatistics, RayHits, SignedDistances, SurfaceOptions,
+  Atlas, ClosestPoints, Contacts, DistanceMap, Hausdorff, MapOptions, MapStatistics, MapValues, Pair, RayHits, SignedDistances, Sites,
+  Surface, SurfaceOptions,
 } from './surface.js';
+export type { CallOptions, SdmWorker, WorkerMap, WorkerPair, WorkerSites, WorkerSurface } from './remote.js';
 
 export interface StartOptions {
   /**
-   * The number of threads, where memory can be shared: in Node, and in pages that are isolated from other origins. By default
-   * as many as there are cores, at most 8.
+   * The number of threads, where memory can be shared: in Node, and in workers of pages that are isolated from other origins. By
+   * default as many as there are cores, at most 8.
    */
   threads?: number;
+  /** The module that also reads mesh files and writes reports (readMesh, summary, report), on one thread. */
+  full?: boolean;
   /** The modules, where they are not found beside this file. */
-  modules?: { single: BufferSource | WebAssembly.Module; threads?: BufferSource | WebAssembly.Module };
+  modules?: ModuleFiles;
+  /** The address of worker.js, the program of workers and threads. To be one of a Blob, it must not be revoked. */
+  script?: string | URL;
+  /** The text of report_page.html, for reports. */
+  reportPage?: string;
 }
 
-/** The library, with a memory of its own. Its calls are synchronous: in a page, call them in a worker. */
-export interface Sdm {
-  Surface: new (positions: Points, indices?: Indices, options?: bound.SurfaceOptions) => bound.Surface;
-  Sites: new (positions: Points, indices?: Indices) => bound.Sites;
-  Pair: new (...bodies: ConstructorParameters<typeof bound.Pair> extends [Module, ...infer Rest] ? Rest : never) => bound.Pair;
-  readonly threads: number;
-  /** What the module has taken from the system. */
-  readonly memoryBytes: number;
-  /** Ends its threads. Its objects cannot be used any more. */
-  stop(): void;
-}
+const urls = {
+  single: () => new URL('./sdm_single.wasm', import.meta.url),
+  threads: () => new URL('./sdm_threads.wasm', import.meta.url),
+  full: () => new URL('./sdm_full.wasm', import.meta.url),
+  worker: () => new URL('./worker.js', import.meta.url),
+  page: () => new URL('./report_page.html', import.meta.url),
+};
 
-async function load(name: string): Promise<BufferSource> {
-  const url = new URL(name, import.meta.url);
+async function load(url: URL): Promise<Response> {
   if (url.protocol === 'file:' && typeof process === 'object') {
     const { readFile } = await import('node:fs/promises');
-    return (await readFile(url)) as BufferSource;
+    return new Response(await readFile(url));
   }
   const response = await fetch(url);
-  if (!response.ok) throw new Error(`${url}: ${response.status}`);
-  return response.arrayBuffer();
+  if (!response.ok) throw new SdmError('internal', `${url} cannot be loaded: ${response.status} ${response.statusText}`);
+  return response;
 }
 
-/** Starts the library. */
-export async function start(options: StartOptions = {}): Promise<Sdm> {
+async function threadsOf(options: StartOptions): Promise<number> {
+  if (options.full || !canShareMemory()) return 1;
+  if (options.threads !== undefined) return Math.max(1, Math.floor(options.threads));
   const cores = typeof navigator === 'object' ? navigator.hardwareConcurrency : (await import('node:os')).availableParallelism();
-  const threads = options.threads ?? Math.min(8, cores);
-  const { canShareMemory } = await import('./module.js');
-  const name = threads > 1 && canShareMemory() ? 'threads' : 'single';
-  const files = options.modules ?? ({ [name]: await load(`./sdm_${name}.wasm`) } as { single: BufferSource });
-  const module = await Module.start(files, threads);
-  return {
-    Surface: bound.Surface.bind(null, module) as unknown as Sdm['Surface'],
-    Sites: bound.Sites.bind(null, module) as unknown as Sdm['Sites'],
-    Pair: bound.Pair.bind(null, module) as unknown as Sdm['Pair'],
-    get threads() {
-      return module.threadCount;
-    },
-    get memoryBytes() {
-      return module.memoryBytes;
-    },
-    stop: () => module.stop(),
-  };
+  return Math.min(8, cores);
 }
 
-export type { Surface, Sites, DistanceMap, Pair } from './surface.js';
+/** The module that the options ask for, compiled. */
+async function compiled(options: StartOptions, threads: number): Promise<{ name: ModuleName; file: WebAssembly.Module }> {
+  const given = options.modules;
+  const name = options.full ? 'full' : threads > 1 && (!given || given.threads) ? 'threads' : 'single';
+  const file: ModuleFile = given?.[name] ?? (await (await load(urls[name]())).arrayBuffer());
+  return { name, file: file instanceof WebAssembly.Module ? file : await WebAssembly.compile(file) };
+}
+
+const scriptOf = (options: StartOptions) => String(options.script ?? urls.worker());
+const pageOf = async (options: StartOptions) => options.reportPage ?? (await load(urls.page())).text();
+
+/** Starts the library in this thread, which waits for its calls. On the main thread of a page, it does without other threads. */
+export async function start(options: StartOptions = {}): Promise<Sdm> {
+  const threads = mayWait() ? await threadsOf(options) : 1;
+  const module = await compiled(options, threads);
+  const script = module.name === 'threads' ? scriptOf(options) : '';
+  return new Sdm(await Module.start({ ...module, threads, script }), () => pageOf(options));
+}
+
+/** Starts the library in a worker. Throws SdmError if the worker cannot be started. */
+export async function createWorker(options: StartOptions = {}): Promise<SdmWorker> {
+  const threads = await threadsOf(options);
+  const { name, file } = await compiled(options, threads);
+  const reportPage = options.full ? await pageOf(options) : undefined;
+  return SdmWorker.open({ name, module: file, threads, script: scriptOf(options), reportPage });
+}
+
+/** Starts the library in several workers of one thread each, by default as many as there are cores, at most 8. */
+export async function createPool(options: StartOptions & { workers?: number } = {}): Promise<SdmPool> {
+  const cores = typeof navigator === 'object' ? navigator.hardwareConcurrency : (await import('node:os')).availableParallelism();
+  const count = Math.max(1, Math.floor(options.workers ?? Math.min(8, cores)));
+  const { name, file } = await compiled(options, 1);
+  const script = scriptOf(options);
+  const starts = Array.from({ length: count }, () => SdmWorker.open({ name, module: file, threads: 1, script, reportPage: undefined }));
+  const opened = await Promise.allSettled(starts);
+  const workers = opened.flatMap((one) => (one.status === 'fulfilled' ? [one.value] : []));
+  const failed = opened.find((one): one is PromiseRejectedResult => one.status === 'rejected');
+  if (failed) {
+    workers.forEach((worker) => worker.terminate());
+    throw failed.reason;
+  }
+  return new SdmPool(workers);
+}

@@ -13,6 +13,7 @@ export function hostImports(
   memory: () => ArrayBufferLike,
   threads: () => Threads | undefined,
   progress: (step: string, fraction: number) => boolean,
+  said: (text: string) => void,
 ) {
   const text = (address: Address, bytes: number) =>
     new TextDecoder().decode(new Uint8Array(memory(), address >>> 0, bytes).slice());
@@ -22,17 +23,36 @@ export function hostImports(
       threads: () => threads()?.count ?? 1,
       start_thread: (argument: Address) => (threads()?.start(argument) ? 1 : 0),
       now: () => performance.timeOrigin + performance.now(),
-      abort: (message: Address, bytes: number) => {
-        throw new SdmError('internal', `sdm: the module cannot go on ${text(message, bytes)}`.trim());
-      },
       progress: (step: Address, bytes: number, fraction: number) => (progress(text(step, bytes), fraction) ? 1 : 0),
     },
     wasi_snapshot_preview1: {
-      environ_get: unsupported,
-      environ_sizes_get: unsupported,
+      // There are no variables of the environment.
+      environ_get: () => 0,
+      environ_sizes_get: (count: Address, bytes: Address) => {
+        const view = new DataView(memory());
+        for (const at of [count, bytes]) view.setUint32(at >>> 0, 0, true);
+        return 0;
+      },
       fd_close: unsupported,
       fd_seek: unsupported,
-      fd_write: unsupported,
+      // Why the module ends.
+      fd_write: (_file: number, parts: Address, count: number, written: Address) => {
+        const view = new DataView(memory());
+        let sum = 0;
+        for (let at = parts >>> 0, i = 0; i < count; ++i, at += 8) {
+          const bytes = view.getUint32(at + 4, true);
+          said(text(view.getUint32(at, true), bytes));
+          sum += bytes;
+        }
+        view.setUint32(written >>> 0, sum, true);
+        return 0;
+      },
+      random_get: (address: Address, bytes: number) => {
+        // Not into the memory itself, which may be shared. Node 18 has no `crypto`.
+        const random = Uint8Array.from({ length: bytes }, () => 256 * Math.random());
+        new Uint8Array(memory(), address >>> 0, bytes).set(globalThis.crypto?.getRandomValues(random) ?? random);
+        return 0;
+      },
       proc_exit: () => {
         throw new SdmError('internal', 'sdm: the module has ended');
       },
@@ -40,15 +60,29 @@ export function hostImports(
   };
 }
 
-export interface ModuleFiles {
-  single: BufferSource | WebAssembly.Module;
-  threads?: BufferSource | WebAssembly.Module;
+export type ModuleFile = BufferSource | WebAssembly.Module;
+/** The modules: for one thread, for several threads, and for one thread with files and reports (sdm/files). */
+export type ModuleName = 'single' | 'threads' | 'full';
+export type ModuleFiles = { [name in ModuleName]?: ModuleFile };
+
+/** What a module is started with. */
+export interface ModuleStart {
+  name: ModuleName;
+  file: ModuleFile;
+  /** Of `threads`. */
+  threads: number;
+  /** The address of worker.js, the program of threads. */
+  script: string;
 }
 
-/** Threads need memory that is shared, which browsers have only where the page is isolated. */
+/** Memory can be shared in Node, and in browsers where the page is isolated. */
 export function canShareMemory(): boolean {
   const isolated = (globalThis as { crossOriginIsolated?: boolean }).crossOriginIsolated;
   return typeof SharedArrayBuffer === 'function' && isolated !== false;
+}
+/** The main thread of a page may not wait for other threads. */
+export function mayWait(): boolean {
+  return typeof document === 'undefined';
 }
 
 export class Module {
@@ -56,6 +90,9 @@ export class Module {
   private readonly memory: WebAssembly.Memory;
   private threads: Threads | undefined;
   private progress: Progress | undefined;
+  private lastWords = '';
+  /** The page that reports are written into. */
+  reportPage: (() => Promise<string>) | undefined;
   private readonly freed = new FinalizationRegistry<() => void>((free) => free());
 
   private constructor(
@@ -66,23 +103,33 @@ export class Module {
     this.memory = memory ?? (instance.exports['memory'] as WebAssembly.Memory);
   }
 
-  /** Compiles and starts the module with threads where memory can be shared and there is more than one, otherwise the other. */
-  static async start(files: ModuleFiles, threads: number): Promise<Module> {
-    const shared = threads > 1 && files.threads !== undefined && canShareMemory();
-    const file = shared ? files.threads! : files.single;
+  /** Compiles and starts a module. */
+  static async start({ name, file, threads, script }: ModuleStart): Promise<Module> {
     const compiled = file instanceof WebAssembly.Module ? file : await WebAssembly.compile(file);
-    const memory = shared ? new WebAssembly.Memory({ initial: 256, maximum: 65536, shared: true }) : undefined;
+    const memory = name === 'threads' ? new WebAssembly.Memory({ initial: 256, maximum: 65536, shared: true }) : undefined;
     let started: Module | undefined;
     const imports = hostImports(
       () => started!.memory.buffer,
       () => started?.threads,
       (step, fraction) => started?.progress?.(step, fraction) !== false,
+      (text) => started && (started.lastWords = (started.lastWords + text).slice(-1000)),
     );
     const instance = await WebAssembly.instantiate(compiled, memory ? { ...imports, env: { memory } } : imports);
     started = new Module(instance, memory);
     started.functions['__wasm_call_ctors']!();
-    if (memory) started.threads = await startThreads(compiled, memory, threads, (bytes) => started!.allocate(bytes));
+    if (memory) started.threads = await startThreads(compiled, memory, threads, script, (bytes) => started!.allocate(bytes));
     return started;
+  }
+
+  /** The flags of sdm_cancel_flags(), if other threads can set them. */
+  sharedFlags(): Uint8Array<SharedArrayBuffer> | undefined {
+    const { buffer } = this.memory;
+    if (typeof SharedArrayBuffer !== 'function' || !(buffer instanceof SharedArrayBuffer)) return undefined;
+    return new Uint8Array(buffer, this.functions['sdm_cancel_flags']!() >>> 0, 256);
+  }
+  /** Lets the next calls be cancelled by a flag. */
+  obey(flag: number): void {
+    this.functions['sdm_obey']!(flag);
   }
 
   get threadCount(): number {
@@ -96,6 +143,10 @@ export class Module {
 
   stop(): void {
     this.threads?.stop();
+  }
+  /** Whether a function is exported: whether the module has files and reports. */
+  has(name: string): boolean {
+    return name in this.functions;
   }
 
   /** Calls an exported function, with arrays copied into the module and out of it. */
@@ -124,6 +175,8 @@ export class Module {
       });
       return this.read(this.functions[name]!(...numbers) >>> 0);
     } catch (error) {
+      if (error instanceof WebAssembly.RuntimeError)
+        throw new SdmError('internal', `sdm: the module cannot go on: ${this.lastWords.trim() || error.message}`);
       throw failure ? failure.error : error;
     } finally {
       this.progress = undefined;

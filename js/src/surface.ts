@@ -1,5 +1,7 @@
 // Surfaces (O1), sites (O2), and what is computed of them.
+import { type Bytes, float32, float64, text, uint32, wordNumber } from './bytes.js';
 import { type Module } from './module.js';
+import { type MapSummary, type ReportOptions, type SummaryOptions, reportOf, summaryOf } from './report.js';
 import {
   type AtlasKind, type BoundedLength, type Certainty, type Indices, type NumberArray, type Point, type Points, type Progress,
   type SignMethod, type SiteType, SdmError, kAtlasKinds, kSignMethods,
@@ -8,12 +10,6 @@ import {
 const kNone = 0xffffffff;
 const kSiteTypes: Record<number, SiteType> = { 0: 'vertex', 1: 'edge', 2: 'face' };
 const kCertainties: readonly Certainty[] = ['exact', 'bounded', 'estimate'];
-
-type Bytes = Uint8Array<ArrayBuffer>;
-const float64 = (bytes: Bytes) => new Float64Array(bytes.buffer);
-const float32 = (bytes: Bytes) => new Float32Array(bytes.buffer);
-const uint32 = (bytes: Bytes) => new Uint32Array(bytes.buffer);
-const text = (bytes: Bytes) => new TextDecoder().decode(bytes);
 
 /** Coordinates as doubles, three for each point. */
 export function coordinates(points: Points, name: string): Float64Array {
@@ -33,13 +29,6 @@ export function corners(indices: Indices, vertices: number): Uint32Array {
   return indices instanceof Uint32Array ? indices : Uint32Array.from(indices);
 }
 
-/** The number of a word among those that an option may have. */
-function wordNumber(words: readonly string[], word: string, option: string): number {
-  const number = words.indexOf(word);
-  if (number < 0) throw new SdmError('input', `${option} is ${JSON.stringify(word)}: it must be one of ${words.join(', ')}`);
-  return number;
-}
-
 function boundedLength(bytes: Bytes): BoundedLength {
   const [value, lower, upper, certainty, ...witness] = Array.from(float64(bytes)) as [number, number, number, number, ...number[]];
   const points: [Point, Point] = [witness.slice(0, 3) as Point, witness.slice(3, 6) as Point];
@@ -47,7 +36,7 @@ function boundedLength(bytes: Bytes): BoundedLength {
 }
 
 /** An object in the memory of a module. It is freed when it is collected, by dispose(), or at the end of the block of `using`. */
-abstract class Owned {
+export abstract class Owned {
   private address: number;
 
   protected constructor(
@@ -182,6 +171,8 @@ export interface SurfaceOptions {
   gutter?: number;
   /** Texture coordinates of the vertices, two each, for `uv`; (0, 0) is the lower left of the texture. */
   uvs?: ArrayLike<number>;
+  /** What storedAtlas() of a surface of the same mesh and options returned, perhaps in another worker: nothing is laid out again. */
+  storedAtlas?: Uint8Array;
   progress?: Progress;
 }
 
@@ -224,7 +215,8 @@ export class Surface extends Owned {
     const kind = wordNumber(kAtlasKinds, options.atlas ?? 'charts', 'atlas');
     const [address] = module.call(
       'sdm_new_surface',
-      [at, at.length / 3, triangles, triangles.length / 3, uvs, kind, options.resolution ?? 1024, options.gutter ?? 1], options.progress);
+      [at, at.length / 3, triangles, triangles.length / 3, uvs, kind, options.resolution ?? 1024, options.gutter ?? 1,
+        options.storedAtlas ?? null, options.storedAtlas?.length ?? 0], options.progress);
     super(module, float64(address!)[0]!, 'sdm_free_surface');
   }
 
@@ -240,15 +232,36 @@ export class Surface extends Owned {
     return { resolution, rows, charts, utilisation, texelFaces: uint32(faces!), corners: float32(places!) };
   }
 
+  /** The atlas as bytes, for SurfaceOptions.storedAtlas. Of the mesh in its present shape, and for this version of sdm only. */
+  storedAtlas(): Uint8Array<ArrayBuffer> {
+    return this.module.call('sdm_stored_atlas', [this.handle])[0]!;
+  }
+
   /** The texels that a face owns, and their points. */
   samples(): { texels: Uint32Array; points: Float64Array } {
     const [texels, points] = this.module.call('sdm_surface_samples', [this.handle]);
     return { texels: uint32(texels!), points: float64(points!) };
   }
+  /** The number of samples, and that of which ranges for DistanceMap.computeSamples() begin and end at multiples. */
+  sampleCounts(): { samples: number; grain: number } {
+    const [samples, grain] = Array.from(float64(this.module.call('sdm_sample_counts', [this.handle])[0]!)) as [number, number];
+    return { samples, grain };
+  }
 
   /** The surface distance map: at every texel, the distance to the sites. */
   map(sites: Sites, options: MapOptions = {}): DistanceMap {
-    return new DistanceMap(this.module, this, this.handle, sites, options);
+    const map = this.emptyMap(sites);
+    try {
+      map.compute(options);
+    } catch (error) {
+      map.dispose();
+      throw error;
+    }
+    return map;
+  }
+  /** A map without values, for compute() and computeSamples(). */
+  emptyMap(sites: Sites): DistanceMap {
+    return new DistanceMap(this.module, this, this.handle, sites);
   }
 }
 
@@ -273,6 +286,18 @@ export interface MapStatistics {
   p99Abs: number;
 }
 
+/** Values of texels, or of samples. */
+export interface MapValues {
+  /** Negative inside; NaN without a value. */
+  distances: Float32Array;
+  /** Closest point − point of the texel: three numbers each. */
+  vectors: Float32Array;
+  /** The closest vertex, edge or face. */
+  sitesOfTexels: Uint32Array;
+  /** 0: a vertex, 1: an edge, 2: a face, 255: no value. */
+  siteTypes: Uint8Array;
+}
+
 /**
  * At every texel of a surface's atlas: the distance to the sites, the vector to the closest point, and the closest site. Arrays
  * are copied out of the module at each call.
@@ -280,19 +305,49 @@ export interface MapStatistics {
 export class DistanceMap extends Owned {
   readonly resolution: number;
   readonly rows: number;
-  readonly sign: SignMethod;
-  readonly signReason: string;
+  /** Of what was computed last. */
+  sign: SignMethod = 'automatic';
+  signReason = '';
 
   /** @internal */
-  constructor(module: Module, private readonly surface: Surface, surfaceAddress: number, private readonly sites: Sites, options: MapOptions) {
-    const method = wordNumber(kSignMethods, options.sign ?? 'automatic', 'sign');
-    const [address, numbers, reason] = module.call(
-      'sdm_new_map', [surfaceAddress, sites.handleIn(module), method, options.maxDistance ?? Infinity, options.facing ?? NaN], options.progress);
+  constructor(module: Module, private readonly surface: Surface, surfaceAddress: number, private readonly sites: Sites) {
+    sites.handleIn(module);
+    const [address, numbers] = module.call('sdm_new_map', [surfaceAddress]);
     super(module, float64(address!)[0]!, 'sdm_free_map');
-    const [resolution, rows, used] = Array.from(float64(numbers!)) as [number, number, number];
-    this.resolution = resolution;
-    this.rows = rows;
-    this.sign = kSignMethods[used]!;
+    [this.resolution, this.rows] = Array.from(float64(numbers!)) as [number, number];
+  }
+
+  /** @internal As of Surface. */
+  sampleCounts(): { samples: number; grain: number } {
+    return this.surface.sampleCounts();
+  }
+
+  /** Computes all values, again after refit() of the surface or the sites; takes no more memory. */
+  compute(options: MapOptions = {}): void {
+    this.take(this.module.call('sdm_compute_map', [...this.arguments(options), options.facing ?? NaN], options.progress));
+  }
+  /**
+   * Computes the values of some samples, `first` to `first + count` of Surface.samples(), which must be multiples of
+   * sampleCounts().grain or the end. The other texels keep theirs. Ranges that cover all samples, computed in any order and in
+   * any number of modules, are the whole map to the bit.
+   */
+  computeSamples(first: number, count: number, options: Omit<MapOptions, 'facing'> = {}): void {
+    if ((options as MapOptions).facing !== undefined) throw new SdmError('input', 'a map of what faces the samples is computed as a whole');
+    this.take(this.module.call('sdm_compute_samples', [...this.arguments(options), first, count], options.progress));
+  }
+  /** The values of samples, in their order, as those of the arrays of the map. */
+  valuesOfSamples(first: number, count: number): MapValues {
+    const [distances, vectors, sites, types] = this.module.call(
+      'sdm_map_samples', [this.handle, this.surface.handleIn(this.module), first, count]) as [Bytes, Bytes, Bytes, Bytes];
+    return { distances: float32(distances), vectors: float32(vectors), sitesOfTexels: uint32(sites), siteTypes: types };
+  }
+
+  private arguments(options: MapOptions): [number, number, number, number, number] {
+    const method = wordNumber(kSignMethods, options.sign ?? 'automatic', 'sign');
+    return [...this.addresses(), method, options.maxDistance ?? Infinity];
+  }
+  private take([used, reason]: Bytes[]): void {
+    this.sign = kSignMethods[float64(used!)[0]!]!;
     this.signReason = text(reason!);
   }
 
@@ -334,6 +389,18 @@ export class DistanceMap extends Owned {
     return float32(result!);
   }
 
+  /** The keys of report.json: numbers, verdict, places, colours, histogram. Of the module `full` only. */
+  summary(options: SummaryOptions = {}): MapSummary {
+    return summaryOf(this.module, this.addresses(), options);
+  }
+  /** The text of report.html, a page that shows the map and its summary. Of the module `full` only. */
+  report(options: ReportOptions = {}): Promise<string> {
+    return reportOf(this.module, this.addresses(), options);
+  }
+
+  private addresses(): [number, number, number] {
+    return [this.handle, this.surface.handleIn(this.module), this.sites.handleIn(this.module)];
+  }
   private array(which: number, bytes: number): Bytes {
     return this.module.bytes(this.module.plain('sdm_map_array', this.handle, which), bytes);
   }

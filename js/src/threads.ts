@@ -1,7 +1,9 @@
 // The workers of a module with threads. Each has an instance of the module, in the memory that all share, and waits until it is
 // given a function to run.
+import { type AnyWorker, newWorker, started } from './any_worker.js';
 import { hostImports } from './module.js';
 import { SdmError } from './types.js';
+
 
 const kStackBytes = 1 << 20;
 
@@ -24,56 +26,28 @@ export interface ThreadStart {
   threadLocal: number;
 }
 
-interface AnyWorker {
-  postMessage(message: unknown): void;
-  terminate(): unknown;
-  onReady(ready: () => void, failed: (reason: unknown) => void): void;
-}
-
-async function newWorker(url: URL): Promise<AnyWorker> {
-  if (typeof Worker === 'function') {
-    const worker = new Worker(url, { type: 'module' });
-    return {
-      postMessage: (message) => worker.postMessage(message),
-      terminate: () => worker.terminate(),
-      onReady: (ready, failed) => {
-        worker.onmessage = ready;
-        worker.onerror = failed;
-      },
-    };
-  }
-  const { Worker: NodeWorker } = await import('node:worker_threads');
-  const worker = new NodeWorker(url);
-  worker.unref();
-  return {
-    postMessage: (message) => worker.postMessage(message),
-    terminate: () => worker.terminate(),
-    onReady: (ready, failed) => {
-      worker.once('message', ready);
-      worker.once('error', failed);
-    },
-  };
-}
-
 export async function startThreads(
   module: WebAssembly.Module,
   memory: WebAssembly.Memory,
   count: number,
+  script: string,
   allocate: (bytes: number) => number,
 ): Promise<Threads> {
   const slots = new Int32Array(new SharedArrayBuffer(4 * count));
-  const workers = await Promise.all(
-    Array.from({ length: count - 1 }, async (_, slot) => {
-      const worker = await newWorker(new URL('./thread.js', import.meta.url));
-      const stackTop = (allocate(kStackBytes) + kStackBytes) & ~15;
-      const start: ThreadStart = { module, memory, slots, slot, count, stackTop, threadLocal: allocate(1024) };
-      await new Promise<void>((ready, failed) => {
-        worker.onReady(ready, failed);
-        worker.postMessage(start);
-      });
-      return worker;
-    }),
-  );
+  const workers: AnyWorker[] = [];
+  const startOne = async (slot: number) => {
+    const worker = await newWorker(script);
+    workers.push(worker);
+    const stackTop = (allocate(kStackBytes) + kStackBytes) & ~15;
+    const thread: ThreadStart = { module, memory, slots, slot, count, stackTop, threadLocal: allocate(1024) };
+    await started(worker, { thread });
+  };
+  try {
+    await Promise.all(Array.from({ length: count - 1 }, (_, slot) => startOne(slot)));
+  } catch (error) {
+    workers.forEach((worker) => worker.terminate());
+    throw error;
+  }
   return {
     count,
     start: (argument) => startIn(slots, workers.length, argument),
@@ -90,7 +64,7 @@ function startIn(slots: Int32Array, workers: number, argument: number): boolean 
   return false;
 }
 
-/** Runs functions for ever. */
+/** Runs functions for ever, in a worker. */
 export async function runThread(start: ThreadStart, ready: () => void): Promise<never> {
   const { slots, slot, count } = start;
   const threads: Threads = { count, start: (argument) => startIn(slots, count - 1, argument), stop: () => {} };
@@ -99,6 +73,7 @@ export async function runThread(start: ThreadStart, ready: () => void): Promise<
     () => threads,
     // Progress is of the call, whose thread alone has its callback.
     () => true,
+    () => {},
   );
   const instance = await WebAssembly.instantiate(start.module, { ...imports, env: { memory: start.memory } });
   const exports = instance.exports as Record<string, any>;

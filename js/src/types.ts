@@ -10,8 +10,11 @@ export type Indices = ArrayLike<number> | null;
 /** Called with the current step and the fraction of it that is done; returning false cancels the call. */
 export type Progress = (step: string, fraction: number) => boolean | void;
 
-/** Why a call failed: its arguments, its signal, memory, or a fault of the library. */
-export type ErrorKind = 'input' | 'cancelled' | 'memory' | 'internal';
+/**
+ * Why a call failed: its arguments, its signal, memory, a fault of the library, or a worker that has ended, with the objects that
+ * were in it.
+ */
+export type ErrorKind = 'input' | 'cancelled' | 'memory' | 'internal' | 'ended';
 
 export class SdmError extends Error {
   constructor(

@@ -3,26 +3,11 @@ import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
+import { ball } from './shapes.mjs';
 
 const { start, SdmError } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'index.js')));
 const sdm = await start({ threads: 1 });
 
-/// A closed grid on a sphere about the origin.
-function ball(n, radius = 1) {
-  const positions = [0, 0, radius], indices = [];
-  for (let i = 1; i < n; ++i)
-    for (let j = 0; j < 2 * n; ++j) {
-      const a = (Math.PI * i) / n, b = (Math.PI * j) / n;
-      positions.push(radius * Math.sin(a) * Math.cos(b), radius * Math.sin(a) * Math.sin(b), radius * Math.cos(a));
-    }
-  positions.push(0, 0, -radius);
-  const at = (i, j) => 1 + (i - 1) * 2 * n + (j % (2 * n)), last = positions.length / 3 - 1;
-  for (let j = 0; j < 2 * n; ++j) {
-    indices.push(0, at(1, j), at(1, j + 1), last, at(n - 1, j + 1), at(n - 1, j));
-    for (let i = 1; i + 1 < n; ++i) indices.push(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i, j + 1));
-  }
-  return { positions, indices };
-}
 const isInputError = (message) => (error) => error instanceof SdmError && error.kind === 'input' && message.test(error.message);
 
 test('arrays of any kind are the same points', () => {
@@ -110,4 +95,45 @@ test('10,000 refits take no memory', () => {
     pair.separation();
   }
   assert.equal(sdm.memoryBytes, before);
+});
+
+test('parts of a map, in any order, are the map to the bit', () => {
+  const { positions, indices } = ball(40), inner = ball(40, 0.7);
+  const surface = new sdm.Surface(positions, indices, { resolution: 200 }), sites = new sdm.Sites(inner.positions, inner.indices);
+  const whole = surface.map(sites), parts = surface.emptyMap(sites);
+  const { samples, grain } = surface.sampleCounts();
+  assert.ok(parts.distances.every(Number.isNaN) && grain < samples / 4);
+  const firsts = Array.from({ length: Math.ceil(samples / grain) }, (_, i) => i * grain).reverse();
+  for (const first of firsts) parts.computeSamples(first, Math.min(grain, samples - first));
+  for (const name of ['distances', 'vectors', 'sitesOfTexels', 'siteTypes']) assert.deepEqual(parts[name], whole[name]);
+  assert.equal(parts.sign, whole.sign);
+  const { texels } = surface.samples(), { distances } = parts.valuesOfSamples(grain, 5);
+  assert.deepEqual([...distances], [...texels.slice(grain, grain + 5)].map((texel) => whole.distances[texel]));
+  assert.throws(() => parts.computeSamples(1, grain), isInputError(/multiples of/));
+  assert.throws(() => parts.computeSamples(0, samples + grain), isInputError(/multiples of/));
+  const stored = surface.storedAtlas();
+  assert.deepEqual(new sdm.Surface(positions, indices, { resolution: 200, storedAtlas: stored }).atlas(), surface.atlas());
+  stored[100] ^= 1;
+  assert.throws(() => new sdm.Surface(positions, indices, { resolution: 200, storedAtlas: stored }), isInputError(/atlas/));
+});
+
+test('what is computed again takes no more memory', () => {
+  const { positions, indices } = ball(20), surface = new sdm.Surface(positions, indices, { resolution: 256 });
+  const sites = new sdm.Sites(positions, indices), map = surface.map(sites);
+  sites.refit(positions.map((x) => 2 * x));
+  map.compute();
+  const before = sdm.memoryBytes;
+  for (let i = 0; i < 50; ++i) map.compute();
+  assert.equal(sdm.memoryBytes, before);
+  assert.ok(Math.abs(map.statistics().min + 1) < 0.02);
+});
+
+test('what does not fit into the memory is an error, and takes none', () => {
+  const [positions, indices] = [[0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 2]];
+  const fail = () => assert.throws(() => new sdm.Surface(positions, indices, { resolution: 32768, atlas: 'triangles' }), (error) => error.kind !== 'internal' && /memory/.test(error.message));
+  fail();
+  const taken = sdm.memoryBytes;
+  for (let i = 0; i < 3; ++i) fail();
+  assert.equal(sdm.memoryBytes, taken);
+  assert.equal(new sdm.Sites(positions, indices).closestPoints([0, 0, 3]).distances[0], 3);
 });

@@ -1,0 +1,15 @@
+// Results of the module, as typed arrays and text, and words as numbers.
+import { SdmError } from './types.js';
+
+export type Bytes = Uint8Array<ArrayBuffer>;
+export const float64 = (bytes: Bytes) => new Float64Array(bytes.buffer);
+export const float32 = (bytes: Bytes) => new Float32Array(bytes.buffer);
+export const uint32 = (bytes: Bytes) => new Uint32Array(bytes.buffer);
+export const text = (bytes: Bytes) => new TextDecoder().decode(bytes);
+
+/** The number of a word among those that an option may have. */
+export function wordNumber(words: readonly string[], word: string, option: string): number {
+  const number = words.indexOf(word);
+  if (number < 0) throw new SdmError('input', `${option} is ${JSON.stringify(word)}: it must be one of ${words.join(', ')}`);
+  return number;
+}

@@ -1,0 +1,61 @@
+// The library in one module, for those who may wait.
+import { type MeshFile, type ReadMeshOptions, readMesh } from './mesh_file.js';
+import { type Module } from './module.js';
+import * as bound from './surface.js';
+import { type Indices, type Points } from './types.js';
+
+type Body = { positions: Points; indices?: Indices };
+
+/** The library, with a memory of its own. Its calls are synchronous: in a page, call them in a worker (createWorker()). */
+export class Sdm {
+  readonly Surface: new (positions: Points, indices?: Indices, options?: bound.SurfaceOptions) => bound.Surface;
+  readonly Sites: new (positions: Points, indices?: Indices) => bound.Sites;
+  readonly Pair: new (first: Body, second: Body, options?: { contactMargin?: number }) => bound.Pair;
+
+  /** @internal */
+  constructor(
+    /** @internal */ readonly module: Module,
+    reportPage: () => Promise<string>,
+  ) {
+    module.reportPage = reportPage;
+    this.Surface = bound.Surface.bind(null, module) as unknown as Sdm['Surface'];
+    this.Sites = bound.Sites.bind(null, module) as unknown as Sdm['Sites'];
+    this.Pair = bound.Pair.bind(null, module) as unknown as Sdm['Pair'];
+  }
+
+  get threads(): number {
+    return this.module.threadCount;
+  }
+  /** What the module has taken from the system. */
+  get memoryBytes(): number {
+    return this.module.memoryBytes;
+  }
+  /**
+   * Reads a mesh file: STL, PLY, OBJ, OFF, glTF or 3DS, recognised by its content, then by its name. Polygons are triangulated, all
+   * meshes of the file merged, and equal positions welded. Of the module `full` only.
+   */
+  readMesh(bytes: Uint8Array | ArrayBuffer, name: string, options: ReadMeshOptions = {}): MeshFile {
+    return readMesh(this.module, bytes, name, options);
+  }
+  /** Ends its threads. Its objects cannot be used any more. */
+  stop(): void {
+    this.module.stop();
+  }
+
+  /** @internal What a worker is asked for. */
+  surface(positions: Points, indices: Indices, options: bound.SurfaceOptions): bound.Surface {
+    return new this.Surface(positions, indices, options);
+  }
+  /** @internal */
+  sites(positions: Points, indices: Indices): bound.Sites {
+    return new this.Sites(positions, indices);
+  }
+  /** @internal */
+  pair(first: Body, second: Body, options: { contactMargin?: number }): bound.Pair {
+    return new this.Pair(first, second, options);
+  }
+  /** @internal */
+  memory(): number {
+    return this.memoryBytes;
+  }
+}

@@ -1,0 +1,79 @@
+// Summaries and reports of maps, of the module `full`.
+import { type Bytes, float64, text, uint32, wordNumber } from './bytes.js';
+import { type Module } from './module.js';
+import { type Progress, SdmError } from './types.js';
+
+export type Colormap = 'automatic' | 'viridis' | 'sequential' | 'diverging' | 'paper2006';
+const kColormaps: readonly Colormap[] = ['automatic', 'viridis', 'sequential', 'diverging', 'paper2006'];
+
+export interface SummaryOptions {
+  /** The least and the largest distance allowed: the verdict PASS or FAIL is proven between the samples, too. */
+  tolerance?: [least: number, largest: number];
+  /** Of all lengths, such as `mm`. */
+  units?: string;
+  colormap?: Colormap;
+  /** The distances at the ends of the colours. */
+  range?: [number, number];
+  /** The names of O1's and O2's files. */
+  names?: [string, string];
+  /** XXH3 of these files, as of MeshFile. */
+  xxh3?: [string, string];
+  /** That of the map. */
+  maxDistance?: number;
+  progress?: Progress;
+}
+
+export interface ReportOptions extends SummaryOptions {
+  /** The axis of the meshes that points up. */
+  up?: 'y' | 'z';
+}
+
+/** The keys of report.json, which docs/report.md of the project lists. */
+export type MapSummary = { distance: Record<string, number>; [key: string]: unknown };
+
+type Addresses = [map: number, surface: number, sites: number];
+
+/** The numbers and words of the options, as the module takes them. */
+function argumentsOf(options: ReportOptions) {
+  const limits = [...(options.tolerance ?? [NaN, NaN]), ...(options.range ?? [NaN, NaN])];
+  const words = new TextEncoder().encode(JSON.stringify({
+    units: options.units ?? '', names: options.names ?? ['O1', 'O2'], xxh3: options.xxh3 ?? ['', ''] }));
+  const colormap = wordNumber(kColormaps, options.colormap ?? 'automatic', 'colormap');
+  return [...limits, options.maxDistance ?? Infinity, colormap, wordNumber(['y', 'z'], options.up ?? 'y', 'up'), words, words.length];
+}
+
+function demandFull(module: Module, name: string): void {
+  if (!module.has('sdm_map_summary')) throw new SdmError('input', `${name} needs the module of start({ full: true })`);
+}
+
+export function summaryOf(module: Module, map: Addresses, options: SummaryOptions): MapSummary {
+  demandFull(module, 'summary');
+  const [json] = module.call('sdm_map_summary', [...map, ...argumentsOf(options)], options.progress);
+  return JSON.parse(text(json!)) as MapSummary;
+}
+
+/** A stream of deflate: that of zlib without its header and its checksum, as older engines know no other. */
+async function deflated(bytes: Bytes): Promise<Bytes> {
+  const stream = new Blob([bytes]).stream().pipeThrough(new CompressionStream('deflate'));
+  return new Uint8Array(await new Response(stream).arrayBuffer()).slice(2, -4);
+}
+
+export async function reportOf(module: Module, map: Addresses, options: ReportOptions): Promise<string> {
+  demandFull(module, 'report');
+  const page = new TextEncoder().encode(await module.reportPage!());
+  const [address, lengths, planes] = module.call('sdm_new_report', [...map, ...argumentsOf(options)], options.progress);
+  const draft = float64(address!)[0]!;
+  try {
+    let at = 0;
+    const compressed = await Promise.all(Array.from(uint32(lengths!), (length) => {
+      const plane = planes!.slice(at, (at += length));
+      return length > 0 ? deflated(plane) : plane;
+    }));
+    const sizes = Uint32Array.from(compressed, (plane) => plane.length);
+    const all = new Uint8Array(await new Blob(compressed).arrayBuffer());
+    const [html] = module.call('sdm_finish_report', [draft, all, sizes, sizes.length, page, page.length]);
+    return text(html!);
+  } finally {
+    module.plain('sdm_free_report', draft);
+  }
+}

@@ -1,0 +1,196 @@
+// worker.js: the program of workers. It is bundled into one file without imports, so that it can come from a Blob; it is that of
+// createWorker() and that of the threads of a module.
+import { Sdm } from './library.js';
+import { Module, canShareMemory } from './module.js';
+import { type Call, type FirstMessage, type Reply, type Request, type Started, type WorkerStart } from './protocol.js';
+import { DistanceMap, Owned } from './surface.js';
+import { runThread } from './threads.js';
+import { type Progress, SdmError } from './types.js';
+
+interface Port {
+  post(message: unknown, transfer?: Transferable[]): void;
+  receive(receive: (message: any) => void): void;
+}
+
+const kProgressMilliseconds = 30;
+
+async function openPort(): Promise<Port> {
+  if (typeof self === 'object' && typeof postMessage === 'function')
+    return {
+      post: (message, transfer = []) => self.postMessage(message, { transfer }),
+      receive: (receive) => void (self.onmessage = (event) => receive(event.data)),
+    };
+  const { parentPort } = await import('node:worker_threads');
+  return {
+    post: (message, transfer = []) => parentPort!.postMessage(message, transfer as never),
+    receive: (receive) => void parentPort!.removeAllListeners('message').on('message', receive),
+  };
+}
+
+/** Lets messages that have arrived be received. */
+const tick = (() => {
+  if (typeof setImmediate === 'function') return () => new Promise<void>((resolve) => setImmediate(resolve));
+  const { port1, port2 } = new MessageChannel();
+  let next = () => {};
+  port2.onmessage = () => next();
+  return () => new Promise<void>((resolve) => void ((next = resolve), port1.postMessage(0)));
+})();
+
+/** The buffers of arrays in a result. */
+function buffersOf(value: unknown, found = new Set<ArrayBuffer>()): ArrayBuffer[] {
+  if (ArrayBuffer.isView(value)) {
+    if (value.buffer instanceof ArrayBuffer && value.buffer.byteLength === value.byteLength) found.add(value.buffer);
+  } else if (Array.isArray(value)) value.forEach((item) => buffersOf(item, found));
+  else if (value && typeof value === 'object') Object.values(value).forEach((item) => buffersOf(item, found));
+  return [...found];
+}
+
+class Server {
+  private readonly objects = new Map<number, Owned>();
+  private readonly queue: Call[] = [];
+  private readonly cancelled = new Set<number>();
+  private running = false;
+
+  constructor(
+    private readonly port: Port,
+    private readonly library: Sdm,
+    private readonly flags: Uint8Array | undefined,
+  ) {}
+
+  receive(request: Request): void {
+    if ('call' in request) {
+      this.queue.push(request.call);
+      if (!this.running) void this.run();
+    } else if ('cancel' in request) this.cancelled.add(request.cancel);
+    else {
+      // Calls that were made before still use it.
+      this.queue.push({ id: 0, object: request.dispose, method: 'dispose', values: [], options: {}, wantsProgress: false, cancellable: false });
+      if (!this.running) void this.run();
+    }
+  }
+
+  private async run(): Promise<void> {
+    this.running = true;
+    for (let call = this.queue.shift(); call; call = this.queue.shift()) {
+      await this.answer(call);
+      this.cancelled.delete(call.id);
+      if (this.queue.length > 0) await tick();
+    }
+    this.running = false;
+  }
+
+  private async answer(call: Call): Promise<void> {
+    if (call.method === 'dispose') {
+      this.objects.get(call.object)?.dispose();
+      this.objects.delete(call.object);
+      return;
+    }
+    const flag = call.id % 256;
+    if (this.flags) Atomics.store(this.flags, flag, 0);
+    this.library.module.obey(flag);
+    try {
+      if (this.cancelled.has(call.id)) throw new SdmError('cancelled', 'cancelled');
+      this.reply(call, await this.compute(call));
+    } catch (error) {
+      const kind = error instanceof SdmError ? error.kind : 'other';
+      const message = error instanceof Error ? error.message : String(error);
+      // Anything else than an error of the library, and a module that has stopped, leaves its memory in an unknown state.
+      this.post({ id: call.id, error: { kind, message, broken: kind === 'internal' || error instanceof WebAssembly.RuntimeError } });
+    }
+  }
+
+  private reply({ id }: Call, result: unknown): void {
+    if (result instanceof Owned) {
+      this.objects.set(id, result);
+      const fields = Object.entries(result).filter(([, value]) => ['number', 'string', 'boolean'].includes(typeof value));
+      this.post({ id, object: id, fields: Object.fromEntries(fields) });
+    } else this.post({ id, value: result }, buffersOf(result));
+  }
+
+  private post(reply: Reply, transfer: Transferable[] = []): void {
+    this.port.post(reply, transfer);
+  }
+
+  private object(id: number): Owned {
+    const object = this.objects.get(id);
+    if (!object) throw new SdmError('input', 'the object was disposed of');
+    return object;
+  }
+
+  private async compute(call: Call): Promise<unknown> {
+    const values = call.values.map((value) =>
+      value && typeof value === 'object' && 'sdmObject' in value ? this.object(value.sdmObject as number) : value);
+    const options = { ...call.options, progress: this.progressOf(call) };
+    const target = call.object === 0 ? this.library : this.object(call.object);
+    if (target instanceof DistanceMap) {
+      if (call.method === 'arrays') return Object.fromEntries((values as (keyof DistanceMap)[]).map((name) => [name, target[name]]));
+      if (call.method === 'update') return this.update(target, call, options);
+      if (call.method === 'computeSamples') {
+        target.computeSamples(values[0] as number, values[1] as number, options);
+        return { sign: target.sign, signReason: target.signReason };
+      }
+    }
+    if (call.method === 'map') return this.map(target as never, values[0] as never, call, options);
+    const method = (target as unknown as Record<string, (...values: unknown[]) => unknown>)[call.method];
+    if (typeof method !== 'function') throw new SdmError('input', `this module has no ${call.method}`);
+    return method.apply(target, [...values, options]);
+  }
+
+  private async map(surface: InstanceType<Sdm['Surface']>, sites: InstanceType<Sdm['Sites']>, call: Call, options: object): Promise<DistanceMap> {
+    const map = surface.emptyMap(sites);
+    try {
+      await this.update(map, call, options);
+    } catch (error) {
+      map.dispose();
+      throw error;
+    }
+    return map;
+  }
+
+  /** Where no other thread can set a flag, the samples are computed in parts, between which the message to cancel is received. */
+  private async update(map: DistanceMap, call: Call, options: { facing?: number; progress?: Progress }): Promise<object> {
+    if (this.flags || !call.cancellable || options.facing !== undefined) map.compute(options);
+    else await this.inParts(map, call, options);
+    return { sign: map.sign, signReason: map.signReason };
+  }
+
+  private async inParts(map: DistanceMap, call: Call, options: { progress?: Progress }): Promise<void> {
+    const { samples, grain } = map.sampleCounts();
+    const step = grain * Math.max(1, Math.floor(65536 / grain));
+    for (let first = 0; first < samples; first += step) {
+      const count = Math.min(step, samples - first);
+      const progress: Progress = (name, fraction) => options.progress?.(name, (first + fraction * count) / samples);
+      map.computeSamples(first, count, { ...options, progress });
+      await tick();
+      if (this.cancelled.has(call.id)) throw new SdmError('cancelled', 'cancelled');
+    }
+  }
+
+  private progressOf(call: Call): Progress {
+    let last = 0;
+    return (step, fraction) => {
+      if (this.flags && Atomics.load(this.flags, call.id % 256) !== 0) return false;
+      const now = performance.now();
+      if (call.wantsProgress && now - last >= kProgressMilliseconds) {
+        last = now;
+        this.post({ id: call.id, progress: [step, fraction] });
+      }
+      return true;
+    };
+  }
+}
+
+async function serve(port: Port, { name, module, threads, script, reportPage }: WorkerStart): Promise<void> {
+  const started = await Module.start({ name, file: module, threads, script });
+  const flags = started.sharedFlags() ?? (canShareMemory() ? new Uint8Array(new SharedArrayBuffer(256)) : undefined);
+  const server = new Server(port, new Sdm(started, async () => reportPage!), flags);
+  port.receive((request) => server.receive(request));
+  port.post({ threads: started.threadCount, flags } satisfies Started);
+}
+
+const port = openPort();
+void port.then((open) =>
+  open.receive((first: FirstMessage) => {
+    const run = 'thread' in first ? runThread(first.thread, () => open.post({ ready: true })) : serve(open, first.worker);
+    run.catch((error: unknown) => open.post({ failed: error instanceof Error ? error.message : String(error) }));
+  }));

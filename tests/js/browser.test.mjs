@@ -1,0 +1,131 @@
+// The package in headless Chromium: from a file, and from a server on this machine, with and without isolation from other origins
+// (without it, memory cannot be shared). SDM_PACKAGE: the folder of the package; SDM_REFERENCE: that of js_reference's files;
+// SDM_NODE_PACKAGES: that with playwright-core, esbuild and three.
+import assert from 'node:assert/strict';
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { delimiter, dirname, extname, join, normalize } from 'node:path';
+import { after, before, test } from 'node:test';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+import { ball } from './shapes.mjs';
+
+const { SDM_PACKAGE, SDM_REFERENCE, SDM_NODE_PACKAGES, PATH } = process.env;
+const require = createRequire(SDM_NODE_PACKAGES + '/');
+const { chromium } = require('playwright-core');
+const { build } = require('esbuild');
+const here = dirname(fileURLToPath(import.meta.url));
+const folder = mkdtempSync(join(tmpdir(), 'sdm-js-'));
+let browser;
+
+before(async () => {
+  const executablePath = PATH.split(delimiter).map((path) => join(path, 'chromium')).find(existsSync);
+  assert(executablePath, 'chromium is needed for this test (Debian package chromium)');
+  browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
+});
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true });
+});
+
+const reference = () => Object.fromEntries(readdirSync(SDM_REFERENCE).map((name) => [name, readFileSync(join(SDM_REFERENCE, name)).toString('base64')]));
+const types = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.wasm': 'application/wasm' };
+
+/** Serves the package and the folder of tests. */
+function serve(headers) {
+  const server = createServer((request, response) => {
+    const path = normalize(new URL(request.url, 'http://localhost').pathname);
+    const file = path.startsWith('/package/') ? join(SDM_PACKAGE, path.slice(9)) : join(here, path);
+    if (!existsSync(file)) return response.writeHead(404, headers).end();
+    response.writeHead(200, { 'content-type': types[extname(file)] ?? 'text/plain', ...headers }).end(readFileSync(file));
+  });
+  return new Promise((resolve) => server.listen(0, '127.0.0.1', () => resolve(server)));
+}
+
+/** A page with everything in it, as it opens from a disk. */
+async function filePage() {
+  const { outputFiles } = await build({
+    stdin: { contents: readFileSync(join(here, 'page.mjs'), 'utf8').replace('/package/index.js', join(SDM_PACKAGE, 'index.js')), resolveDir: here },
+    bundle: true, format: 'iife', write: false, target: 'es2022', external: ['node:*'], logLevel: 'error', logOverride: { 'empty-import-meta': 'silent' },
+  });
+  const text = (value) => JSON.stringify(value).replaceAll('<', '\\u003c');
+  const files = {
+    script: readFileSync(join(SDM_PACKAGE, 'worker.js'), 'utf8'),
+    single: readFileSync(join(SDM_PACKAGE, 'sdm_single.wasm')).toString('base64'),
+  };
+  const file = join(folder, 'page.html');
+  writeFileSync(file, `<!doctype html><meta charset="utf-8"><script>window.embedded = ${text(files)};</script><script>${outputFiles[0].text.replaceAll('</script', '<\\/script')}</script>`);
+  return pathToFileURL(file).href;
+}
+
+async function runChecks(t, url, { isolated, script }) {
+  const page = await (await browser.newContext()).newPage();
+  const faults = [];
+  page.on('pageerror', (error) => faults.push(`error: ${error.message}`));
+  page.on('console', (message) => message.type() === 'error' && !/404/.test(message.text()) && faults.push(`console: ${message.text()}`));
+  await page.goto(url);
+  await page.waitForFunction(() => window.checks, null, { timeout: 30000 });
+  await page.evaluate((files) => window.checks.setReference(files), reference());
+  const facts = await page.evaluate(() => window.checks.begin());
+  assert.deepEqual(facts, { sharesMemory: isolated, threads: isolated ? 2 : 1 });
+  for (const check of ['agrees', 'namesFaults', 'movesBuffers', 'abortsMaps', 'abortsAnything', 'refits', 'divides'])
+    await t.test(check, () => page.evaluate((name) => window.checks.run(name), check));
+  await t.test('failsToStart', () => page.evaluate((bad) => window.checks.failsToStart(bad), script));
+  await t.test('the main thread computes without waiting', () => page.evaluate(() => window.checks.synchronous()));
+  assert.deepEqual(faults, []);
+  await page.context().close();
+}
+
+test('from a file', { timeout: 280000 }, async (t) => runChecks(t, await filePage(), { isolated: false, script: 'broken blob' }));
+
+for (const isolated of [false, true])
+  test(`from a server, ${isolated ? 'isolated' : 'not isolated'}`, { timeout: 280000 }, async (t) => {
+    const server = await serve(isolated ? { 'cross-origin-opener-policy': 'same-origin', 'cross-origin-embedder-policy': 'require-corp' } : {});
+    try {
+      await runChecks(t, `http://127.0.0.1:${server.address().port}/page.html`, { isolated, script: '/nowhere.js' });
+    } finally {
+      server.closeAllConnections?.();
+      server.close();
+    }
+  });
+
+test('a report opens', { timeout: 120000 }, async () => {
+  const { start } = await import(pathToFileURL(join(SDM_PACKAGE, 'index.js')));
+  const sdm = await start({ full: true });
+  const part = ball(40), other = ball(40, 0.9);
+  const surface = new sdm.Surface(part.positions, part.indices, { resolution: 256 });
+  const map = surface.map(new sdm.Sites(other.positions, other.indices));
+  const file = join(folder, 'report.html');
+  writeFileSync(file, await map.report({ tolerance: [-0.2, 0.2], units: 'mm', names: ['part.stl', 'nominal.stl'] }));
+  const page = await (await browser.newContext()).newPage();
+  const faults = [];
+  page.on('pageerror', (error) => faults.push(error.message));
+  page.on('console', (message) => message.type() === 'error' && faults.push(message.text()));
+  await page.goto(pathToFileURL(file).href);
+  await page.waitForSelector('html[data-ready]', { state: 'attached', timeout: 60000 });
+  assert.match(await page.textContent('#verdict'), /PASS/);
+  assert.match(await page.textContent('body'), /part\.stl/);
+  assert.deepEqual(faults, []);
+});
+
+test('a map on a mesh of three.js', { timeout: 120000 }, async () => {
+  const { outputFiles } = await build({
+    entryPoints: [join(here, 'three_page.mjs')], bundle: true, format: 'iife', write: false, target: 'es2022', external: ['node:*'],
+    nodePaths: [join(SDM_NODE_PACKAGES, 'node_modules')], alias: { sdm: join(SDM_PACKAGE, 'index.js'), 'sdm/three': join(SDM_PACKAGE, 'three.js') },
+    logLevel: 'error', logOverride: { 'empty-import-meta': 'silent' },
+  });
+  const page = await (await browser.newContext({ viewport: { width: 400, height: 400 } })).newPage();
+  const faults = [];
+  page.on('pageerror', (error) => faults.push(error.message));
+  page.on('console', (message) => message.type() === 'error' && faults.push(message.text()));
+  await page.setContent('<style>body { margin: 0 }</style>');
+  const given = { script: readFileSync(join(SDM_PACKAGE, 'worker.js'), 'utf8'), single: readFileSync(join(SDM_PACKAGE, 'sdm_single.wasm')).toString('base64') };
+  await page.evaluate((files) => void (window.embedded = files), given);
+  await page.addScriptTag({ content: outputFiles[0].text });
+  const seen = await page.evaluate(() => window.seen());
+  // Half of the ball is 0.1 from the other one: warm above the tolerance, green within, and grey of no value nowhere.
+  assert.ok(seen.above > 0.3 && seen.within > 0.3 && seen.above + seen.within > 0.97, JSON.stringify(seen));
+  if (process.env.SDM_PICTURES) await page.screenshot({ path: join(process.env.SDM_PICTURES, 'three.png') });
+  assert.deepEqual(faults, []);
+});

@@ -1,0 +1,168 @@
+// What workers have to do, in Node and in pages. Each check throws what is wrong.
+import { ball } from './shapes.mjs';
+
+function assert(condition, message) {
+  if (!condition) throw new Error(message);
+}
+async function rejection(promise) {
+  try {
+    await promise;
+  } catch (error) {
+    return error;
+  }
+  throw new Error('the call should have failed');
+}
+const extent = (positions) => {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  positions.forEach((x, i) => ((low[i % 3] = Math.min(low[i % 3], x)), (high[i % 3] = Math.max(high[i % 3], x))));
+  return Math.hypot(...low.map((x, k) => high[k] - x));
+};
+/** Arrays as one number, which differs if a bit does. */
+function sameBits(a, b) {
+  const [x, y] = [a, b].map((array) => new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
+  return x.length === y.length && x.every((byte, i) => byte === y[i]);
+}
+
+/**
+ * Compares pairs with the C++ library. `read(Kind, name)`: an array of js_reference's. Maps are bit-equal but for one texel in 10⁵
+ * within 10⁻⁷; closest points and signed distances agree to 10⁻¹².
+ */
+export async function agreesWithTheLibrary(worker, pairs, read) {
+  let texels = 0, different = 0;
+  for (const [i, { name }] of pairs.entries()) {
+    const mesh = (of) => [read(Float64Array, `${i}.${of}.positions`), read(Uint32Array, `${i}.${of}.indices`)];
+    const o1 = mesh('o1'), o2 = mesh('o2'), size = extent(o1[0]) + extent(o2[0]);
+    const surface = await worker.surface(...mesh('apart'), { resolution: 128, atlas: 'uv', uvs: read(Float64Array, `${i}.apart.uvs`) });
+    const sites = await worker.sites(...o2);
+    const map = await surface.map(sites);
+    const { distances } = await map.arrays('distances');
+    const expected = read(Float32Array, `${i}.distances`);
+    assert(distances.length === expected.length, `${name}: ${distances.length} texels`);
+    for (let texel = 0; texel < expected.length; ++texel) {
+      if (Number.isNaN(expected[texel]) && Number.isNaN(distances[texel])) continue;
+      ++texels;
+      if (distances[texel] === expected[texel]) continue;
+      ++different;
+      assert(Math.abs(distances[texel] - expected[texel]) <= 1e-7 * size, `${name}, texel ${texel}: ${distances[texel]}, not ${expected[texel]}`);
+    }
+    const points = read(Float64Array, `${i}.points`), signed = read(Float64Array, `${i}.signed`);
+    const [closest, result] = await Promise.all([sites.closestPoints(points), sites.signedDistance(points)]);
+    for (let k = 0; k < signed.length; ++k) {
+      assert(Math.abs(closest.distances[k] - Math.abs(signed[k])) <= 1e-12 * size, `${name}: closest point ${k}`);
+      assert(Math.abs(result.distances[k] - signed[k]) <= 1e-12 * size, `${name}: signed distance ${k}`);
+      const foot = [0, 1, 2].map((c) => closest.points[3 * k + c] - points[3 * k + c]);
+      assert(Math.abs(Math.hypot(...foot) - closest.distances[k]) <= 1e-12 * size, `${name}: point ${k} is not where its distance says`);
+    }
+    for (const object of [map, surface, sites]) object.dispose();
+  }
+  assert(pairs.length === 20 && texels > 100000, `${pairs.length} pairs, ${texels} texels`);
+  assert(different <= 1e-5 * texels + 1, `${different} of ${texels} texels differ`);
+}
+
+/** Aborts a map that has begun, and one that waits. The worker and all objects go on. */
+export async function abortsMaps(worker) {
+  const { positions, indices } = ball(120), other = ball(120, 0.9);
+  const surface = await worker.surface(positions, indices, { resolution: 1024 });
+  const sites = await worker.sites(other.positions, other.indices);
+  const before = worker.restarts;
+  const controller = new AbortController();
+  let seen = 0;
+  const running = rejection(surface.map(sites, { signal: controller.signal, progress: (_, fraction) => {
+    seen = fraction;
+    controller.abort();
+  } }));
+  const waiting = rejection(surface.map(sites, { signal: controller.signal }));
+  const later = surface.map(sites);
+  for (const error of await Promise.all([running, waiting])) assert(error.name === 'AbortError', `aborted with ${error}`);
+  assert(seen > 0 && seen < 1, `aborted at ${seen}`);
+  const { distances } = await (await later).arrays('distances');
+  assert(distances.some((d) => Math.abs(d + 0.1) > 0 && d > 0.09 && d < 0.11), 'the map after that has distances');
+  assert(worker.restarts === before, 'the worker has not been replaced');
+  const late = AbortSignal.abort(new RangeError('of the caller'));
+  assert((await rejection(surface.map(sites, { signal: late }))) instanceof RangeError, 'the reason is that of the signal');
+}
+
+/** Aborts a call that does not look for signals where memory is not shared. */
+export async function abortsAnything(worker) {
+  const { positions, indices } = ball(400);
+  const earlier = await worker.sites(positions.slice(0, 9), [0, 1, 2]);
+  const controller = new AbortController();
+  const layout = rejection(worker.surface(positions, indices, { resolution: 2048, signal: controller.signal }));
+  setTimeout(() => controller.abort(), 50);
+  assert((await layout).name === 'AbortError', 'the layout is aborted');
+  const small = ball(8);
+  const sites = await worker.sites(small.positions, small.indices).catch((error) => error);
+  if (worker.sharesMemory) {
+    assert((await earlier.closestPoints([0, 0, 0])).distances.length === 1, 'objects stay');
+    return;
+  }
+  // The next call may still have been ended with the worker; the one after that goes to another worker.
+  assert(!(sites instanceof Error) || sites.kind === 'ended', `the next call: ${sites}`);
+  const again = await worker.sites(small.positions, small.indices);
+  assert((await again.closestPoints([0, 0, 3])).distances[0] === 2, 'the new worker computes');
+  const lost = await rejection(earlier.closestPoints([0, 0, 0]));
+  assert(lost.kind === 'ended', `objects of the ended worker: ${lost}`);
+}
+
+export async function namesFaults(worker) {
+  const error = await rejection(worker.sites([0, 0, NaN, 1, 0, 0, 0, 1, 0]));
+  assert(error.name === 'SdmError' && error.kind === 'input' && /vertex 0 has a NaN/.test(error.message), `${error.kind}: ${error}`);
+  const sites = await worker.sites([0, 0, 0, 1, 0, 0, 0, 1, 0]);
+  assert(/sign is "exakt"/.test((await rejection(sites.signedDistance([0, 0, 0], { sign: 'exakt' }))).message), 'words are checked');
+  sites.dispose();
+  assert(/disposed/.test((await rejection(sites.closestPoints([0, 0, 0]))).message), 'disposed objects are refused');
+}
+
+export async function movesBuffers(worker) {
+  const { positions, indices } = ball(20), copy = positions.slice();
+  const sites = await worker.sites(positions, indices, { transfer: true });
+  assert(positions.length === 0 && indices.length === 0, 'buffers are moved');
+  const points = Float64Array.of(0, 0, 3);
+  assert((await sites.closestPoints(points)).distances[0] === 2 && points.length === 3, 'others are copied');
+  const refitted = sites.refit(copy);
+  copy.fill(NaN);
+  await refitted;
+  assert((await sites.closestPoints([0, 0, 3])).distances[0] === 2, 'arrays are copied when the call is made');
+}
+
+/** Refits bodies many times, without more memory. */
+export async function refitsWithoutMemory(worker, times = 10000) {
+  const { positions, indices } = ball(10);
+  const sites = await worker.sites(positions, indices), surface = await worker.surface(positions, indices, { resolution: 64 });
+  const map = await surface.map(sites);
+  const step = async (i) => {
+    const moved = positions.map((x) => x * (1 + 0.3 * Math.sin(i)));
+    await Promise.all([sites.refit(moved), i % 10 === 0 ? map.update() : surface.refit(moved)]);
+  };
+  for (let i = 0; i < 100; ++i) await step(i);
+  const before = await worker.memoryBytes();
+  for (let i = 0; i < times; ++i) await step(i);
+  const after = await worker.memoryBytes();
+  assert(after === before, `memory grew from ${before} to ${after} bytes`);
+}
+
+/** A pool's maps are those of one worker. */
+export async function dividesMaps(pool, worker) {
+  const part = ball(50), other = ball(30, 0.8);
+  const surfaces = [await pool.surface(part.positions, part.indices, { resolution: 300 }), await worker.surface(part.positions, part.indices, { resolution: 300 })];
+  const sites = [await pool.sites(other.positions, other.indices), await worker.sites(other.positions, other.indices)];
+  for (const scale of [1, 1.1]) {
+    const moved = other.positions.map((x) => scale * x);
+    await Promise.all(sites.map((one) => one.refit(moved)));
+    const ours = await surfaces[0].map(sites[0]), map = await surfaces[1].map(sites[1]);
+    const whole = await map.arrays('distances', 'vectors', 'sitesOfTexels', 'siteTypes');
+    for (const name of Object.keys(whole)) assert(sameBits(ours[name], whole[name]), `${name} of the pool differ`);
+    assert(ours.sign === map.sign && ours.signReason === map.signReason, `sign ${ours.sign}`);
+  }
+  const controller = new AbortController();
+  const aborted = rejection(surfaces[0].map(sites[0], { signal: controller.signal, progress: () => controller.abort() }));
+  assert((await aborted).name === 'AbortError', 'a map of a pool is aborted');
+  assert((await surfaces[0].map(sites[0])).distances.length === 300 * 300, 'and computed again');
+}
+
+export async function failsToStart(createWorker, options, scripts) {
+  for (const script of scripts) {
+    const error = await rejection(createWorker({ ...options, script }));
+    assert(error.name === 'SdmError', `${script}: ${error}`);
+  }
+}
