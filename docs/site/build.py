@@ -2,7 +2,7 @@
 """Builds the documentation site.
 
 build.py SOURCE_DIR BUILD_DIR SDM NODE_MODULES: stages the pages in BUILD_DIR/source, where links between them are those of
-the repository; generates the references of the command SDM and of the C++ headers; has Sphinx run the gallery and write
+the repository; generates the references of the command SDM, of the C++ headers and of the package for npm; has Sphinx run the gallery and write
 BUILD_DIR/html, with MathJax of NODE_MODULES; and checks the links, and the pages in headless Chromium. Warnings are
 errors. Nothing is fetched.
 """
@@ -48,6 +48,8 @@ def main() -> None:
     pages |= command_pages.pages(subprocess.check_output([sdm, "help", "--man"], text=True))
     xml = cpp_pages.run_doxygen(source / "include/sdm", build / "doxygen")
     pages |= cpp_pages.pages(source / "include/sdm", xml)
+    pages["javascript.md"] = subprocess.check_output(
+        ["node", SITE / "js_types.cjs", source / "js"], env=os.environ | {"NODE_PATH": str(node_modules)})  # fmt: skip
     for name, content in pages.items():
         path = staged / name
         path.parent.mkdir(parents=True, exist_ok=True)
