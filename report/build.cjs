@@ -3,7 +3,7 @@ const { buildSync } = require('esbuild');
 const { readFileSync, writeFileSync } = require('fs');
 const { delimiter, join } = require('path');
 
-function bundle(file) {
+function bundle(file, options = {}) {
   const { outputFiles } = buildSync({
     entryPoints: [join(__dirname, 'src', file)],
     bundle: true,
@@ -14,6 +14,7 @@ function bundle(file) {
     target: ['chrome103', 'firefox113', 'safari16.4'],
     charset: 'utf8',
     legalComments: 'inline',
+    ...options,
   });
   return outputFiles[0].text.trim();
 }
@@ -33,13 +34,21 @@ function withShortShaders(text) {
 // Functions as the replacements: in a string, $& and the like have a meaning.
 const read = (file) => readFileSync(join(__dirname, 'src', file), 'utf8');
 const pages = { page: ['Distance report', 'main.ts'], player: ['Distances over time', 'player.ts'] };
-for (const [name, [title, program]] of Object.entries(pages))
-  writeFileSync(
-    join(process.argv[2], `${name}.html`),
-    read('shell.html')
-      .replace('<!-- name -->', name)
-      .replace('<!-- title -->', title)
-      .replace('<!-- content -->\n', () => read(`${name}.html`))
-      .replace('/* style */', () => bundle('page.css'))
-      .replace('/* program */', () => withShortShaders(bundle(program))),
-  );
+
+/// A page with its program; `also`: texts in place of marks of shell.html.
+function pageOf(name, title, style, program, also = {}) {
+  return read('shell.html')
+    .replace('<!-- name -->', name)
+    .replace('<!-- title -->', title)
+    .replace('<!-- sources -->', also.sources ?? '')
+    .replace('<!-- content -->\n', () => read(also.content ?? `${name}.html`))
+    .replace('/* style */', () => style)
+    .replace('<!-- data -->', () => also.data ?? '<!-- data -->')
+    .replace('/* program */', () => withShortShaders(program));
+}
+
+if (require.main === module)
+  for (const [name, [title, program]] of Object.entries(pages))
+    writeFileSync(join(process.argv[2], `${name}.html`), pageOf(name, title, bundle('page.css'), bundle(program)));
+
+module.exports = { bundle, pageOf };

@@ -1,4 +1,6 @@
-import { floatOfKey } from './arrays';
+import { floatOfKey, keyOfFloat } from './arrays';
+
+const kBins = 2048; // of equal width
 
 /// The fraction of the area, that without a value included, up to a distance: of src/io/page/report/area_by_value.h.
 export class AreaByValue {
@@ -19,6 +21,26 @@ export class AreaByValue {
       this.sums.push(this.sums[i] + areaOfKey[i]);
     });
     areaOfBin.forEach((area, i) => this.binSums.push(this.binSums[i] + area));
+  }
+
+  /// Of texels with their distances, NaN without one, and areas, 0 for those of no face.
+  static of(distances: Float32Array, areas: Float64Array): AreaByValue {
+    let [lo, hi, total, without] = [Infinity, -Infinity, 0, 0];
+    areas.forEach((area, i) => {
+      total += area;
+      if (!Number.isFinite(distances[i])) return void (without += area);
+      if (area > 0) [lo, hi] = [Math.min(lo, distances[i]), Math.max(hi, distances[i])];
+    });
+    if (lo > hi) lo = hi = 0;
+    const byKey = new Float64Array(1 << 16);
+    const byBin = new Float64Array(kBins);
+    areas.forEach((area, i) => {
+      if (area === 0 || !Number.isFinite(distances[i])) return;
+      byKey[keyOfFloat(distances[i])] += area / total;
+      byBin[Math.min(kBins - 1, Math.floor(hi > lo ? (kBins * (distances[i] - lo)) / (hi - lo) : 0))] += area / total;
+    });
+    const keys = Uint32Array.from(byKey.keys()).filter((key) => byKey[key] > 0);
+    return new AreaByValue(lo, hi, keys, Float32Array.from(keys, (key) => byKey[key]), Float32Array.from(byBin), total > 0 ? without / total : 0);
   }
 
   /// The fraction of the area whose distance is at most d.

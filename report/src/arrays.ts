@@ -21,7 +21,8 @@ export function bytesOfBase85(text: string): Uint8Array<ArrayBuffer> {
   return bytes;
 }
 
-async function inflated(bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
+/// What was packed by deflate without a header.
+export async function inflated(bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
@@ -75,6 +76,11 @@ export function floatsOfOrdered(numbers: Uint32Array): Float32Array {
   return new Float32Array(bits.buffer);
 }
 
+/// The upper 16 bits of a number in the order of floats, and the least float that has them.
+export function keyOfFloat(value: number): number {
+  kFloat[0] = value;
+  return (kBits[0] & 0x80000000 ? ~kBits[0] >>> 0 : (kBits[0] ^ 0x80000000) >>> 0) >>> 16;
+}
 export function floatOfKey(key: number): number {
   const x = (key << 16) >>> 0;
   kBits[0] = x & 0x80000000 ? x ^ 0x80000000 : ~x;

@@ -64,6 +64,15 @@ export class Callouts {
     this.view.canvas.focus();
   }
 
+  /// Takes all away.
+  clear(): void {
+    for (const { label, item } of this.placed.splice(0)) {
+      label.remove();
+      item.remove();
+    }
+    byId('callouts').classList.add('empty');
+  }
+
   /// After each picture: labels follow the points; soon after the last one, those behind the part fade.
   update(): void {
     for (const { label, at, item } of this.placed) {

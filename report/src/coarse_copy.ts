@@ -102,6 +102,11 @@ export class CoarseWhileMoving {
     this.fine = mesh.geometry;
   }
 
+  /// Makes the copy again when it is next needed: other vertices or values.
+  forget(): void {
+    this.of = null;
+  }
+
   show(coarse: boolean): void {
     if (!coarse) {
       this.mesh.geometry = this.fine;

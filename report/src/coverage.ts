@@ -10,11 +10,11 @@ import { unitOf } from './verdict';
 const kCovered: Vec = [150, 172, 190];
 const kMissing: Vec = [222, 105, 20];
 
-/// Passes the point on to the fragments, in the space of the model and in that of the camera.
+/// Passes the point on to the fragments, in the space of the scene and in that of the camera.
 export const kReferenceVertexShader = `
   out vec3 vPoint, vView;
   void main() {
-    vPoint = position;
+    vPoint = (modelMatrix * vec4(position, 1.0)).xyz;
     vec4 view = modelViewMatrix * vec4(position, 1.0);
     vView = view.xyz;
     gl_Position = projectionMatrix * view;

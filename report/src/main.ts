@@ -1,65 +1,32 @@
 // The page of report.html: the text first, then the part.
-import { showBadge } from './badge';
 import { Callouts } from './callouts';
 import { Cloud } from './cloud';
 import { drawCoverageLegend } from './coverage';
 import { makeControls, State } from './controls';
 import { byId, make } from './dom';
+import { explore } from './explore';
 import { GroupName, showGroups } from './group_table';
 import { drawHistogram } from './histogram';
 import { GroupLimits } from './group_limits';
+import { nameSubject, showVerdict } from './headline';
 import { drawGroupLegend, drawLegend } from './legend';
 import { showMade } from './made';
-import { exactText, place } from './numbers';
 import { openPage } from './open_page';
-import { Listed, listedPlaces, onlyThickest, showPlaces } from './places';
+import { Listed, listedPlaces, showPlaces } from './places';
 import { PageData, readReport, Report, Vec } from './page_data';
 import { distanceText } from './precision';
 import { printPicture } from './print';
 import { readData } from './read_page';
 import { copyOfPage, csvOf, download, pageWith, readSaved, Saved } from './saved';
-import { SectionView } from './section_view';
+import { SectionView, sectionWords } from './section_view';
 import { showWithoutPicture } from './without_picture';
 import { boxOf, Subject, toFile, toScene } from './subject';
 import { showSure } from './sure';
 import { Surface } from './surface';
-import { inputsOf, showFields, showInputs, showMethod, showMore, showNumbers, showOmissions, titleOf } from './tables';
-import { isCloud, isSigned, outsideOf, unitOf, verdictOf, whatIf } from './verdict';
+import { inputsOf, showFields, showInputs, showMethod, showMore, showNumbers, showOmissions } from './tables';
+import { isSigned, outsideOf, unitOf, verdictOf, whatIf } from './verdict';
 import { View } from './view';
-import { capital, named, quantityOf } from './words';
-
-function showVerdict(report: Report): void {
-  const { verdict, sentence } = verdictOf(report);
-  showBadge(verdict);
-  showSure(report);
-  const tile = report.atlas?.udim ? ' This page is of one tile of the texture; the verdict on all tiles is in report.json in the folder above.' : '';
-  const doubts = verdict === 'FAIL' || verdict === 'NOT DECIDED' ? (report.doubts ?? []).map((doubt) => ` ${capital(doubt.text)}.`).join('') : '';
-  const notes = report.notes?.length ?? 0;
-  const link = notes === 0 ? '' : make('a', { href: '#method' }, notes === 1 ? 'One note' : `${notes} notes`);
-  byId('sentence').replaceChildren(named(sentence + doubts, report) + tile, ...(link ? [' ', link, notes === 1 ? ' qualifies this.' : ' qualify this.'] : []));
-  document.title = `${verdict}: ${titleOf(report)}`;
-  byId('title').textContent = titleOf(report);
-}
-
-/// Words of page.html that differ for clouds.
-function nameSubject(report: Report): void {
-  byId('canvas').setAttribute('aria-label', `The part, coloured by ${quantityOf(report)}`);
-  if (report.thickness) byId('worst-title').textContent = onlyThickest(report) ? 'Thickest places' : 'Thinnest places';
-  else if (report.mesh) byId('worst-title').textContent = 'Smallest distances';
-  else if (report.places?.limits_from === 'tolerance') byId('worst-title').textContent = 'Places out of tolerance';
-  if (!isCloud(report)) return;
-  byId('part-title').textContent = 'The cloud in 3D';
-  byId('histogram-title').textContent = 'How the points are distributed';
-}
-
-/// What the lines of a section are.
-function sectionWords({ part, other, factor }: SectionView): string {
-  if (!part) return other ? 'Dark line: the reference.' : '';
-  const inside = part.isClosed ? ' Grey: inside of the part.' : '';
-  if (!other) return `The thick line is the profile of the part in the colours of its values.${inside}`;
-  const gap = `${factor > 1 ? `${factor} times ` : ''}as long as the gap to the reference`;
-  return `Thick line in colours: the part. Dark line: the reference. Thin lines towards it: ${gap} in this plane.${other.isClosed && part.isClosed ? ' Orange: only the part; blue: only the reference; grey: both.' : inside}`;
-}
+import { quantityOf } from './words';
 
 class Page {
   private readonly subject: Subject;
@@ -94,6 +61,8 @@ class Page {
     this.section = this.makeSection();
     this.view = new View(byId('view'), this.subject, ghost, this.section, page.up, () => this.callouts?.update());
     this.callouts = new Callouts(this.view, (d) => this.valueText(d), this.unit, this.subject.size, (at) => this.lookAt(at));
+    const words = { quantity: quantityOf(report), unit: this.unit, valueText: (d: number) => this.valueText(d) };
+    explore(this.view, this.subject, this.callouts, words, () => this.lookAtFirst());
     const ghostShown = this.apart();
     this.state = makeControls(
       report,
@@ -252,31 +221,6 @@ class Page {
   }
 
   private listen(): void {
-    const { canvas } = this.view;
-    let next: (() => void) | null = null;
-    const later = (action: () => void) => {
-      if (!next) requestAnimationFrame(() => { next?.(); next = null; });
-      next = action;
-    };
-    const at = (event: PointerEvent): [number, number] => [event.offsetX, event.offsetY];
-    let pressed: [number, number] | null = null;
-    canvas.addEventListener('pointermove', (event) => {
-      const [x, y] = at(event);  // now: after its dispatch an event has no target that they refer to
-      if (event.buttons === 0) later(() => this.probe(x, y));
-    });
-    canvas.addEventListener('pointerdown', (event) => {
-      pressed = event.button === 0 ? at(event) : null;
-    });
-    canvas.addEventListener('pointerup', (event) => {
-      const [x, y] = at(event);
-      if (!pressed || Math.hypot(x - pressed[0], y - pressed[1]) > 4) return;
-      pressed = null;
-      this.probe(x, y);
-      this.addCallout(x, y);
-    });
-    canvas.addEventListener('keydown', (event) => this.key(event));
-    canvas.addEventListener('focus', () => byId('view').classList.toggle('keyboard', canvas.matches(':focus-visible')));
-    canvas.addEventListener('blur', () => byId('view').classList.remove('keyboard'));
     printPicture(this.view);
     new ResizeObserver(() => this.drawHistogram()).observe(byId('histogram-chart'));
     new ResizeObserver(() => this.drawLegend()).observe(byId('legend'));
@@ -286,59 +230,9 @@ class Page {
     });
   }
 
-  private key(event: KeyboardEvent): void {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const actions: Record<string, () => void> = {
-      ArrowLeft: () => this.view.turn(-10, 0),
-      ArrowRight: () => this.view.turn(10, 0),
-      ArrowUp: () => this.view.turn(0, 10),
-      ArrowDown: () => this.view.turn(0, -10),
-      '+': () => this.view.zoom(0.85),
-      '=': () => this.view.zoom(0.85),
-      '-': () => this.view.zoom(1 / 0.85),
-      Home: () => this.lookAtFirst(),
-      Enter: () => this.addCallout(...this.middle()),
-    };
-    const action = actions[event.key];
-    if (!action) return;
-    event.preventDefault();
-    byId('view').classList.add('keyboard');
-    action();
-    this.probe(...this.middle());
-  }
-
-  private middle(): [number, number] {
-    return [this.view.canvas.clientWidth / 2, this.view.canvas.clientHeight / 2];
-  }
-
-  private probe(x: number, y: number): void {
-    const found = this.view.find(x, y);
-    const values = byId('probe-values');
-    if (!found) {
-      values.replaceChildren();
-      return;
-    }
-    const row = (label: string, text: string, id: string) =>
-      make('div', {}, make('dt', {}, label), make('dd', { id }, text));
-    const isNone = Number.isNaN(found.distance);
-    values.replaceChildren(
-      row(capital(quantityOf(this.report)), isNone ? 'none in range' : this.valueText(found.distance), 'probe-distance'),
-      row('Position', place(toFile(this.subject, found.at), this.subject.size) + this.unit, 'probe-position'),
-      ...(isNone ? [] : [row('Not rounded', exactText(found.distance) + this.unit, 'probe-exact')]),
-      ...found.rows.map(([label, text, id]) => row(label, text, id)),
-    );
-  }
-
   /// A distance as the tables of the page state it.
   private valueText(distance: number): string {
     return distanceText(distance, this.report, this.signs) + this.unit;
-  }
-
-  private addCallout(x: number, y: number): void {
-    const found = this.view.find(x, y);
-    if (!found || Number.isNaN(found.distance)) return;
-    const { distance, at, detail } = found;
-    this.callouts.add({ distance, point: toFile(this.subject, at), at, detail });
   }
 
   private lookAt(at: Vec): void {

@@ -43,6 +43,7 @@ export interface Report {
   measured_on?: 'o1' | 'o2';
   units?: string;
   alignment?: { text: string };
+  live?: boolean; ///< of the live page, which has no options of a command
   fields?: Record<string, string>; ///< as the author of the report named them
   atlas?: { kind: string; resolution: number; rows?: number; udim?: number | null; charts: number; texels: number };
   engine?: string;

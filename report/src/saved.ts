@@ -57,9 +57,9 @@ export function csvOf(report: Report, callouts: Callout[]): string {
   return ['name,value', ...rows.map(([path, value]) => `${csvField(path)},${csvField(value)}`)].join('\r\n') + '\r\n';
 }
 
-/// Offers a text as a file.
-export function download(name: string, type: string, text: string): void {
-  const url = URL.createObjectURL(new Blob([text], { type }));
+/// Offers a text, or bytes, as a file.
+export function download(name: string, type: string, content: string | ArrayBuffer): void {
+  const url = URL.createObjectURL(new Blob([content], { type }));
   const link = document.createElement('a');
   link.href = url;
   link.download = name;

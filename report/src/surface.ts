@@ -106,10 +106,11 @@ export class Surface implements Subject {
   private readonly ofSet: Uniforms[]; // of each set of limits
   private readonly coarse: CoarseWhileMoving[];
   private readonly showBacks: boolean;
+  protected readonly texture: DataTexture;
 
   constructor(
-    private readonly model: Model,
-    private readonly map: TexelMap,
+    protected readonly model: Model,
+    protected readonly map: TexelMap,
     colors: Colors,
     readonly isClosed: boolean,
     private readonly unit: string,
@@ -117,13 +118,13 @@ export class Surface implements Subject {
   ) {
     ({ centre: this.centre, size: this.size } = model);
     ({ lo: this.lo, hi: this.hi } = boxOf(model.position));
-    const texture = new DataTexture(filledValues(map, model), map.width, map.height, RedFormat, FloatType);
-    texture.needsUpdate = true;
+    this.texture = new DataTexture(filledValues(map, model), map.width, map.height, RedFormat, FloatType);
+    this.texture.needsUpdate = true;
     // The folds of a coarser copy are not the inside of the part.
     this.showBacks = !isClosed || model.place === null;
     this.uniforms = {
       ...colorUniforms(colors),
-      values: { value: texture },
+      values: { value: this.texture },
       byVertex: { value: model.place === null },
       showBacks: { value: this.showBacks },
       cut: { value: [0, 0, 0, 1] },
@@ -133,8 +134,8 @@ export class Surface implements Subject {
     geometry.setAttribute('position', new BufferAttribute(model.position, 3));
     geometry.setAttribute('normal', new BufferAttribute(model.normal, 3, true));
     geometry.setAttribute('place', new BufferAttribute(model.place ?? new Float32Array(2 * model.distance.length), 2));
-    const values = Float32Array.from(model.distance, (d) => (Number.isNaN(d) ? kNoValue : d));
-    geometry.setAttribute('value', new BufferAttribute(values, 1));
+    geometry.setAttribute('value', new BufferAttribute(new Float32Array(model.distance.length), 1));
+    this.showVertexValues(geometry);
     const own = () => Object.fromEntries(['lo', 'hi', 'lower', 'upper'].map((key) => [key, { value: 0 }]));
     this.ofSet = limits ? Array.from({ length: limits.count }, () => ({ ...this.uniforms, ...own() })) : [this.uniforms];
     const meshOf = (shape: BufferGeometry, faded: boolean) => {
@@ -160,6 +161,18 @@ export class Surface implements Subject {
     this.rest.visible = false;
     this.object.add(this.rest);
     this.coarse = [this.object, this.rest].map((mesh) => new CoarseWhileMoving(mesh, kCoarse));
+  }
+
+  /// Of other vertices or values, coarse copies are made again.
+  protected forgetCopies(): void {
+    for (const mesh of this.coarse) mesh.forget();
+  }
+
+  /// Of the triangles of a coarser copy, which have no texels.
+  protected showVertexValues(geometry: BufferGeometry): void {
+    const values = geometry.getAttribute('value') as BufferAttribute;
+    this.model.distance.forEach((d, v) => (values.array[v] = Number.isNaN(d) ? kNoValue : d));
+    values.needsUpdate = true;
   }
 
   /// What a section is made of.

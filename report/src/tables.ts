@@ -158,7 +158,7 @@ export function showMethod(report: Report): void {
       sentence(
         `Error bound: no point of the part is farther than ${text(bound)}${unit} from a measured point, and a distance cannot change faster than the point moves.`,
         `So at any point of the part, the distance differs from that of the nearest measured point by at most ${text(bound)}${unit}.`,
-        `This is proven, not estimated; --precision makes it as small as needed.`,
+        `This is proven, not estimated; ${report.live ? 'a finer map makes it smaller' : '--precision makes it as small as needed'}.`,
       ),
     );
   if (sign && !isThickness(report))
@@ -231,7 +231,7 @@ function omittedPoints(shown: number, { points, picked, normals }: NonNullable<P
 }
 
 const kShown = new Set([
-  'version', 'fields', 'o1', 'o2', 'mesh', 'measured_on', 'units', 'atlas', 'precision', 'engine', 'max_distance', 'colors', 'measured', 'sign',
+  'version', 'live', 'fields', 'o1', 'o2', 'mesh', 'measured_on', 'units', 'atlas', 'precision', 'engine', 'max_distance', 'colors', 'measured', 'sign',
   'distance', 'extremes', 'texels_with_value', 'points_with_value', 'negative_points', 'texels_without_value', 'negative_texels', 'beyond_max_distance', 'without_match',
   'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'evidence', 'tolerance', 'places', 'group_tolerances', 'coverage', 'notes', 'time_ms', 'histogram',
 ]);

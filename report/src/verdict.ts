@@ -150,6 +150,7 @@ function sentence(clause: string): string {
 function unjudged(report: Report): string {
   if (isThickness(report)) return 'No limits were given (--min, --max), so nothing was judged.';
   if (!report.evidence) return 'Nothing was judged.';
+  if (report.live) return 'No tolerance is set, so nothing is judged.';
   return 'No tolerance was given (--tolerance), so nothing was judged.';
 }
 

@@ -13,13 +13,14 @@ const kGhostShader = `
   precision highp float;
   uniform vec4 cut;
   uniform vec3 color;
+  uniform float opacity; // where it faces the viewer
   in vec3 vPoint, vView;
   out vec4 outColor;
   void main() {
     if (dot(cut.xyz, vPoint) > cut.w) discard;
     vec3 n = normalize(cross(dFdx(vView), dFdy(vView)));
     float rim = 1.0 - abs(dot(n, normalize(vView)));
-    outColor = vec4(color, 0.1 + 0.45 * rim * rim);
+    outColor = vec4(color, opacity + 0.45 * rim * rim);
   }
 `;
 
@@ -29,8 +30,8 @@ const kCoarseGhost = 4000; // triangles, while something moves
 const kNoCut: HalfSpace = { normal: [0, 0, 0], offset: 1 };
 
 export class View extends Viewer {
-  private readonly ghostMaterial: ShaderMaterial;
-  private readonly ghost: Mesh | null = null;
+  protected readonly ghostMaterial: ShaderMaterial;
+  protected readonly ghost: Mesh | null = null;
   private readonly coverage: ReturnType<typeof coverageOf> = null;
   private readonly coarse: CoarseWhileMoving[] = []; // the meshes of the reference
   private before: Camera | null = null; // the view of the part, while the reference is shown
@@ -58,7 +59,7 @@ export class View extends Viewer {
       polygonOffset: true,
       polygonOffsetFactor: 1,
       polygonOffsetUnits: 1,
-      uniforms: { cut: { value: [0, 0, 0, 1] }, color: { value: new Vector3(0.45, 0.5, 0.58) } },
+      uniforms: { cut: { value: [0, 0, 0, 1] }, color: { value: new Vector3(0.45, 0.5, 0.58) }, opacity: { value: 0.1 } },
     });
     if (!ghost) return;
     const shape = new BufferGeometry();
@@ -104,6 +105,14 @@ export class View extends Viewer {
       if (!this.isHidden(point)) return;
     }
     this.look({ normal });
+  }
+
+  /// The vertices of the reference have moved.
+  referenceMoved(): void {
+    if (!this.ghost) return;
+    this.ghost.geometry.getAttribute('position').needsUpdate = true;
+    for (const mesh of this.coarse) mesh.forget();
+    this.draw();
   }
 
   setGhost(visible: boolean): void {

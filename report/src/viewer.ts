@@ -18,8 +18,9 @@ export class Viewer {
   readonly scene = new Scene();
   readonly firstPicture: Promise<void>; ///< is complete
   private readonly renderer: WebGLRenderer;
-  private readonly controls: OrbitControls;
+  protected readonly controls: OrbitControls;
   private readonly pace: Pace;
+  private readonly resizes = new ResizeObserver(() => this.resize());
   private readonly finest = Math.min(2, window.devicePixelRatio); // pixel ratio
   private scheduled = false;
   private fitted = [0, 0]; // to this size of the container, in pixels
@@ -41,9 +42,17 @@ export class Viewer {
     this.controls.zoomToCursor = true;
     this.scrollByOneFinger();
     this.controls.addEventListener('change', () => this.draw());
-    new ResizeObserver(() => this.resize()).observe(container);
+    this.resizes.observe(container);
     this.resize();
     this.look('corner');
+  }
+
+  /// Frees what the graphics card holds. The canvas cannot be used any more.
+  dispose(): void {
+    this.resizes.disconnect();
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
   }
 
   // One finger scrolls the page; two turn the view and zoom.

@@ -1,0 +1,34 @@
+// The head of a page: what was compared, the verdict, and how sure it is.
+import { showBadge } from './badge';
+import { byId, make } from './dom';
+import type { Report } from './page_data';
+import { onlyThickest } from './places';
+import { showSure } from './sure';
+import { titleOf } from './tables';
+import { isCloud, verdictOf } from './verdict';
+import { capital, named, quantityOf } from './words';
+
+/// The verdict with its sentence, and the title.
+export function showVerdict(report: Report): void {
+  const { verdict, sentence } = verdictOf(report);
+  showBadge(verdict);
+  showSure(report);
+  const tile = report.atlas?.udim ? ' This page is of one tile of the texture; the verdict on all tiles is in report.json in the folder above.' : '';
+  const doubts = verdict === 'FAIL' || verdict === 'NOT DECIDED' ? (report.doubts ?? []).map((doubt) => ` ${capital(doubt.text)}.`).join('') : '';
+  const notes = report.notes?.length ?? 0;
+  const link = notes === 0 ? '' : make('a', { href: '#method' }, notes === 1 ? 'One note' : `${notes} notes`);
+  byId('sentence').replaceChildren(named(sentence + doubts, report) + tile, ...(link ? [' ', link, notes === 1 ? ' qualifies this.' : ' qualify this.'] : []));
+  document.title = `${verdict}: ${titleOf(report)}`;
+  byId('title').textContent = titleOf(report);
+}
+
+/// Words of page.html that differ for clouds.
+export function nameSubject(report: Report): void {
+  byId('canvas').setAttribute('aria-label', `The part, coloured by ${quantityOf(report)}`);
+  if (report.thickness) byId('worst-title').textContent = onlyThickest(report) ? 'Thickest places' : 'Thinnest places';
+  else if (report.mesh) byId('worst-title').textContent = 'Smallest distances';
+  else if (report.places?.limits_from === 'tolerance') byId('worst-title').textContent = 'Places out of tolerance';
+  if (!isCloud(report)) return;
+  byId('part-title').textContent = 'The cloud in 3D';
+  byId('histogram-title').textContent = 'How the points are distributed';
+}
