@@ -1,0 +1,193 @@
+// What is computed for the page, in a worker: the map of the part to the reference, coarse while something moves and fine at
+// rest, and the separation of both.
+import type { Atlas, SdmWorker, WorkerMap, WorkerPair, WorkerSites, WorkerSurface } from 'sdm';
+import { Matrix4, Vector3 } from 'three';
+import type { Report } from '../src/page_data';
+import type { Triangles } from './layout';
+
+export const kCoarse = 256; // texels a side while something moves
+
+export interface Body extends Triangles {
+  name: string;
+}
+
+/// Of a moment.
+export interface FrameResult {
+  distances: Float32Array;
+  separation: number;
+  milliseconds: number; ///< that it took to compute
+}
+
+/// At rest.
+export interface FineResult extends Omit<FrameResult, 'separation'> {
+  atVertices: Float64Array;
+  sites: Uint32Array; ///< 4 · number + type of each texel, 0xFFFFFFFF without one
+  report: Report;
+}
+
+interface Measured {
+  surface: WorkerSurface;
+  map: WorkerMap;
+}
+
+/// Says what is going on, such as "Laying out the atlas", and how far it is.
+export type Say = (step: string, fraction: number) => void;
+
+/// Positions moved by a matrix.
+export function moved(positions: Float64Array, matrix: Matrix4): Float64Array {
+  const [a, b, c, , d, e, f, , g, h, i, , x, y, z] = matrix.elements;
+  const result = new Float64Array(positions.length);
+  for (let v = 0; v < positions.length; v += 3) {
+    const [px, py, pz] = [positions[v], positions[v + 1], positions[v + 2]];
+    result[v] = a * px + d * py + g * pz + x;
+    result[v + 1] = b * px + e * py + h * pz + y;
+    result[v + 2] = c * px + f * py + i * pz + z;
+  }
+  return result;
+}
+
+/// A motion of the scene in the units of the files: its translation is that of the middle of the scene.
+export function inFile(motion: Matrix4, { centre, size }: { centre: [number, number, number]; size: number }): Matrix4 {
+  const toFile = new Matrix4().makeTranslation(...centre).scale(new Vector3(size, size, size));
+  return toFile.clone().multiply(motion).multiply(toFile.clone().invert());
+}
+
+export class Engine {
+  private sites: WorkerSites | null = null;
+  private pair: WorkerPair | null = null;
+  private coarse: Measured | null = null;
+  private fine: Measured | null = null;
+  private closed: [boolean, boolean] = [false, false];
+  private atlases = new Map<Measured, Atlas>();
+  private bodies: [Body, Body] | null = null;
+  private motion = new Matrix4(); // of the reference
+  private turned = false; // the pair has bodies at other places
+
+  constructor(private readonly worker: SdmWorker) {}
+
+  get isClosed(): boolean { return this.closed[0]; }
+  get referenceIsClosed(): boolean { return this.closed[1]; }
+
+  /// Takes two bodies, and lays out the coarse atlas of the first.
+  async load(bodies: [Body, Body], say: Say): Promise<Atlas> {
+    this.free();
+    const [part, reference] = bodies;
+    const one = await this.worker.sites(part.positions, part.indices, { progress: (_, f) => say('Reading the part', f) });
+    const isClosed = one.closed;
+    one.dispose();
+    this.sites = await this.worker.sites(reference.positions, reference.indices, { progress: (_, f) => say('Reading the reference', f) });
+    this.closed = [isClosed, this.sites.closed];
+    this.pair = await this.worker.pair(part, reference);
+    this.bodies = bodies;
+    this.motion = new Matrix4();
+    this.coarse = await this.measured(kCoarse, say);
+    return this.atlases.get(this.coarse)!;
+  }
+
+  private async measured(resolution: number, say: Say): Promise<Measured> {
+    const [part] = this.bodies!;
+    const surface = await this.worker.surface(part.positions, part.indices, { resolution, progress: (_, f) => say('Laying out the atlas', f) });
+    const map = await surface.map(this.sites!, { progress: (_, f) => say('Measuring', f) });
+    const measured = { surface, map };
+    this.atlases.set(measured, await surface.atlas());
+    return measured;
+  }
+
+  /// Lays out the fine atlas; null if that is the coarse one.
+  async refine(resolution: number, say: Say): Promise<Atlas | null> {
+    if (this.fine) this.release(this.fine);
+    this.fine = null;
+    if (resolution <= kCoarse) return null;
+    this.fine = await this.measured(resolution, say);
+    return this.atlases.get(this.fine)!;
+  }
+
+  /// Moves the reference rigidly: a matrix in the units of the files.
+  async place(motion: Matrix4): Promise<void> {
+    this.motion = motion.clone();
+    const { positions } = this.bodies![1];
+    await Promise.all([this.sites!.refit(moved(positions, motion)), this.pair!.setPose(1, motion.elements)]);
+  }
+
+  /// Moves the vertices of both bodies.
+  async deform(positions: [Float64Array, Float64Array]): Promise<void> {
+    const [part, reference] = this.bodies!;
+    part.positions = positions[0];
+    reference.positions = positions[1];
+    const placed = moved(reference.positions, this.motion);
+    this.turned = true;
+    await Promise.all([
+      this.sites!.refit(placed), this.coarse!.surface.refit(part.positions),
+      this.pair!.refit(0, part.positions), this.pair!.refit(1, reference.positions), this.pair!.setPose(1, this.motion.elements),
+    ]);
+  }
+
+  /// The coarse map, and the separation, after `change`.
+  async frame(change: Promise<void>, began = performance.now()): Promise<FrameResult> {
+    const { map } = this.coarse!;
+    const [, , arrays, separation] = await Promise.all([change, map.update(), map.arrays('distances'), this.pair!.separation()]);
+    return { distances: arrays.distances!, separation: separation.value, milliseconds: performance.now() - began };
+  }
+
+  /// The fine map with its report.
+  async atRest(tolerance: [number, number] | null, units: string, say: Say): Promise<FineResult> {
+    const began = performance.now();
+    const measured = this.fine ?? this.coarse!;
+    const [part] = this.bodies!;
+    if (this.turned && this.fine) await this.fine.surface.refit(part.positions);
+    this.turned = false;
+    await measured.map.update({ progress: (_, f) => say('Measuring', f) });
+    const milliseconds = performance.now() - began;
+    const [arrays, atVertices] = await Promise.all([
+      measured.map.arrays('distances', 'sitesOfTexels', 'siteTypes'),
+      this.sites!.signedDistance(part.positions, { sign: measured.map.sign }),
+    ]);
+    const report = await this.report(tolerance, units);
+    const sites = arrays.sitesOfTexels!.map((n, i) => (arrays.siteTypes![i] > 2 || n >= 2 ** 30 ? 0xffffffff : (n << 2) | arrays.siteTypes![i]));
+    return { distances: arrays.distances!, atVertices: atVertices.distances, sites, milliseconds, report };
+  }
+
+  /// Sums up the fine map, as report.json does.
+  async report(tolerance: [number, number] | null, units: string): Promise<Report> {
+    const measured = this.fine ?? this.coarse!;
+    const atlas = this.atlases.get(measured)!;
+    const summary = await measured.map.summary({ units, ...(tolerance ? { tolerance } : {}) });
+    const [o1, o2] = this.bodies!.map((body, which) => ({
+      file: body.name,
+      transform: which === 1 && !isIdentity(this.motion) ? 'the handles' : '',
+      vertices: body.positions.length / 3,
+      triangles: body.indices.length / 3,
+      closed: this.closed[which],
+    }));
+    const texels = atlas.texelFaces.reduce((sum, face) => sum + (face === 0xffffffff ? 0 : 1), 0);
+    return {
+      o1, o2, measured_on: 'o1',
+      atlas: { kind: 'charts', resolution: atlas.resolution, rows: atlas.rows, charts: atlas.charts, texels },
+      engine: 'cpu',
+      ...summary,
+    } as Report;
+  }
+
+  /// The text of report.html.
+  html(tolerance: [number, number] | null, units: string, up: 'y' | 'z'): Promise<string> {
+    const names = this.bodies!.map(({ name }) => name) as [string, string];
+    return (this.fine ?? this.coarse!).map.report({ units, names, up, ...(tolerance ? { tolerance } : {}) });
+  }
+
+  private release({ surface, map }: Measured): void {
+    map.dispose();
+    surface.dispose();
+  }
+
+  private free(): void {
+    for (const measured of [this.coarse, this.fine]) if (measured) this.release(measured);
+    this.atlases = new Map();
+    this.sites?.dispose();
+    this.pair?.dispose();
+    [this.coarse, this.fine, this.sites, this.pair] = [null, null, null, null];
+  }
+}
+
+function isIdentity({ elements }: Matrix4): boolean {
+  return new Matrix4().elements.every((x, i) => Math.abs(x - elements[i]) < 1e-12);
+}

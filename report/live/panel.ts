@@ -1,0 +1,83 @@
+// The controls of the live page: what is compared, how it moves, and what is saved.
+import { byId, make } from '../src/dom';
+import { fileButton } from './files';
+import { kScenes } from './scenes';
+import type { Handles } from './view';
+
+export interface Actions {
+  openScene: (name: string) => void;
+  openFiles: (files: File[], which: 0 | 1 | null) => void;
+  swap: () => void;
+  setResolution: (resolution: number) => void;
+  setUnits: (units: string) => void;
+  setHandles: (handles: Handles) => void;
+  resetMotion: () => void;
+  togglePlay: () => void;
+}
+
+const kResolutions = [256, 512, 1024, 2048];
+
+function choice(id: string, label: string, options: [string, string][], value: string, set: (value: string) => void): HTMLElement {
+  const select = make('select', { id, change: () => set(select.value) });
+  for (const [key, name] of options) select.append(make('option', { value: key, selected: key === value }, name));
+  return make('div', { class: 'field-of' }, make('label', { for: id }, label), select);
+}
+
+/// Adds the controls to the page, once.
+export function addPanel(scene: string, resolution: number, actions: Actions): void {
+  const button = (id: string, label: string, click: () => void) => make('button', { type: 'button', id, click }, label);
+  const scenes = Object.entries(kScenes).map(([name, { title }]): [string, string] => [name, title]);
+  const units = make('input', { type: 'text', id: 'units', size: 4, maxlength: 12, autocomplete: 'off', change: () => actions.setUnits(units.value.trim()) });
+  const section = make(
+    'section', { id: 'compare', 'aria-labelledby': 'compare-title' },
+    make('h2', { id: 'compare-title', class: 'hidden' }, 'What to compare'),
+    make(
+      'div', { class: 'row' },
+      choice('scene', 'Pair', [...scenes, ['files', 'Your files…']], scene, (name) => (name === 'files' ? byId('open-both').click() : actions.openScene(name))),
+      fileButton('open-both', 'Open two files…', (files) => actions.openFiles(files, null)),
+      fileButton('open-part', 'Part…', (files) => actions.openFiles(files, 0)),
+      fileButton('open-reference', 'Reference…', (files) => actions.openFiles(files, 1)),
+      button('swap', 'Swap', actions.swap),
+      choice('resolution', 'Map', kResolutions.map((n) => [String(n), `${n} × ${n}`]), String(resolution), (n) => actions.setResolution(Number(n))),
+      make('div', { class: 'field-of' }, make('label', { for: 'units' }, 'Unit'), units),
+    ),
+    make('p', { class: 'hint' }, 'Or drop two files here: STL, PLY, OBJ, OFF, 3DS or GLB, the part and the reference. They stay on this computer: the page cannot send anything.'),
+    make('p', { id: 'status', role: 'status', 'aria-live': 'polite', hidden: true }),
+  );
+  document.querySelector('main')!.prepend(section);
+
+  const handle = (value: Handles, label: string) => {
+    const input = make('input', { type: 'radio', name: 'handles', id: `handles-${value}`, value, change: () => actions.setHandles(value) });
+    input.checked = value === 'none';
+    return make('span', { class: 'segment' }, input, make('label', { for: `handles-${value}` }, label));
+  };
+  byId('view').after(
+    make(
+      'div', { id: 'transport' },
+      make('button', { type: 'button', id: 'play', 'aria-pressed': 'false', click: actions.togglePlay }, 'Play'),
+      make('fieldset', { id: 'handles' }, make('legend', {}, 'Reference'), handle('none', 'Fixed'), handle('move', 'Move'), handle('turn', 'Turn')),
+      button('reset-motion', 'Put back', actions.resetMotion),
+      make(
+        'dl', { id: 'live-values' },
+        make('div', {}, make('dt', {}, 'Separation'), make('dd', { id: 'separation' }, '–')),
+        make('div', {}, make('dt', {}, 'Mean'), make('dd', { id: 'live-mean' }, '–')),
+        make('div', {}, make('dt', {}, 'Computed'), make('dd', { id: 'rate' }, '–')),
+      ),
+    ),
+    make('p', { id: 'spoken', class: 'hidden', role: 'status', 'aria-live': 'polite' }),
+  );
+  byId('keys').append(' ', make('span', { class: 'by-mouse' }, 'Shift with arrows, Page up and Page down moves the reference, Shift with < and > turns it; P plays.'));
+}
+
+/// What the page is doing, or a fault; empty: nothing.
+export function say(text: string, isFault = false): void {
+  const status = byId('status');
+  status.classList.toggle('fault', isFault);
+  status.textContent = text;
+  status.hidden = text === '';
+}
+
+export function showPlaying(playing: boolean): void {
+  byId('play').textContent = playing ? 'Stop' : 'Play';
+  byId('play').setAttribute('aria-pressed', String(playing));
+}

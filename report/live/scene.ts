@@ -1,0 +1,13 @@
+// A pair of bodies that the page makes itself, and how they move.
+import type { Body } from './engine';
+
+export const kTimeStep = 1 / 60; // seconds between frames
+
+export interface Scene {
+  title: string;
+  words: string; ///< what is seen, a sentence
+  bodies: [Body, Body];
+  units: string;
+  /// The vertices of both bodies a time step later.
+  advance(): [Float64Array, Float64Array];
+}

@@ -1,0 +1,93 @@
+// The part in 3D, and the reference with handles by which it is moved.
+import { Matrix4, Object3D, Vector3 } from 'three';
+import { TransformControls } from 'three/addons/controls/TransformControls.js';
+import type { Ghost, Vec } from '../src/page_data';
+import type { SectionView } from '../src/section_view';
+import { boxOf, Found, Subject } from '../src/subject';
+import { View } from '../src/view';
+
+export type Handles = 'none' | 'move' | 'turn';
+
+export class LiveView extends View {
+  private readonly handles: TransformControls;
+  private readonly pivot = new Object3D(); // in the middle of the reference
+  private readonly toPivot = new Matrix4(); // from where the reference was read
+
+  /// `onMove` is called after each motion of the reference by its handles.
+  constructor(container: HTMLElement, subject: Subject, reference: Ghost, section: SectionView, up: 'y' | 'z', onChange: () => void, onMove: () => void) {
+    super(container, subject, reference, section, up, onChange);
+    this.handles = new TransformControls(this.camera, this.canvas);
+    this.handles.size = 0.8;
+    this.scene.add(this.handles.getHelper(), this.pivot);
+    this.ghost!.matrixAutoUpdate = false;
+    this.ghostMaterial.uniforms.opacity.value = 0.3; // a body that moves, not only what the part is compared with
+    this.ghostMaterial.uniforms.color.value = new Vector3(0.62, 0.67, 0.74);
+    this.centrePivot();
+    this.setHandles('none');
+    this.handles.addEventListener('change', () => this.draw());
+    this.handles.addEventListener('dragging-changed', ({ value }) => (this.controls.enabled = !value));
+    this.handles.addEventListener('objectChange', () => {
+      this.showPose();
+      onMove();
+    });
+  }
+
+  /// Without a motion, in the middle of the reference.
+  private centrePivot(): void {
+    const { lo, hi } = boxOf(this.referencePosition);
+    this.pivot.position.set(...(lo.map((x, k) => (x + hi[k]) / 2) as Vec));
+    this.pivot.rotation.set(0, 0, 0);
+    this.pivot.updateMatrix();
+    this.toPivot.copy(this.pivot.matrix).invert();
+    this.showPose();
+  }
+
+  private get referencePosition(): Float32Array {
+    return this.ghost!.geometry.getAttribute('position').array as Float32Array;
+  }
+
+  private showPose(): void {
+    this.pivot.updateMatrix();
+    this.ghost!.matrix.multiplyMatrices(this.pivot.matrix, this.toPivot);
+    this.ghost!.matrixWorldNeedsUpdate = true;
+    this.draw();
+  }
+
+  /// The motion of the reference, in the space of the scene.
+  get motion(): Matrix4 {
+    return this.ghost!.matrix;
+  }
+
+  /// Moves the reference along the axes, in units of the scene, and turns it about the vertical axis by degrees.
+  nudge(shift: Vec, turn = 0): void {
+    this.pivot.position.add(new Vector3(...shift));
+    if (turn !== 0) this.pivot.rotateOnWorldAxis(this.camera.up, (turn * Math.PI) / 180);
+    this.showPose();
+  }
+
+  resetMotion(): void {
+    this.centrePivot();
+  }
+
+  setHandles(which: Handles): void {
+    this.handles.enabled = which !== 'none';
+    if (which === 'none') {
+      this.handles.detach();
+      this.canvas.style.touchAction = 'pan-y';
+    } else {
+      this.handles.setMode(which === 'move' ? 'translate' : 'rotate');
+      this.handles.attach(this.pivot);
+      this.canvas.style.touchAction = 'none';
+    }
+    this.draw();
+  }
+
+  override find(x: number, y: number): Found | null {
+    return this.handles.dragging || this.handles.axis !== null ? null : super.find(x, y);
+  }
+
+  override dispose(): void {
+    this.handles.dispose();
+    super.dispose();
+  }
+}
