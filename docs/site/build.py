@@ -50,6 +50,8 @@ def main() -> None:
     pages |= cpp_pages.pages(source / "include/sdm", xml)
     pages["javascript.md"] = subprocess.check_output(
         ["node", SITE / "js_types.cjs", source / "js"], env=os.environ | {"NODE_PATH": str(node_modules)})  # fmt: skip
+    if (source / "build/wasm/live.html").exists():
+        pages["docs/live.md"] += b'\n```{raw} html\n<p><a href="../live.html"><strong>Open the live page</strong></a></p>\n```\n'
     for name, content in pages.items():
         path = staged / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -72,6 +74,10 @@ def main() -> None:
         env=environment)  # fmt: skip
     if built.returncode != 0:
         sys.exit("Sphinx has warnings")
+    # Of the other build, if that was made: its page is one file, which is only linked.
+    live = source / "build/wasm/live.html"
+    if live.exists():
+        shutil.copy(live, html / "live.html")
     check_links.check(html)
     if subprocess.run(["node", SITE / "check_pages.cjs", html], env=environment).returncode != 0:
         sys.exit("the pages have faults")

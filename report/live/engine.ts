@@ -28,6 +28,7 @@ export interface FineResult extends Omit<FrameResult, 'separation'> {
 interface Measured {
   surface: WorkerSurface;
   map: WorkerMap;
+  atlas: Atlas;
 }
 
 /// Says what is going on, such as "Laying out the atlas", and how far it is.
@@ -58,7 +59,6 @@ export class Engine {
   private coarse: Measured | null = null;
   private fine: Measured | null = null;
   private closed: [boolean, boolean] = [false, false];
-  private atlases = new Map<Measured, Atlas>();
   private bodies: [Body, Body] | null = null;
   private motion = new Matrix4(); // of the reference
   private turned = false; // the pair has bodies at other places
@@ -70,27 +70,35 @@ export class Engine {
 
   /// Takes two bodies, and lays out the coarse atlas of the first.
   async load(bodies: [Body, Body], say: Say): Promise<Atlas> {
-    this.free();
     const [part, reference] = bodies;
-    const one = await this.worker.sites(part.positions, part.indices, { progress: (_, f) => say('Reading the part', f) });
+    const one = await this.sitesOf(part, 'Reading the part', say);
     const isClosed = one.closed;
     one.dispose();
-    this.sites = await this.worker.sites(reference.positions, reference.indices, { progress: (_, f) => say('Reading the reference', f) });
-    this.closed = [isClosed, this.sites.closed];
-    this.pair = await this.worker.pair(part, reference);
-    this.bodies = bodies;
+    const sites = await this.sitesOf(reference, 'Reading the reference', say);
+    // What there is stays until nothing can fail any more.
+    const coarse = await this.measured(part, sites, kCoarse, say).catch((error: Error) => {
+      sites.dispose();
+      throw named(error, part);
+    });
+    const pair = await this.worker.pair(part, reference);
+    this.free();
+    [this.bodies, this.sites, this.pair, this.coarse] = [bodies, sites, pair, coarse];
+    this.closed = [isClosed, sites.closed];
     this.motion = new Matrix4();
-    this.coarse = await this.measured(kCoarse, say);
-    return this.atlases.get(this.coarse)!;
+    this.turned = false;
+    return coarse.atlas;
   }
 
-  private async measured(resolution: number, say: Say): Promise<Measured> {
-    const [part] = this.bodies!;
+  private sitesOf(body: Body, step: string, say: Say): Promise<WorkerSites> {
+    return this.worker.sites(body.positions, body.indices, { progress: (_, f) => say(step, f) }).catch((error: Error) => {
+      throw named(error, body);
+    });
+  }
+
+  private async measured(part: Body, sites: WorkerSites, resolution: number, say: Say): Promise<Measured> {
     const surface = await this.worker.surface(part.positions, part.indices, { resolution, progress: (_, f) => say('Laying out the atlas', f) });
-    const map = await surface.map(this.sites!, { progress: (_, f) => say('Measuring', f) });
-    const measured = { surface, map };
-    this.atlases.set(measured, await surface.atlas());
-    return measured;
+    const map = await surface.map(sites, { progress: (_, f) => say('Measuring', f) });
+    return { surface, map, atlas: await surface.atlas() };
   }
 
   /// Lays out the fine atlas; null if that is the coarse one.
@@ -98,8 +106,8 @@ export class Engine {
     if (this.fine) this.release(this.fine);
     this.fine = null;
     if (resolution <= kCoarse) return null;
-    this.fine = await this.measured(resolution, say);
-    return this.atlases.get(this.fine)!;
+    this.fine = await this.measured(this.bodies![0], this.sites!, resolution, say);
+    return this.fine.atlas;
   }
 
   /// Moves the reference rigidly: a matrix in the units of the files.
@@ -149,9 +157,8 @@ export class Engine {
 
   /// Sums up the fine map, as report.json does.
   async report(tolerance: [number, number] | null, units: string): Promise<Report> {
-    const measured = this.fine ?? this.coarse!;
-    const atlas = this.atlases.get(measured)!;
-    const summary = await measured.map.summary({ units, ...(tolerance ? { tolerance } : {}) });
+    const { map, atlas } = this.fine ?? this.coarse!;
+    const summary = await map.summary({ units, ...(tolerance ? { tolerance } : {}) });
     const [o1, o2] = this.bodies!.map((body, which) => ({
       file: body.name,
       transform: which === 1 && !isIdentity(this.motion) ? 'the handles' : '',
@@ -181,11 +188,15 @@ export class Engine {
 
   private free(): void {
     for (const measured of [this.coarse, this.fine]) if (measured) this.release(measured);
-    this.atlases = new Map();
     this.sites?.dispose();
     this.pair?.dispose();
     [this.coarse, this.fine, this.sites, this.pair] = [null, null, null, null];
   }
+}
+
+/// An error that names the body.
+function named(error: Error, { name }: Body): Error {
+  return error.message.includes(name) ? error : new Error(`${name}: ${error.message}`);
 }
 
 function isIdentity({ elements }: Matrix4): boolean {

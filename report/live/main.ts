@@ -108,7 +108,7 @@ class Live {
   async openScene(name: string): Promise<void> {
     const known = kScenes[name];
     if (!known) {
-      say(`There is no scene “${name}”; there are ${Object.keys(kScenes).join(', ')}.`, true);
+      say(`There is no scene “${name}”; there are ${Object.keys(kScenes).join(', ')}.`, 'fault');
       return this.openScene('letters');
     }
     this.stop();
@@ -121,7 +121,7 @@ class Live {
   /// Two files, or one in place of one of the bodies.
   async openFiles(files: File[], which: 0 | 1 | null): Promise<void> {
     this.stop();
-    if (files.length > 2 || (files.length === 2 && which !== null)) return say('Choose one file for each body.', true);
+    if (files.length > 2 || (files.length === 2 && which !== null)) return say('Choose one file for each body.', 'fault');
     try {
       const read: Body[] = [];
       for (const file of files) {
@@ -140,7 +140,7 @@ class Live {
 
   private fault(error: unknown): void {
     const words = error instanceof Error ? error.message : String(error);
-    say(/[.?!]$/.test(words) ? words : `${words}.`, true);
+    say(/[.?!]$/.test(words) ? words : `${words}.`, 'fault');
   }
 
   /// Calls of the worker, one after the other.
@@ -155,7 +155,6 @@ class Live {
     window.clearTimeout(this.timer);
     ++this.version;
     document.body.setAttribute('aria-busy', 'true');
-    const before = this.bodies;
     try {
       await this.inOrder(async () => {
         const atlas = await this.engine.load(bodies, progress);
@@ -171,7 +170,6 @@ class Live {
       say('');
     } catch (error) {
       this.fault(error);
-      if (before && this.bodies !== bodies) await this.inOrder(() => this.engine.load(before, progress));
     } finally {
       document.body.removeAttribute('aria-busy');
     }
@@ -224,7 +222,8 @@ class Live {
     view.canvas.addEventListener('keydown', (event) => this.key(event));
     const callouts = new Callouts(view, (d) => this.valueText(d), '', subject.size, (at) => this.lookAt(at));
     this.shown = { view, subject, fine: null, section, reference, ghost, callouts };
-    const words = { quantity: 'distance', unit: this.units && `\u00a0${this.units}`, valueText: (d: number) => this.valueText(d) };
+    const unit = () => this.units && `\u00a0${this.units}`;
+    const words = { quantity: 'distance', get unit() { return unit(); }, valueText: (d: number) => this.valueText(d) };
     explore(view, subject, callouts, words, () => this.lookAtAll());
     printPicture(view);
     new ResizeObserver(() => this.drawLegend()).observe(byId('legend'));
@@ -302,8 +301,9 @@ class Live {
     this.pumping = true;
     this.rate.begin();
     this.shown!.callouts.clear();
+    const { shown } = this;
     try {
-      while (this.motion || this.playing) {
+      while (shown === this.shown && (this.motion || this.playing)) {
         this.showFrame(await this.inOrder(() => this.nextFrame()));
         await new Promise(requestAnimationFrame);
       }
@@ -534,6 +534,8 @@ class Live {
     }));
   }
   get numbers(): Report | null { return this.report; }
+  handleAt(axis: 'X' | 'Y' | 'Z'): { x: number; y: number } { return this.shown!.view.handleAt(axis); }
+  memoryBytes(): Promise<number> { return this.worker.memoryBytes(); }
   get atRest(): boolean { return !this.pumping && this.shown !== null && this.shown.view.atRest; }
 
   /// Milliseconds of each of a number of frames of the coarse map, without pictures.
@@ -552,7 +554,7 @@ class Live {
 
 const colorsOf = ({ scale: { mode, lo, hi } }: State) => [mode, lo, hi].join();
 
-const progress = (step: string, fraction: number) => say(`${step}… ${Math.round(100 * fraction)} %`);
+const progress = (step: string, fraction: number) => say(`${step}… ${Math.round(100 * fraction)} %`, 'progress');
 
 function meanOf({ map, areas }: Layout): number {
   let [sum, total] = [0, 0];

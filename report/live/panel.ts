@@ -69,10 +69,11 @@ export function addPanel(scene: string, resolution: number, actions: Actions): v
   byId('keys').append(' ', make('span', { class: 'by-mouse' }, 'Shift with arrows, Page up and Page down moves the reference, Shift with < and > turns it; P plays.'));
 }
 
-/// What the page is doing, or a fault; empty: nothing.
-export function say(text: string, isFault = false): void {
+/// What the page is doing, or a fault; empty: nothing. Progress is not read out.
+export function say(text: string, kind: 'fault' | 'progress' | '' = ''): void {
   const status = byId('status');
-  status.classList.toggle('fault', isFault);
+  status.classList.toggle('fault', kind === 'fault');
+  status.setAttribute('aria-live', kind === 'progress' ? 'off' : 'polite');
   status.textContent = text;
   status.hidden = text === '';
 }

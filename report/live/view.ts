@@ -17,11 +17,12 @@ export class LiveView extends View {
   constructor(container: HTMLElement, subject: Subject, reference: Ghost, section: SectionView, up: 'y' | 'z', onChange: () => void, onMove: () => void) {
     super(container, subject, reference, section, up, onChange);
     this.handles = new TransformControls(this.camera, this.canvas);
-    this.handles.size = 0.8;
+    this.handles.size = window.matchMedia('(pointer: coarse)').matches ? 1.5 : 1.1;
     this.scene.add(this.handles.getHelper(), this.pivot);
     this.ghost!.matrixAutoUpdate = false;
     this.ghostMaterial.uniforms.opacity.value = 0.3; // a body that moves, not only what the part is compared with
     this.ghostMaterial.uniforms.color.value = new Vector3(0.62, 0.67, 0.74);
+    if (encloses(boxOf(reference.position), subject)) this.ghostMaterial.uniforms.opacity.value = 0.08;
     this.centrePivot();
     this.setHandles('none');
     this.handles.addEventListener('change', () => this.draw());
@@ -82,6 +83,15 @@ export class LiveView extends View {
     this.draw();
   }
 
+  /// Where the handle of an axis is in the canvas; for tests.
+  handleAt(axis: 'X' | 'Y' | 'Z'): { x: number; y: number } {
+    const kAlong = 0.3; // of the length of a handle, by three's sizes
+    const length = (kAlong * this.camera.position.distanceTo(this.pivot.position) * Math.tan((this.camera.fov * Math.PI) / 360) * 1.9 * this.handles.size) / 4;
+    const at = this.pivot.position.clone();
+    at.setComponent('XYZ'.indexOf(axis), at.getComponent('XYZ'.indexOf(axis)) + length);
+    return this.place(at.toArray() as Vec);
+  }
+
   override find(x: number, y: number): Found | null {
     return this.handles.dragging || this.handles.axis !== null ? null : super.find(x, y);
   }
@@ -90,4 +100,9 @@ export class LiveView extends View {
     this.handles.dispose();
     super.dispose();
   }
+}
+
+/// Whether a box has another one inside.
+function encloses(outer: { lo: Vec; hi: Vec }, inner: { lo: Vec; hi: Vec }): boolean {
+  return outer.lo.every((x, k) => x < inner.lo[k] && outer.hi[k] > inner.hi[k]);
 }

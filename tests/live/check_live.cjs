@@ -1,0 +1,251 @@
+// Checks live.html in headless Chromium: node check_live.cjs CHECK PAGE [COMMAND], where the command is sdm. Packages are found
+// from the current folder. Prints what is wrong and exits with 1.
+const assert = require('assert');
+const { execFileSync } = require('child_process');
+const { createServer } = require('http');
+const { mkdtempSync, readFileSync, rmSync, writeFileSync } = require('fs');
+const { tmpdir } = require('os');
+const { join } = require('path');
+const { pathToFileURL } = require('url');
+const { inBrowser, opened } = require('../report/checks/browser.cjs');
+const { plain } = require('../report/checks/support.cjs');
+const { ball, grid, objOf, stlOf } = require('./meshes.cjs');
+
+const [check, file, command] = process.argv.slice(2);
+const address = pathToFileURL(file).href;
+const made = []; // folders
+process.on('exit', () => made.forEach((path) => rmSync(path, { recursive: true, force: true })));
+const folder = () => made[made.push(mkdtempSync(join(tmpdir(), 'sdm-live-'))) - 1];
+
+const kPatience = 120000; // milliseconds, on a machine that does other things
+
+const numbers = (page) => page.evaluate(() => window.sdmLive.numbers);
+/// Does something, and waits for the fine map after it.
+async function atRest(page, action) {
+  const before = await page.getAttribute('html', 'data-rest');
+  await action();
+  await page.waitForFunction((old) => document.documentElement.dataset.rest !== old, before, { timeout: kPatience });
+}
+async function open(page, paths, id = '#open-both') {
+  await atRest(page, () => page.setInputFiles(id, paths));
+}
+const shown = async (page, id) => Number(plain(await page.textContent(id)).split(/[ ,]/)[0]);
+
+/// What the command measures of the bodies that the page shows.
+function byCommand(meshes, resolution) {
+  const out = folder();
+  const files = meshes.map((mesh, i) => join(out, `${i}.obj`));
+  meshes.forEach((mesh, i) => writeFileSync(files[i], objOf(mesh)));
+  execFileSync(command, ['map', ...files, '-o', out, '--resolution', String(resolution), '--write', 'json'], { stdio: 'pipe' });
+  return JSON.parse(readFileSync(join(out, 'report.json'), 'utf8'));
+}
+
+async function agreesWithCommand(page) {
+  const of = await numbers(page);
+  const expected = byCommand(await page.evaluate(() => window.sdmLive.meshes), of.atlas.resolution);
+  assert.strictEqual(of.sign.method, expected.sign.method);
+  assert.strictEqual(of.atlas.texels, expected.atlas.texels);
+  const size = Math.max(Math.abs(expected.extremes.min.distance), Math.abs(expected.extremes.max.distance));
+  const close = (a, b, what) => assert(Math.abs(a - b) <= 1e-6 * size, `${what}: ${a}, and ${b} by the command`);
+  for (const [key, value] of Object.entries(expected.distance)) if (typeof value === 'number') close(of.distance[key], value, key);
+  for (const end of ['min', 'max']) close(of.extremes[end].distance, expected.extremes[end].distance, end);
+  close(of.error_bound, expected.error_bound, 'error bound');
+  return of;
+}
+
+const checks = {
+  // The numbers of each built-in pair are those of the command, and stand in the table.
+  async numbers(page) {
+    for (const scene of ['letters', 'figure', 'cloth']) {
+      if (scene !== 'letters') await atRest(page, () => page.selectOption('#scene', scene));
+      const of = await agreesWithCommand(page);
+      const row = plain(await page.textContent('#numbers-table tbody tr:first-child td'));
+      assert(Math.abs(parseFloat(row) - of.extremes.max.distance) < 1e-3, row);
+      assert((await page.locator('#histogram-chart .bin').count()) > 10);
+      assert.strictEqual((await page.textContent('#verdict')).trim(), 'i MEASURED');
+    }
+  },
+
+  // Moving the reference, by the keyboard and by a handle, changes the numbers as the command says; putting it back restores them.
+  async moves(page) {
+    await page.selectOption('#resolution', '256');
+    await page.waitForFunction(() => window.sdmLive.numbers.atlas.resolution === 256, null, { timeout: kPatience });
+    const before = await numbers(page);
+    await page.focus('#canvas');
+    await atRest(page, () => page.keyboard.press('Shift+ArrowRight'));
+    const after = await agreesWithCommand(page);
+    assert(after.distance.mean > before.distance.mean, `${before.distance.mean} became ${after.distance.mean}`);
+    assert.strictEqual(after.o2.transform, 'the handles');
+    await atRest(page, () => page.click('#reset-motion'));
+    assert.deepStrictEqual((await numbers(page)).distance, before.distance);
+
+    await page.check('#handles-move', { force: true });
+    const box = await page.locator('#canvas').boundingBox();
+    const at = await page.evaluate(() => window.sdmLive.handleAt('X'));
+    await page.mouse.move(box.x + at.x, box.y + at.y);
+    await page.mouse.down();
+    const separation = await shown(page, '#separation');
+    await page.mouse.move(box.x + at.x + 30, box.y + at.y + 4, { steps: 6 });
+    await page.waitForFunction((old) => !document.getElementById('separation').textContent.startsWith(String(old)), separation, { timeout: kPatience });
+    assert.match(await page.textContent('#rate'), /frames\/s/);
+    await atRest(page, () => page.mouse.up());
+    await agreesWithCommand(page);
+    assert.strictEqual(await page.locator('#callout-list li').count(), 0, 'a handle is not a point of the part');
+  },
+
+  // A scene plays with other distances in each frame, and rests as the command measures it.
+  async plays(page) {
+    const first = await page.textContent('#live-mean');
+    await page.click('#play');
+    await page.waitForFunction((old) => document.getElementById('live-mean').textContent !== old, first, { timeout: kPatience });
+    assert.strictEqual(await page.getAttribute('#play', 'aria-pressed'), 'true');
+    await page.waitForTimeout(500);
+    await atRest(page, () => page.click('#play'));
+    await agreesWithCommand(page);
+    assert.match(await page.textContent('#spoken'), /Distances from .* to .*Separation/);
+  },
+
+  // Many changes of both bodies need no more memory than a few.
+  async remains(page) {
+    const bytes = () => page.evaluate(() => window.sdmLive.memoryBytes());
+    await page.evaluate(() => window.sdmLive.measure(50));
+    const before = await bytes();
+    await page.evaluate(() => window.sdmLive.measure(500));
+    assert.strictEqual(await bytes(), before);
+  },
+
+  // A tolerance is judged as the library does.
+  async judges(page) {
+    const { extremes, error_bound: bound } = await numbers(page);
+    const verdict = async (value, expected) => {
+      await page.fill('input[aria-label^="Tolerance"]', String(value));
+      await page.waitForFunction((word) => document.getElementById('verdict').textContent.includes(word), expected, { timeout: kPatience });
+      assert((await page.textContent('#what-if')).includes(expected));
+    };
+    await verdict(0.9 * extremes.max.distance, 'FAIL');
+    await verdict(extremes.max.distance + 2 * bound, 'PASS');
+    assert((await page.textContent('#sentence')).startsWith('Every point'));
+    await verdict('', 'MEASURED').catch(async () => assert.strictEqual((await page.textContent('#verdict')).trim(), 'i MEASURED'));
+  },
+
+  // Two files, chosen and dropped; one in place of the other; both swapped.
+  async opens(page) {
+    const out = folder();
+    const [small, large, sheet] = [ball(12, 1), ball(12, 1.5), grid(20)];
+    writeFileSync(join(out, 'small.stl'), stlOf(small));
+    writeFileSync(join(out, 'large.obj'), objOf(large));
+    writeFileSync(join(out, 'sheet.obj'), objOf(sheet));
+    await open(page, [join(out, 'small.stl'), join(out, 'large.obj')]);
+    const of = await numbers(page);
+    assert.deepStrictEqual([of.o1.file, of.o2.file, of.o1.closed], ['small.stl', 'large.obj', true]);
+    assert(of.extremes.max.distance < -0.45 && of.extremes.min.distance > -0.55, JSON.stringify(of.extremes));
+    assert.match(await page.title(), /small.stl compared with large.obj/);
+    await atRest(page, () => page.click('#swap'));
+    assert.strictEqual((await numbers(page)).o1.file, 'large.obj');
+    await open(page, [join(out, 'sheet.obj')], '#open-part');
+    assert.deepStrictEqual([(await numbers(page)).o1.file, (await numbers(page)).o1.closed], ['sheet.obj', false]);
+    await atRest(page, () =>
+      page.evaluate(
+        (texts) => {
+          const dataTransfer = new DataTransfer();
+          for (const [name, text] of texts) dataTransfer.items.add(new File([text], name));
+          document.body.dispatchEvent(new DragEvent('drop', { dataTransfer, bubbles: true, cancelable: true }));
+        },
+        [['a.obj', objOf(small)], ['b.obj', objOf(large)]],
+      ),
+    );
+    assert.deepStrictEqual([(await numbers(page)).o1.file, (await numbers(page)).o2.file], ['a.obj', 'b.obj']);
+    await agreesWithCommand(page);
+  },
+
+  // A file that cannot be used is one sentence with its name, and the page goes on with what it had.
+  async refuses(page) {
+    const out = folder();
+    const whole = stlOf(ball(12, 1));
+    const files = { 'cut.stl': whole.subarray(0, whole.length - 30), 'empty.ply': Buffer.alloc(0), 'notes.txt': Buffer.from('no mesh\n'), 'nan.obj': Buffer.from('v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n') };
+    const before = await numbers(page);
+    for (const [name, bytes] of Object.entries(files)) {
+      writeFileSync(join(out, name), bytes);
+      await page.setInputFiles('#open-part', join(out, name));
+      await page.waitForFunction((n) => document.querySelector('#status.fault')?.textContent.includes(n), name, { timeout: kPatience });
+      const text = await page.textContent('#status');
+      assert.match(text, /[.?]$/, text);
+      assert(!/\n/.test(text) && text.length < 300, text);
+    }
+    await page.setInputFiles('#open-both', Object.keys(files).slice(0, 3).map((name) => join(out, name)));
+    await page.waitForFunction(() => /one file for each body/.test(document.getElementById('status').textContent));
+    await atRest(page, () => page.click('#swap'));
+    await atRest(page, () => page.click('#swap'));
+    assert.deepStrictEqual((await numbers(page)).distance, before.distance);
+  },
+
+  // Picture, numbers, model and report are files.
+  async saves(page) {
+    const out = folder();
+    const save = async (id, name) => {
+      const [download] = await Promise.all([page.waitForEvent('download'), page.click(id)]);
+      assert.strictEqual(download.suggestedFilename(), name);
+      await download.saveAs(join(out, name));
+      return readFileSync(join(out, name));
+    };
+    assert.strictEqual((await save('#save-picture', 'map.png')).subarray(1, 4).toString(), 'PNG');
+    const csv = (await save('#save-numbers', 'numbers.csv')).toString();
+    assert(csv.includes(`distance.mean,${(await numbers(page)).distance.mean}`), csv.slice(0, 300));
+    const glb = await save('#save-model', 'model.glb');
+    assert.deepStrictEqual([glb.toString('latin1', 0, 4), glb.readUInt32LE(8)], ['glTF', glb.length]);
+    await save('#save-report', 'report.html');
+    const report = await opened(page.context(), pathToFileURL(join(out, 'report.html')).href, []);
+    assert.strictEqual(await report.textContent('h1'), await page.textContent('h1'));
+    assert.strictEqual(await report.textContent('#numbers-table tbody tr:first-child td'), await page.textContent('#numbers-table tbody tr:first-child td'));
+  },
+
+  // Every control has a name, headings are in order, and no text is wider than the window.
+  async reads(page) {
+    const session = await page.context().newCDPSession(page);
+    const { nodes } = await session.send('Accessibility.getFullAXTree');
+    const roles = new Set(['button', 'slider', 'spinbutton', 'textbox', 'combobox', 'checkbox', 'radio', 'link', 'image', 'img', 'application', 'table', 'region']);
+    const named = nodes.filter((node) => !node.ignored && roles.has(node.role?.value));
+    assert(named.length > 25, `${named.length} controls were found`);
+    for (const node of named) assert(node.name?.value, `a ${node.role.value} without a name: ${JSON.stringify(node.properties)}`);
+    const levels = await page.$$eval('h1, h2, h3', (list) => list.filter((h) => h.checkVisibility()).map((h) => Number(h.tagName[1])));
+    levels.forEach((level, i) => assert(i === 0 ? level === 1 : level <= levels[i - 1] + 1, `headings ${levels}`));
+    for (const [width, height] of [[1440, 900], [820, 1180], [390, 844]]) {
+      await page.setViewportSize({ width, height });
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+      assert(wide <= width, `${wide} pixels in a window of ${width}`);
+    }
+  },
+
+  // Two files of 300,000 triangles each.
+  async large(page) {
+    const out = folder();
+    writeFileSync(join(out, 'a.stl'), stlOf(ball(274, 1)));
+    writeFileSync(join(out, 'b.stl'), stlOf(ball(274, 1.1)));
+    await page.selectOption('#resolution', '512');
+    await open(page, [join(out, 'a.stl'), join(out, 'b.stl')]);
+    const of = await numbers(page);
+    assert(of.o1.triangles > 299000 && of.o2.triangles > 299000, `${of.o1.triangles}`);
+    assert(Math.abs(of.extremes.max.distance + 0.1) < 1e-3 && Math.abs(of.extremes.min.distance + 0.1) < 1e-3, JSON.stringify(of.extremes));
+  },
+};
+
+/// From a server of this machine, with and without isolation from other origins.
+async function served(browser, faults) {
+  for (const headers of [{}, { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' }]) {
+    const server = createServer((_, response) => response.writeHead(200, { 'Content-Type': 'text/html', ...headers }).end(readFileSync(file)));
+    await new Promise((listening) => server.listen(0, '127.0.0.1', listening));
+    const page = await opened(await browser.newContext(), `http://127.0.0.1:${server.address().port}/live.html?scene=cloth`, faults);
+    assert.strictEqual(await page.evaluate(() => window.crossOriginIsolated), Object.keys(headers).length > 0);
+    assert.strictEqual((await numbers(page)).o1.file, 'cloth');
+    await page.close();
+    server.close();
+  }
+}
+
+void inBrowser(async (browser, faults) => {
+  if (check === 'served') return served(browser, faults);
+  const context = await browser.newContext({ viewport: { width: 1100, height: 800 }, acceptDownloads: true });
+  const page = await opened(context, address, faults);
+  await page.waitForFunction(() => document.documentElement.dataset.rest, null, { timeout: kPatience });
+  await checks[check](page);
+});
