@@ -4,6 +4,7 @@ import { Matrix4 } from 'three';
 import type { AreaByValue } from '../src/area_by_value';
 import { Callouts } from '../src/callouts';
 import type { Colors } from '../src/color_scale';
+import { cutOpen } from '../src/cut';
 import { makeControls, startOf, State } from '../src/controls';
 import { byId, make } from '../src/dom';
 import { explore } from '../src/explore';
@@ -17,7 +18,7 @@ import { showPlaces } from '../src/places';
 import { distanceText } from '../src/precision';
 import { printPicture } from '../src/print';
 import { csvOf } from '../src/saved';
-import { SectionView, sectionWords } from '../src/section_view';
+import { SectionView } from '../src/section_view';
 import { toFile, toScene } from '../src/subject';
 import { showInputs, showMethod, showMore, showNumbers } from '../src/tables';
 import { isSigned, outsideOf, unitOf, verdictOf, whatIf } from '../src/verdict';
@@ -61,6 +62,7 @@ class Live {
   private report: Report | null = null;
   private area: AreaByValue | null = null;
   private state: State | null = null;
+  private cutAxis: State['section']['axis'] = null; // of the section that is shown
   private touched = false; // the colours were chosen by the user
   private fitted = ''; // the colours that suit the map
   private playing = false;
@@ -81,7 +83,7 @@ class Live {
     addPanel(scene, this.resolution, {
       openScene: (name) => void this.openScene(name),
       openFiles: (files, which) => void this.openFiles(files, which),
-      swap: () => this.bodies && void this.open([this.bodies[1], this.bodies[0]], null),
+      swap: () => void this.swap(),
       setResolution: (resolution) => void this.setResolution(resolution),
       setUnits: (units) => {
         this.units = units;
@@ -138,6 +140,15 @@ class Live {
     }
   }
 
+  /// What was the reference, where it is now, becomes the part.
+  private async swap(): Promise<void> {
+    if (!this.bodies) return;
+    const [part, reference] = this.bodies;
+    const { view, subject } = this.shown!;
+    (byId('scene') as HTMLSelectElement).value = 'files';
+    await this.open([{ ...reference, positions: moved(reference.positions, inFile(view.motion, subject)) }, part], null);
+  }
+
   private fault(error: unknown): void {
     const words = error instanceof Error ? error.message : String(error);
     say(/[.?!]$/.test(words) ? words : `${words}.`, 'fault');
@@ -161,7 +172,7 @@ class Live {
         this.bodies = bodies;
         this.scene = scene;
         this.motion = null;
-        [this.touched, this.state, this.tolerance] = [false, null, null];
+        [this.touched, this.state, this.tolerance, this.cutAxis] = [false, null, null, null];
         this.show(layoutOf(bodies[0], atlas, frameOf(bodies[0])));
         const fine = await this.engine.refine(this.resolution, progress);
         this.setFine(fine && layoutOf(bodies[0], fine, frameOf(bodies[0])));
@@ -476,19 +487,10 @@ class Live {
   private apply(state: State): void {
     this.state = state;
     const { view, subject, section } = this.shown!;
-    const { scale, section: cut } = state;
+    const { scale } = state;
     view.setScale(scale, SDM_COLORS);
     view.setGhost(state.ghost);
-    if (cut.axis === null) {
-      view.setCut(null);
-    } else {
-      const [least, most] = [subject.lo[cut.axis], subject.hi[cut.axis]];
-      const sign = cut.flipped ? -1 : 1;
-      const normal: Vec = [0, 0, 0];
-      normal[cut.axis] = sign;
-      view.setCut({ normal, offset: sign * (least + cut.at * (most - least)) });
-      byId('section-words').textContent = sectionWords(section);
-    }
+    this.cutAxis = cutOpen(view, subject, section, state.section, this.cutAxis);
     this.drawLegend();
     this.drawHistogram();
     this.judge(scale.lower, scale.upper);

@@ -3,6 +3,7 @@ import { Callouts } from './callouts';
 import { Cloud } from './cloud';
 import { drawCoverageLegend } from './coverage';
 import { makeControls, State } from './controls';
+import { cutOpen } from './cut';
 import { byId, make } from './dom';
 import { explore } from './explore';
 import { GroupName, showGroups } from './group_table';
@@ -18,7 +19,7 @@ import { distanceText } from './precision';
 import { printPicture } from './print';
 import { readData } from './read_page';
 import { copyOfPage, csvOf, download, pageWith, readSaved, Saved } from './saved';
-import { SectionView, sectionWords } from './section_view';
+import { SectionView } from './section_view';
 import { showWithoutPicture } from './without_picture';
 import { boxOf, Subject, toFile, toScene } from './subject';
 import { showSure } from './sure';
@@ -157,17 +158,7 @@ class Page {
     this.view.setCoverage(state.coverage);
     this.showGroup(state);
     this.cloud?.setWidth(state.width);
-    this.turnSection(section);
-    if (section.axis === null) {
-      this.view.setCut(null);
-    } else {
-      const [least, most] = [this.subject.lo[section.axis], this.subject.hi[section.axis]];
-      const sign = section.flipped ? -1 : 1;
-      const normal: Vec = [0, 0, 0];
-      normal[section.axis] = sign;
-      this.view.setCut({ normal, offset: sign * (least + section.at * (most - least)) });
-      byId('section-words').textContent = sectionWords(this.section);
-    }
+    this.cutAxis = cutOpen(this.view, this.subject, this.section, section, this.cutAxis);
     this.drawLegend();
     this.drawHistogram();
     this.showWhatIf(state);
@@ -182,16 +173,6 @@ class Page {
     const unit = report.units ?? '';
     if (limits !== null && scale.mode === 'tolerance') drawGroupLegend(scale, limits, limits.setsOf(this.data.surface!.model, group ?? null), colors, quantityOf(report), unit, hasGaps);
     else drawLegend(scale, colors, quantityOf(report), unit, hasGaps);
-  }
-
-  /// The cut surface of a section that is new faces the viewer.
-  private turnSection(section: State['section']): void {
-    if (section.axis !== null && section.axis !== this.cutAxis) {
-      const { position, target } = this.view.pose;
-      section.flipped = position[section.axis] < target[section.axis];
-      (byId('section-flip') as HTMLInputElement).checked = section.flipped;
-    }
-    this.cutAxis = section.axis;
   }
 
   private showGroup(state: State): void {

@@ -179,12 +179,3 @@ function setLines(mesh: LineSegments2, ends: Float32Array, colors: number[]): vo
   mesh.geometry.dispose();
   mesh.geometry = new LineSegmentsGeometry().setPositions(ends).setColors(linear);
 }
-
-/// What the lines of a section are.
-export function sectionWords({ part, other, factor }: SectionView): string {
-  if (!part) return other ? 'Dark line: the reference.' : '';
-  const inside = part.isClosed ? ' Grey: inside of the part.' : '';
-  if (!other) return `The thick line is the profile of the part in the colours of its values.${inside}`;
-  const gap = `${factor > 1 ? `${factor} times ` : ''}as long as the gap to the reference`;
-  return `Thick line in colours: the part. Dark line: the reference. Thin lines towards it: ${gap} in this plane.${other.isClosed && part.isClosed ? ' Orange: only the part; blue: only the reference; grey: both.' : inside}`;
-}

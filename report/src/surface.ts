@@ -18,7 +18,7 @@ const kVertexShader = `
   in vec2 place;
   in float value;
   out vec3 vPoint, vNormal;
-  out vec2 vPlace;
+  centroid out vec2 vPlace; // not beyond the triangle, where the texels of another chart may be
   out float vValue;
   void main() {
     vPoint = position;
@@ -38,7 +38,7 @@ const kPartShader = `
   uniform vec4 cut;
   uniform vec3 cutColor;
   in vec3 vPoint, vNormal;
-  in vec2 vPlace;
+  centroid in vec2 vPlace;
   in float vValue;
   out vec4 outColor;
   ${kColorShader}
