@@ -61,16 +61,18 @@ export class Engine {
   private closed: [boolean, boolean] = [false, false];
   private bodies: [Body, Body] | null = null;
   private motion = new Matrix4(); // of the reference
-  private turned = false; // the pair has bodies at other places
+  private turned = false; // the fine surface has other vertices than the part
+  private signal: AbortSignal | undefined; // of what is being loaded
 
   constructor(private readonly worker: SdmWorker) {}
 
   get isClosed(): boolean { return this.closed[0]; }
   get referenceIsClosed(): boolean { return this.closed[1]; }
 
-  /// Takes two bodies, and lays out the coarse atlas of the first.
-  async load(bodies: [Body, Body], say: Say): Promise<Atlas> {
+  /// Takes two bodies, and lays out the coarse atlas of the first. An abort loses what was there before.
+  async load(bodies: [Body, Body], say: Say, signal?: AbortSignal): Promise<Atlas> {
     const [part, reference] = bodies;
+    this.signal = signal;
     const one = await this.sitesOf(part, 'Reading the part', say);
     const isClosed = one.closed;
     one.dispose();
@@ -90,19 +92,20 @@ export class Engine {
   }
 
   private sitesOf(body: Body, step: string, say: Say): Promise<WorkerSites> {
-    return this.worker.sites(body.positions, body.indices, { progress: (_, f) => say(step, f) }).catch((error: Error) => {
+    return this.worker.sites(body.positions, body.indices, { signal: this.signal, progress: (_, f) => say(step, f) }).catch((error: Error) => {
       throw named(error, body);
     });
   }
 
   private async measured(part: Body, sites: WorkerSites, resolution: number, say: Say): Promise<Measured> {
-    const surface = await this.worker.surface(part.positions, part.indices, { resolution, progress: (_, f) => say('Laying out the atlas', f) });
-    const map = await surface.map(sites, { progress: (_, f) => say('Measuring', f) });
+    const surface = await this.worker.surface(part.positions, part.indices, { resolution, signal: this.signal, progress: (_, f) => say('Laying out the atlas', f) });
+    const map = await surface.map(sites, { signal: this.signal, progress: (_, f) => say('Measuring', f) });
     return { surface, map, atlas: await surface.atlas() };
   }
 
   /// Lays out the fine atlas; null if that is the coarse one.
-  async refine(resolution: number, say: Say): Promise<Atlas | null> {
+  async refine(resolution: number, say: Say, signal?: AbortSignal): Promise<Atlas | null> {
+    this.signal = signal;
     if (this.fine) this.release(this.fine);
     this.fine = null;
     if (resolution <= kCoarse) return null;
@@ -196,7 +199,7 @@ export class Engine {
 
 /// An error that names the body.
 function named(error: Error, { name }: Body): Error {
-  return error.message.includes(name) ? error : new Error(`${name}: ${error.message}`);
+  return error.name === 'AbortError' || error.message.includes(name) ? error : new Error(`${name}: ${error.message}`);
 }
 
 function isIdentity({ elements }: Matrix4): boolean {

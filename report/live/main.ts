@@ -23,7 +23,7 @@ import { toFile, toScene } from '../src/subject';
 import { showInputs, showMethod, showMore, showNumbers } from '../src/tables';
 import { isSigned, outsideOf, unitOf, verdictOf, whatIf } from '../src/verdict';
 import { quantityOf } from '../src/words';
-import { Body, Engine, FineResult, FrameResult, inFile, moved } from './engine';
+import { Body, Engine, FineResult, FrameResult, inFile, kCoarse, moved } from './engine';
 import { listenToDrops, readBody } from './files';
 import { areaOf, frameOf, inScene, Layout, layoutOf } from './layout';
 import { addPanel, say, showPlaying } from './panel';
@@ -72,6 +72,7 @@ class Live {
   private timer = 0;
   private histogramAt = 0;
   private tolerance: [number, number] | null = null;
+  private loading = new AbortController();
   private readonly rate = new Rate();
   private readonly emptyView = byId('view').cloneNode(true) as HTMLElement;
   private readonly engine: Engine;
@@ -83,6 +84,7 @@ class Live {
     addPanel(scene, this.resolution, {
       openScene: (name) => void this.openScene(name),
       openFiles: (files, which) => void this.openFiles(files, which),
+      cancel: () => this.loading.abort(),
       swap: () => void this.swap(),
       setResolution: (resolution) => void this.setResolution(resolution),
       setUnits: (units) => {
@@ -163,27 +165,39 @@ class Live {
 
   private async open(bodies: [Body, Body], scene: Scene | null): Promise<void> {
     this.stop();
+    const { signal } = (this.loading = new AbortController());
     window.clearTimeout(this.timer);
     ++this.version;
     document.body.setAttribute('aria-busy', 'true');
     try {
       await this.inOrder(async () => {
-        const atlas = await this.engine.load(bodies, progress);
+        const atlas = await this.engine.load(bodies, progress, signal);
         this.bodies = bodies;
         this.scene = scene;
         this.motion = null;
         [this.touched, this.state, this.tolerance, this.cutAxis] = [false, null, null, null];
         this.show(layoutOf(bodies[0], atlas, frameOf(bodies[0])));
-        const fine = await this.engine.refine(this.resolution, progress);
+        const fine = await this.engine.refine(this.resolution, progress, signal);
         this.setFine(fine && layoutOf(bodies[0], fine, frameOf(bodies[0])));
       });
       await this.showAtRest();
       say('');
     } catch (error) {
-      this.fault(error);
+      if (!signal.aborted) this.fault(error);
     } finally {
       document.body.removeAttribute('aria-busy');
     }
+    if (signal.aborted) await this.recover(this.bodies === bodies);
+  }
+
+  /// After an abort the worker has lost all: what is shown is loaded again, coarsely if its fine map was what took long.
+  private async recover(wasRefining: boolean): Promise<void> {
+    if (wasRefining) {
+      this.resolution = kCoarse;
+      (byId('resolution') as HTMLSelectElement).value = String(kCoarse);
+    }
+    if (this.bodies) await this.open(this.bodies, this.scene);
+    say('Cancelled.');
   }
 
   private setFine(layout: Layout | null): void {

@@ -8,6 +8,7 @@ export interface Actions {
   openScene: (name: string) => void;
   openFiles: (files: File[], which: 0 | 1 | null) => void;
   swap: () => void;
+  cancel: () => void; ///< what is being loaded
   setResolution: (resolution: number) => void;
   setUnits: (units: string) => void;
   setHandles: (handles: Handles) => void;
@@ -26,14 +27,21 @@ function choice(id: string, label: string, options: [string, string][], value: s
 /// Adds the controls to the page, once.
 export function addPanel(scene: string, resolution: number, actions: Actions): void {
   const button = (id: string, label: string, click: () => void) => make('button', { type: 'button', id, click }, label);
+  let chosen = scene;
   const scenes = Object.entries(kScenes).map(([name, { title }]): [string, string] => [name, title]);
   const units = make('input', { type: 'text', id: 'units', size: 4, maxlength: 12, autocomplete: 'off', change: () => actions.setUnits(units.value.trim()) });
+  const cancel = button('cancel', 'Cancel', actions.cancel);
+  cancel.hidden = true;
   const section = make(
     'section', { id: 'compare', 'aria-labelledby': 'compare-title' },
     make('h2', { id: 'compare-title', class: 'hidden' }, 'What to compare'),
     make(
       'div', { class: 'row' },
-      choice('scene', 'Pair', [...scenes, ['files', 'Your files…']], scene, (name) => (name === 'files' ? byId('open-both').click() : actions.openScene(name))),
+      choice('scene', 'Pair', [...scenes, ['files', 'Your files…']], scene, (name) => {
+        if (name !== 'files') return actions.openScene((chosen = name));
+        (byId('scene') as HTMLSelectElement).value = chosen; // until there are files
+        byId('open-both').click();
+      }),
       fileButton('open-both', 'Open two files…', (files) => actions.openFiles(files, null)),
       fileButton('open-part', 'Part…', (files) => actions.openFiles(files, 0)),
       fileButton('open-reference', 'Reference…', (files) => actions.openFiles(files, 1)),
@@ -42,7 +50,7 @@ export function addPanel(scene: string, resolution: number, actions: Actions): v
       make('div', { class: 'field-of' }, make('label', { for: 'units' }, 'Unit'), units),
     ),
     make('p', { class: 'hint' }, 'Or drop two files here: STL, PLY, OBJ, OFF, 3DS or GLB, the part and the reference. They stay on this computer: the page cannot send anything.'),
-    make('p', { id: 'status', role: 'status', 'aria-live': 'polite', hidden: true }),
+    make('div', { class: 'row' }, make('p', { id: 'status', role: 'status', 'aria-live': 'polite', hidden: true }), cancel),
   );
   document.querySelector('main')!.prepend(section);
 
@@ -76,6 +84,7 @@ export function say(text: string, kind: 'fault' | 'progress' | '' = ''): void {
   status.setAttribute('aria-live', kind === 'progress' ? 'off' : 'polite');
   status.textContent = text;
   status.hidden = text === '';
+  byId('cancel').hidden = kind !== 'progress';
 }
 
 export function showPlaying(playing: boolean): void {

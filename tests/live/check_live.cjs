@@ -179,6 +179,19 @@ const checks = {
     assert.deepStrictEqual((await numbers(page)).distance, before.distance);
   },
 
+  // What takes long can be cancelled: what was there before is there again.
+  async cancels(page) {
+    const out = folder();
+    writeFileSync(join(out, 'a.stl'), stlOf(ball(200, 1)));
+    writeFileSync(join(out, 'b.stl'), stlOf(ball(200, 1.1)));
+    const before = await numbers(page);
+    await page.setInputFiles('#open-both', [join(out, 'a.stl'), join(out, 'b.stl')]);
+    await page.waitForSelector('#cancel:not([hidden])', { timeout: kPatience });
+    await page.click('#cancel');
+    await page.waitForFunction(() => document.getElementById('status').textContent === 'Cancelled.', null, { timeout: kPatience });
+    assert.deepStrictEqual((await numbers(page)).distance, before.distance);
+  },
+
   // Picture, numbers, model and report are files.
   async saves(page) {
     const out = folder();
