@@ -36,6 +36,7 @@ export type Say = (step: string, fraction: number) => void;
 
 /// Positions moved by a matrix.
 export function moved(positions: Float64Array, matrix: Matrix4): Float64Array {
+  if (isIdentity(matrix)) return positions.slice();
   const [a, b, c, , d, e, f, , g, h, i, , x, y, z] = matrix.elements;
   const result = new Float64Array(positions.length);
   for (let v = 0; v < positions.length; v += 3) {
@@ -160,22 +161,11 @@ export class Engine {
 
   /// Sums up the fine map, as report.json does.
   async report(tolerance: [number, number] | null, units: string): Promise<Report> {
-    const { map, atlas } = this.fine ?? this.coarse!;
-    const summary = await map.summary({ units, ...(tolerance ? { tolerance } : {}) });
-    const [o1, o2] = this.bodies!.map((body, which) => ({
-      file: body.name,
-      transform: which === 1 && !isIdentity(this.motion) ? 'the handles' : '',
-      vertices: body.positions.length / 3,
-      triangles: body.indices.length / 3,
-      closed: this.closed[which],
-    }));
-    const texels = atlas.texelFaces.reduce((sum, face) => sum + (face === 0xffffffff ? 0 : 1), 0);
-    return {
-      o1, o2, measured_on: 'o1',
-      atlas: { kind: 'charts', resolution: atlas.resolution, rows: atlas.rows, charts: atlas.charts, texels },
-      engine: 'cpu',
-      ...summary,
-    } as Report;
+    const { map } = this.fine ?? this.coarse!;
+    const report = (await map.summary({ units, ...(tolerance ? { tolerance } : {}) })) as Report;
+    for (const [key, { name }] of [['o1', this.bodies![0]], ['o2', this.bodies![1]]] as const) report[key] = { ...report[key]!, file: name };
+    if (!isIdentity(this.motion)) report.o2!.transform = 'the handles';
+    return report;
   }
 
   /// The text of report.html.

@@ -18,7 +18,7 @@ async function opened(context, url, faults) {
   page.on('console', (message) => faults.push(`console: ${message.text()}`));
   page.on('pageerror', (error) => faults.push(`error: ${error.message}`));
   page.on('request', (request) => {
-    if (request.url() !== url && !request.url().startsWith('data:')) faults.push(`request: ${request.url()}`);
+    if (request.url() !== url && !/^(data|blob):/.test(request.url())) faults.push(`request: ${request.url()}`);
   });
   await page.goto(url);
   await page
