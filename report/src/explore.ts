@@ -12,8 +12,13 @@ interface ValueWords {
   valueText: (distance: number) => string; ///< with the unit
 }
 
+interface Explored {
+  addCallout: (x: number, y: number) => void; ///< at what is under a place of the canvas
+  middle: () => [number, number]; ///< of the canvas, where keys look
+}
+
 /// Listens to the canvas of a view; `home` shows what the page opened with.
-export function explore(view: View, subject: Subject, callouts: Callouts, words: ValueWords, home: () => void): void {
+export function explore(view: View, subject: Subject, callouts: Callouts, words: ValueWords, home: () => void): Explored {
   const { canvas } = view;
   const probe = (x: number, y: number): void => {
     const found = view.find(x, y);
@@ -59,6 +64,7 @@ export function explore(view: View, subject: Subject, callouts: Callouts, words:
   });
   canvas.addEventListener('focus', () => byId('view').classList.toggle('keyboard', canvas.matches(':focus-visible')));
   canvas.addEventListener('blur', () => byId('view').classList.remove('keyboard'));
+  return { addCallout, middle };
 }
 
 /// Probes where the pointer is, at most once a frame, and picks where it is pressed and released.

@@ -36,6 +36,7 @@ class Page {
   private readonly view: View;
   private readonly section: SectionView;
   private readonly callouts: Callouts;
+  readonly explored: ReturnType<typeof explore>; ///< for tests
   private readonly first: Listed | undefined; // place of the list, of a part that is judged
   private readonly signs: boolean;
   private readonly unit: string;
@@ -63,7 +64,7 @@ class Page {
     this.view = new View(byId('view'), this.subject, ghost, this.section, page.up, () => this.callouts?.update());
     this.callouts = new Callouts(this.view, (d) => this.valueText(d), this.unit, this.subject.size, (at) => this.lookAt(at));
     const words = { quantity: quantityOf(report), unit: this.unit, valueText: (d: number) => this.valueText(d) };
-    explore(this.view, this.subject, this.callouts, words, () => this.lookAtFirst());
+    this.explored = explore(this.view, this.subject, this.callouts, words, () => this.lookAtFirst());
     const ghostShown = this.apart();
     this.state = makeControls(
       report,

@@ -304,7 +304,7 @@ const checks = {
     const slide = () => pictures((i) => page.fill('#tolerance', String(500 + 20 * i)));
     for (const move of [drag, slide]) {
       await pace(1000);
-      const place = () => page.evaluate(() => window.sdmPage.inspect(...window.sdmPage.middle()));
+      const place = () => page.evaluate(() => window.sdmPage.inspect(...window.sdmPage.explored.middle()));
       const seen = await move();
       const coarse = seen.find((picture) => picture.moving) ?? seen[0];
       const under = await place();

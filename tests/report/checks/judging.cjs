@@ -87,7 +87,7 @@ module.exports = {
   async narrow(page) {
     await page.setViewportSize({ width: 420, height: 860 });
     const hits = await hitsFrom(page, 'corner', 9);
-    await page.evaluate((at) => at.forEach(({ x, y }) => window.sdmPage.addCallout(x, y)), hits.filter((_, i) => i % Math.ceil(hits.length / 20) === 0));
+    await page.evaluate((at) => at.forEach(({ x, y }) => window.sdmPage.explored.addCallout(x, y)), hits.filter((_, i) => i % Math.ceil(hits.length / 20) === 0));
     await settled(page);
     const { labels, ticks, verdicts } = await page.evaluate(() => {
       const boxes = (selector) => [...document.querySelectorAll(selector)].map((e) => e.getBoundingClientRect().toJSON());

@@ -159,7 +159,7 @@ module.exports = {
       const before = await length();
       const first = await page.locator('#callout-list li').count();
       const hits = await hitsFrom(page, 'corner', 9);
-      await page.evaluate((at) => at.forEach(({ x, y }) => window.sdmPage.addCallout(x, y)), hits.filter((_, i) => i % Math.floor(hits.length / 15) === 0).slice(0, 15));
+      await page.evaluate((at) => at.forEach(({ x, y }) => window.sdmPage.explored.addCallout(x, y)), hits.filter((_, i) => i % Math.floor(hits.length / 15) === 0).slice(0, 15));
       assert.strictEqual(await page.locator('#callout-list li').count(), first + 15);
       assert.strictEqual(await length(), before, `the page grew at ${width}`);
       const { inside, shown } = await page.$eval('#callouts', (list) => ({ inside: list.scrollHeight, shown: list.clientHeight }));
