@@ -31,6 +31,15 @@ async function open(page, paths, id = '#open-both') {
 }
 const shown = async (page, id) => Number(plain(await page.textContent(id)).split(/[ ,]/)[0]);
 
+/// The path of a file that a button saves.
+async function saved(page, id, name) {
+  const [download] = await Promise.all([page.waitForEvent('download', { timeout: kPatience }), page.click(id)]);
+  assert.strictEqual(download.suggestedFilename(), name);
+  const path = join(folder(), name);
+  await download.saveAs(path);
+  return path;
+}
+
 /// What the command measures of the bodies that the page shows.
 function byCommand(meshes, resolution) {
   const out = folder();
@@ -196,22 +205,19 @@ const checks = {
     assert.deepStrictEqual((await numbers(page)).distance, before.distance);
   },
 
-  // Picture, numbers, model and report are files.
+  // Picture, numbers and model are files.
   async saves(page) {
-    const out = folder();
-    const save = async (id, name) => {
-      const [download] = await Promise.all([page.waitForEvent('download'), page.click(id)]);
-      assert.strictEqual(download.suggestedFilename(), name);
-      await download.saveAs(join(out, name));
-      return readFileSync(join(out, name));
-    };
+    const save = async (id, name) => readFileSync(await saved(page, id, name));
     assert.strictEqual((await save('#save-picture', 'map.png')).subarray(1, 4).toString(), 'PNG');
     const csv = (await save('#save-numbers', 'numbers.csv')).toString();
     assert(csv.includes(`distance.mean,${(await numbers(page)).distance.mean}`), csv.slice(0, 300));
     const glb = await save('#save-model', 'model.glb');
     assert.deepStrictEqual([glb.toString('latin1', 0, 4), glb.readUInt32LE(8)], ['glTF', glb.length]);
-    await save('#save-report', 'report.html');
-    const report = await opened(page.context(), pathToFileURL(join(out, 'report.html')).href, []);
+  },
+
+  // The report that is saved is a page with the same numbers.
+  async reports(page) {
+    const report = await opened(page.context(), pathToFileURL(await saved(page, '#save-report', 'report.html')).href, []);
     assert.strictEqual(await report.textContent('h1'), await page.textContent('h1'));
     assert.strictEqual(await report.textContent('#numbers-table tbody tr:first-child td'), await page.textContent('#numbers-table tbody tr:first-child td'));
   },
