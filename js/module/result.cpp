@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdlib>
+#include <stdexcept>
 
 namespace sdm::js {
 namespace {
@@ -22,6 +23,9 @@ void fail_with_current_exception(Result& result) noexcept {
   } catch (const Cancelled&) {
     result.fail_with_literal(Result::Error::cancelled, "cancelled");
   } catch (const std::bad_alloc&) {
+    result.fail_with_literal(Result::Error::memory, kNoMemory);
+  } catch (const std::length_error&) {
+    // Of an array that would be larger than the address space of 32 bits.
     result.fail_with_literal(Result::Error::memory, kNoMemory);
   } catch (const std::exception& error) {
     try {
