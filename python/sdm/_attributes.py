@@ -50,6 +50,6 @@ def corner_normals(normals: Normals, vertices: int, faces: "npt.NDArray[np.uint3
             f"corners of faces, not {array.dtype} of the shape {array.shape}"
         )
     if array.ndim == 2:
-        known = (faces < len(array)).all(axis=1)  # removed faces have no vertices
+        known = np.asarray((faces < len(array)).all(axis=1))  # removed faces have no vertices
         array = np.where(known[:, None, None], array[np.where(known[:, None], faces, 0)], np.nan)
     return np.ascontiguousarray(array, np.float32)
