@@ -192,6 +192,20 @@ std::string summary(const SimplifyCommand& command, const SimplifyOutcome& outco
   return text + note_lines(outcome.notes, 13);
 }
 
+/// Writes the report, together with the meshes if it is a file beside them; otherwise before them.
+void write_report(const SimplifyCommand& command, const SimplifyOutcome& outcome, OutputFolder& out) {
+  const fs::path folder = fs::absolute(command.report).parent_path();
+  const bool is_other =
+      fs::exists(command.report) && !fs::is_regular_file(fs::symlink_status(command.report));
+  const bool beside =
+      fs::weakly_canonical(folder) == fs::weakly_canonical(fs::absolute(command.out).parent_path());
+  const std::string text = to_text(report_of(command, outcome));
+  if (beside && !is_other)
+    write_text(out.staging() / command.report.filename(), text);
+  else
+    write_whole(command.report, text);
+}
+
 void run(const SimplifyCommand& command) {
   limit_threads(command.threads);
   OutputFolder out(fs::absolute(command.out).parent_path());  // found before anything is computed
@@ -205,8 +219,8 @@ void run(const SimplifyCommand& command) {
     for (std::size_t i = 0; i < outcome.levels.size(); ++i)
       sdm::write_mesh(out.staging() / command.file(i).filename(), outcome.levels[i].mesh);
     outcome.output_ms = watch.lap();
+    if (!command.report.empty()) write_report(command, outcome, out);
   });
-  if (!command.report.empty()) write_whole(command.report, to_text(report_of(command, outcome)));
   print(
       command, [&] { return report_of(command, outcome); }, [&] { return summary(command, outcome); });
 }

@@ -112,7 +112,8 @@ class Division {
 
  private:
   static constexpr std::uint32_t kMostDivisions = 24;
-  static constexpr std::size_t kMostPieces = std::size_t{1} << 23;
+  /// More pieces are searched as they are: those of two divisions take 320 MB.
+  static constexpr std::size_t kMostPieces = std::size_t{1} << 21;
 
   void divide(const Piece& piece, const Vec3& middle, const Corners& near, std::vector<Piece>& smaller,
               std::vector<Corners>& high) const {

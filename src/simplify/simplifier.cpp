@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <new>
 #include <optional>
 #include <utility>
@@ -23,10 +24,11 @@ using namespace simplify;
 
 // Collapses in several steps mostly deviate less than in one, as each has the errors of a mesh that is
 // smoother than that before: on a scan of a bunny reduced to 1 %, by a quarter. With a count, there are two,
-// the first of which ends at this multiple of the count. With a limit, these are the errors of the first ones
-// relative to it, and steps go on from the last mesh that keeps the limit while they remove at least this
-// share of its triangles.
-constexpr std::size_t kFirstTriangles = 4;
+// the first of which ends at this multiple of the count; not so on an armadillo reduced to 1 %, so that up to
+// this many triangles, where it takes little time, one step is measured, too. With a limit, these are the
+// errors of the first ones relative to it, and steps go on from the last mesh that keeps the limit while they
+// remove at least this share of its triangles.
+constexpr std::size_t kFirstTriangles = 4, kMostForBoth = 250'000;
 constexpr double kFirstError = 0.42, kSecondError = 0.5, kLarger = 1.15, kSmaller = 0.8, kWorthwhile = 0.04;
 constexpr double kMostError = 8;
 constexpr int kMostSteps = 12, kMostFailures = 2, kMostHalvings = 10;
@@ -71,8 +73,13 @@ class Simplifier::State {
   /// area.
   Step collapsed(const Wedges& wedges, const Step& from, const CollapseLimit& limit,
                  const SimplifyOptions& options);
+  /// Collapses in one step after another, each to this multiple of a count; to more where nothing with an
+  /// area would be left.
+  Step reduced(const Wedges& wedges, const Step& start, std::size_t count,
+               std::initializer_list<std::size_t> multiples, const SimplifyOptions& options);
   void measure_input(Step& step, double limit, const SimplifyOptions& options);
   void measure_result(Step& step, double limit, const SimplifyOptions& options);
+  void measure(Step& step, const SimplifyOptions& options);
   /// Ever coarser meshes to which no point of the input is farther than the limit.
   std::vector<Step> coarser(const Wedges& wedges, const Step& start, double limit,
                             const SimplifyOptions& options);
@@ -110,6 +117,24 @@ Simplifier::State::Step Simplifier::State::collapsed(const Wedges& wedges, const
       },
       [&] { make_sites(); });
   return step;
+}
+
+Simplifier::State::Step Simplifier::State::reduced(const Wedges& wedges, const Step& start, std::size_t count,
+                                                   std::initializer_list<std::size_t> multiples,
+                                                   const SimplifyOptions& options) {
+  Step step;
+  for (std::size_t most = count; step.triangles.empty() && most < start.triangles.size(); most *= 2) {
+    step = start;
+    for (const std::size_t multiple : multiples)
+      if (step.triangles.size() > multiple * most)
+        step = collapsed(wedges, step, {multiple * most, kNoLimit}, options);
+  }
+  return step;
+}
+
+void Simplifier::State::measure(Step& step, const SimplifyOptions& options) {
+  measure_input(step, kNoLimit, options);
+  measure_result(step, kNoLimit, options);
 }
 
 void Simplifier::State::measure_input(Step& step, double limit, const SimplifyOptions& options) {
@@ -205,20 +230,21 @@ Simplified Simplifier::State::to_triangles(std::size_t count, const SimplifyOpti
   if (wedges.triangles.size() <= count) return unchanged(kNoLimit, options);
   Step start{{}, wedges.triangles};
   if (options.from != nullptr) start.estimate = options.from->estimate;
-  Step step;
-  // Where nothing with an area is left, more triangles are.
-  for (std::size_t most = count; step.triangles.empty() && most < start.triangles.size(); most *= 2) {
-    step = start;
-    for (const std::size_t end : {kFirstTriangles * most, most})
-      if (step.triangles.size() > end) step = collapsed(wedges, step, {end, kNoLimit}, options);
-  }
+  Step step = reduced(wedges, start, count, {kFirstTriangles, 1}, options);
   const bool none = step.triangles.empty() || step.triangles.size() == start.triangles.size();
   Simplified result;
   if (none) {
     result = unchanged(kNoLimit, options);
   } else {
-    measure_input(step, kNoLimit, options);
-    measure_result(step, kNoLimit, options);
+    measure(step, options);
+    const std::size_t before = start.triangles.size();
+    if (before > kFirstTriangles * count && before <= kMostForBoth) {
+      Step other = reduced(wedges, start, count, {1}, options);
+      if (other.triangles.size() <= step.triangles.size() && !other.triangles.empty()) {
+        measure(other, options);
+        if (other.deviation.upper < step.deviation.upper) step = std::move(other);
+      }
+    }
     result = std::move(step);
   }
   result.stopped = result.mesh.triangles.size() > count;

@@ -51,6 +51,20 @@ TEST_F(SimplifyRun, KeepsTheLimitInTheFile) {
   }
 }
 
+// The report is among the files that appear together, and fails before any of them does.
+TEST_F(SimplifyRun, WithoutItsReportThereAreNoMeshes) {
+  std::filesystem::create_directory(folder / "report.json");
+  for (const std::string& report : {std::string(folder / "report.json"), input + "/report.json"}) {
+    const Outcome done = run({"--triangles", "50%", "--lods", "1", "--report", report});
+    EXPECT_EQ(done.code, 1) << report;
+    EXPECT_NE(done.err, "");
+    EXPECT_THAT(names_in(folder.path()), ElementsAre("report.json", "sphere.obj"));
+  }
+  const Outcome elsewhere = run({"--triangles", "50%", "--report", "/dev/stdout", "--quiet"});
+  EXPECT_EQ(elsewhere.code, 0) << elsewhere.err;
+  EXPECT_THAT(elsewhere.out, HasSubstr("\"levels\""));
+}
+
 TEST_F(SimplifyRun, WritesLevelsOfDetailAndTheReport) {
   const Outcome done =
       run({"--triangles", "50%", "--lods", "2", "--units", "mm", "--report", folder / "report.json"});

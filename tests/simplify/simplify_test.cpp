@@ -120,6 +120,14 @@ TEST(Simplifier, ReducesSmoothMeshesFar) {
   EXPECT_TRUE(inspect(s.mesh).oriented);
 }
 
+// Two steps to 1 % of this mesh end 9.7 away from it, and one step 5.2.
+TEST(Simplifier, OneStepIsTakenWhereTwoDeviateMore) {
+  const Mesh mesh = load("armadillo.off");
+  const Simplified s = Simplifier(mesh).to_triangles(mesh.triangles.size() / 100);
+  EXPECT_LE(s.mesh.triangles.size(), mesh.triangles.size() / 100);
+  EXPECT_LT(s.deviation.upper, 6.5);
+}
+
 TEST(Simplifier, LevelsAreMonotone) {
   const Mesh mesh = with_noise(torus(100, 60), 0.1);
   Simplifier simplifier(mesh);
