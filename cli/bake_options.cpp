@@ -1,6 +1,7 @@
 #include "bake_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sdm/baked_geometry.h>
 
 #include <algorithm>
@@ -11,17 +12,39 @@
 
 namespace {
 
-std::optional<sdm::BakeChannel> channel_of(const std::string& name) {
-  const auto* const found = std::ranges::find(
-      sdm::kBakeChannels, name, [](sdm::BakeChannel channel) { return std::string(sdm::name_of(channel)); });
-  return found == std::end(sdm::kBakeChannels) ? std::nullopt : std::optional(*found);
+std::vector<std::string> channel_names() {
+  std::vector<std::string> names;
+  for (const sdm::BakeChannel channel : sdm::kBakeChannels) names.emplace_back(sdm::name_of(channel));
+  for (const sdm::GeometryChannel channel : sdm::kGeometryChannels) names.emplace_back(sdm::name_of(channel));
+  return names;
 }
 
-std::string channel_names() {
-  std::string names;
-  for (const sdm::BakeChannel channel : sdm::kBakeChannels)
-    names.append(names.empty() ? "" : ", ").append(sdm::name_of(channel));
-  return names + ", " + kNormalMap;
+/// Those of the names, in the order of the library.
+BakeSelection selected(const std::vector<std::string>& names) {
+  const auto add = [&](const auto& channels, auto& to) {
+    for (const auto channel : channels)
+      if (std::ranges::count(names, std::string(sdm::name_of(channel))) > 0) to.push_back(channel);
+  };
+  BakeSelection selection;
+  add(sdm::kBakeChannels, selection.look), add(sdm::kGeometryChannels, selection.geometry);
+  return selection;
+}
+
+std::string check_channel(const std::string& name) {
+  if (name == sdm::name_of(sdm::GeometryChannel::normal) && !sdm::has_tangents())
+    return "normal needs MikkTSpace, which this build does not have";
+  const auto names = channel_names();
+  if (std::ranges::count(names, name) > 0) return {};
+  return fmt::format("{} is not one of {}", name, fmt::join(names, ", "));
+}
+
+/// The root of a number of samples; nothing if there is none.
+std::optional<std::uint32_t> sample_side(const std::string& text) {
+  constexpr std::uint32_t kMost = 8;
+  const auto samples = parse_whole_number(text);
+  for (std::uint32_t side = 1; samples && side <= kMost; ++side)
+    if (*samples == side * side) return side;
+  return std::nullopt;
 }
 
 void add_layout(CLI::App& app, BakeLayout& layout) {
@@ -41,31 +64,43 @@ void add_layout(CLI::App& app, BakeLayout& layout) {
       ->capture_default_str();
 }
 
-void add_channels(CLI::App& app, std::optional<std::vector<sdm::BakeChannel>>& channels, bool& normal_map) {
+void add_channels(CLI::App& app, BakeCommand& c) {
   app.add_option_function<std::vector<std::string>>(
-         "--channels",
-         [&](const std::vector<std::string>& names) {
-           channels.emplace();
-           normal_map = std::ranges::count(names, kNormalMap) > 0;
-           for (const sdm::BakeChannel channel : sdm::kBakeChannels)
-             if (std::ranges::count(names, std::string(sdm::name_of(channel))) > 0)
-               channels->push_back(channel);
-         },
-         fmt::format("The textures to bake, of {}; by default base_color, and others that HIGH has a texture "
-                     "for or that differ between its materials. normal: the shape of HIGH, in tangent space",
-                     channel_names()))
+         "--channels", [&c](const std::vector<std::string>& names) { c.channels = selected(names); },
+         fmt::format("What to bake, of {}; by default base_color, and others that HIGH has a texture for or "
+                     "that differ between its materials. normal: the shape of HIGH, in tangent space",
+                     fmt::join(channel_names(), ", ")))
       ->delimiter(',')
       ->allow_extra_args(false)
+      ->check(CLI::Validator(check_channel, ""))
+      ->type_name("LIST");
+  app.add_option("--occlusion-rays", c.occlusion.rays, "Of ambient_occlusion: rays from each point of HIGH")
+      ->transform(whole_number(1, 65536))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("--occlusion-distance", c.occlusion.max_distance,
+                 "Of ambient_occlusion: what is farther away occludes nothing")
+      ->check(positive_number())
+      ->type_name("D");
+  add_choice<sdm::ThicknessMethod>(
+      app, "--thickness-method", c.thickness,
+      "Of thickness: the diameter of the largest ball in HIGH that touches the point, or the length of the "
+      "ray along the inward normal",
+      {{"ball", sdm::ThicknessMethod::ball}, {"ray", sdm::ThicknessMethod::ray}});
+}
+
+void add_samples(CLI::App& app, BakeCommand& c) {
+  app.add_option_function<std::string>(
+         "--samples", [&c](const std::string& text) { c.sample_side = *sample_side(text); },
+         "Samples in each texel, the square of 1 to 8: each has a point of HIGH, and the texel has their "
+         "mean")
       ->check(CLI::Validator(
-          [](const std::string& name) {
-            if (name == kNormalMap && !sdm::has_tangents())
-              return std::string("normal needs MikkTSpace, which this build does not have");
-            return channel_of(name) || name == kNormalMap
-                       ? std::string()
-                       : fmt::format("{} is not one of {}", name, channel_names());
+          [](const std::string& text) {
+            return sample_side(text) ? std::string() : text + " is not one of 1, 4, 9, 16, 25, 36, 49, 64";
           },
           ""))
-      ->type_name("LIST");
+      ->type_name("N")
+      ->default_str("1");
 }
 
 void add_matching(CLI::App& app, BakeCommand& c) {
@@ -112,8 +147,22 @@ std::string name_of(sdm::MatchMethod method) {
   return "closest";
 }
 
-std::string picture_name(sdm::BakeChannel channel) {
-  return std::string(sdm::name_of(channel)) + ".png";
+BakeLayout sample_layout(const BakeCommand& command) {
+  const std::uint32_t side = command.sample_side;
+  BakeLayout layout = command.layout;
+  layout.atlas.resolution *= side;
+  if (layout.atlas.rows) *layout.atlas.rows *= side;
+  layout.atlas.gutter = side * (layout.atlas.gutter + 1) - 1;  // so many whole texels
+  return layout;
+}
+
+void check_samples(const BakeCommand& command) {
+  constexpr std::uint32_t kMost = 32768;  // texels per row of a surface
+  const sdm::AtlasOptions atlas = sample_layout(command).atlas;
+  if (std::max(atlas.resolution, atlas.rows.value_or(0)) > kMost)
+    throw CLI::ValidationError("--samples",
+                               fmt::format("{} a texel are more than {} along a side of the texture",
+                                           command.sample_side * command.sample_side, kMost));
 }
 
 void add_options(CLI::App& app, BakeCommand& c) {
@@ -126,7 +175,8 @@ void add_options(CLI::App& app, BakeCommand& c) {
   add_transform_option(app, "--transform-low", "LOW", c.transform_low);
   add_deflection_option(app, c.tessellation);
   add_layout(app, c.layout);
-  add_channels(app, c.channels, c.normal_map);
+  add_channels(app, c);
+  add_samples(app, c);
   app.add_option("--max-distance", c.map.max_distance,
                  "Texels farther than this from HIGH have no match, and are filled from others")
       ->check(positive_number())
@@ -136,5 +186,6 @@ void add_options(CLI::App& app, BakeCommand& c) {
   app.add_option("--units", c.units, "Units of the meshes; m, cm, mm, um, in, ft scale baked.glb to metres")
       ->type_name("NAME");
   add_up_option(app, c.up, "baked.glb");
+  app.add_flag("!--no-page", c.page, "Do not write report.html");
   add_run_options(app, c, "the report (report.json) instead of a summary");
 }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <sdm/bake.h>
+#include <sdm/baked_geometry.h>
 #include <sdm/io.h>
 #include <sdm/map.h>
 #include <sdm/match.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -20,6 +22,12 @@ struct BakeLayout {
   sdm::AtlasOptions atlas;               ///< its kind is set by bake_surface()
 };
 
+/// What is asked for.
+struct BakeSelection {
+  std::vector<sdm::BakeChannel> look{};
+  std::vector<sdm::GeometryChannel> geometry{};
+};
+
 struct BakeCommand : RunOptions {
   std::string high, low, transform_high, transform_low;
   sdm::TessellationOptions tessellation{};
@@ -28,8 +36,11 @@ struct BakeCommand : RunOptions {
   sdm::MapOptions map;
   std::optional<sdm::MatchMethod> match{};  ///< nothing: `facing` if map.facing is given, else `closest`
   std::optional<double> cage{};
-  std::optional<std::vector<sdm::BakeChannel>> channels{};  ///< nothing: those that differ
-  bool normal_map = false;                                  ///< besides the channels
+  std::optional<BakeSelection> channels{};  ///< nothing: sdm::default_channels()
+  std::uint32_t sample_side = 1;            ///< the root of the number of samples of a texel
+  sdm::AmbientOcclusionOptions occlusion{};
+  sdm::ThicknessMethod thickness = sdm::ThicknessMethod::ball;
+  bool page = sdm::can_write_html();
   std::string units;
   sdm::UpAxis up = sdm::UpAxis::y;
 };
@@ -40,11 +51,12 @@ void add_options(CLI::App& app, BakeCommand& command);
 /// How points of HIGH are found. Throws CLI::ValidationError for options that exclude each other.
 [[nodiscard]] sdm::MatchOptions match_options(const BakeCommand& command);
 
+/// The layout of samples: with several a texel, that of a finer texture, in which charts of different texels
+/// do not meet.
+[[nodiscard]] BakeLayout sample_layout(const BakeCommand& command);
+
+/// Throws CLI::ValidationError for more samples than a surface can have.
+void check_samples(const BakeCommand& command);
+
 /// The word of a method.
 [[nodiscard]] std::string name_of(sdm::MatchMethod method);
-
-/// The channel of tangent-space normals, which is no sdm::BakeChannel.
-inline constexpr const char* kNormalMap = "normal";
-
-/// The names of the pictures of all channels.
-[[nodiscard]] std::string picture_name(sdm::BakeChannel channel);

@@ -1,4 +1,4 @@
-# The pages of report.html and player.html: report/ bundled by esbuild into one HTML file each, which the library embeds.
+# The pages of report.html, of maps and of baking, and of player.html: report/ bundled by esbuild into one HTML file each, which the library embeds.
 find_program(NPM npm)
 find_program(NODE NAMES node nodejs)
 if(NOT NODE)
@@ -49,11 +49,12 @@ endif()
 function(sdm_embed_report target header)
   sdm_npm_ci(${SDM_REPORT_FOLDER} --omit=dev)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/report/src/*)
-  add_custom_command(OUTPUT ${SDM_REPORT_FOLDER}/page.html ${SDM_REPORT_FOLDER}/player.html
+  set(pages ${SDM_REPORT_FOLDER}/page.html ${SDM_REPORT_FOLDER}/player.html ${SDM_REPORT_FOLDER}/baked.html)
+  add_custom_command(OUTPUT ${pages}
     COMMAND ${CMAKE_COMMAND} -E env NODE_PATH=${SDM_REPORT_FOLDER}/node_modules
       ${NODE} ${PROJECT_SOURCE_DIR}/report/build.cjs ${SDM_REPORT_FOLDER}
     DEPENDS ${sources} ${PROJECT_SOURCE_DIR}/report/build.cjs ${SDM_REPORT_FOLDER}/packages
     COMMENT "Bundling report/"
     VERBATIM)
-  sdm_embed_files(${target}_objects HEADER ${header} NAMESPACE sdm::io FILES ${SDM_REPORT_FOLDER}/page.html ${SDM_REPORT_FOLDER}/player.html)
+  sdm_embed_files(${target}_objects HEADER ${header} NAMESPACE sdm::io FILES ${pages})
 endfunction()

@@ -1,4 +1,4 @@
-// Bundles the pages, page.html and player.html in shell.html, into one HTML file each: node build.cjs FOLDER. Packages are found by NODE_PATH or in node_modules.
+// Bundles the pages, page.html, player.html and baked.html in shell.html, into one HTML file each: node build.cjs FOLDER. Packages are found by NODE_PATH or in node_modules.
 const { buildSync } = require('esbuild');
 const { readFileSync, writeFileSync } = require('fs');
 const { delimiter, join } = require('path');
@@ -33,7 +33,7 @@ function withShortShaders(text) {
 
 // Functions as the replacements: in a string, $& and the like have a meaning.
 const read = (file) => readFileSync(join(__dirname, 'src', file), 'utf8');
-const pages = { page: ['Distance report', 'main.ts'], player: ['Distances over time', 'player.ts'] };
+const pages = { page: ['Distance report', 'main.ts'], player: ['Distances over time', 'player.ts'], baked: ['Baked textures', 'baked.ts'] };
 
 /// A page with its program; `also`: texts in place of marks of shell.html.
 function pageOf(name, title, style, program, also = {}) {

@@ -79,6 +79,44 @@ def inspection_card() -> None:
         legend=False)  # fmt: skip
 
 
+def picture_of_page(page: str, picture: str) -> None:
+    """What a browser shows of a page."""
+    subprocess.run(
+        ["chromium", "--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+         "--hide-scrollbars", "--force-device-scale-factor=1", "--window-size=1280,800", "--timeout=12000",
+         f"--screenshot={FOLDER / picture}", Path(page).absolute().as_uri()],
+        check=True)  # fmt: skip
+
+
+def painted_armadillo(file: str) -> None:
+    """A mesh with colours at its vertices, as scanners write it: bands along the height, and patches."""
+    mesh = sdm.read(MESHES / "armadillo.off")
+    fit = sdm.fit_to_unit(mesh)
+    at = mesh.transformed(fit).vertices
+    bands = 0.5 + 0.5 * np.sin(26 * at[:, 1])
+    patches = np.sin(9 * at[:, 0] + 2) * np.sin(9 * at[:, 1]) * np.sin(9 * at[:, 2] + 1) > 0
+    clay, leaf, bone = np.array([176, 92, 58]), np.array([84, 120, 66]), np.array([226, 208, 170])
+    colors = np.where(patches[:, None], clay, leaf) * (1 - 0.45 * bands[:, None]) + bone * 0.45 * bands[:, None]
+    turned = mesh.vertices * [-1, 1, -1]  # its front to the viewer
+    rows = [f"{x:.7g} {y:.7g} {z:.7g} {r} {g} {b}" for (x, y, z), (r, g, b) in zip(turned, colors.astype(int), strict=True)]
+    faces = [f"3 {a} {b} {c}" for a, b, c in mesh.faces]
+    Path(file).write_text("\n".join(
+        ["ply", "format ascii 1.0", f"element vertex {len(rows)}", "property float x", "property float y", "property float z",
+         "property uchar red", "property uchar green", "property uchar blue", f"element face {len(faces)}",
+         "property list uchar int vertex_indices", "end_header", *rows, *faces, ""]))  # fmt: skip
+
+
+def baked_page() -> None:
+    """A scan, and what is made of it: the second example of README.md, with normals."""
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        painted_armadillo("scan.ply")
+        subprocess.run(["sdm", "simplify", "scan.ply", "--max-deviation", "1.5", "--units", "mm", "-o", "low.glb"], check=True)
+        subprocess.run(
+            ["sdm", "bake", "scan.ply", "low.glb", "-o", "asset", "--channels", "base_color,normal", "--match", "ray", "--cage", "3",
+             "--units", "mm", "--gutter", "4"], check=True)  # fmt: skip
+        picture_of_page("asset/report.html", "baked-page.png")
+
+
 def report_page() -> None:
     """The report of docs/inspection.md, as a browser shows it."""
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
@@ -86,15 +124,12 @@ def report_page() -> None:
         subprocess.run(
             ["sdm", "map", "made/scan.ply", "made/part.ply", "--align", "--tolerance", "0.01", "--units", "cm", "--up", "z",
              "--write", "html", "-o", "out"])  # fmt: skip
-        subprocess.run(
-            ["chromium", "--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-             "--hide-scrollbars", "--force-device-scale-factor=1", "--window-size=1280,800", "--timeout=12000",
-             f"--screenshot={FOLDER / 'report.png'}", Path("out/report.html").absolute().as_uri()],
-            check=True)  # fmt: skip
+        picture_of_page("out/report.html", "report.png")
 
 
 bunny_and_armadillo()
 report_page()
+baked_page()
 inspection_card()
 python_card()
 proximity_card()

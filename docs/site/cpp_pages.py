@@ -17,7 +17,7 @@ SUBJECTS = {
                       "closest_points", "closest_in_parts", "facing", "vertex_distances"],
     "Results of maps": ["channels", "summary", "units", "statistics", "sampling_bound", "tolerance", "tolerance_proof",
                          "certified_verdict", "group_verdicts", "tolerance_table", "coverage", "doubts", "part_statistics", "places", "islands", "combined_statistics", "temporal_maps", "match", "transfer", "bake",
-                         "baked_geometry"],
+                         "baked_geometry", "supersampling"],
     "Proximity": ["proximity_query", "shape", "multi_body_query", "pose_query", "self_proximity_query", "thickness", "time_of_contact",
                   "hausdorff", "metrics", "simplify"],
     "Other queries": ["align", "fit_check", "unit_check", "rays", "volume"],

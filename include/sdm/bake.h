@@ -59,8 +59,13 @@ struct MeshLook {
 /// faces.
 [[nodiscard]] SDM_API std::vector<BakeChannel> varying_channels(const Mesh& mesh, const MeshLook& look);
 
+/// Returns the channels that are baked unless others are asked for: base_color, and the others of
+/// varying_channels(). Errors and cost as there.
+[[nodiscard]] SDM_API std::vector<BakeChannel> default_channels(const Mesh& mesh, const MeshLook& look);
+
 /// Returns the material of the first face that has one, or Material(), without name and textures: the factors
-/// of channels that do not differ. Its alpha_mode is `blend` or `mask` if that of any face is.
+/// of channels that do not differ. Its alpha_mode is `blend` or `mask` if that of any face is. Throws
+/// sdm::Error for a number of a material that does not exist.
 [[nodiscard]] SDM_API Material common_material(const MeshLook& look);
 
 /// A surface for textures.
@@ -107,9 +112,22 @@ struct BakedChannel {
                                                      std::span<const BakeChannel> channels,
                                                      const BakeOptions& options = {});
 
+/// A channel at points: `components` numbers for each, as in BakedChannel.
+struct LookValues {
+  std::size_t components = 0;
+  std::vector<float> values;
+};
+
+/// Returns a channel of a mesh at points of its faces. A texture is averaged over a square in the plane of
+/// the face, whose middle is the point and whose sides are as long as `extent`, at least 0. Throws sdm::Error
+/// as bake() does, and for a point of a face that does not exist. Cost: linear in points and in pixels of the
+/// pictures that are used, all cores.
+[[nodiscard]] SDM_API LookValues look_at(const Mesh& mesh, const MeshLook& look, BakeChannel channel,
+                                         std::span<const SurfacePoint> points, double extent = 0);
+
 /// Returns a channel with 8 bits a number, as textures of glTF have it: colours in sRGB, roughness in green
-/// and metallic in blue beside a red of 1, occlusion in grey. Texels without a value are black. Cost: linear,
-/// all cores.
+/// and metallic in blue beside a red of 1, occlusion in grey. Texels without a value are black. Throws
+/// sdm::Error unless the values are whole rows of texels. Cost: linear, all cores.
 [[nodiscard]] SDM_API Image to_image(const BakedChannel& baked);
 
 }  // namespace sdm

@@ -10,9 +10,12 @@
 #include <sdm/io.h>
 #include <sdm/material.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sdm {
@@ -37,7 +40,7 @@ struct BakedModelOptions {
   Material material{};    ///< the factors of what has no texture, and what alpha means
   std::string units{};    ///< as of write_glb()
   UpAxis up = UpAxis::y;  ///< as of write_glb()
-  /// Three components at each corner of O1's faces; null: smooth except across edges of more than 40°.
+  /// Three components at each corner of O1's faces; null: smooth_normals() of kDrawnCrease.
   const MeshAttribute* normals = nullptr;
   /// A PNG of normal_map_image(), and the tangents() that it was made with, from the same normals; or
   /// neither.
@@ -49,5 +52,38 @@ struct BakedModelOptions {
 /// sdm::Error if the model exceeds 4 GB, and if there is not enough memory. Cost: linear.
 SDM_API void write_baked_glb(const std::filesystem::path& file, const Surface& surface,
                              std::span<const BakedTexture> textures, const BakedModelOptions& options = {});
+
+/// O2 as write_baked_html() shows it beside O1.
+struct BakedFrom {
+  const Mesh& mesh;
+  const MeshLook& look;
+  const MeshAttribute* normals = nullptr;  ///< at the corners of its faces; null: smooth_normals()
+};
+
+/// report.html: one file that opens in a browser, from disk and without a network. It shows O1 with its
+/// textures and O2 under one camera, with a slider between them, and the numbers of `report`, the JSON text
+/// of report.json. O2 has colours at its vertices: those of faces with a texture are divided, and of more
+/// than 250,000 faces, a coarser copy is shown; the page states which. `textures` and `options` are those of
+/// write_baked_glb(), of any size. Also throws sdm::Error if the normals of O2 do not fit, if the look does
+/// not, and if can_write_html() is false. Cost: linear, all cores.
+SDM_API void write_baked_html(const std::filesystem::path& file, const Surface& surface,
+                              std::span<const BakedTexture> textures, const BakedModelOptions& options,
+                              const BakedFrom& from, const std::string& report);
+
+/// Numbers of texels, of which one file has several planes: values, or else whole numbers.
+struct TexelPlane {
+  std::string name;                          ///< such as "position.X"
+  std::span<const float> values{};           ///< FLOAT
+  std::span<const std::uint32_t> numbers{};  ///< UINT
+  std::size_t components = 1;                ///< for each texel,
+  std::size_t component = 0;                 ///< of which the plane has this one
+};
+
+/// An OpenEXR file of planes as they are, row 0 at the top: rows of `resolution` texels. `attributes`: as
+/// ExrOptions::attributes. Also throws sdm::Error unless all planes are the same whole rows, and if there is
+/// not enough memory. Cost: linear, all cores.
+SDM_API void write_exr(const std::filesystem::path& file, std::uint32_t resolution,
+                       std::span<const TexelPlane> planes,
+                       const std::vector<std::pair<std::string, std::string>>& attributes = {});
 
 }  // namespace sdm

@@ -1,5 +1,5 @@
 /// The geometry of O2 at the points that belong to O1's texels, as textures of O1: normals, tangent-space
-/// normals, displacements, positions, ambient occlusion and thickness.
+/// normals, displacements, positions, ambient occlusion, thickness, and numbers of faces and materials.
 ///
 /// Threads: the functions may be called concurrently, also with the same surface, sites and matches.
 #pragma once
@@ -15,10 +15,63 @@
 #include <sdm/thickness.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace sdm {
+
+/// What can be baked of a mesh beside the textures of its materials.
+enum class GeometryChannel : std::uint8_t {
+  normal,             ///< tangent_space_normals() of matched_normals()
+  object_normal,      ///< matched_normals()
+  displacement,       ///< matched_displacements()
+  position,           ///< matched_positions()
+  ambient_occlusion,  ///< matched_occlusion()
+  thickness,          ///< matched_thickness()
+  face,               ///< TexelMatches::face
+  material            ///< matched_materials()
+};
+
+/// All of them, in this order.
+inline constexpr GeometryChannel kGeometryChannels[] = {
+    GeometryChannel::normal,   GeometryChannel::object_normal,     GeometryChannel::displacement,
+    GeometryChannel::position, GeometryChannel::ambient_occlusion, GeometryChannel::thickness,
+    GeometryChannel::face,     GeometryChannel::material};
+
+/// Returns the name of a channel, such as "object_normal".
+[[nodiscard]] SDM_API std::string_view name_of(GeometryChannel channel);
+
+/// Whether a channel has directions, of length 1.
+[[nodiscard]] constexpr bool is_direction(GeometryChannel channel) {
+  return channel == GeometryChannel::normal || channel == GeometryChannel::object_normal;
+}
+
+/// Whether a channel has whole numbers, kNone where there is none, which have no mean.
+[[nodiscard]] constexpr bool is_number(GeometryChannel channel) {
+  return channel == GeometryChannel::face || channel == GeometryChannel::material;
+}
+
+/// The numbers that a channel has for each texel.
+[[nodiscard]] constexpr std::size_t components_of(GeometryChannel channel) {
+  return is_direction(channel) || channel == GeometryChannel::position ? 3 : 1;
+}
+
+/// Options of bake_geometry().
+struct GeometryOptions {
+  /// Of `normal` and `object_normal`, at the corners of O2's faces; null: smooth_normals() of O2.
+  const MeshAttribute* normals = nullptr;
+  /// Of `normal`: what the model of O1 is drawn with; both are needed.
+  const MeshAttribute *drawn_normals = nullptr, *drawn_tangents = nullptr;
+  /// Of `displacement`, at the corners of O1's faces; null: smooth_normals() of O1, so that displaced faces
+  /// meet at their edges.
+  const MeshAttribute* directions = nullptr;
+  AmbientOcclusionOptions occlusion{};             ///< its progress is ignored
+  ThicknessMethod method = ThicknessMethod::ball;  ///< of `thickness`
+  ThicknessOptions thickness{};                    ///< its progress is ignored
+  Progress progress{};
+};
 
 // All functions return values for each texel, in rows as of TexelMatches; texels without a point hold NaN,
 // until fill_texels(). They throw sdm::Error if the matches are not from this surface to these sites, or if
@@ -62,6 +115,18 @@ namespace sdm {
                                                            ThicknessMethod method,
                                                            const ThicknessOptions& options = {});
 
+/// Returns the materials of the matched faces, or kNone: a number a texel. `face_materials`: for each face of
+/// O2 its material, or kNone; none for all if empty. Also throws for another number of faces.
+[[nodiscard]] SDM_API std::vector<std::uint32_t> matched_materials(
+    const Surface& surface, const Sites& sites, const TexelMatches& matches,
+    std::span<const std::uint32_t> face_materials);
+
+/// Returns a channel that is_number() is false for, components_of() numbers a texel. Throws sdm::Error as the
+/// function that the channel is named after, and for one of whole numbers.
+[[nodiscard]] SDM_API std::vector<float> bake_geometry(const Surface& surface, const Sites& sites,
+                                                       const TexelMatches& matches, GeometryChannel channel,
+                                                       const GeometryOptions& options = {});
+
 /// Whether this build has tangents(): they need the source of MikkTSpace, which the build fetches.
 [[nodiscard]] SDM_API bool has_tangents();
 
@@ -86,10 +151,27 @@ namespace sdm {
                                                                std::span<const float> object_normals,
                                                                const Progress& progress = {});
 
-/// Returns tangent_space_normals() as a picture of `bits`, 8 or 16, a number: (x + 1) / 2 and so on, as glTF
-/// has it. Texels without a normal are (0, 0, 1). Throws sdm::Error for another number of bits or of normals.
+/// Returns normals, in rows of `resolution` texels, as a picture of `bits`, 8 or 16, a number: (x + 1) / 2
+/// and so on, as glTF has it of tangent_space_normals(). Texels without a normal are (0, 0, 1). Throws
+/// sdm::Error for another number of bits, and for normals that are no whole rows.
+[[nodiscard]] SDM_API Image normal_map_image(std::uint32_t resolution, std::span<const float> normals,
+                                             std::uint32_t bits = 8);
+
+/// The same of normals of the texels of a surface.
 [[nodiscard]] SDM_API Image normal_map_image(const Surface& surface, std::span<const float> normals,
                                              std::uint32_t bits = 8);
+
+/// Lengths or shares as a picture of one component, and what its numbers stand for.
+struct ScalarImage {
+  Image image;
+  double lo = 0, hi = 1;  ///< of the numbers 0 and 2^bits − 1; between them, values are linear
+};
+
+/// Returns values, in rows of `resolution` texels, as a picture of `bits`, 8 or 16, a number. Values that are
+/// not finite are `lo`, others are clamped. Throws sdm::Error for another number of bits, values that are no
+/// whole rows, or a range that is empty or not finite.
+[[nodiscard]] SDM_API ScalarImage scalar_image(std::uint32_t resolution, std::span<const float> values,
+                                               double lo, double hi, std::uint32_t bits = 16);
 
 /// Gives the texels of no face values, as TransferOptions::fill does. `values`: `components` numbers for each
 /// texel; those of a texel that are not all finite are none. `unmatched`: texels of a face that have none get
@@ -97,5 +179,10 @@ namespace sdm {
 /// values, or if there is not enough memory.
 SDM_API void fill_texels(const Surface& surface, std::size_t components, std::span<float> values,
                          bool unmatched = false);
+
+/// The same for rows of `resolution` texels: all whose values are not finite get some, within `gutter` texels
+/// of others those of the nearest one.
+SDM_API void fill_texels(std::uint32_t resolution, std::size_t components, std::span<float> values,
+                         std::uint32_t gutter = 4);
 
 }  // namespace sdm

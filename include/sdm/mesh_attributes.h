@@ -37,4 +37,7 @@ struct MeshAttribute {
 /// 1). Throws sdm::Error for a negative angle, or if there is not enough memory. Cost: linear.
 [[nodiscard]] SDM_API MeshAttribute smooth_normals(const Mesh& mesh, double crease = 180);
 
+/// The crease of the normals that models are drawn with.
+inline constexpr double kDrawnCrease = 40;
+
 }  // namespace sdm

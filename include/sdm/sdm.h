@@ -51,6 +51,7 @@
 #include <sdm/solid.h>
 #include <sdm/statistics.h>
 #include <sdm/summary.h>
+#include <sdm/supersampling.h>
 #include <sdm/surface.h>
 #include <sdm/temporal_maps.h>
 #include <sdm/tessellation.h>

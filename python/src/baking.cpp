@@ -31,12 +31,9 @@ struct NormalMap {
   MeshAttribute normals, tangents;
 };
 
-/// Normals of O1 are smooth but at edges of more degrees.
-constexpr double kCrease = 40;
-
 NormalMap as_drawn(const Surface& surface, std::vector<float> values) {
   NormalMap map{
-      .values = std::move(values), .normals = smooth_normals(surface.mesh(), kCrease), .tangents = {}};
+      .values = std::move(values), .normals = smooth_normals(surface.mesh(), kDrawnCrease), .tangents = {}};
   map.tangents = tangents(surface, map.normals);
   return map;
 }
@@ -200,10 +197,7 @@ Wanted wanted_of(const std::optional<std::vector<std::string>>& names) {
 
 std::vector<BakeChannel> channels_of(const Wanted& wanted, const Look& look) {
   if (wanted.channels) return *wanted.channels;
-  std::vector<BakeChannel> channels = varying_channels(look.file.mesh, look.get());
-  if (std::ranges::count(channels, BakeChannel::base_color) == 0)
-    channels.insert(channels.begin(), BakeChannel::base_color);
-  return channels;
+  return default_channels(look.file.mesh, look.get());
 }
 
 BakeAtlas laid_out(const Mesh& mesh, AtlasOptions options, std::optional<AtlasKind> kind) {

@@ -53,7 +53,7 @@ function texelMap(page: PageJson, arrays: Arrays): TexelMap {
   };
 }
 
-function toCentre(steps: Uint32Array, from: Placement, centre: Vec, size: number): Float32Array {
+export function toCentre(steps: Uint32Array, from: Placement, centre: Vec, size: number): Float32Array {
   const result = new Float32Array(steps.length);
   const scale = from.step / size;
   const shift = from.origin.map((x, k) => (x - centre[k]) / size);
@@ -62,7 +62,7 @@ function toCentre(steps: Uint32Array, from: Placement, centre: Vec, size: number
 }
 
 // Unit vectors folded onto an octahedron, whose lower half lies in the corners of the square.
-function unfoldedNormals(packed: Uint32Array): Int8Array {
+export function unfoldedNormals(packed: Uint32Array): Int8Array {
   const result = new Int8Array(3 * packed.length);
   for (let i = 0; i < packed.length; ++i) {
     let x = ((packed[i] & 255) - 127.5) / 127.5;

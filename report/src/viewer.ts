@@ -70,9 +70,14 @@ export class Viewer {
     if (clientWidth === 0 || clientHeight === 0 || isSame) return;
     this.fitted = [clientWidth, clientHeight];
     this.renderer.setSize(clientWidth, clientHeight, false);
-    this.camera.aspect = clientWidth / clientHeight;
-    this.camera.updateProjectionMatrix();
+    this.setAspect();
     this.draw();
+  }
+
+  /// Of the picture, or of as many as are beside each other in it.
+  protected setAspect(pictures = 1): void {
+    this.camera.aspect = this.fitted[0] / pictures / Math.max(1, this.fitted[1]);
+    this.camera.updateProjectionMatrix();
   }
 
   /// Draws a picture soon, one for any number of calls: where pictures take long a coarse one, which is fine again when
@@ -117,8 +122,12 @@ export class Viewer {
     this.camera.near = Math.max(1e-4, Math.min(Math.max((away - 4) / 2, away / 1000), toTarget / 10));
     this.camera.far = Math.max(away, toTarget) + 8 * this.radius;
     this.camera.updateProjectionMatrix();
-    this.renderer.render(this.scene, this.camera);
+    this.paint(this.renderer);
     this.onChange();
+  }
+
+  protected paint(renderer: WebGLRenderer): void {
+    renderer.render(this.scene, this.camera);
   }
 
   get pixelRatio(): number {
@@ -182,7 +191,7 @@ export class Viewer {
   }
 
   /// How far away a ball fits into the picture.
-  private toFit(radius: number): number {
+  protected toFit(radius: number): number {
     const half = Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect);
     return (1.02 * radius) / Math.sin(Math.atan(half));
   }

@@ -88,8 +88,16 @@ std::vector<BakeChannel> varying_channels(const Mesh& mesh, const MeshLook& look
   return channels;
 }
 
+std::vector<BakeChannel> default_channels(const Mesh& mesh, const MeshLook& look) {
+  std::vector<BakeChannel> channels = varying_channels(mesh, look);
+  if (std::ranges::count(channels, BakeChannel::base_color) == 0)
+    channels.insert(channels.begin(), BakeChannel::base_color);
+  return channels;
+}
+
 Material common_material(const MeshLook& look) {
   Material material;
+  baking::require_materials(look);
   const auto used = baking::used_materials(look);
   if (used.empty()) return material;
   material = *used.front();

@@ -174,15 +174,19 @@ void LookReader::at(const SurfacePoint& point, const std::array<Vec3, 2>& sides,
   }
 }
 
+void require_materials(const MeshLook& look) {
+  for (const std::uint32_t material : look.face_materials)
+    if (material != kNone && material >= look.materials.size())
+      throw Error("a face refers to material " + std::to_string(material) + " of " +
+                  std::to_string(look.materials.size()));
+}
+
 void require_fitting(const Mesh& mesh, const MeshLook& look) {
   const std::size_t faces = mesh.triangles.size();
   if (!look.face_materials.empty() && look.face_materials.size() != faces)
     throw Error("a mesh of " + std::to_string(faces) + " faces needs as many numbers of materials, not " +
                 std::to_string(look.face_materials.size()));
-  for (const std::uint32_t material : look.face_materials)
-    if (material != kNone && material >= look.materials.size())
-      throw Error("a face refers to material " + std::to_string(material) + " of " +
-                  std::to_string(look.materials.size()));
+  require_materials(look);
   for (const Material& material : look.materials)
     for (const BakeChannel channel : kBakeChannels)
       if (const std::uint32_t texture = texture_of(material, channel).texture;

@@ -92,6 +92,9 @@ class LookReader {
 /// Throws sdm::Error if the look does not fit the mesh.
 void require_fitting(const Mesh& mesh, const MeshLook& look);
 
+/// Throws sdm::Error if a face refers to a material that does not exist.
+void require_materials(const MeshLook& look);
+
 /// The materials that faces have; null: that of Material().
 [[nodiscard]] std::vector<const Material*> used_materials(const MeshLook& look);
 

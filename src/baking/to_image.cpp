@@ -1,4 +1,5 @@
 #include <sdm/bake.h>
+#include <sdm/error.h>
 
 #include <algorithm>
 #include <array>
@@ -46,6 +47,9 @@ std::uint8_t plain_byte(float value) {
 }  // namespace
 
 Image to_image(const BakedChannel& baked) try {
+  if (baked.components == 0 || baked.resolution == 0 || baked.values.empty() ||
+      baked.values.size() % (baked.components * baked.resolution) != 0)
+    throw Error("a picture of a baked texture needs whole rows of texels");
   static const SrgbBytes srgb;
   const std::size_t components = baked.components, texels = baked.values.size() / components;
   const bool mixed = baked.channel == BakeChannel::metallic_roughness;

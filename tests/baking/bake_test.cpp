@@ -16,18 +16,12 @@
 
 #include "support/error_of.h"
 #include "support/shapes.h"
+#include "support/srgb.h"
 
 namespace sdm::test {
 namespace {
 
 using Color = std::array<double, 3>;
-
-double linear_of(double srgb) {
-  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-}
-double srgb_of(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
 
 /// A picture of 8 bits; `value` from 0 to 1, at the middles of pixels, in units of the picture.
 Image picture_of(std::uint32_t width, std::uint32_t height, std::uint32_t components,

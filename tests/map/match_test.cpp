@@ -11,7 +11,6 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,7 +18,7 @@
 #include "geometry/vec.h"
 #include "map/terrain.h"
 #include "support/error_of.h"
-#include "support/meshes.h"
+#include "support/match_pairs.h"
 #include "support/oracle.h"
 #include "support/ray_oracle.h"
 #include "support/shapes.h"
@@ -28,25 +27,6 @@ namespace sdm::test {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-struct MeshPair {
-  Mesh o1, o2;
-};
-
-/// Closed, open, smooth and sharp meshes, in several poses: 40 pairs.
-std::vector<MeshPair> pairs_to_match() {
-  const std::vector<Mesh> firsts{sphere(1), torus(8, 6), cube(0.8), height_field(4), tetrahedron()};
-  const std::vector<Mesh> seconds{placed(sphere(1), "scale:1.1"), torus(9, 7), cube(0.75),
-                                  joined(cube(0.7), placed(sphere(1), "translate:0.3:0.2:0.1"))};
-  std::vector<MeshPair> pairs;
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> any(-0.15, 0.15);
-  for (const Mesh& o1 : firsts)
-    for (const Mesh& o2 : seconds)
-      for (const char* turn : {"rotate:0.1:0.2:0.3", "rotate:10:20:30"})
-        pairs.push_back({o1, moved(placed(o2, turn), {any(random), any(random), any(random)})});
-  return pairs;
-}
 
 bool allowed(const Vec3& n, const Vec3& m, double angle, double slack) {
   if (n == Vec3{} || m == Vec3{}) return false;

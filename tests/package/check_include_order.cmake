@@ -79,6 +79,7 @@ set(order
   io/points/text
   io/points
   io/page/report
+  io/page/baked
   io/page/player
   io/page)
 

@@ -8,12 +8,12 @@ const { inBrowser, opened } = require('./checks/browser.cjs');
 const [check, file, ...rest] = process.argv.slice(2);
 const url = pathToFileURL(file).href;
 
-const atRest = (page) => page.waitForFunction(() => (window.sdmPage ?? window.sdmPlayer).view.atRest);
+const atRest = (page) => page.waitForFunction(() => (window.sdmPage ?? window.sdmPlayer ?? window.sdmBaked).view.atRest);
 
 /// How the last picture was drawn.
 const drawn = (page) =>
   page.evaluate(() => {
-    const { view } = window.sdmPage ?? window.sdmPlayer;
+    const { view } = window.sdmPage ?? window.sdmPlayer ?? window.sdmBaked;
     const { triangles, points } = view.renderer.info.render;
     return { width: view.canvas.width, elements: triangles + points, moving: document.getElementById('view').classList.contains('moving') };
   });
@@ -199,7 +199,7 @@ const checks = {
     assert.doesNotMatch(keys, /click|[Dd]rag|Move over|arrows/);
     const state = () =>
       page.evaluate(() => {
-        const { position, target } = (window.sdmPage ?? window.sdmPlayer).view.pose;
+        const { position, target } = (window.sdmPage ?? window.sdmPlayer ?? window.sdmBaked).view.pose;
         return { pose: [...position, ...target].map((x) => x.toFixed(5)).join(), scroll: scrollY };
       });
     const session = await page.context().newCDPSession(page);

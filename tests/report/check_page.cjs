@@ -1,10 +1,10 @@
 // Checks a report.html or player.html in headless Chromium: node check_page.cjs CHECK PAGE [ARGUMENT...]. Packages are found from the
 // current folder. Prints what is wrong and exits with 1.
 const assert = require('assert');
-const { readFileSync, writeFileSync } = require('fs');
-const { createRequire } = require('module');
+const { readFileSync } = require('fs');
 const { pathToFileURL } = require('url');
 const { inBrowser, opened } = require('./checks/browser.cjs');
+const { animationPage, decodingPage } = require('./checks/model_pages.cjs');
 const { pictureOf, plain, settled } = require('./checks/support.cjs');
 
 const [check, file, ...rest] = process.argv.slice(2);
@@ -17,6 +17,7 @@ const checks = {
   ...require('./checks/section.cjs'),
   ...require('./checks/judging.cjs'),
   ...require('./checks/answers.cjs'),
+  ...require('./checks/baked.cjs'),
 
   // A saved page opens with the callouts, the section, the colours and the view that it was saved with, and can be
   // saved again; the file is a page like any other.
@@ -221,53 +222,11 @@ const checks = {
   },
 };
 
-/// A page that plays a model by three.js's own loader.
-function animationPage(model, html) {
-  const { buildSync } = createRequire(process.cwd() + '/')('esbuild');
-  const program = `
-    import * as three from 'three';
-    import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-    const canvas = document.getElementById('canvas');
-    const renderer = new three.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
-    renderer.setSize(640, 480);
-    const bytes = Uint8Array.from(atob(document.getElementById('model').textContent), (c) => c.charCodeAt(0));
-    new GLTFLoader().parse(bytes.buffer, '', (gltf) => {
-      const scene = new three.Scene();
-      scene.background = new three.Color(0xffffff);
-      scene.add(gltf.scene, new three.HemisphereLight(0xffffff, 0x888888, 3));
-      const camera = new three.PerspectiveCamera(40, 640 / 480, 0.01, 100);
-      camera.position.set(6, -9, 3), camera.up.set(0, 0, 1), camera.lookAt(0, 0, -1.5);
-      const mixer = new three.AnimationMixer(gltf.scene);
-      mixer.clipAction(gltf.animations[0]).play().clampWhenFinished = true;
-      const meshes = [];
-      gltf.scene.traverse((o) => o.isMesh && meshes.push(o));
-      window.animation = {
-        show(time) {
-          mixer.setTime(Math.min(time, gltf.animations[0].duration - 1e-6));
-          renderer.render(scene, camera);
-          const p = new three.Vector3();
-          const z = meshes.map((m) => Array.from({ length: m.geometry.attributes.position.count }, (_, i) => m.getVertexPosition(i, p).z));
-          const colors = meshes.map((m) => {
-            const { color } = m.geometry.attributes;
-            const targets = m.geometry.morphAttributes.color ?? [];
-            return Array.from(color ? color.array : [], (c, i) => targets.reduce((sum, t, k) => sum + m.morphTargetInfluences[k] * t.array[i], c));
-          });
-          return { sizes: z.map((a) => a.length), z, colors };
-        },
-      };
-      document.documentElement.dataset.ready = '';
-    }, (error) => { throw error; });
-  `;
-  const { outputFiles } = buildSync({ stdin: { contents: program, resolveDir: process.cwd() }, bundle: true, write: false, format: 'iife' });
-  const data = readFileSync(model).toString('base64');
-  writeFileSync(html, `<!DOCTYPE html><title>Animation</title><link rel="icon" href="data:,"><canvas id="canvas"></canvas>
-    <script type="text/plain" id="model">${data}</script><script>${outputFiles[0].text.replace(/<\/script/g, '<\\/script')}</script>`);
-  return html;
-}
-
 void inBrowser(async (browser, faults) => {
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 } });
-  const page = await opened(context, pathToFileURL(check === 'animates' ? animationPage(file, rest[3]) : file).href, faults);
+  // Those that a model is shown by are written to the file that the last argument names.
+  const made = { animates: animationPage, decodes: decodingPage }[check];
+  const page = await opened(context, pathToFileURL(made ? made(file, rest.pop()) : file).href, faults);
   await page.evaluate(() =>
     document.getElementById('canvas').addEventListener('pointermove', (event) => {
       window.pointer = [event.offsetX, event.offsetY];

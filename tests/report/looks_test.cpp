@@ -94,6 +94,7 @@ TEST_F(Looks, ShowsAPlayerAtAllSizesAndOnPaper) {
 TEST(Pages, AreSmall) {
   EXPECT_LT(std::filesystem::file_size(SDM_REPORT_HTML "/page.html"), 686'000);
   EXPECT_LT(std::filesystem::file_size(SDM_REPORT_HTML "/player.html"), 597'000);
+  EXPECT_LT(std::filesystem::file_size(SDM_REPORT_HTML "/baked.html"), 590'000);
 }
 
 }  // namespace

@@ -18,8 +18,6 @@
 namespace sdm {
 namespace {
 
-using baking::kNoValue;
-
 void store_vector(const Vec3& vector, std::uint32_t texel, std::vector<float>& values) {
   for (int k = 0; k < 3; ++k) values[3 * std::size_t{texel} + k] = static_cast<float>(vector[k]);
 }
@@ -42,7 +40,7 @@ std::vector<float> matched_normals(const Surface& surface, const Sites& sites, c
   require_matches(surface, sites, matches);
   const sites::SitesData& data = internals(sites);
   const map::CornerNormals corners(data.mesh, normals, "the other mesh");
-  std::vector<float> values(3 * matches.face.size(), kNoValue);
+  std::vector<float> values = baking::no_values(matches, 3, "the normals of matches");
   baking::for_each_texel(
       surface, progress, "normals", [] { return NoState(); },
       [&](std::uint32_t texel, NoState&) {
@@ -60,7 +58,7 @@ std::vector<float> matched_positions(const Surface& surface, const Sites& sites,
                                      const Progress& progress) try {
   require_matches(surface, sites, matches);
   const Mesh& mesh = sites.mesh();
-  std::vector<float> values(3 * matches.face.size(), kNoValue);
+  std::vector<float> values = baking::no_values(matches, 3, "the positions of matches");
   baking::for_each_texel(
       surface, progress, "positions", [] { return NoState(); },
       [&](std::uint32_t texel, NoState&) {
@@ -77,7 +75,7 @@ std::vector<float> matched_displacements(const Surface& surface, const Sites& si
                                          const Progress& progress) try {
   require_matches(surface, sites, matches);
   const map::CornerNormals corners(surface.mesh(), normals, "the surface");
-  std::vector<float> values(matches.face.size(), kNoValue);
+  std::vector<float> values = baking::no_values(matches, 1, "the displacements of matches");
   baking::for_each_texel(
       surface, progress, "displacements", [&] { return baking::TexelPlaces(internals(surface)); },
       [&](std::uint32_t texel, baking::TexelPlaces& places) {
@@ -106,6 +104,21 @@ void fill_texels(const Surface& surface, std::size_t components, std::span<float
                                                  : map::TexelState::missing;
   }
   map::fill_free_texels(surface.resolution(), states, map::gutter_of_values(surface), components, values);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the values of texels");
+}
+
+void fill_texels(std::uint32_t resolution, std::size_t components, std::span<float> values,
+                 std::uint32_t gutter) try {
+  if (components == 0 || resolution == 0 || values.size() % (components * resolution) != 0)
+    throw Error("values to fill must be whole rows of texels");
+  std::vector<map::TexelState> states(values.size() / components);
+  for (std::size_t i = 0; i < states.size(); ++i)
+    states[i] = std::ranges::all_of(values.subspan(i * components, components),
+                                    [](float x) { return std::isfinite(x); })
+                    ? map::TexelState::valued
+                    : map::TexelState::free;
+  map::fill_free_texels(resolution, states, std::min(gutter, map::kWidestGutter), components, values);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the values of texels");
 }

@@ -21,7 +21,7 @@ std::vector<float> matched_occlusion(const Surface& surface, const Sites& sites,
   constexpr double kAbove = 1e-6;  // of the diagonal: more than the rounding of points
   const sites::SitesData& data = internals(sites);
   const double above = kAbove * diagonal(bounds(data.mesh));
-  std::vector<float> values(matches.face.size(), baking::kNoValue);
+  std::vector<float> values = baking::no_values(matches, 1, "the ambient occlusion of matches");
   baking::for_each_texel(
       surface, options.progress, "ambient occlusion", [&] { return rays::HemisphereRays(options.rays); },
       [&](std::uint32_t texel, rays::HemisphereRays& rays) {
@@ -42,7 +42,7 @@ std::vector<float> matched_thickness(const Surface& surface, const Sites& sites,
   require_matches(surface, sites, matches);
   const sites::SitesData& data = internals(sites);
   const thickness::Walls walls(data, options.angle);
-  std::vector<float> values(matches.face.size(), baking::kNoValue);
+  std::vector<float> values = baking::no_values(matches, 1, "the thickness of matches");
   baking::for_each_texel(
       surface, options.progress, "thickness", [&] { return thickness::WallSearch(walls); },
       [&](std::uint32_t texel, thickness::WallSearch& search) {

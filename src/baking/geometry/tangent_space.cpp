@@ -161,6 +161,7 @@ std::vector<float> tangent_space_normals(const Surface& surface, const MeshAttri
   const auto faces = surface.texel_faces();
   if (object_normals.size() != 3 * faces.size())
     throw Error("normals for tangent space must be three numbers for each texel of the surface");
+  require_memory(object_normals.size() * sizeof(float), "the tangent-space normals of texels");
   std::vector<float> values(object_normals.size(), baking::kNoValue);
   baking::for_each_texel(
       surface, progress, "tangent space", [&] { return baking::TexelPlaces(internals(surface)); },

@@ -3,11 +3,13 @@
 
 #include <sdm/match.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string_view>
 #include <vector>
 
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/barycentric.h"
 #include "geometry/triangle.h"
@@ -16,6 +18,14 @@
 namespace sdm::baking {
 
 inline constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
+
+/// Returns no values for all texels, `components` each. Throws sdm::Error if there is not enough memory.
+[[nodiscard]] inline std::vector<float> no_values(const TexelMatches& matches, std::size_t components,
+                                                  std::string_view purpose) {
+  const std::size_t count = components * matches.face.size();
+  require_memory(count * sizeof(float), purpose);
+  return std::vector<float>(count, kNoValue);
+}
 
 /// Where texels are on their faces. The face of the last one is kept.
 class TexelPlaces {

@@ -1,3 +1,4 @@
+#include <sdm/bake_files.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
 #include <sdm/points.h>
@@ -25,6 +26,11 @@ void write_html(const std::filesystem::path& file, const Surface&, const Distanc
 
 void write_points_html(const std::filesystem::path& file, const std::filesystem::path&, const PointDistances&,
                        const std::string&, const HtmlOptions&) {
+  throw_without_page(file);
+}
+
+void write_baked_html(const std::filesystem::path& file, const Surface&, std::span<const BakedTexture>,
+                      const BakedModelOptions&, const BakedFrom&, const std::string&) {
   throw_without_page(file);
 }
 

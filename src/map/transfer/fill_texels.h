@@ -19,10 +19,12 @@ enum class TexelState : std::uint8_t {
   missing,  ///< a face but no value, or none that is finite; stays as it is
 };
 
-/// How far the values of the texels of a surface extend. The search for the nearest texel takes time that
+/// Values extend no farther from valued texels than this: the search for the nearest one takes time that
 /// grows with the square of it.
+inline constexpr std::uint32_t kWidestGutter = 16;
+
+/// How far the values of the texels of a surface extend.
 [[nodiscard]] inline std::uint32_t gutter_of_values(const Surface& surface) {
-  constexpr std::uint32_t kWidestGutter = 16;
   return std::clamp(surface.gutter(), atlas::kGutter, kWidestGutter);
 }
 

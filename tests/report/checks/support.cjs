@@ -46,7 +46,7 @@ async function hitsFrom(page, side, pixels) {
 /// Waits for the fine picture of the last change.
 async function settled(page) {
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  await page.waitForFunction(() => (window.sdmPage ?? window.sdmPlayer).view.atRest);
+  await page.waitForFunction(() => (window.sdmPage ?? window.sdmPlayer ?? window.sdmBaked).view.atRest);
 }
 /// The picture on the canvas, when it is fine.
 async function pictureOf(page) {

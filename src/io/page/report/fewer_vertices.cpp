@@ -85,6 +85,7 @@ FewerVertices fewer_vertices(const Mesh& mesh, std::span<const float> distances,
         number[vertex] = static_cast<std::uint32_t>(result.mesh.positions.size());
         result.mesh.positions.push_back(mesh.positions[vertex]);
         result.distances.push_back(distances[vertex]);
+        result.vertex.push_back(vertex);
       }
       vertex = number[vertex];
     }

@@ -4,14 +4,16 @@
 #include <sdm/mesh.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace sdm::io {
 
 struct FewerVertices {
-  Mesh mesh;                     ///< vertices in the order of their first use by a triangle
-  std::vector<float> distances;  ///< one for each of its vertices
+  Mesh mesh;                          ///< vertices in the order of their first use by a triangle
+  std::vector<float> distances;       ///< one for each of its vertices
+  std::vector<std::uint32_t> vertex;  ///< of each of its vertices, that of the mesh
 };
 
 /// Of the vertices in each cell of a grid only the one of the largest |distance| is left; triangles whose

@@ -1,0 +1,100 @@
+#include "bake_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sdm/version.h>
+
+#include <cmath>
+
+#include "format.h"
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json atlas_json(const BakeCommand& command, const sdm::Surface& surface) {
+  return {{"kind", sdm::name_of(surface.atlas_kind())},
+          {"resolution", surface.resolution() / command.sample_side},
+          {"rows", surface.rows() / command.sample_side},
+          {"samples", command.sample_side * command.sample_side},
+          {"charts", surface.chart_count()},
+          {"texels", surface.sample_texels().size()},
+          {"utilisation", surface.utilisation()},
+          {"overlapping_texels", surface.overlapping_texels()}};
+}
+
+}  // namespace
+
+MatchCounts counts_of(const sdm::TexelMatches& matches) {
+  MatchCounts counts;
+  for (const sdm::MatchKind kind : matches.kind) switch (kind) {
+      case sdm::MatchKind::none:
+        break;
+      case sdm::MatchKind::closest:
+        ++counts.closest;
+        break;
+      case sdm::MatchKind::facing:
+        ++counts.facing;
+        break;
+      case sdm::MatchKind::ray:
+        ++counts.ray;
+        break;
+      case sdm::MatchKind::too_far:
+        ++counts.too_far;
+        break;
+      case sdm::MatchKind::facing_away:
+        ++counts.facing_away;
+    }
+  return counts;
+}
+
+Json report_of(const BakeCommand& command, const Input& high, const Input& low, const BakeResult& result) {
+  const MatchCounts& counts = result.matches;
+  Json report{{"version", sdm::kVersion},
+              {"high", to_json(high)},
+              {"low", to_json(low)},
+              {"units", command.units},
+              {"atlas", atlas_json(command, *result.low.surface)}};
+  const bool limited = std::isfinite(command.map.max_distance);
+  report["max_distance"] = limited ? Json(command.map.max_distance) : Json();
+  const sdm::MatchOptions matching = match_options(command);
+  const bool facing = matching.method != sdm::MatchMethod::closest;
+  report["match"] = name_of(matching.method);
+  report["facing"] = facing ? Json(matching.facing) : Json();
+  report["cage"] = command.cage ? Json(*command.cage) : Json();
+  report["texels"] = {{"closest", counts.closest},
+                      {"facing", counts.facing},
+                      {"ray", counts.ray},
+                      {"too_far", counts.too_far},
+                      {"facing_away", counts.facing_away}};
+  report["textures"] = result.channels.report;
+  report["notes"] = result.notes;
+  report["time_ms"] = {{"import", result.time.import},
+                       {"match", result.time.match},
+                       {"bake", result.time.bake},
+                       {"export", result.time.output},
+                       {"total", result.time.total}};
+  return report;
+}
+
+std::string text_of(const BakeCommand& command, const BakeResult& result) {
+  const sdm::Surface& surface = *result.low.surface;
+  const MatchCounts& counts = result.matches;
+  const std::uint32_t side = command.sample_side;
+  std::string text = fmt::format("{} -> {}\n", command.high, command.low);
+  text += fmt::format("  baked     {}, {} x {} texels{}\n", fmt::join(result.channels.names, ", "),
+                      surface.resolution() / side, surface.rows() / side,
+                      side == 1 ? "" : fmt::format(" of {} samples", side * side));
+  text += fmt::format("  {}   {} have a point of HIGH{}\n", side == 1 ? "texels " : "samples",
+                      counts.matched(), counts.facing + counts.ray > 0 ? " on a face that faces them" : "");
+  if (counts.ray > 0)
+    text += fmt::format("            {} of them by a ray along the normal of LOW\n", counts.ray);
+  if (counts.too_far > 0)
+    text += fmt::format("            {} are farther than --max-distance, and filled\n", counts.too_far);
+  if (counts.facing_away > 0)
+    text += fmt::format("            {} have no face that faces them, and are filled\n", counts.facing_away);
+  text += note_lines(result.notes, 12);
+  const std::string files = fmt::format("baked.glb {} {}", fmt::join(result.channels.files, " "),
+                                        command.page ? "report.html " : "");
+  return text + result_lines(12, result.time.total, command.out.string(), files);
+}

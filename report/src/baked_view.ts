@@ -1,0 +1,200 @@
+// A coarse mesh with its textures and a detailed one, in two parts of one picture, under one camera.
+import { BufferAttribute, BufferGeometry, ClampToEdgeWrapping, DoubleSide, LinearFilter, LinearMipmapLinearFilter, Mesh, NoColorSpace, ShaderMaterial, SRGBColorSpace, Texture, WebGLRenderer } from 'three';
+import type { BakedData, Shape } from './baked_data';
+import { CoarseWhileMoving } from './coarse_copy';
+import { Viewer } from './viewer';
+
+export type Shading = 'lit' | 'colours' | 'shape';
+const kShadings: Shading[] = ['lit', 'colours', 'shape'];
+
+const kVertexShader = `
+  in vec2 place;
+  in vec4 tangent, paint;
+  out vec3 vNormal, vTangent, vPaint;
+  out vec2 vPlace;
+  out float vSign;
+  vec3 linearOf(vec3 srgb) {
+    return mix(pow((srgb + 0.055) / 1.055, vec3(2.4)), srgb / 12.92, lessThanEqual(srgb, vec3(0.04045)));
+  }
+  void main() {
+    vNormal = normalMatrix * normal;
+    vTangent = normalMatrix * tangent.xyz;
+    vSign = tangent.w;
+    vPaint = linearOf(paint.rgb);
+    vPlace = place;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  }
+`;
+
+// Matt, in the light of a lamp beside the camera and of the surroundings.
+const kShader = `
+  precision highp float;
+  uniform int shading;
+  uniform bool painted, hasColors, hasNormals, hasOcclusion, hasEmission;
+  uniform sampler2D colors, normals, occlusion, emission;
+  uniform vec4 baseColor;
+  uniform vec3 emissive;
+  uniform float cutoff;
+  in vec3 vNormal, vTangent, vPaint;
+  in vec2 vPlace;
+  in float vSign;
+  out vec4 outColor;
+  vec3 srgbOf(vec3 light) {
+    light = clamp(light, 0.0, 1.0);
+    return mix(1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, 12.92 * light, lessThanEqual(light, vec3(0.0031308)));
+  }
+  void main() {
+    vec4 color = painted ? vec4(vPaint, 1.0) : hasColors ? texture(colors, vPlace) : baseColor;
+    if (color.a < cutoff) discard;
+    vec3 n = vNormal;
+    if (hasNormals) {
+      vec3 m = 2.0 * texture(normals, vPlace).xyz - 1.0;
+      n = m.x * vTangent + m.y * vSign * cross(vNormal, vTangent) + m.z * vNormal;
+    }
+    n = normalize(n) * (gl_FrontFacing ? 1.0 : -1.0);
+    vec3 lamp = normalize(vec3(0.35, 0.5, 0.8));
+    float ambient = hasOcclusion ? texture(occlusion, vPlace).r : 1.0;
+    float light = 0.42 * ambient * (0.75 + 0.25 * n.y) + 0.7 * max(0.0, dot(n, lamp));
+    if (shading == 2) color.rgb = vec3(0.55);
+    vec3 seen = shading == 1 ? color.rgb : light * color.rgb;
+    if (shading == 0 && !painted) seen += hasEmission ? texture(emission, vPlace).rgb : emissive;
+    outColor = vec4(srgbOf(seen), 1.0);
+  }
+`;
+
+const kEdgeShader = `
+  precision highp float;
+  out vec4 outColor;
+  void main() { outColor = vec4(0.05, 0.1, 0.16, 1.0); }
+`;
+
+const kCoarse = 40_000; // triangles of the detailed mesh, while something moves
+
+function textureOf(picture: ImageBitmap | undefined, isColor: boolean): Texture | null {
+  if (!picture) return null;
+  const texture = new Texture(picture);
+  texture.colorSpace = isColor ? SRGBColorSpace : NoColorSpace;
+  texture.flipY = false;
+  texture.wrapS = texture.wrapT = ClampToEdgeWrapping;
+  texture.magFilter = LinearFilter;
+  texture.minFilter = LinearMipmapLinearFilter;
+  texture.anisotropy = 4;
+  texture.needsUpdate = true;
+  return texture;
+}
+
+function geometryOf(shape: Shape): BufferGeometry {
+  const geometry = new BufferGeometry();
+  const vertices = shape.position.length / 3;
+  geometry.setAttribute('position', new BufferAttribute(shape.position, 3));
+  geometry.setAttribute('normal', new BufferAttribute(shape.normal, 3, true));
+  geometry.setAttribute('place', new BufferAttribute(shape.place ?? new Float32Array(2 * vertices), 2));
+  geometry.setAttribute('tangent', new BufferAttribute(shape.tangent ?? new Float32Array(4 * vertices), 4));
+  geometry.setAttribute('paint', new BufferAttribute(shape.color ?? new Uint8Array(4 * vertices), 4, true));
+  geometry.setIndex(new BufferAttribute(shape.triangle, 1));
+  return geometry;
+}
+
+export class BakedView extends Viewer {
+  private readonly low: Mesh;
+  private readonly high: Mesh;
+  private readonly edges: Mesh;
+  private readonly coarse: CoarseWhileMoving;
+  private share = 0.5; // of the width, from the left: the coarse mesh
+  private beside = false; // both whole, each in half of the width
+
+  constructor(container: HTMLElement, data: BakedData, onChange: () => void) {
+    super(container, data.page.up, onChange);
+    this.low = this.makeMesh(data, data.low, false);
+    this.high = this.makeMesh(data, data.high, true);
+    this.edges = new Mesh(this.low.geometry, new ShaderMaterial({ glslVersion: '300 es', vertexShader: kVertexShader, fragmentShader: kEdgeShader, wireframe: true }));
+    this.edges.visible = false;
+    this.edges.frustumCulled = false;
+    this.low.add(this.edges);
+    this.scene.add(this.low, this.high);
+    this.coarse = new CoarseWhileMoving(this.high, kCoarse);
+    this.setShown(data.lo, data.hi);
+    this.look('corner');
+  }
+
+  private makeMesh({ page, pictures }: BakedData, shape: Shape, painted: boolean): Mesh {
+    const [colors, normals, occlusion, emission] = painted
+      ? [null, null, null, null]
+      : [textureOf(pictures.get('base_color'), true), textureOf(pictures.get('normal'), false), textureOf(pictures.get('occlusion'), false), textureOf(pictures.get('emissive'), true)];
+    const material = new ShaderMaterial({
+      glslVersion: '300 es',
+      vertexShader: kVertexShader,
+      fragmentShader: kShader,
+      side: DoubleSide,
+      polygonOffset: true, // behind the edges
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+      uniforms: {
+        shading: { value: 0 },
+        painted: { value: painted },
+        hasColors: { value: colors !== null },
+        hasNormals: { value: normals !== null && shape.tangent !== null },
+        hasOcclusion: { value: occlusion !== null },
+        hasEmission: { value: emission !== null },
+        colors: { value: colors },
+        normals: { value: normals },
+        occlusion: { value: occlusion },
+        emission: { value: emission },
+        baseColor: { value: page.base_color },
+        emissive: { value: page.emissive },
+        cutoff: { value: painted || page.alpha_mode === 0 ? -1 : page.alpha_mode === 1 ? page.alpha_cutoff : 0.02 },
+      },
+    });
+    const mesh = new Mesh(geometryOf(shape), material);
+    mesh.frustumCulled = false;
+    return mesh;
+  }
+
+  protected override setCoarse(coarse: boolean): void {
+    this.coarse.show(coarse);
+  }
+
+  protected override setAspect(): void {
+    super.setAspect(this.beside ? 2 : 1);
+  }
+
+  protected override paint(renderer: WebGLRenderer): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const middle = Math.round(width * (this.beside ? 0.5 : this.share));
+    renderer.setScissorTest(true);
+    for (const isLow of [true, false]) {
+      const [from, to] = isLow ? [0, middle] : [middle, width];
+      if (from === to) continue;
+      this.low.visible = isLow;
+      this.high.visible = !isLow;
+      renderer.setScissor(from, 0, to - from, height);
+      if (this.beside) renderer.setViewport(from, 0, to - from, height);
+      renderer.render(this.scene, this.camera);
+    }
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, width, height);
+  }
+
+  setShare(share: number): void {
+    this.share = share;
+    this.draw();
+  }
+
+  setBeside(beside: boolean): void {
+    const before = this.toFit(1);
+    this.beside = beside;
+    this.controls.zoomToCursor = !beside; // which is of a picture as wide as the canvas
+    this.setAspect();
+    this.zoom(this.toFit(1) / before);
+  }
+
+  setShading(shading: Shading): void {
+    for (const mesh of [this.low, this.high]) (mesh.material as ShaderMaterial).uniforms.shading.value = kShadings.indexOf(shading);
+    this.draw();
+  }
+
+  setEdges(visible: boolean): void {
+    this.edges.visible = visible;
+    this.draw();
+  }
+}

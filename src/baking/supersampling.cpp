@@ -1,0 +1,114 @@
+#include <sdm/error.h>
+#include <sdm/supersampling.h>
+#include <sdm/types.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <string>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+
+namespace sdm {
+namespace {
+
+/// Checks the grid; returns the number of rows of texels.
+std::size_t texel_rows(const SampleGrid& grid, std::size_t components, std::size_t numbers) {
+  const std::size_t of_row = std::size_t{grid.resolution} * grid.side * components;  // of texels
+  if (of_row == 0 || grid.resolution % grid.side != 0 || numbers % of_row != 0)
+    throw Error("samples of texels must be whole rows of squares of " + std::to_string(grid.side) +
+                " samples a side");
+  return numbers / of_row;
+}
+
+/// Calls body(texel, first) for each texel and its first sample.
+template <class Body>
+void for_each_square(const SampleGrid& grid, std::size_t rows, const Body& body) {
+  parallel_for(rows, 8, [&](std::size_t begin, std::size_t end) {
+    const std::size_t width = grid.texels();
+    for (std::size_t y = begin; y < end; ++y)
+      for (std::size_t x = 0; x < width; ++x)
+        body(y * width + x, y * grid.side * grid.resolution + x * grid.side);
+  });
+}
+
+/// Sums of the samples of a texel that have values.
+class Sum {
+ public:
+  explicit Sum(std::size_t components) : sums_(components) {}
+
+  void add(const float* sample) {
+    if (!std::all_of(sample, sample + sums_.size(), [](float x) { return std::isfinite(x); })) return;
+    if (count_++ == 0) first_ = sample;
+    for (std::size_t k = 0; k < sums_.size(); ++k) sums_[k] += sample[k];
+  }
+  [[nodiscard]] std::size_t count() const { return count_; }
+  void store(SampleKind kind, float* to) const {
+    double divisor = static_cast<double>(count_);
+    if (kind == SampleKind::directions) {
+      divisor = 0;
+      for (const double x : sums_) divisor += x * x;
+      divisor = std::sqrt(divisor);
+    }
+    constexpr double kLeast = 1e-6;  // of the length of unit vectors that do not cancel out
+    for (std::size_t k = 0; k < sums_.size(); ++k)
+      to[k] = divisor > kLeast ? static_cast<float>(sums_[k] / divisor) : first_[k];
+  }
+
+ private:
+  std::vector<double> sums_;
+  std::size_t count_ = 0;
+  const float* first_ = nullptr;
+};
+
+}  // namespace
+
+TexelMeans mean_of_samples(const SampleGrid& grid, std::size_t components, std::span<const float> samples,
+                           SampleKind kind) try {
+  const std::size_t rows = texel_rows(grid, components, samples.size()), texels = rows * grid.texels();
+  require_memory(texels * (components + 1) * sizeof(float), "the means of samples");
+  TexelMeans means{std::vector<float>(texels * components, std::numeric_limits<float>::quiet_NaN()),
+                   std::vector<float>(texels)};
+  const double all = double{1} * grid.side * grid.side;
+  for_each_square(grid, rows, [&](std::size_t texel, std::size_t first) {
+    Sum sum(components);
+    for (std::size_t y = 0; y < grid.side; ++y)
+      for (std::size_t x = 0; x < grid.side; ++x)
+        sum.add(&samples[(first + y * grid.resolution + x) * components]);
+    if (sum.count() == 0) return;
+    sum.store(kind, &means.values[texel * components]);
+    means.coverage[texel] = static_cast<float>(static_cast<double>(sum.count()) / all);
+  });
+  return means;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the means of samples");
+}
+
+std::vector<std::uint32_t> most_frequent_samples(const SampleGrid& grid,
+                                                 std::span<const std::uint32_t> samples) try {
+  const std::size_t rows = texel_rows(grid, 1, samples.size());
+  require_memory(rows * grid.texels() * sizeof(std::uint32_t), "the numbers of texels");
+  std::vector<std::uint32_t> numbers(rows * grid.texels(), kNone);
+  for_each_square(grid, rows, [&](std::size_t texel, std::size_t first) {
+    std::vector<std::uint32_t> of_texel;
+    for (std::size_t y = 0; y < grid.side; ++y)
+      for (std::size_t x = 0; x < grid.side; ++x)
+        if (const std::uint32_t number = samples[first + y * grid.resolution + x]; number != kNone)
+          of_texel.push_back(number);
+    std::ranges::sort(of_texel);
+    std::size_t most = 0;
+    for (auto at = of_texel.begin(); at != of_texel.end();) {
+      const auto end = std::upper_bound(at, of_texel.end(), *at);
+      if (const auto count = static_cast<std::size_t>(end - at); count > most)
+        most = count, numbers[texel] = *at;
+      at = end;
+    }
+  });
+  return numbers;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the numbers of texels");
+}
+
+}  // namespace sdm

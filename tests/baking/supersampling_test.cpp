@@ -1,0 +1,67 @@
+// Several samples a texel.
+#include <gtest/gtest.h>
+#include <sdm/supersampling.h>
+#include <sdm/types.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "support/error_of.h"
+
+namespace sdm::test {
+namespace {
+
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+
+TEST(Supersampling, TexelsAreTheMeansOfTheirSquares) {
+  std::vector<float> samples(6 * 4 * 2);  // two components, three texels by two
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<float>(i * i % 23);
+  const TexelMeans means = mean_of_samples({6, 2}, 2, samples);
+  ASSERT_EQ(means.values.size(), 12u);
+  for (std::size_t y = 0; y < 2; ++y)
+    for (std::size_t x = 0; x < 3; ++x)
+      for (std::size_t k = 0; k < 2; ++k) {
+        double sum = 0;
+        for (std::size_t i = 0; i < 4; ++i) sum += samples[((2 * y + i / 2) * 6 + 2 * x + i % 2) * 2 + k];
+        EXPECT_FLOAT_EQ(means.values[(y * 3 + x) * 2 + k], static_cast<float>(sum / 4));
+        EXPECT_EQ(means.coverage[y * 3 + x], 1);
+      }
+  EXPECT_EQ(mean_of_samples({6, 1}, 2, samples).values, samples);
+}
+
+TEST(Supersampling, SamplesWithoutValuesDoNotCount) {
+  const std::vector<float> samples{1, kNothing, kNothing, kNothing, 3, 5, kNothing, kNothing};
+  const TexelMeans means = mean_of_samples({4, 2}, 1, samples);
+  EXPECT_EQ(means.values[0], 3);
+  EXPECT_EQ(means.coverage[0], 0.75f);
+  EXPECT_TRUE(std::isnan(means.values[1]));
+  EXPECT_EQ(means.coverage[1], 0);
+}
+
+TEST(Supersampling, MeansOfDirectionsHaveLengthOne) {
+  const float half = std::sqrt(0.5f);
+  const std::vector<float> samples{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1};
+  const TexelMeans means = mean_of_samples({2, 2}, 3, samples, SampleKind::directions);
+  const std::vector<double> expected{1, 1, 2};
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(means.values[k], expected[k] / std::sqrt(6.0), 1e-6);
+  const std::vector<float> opposite{half, half, 0, -half, -half, 0, kNothing, 0, 0, kNothing, 0, 0};
+  const TexelMeans cancelled = mean_of_samples({2, 2}, 3, opposite, SampleKind::directions);
+  EXPECT_EQ(std::vector(cancelled.values), (std::vector<float>{half, half, 0}));
+}
+
+TEST(Supersampling, NumbersAreTheMostFrequentOnes) {
+  const std::vector<std::uint32_t> samples{7, 9, 2, kNone, kNone, kNone, 9, 9, 1, kNone, kNone, kNone};
+  EXPECT_EQ(most_frequent_samples({6, 2}, samples), (std::vector<std::uint32_t>{9, 1, kNone}));
+}
+
+TEST(Supersampling, GridsThatDoNotFitAreRefused) {
+  const std::vector<float> samples(12);
+  for (const SampleGrid& grid : {SampleGrid{4, 2}, SampleGrid{3, 2}, SampleGrid{0, 1}, SampleGrid{4, 0}})
+    EXPECT_NE(error_of([&] { return mean_of_samples(grid, 1, samples); }), "") << grid.resolution;
+  EXPECT_EQ(error_of([&] { return mean_of_samples({6, 2}, 1, samples); }), "");
+}
+
+}  // namespace
+}  // namespace sdm::test

@@ -1,0 +1,148 @@
+// The page of `sdm bake`, and its models in three.js.
+const assert = require('assert');
+const { readFileSync } = require('fs');
+const { numbers, plain, settled } = require('./support.cjs');
+
+/// The pixels of the canvas, red, green, blue and alpha, when the picture is fine.
+async function pixels(page) {
+  await settled(page);
+  const { width, height, data } = await page.evaluate(() => {
+    const canvas = document.getElementById('canvas');
+    const copy = document.createElement('canvas');
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    const context = copy.getContext('2d', { willReadFrequently: true });
+    context.drawImage(canvas, 0, 0);
+    return { width: copy.width, height: copy.height, data: [...context.getImageData(0, 0, copy.width, copy.height).data] };
+  });
+  return { width, height, at: (x, y) => data.slice(4 * (y * width + x), 4 * (y * width + x) + 4) };
+}
+
+const apart = (a, b) => Math.max(...[0, 1, 2].map((k) => Math.abs(a[k] - b[k])));
+
+/// The share of the pixels of columns `from` to `to` that both pictures draw, and of these the share that differs by more
+/// than `most` levels.
+function compared(a, b, from, to, most) {
+  let [both, far] = [0, 0];
+  for (let y = 0; y < a.height; y += 3)
+    for (let x = Math.ceil(from); x < to; x += 3) {
+      const [p, q] = [a.at(x, y), b.at(x, y)];
+      if (p[3] < 255 || q[3] < 255) continue;
+      ++both;
+      if (apart(p, q) > most) ++far;
+    }
+  return { both, far: far / Math.max(1, both) };
+}
+
+const slide = (page, value) =>
+  page.evaluate((to) => {
+    const split = document.getElementById('split');
+    split.value = String(to);
+    split.dispatchEvent(new Event('input'));
+  }, value);
+const splitOf = async (page) => Number(await page.inputValue('#split'));
+
+module.exports = {
+  // The slider divides the picture between both meshes, which are under one camera and look alike.
+  async slides(page, differs) {
+    await page.selectOption('#shading', 'colours');
+    await slide(page, 1000);
+    const low = await pixels(page);
+    await slide(page, 0);
+    const high = await pixels(page);
+    assert(compared(low, high, 0, low.width, 255).both > 1000, 'nothing is drawn');
+    const { far } = compared(low, high, 0, low.width, 12);
+    assert(far < 0.05, `${far} of the pixels of both have another colour`);
+    await page.selectOption('#shading', 'shape');
+    const shape = await pixels(page);
+    assert(compared(shape, high, 0, low.width, 12).far > 0.5, 'the shape has no colours');
+    await slide(page, 1000);
+    const coarse = await pixels(page);
+    if (differs === 'differs') assert(compared(shape, coarse, 0, low.width, 12).far > 0.02, 'the coarse shape is as the detailed one');
+    await page.selectOption('#shading', 'colours');
+    await slide(page, 400);
+    const both = await pixels(page);
+    const middle = 0.4 * both.width;
+    assert.strictEqual(compared(both, low, 0, middle - 2, 0).far, 0, 'left of the line is not the coarse mesh');
+    assert.strictEqual(compared(both, high, middle + 2, both.width, 0).far, 0, 'right of the line is not the detailed mesh');
+  },
+
+  // By mouse, by keyboard, and side by side.
+  async compares(page) {
+    assert.strictEqual(await splitOf(page), 500);
+    const line = await page.locator('#divider').boundingBox();
+    const view = await page.locator('#view').boundingBox();
+    await page.mouse.move(line.x + line.width / 2, line.y + line.height / 3);
+    await page.mouse.down();
+    await page.mouse.move(view.x + 0.25 * view.width, line.y + 40, { steps: 4 });
+    await page.mouse.up();
+    assert(Math.abs((await splitOf(page)) - 250) < 3, `dragged to ${await splitOf(page)}`);
+    await page.focus('#split');
+    await page.keyboard.press('ArrowRight');
+    assert(Math.abs((await splitOf(page)) - 251) < 3);
+    await page.focus('#canvas');
+    for (const [key, value] of [['l', 1000], ['H', 0], ['b', 500]]) {
+      await page.keyboard.press(key);
+      assert.strictEqual(await splitOf(page), value, key);
+    }
+    const pose = () => page.evaluate(() => JSON.stringify(window.sdmBaked.view.pose));
+    const before = await pose();
+    await page.keyboard.press('ArrowLeft');
+    assert.notStrictEqual(await pose(), before);
+    await page.keyboard.press('Home');
+    await page.selectOption('#arrangement', 'beside');
+    assert(await page.isDisabled('#split'));
+    assert(!(await page.isVisible('#divider')));
+    const beside = await pixels(page);
+    const middle = Math.floor(beside.width / 2);
+    const seen = (from, to) => {
+      let count = 0;
+      for (let y = 0; y < beside.height; y += 3) for (let x = from; x < to; x += 3) if (beside.at(x, y)[3] === 255) ++count;
+      return count;
+    };
+    const [left, right] = [seen(0, middle), seen(middle, beside.width)];
+    assert(left > 500 && Math.abs(left - right) < 0.1 * left, `${left} pixels of the coarse mesh, ${right} of the detailed one`);
+    await page.selectOption('#arrangement', 'over');
+    const plainMesh = await pixels(page);
+    await page.check('#edges');
+    const edges = await pixels(page);
+    assert(compared(plainMesh, edges, 0, 0.5 * edges.width, 20).far > 0.01, 'no triangles are drawn');
+    assert.strictEqual(compared(plainMesh, edges, 0.51 * edges.width, edges.width, 0).far, 0);
+  },
+
+  // The numbers are those of report.json, whose path is given; the words say how the detailed mesh is drawn.
+  async tells(page, path, drawn) {
+    const report = JSON.parse(readFileSync(path, 'utf8'));
+    const text = plain(await page.innerText('body'));
+    const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, ' ');
+    const all = Object.values(report.texels).reduce((sum, n) => sum + n, 0);
+    for (const n of Object.values(report.texels).filter((n) => n > 0)) assert(text.includes(`${grouped(n)} (${n === all ? '100 %' : ''}`), `no ${n} in ${text}`);
+    for (const { file } of Object.values(report.textures)) assert(text.includes(file), `no ${file}`);
+    for (const note of report.notes) assert(text.includes(plain(note)), note);
+    assert(text.includes(grouped(report.low.triangles)) && text.includes(grouped(report.high.triangles)));
+    assert(text.includes(drawn), `no "${drawn}" in ${text}`);
+    assert.deepStrictEqual(await page.evaluate(() => JSON.parse(document.getElementById('report').textContent)), report);
+    const names = await page.evaluate(() => [...document.querySelectorAll('input, select, canvas')].map((e) => e.getAttribute('aria-label') ?? e.labels?.[0]?.textContent ?? ''));
+    assert(names.every((name) => name.trim() !== ''), `controls without names: ${JSON.stringify(names)}`);
+  },
+
+  // The normals that three.js decodes from a model at texels are those of a file of floats, three for each texel and NaN for
+  // none, to `most` degrees.
+  async decodes(page, path, most) {
+    const expected = new Float32Array(numbers(path));
+    const { size, data } = await page.evaluate(() => window.decoded);
+    assert.strictEqual(3 * size * size, expected.length);
+    let [worst, sum, count] = [0, 0, 0];
+    for (let y = 0; y < size; ++y)
+      for (let x = 0; x < size; ++x) {
+        const [t, p] = [3 * (y * size + x), 4 * ((size - 1 - y) * size + x)]; // rows of the target are from below
+        if (data[p + 3] < 1 || Number.isNaN(expected[t])) continue;
+        const [a, b] = [[0, 1, 2].map((k) => expected[t + k]), [0, 1, 2].map((k) => 2 * data[p + k] - 1)];
+        const across = Math.hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+        const angle = (Math.atan2(across, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) * 180) / Math.PI;
+        worst = Math.max(worst, angle), (sum += angle), ++count;
+      }
+    console.log(`${count} texels: at most ${worst.toFixed(3)}, ${(sum / count).toFixed(3)} degrees on average`);
+    assert(count > expected.length / 12, `${count} texels are drawn`);
+    assert(worst <= Number(most), `a normal is ${worst} degrees off`);
+  },
+};
