@@ -240,7 +240,7 @@ Simplified Simplifier::State::to_triangles(std::size_t count, const SimplifyOpti
     const std::size_t before = start.triangles.size();
     if (before > kFirstTriangles * count && before <= kMostForBoth) {
       Step other = reduced(wedges, start, count, {1}, options);
-      if (other.triangles.size() <= step.triangles.size() && !other.triangles.empty()) {
+      if (other.triangles.size() <= std::max(count, step.triangles.size()) && !other.triangles.empty()) {
         measure(other, options);
         if (other.deviation.upper < step.deviation.upper) step = std::move(other);
       }
