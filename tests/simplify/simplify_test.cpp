@@ -120,7 +120,7 @@ TEST(Simplifier, ReducesSmoothMeshesFar) {
   EXPECT_TRUE(inspect(s.mesh).oriented);
 }
 
-// Two steps to 1 % of this mesh end 9.7 away from it, and one step 5.2.
+// Two steps to 1 % of this mesh end 9.7 away from it, and one step 5.8.
 TEST(Simplifier, OneStepIsTakenWhereTwoDeviateMore) {
   const Mesh mesh = load("armadillo.off");
   const Simplified s = Simplifier(mesh).to_triangles(mesh.triangles.size() / 100);
