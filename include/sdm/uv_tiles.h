@@ -37,6 +37,9 @@ struct UvTiles {
 /// Faces belong to a tile if their corners are in it but for 1e-6. Throws sdm::Error if the mesh has no
 /// texture coordinates, or coordinates beyond 1e6. Cost: linear.
 [[nodiscard]] SDM_API UvTiles uv_tiles(const Mesh& mesh);
+/// Whether the texture coordinates of all corners are the same, as programs write them that have no others.
+/// Not if there are none. Cost: linear.
+[[nodiscard]] SDM_API bool has_one_uv(const Mesh& mesh);
 
 /// The faces of a tile, with texture coordinates relative to it. Vertices keep their numbers.
 [[nodiscard]] SDM_API Mesh uv_tile_mesh(const Mesh& mesh, const UvTile& tile);

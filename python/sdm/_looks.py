@@ -33,7 +33,7 @@ class Appearance:
         self.face_materials: "npt.NDArray[np.uint32] | None" = None
         self.uvs: "npt.NDArray[np.float64] | None" = None
         self._colors: "tuple[npt.NDArray[np.float32], str] | None" = None
-        self._numbers: dict[int, int] = {}  # of pictures, by the identity of what they were made from
+        self._numbers: dict[int, tuple[int, Any]] = {}  # of pictures, by the identity of what they were made from
 
     def set_colors(self, colors: Any, domain: str) -> None:
         """In sRGB, of uint8 or uint16, or from 0 to 1; a fourth column is alpha."""
@@ -64,9 +64,9 @@ class Appearance:
     def add_picture(self, picture: Any) -> int:
         """The number of a picture: pixels, or an object of Pillow or pyvista."""
         if id(picture) not in self._numbers:
-            self._numbers[id(picture)] = len(self.pictures)
+            self._numbers[id(picture)] = (len(self.pictures), picture)  # kept: of what is freed, another may have the identity
             self.pictures.append(_pixels(picture))
-        return self._numbers[id(picture)]
+        return self._numbers[id(picture)][0]
 
     def compiled(self) -> dict[str, object]:
         """The dictionary that the compiled part reads."""
@@ -98,11 +98,15 @@ def _pixels(picture: Any) -> npt.NDArray[Any]:
 
 
 def _factors(values: Any, otherwise: tuple[float, ...]) -> tuple[float, ...]:
-    """Numbers of trimesh: from 0 to 1, or of uint8."""
+    """Numbers of trimesh: from 0 to 1, or of bytes, which may be integers of other types."""
     if values is None:
         return otherwise
     array = np.asarray(values)
-    numbers = (array / 255 if array.dtype == np.uint8 else array).astype(float).tolist()
+    are_bytes = array.dtype == np.uint8 or (np.issubdtype(array.dtype, np.integer) and (array > 1).any())
+    scaled = array / 255 if are_bytes else array.astype(float)
+    if not ((scaled >= 0) & (scaled <= 1)).all():
+        raise Error("colours of materials must be numbers from 0 to 1, or integers from 0 to 255")
+    numbers = scaled.tolist()
     return tuple((numbers + list(otherwise[len(numbers) :]))[: len(otherwise)])
 
 
@@ -143,7 +147,11 @@ def _add_trimesh_materials(visual: Any, faces: int, look: Appearance) -> npt.NDA
     numbers = getattr(visual, "face_materials", None) if several is not None else None
     if numbers is None:
         return np.full(faces, first, np.uint32)
-    return np.asarray(numbers, np.int64).astype(np.uint32) + np.uint32(first)
+    added = len(look.materials) - first
+    of_faces = np.asarray(numbers, np.int64)
+    if ((of_faces < 0) | (of_faces >= added)).any():
+        raise Error(f"face_materials of trimesh must be from 0 to {added - 1}")
+    return (of_faces + first).astype(np.uint32)
 
 
 def _trimesh_look(mesh: Any) -> Appearance:
@@ -159,10 +167,11 @@ def _trimesh_look(mesh: Any) -> Appearance:
 
 def _trimesh_scene_look(scene: Any) -> Appearance:
     """The looks of all geometries, each at the corners of its faces."""
-    look, uvs, colors, materials = Appearance(), [], [], []
+    look, uvs, colors, materials, kinds = Appearance(), [], [], [], set()
     for geometry, _, corners in scene_parts(scene):
         visual = getattr(geometry, "visual", None)
         kind, count = getattr(visual, "kind", None), len(corners)
+        kinds.add(kind)
         own = np.full((count, 3, 2), np.nan)
         color = np.full((count, 3, 4), 255, np.uint8)
         if kind == "texture":
@@ -179,23 +188,27 @@ def _trimesh_scene_look(scene: Any) -> Appearance:
             color[:] = numpy_of(visual.face_colors, "face_colors")[:, None]  # type: ignore[union-attr]
         uvs.append(own)
         colors.append(color)
+    if not kinds & {"texture", "vertex", "face"}:
+        return Appearance()
     look.face_materials = np.concatenate(materials)
     look.uvs = np.concatenate(uvs)
-    if any((color != 255).any() for color in colors):
+    if kinds & {"vertex", "face"}:
         look.set_colors(np.concatenate(colors).reshape(-1, 4), "corner")
     return look
 
 
 def _pyvista_colors(mesh: Any) -> Iterator[tuple[npt.NDArray[Any], str]]:
-    """Arrays of bytes with three or four components, the active one first, then those whose names are those of colours."""
+    """Arrays of bytes with three or four components, active ones first, then those whose names are those of colours."""
+    found = []
     for domain, data in (("vertex", mesh.point_data), ("face", mesh.cell_data)):
         active = getattr(data, "active_scalars_name", None)
-        names = sorted(data.keys(), key=lambda name: (name != active, name.lower()))
-        for name in names:
+        for name in data.keys():
             array = np.asarray(data[name])
             is_color = array.dtype == np.uint8 and array.ndim == 2 and array.shape[1] in (3, 4)
             if is_color and (name == active or name.lower() in _COLOR_NAMES):
-                yield array, domain
+                found.append((name != active, name.lower(), array, domain))
+    for _, _, array, domain in sorted(found, key=lambda item: item[:2]):
+        yield array, domain
 
 
 def _pyvista_look(mesh: Any) -> Appearance:

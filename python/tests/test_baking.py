@@ -174,6 +174,27 @@ def test_scenes_of_trimesh_bring_their_looks(square):
     np.testing.assert_allclose(image[4:508:2, 258:510].astype(int), picture[2:254, 2:254].astype(int), atol=2)
 
 
+def test_scenes_without_looks_and_wrong_materials_are_refused(square):
+    mesh, picture = square
+    form = SimpleNamespace(vertices=mesh.vertices, faces=mesh.faces, visual=SimpleNamespace(kind=None))
+    graph = SimpleNamespace(nodes_geometry=["a"], get={"a": (np.eye(4), "form")}.get)
+    with pytest.raises(sdm.Error, match="nothing to bake"):
+        sdm.bake(SimpleNamespace(graph=graph, geometry={"form": form}), mesh, resolution=64)
+    empty = SimpleNamespace(nodes_geometry=[], get={}.get)
+    with pytest.raises(sdm.Error, match="the scene of trimesh has no triangles"):
+        sdm.bake(SimpleNamespace(graph=empty, geometry={}), mesh, resolution=64)
+    red = SimpleNamespace(image=None, diffuse=[255, 0, 0, 255])
+    several = SimpleNamespace(materials=[red, red])
+    form.visual = SimpleNamespace(kind="texture", uv=mesh.vertices[:, :2], material=several, face_materials=[0, 1])
+    assert sdm.bake(form, mesh, resolution=64).image("base_color")[48, 60].tolist() == [255, 0, 0]
+    form.visual.face_materials = [0, -1]
+    with pytest.raises(sdm.Error, match="face_materials of trimesh must be from 0 to 1"):
+        sdm.bake(form, mesh, resolution=64)
+    red.diffuse = [2.5, 0, 0]
+    with pytest.raises(sdm.Error, match="from 0 to 1"):
+        sdm.bake(form, mesh, resolution=64)
+
+
 class Data(dict):
     """As the arrays of points or cells of pyvista."""
 

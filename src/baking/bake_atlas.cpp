@@ -23,13 +23,6 @@ bool in_unit_square(const Mesh& mesh) {
   return uv_tiles(mesh).is_unit_square();
 }
 
-// As programs write them that have no others.
-bool in_one_place(const Mesh& mesh) {
-  return std::ranges::all_of(mesh.corner_uvs, [&](const std::array<Vec2, 3>& uvs) {
-    return std::ranges::all_of(uvs, [&](const Vec2& uv) { return uv == mesh.corner_uvs[0][0]; });
-  });
-}
-
 Surface laid_out_as(const Mesh& mesh, AtlasOptions options, AtlasKind kind) {
   options.kind = kind;
   return Surface(mesh, options);
@@ -46,7 +39,7 @@ BakeAtlas bake_atlas(const Mesh& mesh, const AtlasOptions& options) {
   std::string fault;
   if (mesh.corner_uvs.empty()) {
     fault = "it has no UVs";
-  } else if (in_one_place(mesh)) {
+  } else if (has_one_uv(mesh)) {
     fault = "its UVs are all the same";
   } else if (!in_unit_square(mesh)) {
     fault = "its UVs leave [0, 1]";

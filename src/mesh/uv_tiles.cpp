@@ -168,6 +168,13 @@ bool UvTiles::is_unit_square() const {
   return crossing.empty() && tiles.size() == 1 && tiles[0].u == 0 && tiles[0].v == 0;
 }
 
+bool has_one_uv(const Mesh& mesh) {
+  return !mesh.corner_uvs.empty() &&
+         std::ranges::all_of(mesh.corner_uvs, [&](const std::array<Vec2, 3>& uvs) {
+           return std::ranges::all_of(uvs, [&](const Vec2& uv) { return uv == mesh.corner_uvs[0][0]; });
+         });
+}
+
 UvTiles uv_tiles(const Mesh& mesh) try {
   check_coordinates(mesh);
   UvTiles result;

@@ -1,7 +1,8 @@
 #include "io/mesh/mesh_file.h"
 
+#include <sdm/uv_tiles.h>
+
 #include <algorithm>
-#include <array>
 
 #include "io/mesh/mesh_attributes.h"
 
@@ -25,14 +26,6 @@ void add_names(const char* kind, const PolygonNames& polygons,
       result.of_face[f] = runs[i].name;
   }
   all.push_back(std::move(result));
-}
-
-// Of a file with textures: whether all faces show one place of them.
-bool has_one_uv(const Mesh& mesh) {
-  return !mesh.corner_uvs.empty() &&
-         std::ranges::all_of(mesh.corner_uvs, [&](const std::array<Vec2, 3>& uvs) {
-           return std::ranges::all_of(uvs, [&](const Vec2& uv) { return uv == mesh.corner_uvs[0][0]; });
-         });
 }
 
 }  // namespace

@@ -126,8 +126,7 @@ class Proof {
 
  private:
   [[nodiscard]] Vec3 point(int side, std::uint32_t vertex) const {
-    const Vec3& p = meshes_[side]->points[vertex];
-    return side == 0 ? p : pair_.pose(p);
+    return side == 0 ? meshes_[0]->points[vertex] : pair_.point2(vertex);
   }
   [[nodiscard]] Corners corners(int side, std::uint32_t face) const {
     return side == 0 ? pair_.face1(face) : pair_.face2(face);

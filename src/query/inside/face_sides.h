@@ -30,7 +30,7 @@ enum class Sides : std::uint8_t {
 
 /// The sides of the faces of a solid, each found on first use, and those of all once an eighth of them was
 /// asked for: all together take less time. The winding number is constant on one side of a face that no other
-/// face meets, and passes to neighbours across their common edge. Thread-safe; results do not depend on the
+/// face meets, and passes to neighbours across their common edge. Thread-safe; signs do not depend on the
 /// order of calls.
 class FaceSides {
  public:

@@ -2,6 +2,10 @@
 
 namespace sdm::pairs {
 
+Vec3 MeshPair::point2(std::uint32_t vertex) const {
+  return pose(o2.mesh.positions[vertex]);
+}
+
 Corners MeshPair::face1(std::uint32_t face) const {
   return corners_of(o1.mesh, face);
 }

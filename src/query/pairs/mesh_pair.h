@@ -30,7 +30,9 @@ struct MeshPair {
     return known(cylinders[0]) && known(cylinders[1]);
   }
 
-  /// The corners of a face. Compiled only once: vector code must get the same rounding as all other code.
+  /// A vertex of O2, posed. Compiled only once, without fused operations: all code must get the same bits.
+  [[nodiscard]] Vec3 point2(std::uint32_t vertex) const;
+  /// The corners of a face, of the same bits.
   [[nodiscard]] Corners face1(std::uint32_t face) const;
   [[nodiscard]] Corners face2(std::uint32_t face) const;
 };

@@ -38,9 +38,10 @@ PromisedMemory::PromisedMemory(std::size_t bytes) : bytes_(bytes) {
   promised_memory += bytes;
 }
 
-PromisedMemory::~PromisedMemory() {
+void PromisedMemory::release() {
   const std::scoped_lock lock(memory_mutex);
   promised_memory -= bytes_;
+  bytes_ = 0;
 }
 
 void check_size(std::size_t width, std::size_t height) {

@@ -61,9 +61,11 @@ bool read_header(JpegReader& reader, std::span<const char> bytes) {
   jpeg_calc_output_dimensions(&reader.jpeg);
   return true;
 }
-bool read_rows(JpegReader& reader, std::uint8_t* pixels, std::size_t row_bytes) {
+bool read_rows(JpegReader& reader, PromisedMemory& coefficients, std::uint8_t* pixels,
+               std::size_t row_bytes) {
   if (setjmp(reader.failed) != 0) return false;
-  jpeg_start_decompress(&reader.jpeg);
+  jpeg_start_decompress(&reader.jpeg);  // reads the coefficients
+  coefficients.release();
   while (reader.jpeg.output_scanline < reader.jpeg.output_height) {
     JSAMPROW row = pixels + reader.jpeg.output_scanline * row_bytes;
     jpeg_read_scanlines(&reader.jpeg, &row, 1);
@@ -103,10 +105,10 @@ Image decode_jpeg(std::span<const char> bytes) {
   };
   check(read_header(reader, bytes));
   check_size(reader.jpeg.output_width, reader.jpeg.output_height);
-  const PromisedMemory coefficients(coefficient_bytes(reader.jpeg));
+  PromisedMemory coefficients(coefficient_bytes(reader.jpeg));
   Image image = blank_image(reader.jpeg.output_width, reader.jpeg.output_height,
                             static_cast<std::uint32_t>(reader.jpeg.output_components), 8);
-  check(read_rows(reader, image.bytes.data(), image.bytes.size() / image.height));
+  check(read_rows(reader, coefficients, image.bytes.data(), image.bytes.size() / image.height));
   if (reader.jpeg.out_color_space == JCS_CMYK) return without_inks(image, reader.jpeg.saw_Adobe_marker != 0);
   return image;
 }

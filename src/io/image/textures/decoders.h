@@ -22,7 +22,9 @@ class PromisedMemory {
  public:
   /// Throws PictureTooLarge unless there is as much memory beside what is promised.
   explicit PromisedMemory(std::size_t bytes);
-  ~PromisedMemory();
+  ~PromisedMemory() { release(); }
+  /// Once the library has taken it: then it is no longer among the free memory.
+  void release();
   PromisedMemory(const PromisedMemory&) = delete;
   PromisedMemory& operator=(const PromisedMemory&) = delete;
 
