@@ -192,6 +192,12 @@ std::string summary(const SimplifyCommand& command, const SimplifyOutcome& outco
   return text + note_lines(outcome.notes, 13);
 }
 
+/// Whether both name one file. Pipes and devices, whose links lead to no path, are none.
+bool name_one_file(const fs::path& a, const fs::path& b) {
+  if (fs::exists(a) && !fs::is_regular_file(a)) return false;
+  return fs::weakly_canonical(a) == fs::weakly_canonical(b);
+}
+
 /// Writes the report, together with the meshes if it is a file beside them; otherwise before them.
 void write_report(const SimplifyCommand& command, const SimplifyOutcome& outcome, OutputFolder& out) {
   const fs::path folder = fs::absolute(command.report).parent_path();
@@ -296,7 +302,7 @@ void add_simplify_command(CLI::App& app) {
     if (!command->max_deviation && !command->triangles)
       throw CLI::ValidationError("sdm simplify", "--max-deviation or --triangles is required");
     for (unsigned level = 0; !command->report.empty() && level <= command->lods; ++level)
-      if (fs::weakly_canonical(command->report) == fs::weakly_canonical(command->file(level)))
+      if (name_one_file(command->report, command->file(level)))
         throw CLI::ValidationError("--report", "it names a file of -o, " + command->report.string());
     check_units(command->units, command->mesh, "");
     run(*command);

@@ -3,21 +3,25 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdlib>
 
 #include "core/parallel.h"
 
 namespace sdm::atlas {
 namespace {
 
-// All offsets within a disc, shortest first; of equal lengths, those along rows first.
-std::vector<std::array<int, 2>> disc(int radius) {
+// The order in which the nearest texel is searched: by rings, and within a ring by length.
+std::array<int, 2> rank_of(const std::array<int, 2>& step) {
+  const auto [dx, dy] = step;
+  return {std::max(std::abs(dx), std::abs(dy)), dx * dx + dy * dy};
+}
+
+// All offsets within so many rings, nearest first; of equal ones, those along rows first.
+std::vector<std::array<int, 2>> steps_within(int rings) {
   std::vector<std::array<int, 2>> steps;
-  for (int dy = -radius; dy <= radius; ++dy)
-    for (int dx = -radius; dx <= radius; ++dx)
-      if (dx * dx + dy * dy <= radius * radius) steps.push_back({dx, dy});
-  std::stable_sort(steps.begin(), steps.end(), [](const auto& a, const auto& b) {
-    return a[0] * a[0] + a[1] * a[1] < b[0] * b[0] + b[1] * b[1];
-  });
+  for (int dy = -rings; dy <= rings; ++dy)
+    for (int dx = -rings; dx <= rings; ++dx) steps.push_back({dx, dy});
+  std::ranges::stable_sort(steps, {}, rank_of);
   return steps;
 }
 
@@ -28,7 +32,7 @@ Gutter::Gutter(std::uint32_t resolution, std::span<const std::uint32_t> owners, 
       rows_(static_cast<std::uint32_t>(owners.size() / resolution)),
       shift_(static_cast<unsigned>(std::bit_width(std::bit_ceil(width)) - 1)),
       blocks_(((resolution - 1) >> shift_) + 1),
-      steps_(disc(static_cast<int>(width))),
+      steps_(steps_within(static_cast<int>(width))),
       owners_(owners) {
   const std::uint32_t side = 1u << shift_, block_rows = ((rows_ - 1) >> shift_) + 1;
   std::vector<std::uint8_t> owned(std::size_t{block_rows} * blocks_);

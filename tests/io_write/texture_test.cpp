@@ -3,9 +3,11 @@
 #include <png.h>
 #include <sdm/io.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csetjmp>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -65,19 +67,22 @@ TEST(Texture, HasTheDistancesInItsRange) {
           continue;
         }
         // Of one of the nearest owned texels, or nothing beyond the gutter.
-        int nearest = reach * reach + 1;
+        constexpr int kRing = 1000;
+        const int beyond = (reach + 1) * kRing;
+        int nearest = beyond;
         bool matches = false;
         for (int j = std::max(0, y - reach); j <= std::min(255, y + reach); ++j)
           for (int i = std::max(0, x - reach); i <= std::min(255, x + reach); ++i) {
             const std::size_t other = static_cast<std::size_t>(256 * j + i);
-            const int squared = (i - x) * (i - x) + (j - y) * (j - y);
-            if (owners[other] == kNone || squared > nearest) continue;
-            if (squared < nearest) matches = false;
-            nearest = squared;
+            const int distance =
+                kRing * std::max(std::abs(i - x), std::abs(j - y)) + (i - x) * (i - x) + (j - y) * (j - y);
+            if (owners[other] == kNone || distance > nearest) continue;
+            if (distance < nearest) matches = false;
+            nearest = distance;
             matches = matches || values[other] == values[texel];
           }
-        ASSERT_TRUE(nearest > reach * reach ? values[texel] == 0 : matches) << x << ", " << y;
-        filled += nearest <= reach * reach;
+        ASSERT_TRUE(nearest == beyond ? values[texel] == 0 : matches) << x << ", " << y;
+        filled += nearest < beyond;
       }
     EXPECT_GT(filled, 500u);
   }

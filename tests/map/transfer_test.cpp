@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <random>
 #include <span>
 #include <string>
@@ -175,17 +176,20 @@ TEST_F(Transfer, NearestTexelFillsTheGutter) {
     for (int x = 0; x < n; ++x) {
       const int i = y * n + x;
       if (surface.texel_faces()[i] != kNone) continue;
-      int nearest = 1 << 20;
+      constexpr int kBeyond = 1 << 20;
+      const auto distance = [](int dx, int dy) {  // of rings, and then the length
+        return 1000 * std::max(std::abs(dx), std::abs(dy)) + dx * dx + dy * dy;
+      };
+      int nearest = kBeyond;
       for (int dy = -4; dy <= 4; ++dy)
         for (int dx = -4; dx <= 4; ++dx)
-          if (y + dy >= 0 && y + dy < rows && x + dx >= 0 && x + dx < n && dx * dx + dy * dy <= 16 &&
-              !std::isnan(bare[i + dy * n + dx]))
-            nearest = std::min(nearest, dx * dx + dy * dy);
-      if (nearest > 16) continue;
+          if (y + dy >= 0 && y + dy < rows && x + dx >= 0 && x + dx < n && !std::isnan(bare[i + dy * n + dx]))
+            nearest = std::min(nearest, distance(dx, dy));
+      if (nearest == kBeyond) continue;
       bool is_one_of_the_nearest = false;
       for (int dy = -4; dy <= 4; ++dy)
         for (int dx = -4; dx <= 4; ++dx)
-          if (dx * dx + dy * dy == nearest && y + dy >= 0 && y + dy < rows && x + dx >= 0 && x + dx < n)
+          if (distance(dx, dy) == nearest && y + dy >= 0 && y + dy < rows && x + dx >= 0 && x + dx < n)
             is_one_of_the_nearest |= bare[i + dy * n + dx] == filled[i];
       ASSERT_TRUE(is_one_of_the_nearest) << x << ' ' << y;
       ++checked;

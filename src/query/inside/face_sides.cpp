@@ -76,12 +76,13 @@ Sides FaceSides::beside(std::uint32_t face) const {
 
 void FaceSides::find_all() const {
   if (offset_ == 0) return;
-  const std::vector<std::uint8_t> near = flag_faces_with_near(*solid_);
+  thread_local std::vector<std::uint8_t> near, done;
+  thread_local std::vector<std::uint32_t> waiting;
+  flag_faces_with_near(*solid_, near);
   const auto open = [&](std::uint32_t face) {
     return near[face] == 0 && solid_->sliver[face] == 0 && !solid_->topology.ignored(face);
   };
-  std::vector<std::uint8_t> done(near.size());
-  std::vector<std::uint32_t> waiting;
+  done.assign(near.size(), 0);
   Poll due(1024);
   for (std::uint32_t first = 0; first < near.size(); ++first) {
     if (done[first] != 0) continue;

@@ -123,7 +123,13 @@ bool meet(const tree::FloatBox& a, const tree::FloatBox& b) {
 /// The pairs of near faces of which one is in a leaf, and the other one in it or in a later leaf.
 class NearPairs {
  public:
-  NearPairs(const sites::SitesData& sites, std::vector<std::uint8_t>& flags) : sites_(sites), flags_(flags) {}
+  struct Scratch {
+    std::vector<Box> reaches;
+    std::vector<std::uint32_t> waiting;
+  };
+
+  NearPairs(const sites::SitesData& sites, std::vector<std::uint8_t>& flags, Scratch& scratch)
+      : sites_(sites), flags_(flags), reaches_(scratch.reaches), waiting_(scratch.waiting) {}
 
   void flag(std::uint32_t leaf) {
     reaches_.clear();
@@ -161,8 +167,8 @@ class NearPairs {
 
   const sites::SitesData& sites_;
   std::vector<std::uint8_t>& flags_;
-  std::vector<Box> reaches_;
-  std::vector<std::uint32_t> waiting_;
+  std::vector<Box>& reaches_;
+  std::vector<std::uint32_t>& waiting_;
 };
 
 }  // namespace
@@ -206,14 +212,14 @@ void find_near_faces(const sites::SitesData& sites, std::uint32_t face, std::vec
   visit(sites.tree, tree::InOrder{enter, visit_leaf});
 }
 
-std::vector<std::uint8_t> flag_faces_with_near(const sites::SitesData& sites) {
-  std::vector<std::uint8_t> flags(sites.mesh.triangles.size());
+void flag_faces_with_near(const sites::SitesData& sites, std::vector<std::uint8_t>& flags) {
+  flags.assign(sites.mesh.triangles.size(), 0);
   parallel_for(sites.tree.nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    NearPairs pairs(sites, flags);
+    thread_local NearPairs::Scratch scratch;
+    NearPairs pairs(sites, flags, scratch);
     for (std::size_t node = begin; node < end; ++node)
       if (sites.tree.nodes[node].leaf()) pairs.flag(static_cast<std::uint32_t>(node));
   });
-  return flags;
 }
 
 }  // namespace sdm::inside
