@@ -8,14 +8,14 @@ import {
   type Atlas, type ClosestPoints, type Contacts, type Hausdorff, type MapOptions, type MapStatistics, type MapValues, type RayHits,
   type SignedDistances, type SurfaceOptions,
 } from './surface.js';
-import { type BoundedLength, type Indices, type NumberArray, type Points, SdmError, type SignMethod } from './types.js';
+import { type BoundedLength, type Indices, type Points, SdmError, type SignMethod } from './types.js';
 
 export interface CallOptions {
   /** Rejects the call with its reason. */
   signal?: AbortSignal;
-  /** Called now and then with the current step and the fraction of it that is done. */
+  /** Called now and then with the current step and the fraction of it that is done. What it throws aborts the call. */
   progress?: (step: string, fraction: number) => void;
-  /** Moves the buffers of typed arrays to the worker instead of copying them: they are empty afterwards. */
+  /** Moves the buffers of typed arrays that are all of their buffer, instead of copying them: these are empty afterwards. */
   transfer?: boolean;
 }
 
@@ -23,18 +23,37 @@ export interface CallOptions {
 type Options<Synchronous> = Omit<Synchronous, 'progress'> & CallOptions;
 type Body = { positions: Points; indices?: Indices };
 
-// How long a call that was aborted may go on before the worker is ended: polls are some 20 ms apart, but not everywhere.
-const kPatienceWithFlags = 2000;
-const kPatience = 200;
-const kFlagMilliseconds = 20;
+// How long an aborted call may go on, once those before it have ended, before the worker is ended: as many periods as these. They are
+// counted, so that a page that was busy meanwhile still receives that the call has ended.
+const kPeriodMilliseconds = 50;
+const kPeriods = 4;
+// Of a call that looks whether it was aborted: some 20 ms apart, but not everywhere.
+const kPeriodsWithPolls = 40;
+const kMethodsInParts: readonly string[] = ['map', 'update'];
 
 interface Pending {
   resolve(value: unknown): void;
   reject(error: unknown): void;
   progress: CallOptions['progress'];
+  /** Whether it looks between its parts whether it was aborted, where memory cannot be shared. */
+  inParts: boolean;
   /** Once it was aborted: stops waiting for its end. */
   settle: (() => void) | undefined;
   release: () => void;
+}
+
+/** A new object in the worker. */
+type Made = { object: number; fields: Record<string, unknown>; generation: number };
+
+/** The result of a promise, unless the signal is aborted before. */
+export function unlessAborted<T>(promise: Promise<T>, signal: AbortSignal | undefined): Promise<T> {
+  if (!signal) return promise;
+  return new Promise((resolve, reject) => {
+    const abort = () => reject(signal.reason);
+    if (signal.aborted) abort();
+    signal.addEventListener('abort', abort, { once: true });
+    promise.then(resolve, reject).finally(() => signal.removeEventListener('abort', abort));
+  });
 }
 
 /** What calls have in common; ended workers are replaced. */
@@ -44,8 +63,10 @@ class Connection {
   answer: Started;
   private readonly pending = new Map<number, Pending>();
   private lastCall = 0;
+  /** Until there is another worker, or none any more. */
   private restarting: Promise<void> | undefined;
   private end: SdmError | undefined;
+  private readonly terminated = new AbortController();
   private readonly collected = new FinalizationRegistry<Reference & { generation: number }>(
     ({ sdmObject, generation }) => this.dispose(sdmObject, generation));
 
@@ -60,36 +81,35 @@ class Connection {
   }
 
   private listen(): void {
-    const { worker } = this;
-    worker.listen((reply: Reply) => this.receive(reply), (error) => {
-      if (worker === this.worker && !this.end) this.restart(error);
-    });
+    this.worker.listen((reply: Reply) => this.receive(reply), (error) => this.restart(error));
   }
 
   terminate(error = new SdmError('ended', 'the worker was terminated')): void {
     this.end ??= error;
     this.worker.terminate();
+    this.terminated.abort(this.end);
     this.rejectAll(this.end);
   }
 
   /** Ends the worker with all of its objects, and starts another one. */
   private restart(reason: SdmError): void {
+    if (this.restarting || this.end) return;
     this.worker.terminate();
     ++this.generation;
+    this.restarting = this.replace().finally(() => (this.restarting = undefined));
     this.rejectAll(reason);
-    this.restarting = (async () => {
-      try {
-        const worker = await newWorker(this.start.script);
-        this.answer = await started<Started>(worker, { worker: this.start });
-        if (this.end) return worker.terminate();
-        this.worker = worker;
-        this.listen();
-      } catch (error) {
-        this.terminate(error instanceof SdmError ? error : new SdmError('ended', String(error)));
-      } finally {
-        this.restarting = undefined;
-      }
-    })();
+  }
+
+  private async replace(): Promise<void> {
+    try {
+      const worker = await newWorker(this.start.script);
+      this.answer = await started<Started>(worker, { worker: this.start }, this.terminated.signal);
+      if (this.end) return worker.terminate();
+      this.worker = worker;
+      this.listen();
+    } catch (error) {
+      this.terminate(error instanceof SdmError ? error : new SdmError('ended', String(error)));
+    }
   }
 
   private rejectAll(error: SdmError): void {
@@ -98,17 +118,22 @@ class Connection {
     for (const call of all) call.settle?.(), call.release(), call.reject(error);
   }
 
-  private receive(reply: Reply): void {
-    const call = this.pending.get(reply.id);
-    if ('progress' in reply) return call?.settle ? undefined : call?.progress?.(...reply.progress);
-    this.pending.delete(reply.id);
+  private remove(id: number): Pending | undefined {
+    const call = this.pending.get(id);
+    this.pending.delete(id);
     if (this.pending.size === 0) this.worker.hold(false);
     call?.settle?.();
     call?.release();
+    return call;
+  }
+
+  private receive(reply: Reply): void {
+    if ('progress' in reply) return this.tell(reply.id, reply.progress);
+    const call = this.remove(reply.id);
     if ('object' in reply) {
       // Nobody waits for the object of a call that was aborted.
       if (!call || call.settle) this.dispose(reply.object, this.generation);
-      else call.resolve(reply);
+      else call.resolve({ object: reply.object, fields: reply.fields, generation: this.generation } satisfies Made);
     } else if ('value' in reply) call?.resolve(reply.value);
     else {
       const { kind, message, broken } = reply.error;
@@ -117,8 +142,19 @@ class Connection {
     }
   }
 
+  private tell(id: number, progress: [step: string, fraction: number]): void {
+    const call = this.pending.get(id);
+    if (call?.settle) return;
+    try {
+      call?.progress?.(...progress);
+    } catch (error) {
+      this.abort(id, error);
+    }
+  }
+
   /** The reference of an object, unless its worker has ended. */
   reference(object: Remote): Reference {
+    if (object.connection !== this) throw new SdmError('input', 'the objects belong to different workers');
     if (object.generation !== this.generation)
       throw new SdmError('ended', 'the object was in a worker that an aborted or failed call has ended; make it again');
     return { sdmObject: object.id };
@@ -131,42 +167,49 @@ class Connection {
     const sent = values.map((value) => (value instanceof Remote ? value : plain(value, transfer === true, moved)));
     const sentOptions = plain(rest, transfer === true, moved) as Record<string, unknown>;
     // The arrays are copied now, so that the caller may change them while a worker is started again.
-    while (this.restarting) await this.restarting;
+    while (this.restarting) await unlessAborted(this.restarting, signal);
     if (this.end) throw this.end;
     signal?.throwIfAborted();
     const id = ++this.lastCall;
+    const cancellable = signal !== undefined || progress !== undefined;
     const request: Request = { call: {
       id, method, object: object ? this.reference(object).sdmObject : 0, options: sentOptions, wantsProgress: progress !== undefined,
-      cancellable: signal !== undefined, values: sent.map((value) => (value instanceof Remote ? this.reference(value) : value)) } };
+      cancellable, values: sent.map((value) => (value instanceof Remote ? this.reference(value) : value)) } };
+    const inParts = kMethodsInParts.includes(method) && rest['facing'] === undefined && cancellable;
     return new Promise((resolve, reject) => {
       const abort = () => this.abort(id, signal!.reason);
       const release = () => signal?.removeEventListener('abort', abort);
-      this.pending.set(id, { resolve, reject, progress, settle: undefined, release });
+      this.pending.set(id, { resolve, reject, progress, inParts, settle: undefined, release });
       signal?.addEventListener('abort', abort, { once: true });
       this.worker.hold(true);
-      this.worker.postMessage(request, [...moved]);
+      try {
+        this.worker.postMessage(request, [...moved]);
+      } catch (error) {
+        this.remove(id);
+        reject(new SdmError('input', `the arguments of ${method} cannot be sent to the worker: ${error instanceof Error ? error.message : error}`));
+      }
     });
   }
 
   private abort(id: number, reason: unknown): void {
     const call = this.pending.get(id);
-    if (!call) return;
+    if (!call || call.settle) return;
     call.reject(reason);
     this.send({ cancel: id });
     const { flags } = this.answer;
-    // Again and again, as the worker clears the flag when it begins the call.
-    const set = () => {
+    // Calls before it are not at fault, so that they have their time, and perhaps the same flag.
+    const isFirst = () => this.pending.keys().next().value === id;
+    const patience = flags || call.inParts ? kPeriodsWithPolls : kPeriods;
+    let periods = 0;
+    const stop = () => {
+      if (!isFirst()) return;
+      // Again and again, as the worker clears the flag when it begins the call.
       if (flags) Atomics.store(flags, id % flags.length, 1);
+      if (++periods > patience) this.restart(new SdmError('ended', 'the worker was ended, as a call in it was aborted'));
     };
-    set();
-    const again = setInterval(set, kFlagMilliseconds);
-    const since = performance.now();
-    const patience = setInterval(() => {
-      // Calls before it are not at fault, so that they have their time.
-      if (this.pending.keys().next().value === id && performance.now() - since > (flags ? kPatienceWithFlags : kPatience))
-        this.restart(new SdmError('ended', 'the worker was ended, as a call in it was aborted'));
-    }, kPatience / 4);
-    call.settle = () => (clearInterval(again), clearInterval(patience));
+    const timer = setInterval(stop, kPeriodMilliseconds);
+    call.settle = () => clearInterval(timer);
+    stop();
   }
 
   private send(request: Request): void {
@@ -185,10 +228,10 @@ class Connection {
 function plain(value: unknown, transfer: boolean, moved: Set<Transferable>): unknown {
   if (ArrayBuffer.isView(value) || value instanceof ArrayBuffer) {
     const buffer = value instanceof ArrayBuffer ? value : value.buffer;
-    if (transfer && buffer instanceof ArrayBuffer) return moved.add(buffer), value;
-    const copy = value instanceof ArrayBuffer ? value.slice(0) : (value as NumberArray).slice();
-    moved.add(copy instanceof ArrayBuffer ? copy : (copy.buffer as ArrayBuffer));
-    return copy;
+    const movable = transfer && buffer instanceof ArrayBuffer && buffer.byteLength === value.byteLength;
+    const sent = movable ? value : copied(value);
+    moved.add(sent instanceof ArrayBuffer ? sent : (sent.buffer as ArrayBuffer));
+    return sent;
   }
   if (Array.isArray(value)) return typeof value[0] === 'object' ? value.map((item) => plain(item, transfer, moved)) : value.slice();
   if (value && typeof value === 'object')
@@ -196,18 +239,27 @@ function plain(value: unknown, transfer: boolean, moved: Set<Transferable>): unk
   return value;
 }
 
+/** A copy with a buffer of its own. The slice() of Node's Buffer is none: that is another view of the same memory. */
+function copied(value: ArrayBuffer | ArrayBufferView): ArrayBuffer | ArrayBufferView {
+  if (value instanceof ArrayBuffer) return value.slice(0);
+  const bytes = new Uint8Array(value.byteLength);
+  bytes.set(new Uint8Array(value.buffer, value.byteOffset, value.byteLength));
+  // The type of its elements, such as `Uint8Array` of a Buffer, whose own constructor is another one.
+  const type = Object.prototype.toString.call(value).slice(8, -1) as 'Uint8Array';
+  return new globalThis[type](bytes.buffer);
+}
+
 /** An object in a worker. It is freed when it is collected, by dispose(), or at the end of the block of `using`. */
 abstract class Remote {
+  /** @internal */
+  readonly id: number;
   /** @internal */
   readonly generation: number;
   private disposed = false;
 
   /** @internal */
-  constructor(
-    /** @internal */ readonly connection: Connection,
-    /** @internal */ readonly id: number,
-  ) {
-    this.generation = connection.generation;
+  constructor(/** @internal */ readonly connection: Connection, { object, generation }: Made) {
+    [this.id, this.generation] = [object, generation];
     connection.watch(this);
   }
 
@@ -232,8 +284,9 @@ export class WorkerSites extends Remote {
   readonly orientable: boolean;
 
   /** @internal */
-  constructor(connection: Connection, { object, fields }: Made) {
-    super(connection, object);
+  constructor(connection: Connection, made: Made) {
+    super(connection, made);
+    const { fields } = made;
     [this.closed, this.orientable] = [fields['closed'] as boolean, fields['orientable'] as boolean];
   }
   refit(positions: Points, options?: CallOptions): Promise<void> {
@@ -255,10 +308,6 @@ export class WorkerSites extends Remote {
 
 /** A surface in a worker. */
 export class WorkerSurface extends Remote {
-  /** @internal */
-  constructor(connection: Connection, { object }: Made) {
-    super(connection, object);
-  }
   refit(positions: Points, options?: CallOptions): Promise<void> {
     return this.call('refit', [positions], options);
   }
@@ -276,12 +325,11 @@ export class WorkerSurface extends Remote {
   }
   /** The surface distance map. It stays in the worker, until its arrays() are asked for. */
   async map(sites: WorkerSites, options?: Options<MapOptions>): Promise<WorkerMap> {
-    const map = new WorkerMap(this.connection, await this.call('map', [sites], options));
-    return map;
+    return new WorkerMap(this.connection, await this.call('map', [sites], options), this, sites);
   }
   /** A map without values, for computeSamples(). */
   async emptyMap(sites: WorkerSites): Promise<WorkerMap> {
-    return new WorkerMap(this.connection, await this.call('emptyMap', [sites]));
+    return new WorkerMap(this.connection, await this.call('emptyMap', [sites]), this, sites);
   }
 }
 
@@ -295,9 +343,10 @@ export class WorkerMap extends Remote {
   sign: SignMethod;
   signReason: string;
 
-  /** @internal */
-  constructor(connection: Connection, { object, fields }: Made) {
-    super(connection, object);
+  /** @internal Keeps the surface and the sites from being collected before it. */
+  constructor(connection: Connection, made: Made, /** @internal */ readonly surface: WorkerSurface, /** @internal */ readonly sites: WorkerSites) {
+    super(connection, made);
+    const { fields } = made;
     [this.resolution, this.rows] = [fields['resolution'] as number, fields['rows'] as number];
     [this.sign, this.signReason] = [fields['sign'] as SignMethod, fields['signReason'] as string];
   }
@@ -316,6 +365,10 @@ export class WorkerMap extends Remote {
     const signs = await this.call('computeSamples', [first, count], options);
     Object.assign(this, signs);
     return signs;
+  }
+  /** @internal computeSamples() and valuesOfSamples() at once, so that no other call comes between. */
+  computeValues(first: number, count: number, options: object): Promise<MapValues & { sign: SignMethod; signReason: string }> {
+    return this.call('computeValues', [first, count], options);
   }
   valuesOfSamples(first: number, count: number): Promise<MapValues> {
     return this.call('valuesOfSamples', [first, count]);
@@ -340,10 +393,6 @@ export class WorkerMap extends Remote {
 
 /** Two bodies in a worker. */
 export class WorkerPair extends Remote {
-  /** @internal */
-  constructor(connection: Connection, { object }: Made) {
-    super(connection, object);
-  }
   setPose(body: 0 | 1, matrix: ArrayLike<number>): Promise<void> {
     return this.call('setPose', [body, matrix]);
   }
@@ -364,12 +413,11 @@ export class WorkerPair extends Remote {
   }
 }
 
-type Made = { object: number; fields: Record<string, unknown> };
-
 /**
  * The library in a worker, with a memory of its own. Calls are answered in their order. An aborted call rejects at once; where memory
- * can be shared, its computation stops at its next poll, and so does that of a map elsewhere. Another one that goes on for 0.2 s
- * longer is stopped with its worker: objects that were made before are then lost (SdmError `ended`), and others can be made.
+ * can be shared, its computation stops at its next poll, and that of a map elsewhere between its parts. A call that goes on, for 2 s
+ * if it polls or for 0.2 s otherwise, is stopped with its worker: objects that were made before are then lost (SdmError `ended`), and
+ * others can be made.
  */
 export class SdmWorker {
   /** @internal */

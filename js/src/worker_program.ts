@@ -13,6 +13,7 @@ interface Port {
 }
 
 const kProgressMilliseconds = 30;
+const kPartMilliseconds = 40;
 
 async function openPort(): Promise<Port> {
   if (typeof self === 'object' && typeof postMessage === 'function')
@@ -125,9 +126,10 @@ class Server {
     if (target instanceof DistanceMap) {
       if (call.method === 'arrays') return Object.fromEntries((values as (keyof DistanceMap)[]).map((name) => [name, target[name]]));
       if (call.method === 'update') return this.update(target, call, options);
-      if (call.method === 'computeSamples') {
-        target.computeSamples(values[0] as number, values[1] as number, options);
-        return { sign: target.sign, signReason: target.signReason };
+      if (call.method === 'computeSamples' || call.method === 'computeValues') {
+        const [first, count] = values as [number, number];
+        target.computeSamples(first, count, options);
+        return { sign: target.sign, signReason: target.signReason, ...(call.method === 'computeValues' ? target.valuesOfSamples(first, count) : {}) };
       }
     }
     if (call.method === 'map') return this.map(target as never, values[0] as never, call, options);
@@ -154,13 +156,19 @@ class Server {
     return { sign: map.sign, signReason: map.signReason };
   }
 
+  /** Parts are short, so that a call that was aborted ends soon on machines of any speed, but not so short that they cost much. */
   private async inParts(map: DistanceMap, call: Call, options: { progress?: Progress }): Promise<void> {
     const { samples, grain } = map.sampleCounts();
-    const step = grain * Math.max(1, Math.floor(65536 / grain));
-    for (let first = 0; first < samples; first += step) {
-      const count = Math.min(step, samples - first);
-      const progress: Progress = (name, fraction) => options.progress?.(name, (first + fraction * count) / samples);
+    let step = grain;
+    for (let first = 0, count; first < samples; first += count) {
+      count = Math.min(step, samples - first);
+      const [done, part] = [first, count];
+      const progress: Progress = (name, fraction) => options.progress?.(name, (done + fraction * part) / samples);
+      const since = performance.now();
       map.computeSamples(first, count, { ...options, progress });
+      const took = performance.now() - since;
+      if (took < kPartMilliseconds / 2) step *= 2;
+      else if (took > kPartMilliseconds) step = Math.max(grain, grain * Math.floor((step / grain) * (kPartMilliseconds / took)));
       await tick();
       if (this.cancelled.has(call.id)) throw new SdmError('cancelled', 'cancelled');
     }
