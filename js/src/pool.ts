@@ -1,5 +1,5 @@
 // Maps by several workers that share no memory.
-import { type CallOptions, type SdmWorker, type WorkerMap, type WorkerSites, type WorkerSurface } from './remote.js';
+import { type CallOptions, type SdmWorker, type WorkerMap, type WorkerSites, type WorkerSurface, unlessAborted } from './remote.js';
 import { type Atlas, type MapOptions, type MapValues, type SurfaceOptions } from './surface.js';
 import { type Indices, type Points, SdmError, type SignMethod } from './types.js';
 
@@ -16,10 +16,30 @@ export interface PoolMap extends MapValues {
 // Each worker has about so many ranges of samples, so that none waits long for the last one.
 const kRangesPerWorker = 4;
 
+/** Calls one after the other, so that none sees objects that another one is changing. */
+class Turns {
+  private last: Promise<unknown> = Promise.resolve();
+
+  /** Runs after all calls before, whether these failed or not. */
+  take<Value>(run: () => Promise<Value>): Promise<Value> {
+    const turn = this.last.then(run);
+    this.last = turn.catch(() => {});
+    return turn;
+  }
+}
+
+/** Waits for all, also if one fails, so that nothing goes on afterwards; then throws what the first of them threw. */
+async function all<Value>(promises: Promise<Value>[]): Promise<Value[]> {
+  const settled = await Promise.allSettled(promises);
+  const failed = settled.find((one): one is PromiseRejectedResult => one.status === 'rejected');
+  if (failed) throw failed.reason;
+  return settled.map((one) => (one as PromiseFulfilledResult<Value>).value);
+}
+
 /** Sites in all workers of a pool. */
 export class PoolSites {
   /** @internal */
-  constructor(/** @internal */ readonly each: WorkerSites[]) {}
+  constructor(/** @internal */ readonly each: WorkerSites[], private readonly turns: Turns) {}
   get closed(): boolean {
     return this.each[0]!.closed;
   }
@@ -27,65 +47,83 @@ export class PoolSites {
     return this.each[0]!.orientable;
   }
   async refit(positions: Points): Promise<void> {
-    await Promise.all(this.each.map((sites) => sites.refit(positions)));
+    const moved = Float64Array.from(positions);
+    await this.turns.take(() => all(this.each.map((sites) => sites.refit(moved))));
   }
+  /** Frees them once the calls before have ended. */
   dispose(): void {
-    this.each.forEach((sites) => sites.dispose());
+    void this.turns.take(async () => this.each.forEach((sites) => sites.dispose()));
   }
 }
 
 /** A surface in all workers of a pool. */
 export class PoolSurface {
   private maps: { sites: PoolSites; each: WorkerMap[] } | undefined;
-  private texels: Promise<Uint32Array> | undefined;
+  private texels: Uint32Array | undefined;
 
   /** @internal */
-  constructor(private readonly each: WorkerSurface[]) {}
+  constructor(private readonly each: WorkerSurface[], private readonly turns: Turns) {}
 
   async refit(positions: Points): Promise<void> {
-    await Promise.all(this.each.map((surface) => surface.refit(positions)));
+    const moved = Float64Array.from(positions);
+    await this.turns.take(() => all(this.each.map((surface) => surface.refit(moved))));
   }
   atlas(): Promise<Atlas> {
     return this.each[0]!.atlas();
   }
   /**
    * The surface distance map: each worker computes ranges of the samples, one after the other. The arrays are those of Surface.map()
-   * to the bit. An aborted call ends once the ranges that were begun have ended, some milliseconds later, and keeps all objects.
+   * to the bit. Maps and refits of a pool are done one after the other, in the order of their calls. An aborted call rejects at once;
+   * the next one begins once the ranges that were begun have ended, some milliseconds later. All objects stay.
    */
   async map(sites: PoolSites, options: PoolMapOptions = {}): Promise<PoolMap> {
+    options.signal?.throwIfAborted();
+    return unlessAborted(this.turns.take(() => this.mapNow(sites, options)), options.signal);
+  }
+
+  private async mapNow(sites: PoolSites, options: PoolMapOptions): Promise<PoolMap> {
     const { signal, progress, ...rest } = options;
     signal?.throwIfAborted();
     const maps = await this.mapsTo(sites);
-    this.texels ??= this.each[0]!.samples().then(({ texels }) => texels);
-    const [texels, { samples, grain }] = await Promise.all([this.texels, this.each[0]!.sampleCounts()]);
+    this.texels ??= (await this.each[0]!.samples()).texels;
+    const { texels } = this;
+    const { samples, grain } = await this.each[0]!.sampleCounts();
     const { resolution, rows } = maps[0]!;
     const result = noValues(resolution, rows);
     const size = grain * Math.max(1, Math.floor(samples / grain / (kRangesPerWorker * maps.length)));
-    let next = 0, done = 0;
+    let next = 0, done = 0, failed = false;
     let signs = {} as { sign: SignMethod; signReason: string };
-    await Promise.all(maps.map(async (map) => {
-      while (next < samples) {
+    const computeRanges = async (map: WorkerMap) => {
+      while (next < samples && !failed && !signal?.aborted) {
         const first = next, count = Math.min(size, samples - first);
         next += count;
-        signal?.throwIfAborted();
-        signs = await map.computeSamples(first, count, rest);
-        store(result, texels, first, await map.valuesOfSamples(first, count));
-        progress?.('map', (done += count) / samples);
+        const { sign, signReason, ...values } = await map.computeValues(first, count, rest);
+        signs = { sign, signReason };
+        store(result, texels, first, values);
+        if (!signal?.aborted) progress?.('map', (done += count) / samples);
       }
-    }));
+    };
+    await all(maps.map((map) => computeRanges(map).catch((error) => {
+      failed = true;
+      throw error;
+    })));
     signal?.throwIfAborted();
     return { resolution, rows, ...signs, ...result };
   }
+  /** Frees it once the calls before have ended. */
   dispose(): void {
-    this.maps?.each.forEach((map) => map.dispose());
-    this.each.forEach((surface) => surface.dispose());
+    void this.turns.take(async () => {
+      this.maps?.each.forEach((map) => map.dispose());
+      this.each.forEach((surface) => surface.dispose());
+    });
   }
 
   /** The maps of the workers to these sites; those to other sites are freed. */
   private async mapsTo(sites: PoolSites): Promise<WorkerMap[]> {
-    if (sites.each.length !== this.each.length) throw new SdmError('input', 'the objects belong to different pools');
+    if (this.each.length !== sites.each.length || this.each.some((one, i) => one.connection !== sites.each[i]!.connection))
+      throw new SdmError('input', 'the objects belong to different pools');
     if (this.maps?.sites !== sites) {
-      const each = await Promise.all(this.each.map((surface, i) => surface.emptyMap(sites.each[i]!)));
+      const each = await all(this.each.map((surface, i) => surface.emptyMap(sites.each[i]!)));
       this.maps?.each.forEach((map) => map.dispose());
       this.maps = { sites, each };
     }
@@ -113,8 +151,13 @@ function store(into: MapValues, texels: Uint32Array, first: number, values: MapV
   }
 }
 
-/** Workers that compute maps together, each with a memory of its own: for pages where memory cannot be shared. */
+/**
+ * Workers that compute maps together, each with a memory of its own: for pages where memory cannot be shared. An aborted surface() or
+ * sites() can end workers with all objects of the pool (SdmError `ended`), as of SdmWorker; an aborted map ends none.
+ */
 export class SdmPool {
+  private readonly turns = new Turns();
+
   /** @internal */
   constructor(private readonly each: SdmWorker[]) {}
 
@@ -124,14 +167,16 @@ export class SdmPool {
   /** The atlas is laid out by one worker. */
   async surface(positions: Points, indices: Indices = null, options: Omit<SurfaceOptions, 'progress'> & CallOptions = {}): Promise<PoolSurface> {
     const { transfer: _, ...rest } = options;
-    const first = await this.each[0]!.surface(positions, indices, rest);
+    // The others need them later, when the caller may have changed them.
+    const at = Float64Array.from(positions), corners = indices && Float64Array.from(indices);
+    const first = await this.each[0]!.surface(at, corners, rest);
     const storedAtlas = rest.storedAtlas ?? (await first.storedAtlas());
-    const others = await Promise.all(this.each.slice(1).map((worker) => worker.surface(positions, indices, { ...rest, storedAtlas })));
-    return new PoolSurface([first, ...others]);
+    const others = await all(this.each.slice(1).map((worker) => worker.surface(at, corners, { ...rest, storedAtlas })));
+    return new PoolSurface([first, ...others], this.turns);
   }
   async sites(positions: Points, indices: Indices = null, options: CallOptions = {}): Promise<PoolSites> {
     const { transfer: _, ...rest } = options;
-    return new PoolSites(await Promise.all(this.each.map((worker) => worker.sites(positions, indices, rest))));
+    return new PoolSites(await all(this.each.map((worker) => worker.sites(positions, indices, rest))), this.turns);
   }
   terminate(): void {
     this.each.forEach((worker) => worker.terminate());
