@@ -51,7 +51,7 @@ SummaryOptions summary_options(const Surface& surface, const Sites& sites, const
 Reported report_of(const DistanceMap& map, const Surface& surface, const Sites& sites,
                    const Choices& choices) {
   const auto words = nlohmann::json::parse(std::string_view(choices.words, choices.words_size));
-  const std::string units = words["units"];
+  const std::string units = words.at("units");
   Reported result;
   result.at_vertices = distances_at_vertices(surface.mesh(), sites,
                                              {.sign = map.sign.method, .max_distance = choices.max_distance});
@@ -63,7 +63,7 @@ Reported report_of(const DistanceMap& map, const Surface& surface, const Sites& 
     if (auto note = note_on_walls(sites, summary.tolerance->tolerance, units))
       summary.notes.push_back(std::move(*note));
   const auto mesh = [&](const Mesh& of, std::size_t i) {
-    return ReportedMesh{.file = words["names"][i], .info = inspect(of), .xxh3 = words["xxh3"][i]};
+    return ReportedMesh{.file = words.at("names").at(i), .info = inspect(of), .xxh3 = words.at("xxh3").at(i)};
   };
   result.json = report_json({.on = mesh(surface.mesh(), 0),
                              .to = mesh(sites.mesh(), 1),

@@ -33,11 +33,20 @@ export type MapSummary = { distance: Record<string, number>; [key: string]: unkn
 
 type Addresses = [map: number, surface: number, sites: number];
 
+/** Two of a kind, or what stands for none. The module reads as many. */
+function two<Value>(given: readonly Value[] | undefined, none: readonly [Value, Value], type: 'number' | 'string', option: string): readonly Value[] {
+  if (given === undefined) return none;
+  if (!Array.isArray(given) || given.length !== 2 || given.some((value) => typeof value !== type || Number.isNaN(value)))
+    throw new SdmError('input', `${option} is ${JSON.stringify(given)}: it must be two ${type}s`);
+  return given;
+}
+
 /** The numbers and words of the options, as the module takes them. */
 function argumentsOf(options: ReportOptions) {
-  const limits = [...(options.tolerance ?? [NaN, NaN]), ...(options.range ?? [NaN, NaN])];
+  const none = [NaN, NaN] as const;
+  const limits = [...two(options.tolerance, none, 'number', 'tolerance'), ...two(options.range, none, 'number', 'range')];
   const words = new TextEncoder().encode(JSON.stringify({
-    units: options.units ?? '', names: options.names ?? ['O1', 'O2'], xxh3: options.xxh3 ?? ['', ''] }));
+    units: options.units ?? '', names: two(options.names, ['O1', 'O2'], 'string', 'names'), xxh3: two(options.xxh3, ['', ''], 'string', 'xxh3') }));
   const colormap = wordNumber(kColormaps, options.colormap ?? 'automatic', 'colormap');
   return [...limits, options.maxDistance ?? Infinity, colormap, wordNumber(['y', 'z'], options.up ?? 'y', 'up'), words, words.length];
 }
@@ -58,10 +67,15 @@ async function deflated(bytes: Bytes): Promise<Bytes> {
   return new Uint8Array(await new Response(stream).arrayBuffer()).slice(2, -4);
 }
 
-export async function reportOf(module: Module, map: Addresses, options: ReportOptions): Promise<string> {
+const kDataPlace = '<!-- data -->';  // of the page, as src/io/page/report/page_file.cpp looks for it
+
+/** `map`: called once nothing has to be waited for any more, as the objects may be disposed of meanwhile. */
+export async function reportOf(module: Module, map: () => Addresses, options: ReportOptions): Promise<string> {
   demandFull(module, 'report');
-  const page = new TextEncoder().encode(await module.reportPage!());
-  const [address, lengths, planes] = module.call('sdm_new_report', [...map, ...argumentsOf(options)], options.progress);
+  const html = await module.reportPage!();
+  if (!html.includes(kDataPlace)) throw new SdmError('input', `the reportPage has no ${kDataPlace}: it must be the text of report_page.html`);
+  const page = new TextEncoder().encode(html);
+  const [address, lengths, planes] = module.call('sdm_new_report', [...map(), ...argumentsOf(options)], options.progress);
   const draft = float64(address!)[0]!;
   try {
     let at = 0;
@@ -71,8 +85,8 @@ export async function reportOf(module: Module, map: Addresses, options: ReportOp
     }));
     const sizes = Uint32Array.from(compressed, (plane) => plane.length);
     const all = new Uint8Array(await new Blob(compressed).arrayBuffer());
-    const [html] = module.call('sdm_finish_report', [draft, all, sizes, sizes.length, page, page.length]);
-    return text(html!);
+    const [report] = module.call('sdm_finish_report', [draft, all, sizes, sizes.length, page, page.length]);
+    return text(report!);
   } finally {
     module.plain('sdm_free_report', draft);
   }

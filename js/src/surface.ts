@@ -395,7 +395,7 @@ export class DistanceMap extends Owned {
   }
   /** The text of report.html, a page that shows the map and its summary. Of the module `full` only. */
   report(options: ReportOptions = {}): Promise<string> {
-    return reportOf(this.module, this.addresses(), options);
+    return reportOf(this.module, () => this.addresses(), options);
   }
 
   private addresses(): [number, number, number] {
