@@ -1,8 +1,8 @@
 // The package sdm: exact distances between triangle meshes.
 import { Sdm } from './library.js';
+import { type ReportPage, load, textOf } from './load.js';
 import { Module, type ModuleFile, type ModuleFiles, type ModuleName, canShareMemory, mayWait } from './module.js';
 import { SdmPool } from './pool.js';
-import { SdmError } from './types.js';
 import { SdmWorker } from './remote.js';
 
 export * from './types.js';
@@ -40,16 +40,6 @@ const urls = {
   page: () => new URL('./report_page.html', import.meta.url),
 };
 
-async function load(url: URL): Promise<Response> {
-  if (url.protocol === 'file:' && typeof process === 'object') {
-    const { readFile } = await import('node:fs/promises');
-    return new Response(await readFile(url));
-  }
-  const response = await fetch(url);
-  if (!response.ok) throw new SdmError('internal', `${url} cannot be loaded: ${response.status} ${response.statusText}`);
-  return response;
-}
-
 async function threadsOf(options: StartOptions): Promise<number> {
   if (options.full || !canShareMemory()) return 1;
   if (options.threads !== undefined) return Math.max(1, Math.floor(options.threads));
@@ -66,22 +56,25 @@ async function compiled(options: StartOptions, threads: number): Promise<{ name:
 }
 
 const scriptOf = (options: StartOptions) => String(options.script ?? urls.worker());
-const pageOf = async (options: StartOptions) => options.reportPage ?? (await load(urls.page())).text();
+/** Loaded when the first report is made. In a bundle of one file there is no address. */
+function pageOf(options: StartOptions): ReportPage {
+  if (options.reportPage !== undefined || !import.meta.url) return { text: options.reportPage, url: undefined };
+  return { text: undefined, url: String(urls.page()) };
+}
 
 /** Starts the library in this thread, which waits for its calls. On the main thread of a page, it does without other threads. */
 export async function start(options: StartOptions = {}): Promise<Sdm> {
   const threads = mayWait() ? await threadsOf(options) : 1;
   const module = await compiled(options, threads);
   const script = module.name === 'threads' ? scriptOf(options) : '';
-  return new Sdm(await Module.start({ ...module, threads, script }), () => pageOf(options));
+  return new Sdm(await Module.start({ ...module, threads, script }), () => textOf(pageOf(options)));
 }
 
 /** Starts the library in a worker. Throws SdmError if the worker cannot be started. */
 export async function createWorker(options: StartOptions = {}): Promise<SdmWorker> {
   const threads = await threadsOf(options);
   const { name, file } = await compiled(options, threads);
-  const reportPage = options.full ? await pageOf(options) : undefined;
-  return SdmWorker.open({ name, module: file, threads, script: scriptOf(options), reportPage });
+  return SdmWorker.open({ name, module: file, threads, script: scriptOf(options), reportPage: pageOf(options) });
 }
 
 /** Starts the library in several workers of one thread each, by default as many as there are cores, at most 8. */
@@ -89,8 +82,8 @@ export async function createPool(options: StartOptions & { workers?: number } = 
   const cores = typeof navigator === 'object' ? navigator.hardwareConcurrency : (await import('node:os')).availableParallelism();
   const count = Math.max(1, Math.floor(options.workers ?? Math.min(8, cores)));
   const { name, file } = await compiled(options, 1);
-  const script = scriptOf(options);
-  const starts = Array.from({ length: count }, () => SdmWorker.open({ name, module: file, threads: 1, script, reportPage: undefined }));
+  const script = scriptOf(options), reportPage = pageOf(options);
+  const starts = Array.from({ length: count }, () => SdmWorker.open({ name, module: file, threads: 1, script, reportPage }));
   const opened = await Promise.allSettled(starts);
   const workers = opened.flatMap((one) => (one.status === 'fulfilled' ? [one.value] : []));
   const failed = opened.find((one): one is PromiseRejectedResult => one.status === 'rejected');

@@ -91,6 +91,7 @@ export class Module {
   private threads: Threads | undefined;
   private progress: Progress | undefined;
   private lastWords = '';
+  private fault: SdmError | undefined;
   /** The page that reports are written into. */
   reportPage: (() => Promise<string>) | undefined;
   private readonly freed = new FinalizationRegistry<() => void>((free) => free());
@@ -149,6 +150,21 @@ export class Module {
     return name in this.functions;
   }
 
+  /** Whether a call has stopped half-way, so that the state of the memory is unknown: nothing can be called any more. */
+  get broken(): boolean {
+    return this.fault !== undefined;
+  }
+
+  private run(name: string, numbers: number[]): number {
+    if (this.fault) throw this.fault;
+    try {
+      return this.functions[name]!(...numbers) >>> 0;
+    } catch (error) {
+      this.fault = new SdmError('internal', `sdm: the module cannot go on: ${this.lastWords.trim() || (error as Error).message}`);
+      throw this.fault;
+    }
+  }
+
   /** Calls an exported function, with arrays copied into the module and out of it. */
   call(name: string, values: Argument[], progress?: Progress): Result {
     if (this.progress) throw new SdmError('input', 'the library was called by a callback of progress');
@@ -173,26 +189,35 @@ export class Module {
           this.memory.buffer, block, value.length).set(value);
         return block;
       });
-      return this.read(this.functions[name]!(...numbers) >>> 0);
+      return this.read(this.run(name, numbers));
     } catch (error) {
-      if (error instanceof WebAssembly.RuntimeError)
-        throw new SdmError('internal', `sdm: the module cannot go on: ${this.lastWords.trim() || error.message}`);
       throw failure ? failure.error : error;
     } finally {
       this.progress = undefined;
-      for (const block of blocks) this.functions['sdm_free']!(block);
+      for (const block of blocks) this.free('sdm_free', block);
     }
   }
 
   /** Calls a function that returns no result. */
   plain(name: string, ...numbers: number[]): number {
     if (this.progress) throw new SdmError('input', 'the library was called by a callback of progress');
-    return this.functions[name]!(...numbers) >>> 0;
+    return this.run(name, numbers);
+  }
+
+  /** Frees what is at an address, unless the module is broken. */
+  free(name: string, address: Address): void {
+    if (this.progress) throw new SdmError('input', 'the library was called by a callback of progress');
+    if (!this.fault) this.run(name, [address]);
   }
 
   /** A copy of bytes of the module. */
   bytes(address: Address, count: number): Uint8Array<ArrayBuffer> {
-    return new Uint8Array(this.memory.buffer, address, count).slice() as Uint8Array<ArrayBuffer>;
+    const shown = new Uint8Array(this.memory.buffer, address, count);
+    try {
+      return shown.slice() as Uint8Array<ArrayBuffer>;
+    } catch {
+      throw new SdmError('memory', `sdm: there is no memory for a result of ${count} bytes`);
+    }
   }
 
   /** Frees an object of the module when JavaScript's own is collected, unless it was freed before. */
@@ -204,7 +229,7 @@ export class Module {
   }
 
   private allocate(bytes: number): Address {
-    const block = this.functions['sdm_allocate']!(Math.max(1, bytes)) >>> 0;
+    const block = this.run('sdm_allocate', [Math.max(1, bytes)]);
     if (block === 0) throw new SdmError('memory', 'sdm: not enough memory');
     return block;
   }
@@ -218,7 +243,7 @@ export class Module {
       if (error) throw new SdmError(error, new TextDecoder().decode(bytes(1)));
       return Array.from({ length: words[3]! }, (_, i) => bytes(4 + 2 * i));
     } finally {
-      this.functions['sdm_free_result']!(result);
+      this.run('sdm_free_result', [result]);
     }
   }
 }

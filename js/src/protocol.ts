@@ -1,4 +1,5 @@
 // Messages between createWorker() and the program of its worker.
+import { type ReportPage } from './load.js';
 import { type ModuleName } from './module.js';
 import { type ThreadStart } from './threads.js';
 import { type ErrorKind } from './types.js';
@@ -11,7 +12,7 @@ export interface WorkerStart {
   module: WebAssembly.Module;
   threads: number;
   script: string;
-  reportPage: string | undefined;
+  reportPage: ReportPage;
 }
 
 /** The answer to it. */

@@ -88,6 +88,6 @@ export async function reportOf(module: Module, map: () => Addresses, options: Re
     const [report] = module.call('sdm_finish_report', [draft, all, sizes, sizes.length, page, page.length]);
     return text(report!);
   } finally {
-    module.plain('sdm_free_report', draft);
+    module.free('sdm_free_report', draft);
   }
 }

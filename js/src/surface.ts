@@ -45,14 +45,14 @@ export abstract class Owned {
     private readonly free: string,
   ) {
     this.address = address;
-    module.watch(this, () => module.plain(free, address));
+    module.watch(this, () => module.free(free, address));
   }
 
   /** Frees the memory of the object, which cannot be used any more. */
   dispose(): void {
     if (this.address === 0) return;
     this.module.unwatch(this);
-    this.module.plain(this.free, this.address);
+    this.module.free(this.free, this.address);
     this.address = 0;
   }
   [Symbol.dispose](): void {

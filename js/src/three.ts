@@ -13,7 +13,7 @@ export function fromBufferGeometry(geometry: BufferGeometry): [positions: Float6
   if (!position) throw new SdmError('input', 'the geometry has no positions');
   const positions = new Float64Array(3 * position.count);
   for (let i = 0; i < position.count; ++i)
-    for (let k = 0; k < 3; ++k) positions[3 * i + k] = position.getComponent(i, k);
+    positions.set([position.getX(i), position.getY(i), position.getZ(i)], 3 * i);
   const { index } = geometry;
   const count = index?.count ?? position.count;
   return [positions, Uint32Array.from({ length: count - (count % 3) }, (_, i) => (index ? index.getX(i) : i))];
@@ -25,9 +25,9 @@ export function fromBufferGeometry(geometry: BufferGeometry): [positions: Float6
  */
 export function withAtlas(geometry: BufferGeometry, atlas: Atlas): BufferGeometry {
   const copy = geometry.index ? geometry.toNonIndexed() : geometry.clone();
-  const corners = atlas.corners.length / 2;
-  if (copy.getAttribute('position').count < corners) throw new SdmError('input', 'the atlas is of another geometry');
-  const uvs = new Float32Array(2 * copy.getAttribute('position').count);
+  const corners = atlas.corners.length / 2, { count } = copy.getAttribute('position');
+  if (count - (count % 3) !== corners) throw new SdmError('input', 'the atlas is of another geometry');
+  const uvs = new Float32Array(2 * count);
   for (let i = 0; i < corners; ++i) {
     // NaN, of faces without area, would be an error of some drivers.
     uvs[2 * i] = (atlas.corners[2 * i]! || 0) / atlas.resolution;
@@ -53,6 +53,7 @@ const kNone = 1e38;  // stands for NaN, which drivers treat in different ways
 export class DistanceMaterial extends MeshStandardMaterial {
   private readonly texture: DataTexture;
   private readonly texelFaces: Uint32Array;
+  private readonly colormap: keyof typeof kColormaps;
   private readonly uniformsOfDistances = {
     sdmDistances: { value: null as DataTexture | null },
     sdmColors: { value: null as DataTexture | null },
@@ -61,7 +62,7 @@ export class DistanceMaterial extends MeshStandardMaterial {
     sdmHasTolerance: { value: false },
   };
 
-  constructor(map: { distances: Float32Array }, atlas: Atlas, options: DistanceMaterialOptions = {}) {
+  constructor(map: { distances: Float32Array }, atlas: Pick<Atlas, 'resolution' | 'rows' | 'texelFaces'>, options: DistanceMaterialOptions = {}) {
     const { range, tolerance, colormap, ...parameters } = options;
     super({ roughness: 0.7, metalness: 0, ...parameters });
     this.texelFaces = atlas.texelFaces;
@@ -72,7 +73,8 @@ export class DistanceMaterial extends MeshStandardMaterial {
     const shown = range ?? defaultRange(map.distances);
     this.range = shown;
     if (tolerance) this.tolerance = tolerance;
-    this.uniformsOfDistances.sdmColors.value = colorTexture(kColormaps[colormap ?? (shown[0] < 0 ? 'diverging' : 'viridis')]);
+    this.colormap = colormap ?? (shown[0] < 0 ? 'diverging' : 'viridis');
+    this.uniformsOfDistances.sdmColors.value = colorTexture(kColormaps[this.colormap]);
     this.defines = { ...this.defines, USE_UV: '' };
   }
 
@@ -106,6 +108,14 @@ export class DistanceMaterial extends MeshStandardMaterial {
     shader.fragmentShader = shader.fragmentShader
       .replace('#include <common>', `#include <common>\n${kDeclarations}`)
       .replace('#include <map_fragment>', 'diffuseColor.rgb *= sdmColor(texture2D(sdmDistances, vUv).r);');
+  }
+  override clone(): this {
+    const { data, width, height } = this.texture.image as { data: Float32Array; width: number; height: number };
+    const atlas = { resolution: width, rows: height, texelFaces: this.texelFaces };
+    const options = { range: [...this.range] as [number, number], colormap: this.colormap };
+    const copy = new DistanceMaterial({ distances: data }, atlas, options).copy(this);
+    copy.tolerance = this.tolerance && [...this.tolerance];
+    return copy as this;
   }
   override customProgramCacheKey(): string {
     return 'sdm.DistanceMaterial';

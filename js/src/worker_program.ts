@@ -1,6 +1,7 @@
 // worker.js: the program of workers. It is bundled into one file without imports, so that it can come from a Blob; it is that of
 // createWorker() and that of the threads of a module.
 import { Sdm } from './library.js';
+import { textOf } from './load.js';
 import { Module, canShareMemory } from './module.js';
 import { type Call, type FirstMessage, type Reply, type Request, type Started, type WorkerStart } from './protocol.js';
 import { DistanceMap, Owned } from './surface.js';
@@ -95,8 +96,7 @@ class Server {
     } catch (error) {
       const kind = error instanceof SdmError ? error.kind : 'other';
       const message = error instanceof Error ? error.message : String(error);
-      // Anything else than an error of the library, and a module that has stopped, leaves its memory in an unknown state.
-      this.post({ id: call.id, error: { kind, message, broken: kind === 'internal' || error instanceof WebAssembly.RuntimeError } });
+      this.post({ id: call.id, error: { kind, message, broken: this.library.module.broken } });
     }
   }
 
@@ -191,7 +191,7 @@ class Server {
 async function serve(port: Port, { name, module, threads, script, reportPage }: WorkerStart): Promise<void> {
   const started = await Module.start({ name, file: module, threads, script });
   const flags = started.sharedFlags() ?? (canShareMemory() ? new Uint8Array(new SharedArrayBuffer(256)) : undefined);
-  const server = new Server(port, new Sdm(started, async () => reportPage!), flags);
+  const server = new Server(port, new Sdm(started, () => textOf(reportPage)), flags);
   port.receive((request) => server.receive(request));
   port.post({ threads: started.threadCount, flags } satisfies Started);
 }
