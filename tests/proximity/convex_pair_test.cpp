@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 #include <sdm/sdm.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh/similarity.h"
@@ -249,6 +251,54 @@ TEST(ConvexPair, AnswersOfTiesDoNotDependOnHints) {
   convex.set_pose(1, tilted), by_trees.set_pose(1, tilted);
   EXPECT_EQ(convex.separation().value, by_trees.separation().value);
   EXPECT_EQ(*convex.separation().witness, *by_trees.separation().witness);
+}
+
+// How far inside all planes of the faces of a convex mesh about the origin, moved by a pose.
+double depth_below_planes(const Mesh& mesh, const Transform& pose, const Vec3& p) {
+  double least = kInfinite;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vec3 a = pose(mesh.positions[i]), b = pose(mesh.positions[j]), c = pose(mesh.positions[k]);
+    const Vec3 n = normalized(cross(b - a, c - a));
+    least = std::min(least, (dot(n, a - pose({})) < 0 ? -1 : 1) * dot(n, a - p));
+  }
+  return least;
+}
+double deepest_sample(const Mesh& mesh, const Transform& pose, const Mesh& solid, const Transform& of_solid) {
+  constexpr int kDivisions = 8;
+  double most = 0;
+  for (const auto& [i, j, k] : mesh.triangles)
+    for (int a = 0; a <= kDivisions; ++a)
+      for (int b = 0; a + b <= kDivisions; ++b) {
+        const double x = 1.0 * a / kDivisions, y = 1.0 * b / kDivisions;
+        const Vec3 p = (1 - x - y) * mesh.positions[i] + x * mesh.positions[j] + y * mesh.positions[k];
+        most = std::max(most, depth_below_planes(solid, of_solid, pose(p)));
+      }
+  return most;
+}
+
+// Inside a convex solid, the distance to the surface is the least height below the planes of its faces.
+TEST(ConvexPair, DepthIsThatBelowThePlanesOfFaces) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  const Mesh flat = scaled(test::cube(), {1, 0.7, 0.05}), round = scaled(test::sphere(1), {1, 0.7, 0.5});
+  const std::vector<std::pair<Mesh, Mesh>> pairs{
+      {test::cube(), test::cube(0.7)}, {flat, round}, {round, test::flipped(round)}};
+  for (const auto& [m1, m2] : pairs) {
+    ProximityQuery query(m1, m2);
+    for (int i = 0; i < 20; ++i) {
+      const auto at = [&] { return 0.4 * normal(random); };
+      const Transform pose = Transform::translation({at(), at(), at()}) *
+                             Transform::quaternion({normal(random), normal(random), normal(random), 1});
+      query.set_pose(1, pose);
+      const BoundedLength& depth = *query.penetration_depth();
+      EXPECT_LE(std::max(deepest_sample(m1, {}, m2, pose), deepest_sample(m2, pose, m1, {})),
+                depth.upper + 1e-9);
+      if (depth.value == 0) continue;
+      const auto& [p1, p2] = *depth.witness;
+      EXPECT_NEAR(depth.value, std::max(depth_below_planes(m2, pose, p1), depth_below_planes(m1, {}, p2)),
+                  1e-9);
+    }
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
+#include "query/convex/convex_mesh.h"
 #include "query/shape/wall_column.h"
 #include "sites/sites_data.h"
 #include "tree/visit.h"
@@ -39,6 +40,27 @@ void Leaving::start(const shape::PosedBody& body, const shape::PosedBody& solid,
   thin_ = false;
 }
 
+// Of a convex solid, no point inside is farther from the surface than from the plane of any face. Heights
+// below it are linear, so that their mixed bound is the most depth in a triangle if it has the faces that are
+// nearest there.
+std::array<CornerValues, 2> Leaving::bounds_by(const Corners& at,
+                                               const std::array<BoundaryPart, 2>& boundary) const {
+  const sites::SitesData& sites = internals(solid_->sites());
+  const convex::ConvexMesh* convex = solid_->convex();
+  const auto has_plane = [&](const BoundaryPart& part) {
+    return part.face != kNone && part.clear == 0 && sites.sliver[part.face] == 0;
+  };
+  if (convex == nullptr || !std::ranges::all_of(boundary, has_plane))
+    return corner_distances(sites, at, boundary);
+  std::array<CornerValues, 2> result;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::uint32_t face = boundary[i].face;
+    const Vec3& on = sites.mesh.positions[sites.mesh.triangles[face][0]];
+    for (std::size_t k = 0; k < 3; ++k) result[i][k] = dot(convex->normals[face], on - at[k]);
+  }
+  return result;
+}
+
 bool Leaving::tighten(Part& part, double enough) {
   const std::size_t exits = exits_.size();
   auto* triangle = std::get_if<TrianglePart>(&part.what);
@@ -55,8 +77,7 @@ bool Leaving::tighten(Part& part, double enough) {
     exits_.values(triangle->at, functions_);
     for (const Near& n : triangle->near.all()) functions_.push_back(n.distance);
     if (known)
-      for (const CornerValues& d : corner_distances(internals(solid_->sites()), triangle->at, *known))
-        functions_.push_back(d);
+      for (const CornerValues& d : bounds_by(triangle->at, *known)) functions_.push_back(d);
     const search::MixedBound mixed = search::mixed_bound(functions_, enough / scale_);
     part.limit(scale_ * mixed.value);
     triangle->reach = mixed.value;
@@ -71,9 +92,8 @@ void Leaving::evaluate(Part& part, Value& value, const ClosestPoint& closest, bo
   const auto& [centre, radius] = part.ball;
   auto* triangle = std::get_if<TrianglePart>(&part.what);
   const auto keep = [&](const BoundaryPart& boundary) {
-    value.near.add({boundary, triangle != nullptr
-                                  ? corner_distances(internals(solid_->sites()), triangle->at, boundary)
-                                  : CornerValues{}});
+    value.near.add(
+        {boundary, triangle != nullptr ? bounds_by(triangle->at, {boundary, boundary})[0] : CornerValues{}});
   };
   if (triangle != nullptr) ++triangle->measured;
   if (inside) {
@@ -206,7 +226,7 @@ void Leaving::put_quarters(const Part& part, const TrianglePart& triangle, Parts
   for (int k = 0; k < 3; ++k) quarters[k].at = {at[k], middle[k], middle[(k + 2) % 3]};
   quarters[3].at = middle;
   for (const Near& n : triangle.near.all()) {
-    const CornerValues m = corner_distances(internals(solid_->sites()), middle, n.boundary);
+    const CornerValues m = bounds_by(middle, {n.boundary, n.boundary})[0];
     for (int k = 0; k < 3; ++k) quarters[k].near.add({n.boundary, {n.distance[k], m[k], m[(k + 2) % 3]}});
     quarters[3].near.add({n.boundary, m});
   }

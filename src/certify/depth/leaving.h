@@ -50,6 +50,9 @@ class Leaving {
   void divide(const Part& part, Parts& parts) const;
 
  private:
+  /// Bounds on b at the corners of a triangle by two parts of the boundary, each convex in the triangle.
+  [[nodiscard]] std::array<CornerValues, 2> bounds_by(const Corners& at,
+                                                      const std::array<BoundaryPart, 2>& boundary) const;
   [[nodiscard]] double bound_outside(const Part& part, const TrianglePart& triangle, const Value& value,
                                      double distance, double enough) const;
   [[nodiscard]] bool walls_are_thin(const shape::Ball& ball, double enough) const;
