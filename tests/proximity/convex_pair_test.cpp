@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -299,6 +300,32 @@ TEST(ConvexPair, DepthIsThatBelowThePlanesOfFaces) {
                   1e-9);
     }
   }
+}
+
+// A refit may make a body convex or not convex: bounds are those of the present shape.
+TEST(ConvexPair, BoundsOnDepthFollowRefits) {
+  const Mesh round = test::sphere(2), flat = scaled(round, {1, 0.7, 0.2});
+  Mesh dented = round;
+  for (std::size_t i = 0; i < 40; ++i) dented.positions[4 * i] = 0.5 * dented.positions[4 * i];
+  ASSERT_TRUE(Shape(flat).convex());
+  ASSERT_FALSE(Shape(dented).convex());
+  const Transform pose = Transform::translation({0.6, 0.3, 0.1});
+  ProximityQuery query(round, round);
+  query.set_pose(1, pose);
+  const BoundedLength first = *query.penetration_depth();
+  for (const Mesh& m1 : {flat, dented, round})
+    for (const Mesh& m2 : {dented, flat, round}) {
+      query.refit(m1.positions, m2.positions);
+      ProximityQuery fresh(m1, m2);
+      fresh.set_pose(1, pose);
+      const BoundedLength &depth = *query.penetration_depth(), &expected = *fresh.penetration_depth();
+      EXPECT_GT(depth.value, 0);
+      EXPECT_LE(depth.lower, expected.upper);
+      EXPECT_LE(expected.lower, depth.upper);
+    }
+  const BoundedLength& last = *query.penetration_depth();  // of the first positions again
+  EXPECT_EQ(std::tuple(last.value, last.lower, last.upper, last.witness),
+            std::tuple(first.value, first.lower, first.upper, first.witness));
 }
 
 }  // namespace

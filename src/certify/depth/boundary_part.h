@@ -30,6 +30,16 @@ struct BoundaryPart {
   return corner_distances(solid, at, {boundary, boundary})[0];
 }
 
+/// Bounds on b in a triangle by the plane of a face of a convex solid: the heights of the corners below it,
+/// which are linear, so that three of them are exact where three faces are equally near. No point of a convex
+/// solid is deeper than below the plane of any of its faces. The error of the normal is at most 6e-16 times
+/// the square of the longest side over the area, a height errs by as much times the distance from the corner
+/// of the face that it is measured from, and mixed_bound() of heights by 1e-15 times that. A multiple of both
+/// is added, which is convex in the triangle as well. False of parts that are no face, and of faces whose
+/// normal is not good enough.
+[[nodiscard]] bool heights_below_plane(const sites::SitesData& solid, const Corners& at,
+                                       const BoundaryPart& boundary, CornerValues& heights);
+
 /// A part of the boundary, and the bounds that it gives at the corners of a triangle.
 struct Near {
   BoundaryPart boundary;

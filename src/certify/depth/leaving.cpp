@@ -7,7 +7,6 @@
 
 #include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
-#include "query/convex/convex_mesh.h"
 #include "query/shape/wall_column.h"
 #include "sites/sites_data.h"
 #include "tree/visit.h"
@@ -38,26 +37,16 @@ void Leaving::start(const shape::PosedBody& body, const shape::PosedBody& solid,
   exits_.start(internals(body_->sites()), internals(solid_->sites()), to_solid);
   known_.clear();
   thin_ = false;
+  convex_ = solid_->is_convex();
 }
 
-// Of a convex solid, no point inside is farther from the surface than from the plane of any face. Heights
-// below it are linear, so that their mixed bound is the most depth in a triangle if it has the faces that are
-// nearest there.
 std::array<CornerValues, 2> Leaving::bounds_by(const Corners& at,
                                                const std::array<BoundaryPart, 2>& boundary) const {
   const sites::SitesData& sites = internals(solid_->sites());
-  const convex::ConvexMesh* convex = solid_->convex();
-  const auto has_plane = [&](const BoundaryPart& part) {
-    return part.face != kNone && part.clear == 0 && sites.sliver[part.face] == 0;
-  };
-  if (convex == nullptr || !std::ranges::all_of(boundary, has_plane))
-    return corner_distances(sites, at, boundary);
   std::array<CornerValues, 2> result;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::uint32_t face = boundary[i].face;
-    const Vec3& on = sites.mesh.positions[sites.mesh.triangles[face][0]];
-    for (std::size_t k = 0; k < 3; ++k) result[i][k] = dot(convex->normals[face], on - at[k]);
-  }
+  for (std::size_t i = 0; i < 2; ++i)
+    if (!convex_ || !heights_below_plane(sites, at, boundary[i], result[i]))
+      return corner_distances(sites, at, boundary);
   return result;
 }
 

@@ -14,7 +14,7 @@ namespace sdm::depth {
 /// boundary. A part is bounded by the value at the centre c of its ball, and the better of
 ///   b(p) ≤ b(c) + |p − c|, as the distance is 1-Lipschitz, and
 ///   b(p) ≤ max over the corners p of a triangle of |p − G|, for a boundary face G: the distance to a convex
-///          set is convex.
+///          set is convex; of a convex solid, the height of p below the plane of G instead.
 /// The second one, with the G that is nearest to c, exceeds b(c) by the square of the size of a triangle
 /// only, and not at all above one flat face. Where several faces are nearly as close, as about the deepest
 /// points, mixed_bound() of the distances to two of them and of the ExitDirections does so, too. A triangle
@@ -67,7 +67,8 @@ class Leaving {
   const shape::Body *body_ = nullptr, *solid_ = nullptr;
   mesh::Similarity to_solid_;
   double scale_ = 1;
-  bool thin_ = false;  // walls
+  bool thin_ = false;    // walls
+  bool convex_ = false;  // the solid
   ExitDirections exits_;
   KnownBoundary known_;
   std::vector<CornerValues> functions_;  // that bound b in a triangle

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <span>
 
 #include "geometry/predicates.h"
@@ -36,21 +35,41 @@ bool has_no_reflex_edge(const sites::SitesData& sites, int outward) {
   return true;
 }
 
-// The distance of the nearest plane of a face, if all of them see the centre from within, and once; and their
-// normals.
-std::optional<double> inner_radius_about(const Vec3& centre, const Mesh& mesh, int outward,
-                                         std::vector<Vec3>& normals) {
-  double least = std::numeric_limits<double>::infinity(), angle = 0;
+int outward_of(const sites::SitesData& sites) {
+  return sites.inverted[0] != 0 ? -1 : 1;
+}
+
+Vec3 mean_of_corners(const Mesh& mesh) {
+  Vec3 mean{};
+  double count = 0;
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle)
+      count += 1, mean = mean + (1 / count) * (mesh.positions[vertex] - mean);
+  return mean;
+}
+
+// Whether all faces see the centre from within, and once.
+bool is_star_about(const Vec3& centre, const Mesh& mesh, int outward) {
+  double angle = 0;
   for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
     const auto [a, b, c] = corners_of(mesh, face);
-    if (outward * orientation(a, b, c, centre) >= 0) return {};
-    const Vec3 normal = outward * normalized(cross(b - a, c - a));
-    normals.push_back(normal);
-    least = std::min(least, std::abs(dot(normal, a - centre)));
+    if (outward * orientation(a, b, c, centre) >= 0) return false;
     angle += outward * inside::solid_angle(a - centre, b - centre, c - centre);
   }
   constexpr double kSphere = 4 * std::numbers::pi;
-  if (!(std::abs(angle - kSphere) < 0.1 * kSphere)) return {};
+  return std::abs(angle - kSphere) < 0.1 * kSphere;
+}
+
+// Sets the normals of the faces. Returns the distance of the nearest plane of one from the centre.
+double set_normals(ConvexMesh& convex, const Mesh& mesh) {
+  double least = std::numeric_limits<double>::infinity();
+  convex.normals.reserve(mesh.triangles.size());
+  for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
+    const auto [a, b, c] = corners_of(mesh, face);
+    const Vec3 normal = convex.outward * normalized(cross(b - a, c - a));
+    convex.normals.push_back(normal);
+    least = std::min(least, std::abs(dot(normal, a - convex.centre)));
+  }
   return least;
 }
 
@@ -116,28 +135,28 @@ void set_climbing(ConvexMesh& convex) {
 
 }  // namespace
 
-std::unique_ptr<const ConvexMesh> recognise(const sites::SitesData& sites) {
+bool is_convex(const sites::SitesData& sites) {
   const Mesh& mesh = sites.mesh;
   if (!sites.is_solid() || !sites.consistently_oriented || sites.orientation.first_face.size() != 1)
-    return {};
-  if (sites.topology.duplicate_faces + sites.topology.collapsed_faces > 0) return {};
-  if (mesh.triangles.size() > 2 * kMostVertices) return {};
-  const int outward = sites.inverted[0] != 0 ? -1 : 1;
-  if (!has_no_reflex_edge(sites, outward)) return {};
+    return false;
+  if (sites.topology.duplicate_faces + sites.topology.collapsed_faces > 0) return false;
+  if (mesh.triangles.size() > 2 * kMostVertices) return false;
+  const int outward = outward_of(sites);
+  return has_no_reflex_edge(sites, outward) && is_star_about(mean_of_corners(mesh), mesh, outward);
+}
+
+std::unique_ptr<const ConvexMesh> recognise(const sites::SitesData& sites) {
+  if (!is_convex(sites)) return {};
+  const Mesh& mesh = sites.mesh;
   auto convex = std::make_unique<ConvexMesh>();
-  convex->outward = outward;
-  double count = 0;
+  convex->outward = outward_of(sites);
+  convex->centre = mean_of_corners(mesh);
+  const double radius = set_normals(*convex, mesh);
   Box box;
   for (const Triangle& triangle : mesh.triangles)
-    for (const std::uint32_t vertex : triangle) {
-      const Vec3& p = mesh.positions[vertex];
-      count += 1, convex->centre = convex->centre + (1 / count) * (p - convex->centre);
-      extend(box, p);
-    }
-  const std::optional<double> radius = inner_radius_about(convex->centre, mesh, outward, convex->normals);
-  if (!radius) return {};
+    for (const std::uint32_t vertex : triangle) extend(box, mesh.positions[vertex]);
   convex->size = diagonal(box);
-  convex->inner_radius = (1 - kDoubleRounding) * *radius - kDoubleRounding * norm(convex->centre);
+  convex->inner_radius = (1 - kDoubleRounding) * radius - kDoubleRounding * norm(convex->centre);
   set_vertices(*convex, sites);
   set_coordinates(*convex);
   set_climbing(*convex);

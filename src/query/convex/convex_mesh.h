@@ -42,11 +42,14 @@ struct ConvexMesh {
   double least_climb = 0;  ///< heights of neighbours that differ by less are equal
 };
 
-/// The mesh, if it is the boundary of a convex solid, which is decided exactly: closed, oriented
+/// Whether the mesh is the boundary of a convex solid, which is decided exactly: closed, oriented
 /// consistently, in one piece, no edge is reflex, all faces have an area and are seen from the inside by some
 /// point, and the solid angles of faces from there add up to one sphere: the surface is then that of a star
-/// without reflex edges. Null for other meshes, and for those of more than kMostVertices. Cost: linear; of
-/// other meshes, that of the edges up to the first reflex one.
+/// without reflex edges. False for meshes of more than kMostVertices. Cost: linear; of other meshes, that of
+/// the edges up to the first reflex one. Allocates nothing.
+[[nodiscard]] bool is_convex(const sites::SitesData& sites);
+
+/// The mesh, if is_convex(). Null for other meshes.
 [[nodiscard]] std::unique_ptr<const ConvexMesh> recognise(const sites::SitesData& sites);
 
 /// All vertices are compared in each direction: those of larger meshes would take longer than a search of the

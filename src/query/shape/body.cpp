@@ -84,6 +84,12 @@ void Body::require_boundary() const {
   std::call_once(boundary_->built, [this] { boundary_->value.emplace(internals(sites_), inside_->sides()); });
 }
 
+bool Body::is_convex() const {
+  if (convex_) return true;
+  return is_convex_.get([this] { return std::make_shared<bool>(convex::is_convex(internals(sites_))); },
+                        [this](bool& value) { value = convex::is_convex(internals(sites_)); });
+}
+
 double Body::convexity_deficit() const {
   std::call_once(convexity_->built,
                  [this] { convexity_->value = shape::convexity_deficit(internals(sites_), *inside_); });
@@ -104,6 +110,7 @@ const WallThickness& Body::wall_thickness() const {
 void Body::follow_positions() {
   cylinders_ = {};
   convex_.reset();
+  is_convex_.outdate();
   box_ = bounds(sites_.mesh());
   ball_ = ball_about(0.5 * (box_.lo + box_.hi), internals(sites_));
   if (boundary_->value) boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();

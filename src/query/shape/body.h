@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/intact.h"
+#include "core/lazy/kept.h"
 #include "query/convex/convex_mesh.h"
 #include "query/inside/inside.h"
 #include "query/inside/solid_boundary.h"
@@ -55,6 +56,9 @@ class Body {
 
   /// The mesh, if it bounds a convex solid (see convex::recognise); none after a refit, as with cylinders().
   [[nodiscard]] const convex::ConvexMesh* convex() const { return convex_.get(); }
+  /// Whether it bounds a convex solid (see convex::is_convex), also after a refit. Thread-safe; decided by
+  /// the first call after one.
+  [[nodiscard]] bool is_convex() const;
   /// See convexity_deficit(). Thread-safe; computed by the first call.
   [[nodiscard]] double convexity_deficit() const;
   /// Balls inside and points of the surface. Thread-safe; computed by the first call.
@@ -81,6 +85,7 @@ class Body {
   std::optional<inside::InsideTest> inside_;
   sites::CylinderTree cylinders_;
   std::unique_ptr<const convex::ConvexMesh> convex_;
+  Kept<bool> is_convex_;
   std::vector<ContactPart> contact_parts_;
 
   /// A value that queries build when they need it.
