@@ -37,7 +37,7 @@ void Leaving::start(const shape::PosedBody& body, const shape::PosedBody& solid,
   exits_.start(internals(body_->sites()), internals(solid_->sites()), to_solid);
   known_.clear();
   thin_ = false;
-  convex_ = solid_->is_convex();
+  convex_ = solid_->is_small_and_convex();
 }
 
 std::array<CornerValues, 2> Leaving::bounds_by(const Corners& at,

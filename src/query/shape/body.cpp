@@ -84,7 +84,10 @@ void Body::require_boundary() const {
   std::call_once(boundary_->built, [this] { boundary_->value.emplace(internals(sites_), inside_->sides()); });
 }
 
-bool Body::is_convex() const {
+bool Body::is_small_and_convex() const {
+  // After a refit, deciding it for more faces takes as long as the bounds by planes save.
+  constexpr std::size_t kMostFaces = 512;
+  if (sites_.mesh().triangles.size() > kMostFaces) return false;
   if (convex_) return true;
   return is_convex_.get([this] { return std::make_shared<bool>(convex::is_convex(internals(sites_))); },
                         [this](bool& value) { value = convex::is_convex(internals(sites_)); });

@@ -110,7 +110,7 @@ module.exports = {
   },
 
   // The numbers are those of report.json, whose path is given; the words say how the detailed mesh is drawn.
-  async tells(page, path, drawn) {
+  async statesFacts(page, path, drawn) {
     const report = JSON.parse(readFileSync(path, 'utf8'));
     const text = plain(await page.innerText('body'));
     const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, ' ');
