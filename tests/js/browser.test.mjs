@@ -2,7 +2,7 @@
 // (without it, memory cannot be shared). SDM_PACKAGE: the folder of the package; SDM_REFERENCE: that of js_reference's files;
 // SDM_NODE_PACKAGES: that with playwright-core, esbuild and three.
 import assert from 'node:assert/strict';
-import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
@@ -37,7 +37,7 @@ function serve(headers) {
   const server = createServer((request, response) => {
     const path = normalize(new URL(request.url, 'http://localhost').pathname);
     const file = path.startsWith('/package/') ? join(SDM_PACKAGE, path.slice(9)) : join(here, path);
-    if (!existsSync(file)) return response.writeHead(404, headers).end();
+    if (!statSync(file, { throwIfNoEntry: false })?.isFile()) return response.writeHead(404, headers).end();
     response.writeHead(200, { 'content-type': types[extname(file)] ?? 'text/plain', ...headers }).end(readFileSync(file));
   });
   return new Promise((resolve) => server.listen(0, '127.0.0.1', () => resolve(server)));
@@ -69,7 +69,7 @@ async function runChecks(t, url, { isolated, script }) {
   await page.evaluate((files) => window.checks.setReference(files), reference());
   const facts = await page.evaluate(() => window.checks.begin());
   assert.deepEqual(facts, { sharesMemory: isolated, threads: isolated ? 2 : 1 });
-  for (const check of ['agrees', 'namesFaults', 'movesBuffers', 'abortsMaps', 'abortsAnything', 'refits', 'divides'])
+  for (const check of ['agrees', 'namesFaults', 'movesBuffers', 'apart', 'others', 'abortsMaps', 'abortsAnything', 'refits', 'divides'])
     await t.test(check, () => page.evaluate((name) => window.checks.run(name), check));
   await t.test('failsToStart', () => page.evaluate((bad) => window.checks.failsToStart(bad), script));
   await t.test('the main thread computes without waiting', () => page.evaluate(() => window.checks.synchronous()));
@@ -77,10 +77,10 @@ async function runChecks(t, url, { isolated, script }) {
   await page.context().close();
 }
 
-test('from a file', { timeout: 280000 }, async (t) => runChecks(t, await filePage(), { isolated: false, script: 'broken blob' }));
+test('from a file', { timeout: 800000 }, async (t) => runChecks(t, await filePage(), { isolated: false, script: 'broken blob' }));
 
 for (const isolated of [false, true])
-  test(`from a server, ${isolated ? 'isolated' : 'not isolated'}`, { timeout: 280000 }, async (t) => {
+  test(`from a server, ${isolated ? 'isolated' : 'not isolated'}`, { timeout: 800000 }, async (t) => {
     const server = await serve(isolated ? { 'cross-origin-opener-policy': 'same-origin', 'cross-origin-embedder-policy': 'require-corp' } : {});
     try {
       await runChecks(t, `http://127.0.0.1:${server.address().port}/page.html`, { isolated, script: '/nowhere.js' });

@@ -96,11 +96,38 @@ test('summaries and reports have the verdict, and the colours of the pages', { t
   assert.ok(summary.distance.min > 0.09 && summary.distance.max < 0.11);
   assert.equal((await map.summary({ tolerance: [-0.05, 0.05] })).tolerance.verdict, 'FAIL');
   await assert.rejects(map.summary({ tolerance: [1, -1] }), { kind: 'input' });
+  await assert.rejects(map.summary({ tolerance: [NaN, 1] }), { kind: 'input', message: /tolerance is/ });
+  await assert.rejects(map.summary({ tolerance: [1] }), { kind: 'input', message: /two numbers/ });
+  await assert.rejects(map.summary({ names: ['one'] }), { kind: 'input', message: /two strings/ });
   const html = await map.report({ ...options, tolerance: [-0.2, 0.2] });
   const json = (id) => JSON.parse(html.match(new RegExp(`<script type="application/json" id="${id}">(.*?)</script>`, 's'))[1]);
   assert.deepEqual(json('report').tolerance, summary.tolerance);
   const { viridis, diverging, within, above, below, no_value } = json('page').colors;
   assert.deepEqual({ viridis, diverging }, colors.kColormaps);
   assert.deepEqual([within, above, below, no_value[0]], [colors.kWithin, colors.kAbove, colors.kBelow, colors.kNoValue]);
+  worker.terminate();
+});
+
+test('objects that are disposed of while a report waits for its page are refused', { timeout: 120000 }, async () => {
+  const { positions, indices } = ball(20);
+  const surface = new sdm.Surface(positions, indices, { resolution: 128 }), sites = new sdm.Sites(positions, indices);
+  const map = surface.map(sites), report = map.report();
+  map.dispose();
+  await assert.rejects(report, { kind: 'input', message: /disposed/ });
+});
+
+test('a page that is none is refused', { timeout: 120000 }, async () => {
+  const other = await start({ full: true, reportPage: '<html></html>' }), { positions, indices } = ball(8);
+  const map = new other.Surface(positions, indices, { resolution: 64 }).map(new other.Sites(positions, indices));
+  await assert.rejects(map.report(), { kind: 'input', message: /reportPage/ });
+});
+
+test('a mesh file in a Buffer is read, and stays', { timeout: 120000 }, async () => {
+  const worker = await createWorker({ full: true }), stl = Buffer.from(files['a.stl']), parts = { 'parts/a.bin': Buffer.from(buffer()) };
+  for (let i = 0; i < 2; ++i) {
+    assert.equal((await worker.readMesh(stl, 'a.stl')).indices.length, 36);
+    assert.equal((await worker.readMesh(Buffer.from(files['a.gltf']), 'a.gltf', { files: parts })).indices.length, 36);
+  }
+  assert.deepEqual([stl.length, parts['parts/a.bin'].length], [files['a.stl'].length, 168]);
   worker.terminate();
 });

@@ -17,6 +17,8 @@ const all = {
   movesBuffers: () => checks.movesBuffers(worker),
   abortsMaps: () => checks.abortsMaps(worker),
   abortsAnything: () => checks.abortsAnything(worker),
+  apart: () => checks.keepsCallsApart(worker),
+  others: () => checks.refusesObjectsOfOthers(worker, () => sdm.createWorker({ ...options, threads: 1 })),
   refits: () => checks.refitsWithoutMemory(worker),
   async divides() {
     const pool = await sdm.createPool({ ...options, workers: 3 });

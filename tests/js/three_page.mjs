@@ -15,7 +15,7 @@ window.seen = async () => {
   const map = await surface.map(await worker.sites(...fromBufferGeometry(other)));
   const atlas = await surface.atlas();
   const material = new DistanceMaterial(await map.arrays('distances'), atlas, { tolerance: [-0.05, 0.05], range: [-0.2, 0.2] });
-  const mesh = new THREE.Mesh(withAtlas(geometry, atlas), material);
+  const mesh = new THREE.Mesh(withAtlas(geometry, atlas), material.clone());
 
   const scene = new THREE.Scene();
   scene.add(mesh, new THREE.AmbientLight(0xffffff, 3));
