@@ -115,6 +115,7 @@ export class DistanceMaterial extends MeshStandardMaterial {
     const options = { range: [...this.range] as [number, number], colormap: this.colormap };
     const copy = new DistanceMaterial({ distances: data }, atlas, options).copy(this);
     copy.tolerance = this.tolerance && [...this.tolerance];
+    copy.defines = { ...this.defines };  // copy() of three.js resets these
     return copy as this;
   }
   override customProgramCacheKey(): string {
