@@ -261,7 +261,7 @@ def to_trimesh(baked: "Baked") -> Any:
         alphaCutoff=factors["alpha_cutoff"],
         baseColorTexture=picture("base_color"),
         metallicRoughnessTexture=picture("metallic_roughness"),
-        occlusionTexture=picture("occlusion"),
+        occlusionTexture=picture("occlusion" if "occlusion" in baked.channels else "ambient_occlusion"),
         emissiveTexture=picture("emissive"),
         normalTexture=picture("normal"),
     )

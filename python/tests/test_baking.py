@@ -313,6 +313,196 @@ def test_normals(tmp_path):
     assert colored.channels == ["base_color", "normal"]
 
 
+def texel_centres(resolution):
+    """x and y of the texels of the unit square."""
+    centres = (np.arange(resolution) + 0.5) / resolution
+    return np.meshgrid(centres, centres[::-1])
+
+
+GEOMETRY = ["object_normal", "displacement", "position", "ambient_occlusion", "face"]
+
+
+def test_the_shape_of_a_plate_above_a_plate(square):
+    """A plate with the height 0.25 + 0.5 x above a square."""
+    mesh, _ = square
+    high = (mesh.vertices + mesh.vertices[:, :1] * [0, 0, 0.5] + [0, 0, 0.25], mesh.faces)
+    baked = sdm.bake(high, mesh, channels=[*GEOMETRY[::-1]], match="ray", resolution=64)
+    assert baked.channels == GEOMETRY and baked.matched.all() and (baked.coverage == 1).all()
+    assert repr(baked) == "sdm.Baked(object_normal, displacement, position, ambient_occlusion, face, 64 x 64)"
+    x, y = texel_centres(64)
+    height = 0.25 + 0.5 * x
+    np.testing.assert_allclose(baked["displacement"], height, atol=1e-6)
+    np.testing.assert_allclose(baked["position"], np.stack([x, y, height], -1), atol=1e-6)
+    np.testing.assert_allclose(baked["object_normal"], np.broadcast_to([-0.2**0.5, 0, 0.8**0.5], (64, 64, 3)), atol=1e-6)
+    assert (baked["ambient_occlusion"] == 1).all()
+    off = x != y
+    np.testing.assert_array_equal(baked["face"][off], (y > x)[off])
+    for channel in GEOMETRY:
+        assert baked[channel].dtype == (np.uint32 if channel == "face" else np.float32)
+    np.testing.assert_allclose(baked.image("object_normal")[..., 0], 127.5 - 127.5 * 0.2**0.5, atol=0.51)
+    with pytest.raises(sdm.Error, match="'displacement' is no picture"):
+        baked.image("displacement")
+
+
+def test_texels_without_a_point_have_no_shape(square):
+    mesh, _ = square
+    high = (mesh.vertices + mesh.vertices[:, :1] * [0, 0, 0.5] + [0, 0, 0.25], mesh.faces)
+    baked = sdm.bake(high, mesh, channels=GEOMETRY, max_distance=0.4, resolution=64)
+    found = baked.matched == 1
+    assert 0.2 < found.mean() < 0.8 and (baked.kind[~found] == sdm.MatchKind.TOO_FAR).all()
+    for channel in GEOMETRY[:-1]:
+        assert (np.isfinite(baked[channel]) == (found if baked[channel].ndim == 2 else found[..., None])).all()
+    np.testing.assert_array_equal(baked["face"] == sdm.NONE, ~found)
+    assert (baked.image("ambient_occlusion") == 255).all()  # pictures have no gaps
+
+
+def test_the_shape_is_that_of_matches():
+    high, low = meshes.sphere(radius=1.1, steps=4), meshes.sphere(steps=2)
+    baked = sdm.bake(high, low, channels=[*GEOMETRY, "thickness"], facing=60, occlusion_rays=16, resolution=128)
+    matches = sdm.match(low, high, facing=60, resolution=128)
+    expected = {
+        "object_normal": matches.normals(fill=False),
+        "displacement": matches.displacements(fill=False),
+        "position": matches.positions(fill=False),
+        "ambient_occlusion": matches.ambient_occlusion(16, fill=False),
+        "face": matches.face,
+        "thickness": matches.thickness(fill=False),
+    }
+    for channel, values in expected.items():
+        np.testing.assert_array_equal(baked[channel], values, err_msg=channel)
+
+
+def under_a_rectangle(x, y, height):
+    """The share of light that the unit square at a height keeps from points below it, by the form factor of its corners."""
+
+    def corner(a, b):
+        a, b = a / height, b / height
+        p, q = np.sqrt(1 + a * a), np.sqrt(1 + b * b)
+        return (a / p * np.arctan(b / p) + b / q * np.arctan(a / q)) / (2 * np.pi)
+
+    return corner(x, y) + corner(1 - x, y) + corner(x, 1 - y) + corner(1 - x, 1 - y)
+
+
+def test_ambient_occlusion_under_a_ceiling(tmp_path, square):
+    mesh, picture = square
+    high = (np.concatenate([mesh.vertices, mesh.vertices + [0, 0, 0.5]]), np.concatenate([mesh.faces, mesh.faces + 4]))
+    options = {"channels": ["ambient_occlusion"], "resolution": 32}
+    baked = sdm.bake(high, mesh, **options, occlusion_rays=1024)
+    expected = 1 - under_a_rectangle(*texel_centres(32), 0.5)
+    assert expected.min() < 0.6 and expected.max() > 0.7
+    np.testing.assert_allclose(baked["ambient_occlusion"], expected, atol=5 * 0.5 / 32)  # five deviations of 1024 rays
+    assert (sdm.bake(high, mesh, **options, occlusion_distance=0.45)["ambient_occlusion"] == 1).all()
+
+    image = baked.image("ambient_occlusion")
+    np.testing.assert_allclose(image[..., 0] / 255, baked["ambient_occlusion"], atol=0.51 / 255)
+    baked.save(tmp_path / "low.glb")
+    again = sdm.bake(tmp_path / "low.glb", mesh, channels=["occlusion"], resolution=32)
+    np.testing.assert_allclose(again["occlusion"], image / 255, atol=1e-5)
+    both = sdm.bake(mesh, mesh, texture=picture, channels=["ambient_occlusion", "occlusion"], resolution=32)
+    assert both.channels == ["occlusion", "ambient_occlusion"]
+    both.save(tmp_path / "both.glb")
+    assert (tmp_path / "both.glb").read_bytes().count(b"\x89PNG") == 1
+
+
+def test_thickness_of_a_slab(square):
+    """Balls end at its other side, or, near its edges, at the sides."""
+    mesh, _ = square
+    x, y = texel_centres(64)
+    up = np.eye(4)
+    up[2, 3] = 0.3
+    to_side = np.minimum(np.minimum(x, 1 - x), np.minimum(y, 1 - y))
+    baked = sdm.bake(meshes.box(high=(1, 1, 0.3)), mesh.transformed(up), channels=["thickness"], resolution=64)
+    np.testing.assert_allclose(baked["thickness"], np.minimum(0.3, 2 * to_side), atol=1e-6)
+    with pytest.raises(sdm.Error, match="closed"):
+        sdm.bake(mesh, mesh, channels=["thickness"], resolution=64)
+
+
+def test_materials_as_numbers(tmp_path, square):
+    mesh, _ = square
+    (tmp_path / "high.mtl").write_text("newmtl wood\nKd 1 0 0\nnewmtl steel\nKd 0 0 1\n")
+    lines = ["mtllib high.mtl", *("v {} {} {}".format(*v) for v in mesh.vertices)]
+    lines += ["usemtl steel", "f 1 2 3", "usemtl wood", "f 1 3 4"]
+    (tmp_path / "high.obj").write_text("\n".join(lines))
+    baked = sdm.bake(tmp_path / "high.obj", mesh, channels=["material"], resolution=64)
+    x, y = texel_centres(64)
+    names = np.array(baked.material_names)
+    assert sorted(names) == ["steel", "wood"]
+    np.testing.assert_array_equal(names[baked["material"]][x != y], np.where(y > x, "wood", "steel")[x != y])
+    with pytest.raises(sdm.Error, match="no materials"):
+        sdm.bake(mesh, mesh, channels=["material"])
+
+
+def mean_of_squares(values, found, side):
+    """Of the texels that are found among side · side, NaN where there are none."""
+    rows, columns, components = values.shape
+    shape = (rows // side, side, columns // side, side, components)
+    weights = np.broadcast_to(found[..., None], values.shape).reshape(shape)
+    with np.errstate(invalid="ignore"):
+        return np.where(weights, values.reshape(shape), 0).sum(axis=(1, 3), dtype=float) / weights.sum(axis=(1, 3))
+
+
+def test_samples_are_texels_of_a_finer_texture(square):
+    """Onto a triangle, in whose texture are texels that it owns in part."""
+    vertices, faces = meshes.sphere(center=(0.4, 0.4, -0.8), steps=4)
+    colors = np.random.default_rng(1).integers(0, 256, (len(vertices), 3), np.uint8)
+    corners = np.array([[0, 0, 0], [0.9, 0.1, 0], [0.2, 0.8, 0]])
+    low = SimpleNamespace(vertices=corners, triangles=np.array([[0, 1, 2]]), triangle_uvs=corners[:, :2])
+    channels = ["base_color", "object_normal", "displacement", "position", "face"]
+    options = {"vertex_colors": colors, "channels": channels, "max_distance": 0.15}
+    fine = sdm.bake((vertices, faces), low, resolution=128, **options)
+    baked = sdm.bake((vertices, faces), low, resolution=32, samples=16, **options)
+    found = fine.matched == 1
+    share = found.reshape(32, 4, 32, 4).mean(axis=(1, 3))
+    np.testing.assert_allclose(baked.coverage, share)
+    np.testing.assert_array_equal(baked.matched, share > 0)
+    assert ((share > 0) & (share < 1)).sum() > 30 and (share == 1).sum() > 30
+    own = share > 0
+    for channel in channels[:-1]:
+        expected = mean_of_squares(fine[channel].reshape(128, 128, -1), found, 4)
+        if channel == "object_normal":
+            expected /= np.linalg.norm(expected, axis=2, keepdims=True)
+        values = baked[channel].reshape(32, 32, -1)
+        np.testing.assert_allclose(values[own], expected[own], atol=2e-6, err_msg=channel)
+        assert np.isfinite(values[~own]).all() == (channel == "base_color")
+    of_texels = fine["face"].reshape(32, 4, 32, 4).swapaxes(1, 2).reshape(32, 32, 16)
+    for row, column in np.argwhere(own):
+        numbers, counts = np.unique(of_texels[row, column][of_texels[row, column] != sdm.NONE], return_counts=True)
+        assert baked["face"][row, column] == numbers[counts.argmax()]
+    assert (baked["face"][~own] == sdm.NONE).all()
+    assert set(np.unique(baked.kind)) == {sdm.MatchKind.NONE, sdm.MatchKind.CLOSEST, sdm.MatchKind.TOO_FAR}
+    assert (baked.kind[own] == sdm.MatchKind.CLOSEST).all()
+    np.testing.assert_allclose(baked.corner_uvs[0], corners[:, :2], atol=1e-9)
+
+
+def test_samples_that_cannot_be(square):
+    mesh, _ = square
+    options = {"channels": ["face"]}
+    for samples in (0, -1, 5, 81):
+        with pytest.raises(sdm.Error, match=f"samples must be one of 1, 4, 9, 16, 25, 36, 49, 64, not {samples}"):
+            sdm.bake(mesh, mesh, samples=samples, **options)
+    with pytest.raises(sdm.Error, match="64 samples a texel are more than 32768 along a side"):
+        sdm.bake(mesh, mesh, resolution=8192, samples=64, **options)
+    with pytest.raises(sdm.Error, match="resolution must be 16 at least"):
+        sdm.bake(mesh, mesh, resolution=8, samples=4, **options)
+    with pytest.raises(sdm.Error, match="rays"):
+        sdm.bake(mesh, mesh, channels=["ambient_occlusion"], occlusion_rays=0)
+
+
+def test_bakes_of_shapes_are_kept(tmp_path):
+    high, low = meshes.sphere(radius=1.1, steps=3), meshes.sphere(steps=2)
+    colors = np.full((len(high[0]), 3), 0.5)
+    channels = ["base_color", *GEOMETRY, "thickness", *(["normal"] if sdm.has_tangents() else [])]
+    baked = sdm.bake(high, low, vertex_colors=colors, channels=channels, samples=4, gutter=3, resolution=128)
+    again = pickle.loads(pickle.dumps(baked))
+    assert again.channels == baked.channels and set(baked.channels) == set(channels)
+    for channel in channels:
+        assert again[channel].dtype == baked[channel].dtype
+        np.testing.assert_array_equal(again[channel], baked[channel])
+    np.testing.assert_array_equal(again.coverage, baked.coverage)
+    baked.save(tmp_path / "a.glb"), again.save(tmp_path / "b.glb")
+    assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
+
+
 def test_what_cannot_be_baked_is_an_error(tmp_path, square):
     mesh, picture = square
     with pytest.raises(sdm.Error, match="neither materials nor colours"):

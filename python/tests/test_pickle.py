@@ -296,6 +296,7 @@ def public_objects(pair):
     yield from (distance_map.check(0.1), halves, places, places.largest[0], groups, groups.groups[0])
     yield from (sdm.match(mesh, box, resolution=32), sdm.MatchKind.RAY, sdm.SiteType.EDGE)
     yield sdm.bake(mesh, box, vertex_colors=np.abs(mesh.vertices) / 9, resolution=32)
+    yield sdm.bake(mesh, box, channels=["position", "face"], samples=4, resolution=32)
     field, closest = sdm.distance_field(mesh, spacing=0.5), sdm.closest_points(mesh, [[0, 0, 3]])
     batch = sdm.closest_points_batch([mesh], [[[0, 0, 3]]])
     yield from (closest, batch, batch[0], field, field.sample([[0, 0, 0.1]]))
@@ -384,7 +385,8 @@ def test_damaged_values_are_refused(pair):
     distance_map = sdm.map(sdm.Surface(pair[0], resolution=32), sdm.Sites(pair[1]))
     for value in (distance_map.check(2), distance_map.places(), distance_map.hausdorff(), sdm.align(*pair),
                   sdm.ProximityQuery(*pair, contact_margin=1).contacts(),
-                  sdm.bake(pair[0], pair[1], vertex_colors=np.abs(pair[0].vertices) / 9, resolution=32)):  # fmt: skip
+                  sdm.bake(pair[0], pair[1], vertex_colors=np.abs(pair[0].vertices) / 9, resolution=32),
+                  sdm.bake(pair[0], pair[1], channels=["position", "face"], samples=4, resolution=32)):  # fmt: skip
         (state,) = value.__getstate__()
         made = type(value).__new__(type(value))
         for wrong in (state[:-1], state + b"\0", b"", state[: len(state) // 2]):

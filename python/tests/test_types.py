@@ -84,6 +84,10 @@ exact: npt.NDArray[np.float64] = closest.distance
 faces: npt.NDArray[np.uint32] = closest.face
 batch = sdm.closest_points_batch([box], [[[0, 0, 1]]])
 offsets: npt.NDArray[np.int64] = batch.offsets
+baked = sdm.bake(box, box, channels=["position", "face"], samples=4)
+positions: npt.NDArray[np.float32] = baked["position"]
+ids: npt.NDArray[np.uint32] = baked["face"]
+shares: npt.NDArray[np.float32] = baked.coverage
 print(distance_map.check(1).verdict == "pass", sdm.hausdorff(box, box).value, distances, exact, faces, offsets)
 print(sdm.surface_metrics(box, box)["assd"].value, distance_map.report()["sign"])
 distance_map.save("x.png", colormap="viridis")
