@@ -236,17 +236,18 @@ std::unique_ptr<PyBaked> bake_look(const Look& look, BakeAtlas laid, const Atlas
   const auto own = std::ranges::find(attributes, "normal", &MeshAttribute::name);
   std::optional<DrawnFrames> frames;
   if (wanted.has(GeometryChannel::normal)) frames.emplace(laid.surface);
+  GeometryOptions options;
+  if (own != attributes.end()) options.normals = &*own;
+  if (frames) options.drawn_normals = &frames->normals, options.drawn_tangents = &frames->tangents;
+  options.occlusion = arguments.occlusion;
+  options.progress = arguments.match.progress;
   const Baking baking{.surface = laid.surface,
                       .sites = sites,
                       .matches = matches,
                       .look = look,
                       .grid = grid,
                       .gutter = arguments.texels.gutter,
-                      .geometry = {.normals = own != attributes.end() ? &*own : nullptr,
-                                   .drawn_normals = frames ? &frames->normals : nullptr,
-                                   .drawn_tangents = frames ? &frames->tangents : nullptr,
-                                   .occlusion = arguments.occlusion,
-                                   .progress = arguments.match.progress}};
+                      .geometry = options};
   std::vector<BakedChannel> channels = baked_look(baking, wanted);
   std::vector<BakedGeometry> geometry;
   for (const GeometryChannel channel : wanted.geometry) geometry.push_back(baked_geometry(baking, channel));
@@ -286,12 +287,13 @@ nb::object baked_from(nb::handle file, nb::handle mesh, const nb::dict& appearan
                       const std::optional<std::string>& match, nb::handle facing, std::optional<double> cage,
                       double max_distance, std::uint32_t occlusion_rays, double occlusion_distance,
                       nb::handle progress) {
-  BakeArguments arguments{.wanted = wanted_of(channels),
-                          .side = side_of(samples),
-                          .texels = {.resolution = resolution, .gutter = gutter},
-                          .kind = atlas_kind_of(atlas),
-                          .match = match_options(match, facing_of(facing), cage, max_distance),
-                          .occlusion = {.rays = occlusion_rays, .max_distance = occlusion_distance}};
+  BakeArguments arguments;
+  arguments.wanted = wanted_of(channels);
+  arguments.side = side_of(samples);
+  arguments.texels.resolution = resolution, arguments.texels.gutter = gutter;
+  arguments.kind = atlas_kind_of(atlas);
+  arguments.match = match_options(match, facing_of(facing), cage, max_distance);
+  arguments.occlusion.rays = occlusion_rays, arguments.occlusion.max_distance = occlusion_distance;
   Look look;
   std::optional<std::filesystem::path> path;
   if (!file.is_none())

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/double_double.h"
+#include "core/numbers/double_double.h"
 #include "geometry/exact_integer.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"

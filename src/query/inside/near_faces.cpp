@@ -123,13 +123,9 @@ bool meet(const tree::FloatBox& a, const tree::FloatBox& b) {
 /// The pairs of near faces of which one is in a leaf, and the other one in it or in a later leaf.
 class NearPairs {
  public:
-  struct Scratch {
-    std::vector<Box> reaches;
-    std::vector<std::uint32_t> waiting;
-  };
-
-  NearPairs(const sites::SitesData& sites, std::vector<std::uint8_t>& flags, Scratch& scratch)
-      : sites_(sites), flags_(flags), reaches_(scratch.reaches), waiting_(scratch.waiting) {}
+  /// Uses the memory of `reaches`.
+  NearPairs(const sites::SitesData& sites, std::vector<std::uint8_t>& flags, std::vector<Box>& reaches)
+      : sites_(sites), flags_(flags), reaches_(reaches) {}
 
   void flag(std::uint32_t leaf) {
     reaches_.clear();
@@ -140,20 +136,16 @@ class NearPairs {
     constexpr float kMargin = 1.25F * static_cast<float>(kClearance);
     tree::FloatBox reach = sites_.tree.box(leaf);
     for (int k = 0; k < 3; ++k) reach.lo[k] -= kMargin, reach.hi[k] += kMargin;
-    waiting_.assign(1, 0);
-    while (!waiting_.empty()) {
-      const std::uint32_t index = waiting_.back();
-      waiting_.pop_back();
-      const tree::AabbTree::Node& node = sites_.tree.nodes[index];
-      if (!meet(node.box, reach)) continue;
-      if (!node.leaf()) {
-        waiting_.push_back(node.right);
-        if (node.right > leaf + 1) waiting_.push_back(index + 1);  // not if it only has earlier leaves
-      } else if (index > leaf) {
-        for (std::size_t i = 0; i < faces.size(); ++i)
-          compare(faces[i], reaches_[i], sites_.tree.items_of(index));
-      }
-    }
+    // Not nodes that only have earlier leaves.
+    const auto enter = [&](tree::Subtree below) {
+      return below.end > leaf + 1 && meet(sites_.tree.box(below.root), reach);
+    };
+    const auto visit_leaf = [&](std::uint32_t other) {
+      if (other <= leaf) return;
+      for (std::size_t i = 0; i < faces.size(); ++i)
+        compare(faces[i], reaches_[i], sites_.tree.items_of(other));
+    };
+    visit(sites_.tree, tree::InOrder{enter, visit_leaf});
   }
 
  private:
@@ -168,7 +160,6 @@ class NearPairs {
   const sites::SitesData& sites_;
   std::vector<std::uint8_t>& flags_;
   std::vector<Box>& reaches_;
-  std::vector<std::uint32_t>& waiting_;
 };
 
 }  // namespace
@@ -214,11 +205,15 @@ void find_near_faces(const sites::SitesData& sites, std::uint32_t face, std::vec
 
 void flag_faces_with_near(const sites::SitesData& sites, std::vector<std::uint8_t>& flags) {
   flags.assign(sites.mesh.triangles.size(), 0);
-  parallel_for(sites.tree.nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    thread_local NearPairs::Scratch scratch;
-    NearPairs pairs(sites, flags, scratch);
-    for (std::size_t node = begin; node < end; ++node)
-      if (sites.tree.nodes[node].leaf()) pairs.flag(static_cast<std::uint32_t>(node));
+  thread_local std::vector<std::uint32_t> kept;  // its memory
+  std::vector<std::uint32_t>& leaves = kept;
+  leaves.clear();
+  visit(sites.tree, tree::InOrder{[](tree::Subtree) { return true; },
+                                  [&](std::uint32_t leaf) { leaves.push_back(leaf); }});
+  parallel_for(leaves.size(), 256, [&](std::size_t begin, std::size_t end) {
+    thread_local std::vector<Box> reaches;
+    NearPairs pairs(sites, flags, reaches);
+    for (std::size_t i = begin; i < end; ++i) pairs.flag(leaves[i]);
   });
 }
 

@@ -13,6 +13,7 @@
 #include "io/file/atomic_file.h"
 #include "io/mesh/model/model_vertices.h"
 #include "io/page/baked/detailed_model.h"
+#include "io/page/report/compress_arrays.h"
 #include "io/page/report/embedded_page.h"
 #include "io/page/report/face_walk.h"
 #include "io/page/report/page_file.h"
@@ -105,6 +106,7 @@ void write_baked_html(const std::filesystem::path& file, const Surface& surface,
                     [&] { high = add_detailed(high_arrays, from, steps); },
                     [&] { pictures = pictures_json(textures, options); }});
   arrays.add(std::move(high_arrays));
+  compress(arrays);
   Json page = common_json(options.up);
   page["place"] = steps.json();
   page["low"] = low, page["high"] = high;
