@@ -83,7 +83,11 @@ export class Engine {
       sites.dispose();
       throw named(error, part);
     });
-    const pair = await this.worker.pair(part, reference);
+    const pair = await this.worker.pair(part, reference).catch((error: Error) => {
+      this.release(coarse);
+      sites.dispose();
+      throw error;
+    });
     this.free();
     [this.bodies, this.sites, this.pair, this.coarse] = [bodies, sites, pair, coarse];
     this.closed = [isClosed, sites.closed];
@@ -100,8 +104,13 @@ export class Engine {
 
   private async measured(part: Body, sites: WorkerSites, resolution: number, say: Say): Promise<Measured> {
     const surface = await this.worker.surface(part.positions, part.indices, { resolution, signal: this.signal, progress: (_, f) => say('Laying out the atlas', f) });
-    const map = await surface.map(sites, { signal: this.signal, progress: (_, f) => say('Measuring', f) });
-    return { surface, map, atlas: await surface.atlas() };
+    try {
+      const map = await surface.map(sites, { signal: this.signal, progress: (_, f) => say('Measuring', f) });
+      return { surface, map, atlas: await surface.atlas() };
+    } catch (error) {
+      surface.dispose();
+      throw error;
+    }
   }
 
   /// Lays out the fine atlas; null if that is the coarse one.
@@ -187,9 +196,10 @@ export class Engine {
   }
 }
 
-/// An error that names the body.
+/// An error that names the body, unless it is not of it.
 function named(error: Error, { name }: Body): Error {
-  return error.name === 'AbortError' || error.message.includes(name) ? error : new Error(`${name}: ${error.message}`);
+  const isOfWorker = error.name === 'AbortError' || (error as { kind?: string }).kind === 'ended';
+  return isOfWorker || error.message.includes(name) ? error : new Error(`${name}: ${error.message}`);
 }
 
 function isIdentity({ elements }: Matrix4): boolean {

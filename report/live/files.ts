@@ -18,9 +18,9 @@ export async function readBody(worker: SdmWorker, file: File): Promise<Body> {
   return { name: file.name, positions, indices };
 }
 
-/// A button that chooses a file.
-export function fileButton(id: string, label: string, chosen: (files: File[]) => void): HTMLElement {
-  const input = make('input', { type: 'file', id, multiple: true, accept: kFormats, class: 'hidden', change: () => {
+/// A button that chooses a file, or several.
+export function fileButton(id: string, label: string, multiple: boolean, chosen: (files: File[]) => void): HTMLElement {
+  const input = make('input', { type: 'file', id, multiple, accept: kFormats, class: 'hidden', change: () => {
     const files = [...(input.files ?? [])];
     input.value = ''; // so that the same file can be chosen again
     if (files.length > 0) chosen(files);

@@ -3,6 +3,7 @@ import type { Atlas } from 'sdm';
 import { AreaByValue } from '../src/area_by_value';
 import type { Model, TexelMap, Vec } from '../src/page_data';
 import { valueAt } from '../src/pick';
+import { boxOf } from '../src/subject';
 
 const kNone = 0xffffffff;
 const kCrease = 0.7; // cosine: a vertex is shaded by the faces around it that are less inclined to its own ones
@@ -19,12 +20,7 @@ export interface Frame {
 }
 
 export function frameOf({ positions }: Triangles): Frame {
-  const lo: Vec = [Infinity, Infinity, Infinity];
-  const hi: Vec = [-Infinity, -Infinity, -Infinity];
-  for (let i = 0; i < positions.length; ++i) {
-    lo[i % 3] = Math.min(lo[i % 3], positions[i]);
-    hi[i % 3] = Math.max(hi[i % 3], positions[i]);
-  }
+  const { lo, hi } = boxOf(positions);
   const centre = lo.map((x, k) => (x + hi[k]) / 2) as Vec;
   return { centre, size: Math.hypot(...lo.map((x, k) => hi[k] - x)) / 2 || 1 };
 }
@@ -42,6 +38,8 @@ export interface Layout {
   vertexOf: Uint32Array; ///< the vertex of the mesh of each of the model
   texelOf: Int32Array; ///< nearest to each vertex of the model; -1: its charts own none
   areas: Float64Array; ///< of the surface for each texel, 0 without an owner
+  texelFaces: Uint32Array; ///< the face that owns each texel
+  inAtlas: Float64Array; ///< twice the area of each face in the atlas
 }
 
 /// The vertices of the model: a vertex of the mesh once for each place that its corners have.
@@ -102,8 +100,9 @@ export function layoutOf(mesh: Triangles, atlas: Atlas, frame: Frame): Layout {
     site: null,
     channels: [],
   };
-  const layout: Layout = { model, map, vertexOf, texelOf: new Int32Array(vertexOf.length).fill(-1), areas: areasOf(mesh, atlas) };
+  const layout: Layout = { model, map, vertexOf, texelOf: new Int32Array(vertexOf.length).fill(-1), areas: new Float64Array(atlas.texelFaces.length), texelFaces: atlas.texelFaces, inAtlas: inAtlasOf(atlas.corners) };
   findTexels(layout);
+  measureTexels(layout, mesh);
   placeVertices(layout, mesh);
   return layout;
 }
@@ -121,17 +120,21 @@ function findTexels({ model, map, texelOf }: Layout): void {
   }
 }
 
-/// The area of the surface for each texel: that of its face by the face's area in the atlas.
-function areasOf({ positions: p, indices }: Triangles, { texelFaces, corners }: Atlas): Float64Array {
-  const ofFace = new Float64Array(indices.length / 3);
-  for (let f = 0; f < ofFace.length; ++f) {
-    const [a, b, c] = [0, 1, 2].map((k) => 3 * indices[3 * f + k]);
-    const inSpace = Math.hypot(...cross(p, a, b, c));
+/// Twice the area of each face in the atlas.
+function inAtlasOf(corners: Float32Array): Float64Array {
+  return Float64Array.from({ length: corners.length / 6 }, (_, f) => {
     const at = (k: number) => corners[6 * f + k];
-    const inAtlas = Math.abs((at(2) - at(0)) * (at(5) - at(1)) - (at(3) - at(1)) * (at(4) - at(0)));
-    ofFace[f] = inAtlas > 0 ? inSpace / inAtlas : 0;
-  }
-  return Float64Array.from(texelFaces, (face) => (face === kNone ? 0 : ofFace[face]));
+    return Math.abs((at(2) - at(0)) * (at(5) - at(1)) - (at(3) - at(1)) * (at(4) - at(0)));
+  });
+}
+
+/// The area of the surface for each texel: that of its face by the face's area in the atlas.
+export function measureTexels({ areas, texelFaces, inAtlas }: Layout, { positions: p, indices }: Triangles): void {
+  const ofFace = inAtlas.map((area, f) => {
+    const [a, b, c] = [0, 1, 2].map((k) => 3 * indices[3 * f + k]);
+    return area > 0 ? Math.hypot(...cross(p, a, b, c)) / area : 0;
+  });
+  for (let i = 0; i < areas.length; ++i) areas[i] = texelFaces[i] === kNone ? 0 : ofFace[texelFaces[i]];
 }
 
 function cross(p: ArrayLike<number>, a: number, b: number, c: number): Vec {

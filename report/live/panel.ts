@@ -1,7 +1,8 @@
-// The controls of the live page: what is compared, how it moves, and what is saved.
+// The controls of the live page: what is compared, and how it moves.
 import { byId, make } from '../src/dom';
 import { fileButton } from './files';
 import { kScenes } from './scenes';
+import type { Session } from './session';
 import type { Handles } from './view';
 
 export interface Actions {
@@ -27,7 +28,6 @@ function choice(id: string, label: string, options: [string, string][], value: s
 /// Adds the controls to the page, once.
 export function addPanel(scene: string, resolution: number, actions: Actions): void {
   const button = (id: string, label: string, click: () => void) => make('button', { type: 'button', id, click }, label);
-  let chosen = scene;
   const scenes = Object.entries(kScenes).map(([name, { title }]): [string, string] => [name, title]);
   const units = make('input', { type: 'text', id: 'units', size: 4, maxlength: 12, autocomplete: 'off', change: () => actions.setUnits(units.value.trim()) });
   const cancel = button('cancel', 'Cancel', actions.cancel);
@@ -38,19 +38,19 @@ export function addPanel(scene: string, resolution: number, actions: Actions): v
     make(
       'div', { class: 'row' },
       choice('scene', 'Pair', [...scenes, ['files', 'Your files…']], scene, (name) => {
-        if (name !== 'files') return actions.openScene((chosen = name));
-        (byId('scene') as HTMLSelectElement).value = chosen; // until there are files
+        if (name !== 'files') return actions.openScene(name);
+        (byId('scene') as HTMLSelectElement).value = byId('scene').dataset.shown ?? scene; // until there are files
         byId('open-both').click();
       }),
-      fileButton('open-both', 'Open two files…', (files) => actions.openFiles(files, null)),
-      fileButton('open-part', 'Part…', (files) => actions.openFiles(files, 0)),
-      fileButton('open-reference', 'Reference…', (files) => actions.openFiles(files, 1)),
+      fileButton('open-both', 'Open two files…', true, (files) => actions.openFiles(files, null)),
+      fileButton('open-part', 'Open part…', false, (files) => actions.openFiles(files, 0)),
+      fileButton('open-reference', 'Open reference…', false, (files) => actions.openFiles(files, 1)),
       button('swap', 'Swap', actions.swap),
       choice('resolution', 'Map', kResolutions.map((n) => [String(n), `${n} × ${n}`]), String(resolution), (n) => actions.setResolution(Number(n))),
       make('div', { class: 'field-of' }, make('label', { for: 'units' }, 'Unit'), units),
     ),
     make('p', { class: 'hint' }, 'Or drop two files here: STL, PLY, OBJ, OFF, 3DS or GLB, the part and the reference. They stay on this computer: the page cannot send anything.'),
-    make('div', { class: 'row' }, make('p', { id: 'status', role: 'status', 'aria-live': 'polite', hidden: true }), cancel),
+    make('div', { class: 'row', id: 'status-row' }, make('p', { id: 'status', role: 'status', 'aria-live': 'polite' }), cancel),
   );
   document.querySelector('main')!.prepend(section);
 
@@ -62,7 +62,7 @@ export function addPanel(scene: string, resolution: number, actions: Actions): v
   byId('view').after(
     make(
       'div', { id: 'transport' },
-      make('button', { type: 'button', id: 'play', 'aria-pressed': 'false', click: actions.togglePlay }, 'Play'),
+      make('button', { type: 'button', id: 'play', click: actions.togglePlay }, 'Play'),
       make('fieldset', { id: 'handles' }, make('legend', {}, 'Reference'), handle('none', 'Fixed'), handle('move', 'Move'), handle('turn', 'Turn')),
       button('reset-motion', 'Put back', actions.resetMotion),
       make(
@@ -83,11 +83,34 @@ export function say(text: string, kind: 'fault' | 'progress' | '' = ''): void {
   status.classList.toggle('fault', kind === 'fault');
   status.setAttribute('aria-live', kind === 'progress' ? 'off' : 'polite');
   status.textContent = text;
-  status.hidden = text === '';
   byId('cancel').hidden = kind !== 'progress';
 }
 
 export function showPlaying(playing: boolean): void {
   byId('play').textContent = playing ? 'Stop' : 'Play';
-  byId('play').setAttribute('aria-pressed', String(playing));
+}
+
+/// In words, an error.
+export function sayFault(error: unknown): void {
+  const words = error instanceof Error ? error.message : String(error);
+  say(/[.?!]$/.test(words) ? words : `${words}.`, 'fault');
+}
+
+/// The choices of what is shown.
+export function showChoices({ choice, units, resolution }: Session, wanted = resolution): void {
+  const set = (id: string, value: string) => ((byId(id) as HTMLSelectElement | HTMLInputElement).value = value);
+  if (choice) {
+    set('scene', choice.name);
+    byId('scene').dataset.shown = choice.name;
+  }
+  set('units', units);
+  set('resolution', String(wanted));
+}
+
+/// What is not of what is in the worker now is dimmed, and cannot be saved.
+export function showBusy({ loading, moving }: Session): void {
+  document.body.classList.toggle('stale', loading || moving);
+  document.body.setAttribute('aria-busy', String(loading));
+  for (const id of ['play', 'reset-motion']) (byId(id) as HTMLButtonElement).disabled = loading;
+  for (const button of document.querySelectorAll<HTMLButtonElement>('#form button[id^=save-]')) button.disabled = loading || moving;
 }

@@ -9,7 +9,7 @@ import { boxOf, Found, HalfSpace, Subject } from '../src/subject';
 import { Surface } from '../src/surface';
 import { filledValues, sourcesOf } from '../src/value_texture';
 import type { Viewer } from '../src/viewer';
-import { Layout, placeVertices, Triangles } from './layout';
+import { Layout, measureTexels, placeVertices, Triangles } from './layout';
 
 /// A surface whose vertices and distances change.
 export class ChangingSurface extends Surface {
@@ -35,6 +35,7 @@ export class ChangingSurface extends Surface {
 
   setVertices(mesh: Triangles): void {
     placeVertices(this.layout, mesh);
+    measureTexels(this.layout, mesh);
     for (const name of ['position', 'normal']) this.object.geometry.getAttribute(name).needsUpdate = true;
     this.forgetCopies();
   }

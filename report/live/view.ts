@@ -59,6 +59,12 @@ export class LiveView extends View {
     return this.ghost!.matrix;
   }
 
+  setMotion(motion: Matrix4): void {
+    this.pivot.matrix.multiplyMatrices(motion, this.toPivot.clone().invert());
+    this.pivot.matrix.decompose(this.pivot.position, this.pivot.quaternion, this.pivot.scale);
+    this.showPose();
+  }
+
   /// Moves the reference along the axes, in units of the scene, and turns it about the vertical axis by degrees.
   nudge(shift: Vec, turn = 0): void {
     this.pivot.position.add(new Vector3(...shift));

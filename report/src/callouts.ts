@@ -64,12 +64,20 @@ export class Callouts {
     this.view.canvas.focus();
   }
 
-  /// Takes all away.
+  /// Makes all again, as their unit is another one.
+  renew(): void {
+    const { all } = this;
+    this.clear();
+    for (const callout of all) this.add(callout);
+  }
+
+  /// Takes all away; the next one is the first.
   clear(): void {
     for (const { label, item } of this.placed.splice(0)) {
       label.remove();
       item.remove();
     }
+    this.count = 0;
     byId('callouts').classList.add('empty');
   }
 

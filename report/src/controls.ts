@@ -324,7 +324,7 @@ export function makeControls(
     viewRow, sectionRow, sectionDetails, ...(isCloud ? [widthRow] : []), ...(hasGhost ? [ghostRow] : []), ...(hasCoverage ? [coverageRow] : []),
     resetButton,
   );
-  byId('form').addEventListener('submit', (event) => event.preventDefault());
+  byId('form').onsubmit = (event) => event.preventDefault(); // one listener, although a form may be made again
   if (saved) state = saved;
   showState();
   return state;

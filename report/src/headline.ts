@@ -22,12 +22,24 @@ export function showVerdict(report: Report): void {
   byId('title').textContent = titleOf(report);
 }
 
+function worstTitle(report: Report): string {
+  if (report.thickness) return onlyThickest(report) ? 'Thickest places' : 'Thinnest places';
+  if (report.mesh) return 'Smallest distances';
+  return report.places?.limits_from === 'tolerance' ? 'Places out of tolerance' : 'Largest distances';
+}
+
+/// While something moves: the verdict of the report is not of what is seen.
+export function showMoving(report: Report): void {
+  showBadge('MOVING');
+  byId('sure').hidden = true;
+  byId('sentence').textContent = 'The verdict and the numbers follow at rest.';
+  document.title = `MOVING: ${titleOf(report)}`;
+}
+
 /// Words of page.html that differ for clouds.
 export function nameSubject(report: Report): void {
   byId('canvas').setAttribute('aria-label', `The part, coloured by ${quantityOf(report)}`);
-  if (report.thickness) byId('worst-title').textContent = onlyThickest(report) ? 'Thickest places' : 'Thinnest places';
-  else if (report.mesh) byId('worst-title').textContent = 'Smallest distances';
-  else if (report.places?.limits_from === 'tolerance') byId('worst-title').textContent = 'Places out of tolerance';
+  byId('worst-title').textContent = worstTitle(report);
   if (!isCloud(report)) return;
   byId('part-title').textContent = 'The cloud in 3D';
   byId('histogram-title').textContent = 'How the points are distributed';

@@ -40,7 +40,7 @@ export interface Subject {
   normalNear(point: Vec): Vec;
 }
 
-export function boxOf(position: Float32Array): { lo: Vec; hi: Vec } {
+export function boxOf(position: Float32Array | Float64Array): { lo: Vec; hi: Vec } {
   const lo: Vec = [Infinity, Infinity, Infinity];
   const hi: Vec = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < position.length; ++i) {

@@ -137,7 +137,7 @@ export function whatIf(report: Report, limits: Limits, outside: number): [string
     verdict !== 'FAIL' || outside <= 0 ? `No ${cloud ? 'point' : 'sample'} is out of it.`
     : cloud ? `${percent(outside)} of the points are out of it.`
     : `About ${percent(outside)} of the area is out of it.`;
-  const open = verdict === 'NOT DECIDED' && !given ? ' Samples alone do not decide this: the command does, with this tolerance.' : '';
+  const open = verdict === 'NOT DECIDED' && !given ? ` Samples alone do not decide this: ${report.live ? 'a proof follows' : 'the command does, with this tolerance'}.` : '';
   return given ? [`With ${text}: `, verdict, `. ${share}${open}`] : ['Would be ', verdict, ` with ${text}. ${share}${open}`];
 }
 

@@ -9,7 +9,7 @@ const { join } = require('path');
 const { pathToFileURL } = require('url');
 const { inBrowser, opened } = require('../report/checks/browser.cjs');
 const { plain } = require('../report/checks/support.cjs');
-const { ball, grid, objOf, stlOf } = require('./meshes.cjs');
+const { areaOf, ball, grid, objOf, stlOf } = require('./meshes.cjs');
 
 const [check, file, command] = process.argv.slice(2);
 const address = pathToFileURL(file).href;
@@ -65,6 +65,27 @@ async function agreesWithCommand(page, within = 1e-4) {
   return of;
 }
 
+/// The surface that is drawn is the one that was measured, and the areas of its texels are those of its faces.
+async function agreesWithPicture(page) {
+  const of = await numbers(page);
+  const { drawn, meshes } = await page.evaluate(() => ({ drawn: window.sdmLive.drawn, meshes: window.sdmLive.meshes }));
+  assert.deepStrictEqual([drawn.triangles, drawn.resolution], [meshes[0].indices.length / 3, of.atlas.resolution]);
+  const area = areaOf(meshes[0]);
+  assert(Math.abs(drawn.area / area - 1) < 0.02, `the texels have an area of ${drawn.area}, and the faces of ${area}`);
+}
+
+/// Makes choices, one at once after the other.
+const choose = (page, ...choices) =>
+  page.evaluate((list) => {
+    for (const [id, value] of list) {
+      const select = document.getElementById(id);
+      select.value = value;
+      select.dispatchEvent(new Event('change'));
+    }
+  }, choices);
+/// Waits until nothing is loaded, moves or is computed.
+const isIdle = (page) => page.waitForFunction(() => window.sdmLive.atRest, null, { timeout: kPatience });
+
 const checks = {
   // The numbers of each built-in pair are those of the command, and stand in the table.
   async numbers(page) {
@@ -110,10 +131,24 @@ const checks = {
     const first = await page.textContent('#live-mean');
     await page.click('#play');
     await page.waitForFunction((old) => document.getElementById('live-mean').textContent !== old, first, { timeout: kPatience });
-    assert.strictEqual(await page.getAttribute('#play', 'aria-pressed'), 'true');
-    await page.waitForTimeout(500);
+    assert.strictEqual(await page.textContent('#play'), 'Stop');
+    // What is of the last rest is not said of what moves.
+    assert.match(await page.textContent('#verdict'), /MOVING/);
+    assert.match(await page.textContent('#sentence'), /at rest/);
+    assert(await page.isDisabled('#save-report'), 'the report would be of another moment');
+    // A tolerance is judged at rest.
+    const { distance } = (await numbers(page)).extremes.max;
+    await page.fill('input[aria-label^="Tolerance"]', String(0.5 * distance));
+    await page.waitForTimeout(700);
+    assert.match(await page.textContent('#verdict'), /MOVING/);
+    assert.strictEqual((await numbers(page)).tolerance, undefined);
     await atRest(page, () => page.click('#play'));
     await agreesWithCommand(page, 3e-3);
+    const of = await numbers(page);
+    assert(Math.abs(of.tolerance.value - 0.5 * distance) < 1e-9, `${of.tolerance.value}`);
+    assert((await page.textContent('#verdict')).includes(of.tolerance.verdict));
+    assert(!(await page.isDisabled('#save-report')));
+    await agreesWithPicture(page);
     assert.match(await page.textContent('#spoken'), /Distances from .* to .*Separation/);
   },
 
@@ -138,7 +173,9 @@ const checks = {
     await verdict(0.9 * extremes.max.distance, 'FAIL');
     await verdict(extremes.max.distance + 2 * bound, 'PASS');
     assert((await page.textContent('#sentence')).startsWith('Every point'));
-    await verdict('', 'MEASURED').catch(async () => assert.strictEqual((await page.textContent('#verdict')).trim(), 'i MEASURED'));
+    await page.fill('input[aria-label^="Tolerance"]', '');
+    await page.waitForFunction(() => document.getElementById('verdict').textContent.trim() === 'i MEASURED', null, { timeout: kPatience });
+    assert.strictEqual(await page.textContent('#worst-title'), 'Largest distances');
   },
 
   // Two files, chosen and dropped; one in place of the other; both swapped.
@@ -202,7 +239,72 @@ const checks = {
     await page.waitForSelector('#cancel:not([hidden])', { timeout: kPatience });
     await page.click('#cancel');
     await page.waitForFunction(() => document.getElementById('status').textContent === 'Cancelled.', null, { timeout: kPatience });
+    await isIdle(page);
     assert.deepStrictEqual((await numbers(page)).distance, before.distance);
+    assert.strictEqual(await page.inputValue('#scene'), 'letters');
+    assert.match(await page.title(), /E compared with G/);
+    await page.focus('#canvas');
+    await atRest(page, () => page.keyboard.press('Shift+ArrowRight'));
+    assert.strictEqual((await agreesWithCommand(page)).o2.transform, 'the handles');
+  },
+
+  // Of several choices, made while others are loaded, the last one is shown, with the map that was chosen last.
+  async chooses(page) {
+    await choose(page, ['scene', 'letters'], ['scene', 'cloth'], ['scene', 'letters'], ['scene', 'figure']);
+    await isIdle(page);
+    assert.strictEqual((await numbers(page)).o1.file, 'figure');
+    assert.strictEqual(await page.inputValue('#scene'), 'figure');
+    await agreesWithPicture(page);
+    await choose(page, ['scene', 'cloth'], ['resolution', '2048'], ['resolution', '512']);
+    assert(await page.isDisabled('#play'), 'a pair that is being loaded cannot play');
+    await isIdle(page);
+    const of = await agreesWithCommand(page);
+    assert.deepStrictEqual([of.o1.file, of.atlas.resolution], ['cloth', 512]);
+    await agreesWithPicture(page);
+  },
+
+  // Without memory for a fine map there is the coarse one, of what is shown.
+  async lacks(page) {
+    await page.evaluate(() => {
+      const { worker } = window.sdmLive;
+      const { surface } = worker;
+      worker.surface = (positions, indices, options) => (options.resolution > 256 ? Promise.reject(new Error('Out of memory')) : surface.call(worker, positions, indices, options));
+    });
+    for (const [id, value] of [['scene', 'cloth'], ['resolution', '2048']]) {
+      await choose(page, [id, value]);
+      await page.waitForFunction(() => document.querySelector('#status.fault')?.textContent === 'Out of memory.', null, { timeout: kPatience });
+      await isIdle(page);
+      const of = await agreesWithCommand(page);
+      assert.deepStrictEqual([of.o1.file, of.atlas.resolution], ['cloth', 256]);
+      assert.deepStrictEqual([await page.inputValue('#scene'), await page.inputValue('#resolution')], ['cloth', '256']);
+      await agreesWithPicture(page);
+    }
+  },
+
+  // A worker that has ended by a fault is replaced, with what is shown where it was.
+  async recovers(page) {
+    await page.focus('#canvas');
+    await atRest(page, () => page.keyboard.press('Shift+ArrowRight'));
+    const before = await numbers(page);
+    await page.evaluate(async ({ positions, indices }) => {
+      const { worker } = window.sdmLive;
+      const { restarts } = worker;
+      while (worker.restarts === restarts) {
+        const abort = new AbortController();
+        const made = worker.surface(positions, indices, { resolution: 2048, signal: abort.signal }).catch(() => {});
+        abort.abort();
+        await made;
+        await new Promise((later) => setTimeout(later, 400));
+      }
+    }, ball(200, 1));
+    await page.fill('#units', 'mm');
+    await atRest(page, () => page.press('#units', 'Enter'));
+    await isIdle(page);
+    assert.deepStrictEqual((await numbers(page)).distance, before.distance);
+    assert.strictEqual((await numbers(page)).units, 'mm');
+    await page.focus('#canvas');
+    await atRest(page, () => page.keyboard.press('Shift+ArrowLeft'));
+    await agreesWithCommand(page);
   },
 
   // Picture, numbers and model are files.

@@ -49,4 +49,14 @@ function stlOf({ positions, indices }) {
   return bytes;
 }
 
-module.exports = { ball, grid, objOf, stlOf };
+function areaOf({ positions, indices }) {
+  let area = 0;
+  for (let i = 0; i < indices.length; i += 3) {
+    const [a, b, c] = [0, 1, 2].map((k) => positions.slice(3 * indices[i + k], 3 * indices[i + k] + 3));
+    const [u, v] = [b, c].map((p) => p.map((x, k) => x - a[k]));
+    area += Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2;
+  }
+  return area;
+}
+
+module.exports = { areaOf, ball, grid, objOf, stlOf };

@@ -1,0 +1,45 @@
+// What tests ask a live page.
+import { Matrix4 } from 'three';
+import type { SdmWorker } from 'sdm';
+import type { Report } from '../src/page_data';
+import { inFile, moved } from './engine';
+import type { Motion } from './motion';
+import type { Session } from './session';
+
+export class Probe {
+  constructor(private readonly session: Session, private readonly motion: Motion) {}
+
+  get firstPicture(): Promise<void> { return this.session.pair!.view.firstPicture; }
+  get worker(): SdmWorker { return this.session.worker; }
+  get numbers(): Report | null { return this.session.report; }
+  get atRest(): boolean { return !this.motion.isPumping && !this.session.moving && !this.session.loading && (this.session.pair?.view.atRest ?? false); }
+  handleAt(axis: 'X' | 'Y' | 'Z'): { x: number; y: number } { return this.session.pair!.view.handleAt(axis); }
+  memoryBytes(): Promise<number> { return this.session.worker.memoryBytes(); }
+
+  /// The bodies as they are, with the reference moved.
+  get meshes() {
+    const [part, reference] = this.session.bodies!;
+    const { view, subject } = this.session.pair!;
+    return [part, { ...reference, positions: moved(reference.positions, inFile(view.motion, subject)) }].map(({ name, positions, indices }) => ({
+      name, positions: Array.from(positions), indices: Array.from(indices),
+    }));
+  }
+
+  /// Of the surface that is drawn.
+  get drawn() {
+    const { model, map, areas } = this.session.pair!.subject.surface.layout;
+    return { triangles: model.trianglesOfMesh, resolution: map.width, area: areas.reduce((a, b) => a + b, 0) };
+  }
+
+  /// Milliseconds of each of a number of frames of the coarse map, without pictures.
+  async measure(frames: number): Promise<number[]> {
+    const { session, motion } = this;
+    const times: number[] = [];
+    for (let i = 0; i < frames; ++i) {
+      if (!session.scene) motion.want(inFile(new Matrix4().makeRotationZ((2 * Math.PI * i) / frames), session.pair!.subject));
+      times.push((await session.inOrder(() => motion.nextFrame(true))).milliseconds);
+    }
+    motion.rest();
+    return times;
+  }
+}

@@ -1,0 +1,56 @@
+// What the parts of the live page share: what is compared, and what is known of it.
+import type { SdmWorker } from 'sdm';
+import type { AreaByValue } from '../src/area_by_value';
+import { signedText } from '../src/numbers';
+import type { Report } from '../src/page_data';
+import { distanceText } from '../src/precision';
+import { isSigned, unitOf } from '../src/verdict';
+import { Body, Engine } from './engine';
+import type { Pair } from './pair';
+import { sayFault } from './panel';
+import type { Scene } from './scene';
+
+/// Two bodies, as they are chosen.
+export interface Choice {
+  name: string; ///< in the list of pairs
+  bodies: [Body, Body];
+  scene: Scene | null; ///< null: of files
+  units: string;
+}
+
+export class Session {
+  readonly engine: Engine;
+  choice: Choice | null = null; // that is shown
+  pair: Pair | null = null;
+  units = '';
+  resolution = 1024; // of the map at rest
+  report: Report | null = null; // of the last rest
+  area: AreaByValue | null = null;
+  tolerance: [number, number] | null = null;
+  loading = false;
+  moving = false; // since the last rest
+  version = 0; // of the places of the bodies
+  fault = sayFault; // what is done about an error
+  private work: Promise<unknown> = Promise.resolve(); // of the worker, in order
+
+  constructor(readonly worker: SdmWorker) {
+    this.engine = new Engine(worker);
+  }
+
+  get bodies(): [Body, Body] | null { return this.choice?.bodies ?? null; }
+  get scene(): Scene | null { return this.choice?.scene ?? null; }
+
+  /// Calls of the worker, one after the other.
+  inOrder<T>(call: () => Promise<T>): Promise<T> {
+    const result = this.work.then(call, call);
+    this.work = result.catch(() => {});
+    return result;
+  }
+
+  private get signs(): boolean { return this.report !== null && isSigned(this.report); }
+  /// With the space before it.
+  get unitText(): string { return this.units && `\u00a0${this.units}`; }
+  valueText(distance: number): string { return distanceText(distance, this.report!, this.signs) + unitOf(this.report!); }
+  /// Of a moment, with a sign only if it is negative.
+  liveText(value: number): string { return signedText(value, this.signs && value < 0, 3) + this.unitText; }
+}
