@@ -116,8 +116,7 @@ export class Loading {
     const { session } = this;
     this.current = null;
     session.loading = false;
-    this.wanted = session.resolution;
-    showChoices(session);
+    showChoices(session, this.wanted); // which may still wait for this load
     showBusy(session);
     this.motion.resume();
   }
