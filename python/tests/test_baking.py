@@ -404,14 +404,20 @@ def test_ambient_occlusion_under_a_ceiling(tmp_path, square):
     assert (tmp_path / "both.glb").read_bytes().count(b"\x89PNG") == 1
 
 
-def test_thickness_of_a_slab(square):
-    """Balls end at the face that is opposite, not at the sides."""
+def test_thickness_of_a_wedge(square):
+    """A slab whose lower side rises: the ball between two planes. Its sides, at right angles, do not stop balls."""
     mesh, _ = square
+    vertices, faces = meshes.box(high=(1, 1, 0.3))
+    vertices[:, 2] = np.where(vertices[:, 2] == 0, 0.15 * vertices[:, 0], 0.3)
     up = np.eye(4)
     up[2, 3] = 0.3
-    baked = sdm.bake(meshes.box(high=(1, 1, 0.3)), mesh.transformed(up), channels=["thickness"], resolution=64)
-    np.testing.assert_allclose(baked["thickness"], 0.3, atol=1e-6)
-    with pytest.raises(sdm.Error, match="closed"):
+    baked = sdm.bake((vertices, faces), mesh.transformed(up), channels=["thickness"], resolution=64)
+    x, _ = texel_centres(64)
+    cosine = 1 / np.hypot(1, 0.15)
+    expected = 2 * (0.3 - 0.15 * x) * cosine / (1 + cosine)
+    inner = np.s_[:, 4:-4]  # beyond them, the ball touches an edge
+    np.testing.assert_allclose(baked["thickness"][inner], expected[inner], atol=1e-6)
+    with pytest.raises(sdm.Error, match="a mesh that is open has no thickness"):
         sdm.bake(mesh, mesh, channels=["thickness"], resolution=64)
 
 

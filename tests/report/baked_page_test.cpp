@@ -85,9 +85,10 @@ TEST_F(BakedPage, DividesTrianglesWithATexture) {
   high = folder / "high.obj", low = write_obj(folder / "flat.obj", square(2, 0));
   std::ofstream(folder / "high.mtl") << "newmtl picture\nmap_Kd picture.png\n";
   Image image{.width = 64, .height = 64, .components = 3, .bits = 8, .bytes = {}};
+  const auto wave = [](int at) { return static_cast<int>(128 + 100 * std::sin(at * std::numbers::pi / 32)); };
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x)
-      for (const int value : {128 + 100 * ((x / 16 + y / 16) % 2), 4 * x, 4 * y})
+      for (const int value : {wave(x), wave(y), 4 * y})
         image.bytes.push_back(static_cast<std::uint8_t>(std::min(value, 255)));
   const std::vector<char> png = encode_png(image);
   std::ofstream(folder / "picture.png", std::ios::binary)
