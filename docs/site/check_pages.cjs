@@ -32,7 +32,7 @@ async function check(browser, size, colorScheme) {
   page.on('requestfailed', (request) => add(`not loaded: ${request.url()}`));
   page.on('request', (request) => {
     const url = request.url();
-    if (!url.startsWith(inside) && !url.startsWith('data:')) add(`loads ${url}`);
+    if (!url.startsWith(inside) && !/^(data|blob):/.test(url)) add(`loads ${url}`);
   });
   for (current of pages) {
     await page.goto(pathToFileURL(current).href);

@@ -4,6 +4,8 @@ import { type AnyWorker, newWorker, started } from './any_worker.js';
 import { hostImports } from './module.js';
 import { SdmError } from './types.js';
 
+/** What thread_local objects of a thread take, at most. */
+const kThreadLocalBytes = 4096;
 
 const kStackBytes = 1 << 20;
 
@@ -39,7 +41,7 @@ export async function startThreads(
     const worker = await newWorker(script);
     workers.push(worker);
     const stackTop = (allocate(kStackBytes) + kStackBytes) & ~15;
-    const thread: ThreadStart = { module, memory, slots, slot, count, stackTop, threadLocal: allocate(1024) };
+    const thread: ThreadStart = { module, memory, slots, slot, count, stackTop, threadLocal: allocate(kThreadLocalBytes) };
     await started(worker, { thread });
   };
   try {
@@ -78,7 +80,7 @@ export async function runThread(start: ThreadStart, ready: () => void): Promise<
   const instance = await WebAssembly.instantiate(start.module, { ...imports, env: { memory: start.memory } });
   const exports = instance.exports as Record<string, any>;
   exports['__stack_pointer'].value = start.stackTop;
-  if (exports['__tls_size'].value > 1024) throw new SdmError('internal', 'sdm: threads have too much of their own');
+  if (exports['__tls_size'].value > kThreadLocalBytes) throw new SdmError('internal', 'sdm: threads have too much of their own');
   exports['__wasm_init_tls'](start.threadLocal);
   ready();
   for (;;) {

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <numbers>
 
 #include "geometry/vec.h"
 #include "report/page_fixture.h"
@@ -88,8 +89,8 @@ TEST_F(BakedPage, DividesTrianglesWithATexture) {
   const auto wave = [](int at) { return static_cast<int>(128 + 100 * std::sin(at * std::numbers::pi / 32)); };
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x)
-      for (const int value : {wave(x), wave(y), 4 * y})
-        image.bytes.push_back(static_cast<std::uint8_t>(std::min(value, 255)));
+      for (const int value : {wave(x), wave(y), wave(x + y)})
+        image.bytes.push_back(static_cast<std::uint8_t>(value));
   const std::vector<char> png = encode_png(image);
   std::ofstream(folder / "picture.png", std::ios::binary)
       .write(png.data(), static_cast<std::streamsize>(png.size()));
