@@ -56,8 +56,8 @@ class Body {
 
   /// The mesh, if it bounds a convex solid (see convex::recognise); none after a refit, as with cylinders().
   [[nodiscard]] const convex::ConvexMesh* convex() const { return convex_.get(); }
-  /// Whether it bounds a convex solid (see convex::is_convex) of so few faces that bounds by their planes take
-  /// less time, also after a refit. Thread-safe; decided by the first call after one.
+  /// Whether it bounds a convex solid (see convex::is_convex) of so few faces that bounds by their planes
+  /// take less time, also after a refit. Thread-safe; decided by the first call after one.
   [[nodiscard]] bool is_small_and_convex() const;
   /// See convexity_deficit(). Thread-safe; computed by the first call.
   [[nodiscard]] double convexity_deficit() const;
