@@ -1,39 +1,25 @@
 #include "atlas/gutter.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstdlib>
-
-#include "core/parallel.h"
 
 namespace sdm::atlas {
 namespace {
 
-// The order in which the nearest texel is searched: by rings, and within a ring by length.
-std::array<int, 2> rank_of(const std::array<int, 2>& step) {
-  const auto [dx, dy] = step;
-  return {std::max(std::abs(dx), std::abs(dy)), dx * dx + dy * dy};
-}
-
-// All offsets within so many rings, nearest first; of equal ones, those along rows first.
-std::vector<std::array<int, 2>> steps_within(int rings) {
-  std::vector<std::array<int, 2>> steps;
-  for (int dy = -rings; dy <= rings; ++dy)
-    for (int dx = -rings; dx <= rings; ++dx) steps.push_back({dx, dy});
-  std::ranges::stable_sort(steps, {}, rank_of);
-  return steps;
-}
+constexpr std::uint32_t kWidest = 1 << 14;  // so that columns fit 16 bits
 
 }  // namespace
 
-Gutter::Gutter(std::uint32_t resolution, std::span<const std::uint32_t> owners, std::uint32_t width)
+Gutter::Gutter(std::uint32_t resolution, std::size_t rows, std::uint32_t width)
     : resolution_(resolution),
-      rows_(static_cast<std::uint32_t>(owners.size() / resolution)),
+      rows_(static_cast<std::uint32_t>(rows)),
       shift_(static_cast<unsigned>(std::bit_width(std::bit_ceil(width)) - 1)),
       blocks_(((resolution - 1) >> shift_) + 1),
-      steps_(steps_within(static_cast<int>(width))),
-      owners_(owners) {
+      width_(static_cast<int>(std::min(width, kWidest))),
+      along_row_(rows * resolution) {}
+
+void Gutter::find_blocks() {
   const std::uint32_t side = 1u << shift_, block_rows = ((rows_ - 1) >> shift_) + 1;
   std::vector<std::uint8_t> owned(std::size_t{block_rows} * blocks_);
   close_.resize(owned.size());
@@ -41,7 +27,7 @@ Gutter::Gutter(std::uint32_t resolution, std::span<const std::uint32_t> owners, 
   parallel_for(block_rows, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin * side; y < std::min<std::size_t>(end * side, rows_); ++y)
       for (std::size_t x = 0; x < resolution_; ++x)
-        owned[(y >> shift_) * blocks_ + (x >> shift_)] |= owners_[y * resolution_ + x] != kNone;
+        owned[(y >> shift_) * blocks_ + (x >> shift_)] |= along_row_[y * resolution_ + x] == 0;
   });
   parallel_for(block_rows, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row)
@@ -54,14 +40,26 @@ Gutter::Gutter(std::uint32_t resolution, std::span<const std::uint32_t> owners, 
 }
 
 std::uint32_t Gutter::search(std::uint32_t x, std::uint32_t y) const {
-  for (const auto& [dx, dy] : steps_) {
-    // Offsets out of the image wrap around to large numbers.
-    const std::uint32_t sx = x + static_cast<std::uint32_t>(dx), sy = y + static_cast<std::uint32_t>(dy);
-    if (sx >= resolution_ || sy >= rows_) continue;
-    const std::size_t source = std::size_t{sy} * resolution_ + sx;
-    if (owners_[source] != kNone) return static_cast<std::uint32_t>(source);
+  // Of the texels of a row, the nearest one along it is nearest. Rows are visited from the nearest on, until
+  // they are farther than a ring with an owned texel.
+  int ring = width_ + 1, squared = 0, best_row = 0;
+  std::uint32_t best = kNone;
+  const auto visit = [&](int dy) {
+    const std::uint32_t row = y + static_cast<std::uint32_t>(dy);  // above the image, a large number
+    if (row >= rows_) return;
+    const std::size_t texel = std::size_t{row} * resolution_ + x;
+    const int dx = along_row_[texel], its_ring = std::max(std::abs(dx), std::abs(dy));
+    if (its_ring > std::min(ring, width_)) return;
+    const int its_squared = dx * dx + dy * dy;
+    if (its_ring == ring && (its_squared > squared || (its_squared == squared && dy > best_row))) return;
+    ring = its_ring, squared = its_squared, best_row = dy;
+    best = static_cast<std::uint32_t>(static_cast<std::int64_t>(texel) + dx);
+  };
+  for (int dy = 0; dy <= std::min(ring, width_); ++dy) {
+    visit(-dy);
+    if (dy > 0) visit(dy);
   }
-  return kNone;
+  return best;
 }
 
 }  // namespace sdm::atlas

@@ -127,8 +127,8 @@ std::vector<BakedChannel> bake(const Surface& surface, const Sites& sites, const
     const ChannelLook of_channel(sites.mesh(), look, channel, pictures);
     BakedChannel& result = baked.emplace_back(channel, matches.resolution, of_channel.components,
                                               values_of(of_channel, surface, matches, options.progress));
-    if (options.fill)
-      map::fill_free_texels(matches.resolution, states, map::gutter_of_values(surface), result.components,
+    if (std::vector<TexelState> filled = states; options.fill)
+      map::fill_free_texels(matches.resolution, filled, map::gutter_of_values(surface), result.components,
                             result.values);
   }
   return baked;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
@@ -22,24 +23,28 @@ class BarycentricFrame {
     for (std::size_t k = 0; k < 3; ++k)
       if (const double length = squared_norm(corners[(k + 1) % 3] - corners[k]); length > longest_)
         from_ = k, longest_ = length;
-    if (!(longest_ > 0)) return;
+    if (!(longest_ > kLeast)) return;
+    per_longest_ = 1 / longest_;
     side_ = corners[to()] - corners[from_];
-    t_ = along(corners[third()]);
+    t_ = dot(corners[third()] - corners[from_], side_) * per_longest_;
     height_ = corners[third()] - corners[from_] - t_ * side_;
-    squared_height_ = squared_norm(height_);
+    const double squared_height = squared_norm(height_);
+    if (squared_height > kLeast)
+      height_ = 1 / squared_height * height_;
+    else
+      height_ = {};
   }
 
   /// The coordinates of the triangle's point under p: not negative, with a sum of 1 up to rounding, also if
   /// p lies beside the triangle by rounding, or the triangle has no area. The point that they give is as
   /// accurate as p, also in needles, where ratios of areas are rounding errors.
   [[nodiscard]] Vec3 weights(const Vec3& p) const {
-    if (!(longest_ > 0)) return {1, 0, 0};
-    const double s = along(p);
-    const double w =
-        squared_height_ > 0
-            ? std::clamp(dot(p - corners_[from_] - s * side_, height_) / squared_height_, 0.0, 1.0)
-            : 0;
+    if (!(longest_ > kLeast)) return {1, 0, 0};
+    const Vec3 from = p - corners_[from_];
+    const double s = dot(from, side_) * per_longest_;
+    const double w = std::clamp(dot(from - s * side_, height_), 0.0, 1.0);
     const Vec3 weights = weights_for(s, w);
+    if ((t_ <= 0 || w * t_ <= s) && (t_ >= 1 || w * (1 - t_) <= 1 - s)) return weights;
     const double most = std::max(0.0, std::min(t_ > 0 ? s / t_ : 1, t_ < 1 ? (1 - s) / (1 - t_) : 1));
     if (w <= most) return weights;
     const Vec3 limited = weights_for(s, most);
@@ -49,7 +54,6 @@ class BarycentricFrame {
  private:
   [[nodiscard]] std::size_t to() const { return (from_ + 1) % 3; }
   [[nodiscard]] std::size_t third() const { return (from_ + 2) % 3; }
-  [[nodiscard]] double along(const Vec3& q) const { return dot(q - corners_[from_], side_) / longest_; }
   [[nodiscard]] Vec3 weights_for(double s, double of_third) const {
     Vec3 weights;
     weights[third()] = of_third;
@@ -61,11 +65,15 @@ class BarycentricFrame {
     return squared_norm(v[0] * corners_[0] + v[1] * corners_[1] + v[2] * corners_[2] - p);
   }
 
+  /// Of squared lengths whose inverse is finite; what is shorter than their root counts as 0.
+  static constexpr double kLeast = std::numeric_limits<double>::min();
+
   Corners corners_{};
-  std::size_t from_ = 0;  ///< the corner where the longest side begins
-  double longest_ = -1;   ///< its squared length
-  Vec3 side_{}, height_{};
-  double t_ = 0, squared_height_ = 0;
+  std::size_t from_ = 0;    ///< the corner where the longest side begins
+  double longest_ = -1;     ///< its squared length
+  double per_longest_ = 0;  ///< its inverse
+  Vec3 side_{}, height_{};  ///< the height divided by its squared length
+  double t_ = 0;
 };
 
 /// BarycentricFrame::weights() of one point.

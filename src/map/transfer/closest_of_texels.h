@@ -49,6 +49,8 @@ class ClosestOfTexels {
   const DistanceMap& map_;
   std::span<const Vec3> normals_;
   bool ends_elsewhere_;
+  std::uint32_t row_ = 0,
+                row_begin_ = 0;  ///< of the last texel, and the first texel there: divisions take long
   Site site_;
 };
 

@@ -19,8 +19,7 @@ enum class TexelState : std::uint8_t {
   missing,  ///< a face but no value, or none that is finite; stays as it is
 };
 
-/// Values extend no farther from valued texels than this: the search for the nearest one takes time that
-/// grows with the square of it.
+/// Values extend no farther from valued texels than this; beyond it, smooth ones look better.
 inline constexpr std::uint32_t kWidestGutter = 16;
 
 /// How far the values of the texels of a surface extend.
@@ -30,9 +29,10 @@ inline constexpr std::uint32_t kWidestGutter = 16;
 
 /// Sets the `components` values of each free texel: within `gutter` texels of valued ones to those of the
 /// nearest, elsewhere by push-pull (Gortler et al., The Lumigraph, 1996, 3.4): the means of ever larger
-/// squares, where smaller ones have nothing. `states`: whole rows of `resolution` texels. Nothing changes if
-/// no texel has a value. Cost: linear in texels, all cores, and a third of the memory of the values.
-void fill_free_texels(std::uint32_t resolution, std::span<const TexelState> states, std::uint32_t gutter,
+/// squares, where smaller ones have nothing. `states`: whole rows of `resolution` texels; those within
+/// `gutter` become valued. Nothing changes if no texel has a value. Cost: linear in texels, all cores, and
+/// half the memory of the values.
+void fill_free_texels(std::uint32_t resolution, std::span<TexelState> states, std::uint32_t gutter,
                       std::size_t components, std::span<float> values);
 
 }  // namespace sdm::map
