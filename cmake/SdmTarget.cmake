@@ -4,7 +4,8 @@
 set(SDM_OMIT_INSTRUCTIONS "HWY_SSSE3|HWY_SSE4" CACHE STRING "Sets of instructions that are not compiled for, as HWY_DISABLED_TARGETS")
 mark_as_advanced(SDM_OMIT_INSTRUCTIONS)
 function(sdm_omit_instructions)
-  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS "HWY_DISABLED_TARGETS=(${SDM_OMIT_INSTRUCTIONS})")
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS
+    "HWY_DISABLED_TARGETS=(${SDM_OMIT_INSTRUCTIONS}$<$<BOOL:$<TARGET_PROPERTY:SDM_SANITIZED>>:|HWY_AVX3>)")
 endfunction()
 
 # sdm_divide_sources(<target> <file>...): with SDM_UNITE_FOLDERS, compiles the sources of a folder of src/ as one, with those
@@ -74,6 +75,30 @@ function(sdm_add_library name)
     target_link_libraries(${name}_internals INTERFACE ${name})
   endif()
   set_property(GLOBAL APPEND PROPERTY SDM_LIBRARIES ${name})
+endfunction()
+
+# sdm_add_sanitized(<objects>): with SDM_SANITIZED_TESTS, adds <objects>_sanitized, which has the sources and the properties
+# of the object library, with AddressSanitizer and UndefinedBehaviorSanitizer and for fewer instruction sets. Call it in the
+# folder of the object library, after all is set.
+set(SDM_SANITIZERS -fsanitize=address,undefined -fno-sanitize=null,alignment,object-size -fno-sanitize-recover=all
+  -fno-omit-frame-pointer)
+function(sdm_add_sanitized objects)
+  if(NOT SDM_SANITIZED_TESTS)
+    return()
+  endif()
+  set(name ${objects}_sanitized)
+  get_target_property(sources ${objects} SOURCES)
+  add_library(${name} OBJECT ${sources})
+  foreach(property INCLUDE_DIRECTORIES LINK_LIBRARIES COMPILE_DEFINITIONS COMPILE_FEATURES COMPILE_OPTIONS PRECOMPILE_HEADERS
+      UNITY_BUILD UNITY_BUILD_MODE POSITION_INDEPENDENT_CODE CXX_VISIBILITY_PRESET VISIBILITY_INLINES_HIDDEN)
+    get_target_property(value ${objects} ${property})
+    if(NOT value STREQUAL "value-NOTFOUND")
+      set_target_properties(${name} PROPERTIES ${property} "${value}")
+    endif()
+  endforeach()
+  set_target_properties(${name} PROPERTIES SDM_SANITIZED ON)
+  target_compile_options(${name} PRIVATE ${SDM_SANITIZERS} -O1 -g1)
+  add_dependencies(${name} ${objects})  # for the headers that the build makes
 endfunction()
 
 # sdm_link_private(<name> <target>...): links further private dependencies to a library of sdm_add_library.

@@ -32,7 +32,7 @@ INSTANTIATE_TEST_SUITE_P(Commands, Stack,
                          [](const auto& command) { return command.param; });
 
 TEST_P(Stack, OfAHundredAndTwentyEightKilobytesIsEnough) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef __SANITIZE_THREAD__
   constexpr std::uint64_t kStack = 2048 << 10;  // frames of instrumented code are several times as large
 #else
   constexpr std::uint64_t kStack = 128 << 10;

@@ -159,9 +159,6 @@ TEST_P(Termination, AKilledRunLeavesNothingThatLooksLikeAResult) {
 
 // At any limit: an error or a complete result.
 TEST_P(Termination, LittleMemoryIsAnErrorWithoutFiles) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "a limit on memory leaves AddressSanitizer no room for its shadow";
-#endif
   std::vector<std::string> arguments = command("512");
   if (arguments[0] != "info") arguments.insert(arguments.end(), {"--threads", "1"});
   ASSERT_EQ(run_sdm(arguments).code, 0);

@@ -94,15 +94,7 @@ struct PaperReport : ::testing::Test {
   }
 };
 
-// Sanitizers make most figures take minutes.
-#ifdef __SANITIZE_ADDRESS__
-constexpr bool kSlow = true;
-#else
-constexpr bool kSlow = false;
-#endif
-
 TEST_F(PaperReport, MapsAreExactAtTheirSamples) {
-  if (kSlow) GTEST_SKIP() << "too slow with sanitizers";
   ASSERT_NO_FATAL_FAILURE(run({"figure1", "figure3", "figure7", "polygon_count"}));
   for (const std::string key : {"figure1", "figure3", "figure7", "polygon_count"}) {
     EXPECT_LE(measured(key)["error_at_samples"], kAccuracy) << key;
@@ -150,7 +142,6 @@ TEST_F(PaperReport, BoundsOnTheSpacingOfSamplesHoldAndThePapersDoesNot) {
 }
 
 TEST_F(PaperReport, MapsAndVolumesKeepTheirErrorBounds) {
-  if (kSlow) GTEST_SKIP() << "too slow with sanitizers";
   ASSERT_NO_FATAL_FAILURE(run({"figure8", "table_complexity"}));
   EXPECT_EQ(measured("table_complexity")["bounds_hold"], true);
   for (const auto& [key, method] : measured("table_complexity").items()) {
@@ -171,7 +162,6 @@ TEST_F(PaperReport, MapsAndVolumesKeepTheirErrorBounds) {
 }
 
 TEST_F(PaperReport, CullingChangesNoMapAndCountsAddUp) {
-  if (kSlow) GTEST_SKIP() << "too slow with sanitizers";
   ASSERT_NO_FATAL_FAILURE(run({"culling", "stencil"}));
   if (measured("culling").is_null()) GTEST_SKIP() << "no OpenGL device";
   EXPECT_EQ(measured("culling")["maps_identical"], true);
@@ -197,7 +187,6 @@ TEST_F(PaperReport, CullingChangesNoMapAndCountsAddUp) {
 }
 
 TEST_F(PaperReport, TheCorrectedAlgorithmIsExactAndThePrintedOneIsNot) {
-  if (kSlow) GTEST_SKIP() << "too slow with sanitizers";
   ASSERT_NO_FATAL_FAILURE(run({"literal_algorithm"}));
   if (measured("literal_algorithm")["cases"].is_null()) GTEST_SKIP() << "no OpenGL device";
   for (const auto& [key, variants] : measured("literal_algorithm")["cases"].items()) {

@@ -129,7 +129,8 @@ Outcome run_program(const char* program, const std::vector<std::string>& argumen
 }
 
 Outcome run_sdm(const std::vector<std::string>& arguments, const Conditions& options) {
-  return run_program(SDM_COMMAND, arguments, options);
+  const char* const other = std::getenv("SDM_TESTED_COMMAND");  // sanitizer_options.cpp
+  return run_program(other != nullptr ? other : SDM_COMMAND, arguments, options);
 }
 
 }  // namespace sdm::test
