@@ -56,32 +56,53 @@ struct ClosestFeature {
   return best;
 }
 
-/// Features of a triangle of any shape, for several points.
-struct TriangleSides {
+/// Features of a triangle of any shape, for a few points.
+struct FewSides {
   Corners corner, side;
-  Vec3 normal, inverse_squared;  // of sides: 1 / length², or 0
-  double inverse_normal;         // 1 / |normal|², or 0
 
-  explicit TriangleSides(const Corners& t)
-      : corner(t), side{t[1] - t[0], t[2] - t[1], t[0] - t[2]}, normal(cross(side[0], side[1])) {
-    for (int k = 0; k < 3; ++k) inverse_squared[k] = inverse(squared_norm(side[k]));
-    inverse_normal = inverse(squared_norm(normal));
-  }
+  explicit FewSides(const Corners& t) : corner(t), side{t[1] - t[0], t[2] - t[1], t[0] - t[2]} {}
 
   /// 1 / x, or 0 if x underflows.
   static double inverse(double x) { return x > std::numeric_limits<double>::min() ? 1 / x : 0; }
 
   [[nodiscard]] Vec3 on_side(int k, const Vec3& p) const {
-    return corner[k] + std::clamp(dot(p - corner[k], side[k]) * inverse_squared[k], 0.0, 1.0) * side[k];
+    return on_side(k, p, inverse(squared_norm(side[k])));
   }
   /// Whether the orthogonal projection of p lies in the interior; `foot` receives it.
   [[nodiscard]] bool over(const Vec3& p, Vec3& foot) const {
+    const Vec3 normal = cross(side[0], side[1]);
+    return over(p, foot, normal, inverse(squared_norm(normal)));
+  }
+
+ protected:
+  [[nodiscard]] Vec3 on_side(int k, const Vec3& p, double inverse_squared) const {
+    return corner[k] + std::clamp(dot(p - corner[k], side[k]) * inverse_squared, 0.0, 1.0) * side[k];
+  }
+  [[nodiscard]] bool over(const Vec3& p, Vec3& foot, const Vec3& normal, double inverse_normal) const {
     // n·(r × s) = (n × r)·s: the barycentric coordinates of corners 1 and 2.
     const Vec3 turned = cross(normal, p - corner[0]);
     const double v = -dot(turned, side[2]) * inverse_normal, w = -dot(turned, side[0]) * inverse_normal;
     if (!(v > 0 && w > 0 && v + w < 1)) return false;
     foot = corner[0] + v * side[0] - w * side[2];
     return true;
+  }
+};
+
+/// The same for many points: of the same bits.
+struct TriangleSides : FewSides {
+  Vec3 normal, inverse_squared;  // of sides: 1 / length², or 0
+  double inverse_normal;         // 1 / |normal|², or 0
+
+  explicit TriangleSides(const Corners& t) : FewSides(t), normal(cross(side[0], side[1])) {
+    for (int k = 0; k < 3; ++k) inverse_squared[k] = inverse(squared_norm(side[k]));
+    inverse_normal = inverse(squared_norm(normal));
+  }
+
+  [[nodiscard]] Vec3 on_side(int k, const Vec3& p) const {
+    return FewSides::on_side(k, p, inverse_squared[k]);
+  }
+  [[nodiscard]] bool over(const Vec3& p, Vec3& foot) const {
+    return FewSides::over(p, foot, normal, inverse_normal);
   }
 };
 

@@ -5,7 +5,6 @@
 
 #include "core/numbers/double_double.h"
 #include "geometry/exact_integer.h"
-#include "geometry/rounding.h"
 #include "geometry/vec.h"
 
 namespace sdm::core {
@@ -66,21 +65,17 @@ int exact(const Vec2& a, const Vec2& b, const Vec2& c) {
 
 }  // namespace
 
-int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Vec3 u = b - a, v = c - a, w = d - a;
-  double determinant = 0, magnitude = 0;
-  for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    const double plus = u[i] * v[j], minus = u[j] * v[i];
-    determinant += w[k] * (plus - minus);
-    magnitude += std::abs(w[k]) * (std::abs(plus) + std::abs(minus));
-  }
-  if (std::abs(determinant) > kError3 * magnitude + kUnderflow) return sign(determinant);
+int OrientedPlane::side_by_more_digits(const Vec3& d, double magnitude) const {
+  const Vec3 &a = a_, &b = b_, &c = c_;
   if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;  // no volume
   for (int k = 0; k < 3; ++k)
     if (a[k] == b[k] && a[k] == c[k] && a[k] == d[k]) return 0;  // as in a flat part of a drawing
   if (const int found = by_doubled(a, b, c, d, magnitude); found != 0) return found;
   return exact(a, b, c, d);
+}
+
+int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return OrientedPlane(a, b, c).side(d);
 }
 
 int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {

@@ -3,13 +3,17 @@
 #include "geometry/triangle_pair.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 
 #include "geometry/point_triangle.h"
+#include "geometry/rounding.h"
 
 namespace sdm::core {
 namespace {
+
+constexpr PointPair kNoPoints{std::numeric_limits<double>::infinity(), {}, {}};
 
 void offer(PointPair& best, const Vec3& point1, const Vec3& point2) {
   const double squared = squared_norm(point2 - point1);
@@ -29,10 +33,11 @@ bool has(unsigned bits, int i) {
   return (bits >> i & 1) != 0;
 }
 
-PointPair closest(const TriangleSides& a, const TriangleSides& b, const Features& of_a,
-                  const Features& of_b) {
-  PointPair best{std::numeric_limits<double>::infinity(), {}, {}};
+template <class Sides>
+PointPair closest(const Sides& a, const Sides& b, const Features& of_a, const Features& of_b) {
+  PointPair best = kNoPoints;
   for (int i = 0; i < 3; ++i) {
+    if (!has(of_a.corners | of_a.sides | of_b.corners, i)) continue;
     const Vec3 &p = a.corner[i], &q = b.corner[i];
     Vec3 foot;
     for (int j = 0; j < 3; ++j) {
@@ -50,6 +55,34 @@ PointPair closest(const TriangleSides& a, const TriangleSides& b, const Features
 PointPair closest(const TriangleSides& a, const TriangleSides& b) {
   constexpr Features kAll{.corners = 7, .sides = 7};
   return closest(a, b, kAll, kAll);
+}
+
+double largest_coordinate(const Corners& a, const Corners& b) {
+  double largest = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(a[i][k]), std::abs(b[i][k])});
+  return largest;
+}
+
+// Whether all points of closest() are certainly farther apart than `distance`: no corner is as near to the
+// plane of the other triangle, and no two lines of sides are as near to each other.
+bool farther_apart(const TriangleSides& a, const TriangleSides& b, double distance) {
+  // Points and differences have rounding errors of some units in the last place of the largest coordinate,
+  // normals of its square, and products with them of its cube.
+  const double most = largest_coordinate(a.corner, b.corner);
+  const double apart = distance + kDoubleRounding * most, rounding = kDoubleRounding * most * most * most;
+  const auto beyond = [&](const Vec3& between, const Vec3& normal) {
+    const double height = std::abs(dot(between, normal)) - rounding;
+    return height > 0 && height * height > apart * apart * squared_norm(normal);
+  };
+  for (const Vec3& p : a.corner)
+    if (!beyond(p - b.corner[0], b.normal)) return false;
+  for (const Vec3& p : b.corner)
+    if (!beyond(p - a.corner[0], a.normal)) return false;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (!beyond(b.corner[j] - a.corner[i], cross(a.side[i], b.side[j]))) return false;
+  return true;
 }
 
 Box box_of(const Corners& triangle) {
@@ -70,13 +103,14 @@ PointPair closest_points(const Corners& a, const Corners& b) {
 }
 
 PointPair closest_points(const Corners& a, const Features& of_a, const Corners& b, const Features& of_b) {
-  return closest(TriangleSides(a), TriangleSides(b), of_a, of_b);
+  return closest(FewSides(a), FewSides(b), of_a, of_b);
 }
 
 Vec3 common_point(const Corners& a, const Corners& b) {
-  // A corner and the other triangle, two edges, or an edge and the interior of the triangle that it crosses.
+  // An edge and the interior of the triangle that it crosses, or a corner and the other triangle, or two
+  // edges. The first of those that are nearest counts, in the order of closest() and then of edges.
   const TriangleSides sides[2] = {TriangleSides(a), TriangleSides(b)};
-  PointPair best = closest(sides[0], sides[1]);
+  PointPair crossing = kNoPoints;
   for (int i = 0; i < 2; ++i) {
     const TriangleSides &edges = sides[i], &face = sides[1 - i];
     for (int k = 0; k < 3; ++k) {
@@ -85,10 +119,12 @@ Vec3 common_point(const Corners& a, const Corners& b) {
       if (!(t >= 0 && t <= 1)) continue;
       const Vec3 point = edges.corner[k] + t * edges.side[k];
       Vec3 foot;
-      if (face.over(point, foot)) offer(best, point, foot);
+      if (face.over(point, foot)) offer(crossing, point, foot);
     }
   }
-  return best.point1;
+  if (farther_apart(sides[0], sides[1], std::sqrt(crossing.squared))) return crossing.point1;
+  const PointPair best = closest(sides[0], sides[1]);
+  return crossing.squared < best.squared ? crossing.point1 : best.point1;
 }
 
 PointPair closest_or_common(const Corners& a, const Corners& b) {

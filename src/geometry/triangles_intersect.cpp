@@ -10,8 +10,8 @@ using Signs = std::array<int, 3>;
 
 // The sides of t's plane on which three points lie; 0 if t has no plane.
 Signs sides(const Corners& t, const Corners& points) {
-  return {orientation(t[0], t[1], t[2], points[0]), orientation(t[0], t[1], t[2], points[1]),
-          orientation(t[0], t[1], t[2], points[2])};
+  const OrientedPlane plane(t[0], t[1], t[2]);
+  return {plane.side(points[0]), plane.side(points[1]), plane.side(points[2])};
 }
 bool one_sided(const Signs& s) {
   return s[0] * s[1] > 0 && s[1] * s[2] > 0;
@@ -22,7 +22,9 @@ bool agree(const Signs& s) {
 
 // Whether the line through p and q, which crosses the plane of t at one point, crosses it within t.
 bool line_meets(const Vec3& p, const Vec3& q, const Corners& t) {
-  return agree({orientation(p, q, t[0], t[1]), orientation(p, q, t[1], t[2]), orientation(p, q, t[2], t[0])});
+  const int first = orientation(p, q, t[0], t[1]), second = orientation(p, q, t[1], t[2]);
+  if (first * second < 0) return false;
+  return agree({first, second, orientation(p, q, t[2], t[0])});
 }
 
 // Whether an edge of `edges` that crosses the plane of t, or ends on it, meets t. `side`: those of its

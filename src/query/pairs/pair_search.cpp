@@ -8,7 +8,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <span>
+#include <bit>
 #include <utility>
 
 #include "query/pairs/caps-inl.h"
@@ -222,8 +222,7 @@ class PairSearch {
     for (int side = 0; side < 2; ++side) load_faces(side, pair.place[side].leaf_number());
     const LeafFaces &a = faces_[0], &b = faces_[1];
     const Lanes d;
-    Candidate touching[kWidth * kWidth];
-    size_t count = 0;
+    uint32_t touching[kWidth] = {}, any = 0;  // faces of O2, a bit for each, by faces of O1
     for (uint32_t j = 0; j < b.count(); ++j) {
       if ((near2 >> j & 1) == 0) continue;
       alignas(64) float least[kWidth];
@@ -231,29 +230,33 @@ class PairSearch {
         hn::Store(s_.in_units(face_distances(a, i, b, j, closest_.direction())), d, least + i);
       for (uint32_t i = 0; i < a.count(); ++i) {
         if (least[i] > closest_.limit() || (near1 >> i & 1) == 0) continue;
-        const Candidate candidate{least[i], a.first() + i, b.first() + j};
         if (!(least[i] > 0))
-          touching[count++] = candidate;
+          touching[i] |= any = 1u << j;
         else if constexpr (separate)
-          closest_.add(candidate);
+          closest_.add({least[i], a.first() + i, b.first() + j});
       }
     }
-    find_intersection({touching, count});
+    if (any != 0) find_intersection(touching);
   }
 
-  // Finds the first candidates that intersect, in the order of the trees; the others may be closest.
-  HWY_NOINLINE void find_intersection(std::span<Candidate> touching) {
-    std::ranges::sort(touching, {}, [](const Candidate& c) { return std::pair(c.owner1, c.owner2); });
-    for (const Candidate& candidate : touching) {
-      const FacePair faces = closest_.faces_of(candidate);
-      const Corners a = s_.pair.face1(faces[0]), b = s_.pair.face2(faces[1]);
-      if (squared_box_distance(a, b) > 0 || !triangles_intersect(a, b)) {
-        if constexpr (separate) closest_.add({0, candidate.owner1, candidate.owner2});
-        continue;
+  // Finds the first of these faces that intersect, in the order of the trees; the others may be closest.
+  HWY_NOINLINE void find_intersection(const uint32_t (&touching)[kWidth]) {
+    for (uint32_t i = 0; i < faces_[0].count(); ++i) {
+      if (touching[i] == 0) continue;
+      const uint32_t owner1 = faces_[0].first() + i, face1 = s_.sites[0]->tree.items[owner1];
+      const Corners a = s_.pair.face1(face1);
+      for (uint32_t bits = touching[i]; bits != 0; bits &= bits - 1) {
+        const uint32_t owner2 = faces_[1].first() + static_cast<uint32_t>(std::countr_zero(bits));
+        const uint32_t face2 = s_.sites[1]->tree.items[owner2];
+        const Corners b = s_.pair.face2(face2);
+        if (!triangles_intersect(a, b)) {
+          if constexpr (separate) closest_.add({0, owner1, owner2});
+          continue;
+        }
+        intersection_ = {0, true, {}, {}, face1, face2};
+        if constexpr (separate) intersection_.point1 = intersection_.point2 = common_point(a, b);
+        return;
       }
-      intersection_ = {0, true, {}, {}, faces[0], faces[1]};
-      if constexpr (separate) intersection_.point1 = intersection_.point2 = common_point(a, b);
-      return;
     }
   }
 
