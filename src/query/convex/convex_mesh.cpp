@@ -155,7 +155,7 @@ std::unique_ptr<const ConvexMesh> recognise(const sites::SitesData& sites) {
   Box box;
   for (const Triangle& triangle : mesh.triangles)
     for (const std::uint32_t vertex : triangle) extend(box, mesh.positions[vertex]);
-  convex->size = diagonal(box);
+  convex->size = diagonal(box), convex->lengths = convex->size + norm(convex->centre);
   convex->inner_radius = (1 - kDoubleRounding) * radius - kDoubleRounding * norm(convex->centre);
   set_vertices(*convex, sites);
   set_coordinates(*convex);

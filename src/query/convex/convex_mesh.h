@@ -37,6 +37,7 @@ struct ConvexMesh {
   Vec3 centre{};                          ///< below the planes of all faces
   double inner_radius = 0;                ///< at most the distance of the centre from the planes of the faces
   double size = 0;                        ///< the diagonal of the box
+  double lengths = 0;                     ///< the size and the distance of the centre from the origin
   double height_error = 0;                ///< of the height of a vertex that is farthest along a unit vector
   bool climbs = false;     ///< whether farthest vertices are found by neighbours, too, with that error
   double least_climb = 0;  ///< heights of neighbours that differ by less are equal

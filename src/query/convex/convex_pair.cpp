@@ -60,15 +60,11 @@ struct Feature {
 
 // The features of a triangle that contain all of the vertices.
 Features features_at(const Triangle& triangle, std::span<const std::uint32_t> vertices) {
-  Features result;
-  for (unsigned k = 0; k < 3; ++k) {
-    const std::uint32_t from = triangle[k], to = triangle[k < 2 ? k + 1 : 0];
-    const auto contains = [&](bool with_end) {
-      return std::ranges::all_of(vertices,
-                                 [&](std::uint32_t v) { return v == from || (with_end && v == to); });
-    };
-    if (contains(false)) result.corners |= 1u << k;
-    if (contains(true)) result.sides |= 1u << k;
+  Features result{.corners = 7, .sides = 7};
+  for (const std::uint32_t v : vertices) {
+    const unsigned at = (triangle[0] == v ? 1 : 0) | (triangle[1] == v ? 2 : 0) | (triangle[2] == v ? 4 : 0);
+    const unsigned ends_there = (at >> 1 | at << 2) & 7;  // the sides before these corners
+    result.corners &= at, result.sides &= at | ends_there;
   }
   return result;
 }
@@ -286,8 +282,7 @@ ConvexPair::ConvexPair(const ConvexMesh& o1, const ConvexMesh& o2, const pairs::
       o2_(o2),
       pair_(pair),
       scale_(scale),
-      rounding_(kPosedRounding * (o1.size + scale * o2.size + norm(o1.centre) + scale * norm(o2.centre) +
-                                  norm(pair.pose.offset))) {}
+      rounding_(kPosedRounding * (o1.lengths + scale * o2.lengths + norm(pair.pose.offset))) {}
 
 bool ConvexPair::centres_near() const {
   const double reach = o1_.inner_radius + scale_ * o2_.inner_radius - kMany * rounding_;

@@ -11,10 +11,10 @@
 
 namespace sdm::convex {
 
-/// A vertex of O1 and one of O2, in the frame of O1, and their difference.
+/// A vertex of O1 and one of O2, and their difference in the frame of O1.
 struct SimplexPoint {
   std::array<std::uint32_t, 2> vertices{};
-  Vec3 x1{}, x2{}, w{};
+  Vec3 w{};
 };
 
 /// Up to four points, the last one added last.

@@ -21,7 +21,7 @@ namespace {
 HWY_INLINE std::uint32_t farthest_vertex(const ConvexMesh& mesh, const Vec3& u) {
   const hn::CappedTag<float, ConvexMesh::kBlock> d;
   const hn::RebindToSigned<decltype(d)> di;
-  const std::size_t lanes = hn::Lanes(d), count = mesh.along[0].size();
+  const std::size_t lanes = hn::Lanes(d), count = (mesh.points.size() + lanes - 1) / lanes * lanes;
   const float *x = mesh.along[0].data(), *y = mesh.along[1].data(), *z = mesh.along[2].data();
   const auto ux = hn::Set(d, static_cast<float>(u[0])), uy = hn::Set(d, static_cast<float>(u[1])),
              uz = hn::Set(d, static_cast<float>(u[2]));
@@ -63,8 +63,9 @@ HWY_INLINE std::uint32_t climb(const ConvexMesh& mesh, const Vec3& u, std::uint3
 class SupportSearch {
  public:
   SupportSearch(const SupportRequest& request, Simplex& simplex) : r_(request), known_(simplex) {
+    const double inverse_scale = 1 / r_.scale;
     for (int j = 0; j < 3; ++j)
-      for (int k = 0; k < 3; ++k) turn_[j][k] = r_.pose.rows[k][j] / r_.scale;
+      for (int k = 0; k < 3; ++k) turn_[j][k] = inverse_scale * r_.pose.rows[k][j];
     error_ = r_.o1.height_error + r_.scale * r_.o2.height_error + 4 * r_.rounding;
     size_ = r_.o1.size + r_.scale * r_.o2.size;
   }
@@ -90,9 +91,7 @@ class SupportSearch {
   static constexpr double kConverged = 1e-13, kNoise = 1e-15;
 
   SimplexPoint point_of(std::uint32_t v1, std::uint32_t v2) const {
-    SimplexPoint p{{v1, v2}, r_.o1.points[v1], r_.pose(r_.o2.points[v2]), {}};
-    p.w = p.x1 - p.x2;
-    return p;
+    return {{v1, v2}, r_.o1.points[v1] - r_.pose(r_.o2.points[v2])};
   }
   SimplexPoint support(const Vec3& u) {
     constexpr double kNear = 0.97;  // cosine
