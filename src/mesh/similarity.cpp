@@ -40,9 +40,8 @@ Similarity Similarity::of(const Transform& pose) {
   if (error == 0) {
     if (result.scale != 1)
       for (Vec3& row : r) row = (1 / result.scale) * row;
-    const std::array<Vec3, 3> g = gram(r);
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) error = std::max(error, std::abs(g[i][j] - (i == j ? 1 : 0)));
+      for (int j = i; j < 3; ++j) error = std::max(error, std::abs(dot(r[i], r[j]) - (i == j ? 1 : 0)));
   }
   if (!(error <= kTolerance)) throw Error("a pose is not a rotation with a uniform scale and a translation");
   // Newton's iteration towards the nearest rotation, R ← (3 I − R Rᵀ) R / 2, squares the error.

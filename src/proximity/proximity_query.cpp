@@ -43,8 +43,8 @@ struct ProximityQuery::Impl {
   void begin_anew() { begin({}); }
 
  private:
-  void begin(const pair::KnownAnswers& known) {
-    answers.begin(bodies[0], bodies[1], known);
+  void begin(const pair::Hints& hints) {
+    answers.begin(bodies[0], bodies[1], hints);
     separating_translation.reset();
     if (external_contacts) external_contacts->forget();
   }

@@ -105,9 +105,10 @@ void NearPairs::adopt(std::span<const Sweep::Pair> found) {
       next_.push_back(*before++);
       continue;
     }
-    const pair::KnownAnswers hints = listed ? states_[before->state].known.hints() : pair::KnownAnswers{};
+    const pair::Hints hints = listed ? states_[before->state].known.hints() : pair::Hints{};
     const std::uint32_t state = listed ? (before++)->state : new_state();
-    states_[state] = {.known = hints};
+    states_[state] = {};
+    states_[state].known.forget(hints);
     next_.push_back({.pair = pair, .state = state, .gap = box_distance(boxes_[pair[0]], boxes_[pair[1]])});
   }
   drop_until([](const Sweep::Pair&) { return false; });

@@ -74,7 +74,7 @@ class PosedShape {
 
   shape::PosedBody body_;
   pair::PairAnswers answers_;
-  std::vector<pair::KnownAnswers> hints_;  // of the last pose, for each obstacle
+  std::vector<pair::Hints> hints_;  // of the last pose, for each obstacle
   std::size_t last_hit_ = 0;
 };
 

@@ -7,7 +7,7 @@ namespace sdm::motion {
 
 void MovingPair::set_time(double time) {
   for (int body = 0; body < 2; ++body) bodies_[body].set_pose(motions_[body]->at(time));
-  const pair::KnownAnswers hints = begun_ ? answers_.known().hints() : pair::KnownAnswers{};
+  const pair::Hints hints = begun_ ? answers_.known().hints() : pair::Hints{};
   answers_.begin(bodies_[0], bodies_[1], hints);
   begun_ = true;
 }

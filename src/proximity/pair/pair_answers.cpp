@@ -17,6 +17,8 @@ namespace {
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 mesh::Similarity between(const mesh::Similarity& from, const mesh::Similarity& to) {
+  if (to.map == Affine{}) return from;
+  if (from.map == Affine{}) return {inverse(to.map), 1 / to.scale};
   return {inverse(to.map) * from.map, from.scale / to.scale};
 }
 
@@ -33,14 +35,25 @@ void check_options(double contact_margin, const std::optional<double>& depth_pre
 }
 
 void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const KnownAnswers& known) {
-  bodies_ = {&o1, &o2};
   known_ = known;
+  set_bodies(o1, o2);
+}
+void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const Hints& hints) {
+  known_.forget(hints);
+  set_bodies(o1, o2);
+}
+
+void PairAnswers::set_bodies(const shape::PosedBody& o1, const shape::PosedBody& o2) {
+  bodies_ = {&o1, &o2};
   contacts_.reset();
   to_other_[1] = between(o2.pose(), o1.pose());
   first_to_other_known_ = false;
-  Box box = o1.box();
-  extend(box, o2.box());
-  precision_ = 1e-6 * diagonal(box);
+}
+
+double PairAnswers::precision() const {
+  Box box = bodies_[0]->box();
+  extend(box, bodies_[1]->box());
+  return 1e-6 * diagonal(box);
 }
 
 const std::array<mesh::Similarity, 2>& PairAnswers::to_other() {
@@ -76,7 +89,7 @@ const std::optional<BoundedLength>& PairAnswers::penetration_depth() {
 std::span<const Contact> PairAnswers::contacts() {
   if (!contacts_ && !within(contact_margin_)) contacts_ = std::span<const Contact>();
   if (!contacts_)
-    contacts_ = contact_finder_.find(bodies_, meshes(), to_other(), contact_margin_, precision_);
+    contacts_ = contact_finder_.find(bodies_, meshes(), to_other(), contact_margin_, precision());
   return *contacts_;
 }
 
@@ -155,8 +168,8 @@ std::optional<BoundedLength> PairAnswers::depth() {
       bodies_, to_other(), depth_precision_.value_or(ProximityOptions::kDepthPrecision * size));
   return BoundedLength{{.value = found.value,
                         .certainty = Certainty::bounded,
-                        .lower = std::max(0.0, found.lower - precision_),
-                        .upper = found.upper + precision_},
+                        .lower = std::max(0.0, found.lower - precision()),
+                        .upper = found.upper + precision()},
                        found.points};
 }
 

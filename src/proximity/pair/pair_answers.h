@@ -20,22 +20,28 @@ void check_options(double contact_margin, const std::optional<double>& depth_pre
 
 using pairs::FacePair, pairs::kNoFaces;
 
-/// What is known of two bodies in their poses.
-struct KnownAnswers {
-  /// The closest faces, or faces that intersect, if the separation is known; otherwise a hint.
+/// What helps in a similar pose.
+struct Hints {
+  /// The closest faces, or faces that intersect, if the separation is known.
   FacePair closest_faces = kNoFaces;
-  FacePair common_faces = kNoFaces;    ///< faces that intersect in this or a similar pose: a hint
-  convex::Simplex closest_vertices{};  ///< of two convex solids: a hint
+  FacePair common_faces = kNoFaces;    ///< faces that intersect
+  convex::Simplex closest_vertices{};  ///< of two convex solids
+};
+
+/// What is known of two bodies in their poses.
+struct KnownAnswers : Hints {
   double beyond = -1;                  ///< the surfaces are farther apart than this
   std::optional<bool> intersecting{};  ///< the surfaces
   std::optional<bool> colliding{};
   std::optional<BoundedLength> separation{};
   std::optional<std::optional<BoundedLength>> depth{};
 
-  /// What helps in a similar pose.
-  [[nodiscard]] KnownAnswers hints() const {
-    return {
-        .closest_faces = closest_faces, .common_faces = common_faces, .closest_vertices = closest_vertices};
+  [[nodiscard]] const Hints& hints() const { return *this; }
+  /// Keeps only hints.
+  void forget(const Hints& hints) {
+    static_cast<Hints&>(*this) = hints;
+    beyond = -1;
+    intersecting.reset(), colliding.reset(), separation.reset(), depth.reset();
   }
 };
 
@@ -53,9 +59,10 @@ class PairAnswers {
   /// Sets the bodies to which the results refer. They must outlive this object and remain unchanged until the
   /// next call.
   ///
-  /// `known`: what known() returned for the bodies as they are, or only hints(), of a similar pose.
-  /// These change how long results take, not the results.
-  void begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const KnownAnswers& known = {});
+  /// `known`: what known() returned for the bodies as they are. `hints`: of a similar pose. These change how
+  /// long results take, not the results.
+  void begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const KnownAnswers& known);
+  void begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const Hints& hints = {});
 
   /// Whether the surfaces are at most this far apart, > 0; the separation is then known.
   [[nodiscard]] bool surfaces_within(double distance);
@@ -75,7 +82,10 @@ class PairAnswers {
   /// Of two convex solids.
   [[nodiscard]] std::optional<convex::ConvexPair> convex_pair(const pairs::MeshPair& meshes) const;
   [[nodiscard]] bool find_collision();
+  void set_bodies(const shape::PosedBody& o1, const shape::PosedBody& o2);
   [[nodiscard]] const std::array<mesh::Similarity, 2>& to_other();
+  /// The error of a computed distance.
+  [[nodiscard]] double precision() const;
   bool find_closest(double bound);
   [[nodiscard]] bool surfaces_intersect();
   [[nodiscard]] std::optional<BoundedLength> depth();
@@ -85,7 +95,6 @@ class PairAnswers {
   std::array<const shape::PosedBody*, 2> bodies_{};
   std::array<mesh::Similarity, 2> to_other_;  // from the frame of each body to that of the other
   bool first_to_other_known_ = false;         // the first of these is computed when it is needed
-  double precision_ = 0;                      // error of a computed distance
   contacts::ContactFinder contact_finder_;
   pairs::PairWorkspace workspace_;
   depth::DepthSearch depth_search_;
