@@ -9,14 +9,13 @@
 
 #include "core/checksum.h"
 #include "core/memory.h"
-#include "geometry/vec.h"
 #include "io/file/error_prefix.h"
 #include "io/file/file_bytes.h"
 #include "io/file/file_xxh3.h"
 #include "io/mesh/frames/changing_mesh.h"
 #include "io/mesh/frames/frame_source.h"
+#include "io/mesh/frames/welded_frames.h"
 #include "io/mesh/read_polygons.h"
-#include "mesh/validate.h"
 
 namespace sdm::io {
 namespace {
@@ -65,14 +64,10 @@ namespace sdm {
 struct MeshSequence::Impl {
   std::string input;
   std::unique_ptr<io::FrameSource> source;
-  Mesh mesh;                              // the first frame
-  std::vector<std::uint32_t> renumbered;  // the vertex of mesh for each vertex in the files, or kNone
-  double weld_tolerance = 0;              // how far apart welded vertices may move
-  std::vector<Vec3> file_positions, positions;
-  std::optional<io::ChangingMesh> changing;  // instead of the above, if the topology may change
+  std::optional<io::WeldedFrames> welded;
+  std::optional<io::ChangingMesh> changing;  // in its place, if the topology may change
 
   void open(const SequenceOptions& options);
-  void read(std::size_t frame);
 };
 
 void MeshSequence::Impl::open(const SequenceOptions& options) {
@@ -82,34 +77,8 @@ void MeshSequence::Impl::open(const SequenceOptions& options) {
     io::with_error_prefix(source->polygons_name(), [&] { changing.emplace(std::move(polygons)); });
     return;
   }
-  mesh = io::with_error_prefix(source->polygons_name(), [&] { return io::to_mesh(polygons, renumbered); });
-  constexpr double kWeld = 1e-6;
-  weld_tolerance = kWeld * diagonal(bounds(mesh));
-  io::with_error_prefix(source->count() > 1 ? source->name(0) : "", [&] {
-    read(0);
-    mesh.positions = positions;
-    validate(mesh);
-  });
-}
-
-void MeshSequence::Impl::read(std::size_t frame) {
-  source->read(frame, file_positions);
-  positions.resize(mesh.positions.size());
-  std::size_t found = 0;  // vertices are numbered in the order of the files
-  for (std::size_t v = 0; v < file_positions.size(); ++v) {
-    const std::uint32_t vertex = renumbered[v];
-    if (vertex == kNone) continue;
-    if (!finite(file_positions[v])) throw Error(fmt::format("vertex {} has a NaN or infinite coordinate", v));
-    if (vertex == found)
-      positions[found++] = file_positions[v];
-    else if (norm(file_positions[v] - positions[vertex]) > weld_tolerance)
-      throw Error(
-          fmt::format("vertex {} has moved away from one that it coincides with in the first frame; such "
-                      "vertices must stay "
-                      "together",
-                      v));
-  }
-  mesh::validate_positions(positions);
+  io::with_error_prefix(source->polygons_name(), [&] { welded.emplace(*source, polygons); });
+  io::with_error_prefix(source->count() > 1 ? source->name(0) : "", [&] { welded->begin(); });
 }
 
 MeshSequence::MeshSequence(const std::string& input, const SequenceOptions& options) try
@@ -126,7 +95,7 @@ MeshSequence::MeshSequence(MeshSequence&&) noexcept = default;
 MeshSequence& MeshSequence::operator=(MeshSequence&&) noexcept = default;
 
 const Mesh& MeshSequence::mesh() const {
-  return impl_->changing ? impl_->changing->mesh() : impl_->mesh;
+  return impl_->changing ? impl_->changing->mesh() : impl_->welded->mesh();
 }
 
 const TopologyChange& MeshSequence::change() const {
@@ -155,13 +124,12 @@ std::span<const Vec3> MeshSequence::positions(std::size_t frame) try {
     throw Error(
         fmt::format("{}: there is no frame {}; the sequence has {}", impl_->input, frame, frame_count()));
   if (frame_count() == 1) return mesh().positions;
-  io::with_error_prefix(fmt::format("{}: frame {} ({})", impl_->input, frame, frame_name(frame)), [&] {
-    if (impl_->changing)
-      impl_->changing->follow(impl_->source->polygons_of(frame));
-    else
-      impl_->read(frame);
+  const std::string name = fmt::format("{}: frame {} ({})", impl_->input, frame, frame_name(frame));
+  return io::with_error_prefix(name, [&]() -> std::span<const Vec3> {
+    if (!impl_->changing) return impl_->welded->read(frame);
+    impl_->changing->follow(impl_->source->polygons_of(frame));
+    return mesh().positions;
   });
-  return impl_->changing ? mesh().positions : impl_->positions;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a frame of a sequence");
 }

@@ -19,6 +19,13 @@ bool same(const Vec2& a, const Vec2& b) {
 
 }  // namespace
 
+std::vector<std::uint32_t> drawn_faces(const Mesh& mesh) {
+  std::vector<std::uint32_t> faces;
+  for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face)
+    if (const auto& [a, b, c] = mesh.triangles[face]; a != b && b != c && c != a) faces.push_back(face);
+  return faces;
+}
+
 ModelVertices model_vertices(const Surface& surface, const ShadingNormals& normals,
                              std::span<const std::uint32_t> faces, const MeshAttribute* tangents) {
   const auto charts = surface.face_charts();

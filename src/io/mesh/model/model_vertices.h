@@ -22,6 +22,9 @@ struct ModelVertices {
   std::vector<Triangle> triangles;     ///< of these vertices, in the order of the faces
 };
 
+/// The faces whose corners are not the same vertex, which the validator of glTF reports.
+[[nodiscard]] std::vector<std::uint32_t> drawn_faces(const Mesh& mesh);
+
 /// The vertices of some faces of the surface, in the order of their first use. `tangents`: null, or the
 /// tangents() of the surface. Cost: linear.
 [[nodiscard]] ModelVertices model_vertices(const Surface& surface, const ShadingNormals& normals,

@@ -73,14 +73,6 @@ void set_texture(tinygltf::Material& material, BakeChannel channel, int texture)
   }
 }
 
-// Faces whose corners are not the same vertex, which the validator reports.
-std::vector<std::uint32_t> drawn_faces(const Mesh& mesh) {
-  std::vector<std::uint32_t> faces;
-  for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face)
-    if (const auto& [a, b, c] = mesh.triangles[face]; a != b && b != c && c != a) faces.push_back(face);
-  return faces;
-}
-
 /// Throws sdm::Error unless each corner of a face has a row of that many numbers.
 void require_rows(const Mesh& mesh, const MeshAttribute& attribute, std::size_t components) {
   const std::size_t rows = attribute.values.size() / components;

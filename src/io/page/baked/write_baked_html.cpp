@@ -30,13 +30,6 @@ using Json = nlohmann::ordered_json;
 constexpr double kStepsPerTexel = 64;
 constexpr int kBitsOfPositions = 18;  // a quarter of a millimetre in a building
 
-std::vector<std::uint32_t> drawn_faces_of(const Mesh& mesh) {
-  std::vector<std::uint32_t> faces;
-  for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face)
-    if (is_visible(mesh.triangles[face])) faces.push_back(face);
-  return faces;
-}
-
 /// A tangent as octahedral(), and above these 16 bits whether w is −1.
 std::uint32_t packed_tangent(const MeshAttribute& tangents, std::uint32_t row) {
   const float* const t = &tangents.values[4 * std::size_t{row}];
@@ -50,7 +43,7 @@ Json add_coarse(PackedArrays& arrays, const Surface& surface, const BakedModelOp
   const Mesh& mesh = surface.mesh();
   const ShadingNormals normals =
       options.normals != nullptr ? mesh::sheet_normals(mesh, *options.normals) : shading_normals(mesh);
-  const ModelVertices vertices = model_vertices(surface, normals, drawn_faces_of(mesh), options.tangents);
+  const ModelVertices vertices = model_vertices(surface, normals, drawn_faces(mesh), options.tangents);
   const FaceWalk walk = walk_over(vertices.triangles, vertices.normal.size());
   std::vector<std::uint32_t> position, normal, place, tangent;
   for (const std::uint32_t v : walk.vertex) {
