@@ -1,39 +1,22 @@
 // Meshes from the contents of files.
-#include <sdm/error.h>
 #include <sdm/io.h>
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
 #include "core/checksum.h"
-#include "io/file/error_prefix.h"
 #include "io/mesh/mesh_file.h"
 #include "io/mesh/read_polygons.h"
-#include "module/arguments.h"
 #include "module/given_files.h"
 #include "module/result.h"
 
 namespace sdm::js {
 namespace {
 
-/// Files whose names, and whose contents, follow each other; `lengths`: of each name and its contents.
-std::map<std::string, std::string_view> given_files(const char* names, const char* contents,
-                                                    std::span<const std::uint32_t> lengths) {
-  std::map<std::string, std::string_view> files;
-  for (std::size_t i = 0; i + 1 < lengths.size(); i += 2) {
-    const std::string name(names, lengths[i]);
-    files[std::filesystem::path(name).lexically_normal().string()] = {contents, lengths[i + 1]};
-    names += lengths[i], contents += lengths[i + 1];
-  }
-  return files;
-}
-
-MeshFile read_file(std::string_view bytes, const std::string& name) {
-  return io::with_error_prefix(name, [&] {
-    if (bytes.empty()) throw Error("the file is empty");
+MeshFile read_file(const FileArguments& arguments) {
+  return with_given_files(arguments, [](std::string_view bytes, const std::string& name) {
     MeshFile file = io::to_mesh_file(io::read_polygons(bytes, name), {});
     core::Checksum checksum;
     checksum.add(std::span<const char>(bytes));
@@ -51,8 +34,7 @@ Result* read_mesh_contents(const char* bytes, std::uint32_t size, const char* na
                            const char* names, const char* contents, const std::uint32_t* lengths,
                            std::uint32_t files) {
   return guarded([&](Result& result) {
-    const GivenFiles given(given_files(names, contents, {lengths, 2 * files}));
-    MeshFile file = read_file({bytes, size}, {name, name_size});
+    MeshFile file = read_file({bytes, size, name, name_size, names, contents, lengths, files});
     nlohmann::ordered_json facts{
         {"names", nlohmann::json::array()}, {"notes", file.notes}, {"xxh3", file.xxh3}};
     file.names.resize(std::min(file.names.size(), Result::kMostArrays - 4));

@@ -26,6 +26,18 @@ GivenFiles::~GivenFiles() {
   given = nullptr;
 }
 
+std::map<std::string, std::string_view> FileArguments::others() const {
+  std::map<std::string, std::string_view> all;
+  const char *other = names, *content_of_other = contents;
+  for (std::size_t i = 0; i < 2 * std::size_t{files}; i += 2) {
+    const std::string path_of_other(other, lengths[i]);
+    all[std::filesystem::path(path_of_other).lexically_normal().string()] = {content_of_other,
+                                                                             lengths[i + 1]};
+    other += lengths[i], content_of_other += lengths[i + 1];
+  }
+  return all;
+}
+
 }  // namespace sdm::js
 
 // What the readers call of src/io, for these files.

@@ -53,8 +53,9 @@ Reported report_of(const DistanceMap& map, const Surface& surface, const Sites& 
   const auto words = nlohmann::json::parse(std::string_view(choices.words, choices.words_size));
   const std::string units = words.at("units");
   Reported result;
-  result.at_vertices = distances_at_vertices(surface.mesh(), sites,
-                                             {.sign = map.sign.method, .max_distance = choices.max_distance});
+  result.at_vertices = distances_at_vertices(
+      surface.mesh(), sites,
+      {.sign = map.sign.method, .max_distance = choices.max_distance, .facing = map.measured.facing});
   Summary summary =
       summarize(surface, sites, map, result.at_vertices, summary_options(surface, sites, choices, units));
   std::ranges::move(notes_on(bounds(surface.mesh()), bounds(sites.mesh())),

@@ -6,7 +6,13 @@ import { SdmPool } from './pool.js';
 import { SdmWorker } from './remote.js';
 
 export * from './types.js';
+export type { Animation, ReadAnimationOptions } from './animation.js';
 export type { Sdm } from './library.js';
+export type { Look, Picture } from './look.js';
+export { kMatchKinds } from './matches.js';
+export type {
+  BakeChannel, BakedLook, BakedTexture, DrawnModel, MatchArrays, MatchCounts, MatchMethod, MatchOptions, Matches, NormalOptions,
+} from './matches.js';
 export type { FaceNames, MeshFile, ReadMeshOptions } from './mesh_file.js';
 export type { PoolMap, PoolMapOptions, PoolSites, PoolSurface, SdmPool } from './pool.js';
 export type { Colormap, MapSummary, ReportOptions, SummaryOptions } from './report.js';
@@ -14,7 +20,9 @@ export type {
   Atlas, ClosestPoints, Contacts, DistanceMap, Hausdorff, MapOptions, MapStatistics, MapValues, Pair, RayHits, SignedDistances, Sites,
   Surface, SurfaceOptions,
 } from './surface.js';
-export type { CallOptions, SdmWorker, WorkerMap, WorkerPair, WorkerSites, WorkerSurface } from './remote.js';
+export type {
+  CallOptions, SdmWorker, WorkerAnimation, WorkerLook, WorkerMap, WorkerMatches, WorkerPair, WorkerSites, WorkerSurface,
+} from './remote.js';
 
 export interface StartOptions {
   /**

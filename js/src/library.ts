@@ -1,4 +1,7 @@
 // The library in one module, for those who may wait.
+import { Animation, type ReadAnimationOptions } from './animation.js';
+import { Look } from './look.js';
+import { type MatchOptions, Matches } from './matches.js';
 import { type MeshFile, type ReadMeshOptions, readMesh } from './mesh_file.js';
 import { type Module } from './module.js';
 import * as bound from './surface.js';
@@ -36,6 +39,18 @@ export class Sdm {
    */
   readMesh(bytes: Uint8Array | ArrayBuffer, name: string, options: ReadMeshOptions = {}): MeshFile {
     return readMesh(this.module, bytes, name, options);
+  }
+  /** How the faces of a mesh file look, as readMesh() numbers them. Of the module `full` only. */
+  readLook(bytes: Uint8Array | ArrayBuffer, name: string, options: ReadMeshOptions = {}): Look {
+    return new Look(this.module, bytes, name, options);
+  }
+  /** The animation of the morph targets of a glTF file; null if the file has no animation. Of the module `full` only. */
+  readAnimation(bytes: Uint8Array | ArrayBuffer, name: string, options: ReadAnimationOptions = {}): Animation | null {
+    return Animation.read(this.module, bytes, name, options);
+  }
+  /** Finds, for each texel of a surface, the point of the sites that belongs to it. Of the module `full` only. */
+  match(surface: bound.Surface, sites: bound.Sites, options: MatchOptions = {}): Matches {
+    return new Matches(this.module, surface, sites, options);
   }
   /** Ends its threads. Its objects cannot be used any more. */
   stop(): void {

@@ -48,12 +48,17 @@ function packed(files: Record<string, Uint8Array | ArrayBuffer>): [names: Uint8A
     Uint32Array.from(parts.flatMap(([name, data]) => [name.length, data.length]))];
 }
 
-export function readMesh(module: Module, bytes: Uint8Array | ArrayBuffer, name: string, options: ReadMeshOptions): MeshFile {
-  if (!module.has('sdm_read_mesh')) throw new SdmError('input', 'readMesh needs the module of start({ full: true })');
+/** @internal What the readers of the module take: a file, its name, and the files that it may refer to. */
+export function fileArguments(module: Module, call: string, bytes: Uint8Array | ArrayBuffer, name: string, { files }: ReadMeshOptions) {
+  if (!module.has('sdm_read_mesh')) throw new SdmError('input', `${call} needs the module of start({ full: true })`);
   const file = bytesOf(bytes), path = new TextEncoder().encode(name);
-  const [names, contents, lengths] = packed(options.files ?? {});
+  const [names, contents, lengths] = packed(files ?? {});
+  return [file, file.length, path, path.length, names, contents, lengths, lengths.length / 2];
+}
+
+export function readMesh(module: Module, bytes: Uint8Array | ArrayBuffer, name: string, options: ReadMeshOptions): MeshFile {
   const [positions, indices, uvs, facts, ...ofFaces] = module.call(
-    'sdm_read_mesh', [file, file.length, path, path.length, names, contents, lengths, lengths.length / 2], options.progress);
+    'sdm_read_mesh', fileArguments(module, 'readMesh', bytes, name, options), options.progress);
   const said = JSON.parse(text(facts!)) as { names: { kind: string; names: string[] }[]; notes: string[]; xxh3: string };
   return {
     positions: float64(positions!),

@@ -1,5 +1,8 @@
 // The library in a worker: calls return promises, and signals abort them.
 import { type AnyWorker, newWorker, started } from './any_worker.js';
+import { type ReadAnimationOptions } from './animation.js';
+import { type Picture } from './look.js';
+import { type BakedLook, type DrawnModel, type MatchArrays, type MatchCounts, type MatchOptions, type NormalOptions } from './matches.js';
 import { type MeshFile, type ReadMeshOptions } from './mesh_file.js';
 import { type ModuleName } from './module.js';
 import { type Reference, type Reply, type Request, type Started, type WorkerStart } from './protocol.js';
@@ -391,6 +394,80 @@ export class WorkerMap extends Remote {
   }
 }
 
+/** The look of a mesh file in a worker. */
+export class WorkerLook extends Remote {
+  readonly hasMaterials: boolean;
+  readonly hasColors: boolean;
+  readonly hasNormals: boolean;
+
+  /** @internal */
+  constructor(connection: Connection, made: Made) {
+    super(connection, made);
+    const { fields } = made;
+    [this.hasMaterials, this.hasColors, this.hasNormals] = ['hasMaterials', 'hasColors', 'hasNormals'].map((name) => fields[name]) as [boolean, boolean, boolean];
+  }
+  textures(): Promise<{ name: string; bytes: Uint8Array<ArrayBuffer> }[]> {
+    return this.call('textures', []);
+  }
+  notes(): Promise<string[]> {
+    return this.call('notes', []);
+  }
+  setPicture(texture: number, picture: Picture, options?: CallOptions): Promise<void> {
+    return this.call('setPicture', [texture, picture], options);
+  }
+}
+
+/** Matches in a worker. */
+export class WorkerMatches extends Remote {
+  readonly resolution: number;
+  readonly rows: number;
+
+  /** @internal Keeps the surface and the sites from being collected before it. */
+  constructor(connection: Connection, made: Made, /** @internal */ readonly surface: WorkerSurface, /** @internal */ readonly sites: WorkerSites) {
+    super(connection, made);
+    const { fields } = made;
+    [this.resolution, this.rows] = [fields['resolution'] as number, fields['rows'] as number];
+  }
+  counts(): Promise<MatchCounts> {
+    return this.call('counts', []);
+  }
+  arrays(): Promise<MatchArrays> {
+    return this.call('arrays', []);
+  }
+  transfer(
+    values: ArrayLike<number>, options?: { components?: number; domain?: 'vertex' | 'face' | 'corner'; fill?: boolean } & CallOptions,
+  ): Promise<Float32Array> {
+    return this.call('transfer', [values], options);
+  }
+  bake(look: WorkerLook, options?: CallOptions): Promise<BakedLook> {
+    return this.call('bake', [look], options);
+  }
+  normals(options: Options<Omit<NormalOptions, 'look'>> & { look?: WorkerLook | undefined } = {}): Promise<Uint8Array> {
+    const { look, ...others } = options;
+    return this.call('normalsOf', [look ?? null], others);
+  }
+  model(options?: { tangents?: boolean } & CallOptions): Promise<DrawnModel> {
+    return this.call('model', [], options);
+  }
+}
+
+/** An animation in a worker. */
+export class WorkerAnimation extends Remote {
+  readonly frames: number;
+
+  /** @internal */
+  constructor(connection: Connection, made: Made) {
+    super(connection, made);
+    this.frames = made.fields['frames'] as number;
+  }
+  mesh(): Promise<{ positions: Float64Array; indices: Uint32Array }> {
+    return this.call('mesh', []);
+  }
+  positions(frame: number): Promise<Float64Array> {
+    return this.call('positions', [frame]);
+  }
+}
+
 /** Two bodies in a worker. */
 export class WorkerPair extends Remote {
   setPose(body: 0 | 1, matrix: ArrayLike<number>): Promise<void> {
@@ -452,6 +529,20 @@ export class SdmWorker {
   /** Reads a mesh file. Of the module `full` only. */
   readMesh(bytes: Uint8Array | ArrayBuffer, name: string, options: Options<ReadMeshOptions> = {}): Promise<MeshFile> {
     return this.connection.call(null, 'readMesh', [bytes, name], { ...options });
+  }
+  /** As of Sdm. */
+  async readLook(bytes: Uint8Array | ArrayBuffer, name: string, options: Options<ReadMeshOptions> = {}): Promise<WorkerLook> {
+    return new WorkerLook(this.connection, await this.connection.call(null, 'readLook', [bytes, name], { ...options }));
+  }
+  /** As of Sdm: null if the file has no animation. */
+  async readAnimation(bytes: Uint8Array | ArrayBuffer, name: string, options: Options<ReadAnimationOptions> = {}): Promise<WorkerAnimation | null> {
+    const made = await this.connection.call(null, 'readAnimation', [bytes, name], { ...options });
+    return made && new WorkerAnimation(this.connection, made);
+  }
+  /** As of Sdm. */
+  async match(surface: WorkerSurface, sites: WorkerSites, options: Options<MatchOptions> = {}): Promise<WorkerMatches> {
+    const made = await this.connection.call(null, 'match', [surface, sites], { ...options });
+    return new WorkerMatches(this.connection, made, surface, sites);
   }
   /** What the module has taken from the system. */
   memoryBytes(): Promise<number> {

@@ -1,0 +1,175 @@
+// The points of O2 that belong to the texels of O1, and what O2 has there.
+import { type Bytes, float32, float64, uint32, wordNumber } from './bytes.js';
+import { type Look } from './look.js';
+import { type Module } from './module.js';
+import { Owned, type Sites, type Surface } from './surface.js';
+import { type NumberArray, type Progress, SdmError } from './types.js';
+
+/** `closest`: the closest point; `facing`: the closest one of the faces that face as the texel does; `ray`: the nearest hit along the normal. */
+export type MatchMethod = 'closest' | 'facing' | 'ray';
+const kMethods: readonly MatchMethod[] = ['closest', 'facing', 'ray'];
+
+export interface MatchOptions {
+  /** `facing` by default: unlike `closest`, it does not find the other skin of a thin wall. */
+  method?: MatchMethod;
+  /** Of `facing` and `ray`, in degrees: the normals of the faces that are allowed are within it of the texel's; 90 by default. */
+  facing?: number;
+  /** Of `ray`: how far along the normal, to either side, hits are searched for. */
+  cage?: number;
+  /** Points farther away do not match. */
+  maxDistance?: number;
+  progress?: Progress;
+}
+
+/** How many texels have a point of each kind, and how many have none. */
+export interface MatchCounts {
+  closest: number;
+  facing: number;
+  ray: number;
+  /** Without a point: nothing is within the largest distance. */
+  tooFar: number;
+  /** Without a point: no face faces as the texel does. */
+  facingAway: number;
+}
+
+/** The kinds of texels in MatchArrays. */
+export const kMatchKinds = ['none', 'closest', 'facing', 'ray', 'tooFar', 'facingAway'] as const;
+
+export interface MatchArrays {
+  /** Of each texel, a number of kMatchKinds; `none`: no face of O1 owns the texel. */
+  kinds: Uint8Array;
+  /** Of O2; 4294967295: no point. */
+  faces: Uint32Array;
+  /** The shares of the second and the third corner of the face. */
+  barycentric: Float32Array;
+}
+
+export type BakeChannel = 'base_color' | 'metallic_roughness' | 'occlusion' | 'emissive';
+const kChannels: readonly BakeChannel[] = ['base_color', 'metallic_roughness', 'occlusion', 'emissive'];
+
+/** A texture, as glTF has it: colours in sRGB, roughness in green and metallic in blue, occlusion in grey. */
+export interface BakedTexture {
+  channel: BakeChannel;
+  /** Of a texel: 1, 3 or 4. */
+  components: number;
+  /** Row after row from the top. */
+  data: Uint8Array;
+}
+
+/** Textures, and the material of what is not in them. */
+export interface BakedLook {
+  textures: BakedTexture[];
+  material: {
+    baseColor: [number, number, number, number];
+    emissive: [number, number, number];
+    metallic: number;
+    roughness: number;
+    alphaMode: 'opaque' | 'mask' | 'blend';
+    alphaCutoff: number;
+  };
+}
+
+export interface NormalOptions {
+  /** As glTF has it, for the model with tangents; otherwise (1 + x) / 2 and so on of the coordinates of the meshes. */
+  tangentSpace?: boolean;
+  /** Whose normals are taken, if its file has some; without it, smooth ones of O2's mesh, up to a crease of 40°. */
+  look?: Look;
+  /** The pose of O2 by which the normals of `look` are turned: 16 numbers, column after column. */
+  pose?: ArrayLike<number>;
+  progress?: Progress;
+}
+
+/** The vertices that O1 is drawn with: one for each normal and each place in the atlas of each vertex of the mesh. */
+export interface DrawnModel {
+  /** Relative to `origin`. */
+  positions: Float32Array;
+  normals: Float32Array;
+  /** From 0 to 1, v down, as glTF has it. */
+  uvs: Float32Array;
+  /** Four numbers each, by MikkTSpace; null: they were not asked for. */
+  tangents: Float32Array | null;
+  indices: Uint32Array;
+  origin: [number, number, number];
+}
+
+/** For each texel of a surface, the point of O2 whose colours, normals and numbers belong there. Of the module `full` only. */
+export class Matches extends Owned {
+  readonly resolution: number;
+  readonly rows: number;
+  private readonly numbers: MatchCounts;
+
+  constructor(module: Module, private readonly surface: Surface, private readonly sites: Sites, options: MatchOptions = {}) {
+    if (!module.has('sdm_match')) throw new SdmError('input', 'matches need the module of start({ full: true })');
+    const method = wordNumber(kMethods, options.method ?? 'facing', 'method');
+    const [address, numbers] = module.call('sdm_match', [
+      surface.handleIn(module), sites.handleIn(module), method, options.facing ?? 90, options.cage ?? Infinity, options.maxDistance ?? Infinity,
+    ], options.progress);
+    super(module, float64(address!)[0]!, 'sdm_free_matches');
+    const [resolution, rows, closest, facing, ray, tooFar, facingAway] = Array.from(float64(numbers!)) as [number, number, number, number, number, number, number];
+    [this.resolution, this.rows] = [resolution, rows];
+    this.numbers = { closest, facing, ray, tooFar, facingAway };
+  }
+
+  counts(): MatchCounts {
+    return { ...this.numbers };
+  }
+  arrays(): MatchArrays {
+    const [kinds, faces, barycentric] = this.module.call('sdm_match_arrays', [this.handle]) as [Bytes, Bytes, Bytes];
+    return { kinds, faces: uint32(faces), barycentric: float32(barycentric) };
+  }
+
+  /**
+   * Values of the sites' mesh at the points: of its vertices or corners, interpolated, or of its faces; `components` numbers each, NaN
+   * without a point. Texels that no face owns are filled from their surroundings, unless `fill` is false.
+   */
+  transfer(values: ArrayLike<number>, options: { components?: number; domain?: 'vertex' | 'face' | 'corner'; fill?: boolean; progress?: Progress } = {}): Float32Array {
+    const rows: NumberArray = values instanceof Float32Array ? values : Float32Array.from(values);
+    const domain = wordNumber(['vertex', 'face', 'corner'], options.domain ?? 'vertex', 'domain');
+    const [result] = this.module.call(
+      'sdm_transfer_matches', [...this.addresses(), rows, rows.length, options.components ?? 1, domain, options.fill === false ? 0 : 1], options.progress);
+    return float32(result!);
+  }
+
+  /** The textures of a look at the points: base colours, and what else differs between them. Texels without a point are filled. */
+  bake(look: Look, options: { progress?: Progress } = {}): BakedLook {
+    const [channels, factors, ...pictures] = this.module.call('sdm_bake', [...this.addresses(), look.handleIn(this.module)], options.progress);
+    const f = Array.from(float64(factors!)) as [number, number, number, number, number, number, number, number, number, number, number];
+    const kinds = uint32(channels!);
+    return {
+      textures: pictures.map((data, i) => ({ channel: kChannels[kinds[2 * i]!]!, components: kinds[2 * i + 1]!, data })),
+      material: {
+        baseColor: [f[0], f[1], f[2], f[3]], emissive: [f[4], f[5], f[6]], metallic: f[7], roughness: f[8],
+        alphaMode: (['opaque', 'mask', 'blend'] as const)[f[9]]!, alphaCutoff: f[10],
+      },
+    };
+  }
+
+  /** The normals of O2 at the points as a picture: red, green and blue of each texel. Texels without a point are filled. */
+  normals(options: NormalOptions = {}): Uint8Array {
+    const { look, pose } = options;
+    if (pose && pose.length !== 16) throw new SdmError('input', `a pose is a matrix of 16 numbers, not ${pose.length}`);
+    const rotation = Float64Array.from({ length: 9 }, (_, i) => (pose ? pose[(i % 3) * 4 + Math.floor(i / 3)]! : i % 4 === 0 ? 1 : 0));
+    const [picture] = this.module.call(
+      'sdm_bake_normals', [...this.addresses(), look ? look.handleIn(this.module) : 0, rotation, options.tangentSpace ? 1 : 0], options.progress);
+    return picture!;
+  }
+
+  /** @internal As a worker calls it: references are no options. */
+  normalsOf(look: Look | null, options: NormalOptions): Uint8Array {
+    return this.normals({ ...options, ...(look ? { look } : {}) });
+  }
+
+  /** What the textures are drawn on. */
+  model(options: { tangents?: boolean } = {}): DrawnModel {
+    const [positions, normals, uvs, tangents, indices, origin] = this.module.call(
+      'sdm_drawn_model', [this.surface.handleIn(this.module), options.tangents ? 1 : 0]) as [Bytes, Bytes, Bytes, Bytes, Bytes, Bytes];
+    return {
+      positions: float32(positions), normals: float32(normals), uvs: float32(uvs), tangents: options.tangents ? float32(tangents) : null,
+      indices: uint32(indices), origin: Array.from(float64(origin)) as [number, number, number],
+    };
+  }
+
+  private addresses(): [number, number, number] {
+    return [this.surface.handleIn(this.module), this.sites.handleIn(this.module), this.handle];
+  }
+}
