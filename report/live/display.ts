@@ -94,7 +94,7 @@ export class Display {
           return view.canvas.toDataURL('image/png');
         },
         csv: () => csvOf(session.report!, session.pair!.callouts.all),
-        model: () => glbOf(session.pair!.subject.surface.layout, this.state!.scale, SDM_COLORS, kUp),
+        model: () => glbOf(session.pair!.subject.surface.layout, this.state!.scale, SDM_COLORS, kUp, session.units),
         report: () => session.inOrder(() => session.engine.html(session.tolerance, session.units, kUp)),
       },
       (error) => session.fault(error),

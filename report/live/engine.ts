@@ -1,14 +1,17 @@
 // What is computed for the page, in a worker: the map of the part to the reference, coarse while something moves and fine at
 // rest, and the separation of both.
-import type { Atlas, SdmWorker, WorkerMap, WorkerPair, WorkerSites, WorkerSurface } from 'sdm';
+import type { Atlas, MatchOptions, SdmWorker, WorkerMap, WorkerMatches, WorkerPair, WorkerSites, WorkerSurface } from 'sdm';
 import { Matrix4, Vector3 } from 'three';
 import type { Report } from '../src/page_data';
-import type { Triangles } from './layout';
+import type { Film } from './film';
+import { isClosed, type Triangles } from './layout';
 
 export const kCoarse = 256; // texels a side while something moves
 
 export interface Body extends Triangles {
   name: string;
+  file?: File; ///< none: the page has made it
+  film?: Film; ///< of an animated file
 }
 
 /// Of a moment.
@@ -20,7 +23,7 @@ export interface FrameResult {
 
 /// At rest.
 export interface FineResult extends Omit<FrameResult, 'separation'> {
-  atVertices: Float64Array;
+  atVertices: Float64Array | null; ///< null: those of the texels
   sites: Uint32Array; ///< 4 · number + type of each texel, 0xFFFFFFFF without one
   report: Report;
 }
@@ -63,36 +66,41 @@ export class Engine {
   private bodies: [Body, Body] | null = null;
   private motion = new Matrix4(); // of the reference
   private turned = false; // the fine surface has other vertices than the part
+  private changed = false; // the bodies are not those that were loaded
+  private facing: number | undefined; // degrees: distances are to faces that face the same way
   private signal: AbortSignal | undefined; // of what is being loaded
 
   constructor(private readonly worker: SdmWorker) {}
 
   get isClosed(): boolean { return this.closed[0]; }
   get referenceIsClosed(): boolean { return this.closed[1]; }
+  get deformed(): boolean { return this.changed; }
+
+  /// Distances are to the closest of the faces whose normal is within an angle of the part's; null: to the closest point.
+  setFacing(degrees: number | null): void {
+    this.facing = degrees ?? undefined;
+  }
 
   /// Takes two bodies, and lays out the coarse atlas of the first. An abort loses what was there before.
   async load(bodies: [Body, Body], say: Say, signal?: AbortSignal): Promise<Atlas> {
     const [part, reference] = bodies;
     this.signal = signal;
-    const one = await this.sitesOf(part, 'Reading the part', say);
-    const isClosed = one.closed;
-    one.dispose();
     const sites = await this.sitesOf(reference, 'Reading the reference', say);
     // What there is stays until nothing can fail any more.
     const coarse = await this.measured(part, sites, kCoarse, say).catch((error: Error) => {
       sites.dispose();
       throw named(error, part);
     });
-    const pair = await this.worker.pair(part, reference).catch((error: Error) => {
+    const pair = await this.worker.pair(shapeOf(part), shapeOf(reference)).catch((error: Error) => {
       this.release(coarse);
       sites.dispose();
       throw error;
     });
     this.free();
     [this.bodies, this.sites, this.pair, this.coarse] = [bodies, sites, pair, coarse];
-    this.closed = [isClosed, sites.closed];
+    this.closed = [isClosed(part), sites.closed];
     this.motion = new Matrix4();
-    this.turned = false;
+    this.turned = this.changed = false;
     return coarse.atlas;
   }
 
@@ -105,12 +113,16 @@ export class Engine {
   private async measured(part: Body, sites: WorkerSites, resolution: number, say: Say): Promise<Measured> {
     const surface = await this.worker.surface(part.positions, part.indices, { resolution, signal: this.signal, progress: (_, f) => say('Laying out the atlas', f) });
     try {
-      const map = await surface.map(sites, { signal: this.signal, progress: (_, f) => say('Measuring', f) });
+      const map = await surface.map(sites, { ...this.matching, signal: this.signal, progress: (_, f) => say('Measuring', f) });
       return { surface, map, atlas: await surface.atlas() };
     } catch (error) {
       surface.dispose();
       throw error;
     }
+  }
+
+  private get matching(): { facing?: number } {
+    return this.facing === undefined ? {} : { facing: this.facing };
   }
 
   /// Lays out the fine atlas; null if that is the coarse one.
@@ -136,7 +148,7 @@ export class Engine {
     part.positions = positions[0];
     reference.positions = positions[1];
     const placed = moved(reference.positions, this.motion);
-    this.turned = true;
+    this.turned = this.changed = true;
     await Promise.all([
       this.sites!.refit(placed), this.coarse!.surface.refit(part.positions),
       this.pair!.refit(0, part.positions), this.pair!.refit(1, reference.positions), this.pair!.setPose(1, this.motion.elements),
@@ -146,7 +158,7 @@ export class Engine {
   /// The coarse map, and the separation, after `change`.
   async frame(change: Promise<void>, began = performance.now()): Promise<FrameResult> {
     const { map } = this.coarse!;
-    const [, , arrays, separation] = await Promise.all([change, map.update(), map.arrays('distances'), this.pair!.separation()]);
+    const [, , arrays, separation] = await Promise.all([change, map.update(this.matching), map.arrays('distances'), this.pair!.separation()]);
     return { distances: arrays.distances!, separation: separation.value, milliseconds: performance.now() - began };
   }
 
@@ -157,15 +169,20 @@ export class Engine {
     const [part] = this.bodies!;
     if (this.turned && this.fine) await this.fine.surface.refit(part.positions);
     this.turned = false;
-    await measured.map.update({ progress: (_, f) => say('Measuring', f) });
+    await measured.map.update({ ...this.matching, progress: (_, f) => say('Measuring', f) });
     const milliseconds = performance.now() - began;
     const [arrays, atVertices] = await Promise.all([
       measured.map.arrays('distances', 'sitesOfTexels', 'siteTypes'),
-      this.sites!.signedDistance(part.positions, { sign: measured.map.sign }),
+      this.facing === undefined ? this.sites!.signedDistance(part.positions, { sign: measured.map.sign }) : null,
     ]);
     const report = await this.report(tolerance, units);
     const sites = arrays.sitesOfTexels!.map((n, i) => (arrays.siteTypes![i] > 2 || n >= 2 ** 30 ? 0xffffffff : (n << 2) | arrays.siteTypes![i]));
-    return { distances: arrays.distances!, atVertices: atVertices.distances, sites, milliseconds, report };
+    return { distances: arrays.distances!, atVertices: atVertices?.distances ?? null, sites, milliseconds, report };
+  }
+
+  /// For each texel of the fine map, the point of the reference that belongs to it.
+  match(options: MatchOptions): Promise<WorkerMatches> {
+    return this.worker.match((this.fine ?? this.coarse!).surface, this.sites!, options);
   }
 
   /// Sums up the fine map, as report.json does.
@@ -195,6 +212,9 @@ export class Engine {
     [this.coarse, this.fine, this.sites, this.pair] = [null, null, null, null];
   }
 }
+
+/// What the worker needs of a body.
+const shapeOf = ({ positions, indices }: Body): Triangles => ({ positions, indices });
 
 /// An error that names the body, unless it is not of it.
 function named(error: Error, { name }: Body): Error {

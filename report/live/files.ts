@@ -2,20 +2,33 @@
 import type { SdmWorker } from 'sdm';
 import { make } from '../src/dom';
 import type { Body } from './engine';
+import { Film } from './film';
 
 const kLargest = 512 * 2 ** 20; // bytes: more than a module of 32 bits can read and measure
 const kMostTriangles = 5_000_000;
 export const kFormats = '.stl,.ply,.obj,.off,.3ds,.glb,.gltf';
 
-/// A mesh of a file, or an error of one sentence.
-export async function readBody(worker: SdmWorker, file: File): Promise<Body> {
+/// A mesh of a file, with a note on what of it cannot be played; or an error of one sentence.
+export async function readBody(worker: SdmWorker, file: File): Promise<{ body: Body; note: string }> {
   if (file.size === 0) throw new Error(`${file.name} is empty.`);
   if (file.size > kLargest) throw new Error(`${file.name} has ${Math.round(file.size / 2 ** 20)} MB, more than the ${kLargest / 2 ** 20} MB that this page can read; use the command sdm for it.`);
-  const bytes = new Uint8Array(await file.arrayBuffer());
-  const { positions, indices } = await worker.readMesh(bytes, file.name, { transfer: true });
+  const { film, note } = await filmOf(worker, file);
+  const { positions, indices } = film ? await film.mesh() : await worker.readMesh(new Uint8Array(await file.arrayBuffer()), file.name, { transfer: true });
   if (indices.length === 0) throw new Error(`${file.name} has no triangles.`);
   if (indices.length > 3 * kMostTriangles) throw new Error(`${file.name} has ${indices.length / 3} triangles, more than the ${kMostTriangles} that this page can measure; use the command sdm for it.`);
-  return { name: file.name, positions, indices };
+  return { body: { name: file.name, positions, indices, file, ...(film ? { film } : {}) }, note };
+}
+
+/// What an animated glTF plays. An animation that cannot be played is a note.
+async function filmOf(worker: SdmWorker, file: File): Promise<{ film: Film | null; note: string }> {
+  if (!/\.(glb|gltf)$/i.test(file.name)) return { film: null, note: '' };
+  try {
+    return { film: await Film.of(worker, file), note: '' };
+  } catch (error) {
+    // A file that is damaged is refused by readMesh(), too.
+    if ((error as { kind?: string }).kind !== 'input') throw error;
+    return { film: null, note: (error as Error).message };
+  }
 }
 
 /// A button that chooses a file, or several.

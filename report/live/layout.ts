@@ -13,6 +13,18 @@ export interface Triangles {
   indices: Uint32Array; ///< three a triangle
 }
 
+/// Whether each edge belongs to two triangles.
+export function isClosed({ positions, indices }: Triangles): boolean {
+  const vertices = positions.length / 3;
+  const edges = Float64Array.from(indices, (v, i) => {
+    const next = indices[i % 3 === 2 ? i - 2 : i + 1];
+    return Math.min(v, next) * vertices + Math.max(v, next);
+  }).sort();
+  for (let i = 0; i < edges.length; i += 2)
+    if (edges[i] !== edges[i + 1] || edges[i] === edges[i + 2]) return false;
+  return edges.length > 0;
+}
+
 /// Where a scene is: its centre and the length of its unit, in the units of the files.
 export interface Frame {
   centre: Vec;

@@ -6,11 +6,11 @@ import type { Rate } from './rate';
 import type { Session } from './session';
 
 export function showSeparation(session: Session, separation: number): void {
-  byId('separation').textContent = separation === 0 ? '0, they touch or intersect' : session.liveText(separation);
+  byId('separation').textContent = separation === 0 ? '0, they touch or intersect' : session.lengthText(separation);
 }
 
 export function showMean(session: Session, mean: number): void {
-  byId('live-mean').textContent = session.liveText(mean);
+  byId('live-mean').textContent = session.signedText(mean);
 }
 
 export function showRate(rate: Rate): void {

@@ -2,9 +2,11 @@
 import { Matrix4 } from 'three';
 import { byId } from '../src/dom';
 import { explore } from '../src/explore';
+import type { Baking } from './baking';
 import type { Display } from './display';
 import { Body, inFile, kCoarse, moved } from './engine';
 import { readBody } from './files';
+import { movesOf } from './film';
 import { listenToKeys } from './keys';
 import { frameOf, Layout, layoutOf } from './layout';
 import type { Motion } from './motion';
@@ -21,7 +23,7 @@ export class Loading {
   private wanted: number; // resolution
   private readonly emptyView = byId('view').cloneNode(true) as HTMLElement;
 
-  constructor(private readonly session: Session, private readonly motion: Motion, private readonly display: Display) {
+  constructor(private readonly session: Session, private readonly motion: Motion, private readonly display: Display, private readonly baking: Baking) {
     this.wanted = session.resolution;
     session.fault = (error) => this.recover(error);
   }
@@ -39,13 +41,17 @@ export class Loading {
     if (files.length < 2 && !this.session.bodies) await this.running; // the first pair
     return this.run(async (load) => {
       const read: Body[] = [];
+      const notes: string[] = [];
       for (const file of files) {
         say(`Reading ${file.name}…`);
-        read.push(await this.again(load, () => readBody(this.session.worker, file)));
+        const { body, note } = await this.again(load, () => readBody(this.session.worker, file));
+        read.push(body);
+        if (note) notes.push(note);
       }
       const [part, reference] = this.session.bodies ?? [];
       const bodies = read.length === 2 ? read : which === 0 ? [read[0], reference] : [part, read[0]];
-      await this.put({ name: 'files', bodies: bodies as [Body, Body], scene: null, units: '' }, load);
+      await this.put(filesOf(bodies as [Body, Body], ''), load);
+      return notes.map((note) => `${note}. Its first frame is measured.`).join(' ');
     });
   }
 
@@ -53,8 +59,10 @@ export class Loading {
   async swap(): Promise<void> {
     const { bodies, pair, units } = this.session;
     if (!bodies || !pair) return;
-    const positions = moved(bodies[1].positions, inFile(pair.view.motion, pair.subject));
-    await this.run((load) => this.put({ name: 'files', bodies: [{ ...bodies[1], positions }, bodies[0]], scene: null, units }, load));
+    const motion = inFile(pair.view.motion, pair.subject);
+    const { film, positions, ...others } = bodies[1];
+    const part = { ...others, positions: moved(positions, motion), ...(film ? { film: film.movedBy(motion) } : {}) };
+    await this.run((load) => this.put(filesOf([part, bodies[0]], units), load));
   }
 
   /// Of the map at rest; a pair that is being loaded comes first.
@@ -79,7 +87,8 @@ export class Loading {
 
   // ---- one load ----
 
-  private run(work: (load: AbortController) => Promise<void>): Promise<void> {
+  /// `work` may return a note, which is said at its end.
+  private run(work: (load: AbortController) => Promise<string | void>): Promise<void> {
     const running = this.runNow(work);
     this.running = running.catch(() => {});
     return running;
@@ -94,10 +103,11 @@ export class Loading {
     return this.current;
   }
 
-  private async runNow(work: (load: AbortController) => Promise<void>): Promise<void> {
+  private async runNow(work: (load: AbortController) => Promise<string | void>): Promise<void> {
     if (this.current) this.cancel();
     const load = this.begin();
-    let fault = await work(load).then(() => null, faultOf);
+    let note: string | void = '';
+    let fault = await work(load).then((said) => ((note = said), null), faultOf);
     if (this.current !== load) return; // a later choice has taken its place
     const cancelled = load.signal.aborted;
     if (cancelled) fault = null;
@@ -109,7 +119,7 @@ export class Loading {
     }
     this.end();
     if (fault) sayFault(fault);
-    else say(cancelled ? 'Cancelled.' : '');
+    else say(cancelled ? 'Cancelled.' : note || '');
   }
 
   private end(): void {
@@ -207,6 +217,7 @@ export class Loading {
     const pair = new Pair(choice.bodies, layout, engine.isClosed, engine.referenceIsClosed, (d) => session.valueText(d), () => moves.move());
     session.pair = pair;
     pair.setMotion(motion);
+    this.baking.renew();
     display.renew(isOther);
     listenToKeys(pair.view, moves);
     const words = { quantity: 'distance', get unit() { return session.unitText; }, valueText: (d: number) => session.valueText(d) };
@@ -214,6 +225,8 @@ export class Loading {
     showChoices(session, this.wanted);
   }
 }
+
+const filesOf = (bodies: [Body, Body], units: string): Choice => ({ name: 'files', bodies, scene: movesOf(bodies), units });
 
 const faultOf = (error: unknown): Error => (error instanceof Error ? error : new Error(String(error)));
 

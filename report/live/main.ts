@@ -2,11 +2,13 @@
 import type { SdmWorker } from 'sdm';
 import { byId, make } from '../src/dom';
 import { openPage } from '../src/open_page';
+import { BakeTab } from './bake_tab';
+import { Baking, saveBaked } from './baking';
 import { Display } from './display';
 import { listenToDrops } from './files';
 import { Loading } from './loading';
 import { Motion } from './motion';
-import { addPanel, say } from './panel';
+import { addPanel, kResolutions, say } from './panel';
 import { Probe } from './probe_for_tests';
 import { kScenes } from './scenes';
 import { Session } from './session';
@@ -14,12 +16,19 @@ import { startWorker } from './start';
 
 const kFirst = 'letters';
 
-async function open(worker: SdmWorker, wanted: string): Promise<Probe> {
+/// `wanted`: the name of a pair; `map`: the resolution, if it is one of those that can be chosen.
+async function open(worker: SdmWorker, wanted: string, map: string | null): Promise<Probe> {
   const session = new Session(worker);
-  if (window.matchMedia('(max-width: 600px)').matches) session.resolution = 512;
+  session.resolution = kResolutions.find((n) => String(n) === map) ?? (window.matchMedia('(max-width: 600px)').matches ? 512 : 1024);
   const display = new Display(session);
-  const motion = new Motion(session, display);
-  const loading = new Loading(session, motion, display);
+  const baking: Baking = new Baking(session, new BakeTab(
+    () => baking,
+    () => void baking.update().catch((error) => session.fault(error)),
+    () => saveBaked(baking),
+    (error) => session.fault(error),
+  ));
+  const motion = new Motion(session, display, baking);
+  const loading = new Loading(session, motion, display, baking);
   const name = Object.hasOwn(kScenes, wanted) ? wanted : kFirst;
   addPanel(name, session.resolution, {
     openScene: (scene) => void loading.openScene(scene),
@@ -27,6 +36,10 @@ async function open(worker: SdmWorker, wanted: string): Promise<Probe> {
     cancel: () => loading.cancel(),
     swap: () => void loading.swap(),
     setResolution: (resolution) => void loading.setResolution(resolution),
+    setFacing: (degrees) => {
+      session.engine.setFacing(degrees);
+      motion.change();
+    },
     setUnits: (units) => {
       session.units = units;
       if (!session.loading) motion.rest();
@@ -43,10 +56,11 @@ async function open(worker: SdmWorker, wanted: string): Promise<Probe> {
   await loading.openScene(name);
   if (name !== wanted) say(`There is no scene “${wanted}”; there are ${Object.keys(kScenes).join(', ')}.`, 'fault');
   if (!session.pair) throw new Error(byId('status').textContent!.replace(/\.$/, ''));
-  return new Probe(session, motion);
+  return new Probe(session, motion, baking);
 }
 
 void openPage('sdmLive', 'bodies', 'Is WebGL 2 on in this browser?', async () => {
   byId('message').textContent = 'Starting…';
-  return open(await startWorker(), new URLSearchParams(window.location.search).get('scene') ?? kFirst);
+  const link = new URLSearchParams(window.location.search);
+  return open(await startWorker(), link.get('scene') ?? kFirst, link.get('map'));
 });

@@ -1,6 +1,7 @@
 // How bodies move: frames of the coarse map while they do, and the fine map with its report at rest.
 import { Matrix4 } from 'three';
 import type { Vec } from '../src/page_data';
+import type { Baking } from './baking';
 import type { Display } from './display';
 import { FineResult, FrameResult, inFile } from './engine';
 import { areaOf } from './layout';
@@ -21,7 +22,7 @@ export class Motion {
   private histogramAt = 0;
   private readonly rate = new Rate();
 
-  constructor(private readonly session: Session, private readonly display: Display) {}
+  constructor(private readonly session: Session, private readonly display: Display, private readonly baking: Baking) {}
 
   get isPumping(): boolean { return this.pumping; }
 
@@ -31,6 +32,12 @@ export class Motion {
     if (!pair) return;
     this.wanted = inFile(pair.view.motion, pair.subject);
     this.begin();
+  }
+
+  /// What is measured has changed, and nothing has moved.
+  change(): void {
+    ++this.session.version;
+    if (!this.pumping && !this.session.loading) this.rest();
   }
 
   nudge(shift: Vec, turn = 0): void {
@@ -83,6 +90,7 @@ export class Motion {
     this.rate.begin();
     pair.callouts.clear();
     pair.section.show(null); // it is of the last rest
+    this.baking.hide();
     const isOn = () => pair === session.pair && !session.loading;
     try {
       while (isOn() && (this.wanted || this.playing)) {
@@ -100,7 +108,7 @@ export class Motion {
 
   async nextFrame(playing = this.playing): Promise<FrameResult> {
     const { engine, scene } = this.session;
-    const next = playing ? this.nextPositions() : null;
+    const next = playing ? await this.nextPositions() : null;
     const motion = this.wanted;
     this.wanted = null;
     const began = performance.now(); // without the scene, which is not what is measured
@@ -114,7 +122,7 @@ export class Motion {
   }
 
   /// Of a scene, those of its next frame; of files, the reference turns.
-  private nextPositions(): [Float64Array, Float64Array] | null {
+  private async nextPositions(): Promise<[Float64Array, Float64Array] | null> {
     const { scene, pair } = this.session;
     if (scene) return scene.advance();
     pair!.view.nudge([0, 0, 0], 1.5);
@@ -161,6 +169,8 @@ export class Motion {
     pair!.placeReference();
     showSeparation(session, result.separation);
     this.showFine(result);
+    await this.baking.update().catch((error) => session.fault(error));
+    document.documentElement.dataset.rest = String(session.version);
   }
 
   private showFine({ distances, atVertices, sites, milliseconds, report }: FineResult): void {
@@ -179,6 +189,5 @@ export class Motion {
     view.draw();
     showBusy(session);
     speak(session);
-    document.documentElement.dataset.rest = String(session.version);
   }
 }

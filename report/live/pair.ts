@@ -65,7 +65,7 @@ export class Pair {
     const hi = subject.hi.map((x, k) => Math.max(x, other.hi[k])) as Vec;
     const fits = Math.hypot(...lo.map((x, k) => hi[k] - x)) < 2 * kMost;
     view.setShown(fits ? lo : subject.lo, fits ? hi : subject.hi);
-    view.look('corner');
+    view.fitAll();
   }
 
   lookAt(at: Vec): void {

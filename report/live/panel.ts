@@ -1,5 +1,6 @@
 // The controls of the live page: what is compared, and how it moves.
 import { byId, make } from '../src/dom';
+import { select } from '../src/fields';
 import { fileButton } from './files';
 import { kScenes } from './scenes';
 import type { Session } from './session';
@@ -11,19 +12,15 @@ export interface Actions {
   swap: () => void;
   cancel: () => void; ///< what is being loaded
   setResolution: (resolution: number) => void;
+  setFacing: (degrees: number | null) => void; ///< distances are to faces that face the same way
   setUnits: (units: string) => void;
   setHandles: (handles: Handles) => void;
   resetMotion: () => void;
   togglePlay: () => void;
 }
 
-const kResolutions = [256, 512, 1024, 2048];
-
-function choice(id: string, label: string, options: [string, string][], value: string, set: (value: string) => void): HTMLElement {
-  const select = make('select', { id, change: () => set(select.value) });
-  for (const [key, name] of options) select.append(make('option', { value: key, selected: key === value }, name));
-  return make('div', { class: 'field-of' }, make('label', { for: id }, label), select);
-}
+export const kResolutions = [256, 512, 1024, 2048];
+const kFacing: [string, string][] = [['', 'any face'], ...[90, 60, 30].map((degrees): [string, string] => [String(degrees), `faces within ${degrees}°`])];
 
 /// Adds the controls to the page, once.
 export function addPanel(scene: string, resolution: number, actions: Actions): void {
@@ -37,16 +34,17 @@ export function addPanel(scene: string, resolution: number, actions: Actions): v
     make('h2', { id: 'compare-title', class: 'hidden' }, 'What to compare'),
     make(
       'div', { class: 'row' },
-      choice('scene', 'Pair', [...scenes, ['files', 'Your files…']], scene, (name) => {
+      select('scene', 'Pair', [...scenes, ['files', 'Your files…']], scene, (name) => {
         if (name !== 'files') return actions.openScene(name);
         (byId('scene') as HTMLSelectElement).value = byId('scene').dataset.shown ?? scene; // until there are files
         byId('open-both').click();
-      }),
+      })[0],
       fileButton('open-both', 'Open two files…', true, (files) => actions.openFiles(files, null)),
       fileButton('open-part', 'Open part…', false, (files) => actions.openFiles(files, 0)),
       fileButton('open-reference', 'Open reference…', false, (files) => actions.openFiles(files, 1)),
       button('swap', 'Swap', actions.swap),
-      choice('resolution', 'Map', kResolutions.map((n) => [String(n), `${n} × ${n}`]), String(resolution), (n) => actions.setResolution(Number(n))),
+      select('resolution', 'Map', kResolutions.map((n) => [String(n), `${n} × ${n}`]), String(resolution), (n) => actions.setResolution(Number(n)))[0],
+      select('facing', 'Closest of', kFacing, '', (degrees) => actions.setFacing(degrees === '' ? null : Number(degrees)))[0],
       make('div', { class: 'field-of' }, make('label', { for: 'units' }, 'Unit'), units),
     ),
     make('p', { class: 'hint' }, 'Or drop two files here: STL, PLY, OBJ, OFF, 3DS or GLB, the part and the reference. They stay on this computer: the page cannot send anything.'),
@@ -74,7 +72,11 @@ export function addPanel(scene: string, resolution: number, actions: Actions): v
     ),
     make('p', { id: 'spoken', class: 'hidden', role: 'status', 'aria-live': 'polite' }),
   );
-  byId('keys').append(' ', make('span', { class: 'by-mouse' }, 'Shift with arrows, Page up and Page down moves the reference, Shift with < and > turns it; P plays.'));
+  byId('keys').append(
+    ' ',
+    make('span', { class: 'by-mouse' }, 'Shift with arrows, Page up and Page down moves the reference, Shift with < and > turns it; P plays.'),
+    make('span', { class: 'by-touch' }, 'With Move or Turn, one finger drags the handles of the reference.'),
+  );
 }
 
 /// What the page is doing, or a fault; empty: nothing. Progress is not read out.
@@ -112,5 +114,5 @@ export function showBusy({ loading, moving }: Session): void {
   document.body.classList.toggle('stale', loading || moving);
   document.body.setAttribute('aria-busy', String(loading));
   for (const id of ['play', 'reset-motion']) (byId(id) as HTMLButtonElement).disabled = loading;
-  for (const button of document.querySelectorAll<HTMLButtonElement>('#form button[id^=save-]')) button.disabled = loading || moving;
+  for (const button of document.querySelectorAll<HTMLButtonElement>('#controls button[id^=save-]')) button.disabled = loading || moving;
 }

@@ -1,18 +1,35 @@
 // What tests ask a live page.
 import { Matrix4 } from 'three';
-import type { SdmWorker } from 'sdm';
+import type { MatchCounts, SdmWorker } from 'sdm';
 import type { Report } from '../src/page_data';
+import type { Baking } from './baking';
 import { inFile, moved } from './engine';
 import type { Motion } from './motion';
+import { decoded } from './pictures';
 import type { Session } from './session';
 
 export class Probe {
-  constructor(private readonly session: Session, private readonly motion: Motion) {}
+  constructor(private readonly session: Session, private readonly motion: Motion, private readonly baking: Baking) {}
 
   get firstPicture(): Promise<void> { return this.session.pair!.view.firstPicture; }
   get worker(): SdmWorker { return this.session.worker; }
   get numbers(): Report | null { return this.session.report; }
   get atRest(): boolean { return !this.motion.isPumping && !this.session.moving && !this.session.loading && (this.session.pair?.view.atRest ?? false); }
+  get counts(): MatchCounts | null { return this.baking.counts; }
+  /// Of texels that have a point, the share whose pixels in `png` differ by more than `most` from what is shown.
+  async differing(png: Uint8Array<ArrayBuffer>, most: number): Promise<number> {
+    const shown = this.session.pair!.subject.surface.painted!.pixels;
+    const { data } = await decoded(png);
+    if (data.length !== shown.length) throw new Error(`the picture has ${data.length / 4} pixels, and ${shown.length / 4} are shown`);
+    let [texels, differ] = [0, 0];
+    const { texelFaces } = this.session.pair!.subject.surface.layout;
+    for (let i = 0; i < shown.length; i += 4) {
+      if (texelFaces[i / 4] === 0xffffffff || shown[i + 3] === 0) continue;
+      ++texels;
+      if ([0, 1, 2].some((k) => Math.abs(shown[i + k] - data[i + k]) > most)) ++differ;
+    }
+    return differ / texels;
+  }
   handleAt(axis: 'X' | 'Y' | 'Z'): { x: number; y: number } { return this.session.pair!.view.handleAt(axis); }
   memoryBytes(): Promise<number> { return this.session.worker.memoryBytes(); }
 

@@ -13,8 +13,11 @@ interface Savable {
   report: () => Promise<string>;
 }
 
-/// The part in the units of the file, coloured at its vertices, as a GLB. glTF has y up.
-export async function glbOf({ model }: Layout, scale: Scale, colors: Colors, up: 'y' | 'z'): Promise<ArrayBuffer> {
+/// Of a unit; 1 of one that is none of these.
+export const metresOf = (units: string): number => ({ m: 1, cm: 1e-2, mm: 1e-3, um: 1e-6, 'µm': 1e-6, in: 0.0254, ft: 0.3048 })[units] ?? 1;
+
+/// The part, coloured at its vertices, as a GLB. glTF has y up, and metres.
+export async function glbOf({ model }: Layout, scale: Scale, colors: Colors, up: 'y' | 'z', units: string): Promise<ArrayBuffer> {
   const { position, normal, distance, triangle, centre, size } = model;
   const toUp = (v: ArrayLike<number>, i: number) => (up === 'z' ? [v[i], v[i + 2], -v[i + 1]] : [v[i], v[i + 1], v[i + 2]]);
   const points = new Float32Array(position.length);
@@ -37,6 +40,7 @@ export async function glbOf({ model }: Layout, scale: Scale, colors: Colors, up:
   geometry.setIndex(new BufferAttribute(triangle, 1));
   const mesh = new Mesh(geometry, new MeshBasicMaterial({ vertexColors: true }));
   mesh.name = 'part';
+  mesh.scale.setScalar(metresOf(units));
   return (await new GLTFExporter().parseAsync(mesh, { binary: true })) as ArrayBuffer;
 }
 
@@ -45,6 +49,7 @@ export function addSaveButtons({ picture, csv, model, report }: Savable, fault: 
   const button = (id: string, label: string, save: () => Promise<void> | void) =>
     make('button', { type: 'button', id, click: () => void Promise.resolve().then(save).catch(fault) }, label);
   byId('form').append(
+    make('p', { class: 'hint', id: 'save-title' }, 'Save'),
     button('save-picture', 'Picture (PNG)', () => {
       const link = make('a', { href: picture(), download: 'map.png' });
       link.click();

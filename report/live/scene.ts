@@ -3,11 +3,14 @@ import type { Body } from './engine';
 
 export const kTimeStep = 1 / 60; // seconds between frames
 
-export interface Scene {
+export interface Moves {
+  /// The vertices of both bodies a time step later.
+  advance(): [Float64Array, Float64Array] | Promise<[Float64Array, Float64Array]>;
+}
+
+export interface Scene extends Moves {
   title: string;
   words: string; ///< what is seen, a sentence
   bodies: [Body, Body];
   units: string;
-  /// The vertices of both bodies a time step later.
-  advance(): [Float64Array, Float64Array];
 }

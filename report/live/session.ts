@@ -8,13 +8,13 @@ import { isSigned, unitOf } from '../src/verdict';
 import { Body, Engine } from './engine';
 import type { Pair } from './pair';
 import { sayFault } from './panel';
-import type { Scene } from './scene';
+import type { Moves } from './scene';
 
 /// Two bodies, as they are chosen.
 export interface Choice {
   name: string; ///< in the list of pairs
   bodies: [Body, Body];
-  scene: Scene | null; ///< null: of files
+  scene: Moves | null; ///< how the bodies move; null: only as they are moved
   units: string;
 }
 
@@ -38,7 +38,7 @@ export class Session {
   }
 
   get bodies(): [Body, Body] | null { return this.choice?.bodies ?? null; }
-  get scene(): Scene | null { return this.choice?.scene ?? null; }
+  get scene(): Moves | null { return this.choice?.scene ?? null; }
 
   /// Calls of the worker, one after the other.
   inOrder<T>(call: () => Promise<T>): Promise<T> {
@@ -51,6 +51,7 @@ export class Session {
   /// With the space before it.
   get unitText(): string { return this.units && `\u00a0${this.units}`; }
   valueText(distance: number): string { return distanceText(distance, this.report!, this.signs) + unitOf(this.report!); }
-  /// Of a moment, with a sign only if it is negative.
-  liveText(value: number): string { return signedText(value, this.signs && value < 0, 3) + this.unitText; }
+  /// Of a moment; a distance with its sign, as in the table of numbers, a length without one.
+  signedText(distance: number): string { return signedText(distance, this.signs, 3) + this.unitText; }
+  lengthText(length: number): string { return signedText(length, false, 3) + this.unitText; }
 }

@@ -1,5 +1,5 @@
 // A part whose map is computed again and again: coarsely while something moves, and finely at rest.
-import { Group } from 'three';
+import { DataTexture, Group, LinearFilter, RGBAFormat, UnsignedByteType } from 'three';
 import type { Colors, Scale } from '../src/color_scale';
 import type { Uniforms } from '../src/color_uniforms';
 import type { Vec } from '../src/page_data';
@@ -11,8 +11,32 @@ import { filledValues, sourcesOf } from '../src/value_texture';
 import type { Viewer } from '../src/viewer';
 import { Layout, measureTexels, placeVertices, Triangles } from './layout';
 
+// What was baked, in place of the distances: colours, or normals that the light falls on.
+const kPaintedLook = `
+  uniform sampler2D paint; // alpha 0: a texel without a match
+  uniform int painted;
+  uniform mat3 normalMatrix;
+  vec3 lookHere(inout vec3 n) {
+    if (painted == 0) return lookOfValue();
+    if (byVertex) return vec3(0.72);
+    ivec2 size = textureSize(paint, 0);
+    if (texelFetch(paint, clamp(ivec2(floor(vPlace)), ivec2(0), size - 1), 0).a < 0.5) return noValue;
+    vec3 here = texture(paint, vPlace / vec2(size)).rgb;
+    if (painted == 1) return here;
+    n = normalize(normalMatrix * (2.0 * here - 1.0));
+    return vec3(0.78);
+  }
+`;
+
+/// A texture of the texels of a map, four bytes each; alpha 0: a texel without a match.
+export interface Paint {
+  kind: 'colors' | 'normals';
+  pixels: Uint8Array;
+}
+
 /// A surface whose vertices and distances change.
 export class ChangingSurface extends Surface {
+  painted: Paint | null = null; // in place of the distances
   private readonly sources: Int32Array;
 
   constructor(readonly layout: Layout, colors: Colors, isClosed: boolean) {
@@ -33,6 +57,24 @@ export class ChangingSurface extends Surface {
     this.forgetCopies();
   }
 
+  protected override get lookShader(): string { return kPaintedLook; }
+  protected override lookUniforms(): Uniforms { return { paint: { value: null }, painted: { value: 0 } }; }
+
+  /// Shows a texture in place of the distances; null: the distances.
+  setPaint(paint: Paint | null): void {
+    this.painted = paint;
+    const { paint: texture, painted } = this.uniforms;
+    (texture.value as DataTexture | null)?.dispose();
+    texture.value = null;
+    painted.value = paint === null ? 0 : paint.kind === 'colors' ? 1 : 2;
+    if (!paint) return;
+    const { width, height } = this.layout.map;
+    const made = new DataTexture(paint.pixels, width, height, RGBAFormat, UnsignedByteType);
+    made.magFilter = made.minFilter = LinearFilter;
+    made.needsUpdate = true;
+    texture.value = made;
+  }
+
   setVertices(mesh: Triangles): void {
     placeVertices(this.layout, mesh);
     measureTexels(this.layout, mesh);
@@ -43,6 +85,7 @@ export class ChangingSurface extends Surface {
   dispose(): void {
     this.object.geometry.dispose();
     this.texture.dispose();
+    this.setPaint(null);
   }
 }
 

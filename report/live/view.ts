@@ -12,6 +12,9 @@ export class LiveView extends View {
   private readonly handles: TransformControls;
   private readonly pivot = new Object3D(); // in the middle of the reference
   private readonly toPivot = new Matrix4(); // from where the reference was read
+  private readonly dark = window.matchMedia('screen and (prefers-color-scheme: dark)');
+  private readonly ghostIsAround: boolean; // the part is inside of the reference
+  private fittedPose = ''; // where the camera was when all was fitted into the picture
 
   /// `onMove` is called after each motion of the reference by its handles.
   constructor(container: HTMLElement, subject: Subject, reference: Ghost, section: SectionView, up: 'y' | 'z', onChange: () => void, onMove: () => void) {
@@ -20,9 +23,9 @@ export class LiveView extends View {
     this.handles.size = window.matchMedia('(pointer: coarse)').matches ? 1.5 : 1.1;
     this.scene.add(this.handles.getHelper(), this.pivot);
     this.ghost!.matrixAutoUpdate = false;
-    this.ghostMaterial.uniforms.opacity.value = 0.3; // a body that moves, not only what the part is compared with
-    this.ghostMaterial.uniforms.color.value = new Vector3(0.62, 0.67, 0.74);
-    if (encloses(boxOf(reference.position), subject)) this.ghostMaterial.uniforms.opacity.value = 0.08;
+    this.ghostIsAround = encloses(boxOf(reference.position), subject);
+    this.showGhostColor();
+    this.dark.addEventListener('change', this.showGhostColor);
     this.centrePivot();
     this.setHandles('none');
     this.handles.addEventListener('change', () => this.draw());
@@ -31,6 +34,27 @@ export class LiveView extends View {
       this.showPose();
       onMove();
     });
+  }
+
+  /// A body that moves, not only what the part is compared with: darker than a light background, lighter than a dark one.
+  private readonly showGhostColor = (): void => {
+    const { opacity, color } = this.ghostMaterial.uniforms;
+    const isDark = this.dark.matches;
+    opacity.value = this.ghostIsAround ? 0.08 : isDark ? 0.3 : 0.36;
+    color.value = isDark ? new Vector3(0.62, 0.67, 0.74) : new Vector3(0.3, 0.36, 0.46);
+    this.draw();
+  };
+
+  /// Looks at all. A picture of another shape shows all again, unless the user has turned it.
+  fitAll(): void {
+    this.look('corner');
+    this.fittedPose = JSON.stringify(this.pose);
+  }
+
+  override resize(): void {
+    const { aspect } = this.camera;
+    super.resize();
+    if (this.camera.aspect !== aspect && JSON.stringify(this.pose) === this.fittedPose) this.fitAll();
   }
 
   /// Without a motion, in the middle of the reference.
@@ -103,6 +127,7 @@ export class LiveView extends View {
   }
 
   override dispose(): void {
+    this.dark.removeEventListener('change', this.showGhostColor);
     this.handles.dispose();
     super.dispose();
   }

@@ -1,6 +1,7 @@
 // Sliders and choices, and the state that they set.
 import { kViridis, Mode, Scale } from './color_scale';
 import { byId, make } from './dom';
+import { check, select } from './fields';
 import { text } from './numbers';
 import type { AreaByValue } from './area_by_value';
 import type { Report, Vec } from './page_data';
@@ -84,6 +85,7 @@ class Slider {
 
   show(value: number, except?: HTMLInputElement): void {
     if (except !== this.range) this.range.value = String(Math.round(kSteps * this.options.toSlider(value)));
+    this.element.classList.toggle('unset', !Number.isFinite(value));
     if (!Number.isFinite(value)) {
       this.field.value = '';
       this.range.setAttribute('aria-valuetext', 'not set');
@@ -195,17 +197,6 @@ export function makeControls(
     }),
   };
   const oneTolerance = limits ? limits.lower === -limits.upper : !report.thickness;
-
-  const select = (id: string, label: string, options: [string, string][], value: string, set: (value: string) => void) => {
-    const element = make('select', { id, change: () => set(element.value) });
-    for (const [key, name] of options) element.append(make('option', { value: key, selected: key === value }, name));
-    return [make('div', { class: 'choice' }, make('label', { for: id }, label), element), element] as const;
-  };
-  const check = (id: string, label: string, value: boolean, set: (value: boolean) => void) => {
-    const element = make('input', { type: 'checkbox', id, change: () => set(element.checked) });
-    element.checked = value;
-    return [make('div', { class: 'check' }, element, make('label', { for: id }, label)), element] as const;
-  };
 
   const showSliders = () => {
     const { mode } = state.scale;

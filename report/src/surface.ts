@@ -29,8 +29,9 @@ const kVertexShader = `
   }
 `;
 
-// Values between texels are interpolated for the picture; a texel without a value stays as it is.
-const kPartShader = `
+// Values between texels are interpolated for the picture; a texel without a value stays as it is. `look`: defines
+// vec3 lookHere(inout vec3 n), the colour before it is lit, and the normal.
+const partShader = (look: string) => `
   precision highp float;
   precision highp sampler2D;
   uniform sampler2D values;
@@ -60,6 +61,11 @@ const kPartShader = `
     }
     return weight > 0.0 ? sum / weight : value;
   }
+  vec3 lookOfValue() {
+    float value = valueHere();
+    return value > 1e38 ? noValue : colorOf(value);
+  }
+  ${look}
 
   void main() {
     if (dot(cut.xyz, vPoint) > cut.w) discard;
@@ -69,13 +75,9 @@ const kPartShader = `
       return;
     }
     vec3 n = normalize(vNormal);
+    vec3 color = faded ? vec3(0.8) : lookHere(n);
     float light = 0.62 + 0.38 * abs(n.z) + 0.08 * n.y;
-    if (faded) {
-      outColor = vec4(vec3(0.8) * min(light, 1.0), 1.0);
-      return;
-    }
-    float value = valueHere();
-    outColor = vec4((value > 1e38 ? noValue : colorOf(value)) * min(light, 1.0), 1.0);
+    outColor = vec4(color * min(light, 1.0), 1.0);
   }
 `;
 
@@ -129,6 +131,7 @@ export class Surface implements Subject {
       showBacks: { value: this.showBacks },
       cut: { value: [0, 0, 0, 1] },
       cutColor: { value: new Vector3(0.72, 0.72, 0.74) },
+      ...this.lookUniforms(),
     };
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(model.position, 3));
@@ -144,7 +147,7 @@ export class Surface implements Subject {
           new ShaderMaterial({
             glslVersion: '300 es',
             vertexShader: kVertexShader,
-            fragmentShader: kPartShader,
+            fragmentShader: partShader(this.lookShader),
             side: DoubleSide,
             uniforms: { ...uniforms, faded: { value: faded } },
           }),
@@ -162,6 +165,10 @@ export class Surface implements Subject {
     this.object.add(this.rest);
     this.coarse = [this.object, this.rest].map((mesh) => new CoarseWhileMoving(mesh, kCoarse));
   }
+
+  /// What partShader() is made with.
+  protected get lookShader(): string { return 'vec3 lookHere(inout vec3 n) { return lookOfValue(); }'; }
+  protected lookUniforms(): Uniforms { return {}; }
 
   /// Of other vertices or values, coarse copies are made again.
   protected forgetCopies(): void {

@@ -1,5 +1,5 @@
-// Checks live.html in headless Chromium: node check_live.cjs CHECK PAGE [COMMAND], where the command is sdm. Packages are found
-// from the current folder. Prints what is wrong and exits with 1.
+// Checks live.html in headless Chromium: node check_live.cjs PAGE COMMAND CHECK..., where the command is sdm. All checks share a
+// browser, and have a page each. Packages are found from the current folder. Prints what is wrong and exits with 1.
 const assert = require('assert');
 const { execFileSync } = require('child_process');
 const { createServer } = require('http');
@@ -9,15 +9,15 @@ const { join } = require('path');
 const { pathToFileURL } = require('url');
 const { inBrowser, opened } = require('../report/checks/browser.cjs');
 const { plain } = require('../report/checks/support.cjs');
-const { areaOf, ball, grid, objOf, stlOf } = require('./meshes.cjs');
+const { areaOf, ball, glbOf, grid, objOf, pngOf, stlOf } = require('./meshes.cjs');
 
-const [check, file, command] = process.argv.slice(2);
-const address = pathToFileURL(file).href;
+const [file, command, ...names] = process.argv.slice(2);
+const address = `${pathToFileURL(file).href}?map=256`; // small maps: each texel counts
 const made = []; // folders
 process.on('exit', () => made.forEach((path) => rmSync(path, { recursive: true, force: true })));
 const folder = () => made[made.push(mkdtempSync(join(tmpdir(), 'sdm-live-'))) - 1];
 
-const kPatience = 120000; // milliseconds, on a machine that does other things
+const kPatience = Number(process.env.SDM_PATIENCE ?? 120000); // milliseconds, on a machine that does other things
 
 const numbers = (page) => page.evaluate(() => window.sdmLive.numbers);
 /// Does something, and waits for the fine map after it.
@@ -101,8 +101,6 @@ const checks = {
 
   // Moving the reference, by the keyboard and by a handle, changes the numbers as the command says; putting it back restores them.
   async moves(page) {
-    await page.selectOption('#resolution', '256');
-    await page.waitForFunction(() => window.sdmLive.numbers.atlas.resolution === 256, null, { timeout: kPatience });
     const before = await numbers(page);
     await page.focus('#canvas');
     await atRest(page, () => page.keyboard.press('Shift+ArrowRight'));
@@ -143,7 +141,7 @@ const checks = {
     assert.match(await page.textContent('#verdict'), /MOVING/);
     assert.strictEqual((await numbers(page)).tolerance, undefined);
     await atRest(page, () => page.click('#play'));
-    await agreesWithCommand(page, 3e-3);
+    await agreesWithCommand(page, 1e-2); // which lays the letters out as they are now
     const of = await numbers(page);
     assert(Math.abs(of.tolerance.value - 0.5 * distance) < 1e-9, `${of.tolerance.value}`);
     assert((await page.textContent('#verdict')).includes(of.tolerance.verdict));
@@ -152,14 +150,32 @@ const checks = {
     assert.match(await page.textContent('#spoken'), /Distances from .* to .*Separation/);
   },
 
-  // Many changes of both bodies need no more memory than a few.
+  // Many changes of both bodies need no more memory than a few: frames of a scene, and 10,000 refits.
   async remains(page) {
     const bytes = () => page.evaluate(() => window.sdmLive.memoryBytes());
-    await page.evaluate(() => window.sdmLive.measure(400));
-    const before = await bytes();
-    await page.evaluate(() => window.sdmLive.measure(400));
-    const after = await bytes();
-    assert(after < 1.02 * before, `${before} bytes became ${after}`); // a few pages of fragments
+    const stays = async (what, change) => {
+      await change();
+      const before = await bytes();
+      await change();
+      const after = await bytes();
+      assert(after < 1.02 * before, `${what}: ${before} bytes became ${after}`); // a few pages of fragments
+    };
+    await stays('frames', () => page.evaluate(() => window.sdmLive.measure(60)));
+    await page.evaluate(async (mesh) => {
+      const { worker } = window.sdmLive;
+      const { positions, indices } = mesh;
+      const objects = [await worker.surface(positions, indices, { resolution: 64 }), await worker.sites(positions, indices)];
+      const pair = await worker.pair(mesh, mesh);
+      const map = await objects[0].map(objects[1]);
+      window.refits = async (times) => {
+        for (let i = 0; i < times; ++i) {
+          const moved = Float64Array.from(positions, (x) => (1 + 0.1 * Math.sin(i)) * x);
+          const refits = [...objects.map((object) => object.refit(moved)), pair.refit(i % 2, moved)];
+          await Promise.all(i % 100 === 0 ? [...refits, map.update(), pair.separation()] : refits);
+        }
+      };
+    }, ball(6, 1));
+    await stays('refits', () => page.evaluate(() => window.refits(5000)));
   },
 
   // A tolerance is judged as the library does.
@@ -232,8 +248,8 @@ const checks = {
   // What takes long can be cancelled: what was there before is there again.
   async cancels(page) {
     const out = folder();
-    writeFileSync(join(out, 'a.stl'), stlOf(ball(200, 1)));
-    writeFileSync(join(out, 'b.stl'), stlOf(ball(200, 1.1)));
+    writeFileSync(join(out, 'a.stl'), stlOf(ball(120, 1)));
+    writeFileSync(join(out, 'b.stl'), stlOf(ball(120, 1.1)));
     const before = await numbers(page);
     await page.setInputFiles('#open-both', [join(out, 'a.stl'), join(out, 'b.stl')]);
     await page.waitForSelector('#cancel:not([hidden])', { timeout: kPatience });
@@ -255,7 +271,7 @@ const checks = {
     assert.strictEqual((await numbers(page)).o1.file, 'figure');
     assert.strictEqual(await page.inputValue('#scene'), 'figure');
     await agreesWithPicture(page);
-    await choose(page, ['scene', 'cloth'], ['resolution', '2048'], ['resolution', '512']);
+    await choose(page, ['scene', 'cloth'], ['resolution', '1024'], ['resolution', '512']);
     assert(await page.isDisabled('#play'), 'a pair that is being loaded cannot play');
     await isIdle(page);
     const of = await agreesWithCommand(page);
@@ -307,6 +323,108 @@ const checks = {
     await agreesWithCommand(page);
   },
 
+  // What the reference has is baked as the command bakes it, by each way to find points, and saved as a model with textures.
+  async bakes(page) {
+    const out = folder();
+    const at = (name) => join(out, name);
+    const [part, reference] = [ball(10, 1), ball(16, 1.05)];
+    const wave = reference.positions.map((x, i) => 0.5 + 0.4 * Math.sin(3 * x + i % 3));
+    const uvs = Array.from({ length: reference.positions.length / 3 }, (_, v) => [0, 1].map((k) => 0.5 + reference.positions[3 * v + k] / 2.2)).flat();
+    const png = pngOf(32, 32, (x, y) => [255 * x, 255 * y, (Math.floor(8 * x) + Math.floor(8 * y)) % 2 ? 200 : 40]);
+    writeFileSync(at('part.obj'), objOf(part));
+    writeFileSync(at('colors.glb'), glbOf({ ...reference, colors: wave }));
+    // Both skins of a thin shell, of which the part is nearer to the inner one.
+    const inner = ball(16, 1.03).positions;
+    const shell = { positions: [...reference.positions, ...inner], indices: [...reference.indices, ...reference.indices.map((v, i, all) => all[i - (i % 3) + ((3 - (i % 3)) % 3)] + inner.length / 3)] };
+    writeFileSync(at('shell.glb'), glbOf({ ...shell, uvs: [...uvs, ...uvs.map((x) => 1 - x)], png }));
+    await page.click('#tab-bake');
+    const fill = (id, value) => page.evaluate(([field, text]) => {
+      const input = document.getElementById(field);
+      input.value = text;
+      input.dispatchEvent(new Event('change'));
+    }, [id, value]);
+    const bakes = async (file, method, options) => {
+      execFileSync(command, ['bake', at(file), at('part.obj'), '-o', at('out'), '--resolution', '256', '--atlas', 'charts', '--match', method, '--no-page', ...options], { stdio: 'pipe' });
+      await page.waitForFunction(() => window.sdmLive.counts && window.sdmLive.atRest, null, { timeout: kPatience });
+      const { texels } = JSON.parse(readFileSync(at('out/report.json'), 'utf8'));
+      const counts = await page.evaluate(() => window.sdmLive.counts);
+      const all = Object.values(texels).reduce((a, b) => a + b);
+      for (const [key, n] of Object.entries(counts)) {
+        const expected = texels[key.replace(/[A-Z]/, (letter) => `_${letter.toLowerCase()}`)];
+        assert(Math.abs(n - expected) < 1e-3 * all, `${method}, ${key}: ${n} texels, ${expected} by the command`);
+      }
+      const picture = readFileSync(at('out/base_color.png')).toString('base64');
+      const differing = await page.evaluate((text) => window.sdmLive.differing(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)), 1), picture);
+      assert(differing < 2e-3, `${file}, ${method}: ${differing} of the texels differ from those of the command`);
+      return counts;
+    };
+    await open(page, [at('part.obj'), at('colors.glb')]);
+    await choose(page, ['bake-method', 'closest'], ['bake-shown', 'colors']);
+    await bakes('colors.glb', 'closest', []);
+    await open(page, [at('shell.glb')], '#open-reference');
+    await bakes('shell.glb', 'closest', []);
+    await choose(page, ['bake-method', 'facing']);
+    await fill('bake-facing', '60');
+    assert((await bakes('shell.glb', 'facing', ['--facing', '60'])).facing > 0);
+    await choose(page, ['bake-method', 'ray']);
+    await fill('bake-cage', '0.06');
+    assert((await bakes('shell.glb', 'ray', ['--facing', '60', '--cage', '0.06'])).ray > 0);
+    // Faces that all face away: nothing is baked, and it is said how much.
+    writeFileSync(at('inside.glb'), glbOf({ ...grid(8), colors: grid(8).positions.map(() => 0.5) }));
+    await open(page, [at('inside.glb')], '#open-reference');
+    await choose(page, ['bake-method', 'facing']);
+    await page.waitForFunction(() => window.sdmLive.counts?.facingAway > 0, null, { timeout: kPatience });
+    assert.match(await page.textContent('#bake-words'), /have no point of the reference: nothing faces/);
+    await open(page, [at('shell.glb')], '#open-reference');
+    await page.waitForFunction(() => window.sdmLive.counts?.facing > 0, null, { timeout: kPatience });
+    const glb = readFileSync(await saved(page, '#save-baked', 'baked.glb'));
+    const json = JSON.parse(glb.toString('utf8', 20, 20 + glb.readUInt32LE(12)));
+    assert.deepStrictEqual(Object.keys(json.meshes[0].primitives[0].attributes).sort(), ['NORMAL', 'POSITION', 'TANGENT', 'TEXCOORD_0']);
+    assert(json.materials[0].pbrMetallicRoughness.baseColorTexture && json.materials[0].normalTexture && json.images.length === 2, JSON.stringify(json.materials));
+    // The picture in the file is the one that is shown.
+    const view = json.bufferViews[json.images[json.textures[json.materials[0].pbrMetallicRoughness.baseColorTexture.index].source].bufferView];
+    const binary = 20 + glb.readUInt32LE(12) + 8 + (view.byteOffset ?? 0);
+    const picture = glb.subarray(binary, binary + view.byteLength).toString('base64');
+    assert.strictEqual(await page.evaluate((text) => window.sdmLive.differing(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)), 0), picture), 0);
+    // Of a body without colours there are normals.
+    await page.selectOption('#scene', 'letters');
+    await page.waitForFunction(() => /neither colours nor materials/.test(document.getElementById('bake-words').textContent), null, { timeout: kPatience });
+    await choose(page, ['bake-shown', 'normals']);
+    await page.waitForFunction(() => window.sdmLive.counts, null, { timeout: kPatience });
+    await atRest(page, () => choose(page, ['bake-shown', ''], ['facing', '60']));
+    assert.match((await numbers(page)).measured?.text ?? JSON.stringify(await numbers(page)), /60/);
+  },
+
+  // An animated file plays; each frame at rest is measured as the command measures it, also where the reference was moved or both
+  // were swapped. Of an animation of nodes, the first frame is measured, and that is said.
+  async films(page) {
+    const out = folder();
+    const [part, reference] = [ball(8, 1), ball(10, 1.2)];
+    writeFileSync(join(out, 'part.obj'), objOf(part));
+    writeFileSync(join(out, 'grows.glb'), glbOf({ ...reference, targets: [reference.positions.map((x) => 0.5 * x)] }));
+    writeFileSync(join(out, 'turns.glb'), glbOf({ ...reference, turns: true }));
+    await open(page, [join(out, 'part.obj'), join(out, 'grows.glb')]);
+    const first = await agreesWithCommand(page);
+    const plays = async () => {
+      const before = await page.textContent('#separation');
+      await page.click('#play');
+      await page.waitForFunction((old) => document.getElementById('separation').textContent !== old, before, { timeout: kPatience });
+      await atRest(page, () => page.click('#play'));
+      return agreesWithCommand(page, 3e-3);
+    };
+    const later = await plays();
+    assert(later.distance.mean < first.distance.mean, `${first.distance.mean} became ${later.distance.mean}`);
+    await page.focus('#canvas');
+    await atRest(page, () => page.keyboard.press('Shift+ArrowRight'));
+    await agreesWithCommand(page, 3e-3);
+    await atRest(page, () => page.click('#swap'));
+    await plays();
+    await agreesWithPicture(page);
+    await open(page, [join(out, 'turns.glb')], '#open-reference');
+    assert.match(await page.textContent('#status'), /^turns.glb: the animation moves nodes.*first frame is measured\.$/);
+    await agreesWithCommand(page, 3e-3);
+  },
+
   // Picture, numbers and model are files.
   async saves(page) {
     const save = async (id, name) => readFileSync(await saved(page, id, name));
@@ -346,7 +464,6 @@ const checks = {
     const out = folder();
     writeFileSync(join(out, 'a.stl'), stlOf(ball(274, 1)));
     writeFileSync(join(out, 'b.stl'), stlOf(ball(274, 1.1)));
-    await page.selectOption('#resolution', '512');
     await open(page, [join(out, 'a.stl'), join(out, 'b.stl')]);
     const of = await numbers(page);
     assert(of.o1.triangles > 299000 && of.o2.triangles > 299000, `${of.o1.triangles}`);
@@ -359,7 +476,7 @@ async function served(browser, faults) {
   for (const headers of [{}, { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' }]) {
     const server = createServer((_, response) => response.writeHead(200, { 'Content-Type': 'text/html', ...headers }).end(readFileSync(file)));
     await new Promise((listening) => server.listen(0, '127.0.0.1', listening));
-    const page = await opened(await browser.newContext(), `http://127.0.0.1:${server.address().port}/live.html?scene=cloth`, faults);
+    const page = await opened(await browser.newContext(), `http://127.0.0.1:${server.address().port}/live.html?scene=cloth&map=256`, faults);
     assert.strictEqual(await page.evaluate(() => window.crossOriginIsolated), Object.keys(headers).length > 0);
     assert.strictEqual((await numbers(page)).o1.file, 'cloth');
     await page.close();
@@ -368,9 +485,22 @@ async function served(browser, faults) {
 }
 
 void inBrowser(async (browser, faults) => {
-  if (check === 'served') return served(browser, faults);
-  const context = await browser.newContext({ viewport: { width: 1100, height: 800 }, acceptDownloads: true });
-  const page = await opened(context, address, faults);
-  await page.waitForFunction(() => document.documentElement.dataset.rest, null, { timeout: kPatience });
-  await checks[check](page);
+  for (const name of names) {
+    const began = Date.now();
+    try {
+      if (name === 'served') await served(browser, faults);
+      else {
+        const context = await browser.newContext({ viewport: { width: 1000, height: 600 }, acceptDownloads: true });
+        const page = await opened(context, address, faults);
+        await page.waitForFunction(() => document.documentElement.dataset.rest, null, { timeout: kPatience });
+        await checks[name](page);
+        await context.close();
+      }
+      assert.deepStrictEqual(faults, []);
+    } catch (error) {
+      error.stack = `${name}: ${error.stack}`;
+      throw error;
+    }
+    console.log(`${name}: ${((Date.now() - began) / 1000).toFixed(1)} s`);
+  }
 });

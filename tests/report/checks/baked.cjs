@@ -3,41 +3,35 @@ const assert = require('assert');
 const { readFileSync } = require('fs');
 const { numbers, plain, settled } = require('./support.cjs');
 
-/// The pixels of the canvas, red, green, blue and alpha, when the picture is fine. They come as one string: a list of
-/// millions of numbers takes the protocol seconds.
+/// The pixels of the canvas when the picture is fine: they stay in the page.
 async function pixels(page) {
   await settled(page);
-  const { width, height, text } = await page.evaluate(async () => {
+  const kept = await page.evaluateHandle(() => {
     const canvas = document.getElementById('canvas');
     const copy = document.createElement('canvas');
     [copy.width, copy.height] = [canvas.width, canvas.height];
     const context = copy.getContext('2d', { willReadFrequently: true });
     context.drawImage(canvas, 0, 0);
-    const reader = new FileReader();
-    const loaded = new Promise((done) => (reader.onload = done));
-    reader.readAsDataURL(new Blob([context.getImageData(0, 0, copy.width, copy.height).data]));
-    await loaded;
-    return { width: copy.width, height: copy.height, text: reader.result };
+    const { width, height, data } = context.getImageData(0, 0, copy.width, copy.height);
+    return { width, height, data };
   });
-  const data = Buffer.from(text.slice(text.indexOf(',') + 1), 'base64');
-  assert.strictEqual(data.length, 4 * width * height);
-  return { width, height, at: (x, y) => data.subarray(4 * (y * width + x), 4 * (y * width + x) + 4) };
+  return { page, kept, width: await kept.evaluate(({ width }) => width) };
 }
-
-const apart = (a, b) => Math.max(...[0, 1, 2].map((k) => Math.abs(a[k] - b[k])));
 
 /// The share of the pixels of columns `from` to `to` that both pictures draw, and of these the share that differs by more
 /// than `most` levels.
 function compared(a, b, from, to, most) {
-  let [both, far] = [0, 0];
-  for (let y = 0; y < a.height; y += 3)
-    for (let x = Math.ceil(from); x < to; x += 3) {
-      const [p, q] = [a.at(x, y), b.at(x, y)];
-      if (p[3] < 255 || q[3] < 255) continue;
-      ++both;
-      if (apart(p, q) > most) ++far;
-    }
-  return { both, far: far / Math.max(1, both) };
+  return a.page.evaluate(([{ width, height, data: p }, { data: q }, first, end, levels]) => {
+    let [both, far] = [0, 0];
+    for (let y = 0; y < height; y += 3)
+      for (let x = Math.ceil(first); x < end; x += 3) {
+        const i = 4 * (y * width + x);
+        if (p[i + 3] < 255 || q[i + 3] < 255) continue;
+        ++both;
+        if ([0, 1, 2].some((k) => Math.abs(p[i + k] - q[i + k]) > levels)) ++far;
+      }
+    return { both, far: far / Math.max(1, both) };
+  }, [a.kept, b.kept, from, to, most]);
 }
 
 const slide = (page, value) =>
@@ -56,21 +50,21 @@ module.exports = {
     const low = await pixels(page);
     await slide(page, 0);
     const high = await pixels(page);
-    assert(compared(low, high, 0, low.width, 255).both > 1000, 'nothing is drawn');
-    const { far } = compared(low, high, 0, low.width, 12);
+    assert((await compared(low, high, 0, low.width, 255)).both > 1000, 'nothing is drawn');
+    const { far } = await compared(low, high, 0, low.width, 12);
     assert(far < 0.05, `${far} of the pixels of both have another colour`);
     await page.selectOption('#shading', 'shape');
     const shape = await pixels(page);
-    assert(compared(shape, high, 0, low.width, 12).far > 0.5, 'the shape has no colours');
+    assert((await compared(shape, high, 0, low.width, 12)).far > 0.5, 'the shape has no colours');
     await slide(page, 1000);
     const coarse = await pixels(page);
-    if (differs === 'differs') assert(compared(shape, coarse, 0, low.width, 12).far > 0.02, 'the coarse shape is as the detailed one');
+    if (differs === 'differs') assert((await compared(shape, coarse, 0, low.width, 12)).far > 0.02, 'the coarse shape is as the detailed one');
     await page.selectOption('#shading', 'colours');
     await slide(page, 400);
     const both = await pixels(page);
     const middle = 0.4 * both.width;
-    assert.strictEqual(compared(both, low, 0, middle - 2, 0).far, 0, 'left of the line is not the coarse mesh');
-    assert.strictEqual(compared(both, high, middle + 2, both.width, 0).far, 0, 'right of the line is not the detailed mesh');
+    assert.strictEqual((await compared(both, low, 0, middle - 2, 0)).far, 0, 'left of the line is not the coarse mesh');
+    assert.strictEqual((await compared(both, high, middle + 2, both.width, 0)).far, 0, 'right of the line is not the detailed mesh');
   },
 
   // By mouse, by keyboard, and side by side.
@@ -101,19 +95,15 @@ module.exports = {
     assert(!(await page.isVisible('#divider')));
     const beside = await pixels(page);
     const middle = Math.floor(beside.width / 2);
-    const seen = (from, to) => {
-      let count = 0;
-      for (let y = 0; y < beside.height; y += 3) for (let x = from; x < to; x += 3) if (beside.at(x, y)[3] === 255) ++count;
-      return count;
-    };
-    const [left, right] = [seen(0, middle), seen(middle, beside.width)];
+    const seen = (from, to) => compared(beside, beside, from, to, 0).then(({ both }) => both);
+    const [left, right] = [await seen(0, middle), await seen(middle, beside.width)];
     assert(left > 500 && Math.abs(left - right) < 0.1 * left, `${left} pixels of the coarse mesh, ${right} of the detailed one`);
     await page.selectOption('#arrangement', 'over');
     const plainMesh = await pixels(page);
     await page.check('#edges');
     const edges = await pixels(page);
-    assert(compared(plainMesh, edges, 0, 0.5 * edges.width, 20).far > 0.01, 'no triangles are drawn');
-    assert.strictEqual(compared(plainMesh, edges, 0.51 * edges.width, edges.width, 0).far, 0);
+    assert((await compared(plainMesh, edges, 0, 0.5 * edges.width, 20)).far > 0.01, 'no triangles are drawn');
+    assert.strictEqual((await compared(plainMesh, edges, 0.51 * edges.width, edges.width, 0)).far, 0);
   },
 
   // The numbers are those of report.json, whose path is given; the words say how the detailed mesh is drawn.

@@ -44,7 +44,7 @@ async function inBrowser(check) {
       await browser.close();
     }
   } catch (error) {
-    console.error(error.message);
+    console.error(error.stack);
     process.exitCode = 1;
   }
 }
