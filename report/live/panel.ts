@@ -47,8 +47,11 @@ export function addPanel(scene: string, resolution: number, actions: Actions): v
       select('facing', 'Closest of', kFacing, '', (degrees) => actions.setFacing(degrees === '' ? null : Number(degrees)))[0],
       make('div', { class: 'field-of' }, make('label', { for: 'units' }, 'Unit'), units),
     ),
-    make('p', { class: 'hint' }, 'Or drop two files here: STL, PLY, OBJ, OFF, 3DS or GLB, the part and the reference. They stay on this computer: the page cannot send anything.'),
-    make('div', { class: 'row', id: 'status-row' }, make('p', { id: 'status', role: 'status', 'aria-live': 'polite' }), cancel),
+    make(
+      'div', { id: 'said' },
+      make('p', { class: 'hint' }, 'Or drop two files here: STL, PLY, OBJ, OFF, 3DS or GLB, the part and the reference. They stay on this computer: the page cannot send anything.'),
+      make('div', { class: 'row' }, make('p', { id: 'status', role: 'status', 'aria-live': 'polite' }), cancel),
+    ),
   );
   document.querySelector('main')!.prepend(section);
 
@@ -85,6 +88,7 @@ export function say(text: string, kind: 'fault' | 'progress' | '' = ''): void {
   status.classList.toggle('fault', kind === 'fault');
   status.setAttribute('aria-live', kind === 'progress' ? 'off' : 'polite');
   status.textContent = text;
+  byId('said').classList.toggle('says', text !== '');
   byId('cancel').hidden = kind !== 'progress';
 }
 

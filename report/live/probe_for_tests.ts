@@ -1,7 +1,7 @@
 // What tests ask a live page.
 import { Matrix4 } from 'three';
 import type { MatchCounts, SdmWorker } from 'sdm';
-import type { Report } from '../src/page_data';
+import type { Report, Vec } from '../src/page_data';
 import type { Baking } from './baking';
 import { inFile, moved } from './engine';
 import type { Motion } from './motion';
@@ -40,6 +40,14 @@ export class Probe {
     return [part, { ...reference, positions: moved(reference.positions, inFile(view.motion, subject)) }].map(({ name, positions, indices }) => ({
       name, positions: Array.from(positions), indices: Array.from(indices),
     }));
+  }
+
+  /// Whether all of the part is in the picture.
+  get fits(): boolean {
+    const { view, subject } = this.session.pair!;
+    const { clientWidth, clientHeight } = view.canvas;
+    return Array.from({ length: 8 }, (_, corner) => view.place([0, 1, 2].map((k) => (corner & (1 << k) ? subject.hi : subject.lo)[k]) as Vec))
+      .every(({ x, y }) => x >= 0 && y >= 0 && x <= clientWidth && y <= clientHeight);
   }
 
   /// Of the surface that is drawn.
