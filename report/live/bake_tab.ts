@@ -3,11 +3,14 @@ import type { MatchCounts, MatchMethod } from 'sdm';
 import { byId, make } from '../src/dom';
 import { select } from '../src/fields';
 import { count, percent } from '../src/numbers';
+import { capital } from '../src/words';
 import type { Baking } from './baking';
 import { addTabs } from './tabs';
 
 const kShown: [string, string][] = [['', 'Distances'], ['colors', 'Colours of the reference'], ['normals', 'Normals of the reference']];
 const kMethods: [MatchMethod, string][] = [['facing', 'Closest that faces the same way'], ['closest', 'Closest point'], ['ray', 'Along the normal']];
+
+const sentence = (note: string): string => `${capital(note)}.`;
 
 /// The rows of a field for a number greater than 0; empty: none.
 function numberField(id: string, label: string, value: string, set: (value: number | null) => void): HTMLElement {
@@ -54,12 +57,12 @@ export class BakeTab {
   }
 
   /// The reference has no colours.
-  showMissing(name: string): void {
-    byId('bake-words').textContent = `${name} has neither colours nor materials to bake. Its normals can be baked.`;
+  showMissing(name: string, notes: string[]): void {
+    byId('bake-words').textContent = [`${name} has neither colours nor materials to bake. Its normals can be baked.`, ...notes.map(sentence)].join(' ');
   }
 
   /// How many texels have a point; `shown`: something is baked, or will be at rest.
-  showCounts(counts: MatchCounts | null, shown: boolean): void {
+  showCounts(counts: MatchCounts | null, shown: boolean, notes: string[] = []): void {
     document.body.classList.toggle('painted', shown && counts !== null);
     const words = byId('bake-words');
     if (!counts) return void words.replaceChildren(shown ? 'Baked at rest.' : 'Colours or normals of the reference as a texture of the part, in place of the distances.');
@@ -73,6 +76,7 @@ export class BakeTab {
         : `${count(without)} of ${count(all)} texels (${share}) have no point of the reference: `
           + [tooFar && `${count(tooFar)} are too far away`, facingAway && `nothing faces ${count(facingAway)}`].filter(Boolean).join(', ')
           + '. They are grey here, and filled in the saved texture.',
+      ...notes.map((note) => ` ${sentence(note)}`),
     );
   }
 }

@@ -28,6 +28,7 @@ export class Baking {
   counts: MatchCounts | null = null;
   private readonly looks: Looks;
   private version = 0;
+  private notes: string[] = []; // on what the file of the reference lacks
 
   constructor(private readonly session: Session, private readonly tab: BakeTab) {
     this.looks = new Looks(session.worker);
@@ -58,11 +59,11 @@ export class Baking {
     const isOn = () => version === this.version && !session.moving;
     const baked = await session.inOrder(async () => (isOn() ? this.paintOf(kind) : null));
     if (!isOn()) return;
-    if (!baked) return this.tab.showMissing(session.bodies![1].name);
+    if (!baked) return this.tab.showMissing(session.bodies![1].name, this.notes);
     this.counts = baked.counts;
     session.pair.subject.surface.setPaint(baked.paint);
     session.pair.view.draw();
-    this.tab.showCounts(baked.counts, true);
+    this.tab.showCounts(baked.counts, true, kind === 'colors' ? this.notes : []);
   }
 
   /// Null: the reference has no colours.
@@ -83,6 +84,7 @@ export class Baking {
 
   private async lookWithColors() {
     const look = await this.looks.lookOf(this.session.bodies![1]);
+    this.notes = look ? await look.notes() : [];
     return look && (look.hasColors || look.hasMaterials) ? look : null;
   }
 

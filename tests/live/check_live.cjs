@@ -281,6 +281,8 @@ const checks = {
 
   // Without memory for a fine map there is the coarse one, of what is shown.
   async lacks(page) {
+    await atRest(page, () => choose(page, ['resolution', '512']));
+    await isIdle(page);
     await page.evaluate(() => {
       const { worker } = window.sdmLive;
       const { surface } = worker;
@@ -386,6 +388,10 @@ const checks = {
     const binary = 20 + glb.readUInt32LE(12) + 8 + (view.byteOffset ?? 0);
     const picture = glb.subarray(binary, binary + view.byteLength).toString('base64');
     assert.strictEqual(await page.evaluate((text) => window.sdmLive.differing(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)), 0), picture), 0);
+    // What the file refers to and is not there is said.
+    writeFileSync(at('other.obj'), `mtllib lost.mtl\n${objOf(reference)}`);
+    await open(page, [at('other.obj')], '#open-reference');
+    await page.waitForFunction(() => /neither colours nor materials.*lost.mtl/.test(document.getElementById('bake-words').textContent), null, { timeout: kPatience });
     // Of a body without colours there are normals.
     await page.selectOption('#scene', 'letters');
     await page.waitForFunction(() => /neither colours nor materials/.test(document.getElementById('bake-words').textContent), null, { timeout: kPatience });
