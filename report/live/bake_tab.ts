@@ -8,7 +8,7 @@ import type { Baking } from './baking';
 import { addTabs } from './tabs';
 
 const kShown: [string, string][] = [['', 'Distances'], ['colors', 'Colours of the reference'], ['normals', 'Normals of the reference']];
-const kMethods: [MatchMethod, string][] = [['facing', 'Closest that faces the same way'], ['closest', 'Closest point'], ['ray', 'Along the normal']];
+const kMethods: [MatchMethod, string][] = [['facing', 'Closest facing the same way'], ['closest', 'Closest point'], ['ray', 'Along the normal']];
 
 const sentence = (note: string): string => `${capital(note)}.`;
 

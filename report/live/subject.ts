@@ -68,7 +68,12 @@ export class ChangingSurface extends Surface {
     texture.value = null;
     painted.value = paint === null ? 0 : paint.kind === 'colors' ? 1 : 2;
     if (!paint) return;
-    const { width, height } = this.layout.map;
+    const { map: { width, height }, texelOf } = this.layout;
+    // Beside the charts, what has no owner is as where its value comes from.
+    this.sources.forEach((source, i) => {
+      const from = source < this.sources.length ? source : texelOf[source - this.sources.length];
+      if (from >= 0 && from !== i) paint.pixels[4 * i + 3] = paint.pixels[4 * from + 3];
+    });
     const made = new DataTexture(paint.pixels, width, height, RGBAFormat, UnsignedByteType);
     made.magFilter = made.minFilter = LinearFilter;
     made.needsUpdate = true;
