@@ -45,9 +45,11 @@ class AllocatorLock {
   AllocatorLock() {
     int free = 0;
     if (__atomic_compare_exchange_n(&word_, &free, 1, false, __ATOMIC_ACQUIRE, __ATOMIC_RELAXED)) return;
-    while (__atomic_exchange_n(&word_, 2, __ATOMIC_ACQUIRE) != 0)
+    while (__atomic_exchange_n(&word_, 2, __ATOMIC_ACQUIRE) != 0) {
       __builtin_wasm_memory_atomic_wait32(&word_, 2,
                                           1'000'000);  // see threads.cpp: notifications may be lost
+      if (sdm_host_thread_failed()) abort();
+    }
   }
   ~AllocatorLock() {
     if (__atomic_exchange_n(&word_, 0, __ATOMIC_RELEASE) == 2) __builtin_wasm_memory_atomic_notify(&word_, 1);

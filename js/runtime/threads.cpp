@@ -18,9 +18,16 @@ bool shared() {
   return sdm_host_threads() > 1;
 }
 
+/// Ends this thread, too, if one has failed that it may be waiting for.
+void end_with_failed_threads() {
+  if (sdm_host_thread_failed()) std::abort();
+}
+
 /// Waits while the word has the value, until it is woken or the time is over.
 void wait(int* word, int value, std::int64_t nanoseconds) {
-  if (shared()) __builtin_wasm_memory_atomic_wait32(word, value, nanoseconds);
+  if (!shared()) return;
+  __builtin_wasm_memory_atomic_wait32(word, value, nanoseconds);
+  end_with_failed_threads();
 }
 
 /// The same without a time, but wakes may be spurious: callers look again. Node 20 loses notifications now
@@ -33,6 +40,7 @@ void wait(int* word, int value) {
   if (!shared()) std::abort();  // nobody could change it
   const bool idle = __builtin_wasm_memory_atomic_wait32(word, value, patience) == kTimedOut;
   patience = idle ? std::min(2 * patience, kMost) : kLeast;
+  end_with_failed_threads();
 }
 void wake(int* word, unsigned count) {
   if (shared()) __builtin_wasm_memory_atomic_notify(word, count);

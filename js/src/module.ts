@@ -22,6 +22,7 @@ export function hostImports(
     host: {
       threads: () => threads()?.count ?? 1,
       start_thread: (argument: Address) => (threads()?.start(argument) ? 1 : 0),
+      thread_failed: () => (threads()?.failure.reason === undefined ? 0 : 1),
       now: () => performance.timeOrigin + performance.now(),
       progress: (step: Address, bytes: number, fraction: number) => (progress(text(step, bytes), fraction) ? 1 : 0),
     },
@@ -150,19 +151,27 @@ export class Module {
     return name in this.functions;
   }
 
-  /** Whether a call has stopped half-way, so that the state of the memory is unknown: nothing can be called any more. */
+  /** Whether a call or a thread has stopped half-way, so that the state of the memory is unknown: nothing can be called any more. */
   get broken(): boolean {
-    return this.fault !== undefined;
+    return this.fault !== undefined || this.threads?.failure.reason !== undefined;
   }
 
   private run(name: string, numbers: number[]): number {
-    if (this.fault) throw this.fault;
+    if (this.broken) throw this.fail('');
     try {
       return this.functions[name]!(...numbers) >>> 0;
     } catch (error) {
-      this.fault = new SdmError('internal', `sdm: the module cannot go on: ${this.lastWords.trim() || (error as Error).message}`);
-      throw this.fault;
+      throw this.fail(this.lastWords.trim() || (error as Error).message);
     }
+  }
+
+  /** What calls throw from now on: why a thread has failed, as this one then ends only because it waits for it, or the reason. */
+  private fail(reason: string): SdmError {
+    const ofThread = this.threads?.failure.reason;
+    const why = ofThread === undefined ? reason : `a thread has failed: ${ofThread}`;
+    this.fault ??= new SdmError('internal', `sdm: the module cannot go on: ${why}`);
+    this.stop();
+    return this.fault;
   }
 
   /** Calls an exported function, with arrays copied into the module and out of it. */
@@ -207,7 +216,7 @@ export class Module {
   /** Frees what is at an address, unless the module is broken. */
   free(name: string, address: Address): void {
     if (this.progress) throw new SdmError('input', 'the library was called by a callback of progress');
-    if (!this.fault) this.run(name, [address]);
+    if (!this.broken) this.run(name, [address]);
   }
 
   /** A copy of bytes of the module. */

@@ -1,6 +1,7 @@
 // The workers of a module with threads. Each has an instance of the module, in the memory that all share, and waits until it is
 // given a function to run.
 import { type AnyWorker, newWorker, started } from './any_worker.js';
+import { Failure } from './failure.js';
 import { hostImports } from './module.js';
 import { SdmError } from './types.js';
 
@@ -14,6 +15,8 @@ export interface Threads {
   count: number;
   /** Lets an idle worker run a function. False if all are busy. */
   start(argument: number): boolean;
+  /** Of one of the threads, after which those that wait for it end, too. */
+  failure: Failure;
   stop(): void;
 }
 
@@ -22,6 +25,7 @@ export interface ThreadStart {
   module: WebAssembly.Module;
   memory: WebAssembly.Memory;
   slots: Int32Array<SharedArrayBuffer>;
+  failure: SharedArrayBuffer;
   slot: number;
   count: number;
   stackTop: number;
@@ -36,13 +40,16 @@ export async function startThreads(
   allocate: (bytes: number) => number,
 ): Promise<Threads> {
   const slots = new Int32Array(new SharedArrayBuffer(4 * count));
+  const failure = new Failure();
   const workers: AnyWorker[] = [];
   const startOne = async (slot: number) => {
     const worker = await newWorker(script);
     workers.push(worker);
     const stackTop = (allocate(kStackBytes) + kStackBytes) & ~15;
-    const thread: ThreadStart = { module, memory, slots, slot, count, stackTop, threadLocal: allocate(kThreadLocalBytes) };
+    const threadLocal = allocate(kThreadLocalBytes);
+    const thread: ThreadStart = { module, memory, slots, failure: failure.memory, slot, count, stackTop, threadLocal };
     await started(worker, { thread });
+    worker.listen(() => {}, (error) => failure.set(error.message));
   };
   try {
     await Promise.all(Array.from({ length: count - 1 }, (_, slot) => startOne(slot)));
@@ -53,6 +60,7 @@ export async function startThreads(
   return {
     count,
     start: (argument) => startIn(slots, workers.length, argument),
+    failure,
     stop: () => workers.forEach((worker) => worker.terminate()),
   };
 }
@@ -66,16 +74,18 @@ function startIn(slots: Int32Array, workers: number, argument: number): boolean 
   return false;
 }
 
-/** Runs functions for ever, in a worker. */
-export async function runThread(start: ThreadStart, ready: () => void): Promise<never> {
+/** Runs functions in a worker, until one of them fails. */
+export async function runThread(start: ThreadStart, ready: () => void): Promise<void> {
   const { slots, slot, count } = start;
-  const threads: Threads = { count, start: (argument) => startIn(slots, count - 1, argument), stop: () => {} };
+  const failure = new Failure(start.failure);
+  const threads: Threads = { count, start: (argument) => startIn(slots, count - 1, argument), failure, stop: () => {} };
+  let lastWords = '';
   const imports = hostImports(
     () => start.memory.buffer,
     () => threads,
     // Progress is of the call, whose thread alone has its callback.
     () => true,
-    () => {},
+    (text) => (lastWords += text),
   );
   const instance = await WebAssembly.instantiate(start.module, { ...imports, env: { memory: start.memory } });
   const exports = instance.exports as Record<string, any>;
@@ -83,11 +93,15 @@ export async function runThread(start: ThreadStart, ready: () => void): Promise<
   if (exports['__tls_size'].value > kThreadLocalBytes) throw new SdmError('internal', 'sdm: threads have too much of their own');
   exports['__wasm_init_tls'](start.threadLocal);
   ready();
-  for (;;) {
-    Atomics.wait(slots, slot, 0);
-    const argument = Atomics.load(slots, slot);
-    if (argument === 0) continue;
-    exports['sdm_run_thread'](argument);
-    Atomics.store(slots, slot, 0);
+  try {
+    for (;;) {
+      Atomics.wait(slots, slot, 0);
+      const argument = Atomics.load(slots, slot);
+      if (argument === 0) continue;
+      exports['sdm_run_thread'](argument);
+      Atomics.store(slots, slot, 0);
+    }
+  } catch (error) {
+    failure.set(lastWords.trim() || (error as Error).message);
   }
 }

@@ -36,15 +36,16 @@ test('a worker that cannot be started rejects', { timeout: 120000 }, () =>
 
 const triangle = [0, 0, 0, 1, 0, 0, 0, 1, 0];
 
-/** A program that ends or hangs at calls with the option `fault`, otherwise worker.js. */
-function faultyScript(t) {
+/** A program that ends or hangs at calls with the option `fault`, and whose threads begin with `ofThread`; otherwise worker.js. */
+function faultyScript(t, ofThread = 'f(message)') {
   const folder = mkdtempSync(join(tmpdir(), 'sdm-js-'));
   t.after(() => rmSync(folder, { recursive: true }));
   const file = pathToFileURL(join(folder, 'worker.mjs'));
   writeFileSync(file, `import { parentPort } from 'node:worker_threads';
     const faults = { ends: () => process.exit(1), hangs: () => Atomics.wait(new Int32Array(new SharedArrayBuffer(4)), 0, 0) };
     const on = parentPort.on.bind(parentPort);
-    parentPort.on = (name, f) => on(name, (message) => (faults[message.call?.options.fault] ?? f)(message));
+    const begin = (message, f) => ${ofThread};
+    parentPort.on = (name, f) => on(name, (message) => message.thread ? begin(message, f) : (faults[message.call?.options.fault] ?? f)(message));
     await import(${JSON.stringify(pathToFileURL(join(process.env.SDM_PACKAGE, 'worker.js')).href)});`);
   return file;
 }
@@ -64,6 +65,23 @@ for (const fault of ['ends', 'hangs'])
     assert.equal((await after.closestPoints([0, 0, 2])).distances[0], 2);
     assert.equal(worker.restarts, 1);
     await assert.rejects(before.closestPoints([0, 0, 1]), { kind: 'ended' });
+    worker.terminate();
+  });
+
+// Its stack is where no memory is; its program ends once it waits for functions.
+const faultsOfThreads = {
+  traps: ['(message.thread.stackTop = 16, f(message))', /a thread has failed: .*out of bounds/],
+  ends: ['(Atomics.wait = () => process.exit(1), f(message))', /a thread has failed: the worker has ended/],
+};
+for (const [fault, [ofThread, message]] of Object.entries(faultsOfThreads))
+  test(`a thread that ${fault} is an error of the call that waits for it, or of the next one`, { timeout: 120000 }, async (t) => {
+    const worker = await createWorker({ threads: 2, script: faultyScript(t, ofThread) });
+    const { positions, indices } = ball(60);
+    const untilItFails = async () => {
+      for (;;) await (await worker.sites(positions, indices)).closestPoints(positions);
+    };
+    await assert.rejects(untilItFails(), { kind: 'internal', message });
+    assert.equal(worker.restarts, 1);
     worker.terminate();
   });
 
