@@ -1,5 +1,5 @@
 // Closest points in headless Chromium, on one thread: the package for npm (./build-wasm) against three-mesh-bvh, on the same points.
-//   node bench/javascript.mjs [PACKAGE] [--repetitions N]
+//   node bench/javascript/three_mesh_bvh.mjs [PACKAGE] [--repetitions N]
 // Packages come from npm, into a temporary folder. Contenders take turns; medians of the repetitions, in microseconds a point. The
 // distances are compared first: three-mesh-bvh measures in double precision what it stores in single precision.
 import { execFileSync } from 'node:child_process';
@@ -11,9 +11,9 @@ import { fileURLToPath } from 'node:url';
 
 const given = process.argv.slice(2), at = given.indexOf('--repetitions');
 const repetitions = at < 0 ? 9 : Number(given.splice(at, 2)[1]);
-const root = join(dirname(fileURLToPath(import.meta.url)), '..');
+const root = join(dirname(fileURLToPath(import.meta.url)), '../..');
 const pkg = resolve(given[0] ?? join(root, 'build/wasm/package'));
-if (!existsSync(join(pkg, 'sdm_single.wasm'))) throw new Error(`${pkg} has no package: run ./build-wasm`);
+if (!existsSync(join(pkg, 'sdm_core.wasm'))) throw new Error(`${pkg} has no package: run ./build-wasm`);
 
 const page = `
 import { BufferAttribute, BufferGeometry, Vector3 } from 'three';
@@ -25,8 +25,8 @@ const median = (times) => times.sort((a, b) => a - b)[times.length >> 1];
 let state = 1;
 const random = () => (state = (state * 48271) % 2147483647) / 2147483647;
 
-window.measure = async (single, faces, kind, count, repetitions) => {
-  const sdm = await start({ modules: { single: Uint8Array.from(atob(single), (c) => c.charCodeAt(0)) } });
+window.measure = async (core, faces, kind, count, repetitions) => {
+  const sdm = await start({ modules: { core: Uint8Array.from(atob(core), (c) => c.charCodeAt(0)) } });
   const mesh = ball(Math.round(Math.sqrt(faces / 4)));
   for (let i = 0; i < mesh.positions.length; ++i) mesh.positions[i] = Math.fround(mesh.positions[i] * (1 + 0.02 * Math.sin(9 * i)));
   const geometry = new BufferGeometry();
@@ -78,12 +78,12 @@ try {
     const tab = await browser.newPage();
     await tab.setContent('');
     await tab.addScriptTag({ content: outputFiles[0].text });
-    const single = readFileSync(join(pkg, 'sdm_single.wasm')).toString('base64');
+    const core = readFileSync(join(pkg, 'sdm_core.wasm')).toString('base64');
     console.log('faces    points   sdm      three-mesh-bvh   ratio');
     for (const faces of [5000, 70000, 300000])
       for (const kind of ['near', 'box']) {
         const run = ([a, b, c, d, e]) => window.measure(a, b, c, d, e);
-        const { sdm, bvh } = await tab.evaluate(run, [single, faces, kind, 20000, repetitions]);
+        const { sdm, bvh } = await tab.evaluate(run, [core, faces, kind, 20000, repetitions]);
         console.log(`${String(faces).padEnd(9)}${kind.padEnd(9)}${sdm.toFixed(3).padEnd(9)}${bvh.toFixed(3).padEnd(17)}${(bvh / sdm).toFixed(1)}`);
       }
   } finally {
