@@ -1,9 +1,10 @@
 // The package sdm: exact distances between triangle meshes.
 import { Sdm } from './library.js';
 import { type ReportPage, load, textOf } from './load.js';
-import { Module, type ModuleFile, type ModuleFiles, type ModuleName, canShareMemory, mayWait } from './module.js';
+import { Module, type ModuleFile, type ModuleFiles, canShareMemory, mayWait } from './module.js';
 import { SdmPool } from './pool.js';
 import { SdmWorker } from './remote.js';
+import { withMemory } from './shared_memory.js';
 
 export * from './types.js';
 export type { Animation, ReadAnimationOptions } from './animation.js';
@@ -30,9 +31,9 @@ export interface StartOptions {
    * default as many as there are cores, at most 8.
    */
   threads?: number;
-  /** The module that also reads mesh files and writes reports (readMesh, summary, report), on one thread. */
+  /** The module that also has bodies that move (Pair), mesh files and reports (readMesh, summary, report). */
   full?: boolean;
-  /** The modules, where they are not found beside this file. */
+  /** The modules, where they are not found beside this file. Those that are compiled already have one thread. */
   modules?: ModuleFiles;
   /** The address of worker.js, the program of workers and threads. To be one of a Blob, it must not be revoked. */
   script?: string | URL;
@@ -41,26 +42,25 @@ export interface StartOptions {
 }
 
 const urls = {
-  single: () => new URL('./sdm_single.wasm', import.meta.url),
-  threads: () => new URL('./sdm_threads.wasm', import.meta.url),
+  core: () => new URL('./sdm_core.wasm', import.meta.url),
   full: () => new URL('./sdm_full.wasm', import.meta.url),
   worker: () => new URL('./worker.js', import.meta.url),
   page: () => new URL('./report_page.html', import.meta.url),
 };
 
 async function threadsOf(options: StartOptions): Promise<number> {
-  if (options.full || !canShareMemory()) return 1;
+  if (!canShareMemory()) return 1;
   if (options.threads !== undefined) return Math.max(1, Math.floor(options.threads));
   const cores = typeof navigator === 'object' ? navigator.hardwareConcurrency : (await import('node:os')).availableParallelism();
   return Math.min(8, cores);
 }
 
-/** The module that the options ask for, compiled. */
-async function compiled(options: StartOptions, threads: number): Promise<{ name: ModuleName; file: WebAssembly.Module }> {
-  const given = options.modules;
-  const name = options.full ? 'full' : threads > 1 && (!given || given.threads) ? 'threads' : 'single';
-  const file: ModuleFile = given?.[name] ?? (await (await load(urls[name]())).arrayBuffer());
-  return { name, file: file instanceof WebAssembly.Module ? file : await WebAssembly.compile(file) };
+/** The module that the options ask for, compiled, and the number of its threads. */
+async function compiled(options: StartOptions, threads: number): Promise<{ module: WebAssembly.Module; threads: number }> {
+  const name = options.full ? 'full' : 'core';
+  const file: ModuleFile = options.modules?.[name] ?? (await (await load(urls[name]())).arrayBuffer());
+  if (file instanceof WebAssembly.Module) return { module: file, threads: 1 };
+  return { module: await WebAssembly.compile(threads > 1 ? withMemory(file, true) : file), threads };
 }
 
 const scriptOf = (options: StartOptions) => String(options.script ?? urls.worker());
@@ -72,26 +72,24 @@ function pageOf(options: StartOptions): ReportPage {
 
 /** Starts the library in this thread, which waits for its calls. On the main thread of a page, it does without other threads. */
 export async function start(options: StartOptions = {}): Promise<Sdm> {
-  const threads = mayWait() ? await threadsOf(options) : 1;
-  const module = await compiled(options, threads);
-  const script = module.name === 'threads' ? scriptOf(options) : '';
-  return new Sdm(await Module.start({ ...module, threads, script }), () => textOf(pageOf(options)));
+  const { module, threads } = await compiled(options, mayWait() ? await threadsOf(options) : 1);
+  const script = threads > 1 ? scriptOf(options) : '';
+  return new Sdm(await Module.start({ module, threads, script }), () => textOf(pageOf(options)));
 }
 
 /** Starts the library in a worker. Throws SdmError if the worker cannot be started. */
 export async function createWorker(options: StartOptions = {}): Promise<SdmWorker> {
-  const threads = await threadsOf(options);
-  const { name, file } = await compiled(options, threads);
-  return SdmWorker.open({ name, module: file, threads, script: scriptOf(options), reportPage: pageOf(options) });
+  const { module, threads } = await compiled(options, await threadsOf(options));
+  return SdmWorker.open({ module, threads, script: scriptOf(options), reportPage: pageOf(options) });
 }
 
 /** Starts the library in several workers of one thread each, by default as many as there are cores, at most 8. */
 export async function createPool(options: StartOptions & { workers?: number } = {}): Promise<SdmPool> {
   const cores = typeof navigator === 'object' ? navigator.hardwareConcurrency : (await import('node:os')).availableParallelism();
   const count = Math.max(1, Math.floor(options.workers ?? Math.min(8, cores)));
-  const { name, file } = await compiled(options, 1);
+  const { module } = await compiled(options, 1);
   const script = scriptOf(options), reportPage = pageOf(options);
-  const starts = Array.from({ length: count }, () => SdmWorker.open({ name, module: file, threads: 1, script, reportPage }));
+  const starts = Array.from({ length: count }, () => SdmWorker.open({ module, threads: 1, script, reportPage }));
   const opened = await Promise.allSettled(starts);
   const workers = opened.flatMap((one) => (one.status === 'fulfilled' ? [one.value] : []));
   const failed = opened.find((one): one is PromiseRejectedResult => one.status === 'rejected');

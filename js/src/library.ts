@@ -13,6 +13,7 @@ type Body = { positions: Points; indices?: Indices };
 export class Sdm {
   readonly Surface: new (positions: Points, indices?: Indices, options?: bound.SurfaceOptions) => bound.Surface;
   readonly Sites: new (positions: Points, indices?: Indices) => bound.Sites;
+  /** Of the module `full` only. */
   readonly Pair: new (first: Body, second: Body, options?: { contactMargin?: number }) => bound.Pair;
 
   /** @internal */

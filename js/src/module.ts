@@ -62,19 +62,23 @@ export function hostImports(
 }
 
 export type ModuleFile = BufferSource | WebAssembly.Module;
-/** The modules: for one thread, for several threads, and for one thread with files and reports (sdm/files). */
-export type ModuleName = 'single' | 'threads' | 'full';
-export type ModuleFiles = { [name in ModuleName]?: ModuleFile };
+/** `full` has bodies that move, files and reports, too. */
+export interface ModuleFiles {
+  core?: ModuleFile;
+  full?: ModuleFile;
+}
 
 /** What a module is started with. */
 export interface ModuleStart {
-  name: ModuleName;
-  file: ModuleFile;
-  /** Of `threads`. */
+  /** With a memory that is shared if there are several threads. */
+  module: WebAssembly.Module;
   threads: number;
   /** The address of worker.js, the program of threads. */
   script: string;
 }
+
+/** Pages of 64 KiB: what the module declares (js/CMakeLists.txt). */
+const kMemory = { initial: 64, maximum: 65536 };
 
 /** Memory can be shared in Node, and in browsers where the page is isolated. */
 export function canShareMemory(): boolean {
@@ -88,7 +92,6 @@ export function mayWait(): boolean {
 
 export class Module {
   private readonly functions: Record<string, (...values: number[]) => number>;
-  private readonly memory: WebAssembly.Memory;
   private threads: Threads | undefined;
   private progress: Progress | undefined;
   private lastWords = '';
@@ -99,27 +102,24 @@ export class Module {
 
   private constructor(
     instance: WebAssembly.Instance,
-    memory: WebAssembly.Memory | undefined,
+    private readonly memory: WebAssembly.Memory,
   ) {
     this.functions = instance.exports as typeof this.functions;
-    this.memory = memory ?? (instance.exports['memory'] as WebAssembly.Memory);
   }
 
-  /** Compiles and starts a module. */
-  static async start({ name, file, threads, script }: ModuleStart): Promise<Module> {
-    const compiled = file instanceof WebAssembly.Module ? file : await WebAssembly.compile(file);
-    const memory = name === 'threads' ? new WebAssembly.Memory({ initial: 256, maximum: 65536, shared: true }) : undefined;
+  static async start({ module, threads, script }: ModuleStart): Promise<Module> {
+    const memory = new WebAssembly.Memory({ ...kMemory, shared: threads > 1 });
     let started: Module | undefined;
     const imports = hostImports(
-      () => started!.memory.buffer,
+      () => memory.buffer,
       () => started?.threads,
       (step, fraction) => started?.progress?.(step, fraction) !== false,
       (text) => started && (started.lastWords = (started.lastWords + text).slice(-1000)),
     );
-    const instance = await WebAssembly.instantiate(compiled, memory ? { ...imports, env: { memory } } : imports);
+    const instance = await WebAssembly.instantiate(module, { ...imports, env: { memory } });
     started = new Module(instance, memory);
     started.functions['__wasm_call_ctors']!();
-    if (memory) started.threads = await startThreads(compiled, memory, threads, script, (bytes) => started!.allocate(bytes));
+    if (threads > 1) started.threads = await startThreads(module, memory, threads, script, (bytes) => started!.allocate(bytes));
     return started;
   }
 
@@ -146,7 +146,7 @@ export class Module {
   stop(): void {
     this.threads?.stop();
   }
-  /** Whether a function is exported: whether the module has files and reports. */
+  /** Whether a function is exported: whether the module is `full`. */
   has(name: string): boolean {
     return name in this.functions;
   }

@@ -1,17 +1,13 @@
 // Messages between createWorker() and the program of its worker.
 import { type ReportPage } from './load.js';
-import { type ModuleName } from './module.js';
+import { type ModuleStart } from './module.js';
 import { type ThreadStart } from './threads.js';
 import { type ErrorKind } from './types.js';
 
 /** The first message to the program: what it is to be. */
 export type FirstMessage = { thread: ThreadStart } | { worker: WorkerStart };
 
-export interface WorkerStart {
-  name: ModuleName;
-  module: WebAssembly.Module;
-  threads: number;
-  script: string;
+export interface WorkerStart extends ModuleStart {
   reportPage: ReportPage;
 }
 

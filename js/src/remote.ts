@@ -4,7 +4,6 @@ import { type ReadAnimationOptions } from './animation.js';
 import { type Picture } from './look.js';
 import { type BakedLook, type DrawnModel, type MatchArrays, type MatchCounts, type MatchOptions, type NormalOptions } from './matches.js';
 import { type MeshFile, type ReadMeshOptions } from './mesh_file.js';
-import { type ModuleName } from './module.js';
 import { type Reference, type Reply, type Request, type Started, type WorkerStart } from './protocol.js';
 import { type MapSummary, type ReportOptions, type SummaryOptions } from './report.js';
 import {
@@ -468,7 +467,7 @@ export class WorkerAnimation extends Remote {
   }
 }
 
-/** Two bodies in a worker. */
+/** Two bodies in a worker. Of the module `full` only. */
 export class WorkerPair extends Remote {
   setPose(body: 0 | 1, matrix: ArrayLike<number>): Promise<void> {
     return this.call('setPose', [body, matrix]);
@@ -523,6 +522,7 @@ export class SdmWorker {
   async sites(positions: Points, indices: Indices = null, options: CallOptions = {}): Promise<WorkerSites> {
     return new WorkerSites(this.connection, await this.connection.call(null, 'sites', [positions, indices], { ...options }));
   }
+  /** Of the module `full` only. */
   async pair(first: Body, second: Body, options: { contactMargin?: number } & CallOptions = {}): Promise<WorkerPair> {
     return new WorkerPair(this.connection, await this.connection.call(null, 'pair', [first, second], { ...options }));
   }
@@ -553,5 +553,3 @@ export class SdmWorker {
     this.connection.terminate();
   }
 }
-
-export type { ModuleName };

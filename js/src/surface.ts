@@ -417,7 +417,7 @@ export interface Contacts {
   ids: BigUint64Array;
 }
 
-/** Two bodies that move and deform. */
+/** Two bodies that move and deform. Of the module `full` only. */
 export class Pair extends Owned {
   constructor(
     module: Module,
@@ -425,6 +425,7 @@ export class Pair extends Owned {
     second: { positions: Points; indices?: Indices },
     options: { contactMargin?: number } = {},
   ) {
+    if (!module.has('sdm_new_pair')) throw new SdmError('input', 'Pair needs the module of start({ full: true })');
     const bodies = [first, second].flatMap(({ positions, indices }, body) => {
       const at = coordinates(positions, `positions of body ${body}`);
       const triangles = corners(indices ?? null, at.length / 3);

@@ -188,8 +188,8 @@ class Server {
   }
 }
 
-async function serve(port: Port, { name, module, threads, script, reportPage }: WorkerStart): Promise<void> {
-  const started = await Module.start({ name, file: module, threads, script });
+async function serve(port: Port, { reportPage, ...start }: WorkerStart): Promise<void> {
+  const started = await Module.start(start);
   const flags = started.sharedFlags() ?? (canShareMemory() ? new Uint8Array(new SharedArrayBuffer(256)) : undefined);
   const server = new Server(port, new Sdm(started, () => textOf(reportPage)), flags);
   port.receive((request) => server.receive(request));

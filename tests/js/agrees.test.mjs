@@ -20,7 +20,7 @@ const extent = (positions) => {
 
 for (const threads of [1, 2]) {
   test(`with ${threads} thread${threads > 1 ? 's' : ''}`, async (t) => {
-    const sdm = await start({ threads });
+    const sdm = await start({ threads, full: true });
     assert.equal(sdm.threads, threads);
     let texels = 0, different = 0;
     for (const [i, expected] of pairs.entries()) {

@@ -52,7 +52,7 @@ async function filePage() {
   const text = (value) => JSON.stringify(value).replaceAll('<', '\\u003c');
   const files = {
     script: readFileSync(join(SDM_PACKAGE, 'worker.js'), 'utf8'),
-    single: readFileSync(join(SDM_PACKAGE, 'sdm_single.wasm')).toString('base64'),
+    core: readFileSync(join(SDM_PACKAGE, 'sdm_core.wasm')).toString('base64'),
   };
   const file = join(folder, 'page.html');
   writeFileSync(file, `<!doctype html><meta charset="utf-8"><script>window.embedded = ${text(files)};</script><script>${outputFiles[0].text.replaceAll('</script', '<\\/script')}</script>`);
@@ -120,7 +120,7 @@ test('a map on a mesh of three.js', { timeout: 120000 }, async () => {
   page.on('pageerror', (error) => faults.push(error.message));
   page.on('console', (message) => message.type() === 'error' && faults.push(message.text()));
   await page.setContent('<style>body { margin: 0 }</style>');
-  const given = { script: readFileSync(join(SDM_PACKAGE, 'worker.js'), 'utf8'), single: readFileSync(join(SDM_PACKAGE, 'sdm_single.wasm')).toString('base64') };
+  const given = { script: readFileSync(join(SDM_PACKAGE, 'worker.js'), 'utf8'), core: readFileSync(join(SDM_PACKAGE, 'sdm_core.wasm')).toString('base64') };
   await page.evaluate((files) => void (window.embedded = files), given);
   await page.addScriptTag({ content: outputFiles[0].text });
   const seen = await page.evaluate(() => window.seen());

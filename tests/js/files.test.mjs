@@ -81,7 +81,9 @@ test('a damaged file is one sentence that names it', () => {
 
 test('other modules say what is needed', async () => {
   const core = await start({ threads: 1 });
-  assert.throws(() => core.readMesh(files['a.off'], 'a.off'), { kind: 'input', message: /full: true/ });
+  const body = { positions: cube.positions, indices: cube.indices }, message = /full: true/;
+  assert.throws(() => core.readMesh(files['a.off'], 'a.off'), { kind: 'input', message });
+  assert.throws(() => new core.Pair(body, body), { kind: 'input', message });
 });
 
 test('summaries and reports have the verdict, and the colours of the pages', { timeout: 120000 }, async () => {

@@ -6,7 +6,7 @@ import { ball } from './shapes.mjs';
 const bytesOf = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
 const { embedded } = window;
 const blob = (text) => URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
-const options = embedded ? { modules: { single: bytesOf(embedded.single) }, script: blob(embedded.script) } : {};
+const options = embedded ? { modules: { core: bytesOf(embedded.core) }, script: blob(embedded.script) } : {};
 
 let files, worker;
 const read = (Kind, name) => new Kind(bytesOf(files[name]).buffer);
@@ -19,7 +19,7 @@ const all = {
   abortsAnything: () => checks.abortsAnything(worker),
   apart: () => checks.keepsCallsApart(worker),
   others: () => checks.refusesObjectsOfOthers(worker, () => sdm.createWorker({ ...options, threads: 1 })),
-  refits: () => checks.refitsWithoutMemory(worker),
+  refits: () => checks.refitsWithoutMemory(worker, embedded ? 10000 : 1000),
   async divides() {
     const pool = await sdm.createPool({ ...options, workers: 3 });
     await checks.dividesMaps(pool, worker);

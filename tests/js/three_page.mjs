@@ -5,8 +5,8 @@ import { DistanceMaterial, fromBufferGeometry, withAtlas } from 'sdm/three';
 
 window.seen = async () => {
   const script = URL.createObjectURL(new Blob([window.embedded.script], { type: 'text/javascript' }));
-  const single = Uint8Array.from(atob(window.embedded.single), (c) => c.charCodeAt(0));
-  const worker = await createWorker({ threads: 1, modules: { single }, script });
+  const core = Uint8Array.from(atob(window.embedded.core), (c) => c.charCodeAt(0));
+  const worker = await createWorker({ threads: 1, modules: { core }, script });
 
   const geometry = new THREE.SphereGeometry(1, 64, 32), other = new THREE.SphereGeometry(1, 64, 32);
   const at = geometry.getAttribute('position');

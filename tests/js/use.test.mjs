@@ -7,6 +7,7 @@ import { ball } from './shapes.mjs';
 
 const { start, SdmError } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'index.js')));
 const sdm = await start({ threads: 1 });
+const full = await start({ threads: 1, full: true });
 
 const isInputError = (message) => (error) => error instanceof SdmError && error.kind === 'input' && message.test(error.message);
 
@@ -84,17 +85,18 @@ test('with threads, the callback is that of the thread that calls', async () => 
 
 test('10,000 refits take no memory', () => {
   const { positions, indices } = ball(10), sites = new sdm.Sites(positions, indices);
-  const pair = new sdm.Pair({ positions, indices }, { positions, indices });
-  const moved = (i) => Float64Array.from(positions, (x) => x * (1 + 0.3 * Math.sin(i)));
+  const pair = new full.Pair({ positions, indices }, { positions, indices });
+  const moved = (i) => positions.map((x) => x * (1 + 0.3 * Math.sin(i)));
   for (let i = 0; i < 100; ++i) sites.refit(moved(i)), pair.refit(0, moved(i)), pair.colliding();
-  const before = sdm.memoryBytes;
+  const before = [sdm.memoryBytes, full.memoryBytes];
   for (let i = 0; i < 10000; ++i) {
     sites.refit(moved(i));
     sites.closestPoints([0, 0, 0]);
+    if (i % 5 !== 0) continue;
     pair.setPose(1, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3 * Math.cos(i), 0, 0, 1]);
     pair.separation();
   }
-  assert.equal(sdm.memoryBytes, before);
+  assert.deepEqual([sdm.memoryBytes, full.memoryBytes], before);
 });
 
 test('parts of a map, in any order, are the map to the bit', () => {
@@ -128,12 +130,27 @@ test('what is computed again takes no more memory', () => {
   assert.ok(Math.abs(map.statistics().min + 1) < 0.02);
 });
 
-test('what does not fit into the memory is an error, and takes none', () => {
-  const [positions, indices] = [[0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 2]];
-  const fail = () => assert.throws(() => new sdm.Surface(positions, indices, { resolution: 32768, atlas: 'triangles' }), (error) => error.kind !== 'internal' && /memory/.test(error.message));
+/** The library with a memory that cannot grow beyond so many pages of 64 KiB. */
+async function startWithin(maximum) {
+  const { Memory } = WebAssembly;
+  WebAssembly.Memory = class extends Memory {
+    constructor(type) {
+      super({ ...type, maximum });
+    }
+  };
+  try {
+    return await start({ threads: 1 });
+  } finally {
+    WebAssembly.Memory = Memory;
+  }
+}
+
+test('what does not fit into the memory is an error, and takes none', async () => {
+  const small = await startWithin(300), [positions, indices] = [[0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 2]];
+  const fail = () => assert.throws(() => new small.Surface(positions, indices, { resolution: 2048, atlas: 'triangles' }), (error) => error.kind !== 'internal' && /memory/.test(error.message));
   fail();
-  const taken = sdm.memoryBytes;
+  const taken = small.memoryBytes;
   for (let i = 0; i < 3; ++i) fail();
-  assert.equal(sdm.memoryBytes, taken);
-  assert.equal(new sdm.Sites(positions, indices).closestPoints([0, 0, 3]).distances[0], 3);
+  assert.equal(small.memoryBytes, taken);
+  assert.equal(new small.Sites(positions, indices).closestPoints([0, 0, 3]).distances[0], 3);
 });

@@ -161,7 +161,7 @@ export async function movesBuffers(worker) {
 }
 
 /** Refits bodies many times, without more memory. */
-export async function refitsWithoutMemory(worker, times = 10000) {
+export async function refitsWithoutMemory(worker, times) {
   const { positions, indices } = ball(10);
   const sites = await worker.sites(positions, indices), surface = await worker.surface(positions, indices, { resolution: 64 });
   const map = await surface.map(sites);
