@@ -4,7 +4,7 @@
 #include <new>
 
 #include "core/memory.h"
-#include "query/inside/boundary_sites.h"
+#include "query/inside/open_sides.h"
 #include "sites/sites_data.h"
 
 namespace sdm {

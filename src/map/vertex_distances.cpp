@@ -11,7 +11,7 @@
 #include "core/rows.h"
 #include "query/facing/facing_search.h"
 #include "query/facing/outward_normals.h"
-#include "query/inside/boundary_sites.h"
+#include "query/inside/open_sides.h"
 #include "sites/sites_data.h"
 
 namespace sdm {

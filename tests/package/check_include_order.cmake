@@ -24,8 +24,8 @@ set(order
   sites
   query/closest
   query/facing
-  query/inside
   query/rays
+  query/inside
   query/pairs
   query/convex
   query/shape
@@ -154,7 +154,8 @@ set(readers_of_nodes
   query/closest/descent.cpp            # appends all leaves within reach to a list, by vector instructions
   proximity/motion/parts.h             # nodes are divided into faces too, by time
   proximity/self/self_search.cpp       # marks the nodes whose faces are all excluded
-  query/inside/solid_angles.cpp        # the node of the largest error first, taken out of a sum again
+  query/inside/expansions.cpp          # computes an expansion for each child of a node
+  query/inside/solid_angles.cpp        # nodes whose errors are too large are opened again
   query/inside/solid_boundary.cpp      # faces are divided further, nearest first
   query/pairs/near_faces.cpp           # bounds the children of a pair, and marks those below a node
   query/pairs/pair_search.cpp          # bounds the children of a pair

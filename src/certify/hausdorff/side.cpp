@@ -11,7 +11,7 @@
 namespace sdm::hausdorff {
 
 bool Side::has(const Vec3& p) const {
-  return inside::contains(solid_, {}, p) == inside_;
+  return inside::contains(solid_, p) == inside_;
 }
 
 bool Side::is_one_sided(const Corners& triangle) const {

@@ -180,7 +180,7 @@ class Prover {
     const auto estimate = [&] {
       return inside::InsideTest(b_, sign_)(at.point, closest::reference_closest(b_, at.point, kAnywhere));
     };
-    const bool is_inside = sign_ == SignMethod::exact ? distance > 0 && inside::contains(b_, {}, at.point)
+    const bool is_inside = sign_ == SignMethod::exact ? distance > 0 && inside::contains(b_, at.point)
                                                       : is_estimate(sign_) && estimate();
     return {at.point, at.closest, at.faces[0], at.faces[1], is_inside ? -distance : distance};
   }

@@ -71,7 +71,7 @@ Sides FaceSides::beside(std::uint32_t face) const {
   const auto& [a, b, c] = solid_->mesh.triangles[face];
   const std::vector<Vec3>& p = solid_->mesh.positions;
   const Vec3 beside = (1.0 / 3) * (p[a] + p[b] + p[c]) + offset_ * solid_->normals.face[face];
-  return sides_by_winding(winding(*solid_, {}, beside));
+  return sides_by_winding(winding(*solid_, beside));
 }
 
 void FaceSides::find_all() const {

@@ -68,7 +68,7 @@ bool InsideTest::inside_solid(const Vec3& query, const ClosestPoint& closest) co
     case Sides::buried:
       return true;
     case Sides::mixed:
-      return closest.distance > 0 && winding(sites_, {}, query) != 0;
+      return closest.distance > 0 && winding(sites_, query) != 0;
     default: {
       const double outward =
           dot(query - closest.point, sites::pseudonormal(sites_.normals, sites_.topology, closest));
@@ -101,7 +101,7 @@ bool InsideTest::test(const Vec3& query, const ClosestPoint& closest, bool few) 
       if (closest.type == SiteType::none || !sdm::contains(signs_->box, query)) return false;
       return inside_ball(query, closest.type, closest.distance, [&](bool clear) {
         const bool direct = few && clear && sides_->first_asked(sites_.face_of(closest.type, closest.site));
-        return of_solid(direct ? winding(sites_, {}, query) != 0 : inside_solid(query, closest));
+        return of_solid(direct ? winding(sites_, query) != 0 : inside_solid(query, closest));
       });
     case SignMethod::winding:
       if (closest.distance == 0) return false;
@@ -132,7 +132,7 @@ bool InsideTest::at_boundary(const Vec3& query, const ClosestPoint& closest) con
     default: {
       // No face lies between the two; whether the solid goes on behind the closest point remains to be found.
       const Vec3 beyond = closest.point + 0.25 * signs_->clearance * normalized(closest.point - query);
-      return winding(sites_, {}, beyond) == 0;
+      return winding(sites_, beyond) == 0;
     }
   }
 }

@@ -120,18 +120,52 @@ bool meet(const tree::FloatBox& a, const tree::FloatBox& b) {
   return !apart;
 }
 
+// Whether the faces around a vertex of a closed mesh are known to be at angles larger than kClearAngle, but
+// for those that share an edge: if they form one turn about its normal n. Seen along n, the faces are sectors
+// of at least 4·kClearAngle, one after the other if all have the same orientation and one of them crosses the
+// positive half of an axis from below. Between two that share no edge is another one. The planes of faces are
+// tilted by at most 60°, so that vectors of length 1 are at least 1/2 long seen along n, and the distance of
+// two of them is at least 2·½·sin(½·4·kClearAngle), nearly 2·kClearAngle.
+bool has_clear_fan(const sites::SitesData& sites, std::uint32_t vertex) {
+  const Vec3 n = normalized(sites.normals.vertex[vertex]);
+  const int least = std::abs(n[0]) < std::abs(n[1]) ? (std::abs(n[0]) < std::abs(n[2]) ? 0 : 2)
+                                                    : (std::abs(n[1]) < std::abs(n[2]) ? 1 : 2);
+  Vec3 across;
+  across[least] = 1;
+  const Vec3 axis = cross(n, across);
+  constexpr double kSector = 4 * kClearAngle, kOnAxis = 1e-9;
+  const std::vector<Vec3>& at = sites.mesh.positions;
+  int turns = 0;
+  for (const std::uint32_t face : sites.vertex_faces.of(vertex)) {
+    const Triangle& t = sites.mesh.triangles[face];
+    const int k = t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2;
+    const bool reverse = sites.inverted[face] != 0;
+    const Vec3 a = at[t[(k + (reverse ? 2 : 1)) % 3]] - at[vertex],
+               b = at[t[(k + (reverse ? 1 : 2)) % 3]] - at[vertex], normal = cross(a, b);
+    const double area = dot(normal, n), sides = squared_norm(a) * squared_norm(b);
+    if (!(area > 0) || !(area * area > 0.25 * squared_norm(normal)) ||
+        !(area * area > kSector * kSector * sides))
+      return false;
+    const double from = dot(a, axis), to = dot(b, axis);
+    if (!(from * from > kOnAxis * kOnAxis * squared_norm(a))) return false;
+    turns += from < 0 && to > 0 ? 1 : 0;
+  }
+  return turns == 1;
+}
+
 /// The pairs of near faces of which one is in a leaf, and the other one in it or in a later leaf.
 class NearPairs {
  public:
   /// Uses the memory of `reaches`.
-  NearPairs(const sites::SitesData& sites, std::vector<std::uint8_t>& flags, std::vector<Box>& reaches)
-      : sites_(sites), flags_(flags), reaches_(reaches) {}
+  NearPairs(const sites::SitesData& sites, std::span<const std::uint8_t> clear_fans,
+            std::vector<std::uint8_t>& flags, std::vector<Box>& reaches)
+      : sites_(sites), clear_fans_(clear_fans), flags_(flags), reaches_(reaches) {}
 
   void flag(std::uint32_t leaf) {
     reaches_.clear();
     const std::span<const std::uint32_t> faces = sites_.tree.items_of(leaf);
     for (const std::uint32_t face : faces) reaches_.push_back(reach_of_face(sites_, face));
-    for (std::size_t i = 0; i < faces.size(); ++i) compare(faces[i], reaches_[i], faces.subspan(i + 1));
+    for (std::size_t i = 0; i < faces.size(); ++i) compare(faces.first(i), faces[i]);
     // More than the clearance, and than its rounding.
     constexpr float kMargin = 1.25F * static_cast<float>(kClearance);
     tree::FloatBox reach = sites_.tree.box(leaf);
@@ -142,22 +176,35 @@ class NearPairs {
     };
     const auto visit_leaf = [&](std::uint32_t other) {
       if (other <= leaf) return;
-      for (std::size_t i = 0; i < faces.size(); ++i)
-        compare(faces[i], reaches_[i], sites_.tree.items_of(other));
+      for (const std::uint32_t face : sites_.tree.items_of(other)) compare(faces, face);
     };
     visit(sites_.tree, tree::InOrder{enter, visit_leaf});
   }
 
  private:
-  void compare(std::uint32_t face, const Box& reach, std::span<const std::uint32_t> others) {
-    for (const std::uint32_t other : others) {
-      if (!overlap(reach, box_of_face(sites_.mesh, other)) || clear_of(sites_, face, other)) continue;
-      for (const std::uint32_t near : {face, other})
+  // The first ones of the leaf with another face.
+  void compare(std::span<const std::uint32_t> faces, std::uint32_t other) {
+    const Box box = box_of_face(sites_.mesh, other);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (!overlap(reaches_[i], box) || known_to_be_clear(faces[i], other) ||
+          clear_of(sites_, faces[i], other))
+        continue;
+      for (const std::uint32_t near : {faces[i], other})
         std::atomic_ref(flags_[near]).store(1, std::memory_order_relaxed);
     }
   }
+  // Whether they share one corner only, where all faces are clear of each other.
+  [[nodiscard]] bool known_to_be_clear(std::uint32_t face, std::uint32_t other) const {
+    const Triangle &a = sites_.mesh.triangles[face], &b = sites_.mesh.triangles[other];
+    std::uint32_t corner = kNone;
+    int shared = 0;
+    for (const std::uint32_t v : a)
+      if (v == b[0] || v == b[1] || v == b[2]) corner = v, ++shared;
+    return shared == 1 && clear_fans_[corner] != 0;
+  }
 
   const sites::SitesData& sites_;
+  std::span<const std::uint8_t> clear_fans_;  ///< of each vertex: has_clear_fan()
   std::vector<std::uint8_t>& flags_;
   std::vector<Box>& reaches_;
 };
@@ -210,9 +257,16 @@ void flag_faces_with_near(const sites::SitesData& sites, std::vector<std::uint8_
   leaves.clear();
   visit(sites.tree, tree::InOrder{[](tree::Subtree) { return true; },
                                   [&](std::uint32_t leaf) { leaves.push_back(leaf); }});
+  thread_local std::vector<std::uint8_t> kept_fans;
+  std::vector<std::uint8_t>& clear_fans = kept_fans;
+  clear_fans.assign(sites.mesh.positions.size(), 0);
+  parallel_for(clear_fans.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      clear_fans[v] = has_clear_fan(sites, static_cast<std::uint32_t>(v));
+  });
   parallel_for(leaves.size(), 256, [&](std::size_t begin, std::size_t end) {
     thread_local std::vector<Box> reaches;
-    NearPairs pairs(sites, flags, reaches);
+    NearPairs pairs(sites, clear_fans, flags, reaches);
     for (std::size_t i = begin; i < end; ++i) pairs.flag(leaves[i]);
   });
 }

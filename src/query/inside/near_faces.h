@@ -26,9 +26,9 @@ inline constexpr double kClearAngle = 1e-3;
 /// that they share, or at an angle smaller than kClearAngle there. A face without any is embedded: no other
 /// face intersects it. Cost: O(log n), plus linear in the faces whose boxes are near.
 void find_near_faces(const sites::SitesData& sites, std::uint32_t face, std::vector<std::uint32_t>& near);
-/// Sets `flags` to whether find_near_faces() finds some, but for rounding, for each face. Cost: a fraction of
-/// that of all faces one after the other, as each pair is compared once, and the tree searched once for the
-/// faces of a leaf; all cores.
+/// Sets `flags` to whether find_near_faces() finds some, for each face of a closed, orientable mesh, but for
+/// rounding and where faces are at angles near kClearAngle. Cost: a fraction of that of all faces one after
+/// the other, as each pair is compared once, and the tree searched once for the faces of a leaf; all cores.
 void flag_faces_with_near(const sites::SitesData& sites, std::vector<std::uint8_t>& flags);
 
 }  // namespace sdm::inside

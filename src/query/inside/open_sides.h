@@ -1,4 +1,4 @@
-// The winding numbers beside the faces of an open mesh that others close.
+// The boundary of an open mesh, and the winding numbers beside its faces, where others close it.
 #pragma once
 
 #include <sdm/closest_points.h>
@@ -9,11 +9,29 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
-#include "query/inside/boundary_sites.h"
+#include "mesh/topology.h"
 #include "query/inside/oriented_faces.h"
 
 namespace sdm::inside {
+
+/// Flags of the edges with one face, and of their vertices.
+struct BoundarySites {
+  std::vector<std::uint8_t> edges, vertices;
+
+  BoundarySites() = default;
+  BoundarySites(const mesh::Topology& topology, std::size_t vertex_count)
+      : edges(topology.edges.size()), vertices(vertex_count) {
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      if (topology.edge_faces(e).size() == 1)
+        edges[e] = vertices[topology.edges[e][0]] = vertices[topology.edges[e][1]] = 1;
+  }
+
+  [[nodiscard]] bool contains(SiteType type, std::uint32_t site) const {
+    return (type == SiteType::edge && edges[site] != 0) || (type == SiteType::vertex && vertices[site] != 0);
+  }
+};
 
 /// The winding number of the faces of a mesh and of those that close it is constant on the outer side of a
 /// face that no other one of either kind meets or comes near, larger by 1 on its inner side, and passes to

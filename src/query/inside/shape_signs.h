@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/lazy/kept.h"
-#include "query/inside/boundary_sites.h"
 #include "query/inside/face_sides.h"
+#include "query/inside/open_sides.h"
 #include "query/inside/winding_number.h"
 #include "sites/sites_data.h"
 

@@ -22,6 +22,8 @@ namespace sdm::inside {
 /// outside.
 [[nodiscard]] std::optional<int> crossings(const OrientedFaces& faces, const Affine& pose, const Vec3& p,
                                            const Vec3& q);
+/// Those of the faces of sites, where they are. The same; faces are excluded eight at a time.
+[[nodiscard]] std::optional<int> crossings(const sites::SitesData& sites, const Vec3& p, const Vec3& q);
 
 /// A segment from a point to a point outside the box of the tree, moved by `pose`, for which crossings(q) is
 /// set: its value. 0 if the point is outside the box; empty if none of the first `most` segments has one.
@@ -32,11 +34,16 @@ template <class Crossings>
 /// The winding number of a solid moved by `pose` around a point that does not lie on its surface: 0 outside.
 /// Exact; 0 for a point on an edge. Cost: usually one call of the above.
 [[nodiscard]] int winding(const sites::SitesData& solid, const Affine& pose, const Vec3& point);
+/// Of a solid where it is. The same; a fraction of the time.
+[[nodiscard]] int winding(const sites::SitesData& solid, const Vec3& point);
 
 /// Whether a solid moved by `pose` contains a point that does not lie on its surface: whether its winding
 /// number around the point is not 0.
 [[nodiscard]] inline bool contains(const sites::SitesData& solid, const Affine& pose, const Vec3& point) {
   return winding(solid, pose, point) != 0;
+}
+[[nodiscard]] inline bool contains(const sites::SitesData& solid, const Vec3& point) {
+  return winding(solid, point) != 0;
 }
 
 template <class Crossings>

@@ -52,8 +52,7 @@ inline double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
 /// arguments, but for whole turns, which are counted.
 class SolidAngleSum {
  public:
-  void add(const Vec3& a, const Vec3& b, const Vec3& c) {
-    const HalfSolidAngle half = half_solid_angle(a, b, c);
+  void add(const HalfSolidAngle& half) {
     // A product turns by at most 4·u by its own rounding and that of its factor.
     error_ += half.error + 8 * 0x1p-53;
     if (std::isinf(half.error)) return;

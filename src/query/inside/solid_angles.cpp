@@ -1,249 +1,335 @@
 #include "query/inside/solid_angles.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "query/inside/solid_angles.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which includes this file once for each set of instructions.
+#include <hwy/highway.h>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <span>
 
 #include "core/cancellation.h"
-#include "core/numbers/compensated_sum.h"
+#include "geometry/lanes/vec-inl.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
-#include "tree/fold.h"
 
+#ifndef SDM_SOLID_ANGLES_ONCE
+#define SDM_SOLID_ANGLES_ONCE
 namespace sdm::inside {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // Terms with larger errors, in solid angle, are never part of a sum.
-constexpr double kMostError = 1;
-// Bounds of solid_angles.h: δ relative to lengths, and the rounding of terms relative to P/g².
-constexpr double kDisplacement = 16 * kHalfUlp, kTermRounding = 256 * kHalfUlp;
-// A bound that is computed from other bounds may be smaller by a fraction of less than this.
-constexpr double kBoundRounding = 1e-6;
+constexpr double kMostError = 0.3;
+// How much smaller than the distance from the limit the error is to become: the rest is for the reach.
+constexpr double kDecided = 1.2;
+// Beyond this in the unit frame, single precision does not have the range for expansions.
+constexpr double kFarthest = 0x1p20;
 
 // The error of terms on the next pass. Where a surface is divided until the terms have the error e, their
 // number is as 1/√e, and so is the sum of their errors as √e.
 double next_error(double most, double wanted, double sum) {
-  constexpr double kLeast = 1e-14;  // near rounding: then no term is left
+  constexpr double kLeast = 1e-9;  // near rounding: then no term is left
   const double factor = wanted / sum;
   const double next = most * std::clamp(factor * factor, 1.0 / 64, 0.5);
   return next < kLeast ? 0 : next;
 }
 
-}  // namespace
-
-void SolidAngles::add(Node& sum, const Node& part) {
-  // About the centre of the sum, which is set before its parts are added.
-  const Vec3 d = part.centre - sum.centre;
-  const Vec3& m = part.moment;
-  const std::array<double, 6> moved{d[0] * m[0],
-                                    d[1] * m[1],
-                                    d[2] * m[2],
-                                    0.5 * (d[0] * m[1] + d[1] * m[0]),
-                                    0.5 * (d[1] * m[2] + d[2] * m[1]),
-                                    0.5 * (d[2] * m[0] + d[0] * m[2])};
-  for (std::size_t i = 0; i < moved.size(); ++i) sum.first[i] += part.first[i] + moved[i];
-  sum.moment += m;
-  sum.second += part.second + part.area * squared_norm(d);
+// No face is seen from a point at this distance from the origin under more than A / g².
+SolidAngle far_away(const SolidAngles& angles, double from_origin) {
+  double area = 0;
+  for (const float of_child : angles.expansions[0].area) area += of_child;
+  const double gap = from_origin - 2;
+  return {0, area / (gap * gap)};
 }
 
-SolidAngles::Node SolidAngles::of_face(std::uint32_t face) const {
-  const auto [a, b, c] = faces_.corners(face);
-  const Vec3& origin = faces_.faces.frame.origin;
-  Node node;
-  node.centre = (1.0 / 3) * ((a - origin) + (b - origin) + (c - origin));
-  node.moment = 0.5 * cross(b - a, c - a);
-  node.area = norm(node.moment);
-  node.second = node.area / 36 * (squared_norm(b - a) + squared_norm(c - b) + squared_norm(a - c));
-  node.edges = norm(b - a) * norm(c - a);
-  return node;
-}
+// The expansions that are part of a sum: child `place` % 8 of node `place` / 8 of the wide tree.
+struct ExpansionTerms {
+  std::vector<float> value, error;
+  std::vector<float> gap;        // between q and its faces
+  std::vector<float> steepness;  // A / gap³
+  std::vector<std::uint32_t> place;
+  std::size_t count = 0;
+  std::vector<std::uint32_t> open;  // places of children that are not part of it
 
-// To the farthest corner of the box.
-double SolidAngles::radius_by_box(const Vec3& centre, const tree::FloatBox& box) const {
-  Vec3 farthest;
-  for (int k = 0; k < 3; ++k) {
-    const double lo = unit_ * box.lo[k] - centre[k], hi = unit_ * box.hi[k] - centre[k];
-    farthest[k] = std::max(std::abs(lo), std::abs(hi));
+  void clear() { count = 0, open.clear(); }
+  // Makes room for some more, and for what vectors write beyond those.
+  void reserve(std::size_t more) {
+    if (count + more <= place.size()) return;
+    const std::size_t size = 2 * (count + more);
+    for (auto* floats : {&value, &error, &gap, &steepness}) floats->resize(size);
+    place.resize(size);
   }
-  return norm(farthest);
-}
-
-double SolidAngles::radius_of_leaf(const Vec3& centre, std::uint32_t leaf) const {
-  double squared = 0;
-  for (const std::uint32_t face : faces_.faces.tree.items_of(leaf))
-    for (const std::uint32_t v : faces_.faces.triangles[face])
-      squared =
-          std::max(squared, squared_norm((faces_.faces.positions[v] - faces_.faces.frame.origin) - centre));
-  return std::sqrt(squared);
-}
-
-// The mean of the centres of what is added, by area; `node` has their sum.
-void SolidAngles::set_centre(Node& node, const tree::FloatBox& box) const {
-  if (node.area > 0) {
-    node.centre = (1 / node.area) * node.centre;
-    return;
+  // Sets what vectors read beyond the last one.
+  void end_with_zeros() {
+    reserve(Expansions::kWidth);
+    for (std::size_t i = count; i < count + Expansions::kWidth; ++i) value[i] = error[i] = 0;
   }
-  for (int k = 0; k < 3; ++k) node.centre[k] = 0.5 * unit_ * (double{box.lo[k]} + box.hi[k]);
-}
-
-SolidAngles::SolidAngles(const OrientedFaces& faces)
-    : faces_(faces), nodes_(faces.faces.tree.nodes.size()), unit_(1 / faces.faces.frame.scale) {
-  const tree::AabbTree& tree = faces_.faces.tree;
-  const auto sum = [&](Node& node, std::span<const Node> parts, std::uint32_t index) {
-    for (const Node& part : parts) {
-      node.area += part.area, node.edges += part.edges;
-      node.centre += part.area * part.centre;
+  // Opens those with larger errors.
+  void open_above(double most) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (error[i] > most) {
+        open.push_back(place[i]);
+        continue;
+      }
+      value[kept] = value[i], error[kept] = error[i], gap[kept] = gap[i], steepness[kept] = steepness[i];
+      place[kept++] = place[i];
     }
-    set_centre(node, tree.box(index));
-    for (const Node& part : parts) add(node, part);
-  };
-  // The radius covers boxes, whose corners are rounded outwards, and the displacement of faces.
-  const auto covering = [&](double radius) {
-    return (1 + kProductRounding) * radius + kDisplacement * unit_;
-  };
-  Poll due(1024);
-  std::vector<Node> of_leaf;
-  for_each_bottom_up(
-      tree,
-      [&](std::uint32_t leaf) {
-        due();
-        of_leaf.clear();
-        for (const std::uint32_t face : tree.items_of(leaf)) of_leaf.push_back(of_face(face));
-        Node& node = nodes_[leaf];
-        sum(node, of_leaf, leaf);
-        node.radius = covering(radius_of_leaf(node.centre, leaf));
-      },
-      [&](std::uint32_t index, std::uint32_t left, std::uint32_t right) {
-        Node& node = nodes_[index];
-        sum(node, std::array{nodes_[left], nodes_[right]}, index);
-        double of_parts = 0;
-        for (const std::uint32_t part : {left, right})
-          of_parts = std::max(of_parts, norm(nodes_[part].centre - node.centre) + nodes_[part].radius);
-        node.radius = covering(std::min(of_parts, radius_by_box(node.centre, tree.box(index))));
-      });
-}
-
-/// The expansion of a node, as part of a sum.
-struct SolidAngles::Term {
-  double value = 0, error = 0;
-  std::uint32_t node = 0;
-  double gap = 0;
+    count = kept;
+  }
 };
 
-/// The sum at one point while it is refined.
-class SolidAngles::Refinement {
+}  // namespace
+}  // namespace sdm::inside
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace sdm::inside::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace lanes::HWY_NAMESPACE;
+
+constexpr size_t kWidth = Expansions::kWidth;
+using Floats = hn::CappedTag<float, kWidth>;
+
+// The sum at one point while it is refined.
+class Refinement {
  public:
-  /// Uses the memory of `terms` and `opened`.
-  Refinement(const SolidAngles& angles, const Vec3& q, std::vector<Term>& terms,
-             std::vector<std::uint32_t>& opened)
-      : angles_(angles),
-        q_(q),
-        from_origin_(q - angles.faces_.faces.frame.origin),
-        displacement_(kDisplacement * (angles.unit_ + norm(from_origin_))),
-        terms_(terms),
-        opened_(opened) {
-    terms_.clear();
-    terms_.push_back({0, kInfinite, 0, 0});
-  }
-
-  /// Replaces all terms with errors above `most` by those of their parts, or by faces.
-  void refine(double most) {
-    most_ = most;
-    const auto opened = std::ranges::partition(terms_, [&](const Term& t) { return t.error <= most; });
-    opened_.clear();
-    for (const Term& term : opened) opened_.push_back(term.node);
-    terms_.erase(opened.begin(), opened.end());
-    for (const std::uint32_t node : opened_) open(node);
-  }
-  [[nodiscard]] bool by_faces() const { return terms_.empty(); }
-
-  [[nodiscard]] SolidAngle sum() const {
-    const SolidAngle faces = faces_.sum();
-    CompensatedSum sum;
-    sum += faces.value;
-    double error = faces.error, magnitude = std::abs(faces.value);
-    for (const Term& term : terms_) sum += term.value, error += term.error, magnitude += std::abs(term.value);
-    const double few = kHalfUlp * static_cast<double>(terms_.size() + 1);
-    return {sum.value(), (1 + kBoundRounding) * error + (4 * kHalfUlp + 2 * few * few) * magnitude};
-  }
-  /// How far q can move while the sum changes by less than `change`. No term changes by more than 2·A/g³ per
-  /// length, where g is the distance to its faces on the way, at least 3/4 of that from q.
-  [[nodiscard]] double reach(double change) const {
-    double nearest = nearest_leaf_, steepest = steepness_of_leaves_;
-    for (const Term& term : terms_) {
-      nearest = std::min(nearest, term.gap);
-      steepest += angles_.nodes_[term.node].area / (term.gap * term.gap * term.gap);
+  // Uses the memory of `terms`.
+  Refinement(const SolidAngles& angles, const Vec3& q, ExpansionTerms& terms)
+      : angles_(angles), tree_(angles.faces.faces), q_(q), unit_(tree_.frame.to_unit(q)), terms_(terms) {
+    for (int k = 0; k < 3; ++k) {
+      high_[k] = static_cast<float>(unit_[k]);
+      low_[k] = static_cast<float>(unit_[k] - high_[k]);
     }
-    return std::min(0.25 * nearest, change * (27.0 / 64) / (2 * steepest));
+    displacement_ = static_cast<float>((1 + 1e-6) * Expansions::kDisplacement * (1 + norm(unit_)));
+    terms_.clear();
+  }
+
+  // All terms with errors of at most `most`, at first.
+  void start(double most) {
+    most_ = static_cast<float>(most);
+    expand(0);
+    open_all();
+  }
+  // Replaces terms with larger errors by those of their parts, or by faces.
+  void refine(double most) {
+    most_ = static_cast<float>(most);
+    terms_.open_above(most_);
+    open_all();
+  }
+  bool by_faces() const { return terms_.count == 0; }
+
+  SolidAngle sum() const {
+    using D = hn::CappedTag<double, kWidth>;
+    const D d;
+    const hn::Rebind<float, D> df;
+    auto value = hn::Zero(d), error = hn::Zero(d), magnitude = hn::Zero(d);
+    terms_.end_with_zeros();
+    for (size_t i = 0; i < terms_.count; i += hn::Lanes(d)) {
+      const auto v = hn::PromoteTo(d, hn::LoadU(df, terms_.value.data() + i));
+      value = hn::Add(value, v), magnitude = hn::Add(magnitude, hn::Abs(v));
+      error = hn::Add(error, hn::PromoteTo(d, hn::LoadU(df, terms_.error.data() + i)));
+    }
+    const SolidAngle faces = faces_.sum();
+    // The bounds are rounded in single precision, in few steps.
+    constexpr double kBounds = 1 + 1e-5;
+    const double rounding = kHalfUlp * static_cast<double>(terms_.count + 8);
+    return {faces.value + hn::GetLane(hn::SumOfLanes(d, value)),
+            faces.error + kBounds * hn::GetLane(hn::SumOfLanes(d, error)) +
+                2 * rounding * (hn::GetLane(hn::SumOfLanes(d, magnitude)) + std::abs(faces.value))};
+  }
+  // How far q can move while the sum changes by less than `change`. No term changes by more than 2·A/g³ per
+  // length, where g is the distance to its faces on the way, at least 3/4 of that from q.
+  double reach(double change) const {
+    double nearest = nearest_leaf_, steepest = steepness_of_leaves_;
+    for (size_t i = 0; i < terms_.count; ++i) {
+      nearest = std::min(nearest, double{terms_.gap[i]});
+      steepest += terms_.steepness[i];
+    }
+    return (1 - 1e-5) * std::min(0.25 * nearest, change * (27.0 / 64) / (2 * steepest)) / tree_.frame.scale;
   }
 
  private:
-  void open(std::uint32_t index) {
-    const tree::AabbTree::Node& node = angles_.faces_.faces.tree.nodes[index];
-    if (node.leaf()) return add_faces(index);
-    take(index + 1);
-    take(node.right);
-  }
-  // Adds the expansion of a node, or opens it if the error would be large.
-  void take(std::uint32_t index) {
-    const Node& node = angles_.nodes_[index];
-    const Vec3 r = node.centre - from_origin_;
-    const double squared = squared_norm(r), distance = std::sqrt(squared);
-    const double gap = (1 - kProductRounding) * distance - node.radius - displacement_;
-    if (!(gap > 0)) return open(index);
-    const double inverse_gap = 1 / (gap * gap), inverse = 1 / (squared * distance);
-    const double remainder = node.second * (3 * distance - 2 * node.radius) * inverse * inverse_gap;
-    const double rounding = (kTermRounding * node.edges + 2 * displacement_ * node.area / gap) * inverse_gap;
-    Term term{0, remainder + rounding, index, gap};
-    if (!(term.error <= most_)) return open(index);
-    const auto& [xx, yy, zz, xy, yz, zx] = node.first;
-    const double along = r[0] * (xx * r[0] + 2 * xy * r[1]) + r[1] * (yy * r[1] + 2 * yz * r[2]) +
-                         r[2] * (zz * r[2] + 2 * zx * r[0]);
-    term.value = inverse * (dot(node.moment, r) + xx + yy + zz - 3 * along / squared);
-    terms_.push_back(term);
-  }
-  void add_faces(std::uint32_t leaf) {
-    const FaceTree& faces = angles_.faces_.faces;
-    for (const std::uint32_t face : faces.tree.items_of(leaf)) {
-      const auto [a, b, c] = angles_.faces_.corners(face);
-      faces_.add(a - q_, b - q_, c - q_);
+  void open_all() {
+    Poll due(256);
+    while (!terms_.open.empty()) {
+      due();
+      const uint32_t place = terms_.open.back();
+      terms_.open.pop_back();
+      const uint32_t child = angles_.wide.nodes[place / kWidth].child[place % kWidth];
+      if (tree::WideTree::is_leaf(child))
+        add_faces(place);
+      else
+        expand(child);
     }
-    const double gap =
-        norm(tree::gap(faces.tree.box(leaf), faces.frame.scale * from_origin_)) / faces.frame.scale;
+  }
+
+  // Adds the expansions of a node's children, and opens those whose errors would be large.
+  void expand(uint32_t index) {
+    const Expansions& e = angles_.expansions[index];
+    const uint32_t children = angles_.wide.nodes[index].count;
+    const Floats d;
+    const hn::RebindToUnsigned<Floats> du;
+    const auto most = hn::Set(d, most_), displacement = hn::Set(d, displacement_);
+    terms_.reserve(2 * kWidth);
+    for (size_t i = 0; i < children; i += hn::Lanes(d)) {
+      hn::Vec<Floats> r[3];
+      for (int k = 0; k < 3; ++k)
+        r[k] = hn::Sub(hn::Sub(hn::Load(d, e.centre[k] + i), hn::Set(d, high_[k])), hn::Set(d, low_[k]));
+      const auto squared = dot(r, r), distance = hn::Sqrt(squared);
+      const auto radius = hn::Load(d, e.radius + i), area = hn::Load(d, e.area + i);
+      const auto gap = hn::MulSub(distance, hn::Set(d, 1 - 16 * 0x1p-24F), hn::Add(radius, displacement));
+      const auto inverse_gap = hn::Div(hn::Set(d, 1), gap), by_gap2 = hn::Mul(inverse_gap, inverse_gap);
+      const auto inverse = hn::Div(hn::Set(d, 1), hn::Mul(squared, distance));
+      const auto steepness = hn::Mul(area, hn::Mul(inverse_gap, by_gap2));
+      const auto size = hn::NegMulAdd(hn::Set(d, 2), radius, hn::Mul(hn::Set(d, 3), distance));
+      const auto second = hn::Mul(hn::Load(d, e.second + i), hn::Mul(size, inverse));
+      const auto error = hn::MulAdd(hn::Add(second, hn::Load(d, e.noise + i)), by_gap2,
+                                    hn::Mul(hn::Add(displacement, displacement), steepness));
+      auto part = hn::And(hn::Gt(gap, hn::Zero(d)), hn::Le(error, most));
+      part = hn::And(part, hn::FirstN(d, children - i));
+      add_terms(part, value(e, i, r, squared, inverse), error, gap, steepness,
+                hn::Add(hn::Iota(du, 0), hn::Set(du, static_cast<uint32_t>(index * kWidth + i))));
+      open_others(i, part, children, index);
+    }
+  }
+  // Of the expansion at r = c − q.
+  static hn::Vec<Floats> value(const Expansions& e, size_t i, const hn::Vec<Floats> (&r)[3],
+                               hn::Vec<Floats> squared, hn::Vec<Floats> inverse) {
+    const Floats d;
+    const auto of = [&](int k) HWY_ATTR { return hn::Load(d, e.first[k] + i); };
+    const auto two = hn::Set(d, 2);
+    const auto x = hn::MulAdd(of(0), r[0], hn::Mul(two, hn::Mul(of(3), r[1])));
+    const auto y = hn::MulAdd(of(1), r[1], hn::Mul(two, hn::Mul(of(4), r[2])));
+    const auto z = hn::MulAdd(of(2), r[2], hn::Mul(two, hn::Mul(of(5), r[0])));
+    const auto along = hn::MulAdd(r[2], z, hn::MulAdd(r[1], y, hn::Mul(r[0], x)));
+    hn::Vec<Floats> moment[3];
+    load(d, e.moment, i, moment);
+    const auto trace = hn::Add(hn::Add(of(0), of(1)), of(2));
+    const auto sum = hn::NegMulAdd(hn::Set(d, 3), hn::Div(along, squared), hn::Add(dot(moment, r), trace));
+    return hn::Mul(inverse, sum);
+  }
+  template <class V, class Mask, class Places>
+  HWY_INLINE void add_terms(Mask part, V value, V error, V gap, V steepness, Places places) {
+    const Floats d;
+    const hn::RebindToUnsigned<Floats> du;
+    const size_t at = terms_.count;
+    // Not CompressStore(), whose masked stores take far longer on some processors.
+    hn::StoreU(hn::Compress(value, part), d, terms_.value.data() + at);
+    hn::StoreU(hn::Compress(error, part), d, terms_.error.data() + at);
+    hn::StoreU(hn::Compress(gap, part), d, terms_.gap.data() + at);
+    hn::StoreU(hn::Compress(steepness, part), d, terms_.steepness.data() + at);
+    hn::StoreU(hn::Compress(places, hn::RebindMask(du, part)), du, terms_.place.data() + at);
+    terms_.count += hn::CountTrue(d, part);
+  }
+  template <class Mask>
+  void open_others(size_t i, Mask part, uint32_t children, uint32_t index) {
+    const Floats d;
+    uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, part, bytes);
+    const auto lanes = static_cast<uint32_t>(std::min<size_t>(hn::Lanes(d), children - i));
+    uint32_t others = ~uint32_t{bytes[0]} & ((1u << lanes) - 1);
+    for (; others != 0; others &= others - 1)
+      terms_.open.push_back(static_cast<uint32_t>(index * kWidth + i) +
+                            static_cast<uint32_t>(std::countr_zero(others)));
+  }
+
+  // Of a leaf.
+  void add_faces(uint32_t place) {
+    const uint32_t leaf = angles_.wide.nodes[place / kWidth].source[place % kWidth];
+    const std::span<const uint32_t> items = tree_.tree.items_of(leaf);
+    for (size_t first = 0; first < items.size(); first += kLanes)
+      add_faces(items.subspan(first, std::min(kLanes, items.size() - first)));
+    const double gap = norm(tree::gap(tree_.tree.box(leaf), unit_));
+    const double area = angles_.expansions[place / kWidth].area[place % kWidth];
     nearest_leaf_ = std::min(nearest_leaf_, gap);
-    steepness_of_leaves_ += gap > 0 ? angles_.nodes_[leaf].area / (gap * gap * gap) : kInfinite;
+    steepness_of_leaves_ += gap > 0 ? area / (gap * gap * gap) : std::numeric_limits<double>::infinity();
+  }
+  // At most as many as there are lanes. As half_solid_angle() does.
+  void add_faces(std::span<const uint32_t> items) {
+    Vec3Lanes corners[3];
+    for (size_t j = 0; j < items.size(); ++j) {
+      const std::array<Vec3, 3> at = angles_.faces.corners(items[j]);
+      for (int k = 0; k < 3; ++k) corners[k].set(j, at[static_cast<size_t>(k)] - q_);
+    }
+    const Doubles d;
+    alignas(64) double real[kLanes], imaginary[kLanes], distance[kLanes], error[kLanes];
+    for (size_t i = 0; i < items.size(); i += hn::Lanes(d)) {
+      const Vec3v a = corners[0].load(i), b = corners[1].load(i), c = corners[2].load(i);
+      const Vec la = hn::Sqrt(dot(a, a)), lb = hn::Sqrt(dot(b, b)), lc = hn::Sqrt(dot(c, c));
+      const Vec product = hn::Mul(hn::Mul(la, lb), lc), im = dot(a, cross(b, c));
+      const Vec re = hn::MulAdd(dot(a, b), lc, hn::MulAdd(dot(b, c), la, hn::MulAdd(dot(c, a), lb, product)));
+      const Vec bound = hn::Mul(hn::Set(d, 64 * kHalfUlp), product);
+      const Vec length = hn::Sqrt(hn::MulAdd(im, im, hn::Mul(re, re)));
+      const auto either_side = hn::And(hn::Le(re, bound), hn::Le(hn::Abs(im), bound));
+      const Vec eight = hn::Mul(hn::Set(d, 8), bound);
+      const auto known = hn::AndNot(either_side, hn::Gt(length, eight));
+      hn::Store(re, d, real + i);
+      hn::Store(im, d, imaginary + i);
+      hn::Store(length, d, distance + i);
+      hn::Store(hn::IfThenElse(known, hn::Div(eight, length), hn::Inf(d)), d, error + i);
+    }
+    for (size_t j = 0; j < items.size(); ++j) faces_.add({real[j], imaginary[j], distance[j], error[j]});
   }
 
   const SolidAngles& angles_;
+  const FaceTree& tree_;
   const Vec3& q_;
-  Vec3 from_origin_;     ///< q relative to the origin of the frame
-  double displacement_;  ///< δ
-  double most_ = 0;
-  std::vector<Term>& terms_;
-  std::vector<std::uint32_t>& opened_;
+  Vec3 unit_;               // q in the unit frame
+  float high_[3], low_[3];  // its two parts
+  float displacement_;      // δ
+  float most_ = 0;
+  ExpansionTerms& terms_;
   SolidAngleSum faces_;
-  double nearest_leaf_ = kInfinite, steepness_of_leaves_ = 0;
+  double nearest_leaf_ = std::numeric_limits<double>::infinity(), steepness_of_leaves_ = 0;
 };
 
-SolidAngles::Sum SolidAngles::at(const Vec3& q, double limit, double tolerance) const {
-  if (nodes_.empty()) return {{}, kInfinite};
-  thread_local std::vector<Term> terms;
-  thread_local std::vector<std::uint32_t> opened;
-  Refinement refinement(*this, q, terms, opened);
-  for (double most = kMostError;;) {
-    refinement.refine(most);
+}  // namespace
+
+SolidAngles::Sum SumAt(const SolidAngles& angles, const Vec3& q, double limit, double tolerance) {
+  const double from_origin = norm(angles.faces.faces.frame.to_unit(q));
+  double most = kMostError;
+  if (!(from_origin < kFarthest)) {
+    const SolidAngle angle = far_away(angles, from_origin);
+    if (std::abs(limit) > angle.error || angle.error <= tolerance) return {angle, 0};
+    most = 0;
+  }
+  thread_local ExpansionTerms terms;
+  Refinement refinement(angles, q, terms);
+  for (refinement.start(most);; refinement.refine(most)) {
     poll();
     const SolidAngle angle = refinement.sum();
     const double from_limit = std::abs(angle.value - limit);
-    if (from_limit > 2 * angle.error || angle.error <= tolerance || angle.error == kInfinite ||
+    if (from_limit > kDecided * angle.error || angle.error <= tolerance || std::isinf(angle.error) ||
         refinement.by_faces()) {
       const double change = from_limit - angle.error;
       return {angle, change > 0 ? refinement.reach(change) : 0};
     }
-    most = next_error(most, std::max(tolerance, 0.5 * from_limit), angle.error);
+    most = next_error(most, std::max(tolerance, from_limit / kDecided), angle.error);
   }
 }
 
+}  // namespace sdm::inside::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sdm::inside {
+
+HWY_EXPORT(SumAt);
+
+SolidAngles::SolidAngles(const OrientedFaces& all, const tree::WideTree& collapsed)
+    : faces(all), wide(collapsed), expansions(expansions_of(all, collapsed)) {}
+
+SolidAngles::Sum SolidAngles::at(const Vec3& q, double limit, double tolerance) const {
+  if (expansions.empty()) return {{}, std::numeric_limits<double>::infinity()};
+  return HWY_DYNAMIC_DISPATCH(SumAt)(*this, q, limit, tolerance);
+}
+
 }  // namespace sdm::inside
+#endif

@@ -206,14 +206,14 @@ const SolidBoundary::Division& SolidBoundary::divide(const Piece& piece, MixedFa
 }
 
 bool SolidBoundary::is_inside(const Vec3& point) const {
-  return winding(solid_, {}, solid_.frame.origin + (1 / solid_.frame.scale) * point) != 0;
+  return winding(solid_, solid_.frame.origin + (1 / solid_.frame.scale) * point) != 0;
 }
 
 Sides SolidBoundary::sides_beside(const Vec3& point, std::uint32_t face, bool covered) const {
   const Vec3& outwards = solid_.normals.face[face];
   if (!covered && beside_ > 0)
     return sides_by_winding(
-        winding(solid_, {}, solid_.frame.origin + (1 / solid_.frame.scale) * point + beside_ * outwards));
+        winding(solid_, solid_.frame.origin + (1 / solid_.frame.scale) * point + beside_ * outwards));
   // So that several faces are crossed at once.
   const bool outer = is_inside(point + kBeside * outwards), inner = is_inside(point - kBeside * outwards);
   return outer == inner ? Sides::buried : inner ? Sides::boundary : Sides::reversed;

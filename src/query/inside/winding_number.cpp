@@ -43,7 +43,8 @@ void WindingNumber::build_closing(std::vector<Triangle> triangles) {
   std::vector<std::uint32_t> all(boxes.size());
   std::iota(all.begin(), all.end(), 0u);
   closing_.tree = tree::build_aabb_tree(boxes, std::move(all), kLeafFaces);
-  closing_.angles.emplace(closing_faces());
+  closing_.wide = tree::collapse(closing_.tree);
+  closing_.angles.emplace(closing_faces(), closing_.wide);
   sides_.emplace(sites_, closing_faces());
 }
 
@@ -52,15 +53,16 @@ OrientedFaces WindingNumber::closing_faces() const {
 }
 
 const SolidAngles& WindingNumber::mesh_angles() const {
-  return mesh_angles_.get([this] { return std::make_shared<SolidAngles>(oriented_faces(sites_)); });
+  return mesh_angles_.get(
+      [this] { return std::make_shared<SolidAngles>(oriented_faces(sites_), sites_.wide); });
 }
 
 std::optional<int> WindingNumber::closed(const Vec3& q) const {
   if (!closing_.angles) return {};
   constexpr int kMostSegments = 4;
-  const OrientedFaces mesh = oriented_faces(sites_), closing = closing_faces();
-  return winding_by_segments(mesh.faces, {}, q, kMostSegments, [&](const Vec3& end) {
-    const std::optional<int> through_mesh = crossings(mesh, {}, q, end);
+  const OrientedFaces closing = closing_faces();
+  return winding_by_segments(sites_.face_tree(), {}, q, kMostSegments, [&](const Vec3& end) {
+    const std::optional<int> through_mesh = crossings(sites_, q, end);
     if (!through_mesh || closing.faces.tree.nodes.empty()) return through_mesh;
     const std::optional<int> through_closing = crossings(closing, {}, q, end);
     return through_closing ? std::optional(*through_mesh + *through_closing) : std::nullopt;

@@ -48,6 +48,7 @@ class WindingNumber {
   struct Closing {
     std::vector<Triangle> triangles;
     tree::AabbTree tree;
+    tree::WideTree wide;
     std::optional<SolidAngles> angles;
   };
 

@@ -154,6 +154,14 @@ void FirstHitsAmong(const sites::SitesData& sites, std::span<const Ray> rays, co
   first_hits_among(sites, rays, accepts, scratch, hits);
 }
 
+void VisitFacesOnSegment(const sites::SitesData& sites, const Vec3& p, const Vec3& q,
+                         const FaceVisitor& visitor, Scratch& scratch) {
+  UnitRay unit;
+  const Ray ray{.origin = p, .direction = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, .t_min = 0, .t_max = 1};
+  if (!unit.place(ray, sites.frame)) return;
+  for_each_face(sites, unit, scratch, [&](uint32_t face) { return visitor.visit(visitor.data, face); });
+}
+
 void Occluded(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, uint8_t* result) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < rays.size(); ++i) {
@@ -175,6 +183,7 @@ namespace sdm::rays {
 
 HWY_EXPORT(FirstHits);
 HWY_EXPORT(FirstHitsAmong);
+HWY_EXPORT(VisitFacesOnSegment);
 HWY_EXPORT(Occluded);
 
 void first_hits(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, RayHit* hits) {
@@ -183,6 +192,10 @@ void first_hits(const sites::SitesData& sites, std::span<const Ray> rays, Scratc
 void first_hits(const sites::SitesData& sites, std::span<const Ray> rays, const FaceFilter& filter,
                 Scratch& scratch, RayHit* hits) {
   HWY_DYNAMIC_DISPATCH(FirstHitsAmong)(sites, rays, filter, scratch, hits);
+}
+void visit_faces_on_segment(const sites::SitesData& sites, const Vec3& p, const Vec3& q,
+                            const FaceVisitor& visitor, Scratch& scratch) {
+  HWY_DYNAMIC_DISPATCH(VisitFacesOnSegment)(sites, p, q, visitor, scratch);
 }
 void occluded(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch,
               std::uint8_t* result) {

@@ -40,6 +40,21 @@ template <class Accepts>
 void first_hits(const sites::SitesData& sites, std::span<const Ray> rays, const FaceFilter& filter,
                 Scratch& scratch, RayHit* hits);
 
+/// What to do with a face: visit(data, face), whether to end there.
+struct FaceVisitor {
+  bool (*visit)(const void* data, std::uint32_t face);
+  const void* data;
+};
+/// The visitor of a function (face) → bool, which must outlive it.
+template <class Visit>
+[[nodiscard]] FaceVisitor visitor(const Visit& visit) {
+  return {[](const void* data, std::uint32_t face) { return (*static_cast<const Visit*>(data))(face); },
+          &visit};
+}
+/// Visits all faces that the segment from p to q meets, and some that it does not meet.
+void visit_faces_on_segment(const sites::SitesData& sites, const Vec3& p, const Vec3& q,
+                            const FaceVisitor& visitor, Scratch& scratch);
+
 /// As sdm::occluded.
 void occluded(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch,
               std::uint8_t* result);

@@ -7,9 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
+#include <vector>
 
 #include "poses.h"
+#include "query/inside/near_faces.h"
 #include "sites/sites_data.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
@@ -30,6 +33,70 @@ TEST(Solid, WindingIsUndecidedThroughEdges) {
     EXPECT_EQ(std::abs(*turns), 1);
     EXPECT_EQ(winding(internals(mirrored), {}, middle, q), turns);
     EXPECT_EQ(winding(internals(cube), {}, Vec3{-1.5, 0.9, -3}, q), 0) << "outside";
+  }
+}
+
+// A double pyramid whose base goes twice around, so that faces of both apices intersect.
+Mesh turned_twice() {
+  Mesh mesh;
+  constexpr std::uint32_t kSides = 14;
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const double turn = 4 * std::numbers::pi * i / kSides, radius = 1 + 0.5 * std::cos(turn / 2);
+    mesh.positions.push_back({radius * std::cos(turn), radius * std::sin(turn), 0.1 * std::sin(turn / 2)});
+  }
+  mesh.positions.push_back({0, 0, 0.7});
+  mesh.positions.push_back({0, 0, -0.7});
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const std::uint32_t next = (i + 1) % kSides;
+    mesh.triangles.push_back({i, next, kSides});
+    mesh.triangles.push_back({next, i, kSides + 1});
+  }
+  return mesh;
+}
+
+// Closed: embedded, with overlaps, with needles, folds and fans that overlap.
+std::vector<Mesh> closed_meshes() {
+  Mesh spike = test::sphere(3);
+  spike.positions[0] = 40.0 * spike.positions[0];
+  Mesh pressed = test::sphere(3);
+  for (Vec3& p : pressed.positions) p[2] *= 1e-5;
+  return {test::load("elephant.off", "fit"),
+          test::load("cow.off", "fit"),
+          test::joined(test::sphere(3), test::moved(test::sphere(3), {0.6, 0.1, 0.2})),
+          test::cube(),
+          spike,
+          pressed,
+          turned_twice()};
+}
+
+TEST(Solid, CrossingsOfFacesInLanesAreThoseOfTheTree) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> u(-1.3, 1.3);
+  for (const Mesh& mesh : closed_meshes()) {
+    const Sites sites(mesh);
+    const auto vertex = [&] { return mesh.positions[random() % mesh.positions.size()]; };
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 p{u(random), u(random), u(random)};
+      Vec3 q{u(random), u(random), u(random)};
+      if (i % 4 == 1) q = p + Vec3{0, 0, 2};
+      if (i % 4 == 2) q = p + 2 * (vertex() - p);  // through a corner
+      if (i % 4 == 3) q = p + 2 * (0.5 * (vertex() + vertex()) - p);
+      ASSERT_EQ(crossings(internals(sites), p, q), winding(internals(sites), {}, p, q)) << i;
+    }
+  }
+}
+
+TEST(Solid, FacesNearOthersAreThoseFoundOneByOne) {
+  for (const Mesh& mesh : closed_meshes()) {
+    const Sites sites(mesh);
+    ASSERT_TRUE(internals(sites).is_solid());
+    std::vector<std::uint8_t> flags;
+    flag_faces_with_near(internals(sites), flags);
+    std::vector<std::uint32_t> near;
+    for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+      find_near_faces(internals(sites), f, near);
+      EXPECT_EQ(flags[f] != 0, !near.empty()) << f << " of " << mesh.triangles.size();
+    }
   }
 }
 

@@ -181,7 +181,7 @@ TEST(Winding, IsTheSumOfSolidAnglesFarFromTheOrigin) {
     SCOPED_TRACE(name);
     const Sites sites(test::moved(mesh, offset));
     const inside::WindingNumber winding(internals(sites));
-    const inside::SolidAngles angles(inside::oriented_faces(internals(sites)));
+    const inside::SolidAngles angles(inside::oriented_faces(internals(sites)), internals(sites).wide);
     for (const Vec3& p : query_points(mesh, 10)) {
       const Vec3 q = p + offset;
       if (distance_of(sites, q) < 1e-8) continue;
@@ -197,6 +197,23 @@ TEST(Winding, IsTheSumOfSolidAnglesFarFromTheOrigin) {
   }
 }
 
+// Expansions in single precision have no range there.
+TEST(Winding, IsTheSumOfSolidAnglesFarFromTheMesh) {
+  for (const auto& [name, mesh] : open_meshes()) {
+    SCOPED_TRACE(name);
+    const Sites sites(mesh);
+    const inside::SolidAngles angles(inside::oriented_faces(internals(sites)), internals(sites).wide);
+    for (const double far : {10.0, 1e3, 1e5, 9e5, 1.1e6, 1e9, 1e30})
+      for (const Vec3& q : {Vec3{far, 0, 0}, Vec3{-0.3 * far, 0.7 * far, far}})
+        for (const double error : {0.1, 1e-6, 0.0}) {
+          const inside::SolidAngles::Sum sum = angles.at(q, 0.5 * kFullAngle, kFullAngle * error);
+          const double exact = kFullAngle * brute_force(sites, q);
+          EXPECT_NEAR(sum.angle.value, exact, sum.angle.error + 1e-300) << far << ' ' << error;
+          EXPECT_LT(sum.angle.error, 0.5 * kFullAngle);
+        }
+  }
+}
+
 TEST(Winding, SumsOfAnglesCountTurns) {
   const Mesh ball = test::sphere(2);
   inside::SolidAngleSum sum;
@@ -205,7 +222,7 @@ TEST(Winding, SumsOfAnglesCountTurns) {
     for (const auto& [a, b, c] : ball.triangles) {
       const auto &p = ball.positions[a], &q = ball.positions[reverse ? c : b],
                  &r = ball.positions[reverse ? b : c];
-      sum.add(p, q, r);
+      sum.add(inside::half_solid_angle(p, q, r));
       expected += inside::solid_angle(p, q, r);
       ASSERT_NEAR(sum.sum().value, expected, 1e-11);
     }
@@ -219,11 +236,11 @@ TEST(Winding, SumsOfAnglesCountTurns) {
   const Vec3 x{1e3, 0, 1e-6}, y{-1e3, 1e3, 1e-6}, z{-1e3, -1e3, 1e-6};
   inside::SolidAngleSum wide;
   for (int i = 1; i <= 7; ++i) {
-    wide.add(x, y, z);
+    wide.add(inside::half_solid_angle(x, y, z));
     ASSERT_NEAR(wide.sum().value, i * inside::solid_angle(x, y, z), 1e-9);
   }
   for (int i = 6; i >= -7; --i) {
-    wide.add(x, z, y);
+    wide.add(inside::half_solid_angle(x, z, y));
     ASSERT_NEAR(wide.sum().value, i * inside::solid_angle(x, y, z), 1e-9);
   }
 }
