@@ -181,8 +181,8 @@ SDM_API void fill_texels(const Surface& surface, std::size_t components, std::sp
                          bool unmatched = false);
 
 /// The same for rows of `resolution` texels: all whose values are not finite get some, within `gutter` texels
-/// of others those of the nearest one.
+/// of others, but 4 at least and 16 at most, those of the nearest one.
 SDM_API void fill_texels(std::uint32_t resolution, std::size_t components, std::span<float> values,
-                         std::uint32_t gutter = 4);
+                         std::uint32_t gutter);
 
 }  // namespace sdm

@@ -337,13 +337,8 @@ Image PyBaked::image(const std::string& name) const {
     throw Error("the channel '" + name + "' is no picture; its values are those of baked['" + name + "']");
   std::vector<float> filled = of->values;
   const auto free_texels = static_cast<std::uint32_t>((std::uint64_t{atlas.gutter} + 1) / side - 1);
-  fill_texels(columns(), components_of(of->channel), filled, gutter_of_texels(free_texels));
+  fill_texels(columns(), components_of(of->channel), filled, free_texels);
   return directions ? normal_map_image(columns(), filled) : scalar_image(columns(), filled, 0, 1, 8).image;
-}
-
-std::uint32_t gutter_of_texels(std::uint32_t free_texels) {
-  constexpr std::uint32_t kLeast = 4;  // as of textures of one sample a texel
-  return std::max(free_texels, kLeast);
 }
 
 void bind_baked(nb::module_& module) {

@@ -57,9 +57,6 @@ struct PyBaked {
   [[nodiscard]] std::vector<std::string> names() const;
 };
 
-/// How far values extend beyond charts, in texels, where the free texels around charts are so many.
-[[nodiscard]] std::uint32_t gutter_of_texels(std::uint32_t free_texels);
-
 void bind_baked(nb::module_& module);
 
 }  // namespace sdm::python

@@ -153,7 +153,7 @@ std::vector<BakedChannel> baked_look(const Baking& of, const Wanted& wanted) {
   for (BakedChannel& channel : baked) {
     channel.values = mean_of_samples(of.grid, channel.components, channel.values).values;
     channel.resolution = of.grid.texels();
-    fill_texels(channel.resolution, channel.components, channel.values, gutter_of_texels(of.gutter));
+    fill_texels(channel.resolution, channel.components, channel.values, of.gutter);
   }
   return baked;
 }

@@ -128,8 +128,8 @@ std::vector<BakedChannel> bake(const Surface& surface, const Sites& sites, const
     BakedChannel& result = baked.emplace_back(channel, matches.resolution, of_channel.components,
                                               values_of(of_channel, surface, matches, options.progress));
     if (std::vector<TexelState> filled = states; options.fill)
-      map::fill_free_texels(matches.resolution, filled, map::gutter_of_values(surface), result.components,
-                            result.values);
+      map::fill_free_texels(matches.resolution, filled, map::gutter_of_values(surface.gutter()),
+                            result.components, result.values);
   }
   return baked;
 } catch (const std::bad_alloc&) {

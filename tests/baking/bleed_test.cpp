@@ -94,7 +94,7 @@ TEST(Bleed, ValuesOfAllTexelsAreFilledSmoothly) {
     ASSERT_LE(value, 3);
   }
   std::vector<float> none(64, std::numeric_limits<float>::quiet_NaN());
-  fill_texels(8, 1, none);
+  fill_texels(8, 1, none, 4);
   EXPECT_TRUE(std::ranges::all_of(none, [](float x) { return std::isnan(x); }));
 }
 

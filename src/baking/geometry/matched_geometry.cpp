@@ -103,7 +103,8 @@ void fill_texels(const Surface& surface, std::size_t components, std::span<float
                 : faces[i] == kNone || unmatched ? map::TexelState::free
                                                  : map::TexelState::missing;
   }
-  map::fill_free_texels(surface.resolution(), states, map::gutter_of_values(surface), components, values);
+  map::fill_free_texels(surface.resolution(), states, map::gutter_of_values(surface.gutter()), components,
+                        values);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the values of texels");
 }
@@ -118,7 +119,7 @@ void fill_texels(std::uint32_t resolution, std::size_t components, std::span<flo
                                     [](float x) { return std::isfinite(x); })
                     ? map::TexelState::valued
                     : map::TexelState::free;
-  map::fill_free_texels(resolution, states, std::min(gutter, map::kWidestGutter), components, values);
+  map::fill_free_texels(resolution, states, map::gutter_of_values(gutter), components, values);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the values of texels");
 }

@@ -1,8 +1,6 @@
 // Values for the texels that no face owns.
 #pragma once
 
-#include <sdm/surface.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -22,9 +20,9 @@ enum class TexelState : std::uint8_t {
 /// Values extend no farther from valued texels than this; beyond it, smooth ones look better.
 inline constexpr std::uint32_t kWidestGutter = 16;
 
-/// How far the values of the texels of a surface extend.
-[[nodiscard]] inline std::uint32_t gutter_of_values(const Surface& surface) {
-  return std::clamp(surface.gutter(), atlas::kGutter, kWidestGutter);
+/// How far the values of the texels of an atlas with this gutter extend.
+[[nodiscard]] inline std::uint32_t gutter_of_values(std::uint32_t gutter) {
+  return std::clamp(gutter, atlas::kGutter, kWidestGutter);
 }
 
 /// Sets the `components` values of each free texel: within `gutter` texels of valued ones to those of the

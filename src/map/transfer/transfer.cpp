@@ -163,7 +163,7 @@ std::vector<float> transfer_from(const Surface& surface, const Sites& sites, con
       read_values<0>(array, points_of, options.progress, texels);
   }
   if (options.fill)
-    map::fill_free_texels(surface.resolution(), texels.states, map::gutter_of_values(surface),
+    map::fill_free_texels(surface.resolution(), texels.states, map::gutter_of_values(surface.gutter()),
                           array.components, texels.values);
   return std::move(texels.values);
 }
