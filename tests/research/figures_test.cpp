@@ -114,9 +114,7 @@ TEST_F(PaperReport, Lemma1HoldsForVectorsOnly) {
 }
 
 TEST_F(PaperReport, BoundsOnTheSpacingOfSamplesHoldAndThePapersDoesNot) {
-  std::vector<std::string> keys{"figure5"};
-  if (!kSlow) keys.emplace_back("figure6");
-  ASSERT_NO_FATAL_FAILURE(run(keys));
+  ASSERT_NO_FATAL_FAILURE(run({"figure5", "figure6"}));
   const OrderedJson& m = measured("figure5");
   EXPECT_EQ(m["bounds_hold"], true);
   for (const char* kind : {"scale", "shear"})
@@ -136,7 +134,6 @@ TEST_F(PaperReport, BoundsOnTheSpacingOfSamplesHoldAndThePapersDoesNot) {
     EXPECT_NE(conditions[unit]["printed_shear"], conditions["m"]["printed_shear"]);
   }
   EXPECT_LE(m["stretch"]["largest_share_of_bound"].get<double>(), 1 + 1e-12);
-  if (kSlow) return;
   EXPECT_EQ(measured("figure6")["bounds_hold"], true);
   EXPECT_GT(measured("figure6")["E"]["measured"].size(), 3u);
 }
