@@ -72,7 +72,7 @@ try {
     stdin: { contents: page, resolveDir: folder }, bundle: true, format: 'iife', write: false, target: 'es2022', external: ['node:*'],
     nodePaths: [join(folder, 'node_modules')], logLevel: 'error', logOverride: { 'empty-import-meta': 'silent' },
   });
-  const executablePath = process.env.PATH.split(delimiter).map((path) => join(path, 'chromium')).find(existsSync);
+  const executablePath = process.env.PATH.split(delimiter).map((path) => join(path, 'chromium-headless-shell')).find(existsSync);
   const browser = await require('playwright-core').chromium.launch({ executablePath, args: ['--no-sandbox'] });
   try {
     const tab = await browser.newPage();

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Makes the pictures of the front page: make_images.py MESHES, the folder of CGAL's data/meshes; with `sdm` and
-`chromium` on the path."""
+`chromium-headless-shell` on the path."""
 
 import contextlib
 import runpy
@@ -82,7 +82,7 @@ def inspection_card() -> None:
 def picture_of_page(page: str, picture: str) -> None:
     """What a browser shows of a page."""
     subprocess.run(
-        ["chromium", "--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+        ["chromium-headless-shell", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
          "--hide-scrollbars", "--force-device-scale-factor=1", "--window-size=1280,800", "--timeout=12000",
          f"--screenshot={FOLDER / picture}", Path(page).absolute().as_uri()],
         check=True)  # fmt: skip

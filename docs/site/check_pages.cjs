@@ -55,8 +55,8 @@ async function checkSearch(browser) {
 }
 
 (async () => {
-  const executablePath = process.env.PATH.split(delimiter).map((path) => join(path, 'chromium')).find(existsSync);
-  if (!executablePath) throw new Error('chromium is needed to check the pages (Debian package chromium)');
+  const executablePath = process.env.PATH.split(delimiter).map((path) => join(path, 'chromium-headless-shell')).find(existsSync);
+  if (!executablePath) throw new Error('chromium-headless-shell is needed to check the pages (Debian package of that name)');
   const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--enable-unsafe-swiftshader'] });
   try {
     const desktop = await check(browser, { width: 1440, height: 900 }, 'light');

@@ -20,9 +20,9 @@ const folder = mkdtempSync(join(tmpdir(), 'sdm-js-'));
 let browser;
 
 before(async () => {
-  const executablePath = PATH.split(delimiter).map((path) => join(path, 'chromium')).find(existsSync);
-  assert(executablePath, 'chromium is needed for this test (Debian package chromium)');
-  browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
+  const executablePath = PATH.split(delimiter).map((path) => join(path, 'chromium-headless-shell')).find(existsSync);
+  assert(executablePath, 'chromium-headless-shell is needed for this test (Debian package of that name)');
+  browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-gpu-compositing'] });
 });
 after(async () => {
   await browser?.close();
