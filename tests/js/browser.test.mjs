@@ -22,7 +22,7 @@ let browser;
 before(async () => {
   const executablePath = PATH.split(delimiter).map((path) => join(path, 'chromium-headless-shell')).find(existsSync);
   assert(executablePath, 'chromium-headless-shell is needed for this test (Debian package of that name)');
-  browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-gpu-compositing'] });
+  browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
 });
 after(async () => {
   await browser?.close();

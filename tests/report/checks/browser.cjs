@@ -34,8 +34,7 @@ async function inBrowser(check) {
   try {
     const browser = await chromium.launch({
       executablePath: findBrowser(),
-      // Without a GPU, SwiftShader draws what is in the canvas; putting the page together by it would take longest.
-      args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-gpu-compositing'],
+      args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
     });
     try {
       const faults = [];
