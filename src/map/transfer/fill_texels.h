@@ -29,7 +29,7 @@ inline constexpr std::uint32_t kWidestGutter = 16;
 /// nearest, elsewhere by push-pull (Gortler et al., The Lumigraph, 1996, 3.4): the means of ever larger
 /// squares, where smaller ones have nothing. `states`: whole rows of `resolution` texels; those within
 /// `gutter` become valued. Nothing changes if no texel has a value. Cost: linear in texels, all cores, and
-/// half the memory of the values.
+/// for each texel 2 bytes and a third of components + 1 floats.
 void fill_free_texels(std::uint32_t resolution, std::span<TexelState> states, std::uint32_t gutter,
                       std::size_t components, std::span<float> values);
 
