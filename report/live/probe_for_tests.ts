@@ -31,6 +31,7 @@ export class Probe {
     return differ / texels;
   }
   handleAt(axis: 'X' | 'Y' | 'Z'): { x: number; y: number } { return this.session.pair!.view.handleAt(axis); }
+  get handle(): string | null { return this.session.pair!.view.handle; }
   memoryBytes(): Promise<number> { return this.session.worker.memoryBytes(); }
 
   /// The bodies as they are, with the reference moved.

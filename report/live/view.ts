@@ -122,6 +122,11 @@ export class LiveView extends View {
     return this.place(at.toArray() as Vec);
   }
 
+  /// The one under the pointer, by which a drag would move the reference; for tests.
+  get handle(): string | null {
+    return this.handles.axis;
+  }
+
   override find(x: number, y: number): Found | null {
     return this.handles.dragging || this.handles.axis !== null ? null : super.find(x, y);
   }

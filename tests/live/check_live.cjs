@@ -29,7 +29,6 @@ async function atRest(page, action) {
 async function open(page, paths, id = '#open-both') {
   await atRest(page, () => page.setInputFiles(id, paths));
 }
-const shown = async (page, id) => Number(plain(await page.textContent(id)).split(/[ ,]/)[0]);
 
 /// The path of a file that a button saves.
 async function saved(page, id, name) {
@@ -113,11 +112,16 @@ const checks = {
     await page.check('#handles-move', { force: true });
     const box = await page.locator('#canvas').boundingBox();
     const at = await page.evaluate(() => window.sdmLive.handleAt('X'));
-    await page.mouse.move(box.x + at.x, box.y + at.y);
+    // A handle is found once it has been drawn.
+    for (const end = Date.now() + kPatience; (await page.evaluate(() => window.sdmLive.handle)) !== 'X'; ) {
+      assert(Date.now() < end, `no handle at ${at.x}, ${at.y}`);
+      await page.mouse.move(box.x + at.x + 1, box.y + at.y);
+      await page.mouse.move(box.x + at.x, box.y + at.y);
+    }
     await page.mouse.down();
-    const separation = await shown(page, '#separation');
+    const separation = await page.textContent('#separation');
     await page.mouse.move(box.x + at.x + 30, box.y + at.y + 4, { steps: 6 });
-    await page.waitForFunction((old) => !document.getElementById('separation').textContent.startsWith(String(old)), separation, { timeout: kPatience });
+    await page.waitForFunction((old) => document.getElementById('separation').textContent !== old, separation, { timeout: kPatience });
     assert.match(await page.textContent('#rate'), /frames\/s/);
     await atRest(page, () => page.mouse.up());
     await agreesWithCommand(page);

@@ -20,7 +20,7 @@ CONDA = {
     "libepoxy-dev": "epoxy", "glslang-tools": "glslang", "libegl1": "libegl", "libgl1": "libgl", "libgl1-mesa-dri": None,
     "libopenexr-dev": "openexr", "libpng-dev": "libpng", "libjpeg62-turbo-dev": "libjpeg-turbo", "libwebp-dev": "libwebp",
     "libisal-dev": "isa-l", "liblzf-dev": "liblzf",
-    "libcairo2-dev": "cairo", "fonts-dejavu-core": None, "libfmt-dev": "fmt", "libtinygltf-dev": "tinygltf",
+    "libcairo2-dev": "cairo", "libfreetype-dev": "freetype", "fonts-dejavu-core": None, "libfmt-dev": "fmt", "libtinygltf-dev": "tinygltf",
     "nlohmann-json3-dev": "nlohmann_json", "libcli11-dev": "cli11", "nodejs": "nodejs", "libmeshoptimizer-dev": "meshoptimizer",
     "glmark2-data": None,
 }  # fmt: skip
