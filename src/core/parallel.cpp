@@ -6,10 +6,29 @@
 #include <atomic>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "core/cancellation.h"
 
 namespace sdm::core {
+
+namespace {
+
+thread_local bool alone_now = false;
+
+}  // namespace
+
+Alone::Alone(bool alone) noexcept : outer_(std::exchange(alone_now, alone)) {}
+Alone::~Alone() {
+  alone_now = outer_;
+}
+bool Alone::is_alone() noexcept {
+  return alone_now;
+}
+
+void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second) {
+  parallel_steps(2, [&](std::size_t i) { i == 0 ? first() : second(); });
+}
 
 void parallel_for(std::size_t count, std::size_t grain, const Progress& progress, std::string_view step,
                   const std::function<void(std::size_t, std::size_t)>& body) {
@@ -49,9 +68,7 @@ void parallel_for(std::size_t count, std::size_t grain, const Progress& progress
 namespace sdm {
 
 void run_concurrently(const std::vector<std::function<void()>>& tasks) {
-  parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) tasks[i]();
-  });
+  parallel_steps(tasks.size(), [&](std::size_t i) { tasks[i](); });
 }
 
 }  // namespace sdm

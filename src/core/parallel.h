@@ -18,8 +18,26 @@ void parallel_for(std::size_t count, std::size_t grain, const Progress& progress
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
 /// Runs both, concurrently if a core is free. An exception from one is rethrown once the other has finished
-/// or will not start; it does not cancel loops inside the other.
+/// or will not start; it does not cancel loops inside the other. The thread that has finished one helps with
+/// the loops of the other, unless it is within a loop or Alone.
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second);
+/// The same for step(0) to step(count - 1): those that have not started are skipped when one throws.
+void parallel_steps(std::size_t count, const std::function<void(std::size_t)>& step);
+
+/// While it exists, this thread starts no other work when it waits in parallel_invoke or parallel_steps: to be
+/// held with every lock under which they may be called, as the other work might need the lock.
+class Alone {
+ public:
+  explicit Alone(bool alone = true) noexcept;
+  ~Alone();
+  Alone(const Alone&) = delete;
+  Alone& operator=(const Alone&) = delete;
+
+  [[nodiscard]] static bool is_alone() noexcept;
+
+ private:
+  const bool outer_;
+};
 
 /// Tasks that may add further tasks.
 class Tasks {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <functional>
 #include <mutex>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -104,6 +105,50 @@ TEST(ParallelFor, AWaitingThreadTakesUpNoOtherWork) {
     parallel_for(50, 1, [&](std::size_t, std::size_t) { ++visits; });
   });
   EXPECT_EQ(visits, 200 * 50);
+}
+
+// Once, a thread that had finished its step waited for the loops of the other step, which ran on one core.
+TEST(ParallelInvoke, AThreadThatHasFinishedHelpsWithTheLoopsOfTheOtherStep) {
+  const ThreadLimit limit(2);
+  std::mutex mutex;
+  std::set<std::thread::id> threads;
+  const auto loop = [&] {
+    // Ends once both threads have met, or after 20 s.
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    const auto both = [&] {
+      const std::lock_guard lock(mutex);
+      threads.insert(std::this_thread::get_id());
+      return threads.size() == 2;
+    };
+    parallel_for(1000, 1, [&](std::size_t, std::size_t) {
+      while (!both() && std::chrono::steady_clock::now() < end)
+        std::this_thread::sleep_for(std::chrono::microseconds(100));
+    });
+  };
+  std::atomic<bool> begun = false;
+  parallel_invoke(
+      [&] {
+        while (!begun) std::this_thread::yield();
+      },
+      [&] {
+        begun = true;
+        loop();
+      });
+  EXPECT_EQ(threads.size(), 2u);
+}
+
+// The other work might need a lock that the thread holds.
+TEST(ParallelInvoke, AThreadThatWaitsWithALockTakesUpNoOtherWork) {
+  const ThreadLimit limit(4);
+  std::mutex mutex;
+  std::atomic<int> visits{0};
+  parallel_steps(50, [&](std::size_t) {
+    const std::lock_guard lock(mutex);
+    const Alone alone;
+    parallel_invoke([&] { ++visits; },
+                    [&] { parallel_for(50, 1, [&](std::size_t, std::size_t) { ++visits; }); });
+  });
+  EXPECT_EQ(visits, 50 * 51);
 }
 
 }  // namespace

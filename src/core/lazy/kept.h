@@ -6,6 +6,8 @@
 #include <mutex>
 #include <utility>
 
+#include "core/parallel.h"
+
 namespace sdm::core {
 
 /// The first call of get() makes the value, while concurrent calls of it wait. If that throws, nothing is
@@ -26,7 +28,7 @@ class Kept {
   Kept& operator=(const Kept&) = delete;
 
   /// The value, which is valid until forget() or outdate(). make() returns a std::shared_ptr to it, and may
-  /// run parallel loops, whose tasks are isolated: a thread that makes a value never waits for itself.
+  /// run parallel loops: a thread that makes a value never waits for itself.
   template <class Make>
   const Value& get(const Make& make) const {
     return get(make, [&](Value&) { value_ = make(); });
@@ -36,6 +38,7 @@ class Kept {
   const Value& get(const Make& make, const Renew& renew) const {
     if (const Value* const ready = ready_.load(std::memory_order_acquire)) return *ready;
     const std::lock_guard lock(making_);
+    const Alone alone;
     if (ready_.load(std::memory_order_relaxed) == nullptr) {
       if (value_)
         renew(*value_);

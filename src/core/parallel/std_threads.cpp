@@ -1,9 +1,9 @@
 // The loops of core/parallel.h on std::thread, for platforms without oneTBB.
 //
-// A job is a loop or a group of tasks. Its caller works on it until no part is left to begin, and then waits
-// for the parts that workers have begun; it does no other work meanwhile, which might need a lock that it
-// holds. Idle workers join the job that was added last. A part waits only for parts that threads are working
-// on, so that nothing waits in a circle.
+// A job is a loop or a group of tasks. Its caller works on it until no part is left to begin, and then, until
+// the parts that workers have begun are done, on the jobs within these; it does no other work meanwhile,
+// which might need a lock that it holds. Idle workers join the job that was added last. A part waits only for
+// parts that threads are working on, so that nothing waits in a circle.
 #include <sdm/threads.h>
 
 #include <algorithm>
@@ -38,9 +38,35 @@ class Job {
   virtual void work() = 0;                           ///< on its parts until none is left to begin
   virtual void drop_parts() = 0;
 
+  /// Whether it was begun by a part of another job, or by a part of a job within that.
+  [[nodiscard]] bool is_within(const Job& other) const {
+    const Job* outer = outer_;
+    while (outer && outer != &other) outer = outer->outer_;
+    return outer != nullptr;
+  }
+
   const CancelToken token = cancel_token();
   int threads = 0;           ///< that work on it; guarded by the pool
   std::exception_ptr error;  ///< the first one; guarded by the pool
+
+ private:
+  friend class Part;
+  static thread_local Job* current_;  ///< whose part this thread works on
+  Job* const outer_ = current_;
+};
+
+thread_local Job* Job::current_ = nullptr;
+
+/// This thread works on a part of a job.
+class Part {
+ public:
+  explicit Part(Job& job) : outer_(std::exchange(Job::current_, &job)) {}
+  ~Part() { Job::current_ = outer_; }
+  Part(const Part&) = delete;
+  Part& operator=(const Part&) = delete;
+
+ private:
+  Job* const outer_;
 };
 
 class Pool {
@@ -56,11 +82,19 @@ class Pool {
     jobs_.push_back(&job);
     // The caller's job does not outlive this call: no exception leaves before its threads have.
     wake();
+    if (waiting_ > 0) changed_.notify_all();
+    ++waiting_;
     for (;;) {
-      if (job.has_parts()) work_on(job, lock);
-      if (job.threads == 0 && !job.has_parts()) break;
-      changed_.wait(lock, [&] { return job.threads == 0 || job.has_parts(); });
+      Job* within = nullptr;
+      changed_.wait(lock, [&] { return job.threads == 0 || job.has_parts() || (within = job_within(job)); });
+      if (job.has_parts())
+        work_on(job, lock);
+      else if (job.threads == 0)
+        break;
+      else
+        work_on(*within, lock);
     }
+    --waiting_;
     std::erase(jobs_, &job);
     if (job.error) std::rethrow_exception(job.error);
   }
@@ -97,6 +131,7 @@ class Pool {
     std::exception_ptr error;
     try {
       const CancelBy by(job.token);
+      const Part part(job);
       job.work();
     } catch (...) {
       error = std::current_exception();
@@ -107,10 +142,16 @@ class Pool {
     if (--job.threads == 0) changed_.notify_all();
   }
 
-  [[nodiscard]] Job* job_with_parts() const {
-    const auto has_parts = [](const Job* job) { return job->has_parts(); };
-    const auto job = std::find_if(jobs_.rbegin(), jobs_.rend(), has_parts);
+  template <class Accept>
+  [[nodiscard]] Job* last_job(const Accept& accept) const {
+    const auto job = std::find_if(jobs_.rbegin(), jobs_.rend(), accept);
     return job == jobs_.rend() ? nullptr : *job;
+  }
+  [[nodiscard]] Job* job_with_parts() const {
+    return last_job([](const Job* job) { return job->has_parts(); });
+  }
+  [[nodiscard]] Job* job_within(const Job& outer) const {
+    return last_job([&](const Job* job) { return job->has_parts() && job->is_within(outer); });
   }
 
   void wait_for_jobs() {
@@ -137,7 +178,7 @@ class Pool {
   std::condition_variable added_, changed_;
   std::vector<Job*> jobs_;  ///< those that run, in the order of their beginnings
   std::multiset<unsigned> limits_;
-  unsigned workers_ = 0, busy_ = 0;
+  unsigned workers_ = 0, busy_ = 0, waiting_ = 0;
 };
 
 class Loop final : public Job {
@@ -216,9 +257,9 @@ void run_parallel_for(std::size_t count, std::size_t grain, const RangeBody& bod
   Pool::instance().run(loop);
 }
 
-void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second) {
-  run_parallel_for(2, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) i == 0 ? first() : second();
+void parallel_steps(std::size_t count, const std::function<void(std::size_t)>& step) {
+  run_parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) step(i);
   });
 }
 

@@ -4,7 +4,6 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
@@ -54,8 +53,10 @@ class Order {
 }  // namespace
 
 // Contexts are isolated: otherwise an exception in one task would also cancel the loops nested in its
-// siblings, which would then continue although part of their ranges was skipped. Tasks are isolated: a thread
-// that waits for a loop must not start unrelated work, which might need a lock that the thread holds.
+// siblings, which would then continue although part of their ranges was skipped. Loops and groups of tasks
+// are isolated: a thread that waits for one must not start unrelated work, which might need a lock or the
+// memory that the thread uses. A thread that waits for steps outside of loops and locks uses neither: it
+// takes any work, as otherwise its core would do nothing until the longest step has finished.
 
 void run_parallel_for(std::size_t count, std::size_t grain, const RangeBody& body) {
   tbb::task_group_context context(tbb::task_group_context::isolated);
@@ -68,6 +69,7 @@ void run_parallel_for(std::size_t count, std::size_t grain, const RangeBody& bod
         [&](const tbb::blocked_range<std::size_t>& range) {
           order.part_begins();
           const CancelBy by(token);
+          const Alone alone;
           poll();
           body(range.begin(), range.end());
           order.part_ends();
@@ -77,19 +79,27 @@ void run_parallel_for(std::size_t count, std::size_t grain, const RangeBody& bod
   order.all_ended();
 }
 
-void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second) {
+void parallel_steps(std::size_t count, const std::function<void(std::size_t)>& step) {
   tbb::task_group_context context(tbb::task_group_context::isolated);
   Order order;
   order.part_added();
-  const auto part = [&, token = cancel_token()](const std::function<void()>& task) {
-    order.part_begins();
-    const CancelBy by(token);
-    poll();
-    task();
-    order.part_ends();
+  const auto run = [&, token = cancel_token(), is_alone = Alone::is_alone()] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          order.part_begins();
+          const CancelBy by(token);
+          const Alone alone(is_alone);
+          poll();
+          step(range.begin());
+          order.part_ends();
+        },
+        tbb::simple_partitioner(), context);
   };
-  tbb::this_task_arena::isolate(
-      [&] { tbb::parallel_invoke([&] { part(first); }, [&] { part(second); }, context); });
+  if (Alone::is_alone())
+    tbb::this_task_arena::isolate(run);
+  else
+    run();
   order.all_ended();
 }
 
@@ -103,6 +113,7 @@ class TaskGroup final : public Tasks {
     group_.run([this, task = std::move(task)] {
       order_.part_begins();
       const CancelBy by(token_);
+      const Alone alone;
       poll();
       task();
       order_.part_ends();

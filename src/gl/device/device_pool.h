@@ -24,6 +24,7 @@ class DevicePool {
   template <class Use>
   auto with(const std::string& wanted, Use use) {
     const std::lock_guard lock(drawing_);
+    const Alone alone;
     Stopwatch watch;
     try {
       std::unique_ptr<Device>& device = open_[wanted];

@@ -66,8 +66,8 @@ Vec3 FacingSearch::normal_at(const ClosestPoint& closest, const Vec3& normal, st
 }
 
 std::vector<std::uint32_t> FacingSearch::some_allowed(const Vec3& normal, std::size_t most) const {
-  std::call_once(by_normal_->built, [this] { by_normal_->tree = normal_tree(sites_); });
-  const tree::AabbTree& tree = by_normal_->tree;
+  const tree::AabbTree& tree =
+      by_normal_.get([this] { return std::make_shared<tree::AabbTree>(normal_tree(sites_)); });
   std::vector<std::uint32_t> found;
   const auto enter = [&](const tree::Subtree& below) {
     return found.size() < most && allows(largest_cosine(tree.box(below.root), normal));

@@ -3,10 +3,10 @@
 
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <vector>
 
+#include "core/lazy/kept.h"
 #include "query/facing/normal_cones.h"
 #include "sites/sites_data.h"
 #include "tree/aabb_tree.h"
@@ -65,15 +65,9 @@ class FacingSearch {
   /// The normal of the allowed faces at a point; `face` becomes the first of them, kNone if there is none.
   [[nodiscard]] Vec3 normal_at(const ClosestPoint& closest, const Vec3& normal, std::uint32_t& face) const;
 
-  /// A tree over the normals, which most searches do without.
-  struct ByNormal {
-    std::once_flag built;
-    tree::AabbTree tree;
-  };
-
   const sites::SitesData& sites_;
   std::vector<Cone> cones_;
-  std::unique_ptr<ByNormal> by_normal_ = std::make_unique<ByNormal>();
+  Kept<tree::AabbTree> by_normal_;  ///< a tree over the normals, which most searches do without
   bool right_angle_;
   double least_cosine_;
 };

@@ -81,7 +81,7 @@ const Surface& Body::surface() const {
 }
 
 void Body::require_boundary() const {
-  std::call_once(boundary_->built, [this] { boundary_->value.emplace(internals(sites_), inside_->sides()); });
+  boundary_->get([this](auto& value) { value.emplace(internals(sites_), inside_->sides()); });
 }
 
 bool Body::is_small_and_convex() const {
@@ -94,20 +94,16 @@ bool Body::is_small_and_convex() const {
 }
 
 double Body::convexity_deficit() const {
-  std::call_once(convexity_->built,
-                 [this] { convexity_->value = shape::convexity_deficit(internals(sites_), *inside_); });
-  return *convexity_->value;
+  return convexity_->get(
+      [this](auto& value) { value = shape::convexity_deficit(internals(sites_), *inside_); });
 }
 
 const InnerBalls& Body::inner_balls() const {
-  std::call_once(inner_balls_->built,
-                 [this] { inner_balls_->value = shape::inner_balls(internals(sites_), *inside_); });
-  return *inner_balls_->value;
+  return inner_balls_->get([this](auto& value) { value = shape::inner_balls(internals(sites_), *inside_); });
 }
 
 const WallThickness& Body::wall_thickness() const {
-  std::call_once(walls_->built, [this] { walls_->value.emplace(internals(sites_), *inside_); });
-  return *walls_->value;
+  return walls_->get([this](auto& value) { value.emplace(internals(sites_), *inside_); });
 }
 
 void Body::follow_positions() {

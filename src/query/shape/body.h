@@ -93,6 +93,16 @@ class Body {
   struct Lazy {
     std::once_flag built;
     std::optional<Value> value;
+
+    /// make(value) is called once.
+    template <class Make>
+    const Value& get(const Make& make) {
+      std::call_once(built, [&] {
+        const Alone alone;
+        make(value);
+      });
+      return *value;
+    }
   };
   std::unique_ptr<Lazy<inside::SolidBoundary>> boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
   std::unique_ptr<Lazy<double>> convexity_ = std::make_unique<Lazy<double>>();
