@@ -8,6 +8,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -67,23 +68,47 @@ void check_matches(const BakeCommand& command, const MatchCounts& counts) {
       command.low));
 }
 
-/// Finds the points of HIGH, and decodes the pictures meanwhile.
-sdm::TexelMatches match(const BakeCommand& command, const Input& high, const Input& low,
-                        std::unique_ptr<sdm::Sites>& sites, std::vector<sdm::Image>& pictures,
+/// What is known of HIGH besides its file.
+struct Detailed {
+  std::unique_ptr<sdm::Sites> sites{};
+  std::vector<sdm::Image> pictures{};
+  std::optional<sdm::MeshAttribute> smooth_normals{};
+  const sdm::MeshAttribute* normals = nullptr;  ///< those of its file, or the smooth ones; null: not needed
+};
+
+/// The normals of HIGH that are baked and shown: those of its file, unless it was moved.
+void find_normals(const BakeCommand& command, const Input& high, Detailed& detailed) {
+  const auto own = std::ranges::find(high.look.attributes, "normal", &sdm::MeshAttribute::name);
+  if (own != high.look.attributes.end() && command.transform_high.empty()) {
+    detailed.normals = &*own;
+    return;
+  }
+  const bool are_baked =
+      command.channels && std::ranges::any_of(command.channels->geometry, sdm::is_direction);
+  if (!command.page && !are_baked) return;
+  detailed.smooth_normals = sdm::smooth_normals(high.mesh);
+  detailed.normals = &*detailed.smooth_normals;
+}
+
+/// Finds the points of HIGH, and all else that is known without them meanwhile.
+sdm::TexelMatches match(const BakeCommand& command, Input& high, Input& low, Detailed& detailed,
                         BakeResult& result) {
   sdm::TexelMatches matches;
   const sdm::MeshLook look{high.look.materials, high.look.face_materials, {}, {}};
   const std::span<const sdm::BakeChannel> channels =
       command.channels ? std::span<const sdm::BakeChannel>(command.channels->look) : sdm::kBakeChannels;
+  const auto decode = [&] {
+    detailed.pictures = sdm::decode_textures(high.look.textures, look, channels, result.notes);
+  };
+  const auto find = [&] {
+    sdm::run_concurrently({[&] { result.low = bake_surface(low, sample_layout(command)); },
+                           [&] { detailed.sites = std::make_unique<sdm::Sites>(high.mesh); }});
+    sdm::MatchOptions options = match_options(command);
+    options.progress = command.map.progress;
+    matches = sdm::match_texels(*result.low.surface, *detailed.sites, options);
+  };
   sdm::run_concurrently(
-      {[&] { pictures = sdm::decode_textures(high.look.textures, look, channels, result.notes); },
-       [&] {
-         sdm::run_concurrently({[&] { result.low = bake_surface(low, sample_layout(command)); },
-                                [&] { sites = std::make_unique<sdm::Sites>(high.mesh); }});
-         sdm::MatchOptions options = match_options(command);
-         options.progress = command.map.progress;
-         matches = sdm::match_texels(*result.low.surface, *sites, options);
-       }});
+      {decode, find, [&] { inspect(high), inspect(low); }, [&] { find_normals(command, high, detailed); }});
   result.matches = counts_of(matches);
   check_matches(command, result.matches);
   return matches;
@@ -101,35 +126,32 @@ sdm::BakedModelOptions model_options(const BakeCommand& command, const BakeResul
           .tangents = has_map ? &map.tangents : nullptr};
 }
 
-/// The page, with the text of the report in it.
-void write_page(const BakeCommand& command, const Input& high, const BakeResult& result,
-                const sdm::MeshLook& look, const std::string& report, const std::filesystem::path& file) {
-  sdm::BakedModelOptions model = model_options(command, result, look);
-  model.normal_map = result.channels.page_normal_map;
-  const auto own = std::ranges::find(high.look.attributes, "normal", &sdm::MeshAttribute::name);
-  const bool use_own = own != high.look.attributes.end() && command.transform_high.empty();
-  sdm::write_baked_html(file, *result.low.surface, result.channels.page_textures, model,
-                        {high.mesh, look, use_own ? &*own : nullptr}, report);
-}
-
 /// Bakes, and writes all files into `folder`. Returns the report.
 Json bake_into(const BakeCommand& command, Input& high, Input& low, const std::filesystem::path& folder,
                ProgressLine& progress, BakeResult& result) {
   Stopwatch watch;
-  std::unique_ptr<sdm::Sites> sites;
-  std::vector<sdm::Image> pictures;
-  const sdm::TexelMatches matches = match(command, high, low, sites, pictures, result);
+  Detailed detailed;
+  const sdm::TexelMatches matches = match(command, high, low, detailed, result);
   result.time.match = watch.lap();
 
-  const sdm::MeshLook look{high.look.materials, high.look.face_materials, pictures, high.look.attributes};
-  result.channels =
-      bake_channels({command, high, *sites, *result.low.surface, matches, look}, folder, result.notes);
+  const sdm::Surface& surface = *result.low.surface;
+  const sdm::MeshLook look{high.look.materials, high.look.face_materials, detailed.pictures,
+                           high.look.attributes};
+  std::optional<sdm::DetailedView> view;
+  sdm::run_concurrently({[&] {
+                           result.channels = bake_channels(
+                               {command, high, *detailed.sites, surface, matches, look, detailed.normals},
+                               folder, result.notes);
+                         },
+                         [&] {
+                           if (command.page)
+                             view.emplace(sdm::BakedFrom{high.mesh, look, detailed.normals}, surface.mesh());
+                         }});
   result.time.bake = watch.lap();
 
   progress.step("export");
-  sdm::write_baked_glb(folder / "baked.glb", *result.low.surface, result.channels.textures,
-                       model_options(command, result, look));
-  inspect(high), inspect(low);
+  sdm::BakedModelOptions model = model_options(command, result, look);
+  sdm::write_baked_glb(folder / "baked.glb", surface, result.channels.textures, model);
   result.time.output = watch.lap();
   result.time.total = result.time.import + result.time.match + result.time.bake + result.time.output;
   Notes notes = notes_on(low, high);
@@ -138,7 +160,11 @@ Json bake_into(const BakeCommand& command, Input& high, Input& low, const std::f
   notes.insert(notes.end(), result.low.notes.begin(), result.low.notes.end());
   result.notes = std::move(notes);
   Json report = report_of(command, high, low, result);
-  if (command.page) write_page(command, high, result, look, to_text(report), folder / "report.html");
+  if (view) {
+    model.normal_map = result.channels.page_normal_map;
+    sdm::write_baked_html(folder / "report.html", surface, result.channels.page_textures, model, *view,
+                          to_text(report));
+  }
   write_text(folder / "report.json", to_text(report));
   return report;
 }

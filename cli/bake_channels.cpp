@@ -179,7 +179,7 @@ std::vector<float> ChannelBaker::samples_of(GeometryChannel channel) {
     if (std::ranges::count(notes_, note) == 0) notes_.push_back(note);
   }
   return sdm::bake_geometry(pair_.surface, pair_.sites, pair_.matches, channel,
-                            {.normals = has_own && !moved ? &*own : nullptr,
+                            {.normals = pair_.normals,
                              .drawn_normals = &result.normal_map.normals,
                              .drawn_tangents = &result.normal_map.tangents,
                              .occlusion = command.occlusion,

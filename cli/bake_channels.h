@@ -22,7 +22,8 @@ struct BakePair {
   const sdm::Sites& sites;
   const sdm::Surface& surface;  ///< of LOW: its texels are the samples
   const sdm::TexelMatches& matches;
-  const sdm::MeshLook& look;  ///< of HIGH
+  const sdm::MeshLook& look;          ///< of HIGH
+  const sdm::MeshAttribute* normals;  ///< of HIGH; null: no channel needs them
 };
 
 /// Tangent-space normals, with what the model needs to be drawn with them.

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -53,22 +54,38 @@ struct BakedModelOptions {
 SDM_API void write_baked_glb(const std::filesystem::path& file, const Surface& surface,
                              std::span<const BakedTexture> textures, const BakedModelOptions& options = {});
 
-/// O2 as write_baked_html() shows it beside O1.
+/// The O2 of a DetailedView.
 struct BakedFrom {
   const Mesh& mesh;
   const MeshLook& look;
   const MeshAttribute* normals = nullptr;  ///< at the corners of its faces; null: smooth_normals()
 };
 
+/// O2 as write_baked_html() shows it: with colours at its vertices. Faces with a texture are divided for
+/// them, and of more than 250,000 faces, a coarser copy is shown; the page states which. No textures of O1
+/// are needed, so that it can be made while they are baked.
+class SDM_API DetailedView {
+ public:
+  /// `o1`: the mesh that it is shown beside, in one box with it. Throws sdm::Error if the normals or the look
+  /// do not fit the mesh, if there is not enough memory, and if can_write_html() is false. Cost: linear, all
+  /// cores.
+  DetailedView(const BakedFrom& from, const Mesh& o1);
+
+  /// As the page has it.
+  struct Data;
+  [[nodiscard]] const Data& data() const { return *data_; }
+
+ private:
+  std::shared_ptr<const Data> data_;
+};
+
 /// report.html: one file that opens in a browser, from disk and without a network. It shows O1 with its
 /// textures and O2 under one camera, with a slider between them, and the numbers of `report`, the JSON text
-/// of report.json. O2 has colours at its vertices: those of faces with a texture are divided, and of more
-/// than 250,000 faces, a coarser copy is shown; the page states which. `textures` and `options` are those of
-/// write_baked_glb(), of any size. Also throws sdm::Error if the normals of O2 do not fit, if the look does
-/// not, and if can_write_html() is false. Cost: linear, all cores.
+/// of report.json. `textures` and `options` are those of write_baked_glb(), of any size; `o2` was made for
+/// the surface's mesh. Also throws sdm::Error if can_write_html() is false. Cost: linear, all cores.
 SDM_API void write_baked_html(const std::filesystem::path& file, const Surface& surface,
                               std::span<const BakedTexture> textures, const BakedModelOptions& options,
-                              const BakedFrom& from, const std::string& report);
+                              const DetailedView& o2, const std::string& report);
 
 /// Numbers of texels, of which one file has several planes: values, or else whole numbers.
 struct TexelPlane {

@@ -23,14 +23,16 @@ std::size_t texel_rows(const SampleGrid& grid, std::size_t components, std::size
   return numbers / of_row;
 }
 
-/// Calls body(texel, first) for each texel and its first sample.
-template <class Body>
-void for_each_square(const SampleGrid& grid, std::size_t rows, const Body& body) {
+/// Calls body(texel, first, memory) for each texel and its first sample; `memory` begins as a copy of `empty`
+/// and remains from texel to texel.
+template <class Memory, class Body>
+void for_each_square(const SampleGrid& grid, std::size_t rows, const Memory& empty, const Body& body) {
   parallel_for(rows, 8, [&](std::size_t begin, std::size_t end) {
     const std::size_t width = grid.texels();
+    Memory memory = empty;
     for (std::size_t y = begin; y < end; ++y)
       for (std::size_t x = 0; x < width; ++x)
-        body(y * width + x, y * grid.side * grid.resolution + x * grid.side);
+        body(y * width + x, y * grid.side * grid.resolution + x * grid.side, memory);
   });
 }
 
@@ -39,6 +41,10 @@ class Sum {
  public:
   explicit Sum(std::size_t components) : sums_(components) {}
 
+  void clear() {
+    std::ranges::fill(sums_, 0);
+    count_ = 0;
+  }
   void add(const float* sample) {
     if (!std::all_of(sample, sample + sums_.size(), [](float x) { return std::isfinite(x); })) return;
     if (count_++ == 0) first_ = sample;
@@ -72,8 +78,8 @@ TexelMeans mean_of_samples(const SampleGrid& grid, std::size_t components, std::
   TexelMeans means{std::vector<float>(texels * components, std::numeric_limits<float>::quiet_NaN()),
                    std::vector<float>(texels)};
   const double all = double{1} * grid.side * grid.side;
-  for_each_square(grid, rows, [&](std::size_t texel, std::size_t first) {
-    Sum sum(components);
+  for_each_square(grid, rows, Sum(components), [&](std::size_t texel, std::size_t first, Sum& sum) {
+    sum.clear();
     for (std::size_t y = 0; y < grid.side; ++y)
       for (std::size_t x = 0; x < grid.side; ++x)
         sum.add(&samples[(first + y * grid.resolution + x) * components]);
@@ -91,8 +97,9 @@ std::vector<std::uint32_t> most_frequent_samples(const SampleGrid& grid,
   const std::size_t rows = texel_rows(grid, 1, samples.size());
   require_memory(rows * grid.texels() * sizeof(std::uint32_t), "the numbers of texels");
   std::vector<std::uint32_t> numbers(rows * grid.texels(), kNone);
-  for_each_square(grid, rows, [&](std::size_t texel, std::size_t first) {
-    std::vector<std::uint32_t> of_texel;
+  using Numbers = std::vector<std::uint32_t>;
+  for_each_square(grid, rows, Numbers(), [&](std::size_t texel, std::size_t first, Numbers& of_texel) {
+    of_texel.clear();
     for (std::size_t y = 0; y < grid.side; ++y)
       for (std::size_t x = 0; x < grid.side; ++x)
         if (const std::uint32_t number = samples[first + y * grid.resolution + x]; number != kNone)

@@ -30,8 +30,12 @@ void write_points_html(const std::filesystem::path& file, const std::filesystem:
 }
 
 void write_baked_html(const std::filesystem::path& file, const Surface&, std::span<const BakedTexture>,
-                      const BakedModelOptions&, const BakedFrom&, const std::string&) {
+                      const BakedModelOptions&, const DetailedView&, const std::string&) {
   throw_without_page(file);
+}
+
+DetailedView::DetailedView(const BakedFrom&, const Mesh&) {
+  throw_without_page("a page");
 }
 
 void io::write_player_page(const std::filesystem::path& file, const PlayerContent&, const PlayerOptions&,

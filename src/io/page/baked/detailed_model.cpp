@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <new>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -15,7 +17,8 @@
 #include "io/page/report/face_walk.h"
 #include "io/page/report/fewer_vertices.h"
 
-namespace sdm::io {
+namespace sdm {
+namespace io {
 namespace {
 
 constexpr std::size_t kMostTriangles = 250'000;
@@ -153,23 +156,24 @@ std::vector<Numbers> join(std::vector<Triangle>& triangles, const std::vector<Nu
   return vertices;
 }
 
-}  // namespace
-
-nlohmann::ordered_json add_detailed(PackedArrays& arrays, const BakedFrom& from, const Steps& steps) {
-  const Mesh& mesh = from.mesh;
-  const std::size_t faces = mesh.triangles.size();
+Parts parts_of(const BakedFrom& from, nlohmann::ordered_json& counts) {
+  const std::size_t faces = from.mesh.triangles.size();
   const bool fewer = faces > kMostTriangles;
   std::size_t divisions = 1;
   if (!fewer && faces > 0 && has_texture(from.look))
     divisions = std::clamp<std::size_t>(
         static_cast<std::size_t>(std::sqrt(static_cast<double>(kMostTriangles) / static_cast<double>(faces))),
         1, kMostDivisions);
-  Parts parts = fewer ? coarser(mesh) : divided(mesh, divisions);
+  counts = {{"triangles_of_mesh", faces}, {"divisions", divisions}, {"fewer", fewer}};
+  return fewer ? coarser(from.mesh) : divided(from.mesh, divisions);
+}
+
+std::vector<Numbers> numbers_of(const BakedFrom& from, const Parts& parts, const Steps& steps) {
+  const Mesh& mesh = from.mesh;
   std::optional<MeshAttribute> smooth;
   if (from.normals == nullptr) smooth = smooth_normals(mesh);
   const MeshAttribute& normals = smooth ? *smooth : *from.normals;
   require_normals(mesh, normals);
-
   const std::vector<std::uint32_t> colors = corner_colors(from, parts);
   std::vector<Numbers> of_points(parts.points.size());
   for (std::size_t i = 0; i < of_points.size(); ++i) {
@@ -178,21 +182,38 @@ nlohmann::ordered_json add_detailed(PackedArrays& arrays, const BakedFrom& from,
     const Vec3 at = point.barycentric[0] * a + point.barycentric[1] * b + point.barycentric[2] * c;
     of_points[i] = {steps(at, 0), steps(at, 1), steps(at, 2), normal_at(mesh, normals, point), colors[i]};
   }
-  const std::vector<Numbers> vertices = join(parts.triangles, of_points);
+  return of_points;
+}
+
+Box box_of(const Mesh& o1, const Mesh& o2) {
+  Box box = bounds(o1);
+  for (const Vec3& p : o2.positions) extend(box, p);
+  return box;
+}
+
+}  // namespace
+}  // namespace io
+
+DetailedView::DetailedView(const BakedFrom& from, const Mesh& o1) try {
+  using namespace io;
+  constexpr int kBitsOfPositions = 18;  // a quarter of a millimetre in a building
+  auto data = std::make_shared<Data>(Data{.steps = Steps(box_of(o1, from.mesh), kBitsOfPositions)});
+  Parts parts = parts_of(from, data->counts);
+  const std::vector<Numbers> vertices = join(parts.triangles, numbers_of(from, parts, data->steps));
   const FaceWalk walk = walk_over(parts.triangles, vertices.size());
   std::vector<std::uint32_t> position, normal, color;
   for (const std::uint32_t v : walk.vertex) {
     position.insert(position.end(), vertices[v].begin(), vertices[v].begin() + 3);
     normal.push_back(vertices[v][3]), color.push_back(vertices[v][4]);
   }
-  arrays.add("high_triangle", corner_codes(walk.triangles));
-  arrays.add_guessed("high_position", position, 3, guesses_of(walk.triangles));
-  arrays.add("high_normal", std::move(normal));
-  arrays.add("high_color", std::move(color));
-  return {{"triangles", walk.triangles.size()},
-          {"triangles_of_mesh", faces},
-          {"divisions", divisions},
-          {"fewer", fewer}};
+  data->arrays.add("high_triangle", corner_codes(walk.triangles));
+  data->arrays.add_guessed("high_position", position, 3, guesses_of(walk.triangles));
+  data->arrays.add("high_normal", std::move(normal));
+  data->arrays.add("high_color", std::move(color));
+  data->counts["triangles"] = walk.triangles.size();
+  data_ = std::move(data);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the page of a detailed mesh");
 }
 
-}  // namespace sdm::io
+}  // namespace sdm

@@ -28,7 +28,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kStepsPerTexel = 64;
-constexpr int kBitsOfPositions = 18;  // a quarter of a millimetre in a building
 
 /// A tangent as octahedral(), and above these 16 bits whether w is −1.
 std::uint32_t packed_tangent(const MeshAttribute& tangents, std::uint32_t row) {
@@ -84,25 +83,22 @@ Json pictures_json(std::span<const BakedTexture> textures, const BakedModelOptio
 
 void write_baked_html(const std::filesystem::path& file, const Surface& surface,
                       std::span<const BakedTexture> textures, const BakedModelOptions& options,
-                      const BakedFrom& from, const std::string& report) try {
+                      const DetailedView& o2, const std::string& report) try {
   if (options.normal_map.empty() != (options.tangents == nullptr) ||
       (options.tangents != nullptr && options.normals == nullptr))
     throw Error("cannot write " + file.string() +
                 ": a normal map needs the normals and tangents that it was made with");
   AtomicFile out(file);
-  Box box = bounds(surface.mesh());
-  for (const Vec3& p : from.mesh.positions) extend(box, p);
-  const Steps steps(box, kBitsOfPositions);
-  Json low, high, pictures;
-  PackedArrays arrays, high_arrays;
-  run_concurrently({[&] { low = add_coarse(arrays, surface, options, steps); },
-                    [&] { high = add_detailed(high_arrays, from, steps); },
+  const DetailedView::Data& detailed = o2.data();
+  Json low, pictures;
+  PackedArrays arrays;
+  run_concurrently({[&] { low = add_coarse(arrays, surface, options, detailed.steps); },
                     [&] { pictures = pictures_json(textures, options); }});
-  arrays.add(std::move(high_arrays));
+  arrays.add(PackedArrays(detailed.arrays));
   compress(arrays);
   Json page = common_json(options.up);
-  page["place"] = steps.json();
-  page["low"] = low, page["high"] = high;
+  page["place"] = detailed.steps.json();
+  page["low"] = low, page["high"] = detailed.counts;
   page["pictures"] = pictures;
   page["base_color"] = options.material.base_color;
   page["emissive"] = options.material.emissive;

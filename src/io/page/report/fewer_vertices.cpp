@@ -32,20 +32,24 @@ std::vector<std::uint32_t> clustered(const Mesh& mesh, std::span<const float> di
   const auto size = [&](std::uint32_t v) {
     return std::isfinite(distances[v]) ? std::abs(distances[v]) : -1;
   };
-  std::unordered_map<std::uint64_t, std::uint32_t> largest;
+  std::unordered_map<std::uint64_t, std::uint32_t> cell_of;
+  std::vector<std::uint32_t> largest;                               // of each cell
+  std::vector<std::uint32_t> result(mesh.positions.size(), kNone);  // first the cells
   Poll due(4096);
   for (const Triangle& triangle : mesh.triangles)
     for (const std::uint32_t v : triangle) {
       due();
-      const auto [place, is_new] = largest.try_emplace(key(mesh.positions[v]), v);
-      if (!is_new && size(v) > size(place->second)) place->second = v;
+      if (result[v] != kNone) continue;
+      const auto [place, is_new] =
+          cell_of.try_emplace(key(mesh.positions[v]), static_cast<std::uint32_t>(largest.size()));
+      if (is_new)
+        largest.push_back(v);
+      else if (size(v) > size(largest[place->second]))
+        largest[place->second] = v;
+      result[v] = place->second;
     }
-  std::vector<std::uint32_t> result(mesh.positions.size(), kNone);
-  for (const Triangle& triangle : mesh.triangles)
-    for (const std::uint32_t v : triangle) {
-      due();
-      if (result[v] == kNone) result[v] = largest.at(key(mesh.positions[v]));
-    }
+  for (std::uint32_t& cell_or_vertex : result)
+    if (cell_or_vertex != kNone) cell_or_vertex = largest[cell_or_vertex];
   return result;
 }
 
