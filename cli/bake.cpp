@@ -90,25 +90,34 @@ void find_normals(const BakeCommand& command, const Input& high, Detailed& detai
   detailed.normals = &*detailed.smooth_normals;
 }
 
-/// Finds the points of HIGH, and all else that is known without them meanwhile.
+/// All that is known of HIGH without LOW. Its mesh moves into the sites.
+void prepare(const BakeCommand& command, Input& high, Detailed& detailed) {
+  inspect(high);
+  find_normals(command, high, detailed);
+  detailed.sites = std::make_unique<sdm::Sites>(std::move(high.mesh));
+}
+
+/// Finds the points of HIGH. Decodes its pictures meanwhile.
 sdm::TexelMatches match(const BakeCommand& command, Input& high, Input& low, Detailed& detailed,
                         BakeResult& result) {
-  sdm::TexelMatches matches;
   const sdm::MeshLook look{high.look.materials, high.look.face_materials, {}, {}};
   const std::span<const sdm::BakeChannel> channels =
       command.channels ? std::span<const sdm::BakeChannel>(command.channels->look) : sdm::kBakeChannels;
   const auto decode = [&] {
     detailed.pictures = sdm::decode_textures(high.look.textures, look, channels, result.notes);
   };
+  const auto lay_out = [&] {
+    result.low = bake_surface(low, sample_layout(command));
+    inspect(low);
+  };
+  sdm::TexelMatches matches;
   const auto find = [&] {
-    sdm::run_concurrently({[&] { result.low = bake_surface(low, sample_layout(command)); },
-                           [&] { detailed.sites = std::make_unique<sdm::Sites>(high.mesh); }});
+    sdm::run_concurrently({lay_out, [&] { prepare(command, high, detailed); }});
     sdm::MatchOptions options = match_options(command);
     options.progress = command.map.progress;
     matches = sdm::match_texels(*result.low.surface, *detailed.sites, options);
   };
-  sdm::run_concurrently(
-      {decode, find, [&] { inspect(high), inspect(low); }, [&] { find_normals(command, high, detailed); }});
+  sdm::run_concurrently({decode, find});
   result.matches = counts_of(matches);
   check_matches(command, result.matches);
   return matches;
@@ -138,15 +147,16 @@ Json bake_into(const BakeCommand& command, Input& high, Input& low, const std::f
   const sdm::MeshLook look{high.look.materials, high.look.face_materials, detailed.pictures,
                            high.look.attributes};
   std::optional<sdm::DetailedView> view;
-  sdm::run_concurrently({[&] {
-                           result.channels = bake_channels(
-                               {command, high, *detailed.sites, surface, matches, look, detailed.normals},
-                               folder, result.notes);
-                         },
-                         [&] {
-                           if (command.page)
-                             view.emplace(sdm::BakedFrom{high.mesh, look, detailed.normals}, surface.mesh());
-                         }});
+  sdm::run_concurrently(
+      {[&] {
+         result.channels =
+             bake_channels({command, high, *detailed.sites, surface, matches, look, detailed.normals}, folder,
+                           result.notes);
+       },
+       [&] {
+         if (command.page)
+           view.emplace(sdm::BakedFrom{detailed.sites->mesh(), look, detailed.normals}, surface.mesh());
+       }});
   result.time.bake = watch.lap();
 
   progress.step("export");

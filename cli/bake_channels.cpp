@@ -279,7 +279,7 @@ void ChannelBaker::add_numbers(GeometryChannel channel) {
 BakedChannels bake_channels(const BakePair& pair, const fs::path& folder, Notes& notes) {
   ChannelBaker baker(pair, folder, notes);
   const auto& selected = pair.command.channels;
-  baker.bake(selected ? selected->look : sdm::default_channels(pair.high.mesh, pair.look));
+  baker.bake(selected ? selected->look : sdm::default_channels(pair.sites.mesh(), pair.look));
   if (selected)
     for (const GeometryChannel channel : selected->geometry) baker.bake(channel);
   return std::move(baker.result);

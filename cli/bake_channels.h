@@ -18,7 +18,7 @@
 /// What is baked.
 struct BakePair {
   const BakeCommand& command;
-  const Input& high;
+  const Input& high;  ///< its mesh is that of the sites
   const sdm::Sites& sites;
   const sdm::Surface& surface;  ///< of LOW: its texels are the samples
   const sdm::TexelMatches& matches;

@@ -4,6 +4,7 @@
 #include "completion.h"
 #include "devices.h"
 #include "exit_codes.h"
+#include "freed_memory.h"
 #include "hausdorff.h"
 #include "help_text.h"
 #include "info.h"
@@ -114,6 +115,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();
   std::set_terminate(end_by_uncaught_exception);
   const Interrupts interrupts;
   try {
