@@ -22,7 +22,7 @@ namespace {
 using tree::AabbTree;
 using tree::FloatBox;
 using tree::NodePair;
-using Visit = std::function<bool(std::uint32_t, std::uint32_t)>;
+using Visit = std::function<bool(std::size_t, std::span<const FacePair>)>;
 
 // A vertex or an edge of more faces is a hub. Fewer than that make at most so many pairs of each face.
 constexpr std::size_t kMany = 256;
@@ -59,8 +59,41 @@ std::vector<NodePair> divided(const AabbTree& tree, std::vector<NodePair> pairs)
   return pairs;
 }
 
-void visit_overlapping(const AabbTree& tree, const std::vector<NodePair>& roots, const Progress& progress,
-                       std::atomic<bool>& go_on, const Visit& visit) {
+// The pairs of faces of two leaves.
+class LeafPairs {
+ public:
+  explicit LeafPairs(const Mesh& mesh) : mesh_(mesh) {}
+
+  /// Those whose boxes overlap, until the next call.
+  std::span<const FacePair> near(std::span<const std::uint32_t> first, std::span<const std::uint32_t> second,
+                                 bool same) {
+    set_boxes(first, first_);
+    if (!same) set_boxes(second, second_);
+    const std::vector<Box>& of_second = same ? first_ : second_;
+    pairs_.clear();
+    for (std::size_t i = 0; i < first.size(); ++i)
+      for (std::size_t j = same ? i + 1 : 0; j < second.size(); ++j)
+        if (sdm::overlap(first_[i], of_second[j])) pairs_.push_back({first[i], second[j]});
+    return pairs_;
+  }
+
+ private:
+  void set_boxes(std::span<const std::uint32_t> faces, std::vector<Box>& boxes) {
+    boxes.clear();
+    for (const std::uint32_t face : faces) {
+      Box box;
+      for (const std::uint32_t v : mesh_.triangles[face]) extend(box, mesh_.positions[v]);
+      boxes.push_back(box);
+    }
+  }
+
+  const Mesh& mesh_;
+  std::vector<Box> first_, second_;
+  std::vector<FacePair> pairs_;
+};
+
+void visit_overlapping(const Mesh& mesh, const AabbTree& tree, const std::vector<NodePair>& roots,
+                       const Progress& progress, std::atomic<bool>& go_on, const Visit& visit) {
   const std::vector<NodePair> pairs = divided(tree, roots);
   parallel_for(pairs.size(), 1, progress, "self-intersections", [&](std::size_t begin, std::size_t end) {
     Poll due(128);
@@ -68,10 +101,12 @@ void visit_overlapping(const AabbTree& tree, const std::vector<NodePair>& roots,
       due();
       return go_on.load(std::memory_order_relaxed) && overlap(tree, pair);
     };
+    LeafPairs pairs_of_leaves(mesh);
     const auto visit_leaves = [&](const NodePair& leaves) {
-      for_each_face_pair(tree, leaves, [&](std::uint32_t a, std::uint32_t b) {
-        if (!visit(a, b)) go_on = false;
-      });
+      const auto first = tree.items_of(leaves[0]), second = tree.items_of(leaves[1]);
+      const bool same = leaves[0] == leaves[1];
+      const std::size_t count = same ? first.size() * (first.size() - 1) / 2 : first.size() * second.size();
+      if (!visit(count, pairs_of_leaves.near(first, second, same))) go_on = false;
     };
     for (std::size_t i = begin; i < end; ++i) visit_pairs(tree, pairs[i], tree::InOrder{enter, visit_leaves});
   });
@@ -137,8 +172,13 @@ class Hubs {
     std::atomic<bool> go_on{true};
     const auto among = [&](const std::vector<Item>& items, const Progress& reporting, const auto& handled) {
       const Forest forest(items);
-      visit_overlapping(forest.tree, forest.root_pairs(), reporting, go_on,
-                        [&](std::uint32_t a, std::uint32_t b) { return !handled(a, b) || visit(a, b); });
+      visit_overlapping(s_.mesh, forest.tree, forest.root_pairs(), reporting, go_on,
+                        [&](std::size_t count, std::span<const FacePair> pairs) {
+                          std::vector<FacePair> left(pairs.begin(), pairs.end());
+                          std::erase_if(left,
+                                        [&](const FacePair& pair) { return !handled(pair[0], pair[1]); });
+                          return visit(count, left);
+                        });
     };
     std::vector<Item> items;
     for (const std::uint32_t face : s_.tree.items) items.push_back({hubs_of(face), face, box_of(face)});
@@ -254,7 +294,7 @@ void for_each_near_pair(const SitesData& sites, const Progress& progress, const 
   if (sites.tree.nodes.empty()) return;
   if (const Hubs hubs(sites); !hubs.none()) return hubs.visit(progress, visit);
   std::atomic<bool> go_on{true};
-  visit_overlapping(sites.tree, {{0, 0}}, progress, go_on, visit);
+  visit_overlapping(sites.mesh, sites.tree, {{0, 0}}, progress, go_on, visit);
 }
 
 }  // namespace sdm::sites

@@ -30,13 +30,4 @@ struct FaceSoup {
   return true;
 }
 
-/// Calls take(face, face) for each pair of faces of two leaves, each once.
-template <class Take>
-void for_each_face_pair(const tree::AabbTree& tree, const tree::NodePair& leaves, const Take& take) {
-  const auto first = tree.items_of(leaves[0]), second = tree.items_of(leaves[1]);
-  for (std::size_t i = 0; i < first.size(); ++i)
-    for (std::size_t j = leaves[0] == leaves[1] ? i + 1 : 0; j < second.size(); ++j)
-      take(first[i], second[j]);
-}
-
 }  // namespace sdm::sites

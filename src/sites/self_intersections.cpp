@@ -5,6 +5,7 @@
 #include <limits>
 #include <mutex>
 #include <new>
+#include <span>
 
 #include "core/cancellation.h"
 #include "core/memory.h"
@@ -22,9 +23,12 @@ bool find_intersections(const sites::SitesData& data, std::uint64_t most, const 
                         const Found& found) {
   const sites::FaceSoup mesh{data.mesh.positions, data.mesh.triangles, data.tree};
   std::atomic<std::uint64_t> tested{0};
-  sites::for_each_near_pair(data, progress, [&](std::uint32_t a, std::uint32_t b) {
-    if (tested.fetch_add(1, std::memory_order_relaxed) >= most) return false;
-    return !faces_intersect(mesh, a, b) || found(std::min(a, b), std::max(a, b));
+  sites::for_each_near_pair(data, progress, [&](std::size_t count, std::span<const sites::FacePair> pairs) {
+    if (tested.fetch_add(count, std::memory_order_relaxed) + count > most) return false;
+    return std::ranges::all_of(pairs, [&](const sites::FacePair& pair) {
+      return !faces_intersect(mesh, pair[0], pair[1]) ||
+             found(std::min(pair[0], pair[1]), std::max(pair[0], pair[1]));
+    });
   });
   return tested <= most;
 }
