@@ -26,7 +26,9 @@ class SDM_API ThreadLimit {
 };
 
 /// Runs independent tasks, concurrently if the limit allows. If one throws, tasks that have not started are
-/// skipped, and its exception is rethrown once the running tasks have finished.
+/// skipped, and its exception is rethrown once the running tasks have finished. A thread that waits, also
+/// within a function of sdm that a task calls, may start another task: no task may call one while it holds a
+/// lock that others need.
 SDM_API void run_concurrently(const std::vector<std::function<void()>>& tasks);
 
 }  // namespace sdm

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "io/page/report/page_colors.h"
@@ -53,6 +54,8 @@ Json common_json(UpAxis up) {
 
 void put_page(std::ostream& out, std::string_view html, Json& page, const std::string* report,
               const PackedArrays& arrays) {
+  if (arrays.index().is_null())
+    throw std::logic_error("the arrays of a page are compressed before it is written");
   page["arrays"] = arrays.index();
   const std::size_t middle = html.find(kDataPlace);
   out << html.substr(0, middle);
