@@ -52,9 +52,10 @@ int main(int argc, char** argv) try {
   CLI::App app(
       "Computes separation, collision and contacts of O1 and O2 in random poses of O2. Writes arrays without "
       "headers into OUT: vertices1, vertices2 (float64), triangles1, triangles2 (uint32), poses (3 × 4, by "
-      "rows), separation (float64), colliding (uint8), contacts (their number, uint32); the microseconds on "
-      "one core, separation_us, colliding_us and contacts_us; and on all cores, contacts_all_us. batch_us: "
-      "those "
+      "rows), separation (float64), colliding (uint8), contacts (their number, uint32), translation (of O1, "
+      "float64, 3) and separating_contacts (their number, uint32); the microseconds on one core, "
+      "separation_us, colliding_us, contacts_us and separating_contacts_us, and on all cores, "
+      "contacts_all_us. batch_us: those "
       "for each pose of a call of PoseQuery::colliding for all poses, on one core and on all. clock_us: the "
       "time that the clock takes.");
   std::string o1, o2;
@@ -73,9 +74,11 @@ int main(int argc, char** argv) try {
   ProximityQuery query(m1, m2);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<double> poses, separation(count), separation_us(count, kInfinity),
-      colliding_us(count, kInfinity), contacts_us(count, kInfinity), contacts_all_us(count, kInfinity);
+      colliding_us(count, kInfinity), contacts_us(count, kInfinity), contacts_all_us(count, kInfinity),
+      separating_contacts_us(count, kInfinity);
   std::vector<std::uint8_t> colliding(count);
-  std::vector<std::uint32_t> contacts(count);
+  std::vector<std::uint32_t> contacts(count), separating_contacts(count);
+  std::vector<Vec3> translation(count);
   for (const Affine& pose : placements)
     for (std::size_t row = 0; row < 3; ++row) {
       poses.insert(poses.end(), pose.rows[row].begin(), pose.rows[row].end());
@@ -94,13 +97,24 @@ int main(int argc, char** argv) try {
   const auto find_contacts = [&](std::size_t i) {
     contacts[i] = static_cast<std::uint32_t>(query.contacts().size());
   };
+  // Of others, the search for a translation takes thousands of times as long.
+  const bool convex = Shape(m1).convex() && Shape(m2).convex();
   for (int turn = 0; turn < kTurns; ++turn) {
     time(contacts_all_us, find_contacts);
     const ThreadLimit alone(1);
     time(separation_us, [&](std::size_t i) { separation[i] = query.separation().value; });
     time(colliding_us, [&](std::size_t i) { colliding[i] = query.colliding(); });
     time(contacts_us, find_contacts);
+    if (!convex) continue;
+    time(separating_contacts_us, [&](std::size_t i) {
+      separating_contacts[i] = static_cast<std::uint32_t>(query.separating_contacts(4).size());
+    });
   }
+  if (convex)
+    for (std::size_t i = 0; i < count; ++i) {
+      query.set_pose(1, mesh::Similarity{.map = placements[i]}.transform());
+      translation[i] = query.separating_translation().translation;
+    }
   Stopwatch clock;
   std::vector<double> clock_us(1, kInfinity);  // what the times contain of the clock
   for (std::uint32_t i = 0; i < count; ++i) clock_us[0] = std::min(clock_us[0], 1000 * clock.lap());
@@ -136,6 +150,9 @@ int main(int argc, char** argv) try {
   bench::write_array<std::uint32_t>(out / "contacts", contacts);
   bench::write_array<double>(out / "contacts_us", contacts_us);
   bench::write_array<double>(out / "contacts_all_us", contacts_all_us);
+  bench::write_array<Vec3>(out / "translation", translation);
+  bench::write_array<std::uint32_t>(out / "separating_contacts", separating_contacts);
+  bench::write_array<double>(out / "separating_contacts_us", separating_contacts_us);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "pose_samples: %s\n", error.what());
   return 1;

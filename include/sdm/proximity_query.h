@@ -187,13 +187,21 @@ class SDM_API ProximityQuery {
   ///    separating_translation().upper, even if the points are farther apart: those of kExitContact may be on
   ///    a wall beyond the one that O1 leaves by. Contacts with a depth of at most minus the margin are left
   ///    out.
+  /// Two convex solids have the patch of a face, an edge or a vertex of each instead: those that touch along
+  /// t, or are within 3 degrees of a plane across t; a face with those that continue it in its plane. There
+  /// is a contact where a corner of one is over the other one, and where their sides cross, seen along t. All
+  /// have the normal t / |t|, points that are above each other along it, and ids that name the vertex or both
+  /// edges, which contacts() does not have. Bodies that are convex but for the rounding of vertices, which
+  /// Shape::convex() does not recognise, have contacts as all others.
+  ///
   /// So t satisfies all of them: normal · t ≥ depth. A step that moves O1 along one normal by what is left of
   /// its depth brings it no farther from t, and so does a projected Gauss–Seidel method over all of them.
   /// Bodies in the same place have contacts, too, in directions that are always the same.
   ///
   /// If the bodies do not collide, these are contacts(). `most_per_patch` ≥ 1: so many contacts of each patch
   /// are kept, the deepest one and those that are farthest apart. Sorted as contacts(). Cost: that of
-  /// separating_translation() and of contacts(). The span is valid until the next call.
+  /// separating_translation() and of contacts(), and of convex solids little more than the former. The span
+  /// is valid until the next call.
   [[nodiscard]] std::span<const Contact> separating_contacts(std::optional<std::size_t> most_per_patch = {});
 
   /// O1 for 0, O2 for 1; in the frames of their meshes, without the poses. surface() throws sdm::Error if the

@@ -271,8 +271,8 @@ void bind_separating_contacts(nb::class_<PyProximityQuery>& query) {
 contacts() are of single points, and may push in all directions. These are the contacts after the
 separating_translation() of O1, moved back by it: depth = normal · (point2 - point1), how far O1 must be
 moved along the normal until this contact only touches, but at most separating_translation().upper, even if
-the points of the contact along the translation are farther apart. If the bodies do not collide, they are
-contacts().
+the points of the contact along the translation are farther apart. Two convex solids have the contacts of a
+patch, all along the translation: see docs/proximity.md. If the bodies do not collide, they are contacts().
 
 most_per_patch: so many contacts of each patch are kept, ≥ 1: the deepest one and those farthest apart.
 

@@ -18,21 +18,30 @@ namespace sdm {
 struct ProximityQuery::Impl {
   std::array<shape::PosedBody, 2> bodies;
   pair::PairAnswers answers;
-  double contact_margin;
   std::optional<SeparatingTranslation> separating_translation{};
-  std::vector<Contact> separating_contacts{};
-  std::optional<bodies::ExternalContacts> external_contacts{};  // with ignore_internal_edges
+  separate::TranslationWorkspace translation_workspace{};
+  separate::SeparatingContacts separating_contacts;
+  // With ignore_internal_edges.
+  std::optional<bodies::ExternalContacts> external_contacts{}, external_contacts_after{};
 
   Impl(Shape o1, Shape o2, const ProximityOptions& options)
       : bodies{shape::PosedBody(std::move(o1)), shape::PosedBody(std::move(o2))},
         answers(options.contact_margin, options.depth_precision),
-        contact_margin(options.contact_margin) {
-    if (options.ignore_internal_edges) external_contacts.emplace();
+        separating_contacts(options.contact_margin) {
+    if (options.ignore_internal_edges) external_contacts.emplace(), external_contacts_after.emplace();
     begin();
   }
   [[nodiscard]] std::span<const Contact> contacts() {
     const std::span<const Contact> all = answers.contacts();
     return external_contacts ? external_contacts->of(bodies, all) : all;
+  }
+  // Of the contacts after the separating translation.
+  [[nodiscard]] separate::ContactFilter filter_after() {
+    if (!external_contacts_after) return {};
+    return [this](const auto& bodies_after, const auto& all) {
+      external_contacts_after->forget();
+      return external_contacts_after->of(bodies_after, all);
+    };
   }
   // Every call but construction begins with this.
   void require_intact() const {
@@ -144,8 +153,8 @@ const SeparatingTranslation& ProximityQuery::separating_translation() {
   impl_->require_intact();
   return with_memory([&]() -> const SeparatingTranslation& {
     if (!impl_->separating_translation)
-      impl_->separating_translation =
-          separate::separating_translation(impl_->bodies[0], impl_->bodies[1], impl_->answers);
+      impl_->separating_translation = separate::separating_translation(
+          impl_->bodies[0], impl_->bodies[1], impl_->answers, impl_->translation_workspace);
     return *impl_->separating_translation;
   });
 }
@@ -157,20 +166,13 @@ std::span<const Contact> ProximityQuery::separating_contacts(std::optional<std::
   if (most_per_patch == 0) throw Error("0 contacts of each patch are too few; use 1 or more");
   const SeparatingTranslation& out = separating_translation();
   return with_memory([&]() -> std::span<const Contact> {
-    std::vector<Contact>& contacts = impl_->separating_contacts;
-    if (impl_->answers.colliding()) {
-      bodies::ExternalContacts external;
-      separate::ContactFilter filter;
-      if (impl_->external_contacts)
-        filter = [&](const auto& bodies, const auto& all) { return external.of(bodies, all); };
-      contacts =
-          separate::contacts_after(impl_->bodies[0], impl_->bodies[1], out, impl_->contact_margin, filter);
-    } else {
-      const std::span<const Contact> apart = impl_->contacts();
-      contacts.assign(apart.begin(), apart.end());
-    }
-    if (most_per_patch) separate::keep_per_patch(contacts, *most_per_patch);
-    return contacts;
+    separate::SeparatingContacts& contacts = impl_->separating_contacts;
+    if (impl_->answers.colliding())
+      contacts.find(impl_->bodies[0], impl_->bodies[1], out, impl_->filter_after());
+    else
+      contacts.assign(impl_->contacts());
+    if (most_per_patch) contacts.keep_per_patch(*most_per_patch);
+    return contacts.contacts();
   });
 }
 

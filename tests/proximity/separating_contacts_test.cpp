@@ -132,11 +132,13 @@ TEST(SeparatingContacts, KeepTheNextDeepestOfAPoint) {
   std::vector<Contact> contacts(4);
   for (std::size_t i = 0; i < 4; ++i) contacts[i].depth = 4.0 - static_cast<double>(i);
   contacts[3].point2 = {1, 0, 0};
-  separate::keep_per_patch(contacts, 3);
-  ASSERT_EQ(contacts.size(), 3u);
-  EXPECT_EQ(contacts[0].depth, 4);
-  EXPECT_EQ(contacts[1].depth, 3) << "at the point of the deepest";
-  EXPECT_EQ(contacts[2].depth, 1) << "at another point";
+  separate::SeparatingContacts kept(0);
+  kept.assign(contacts);
+  kept.keep_per_patch(3);
+  ASSERT_EQ(kept.contacts().size(), 3u);
+  EXPECT_EQ(kept.contacts()[0].depth, 4);
+  EXPECT_EQ(kept.contacts()[1].depth, 3) << "at the point of the deepest";
+  EXPECT_EQ(kept.contacts()[2].depth, 1) << "at another point";
 }
 
 // A block leaves the thick one of two walls towards the thin one, which is then closer.
@@ -150,9 +152,10 @@ TEST(SeparatingContacts, AreNoDeeperThanTheWayOutAtAFartherWall) {
   SeparatingTranslation out;
   out.translation = {0.015, 0, 0};
   out.value = out.upper = 0.015;
-  const std::vector<Contact> contacts = separate::contacts_after(block, walls, out, 0, {});
-  const auto exit = std::ranges::find(contacts, ProximityQuery::kExitContact, &Contact::id);
-  ASSERT_NE(exit, contacts.end());
+  separate::SeparatingContacts contacts(0);
+  contacts.find(block, walls, out, {});
+  const auto exit = std::ranges::find(contacts.contacts(), ProximityQuery::kExitContact, &Contact::id);
+  ASSERT_NE(exit, contacts.contacts().end());
   EXPECT_NEAR(dot(exit->normal, exit->point2 - exit->point1), 0.018, 1e-12);
   EXPECT_DOUBLE_EQ(exit->depth, 0.015);
 }

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
+#include "geometry/point_triangle.h"
 #include "geometry/predicates.h"
 #include "geometry/vec.h"
 #include "support/pair_oracle.h"
@@ -139,6 +141,55 @@ TEST(TrianglePair, DecidesDifferencesOfOneUlp) {
     sides |= triangles_intersect(a, b) ? 1 : 2;
   }
   EXPECT_EQ(sides, 3);
+}
+
+// The point that common_point() describes, found without leaving out any pair of features.
+Vec3 common_point_of_all_features(const Corners& a, const Corners& b) {
+  const TriangleSides sides[2] = {TriangleSides(a), TriangleSides(b)};
+  PointPair crossing{std::numeric_limits<double>::infinity(), {}, {}};
+  for (int i = 0; i < 2; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const TriangleSides &edges = sides[i], &face = sides[1 - i];
+      const double t = dot(face.corner[0] - edges.corner[k], face.normal) / dot(edges.side[k], face.normal);
+      const Vec3 point = edges.corner[k] + t * edges.side[k];
+      Vec3 foot;
+      if (!(t >= 0 && t <= 1) || !face.over(point, foot)) continue;
+      if (const double squared = squared_norm(foot - point); squared < crossing.squared)
+        crossing = {squared, point, foot};
+    }
+  const PointPair best = closest_points(a, b);
+  return crossing.squared < best.squared ? crossing.point1 : best.point1;
+}
+
+// Pairs of features that are certainly farther apart than an edge is from the triangle that it crosses are
+// left out. A corner or a side within rounding of the other triangle must not be.
+TEST(TrianglePair, CommonPointsAreThoseOfAllFeatures) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> at(0, 1);
+  int intersecting = 0;
+  const auto compare = [&](const Corners& a, const Corners& b) {
+    if (!triangles_intersect(a, b)) return;
+    ++intersecting;
+    ASSERT_EQ(common_point(a, b), common_point_of_all_features(a, b));
+    ASSERT_EQ(common_point(b, a), common_point_of_all_features(b, a));
+  };
+  for (int i = 0; i < 20000; ++i) {
+    SCOPED_TRACE(i);
+    const Vec3 far{std::pow(10.0, i % 5) - 1, 0, 0};
+    const Corners a = in_cube(random, 1, far);
+    Corners b = in_cube(random, 1, far);
+    compare(a, b);
+    // A corner barely beyond the other triangle, or below its side.
+    const double s = at(random), t = at(random) * (1 - s), height = std::pow(10.0, -8 - i % 10);
+    const Vec3 inside = a[0] + s * (a[1] - a[0]) + t * (a[2] - a[0]), on_side = a[0] + s * (a[1] - a[0]);
+    b[0] = (i % 3 == 0 ? on_side : inside) + height * in_cube(random, 1, {})[0];
+    compare(a, b);
+    // A side that crosses one of the other triangle nearly.
+    b[1] = on_side + (on_side - b[0]) + height * in_cube(random, 1, {})[0];
+    compare(a, b);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(intersecting, 10000);
 }
 
 TEST(TrianglePair, ExtremeCoordinates) {

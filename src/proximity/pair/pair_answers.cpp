@@ -87,10 +87,14 @@ const std::optional<BoundedLength>& PairAnswers::penetration_depth() {
 }
 
 std::span<const Contact> PairAnswers::contacts() {
-  if (!contacts_ && !within(contact_margin_)) contacts_ = std::span<const Contact>();
-  if (!contacts_)
-    contacts_ = contact_finder_.find(bodies_, meshes(), to_other(), contact_margin_, precision());
+  if (!contacts_) contacts_ = contacts_within(contact_margin_);
   return *contacts_;
+}
+
+std::span<const Contact> PairAnswers::contacts_within(double margin) {
+  contacts_.reset();
+  if (!within(margin)) return {};
+  return contact_finder_.find(bodies_, meshes(), to_other(), margin, precision());
 }
 
 bool PairAnswers::surfaces_within(double distance) {

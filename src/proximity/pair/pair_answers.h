@@ -75,6 +75,8 @@ class PairAnswers {
   [[nodiscard]] bool colliding();
   [[nodiscard]] const std::optional<BoundedLength>& penetration_depth();
   [[nodiscard]] std::span<const Contact> contacts();
+  /// contacts() with another margin. The span is valid until the next call.
+  [[nodiscard]] std::span<const Contact> contacts_within(double margin);
 
  private:
   [[nodiscard]] pairs::MeshPair meshes() const;

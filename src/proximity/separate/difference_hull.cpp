@@ -23,16 +23,18 @@ constexpr std::size_t kMostPoints = 20000;
 // The hull of points of the difference. Its faces are triangles, counter-clockwise from outside.
 class DifferenceHull {
  public:
-  struct Facet {
-    std::array<std::uint32_t, 3> corner{};
-    std::array<std::uint32_t, 3> across{};  // the face beyond the side from corner i to corner i + 1
-    Vec3 out{};        // a unit vector away from the origin: the normal, or to the closest point of a sliver
-    double least = 0;  // a lower bound on its distance from the origin, negative if that is beyond it
-    bool removed = false;
-  };
+  using Facet = ExitWorkspace::Facet;
 
   // Four points that are not in a plane.
-  explicit DifferenceHull(const std::array<Vec3, 4>& p) : points_(p.begin(), p.end()) {
+  DifferenceHull(const std::array<Vec3, 4>& p, ExitWorkspace& workspace)
+      : points_(workspace.points),
+        facets_(workspace.facets),
+        order_(workspace.order),
+        horizon_(workspace.horizon),
+        open_(workspace.open),
+        seen_(workspace.seen) {
+    points_.assign(p.begin(), p.end());
+    facets_.clear(), order_.clear(), seen_.clear();
     if (orientation(p[0], p[1], p[2], p[3]) > 0) std::swap(points_[0], points_[1]);
     constexpr std::array<std::array<std::uint32_t, 3>, 4> kCorners{
         {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
@@ -76,8 +78,6 @@ class DifferenceHull {
   }
 
  private:
-  using Entry = std::pair<double, std::uint32_t>;
-
   [[nodiscard]] bool sees(const Vec3& p, std::uint32_t face) const {
     const auto& [a, b, c] = facets_[face].corner;
     return orientation(points_[a], points_[b], points_[c], p) > 0;
@@ -137,11 +137,11 @@ class DifferenceHull {
     seen_.clear();
   }
 
-  std::vector<Vec3> points_;
-  std::vector<Facet> facets_;
-  std::vector<Entry> order_;                                      // a heap, the nearest face first
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> horizon_;  // faces that stay, and their sides
-  std::vector<std::uint32_t> open_, seen_;
+  std::vector<Vec3>& points_;
+  std::vector<Facet>& facets_;
+  std::vector<std::pair<double, std::uint32_t>>& order_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>>& horizon_;
+  std::vector<std::uint32_t>&open_, &seen_;
 };
 
 // Some unit vector across u.
@@ -153,7 +153,8 @@ Vec3 across(const Vec3& u) {
 // Finds the exit, and its first directions.
 class ExitSearch {
  public:
-  ExitSearch(const Support& support, double size) : support_(support), size_(size) {}
+  ExitSearch(const Support& support, double size, ExitWorkspace& workspace)
+      : support_(support), size_(size), workspace_(workspace) {}
 
   ConvexExit find() {
     std::array<Vec3, 4> corner;
@@ -161,7 +162,7 @@ class ExitSearch {
       exit_.lower = std::min(0.0, exit_.upper);
       return exit_;
     }
-    DifferenceHull hull(corner);
+    DifferenceHull hull(corner, workspace_);
     while (true) {
       const std::uint32_t nearest = hull.nearest();
       exit_.lower = hull.facet(nearest).least;
@@ -213,13 +214,14 @@ class ExitSearch {
 
   const Support& support_;
   double size_;
+  ExitWorkspace& workspace_;
   ConvexExit exit_{.upper = std::numeric_limits<double>::infinity()};
 };
 
 }  // namespace
 
-ConvexExit exit_of_hulls(const Support& support, double size) {
-  return ExitSearch(support, size).find();
+ConvexExit exit_of_hulls(const Support& support, double size, ExitWorkspace& workspace) {
+  return ExitSearch(support, size, workspace).find();
 }
 
 }  // namespace sdm::separate

@@ -1,7 +1,11 @@
 // The shortest way out of the difference of two convex bodies.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "geometry/vec.h"
 
@@ -22,6 +26,22 @@ struct ConvexExit {
   Vec3 direction{};
 };
 
+/// Memory that searches reuse; results do not depend on it.
+struct ExitWorkspace {
+  struct Facet {
+    std::array<std::uint32_t, 3> corner{};
+    std::array<std::uint32_t, 3> across{};  ///< the face beyond the side from corner i to corner i + 1
+    Vec3 out{};  ///< a unit vector away from the origin: the normal, or to the closest point of a sliver
+    double least = 0;  ///< a lower bound on its distance from the origin, negative if that is beyond it
+    bool removed = false;
+  };
+  std::vector<Vec3> points;
+  std::vector<Facet> facets;
+  std::vector<std::pair<double, std::uint32_t>> order;           ///< a heap, the nearest face first
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> horizon;  ///< faces that stay, and their sides
+  std::vector<std::uint32_t> open, seen;
+};
+
 /// The hulls overlap after all translations inside of their difference, so the exit is the least height
 /// h(u) = max of u·(x1 − x2) over all directions u. A polytope of points of the difference is expanded at its
 /// face nearest to the origin (van den Bergen 2001): its distance bounds h from below, and h of its normal
@@ -29,6 +49,6 @@ struct ConvexExit {
 /// points however flat it is. Bounds differ by at most 1e-10 · size, unless the difference has tens of
 /// thousands of faces that are equally near. `size`: of both bodies. The upper bound is negative if the hulls
 /// are apart.
-[[nodiscard]] ConvexExit exit_of_hulls(const Support& support, double size);
+[[nodiscard]] ConvexExit exit_of_hulls(const Support& support, double size, ExitWorkspace& workspace);
 
 }  // namespace sdm::separate

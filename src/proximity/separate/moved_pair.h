@@ -10,8 +10,11 @@ namespace sdm::separate {
 
 class MovedPair {
  public:
-  MovedPair(const shape::PosedBody& o1, const shape::PosedBody& o2)
-      : pose_(o1.pose().transform()), moved_(o1), o2_(o2) {}
+  /// `answers`: whose memory is reused; results do not depend on what it was used for before.
+  MovedPair(const shape::PosedBody& o1, const shape::PosedBody& o2, pair::PairAnswers& answers)
+      : pose_(o1.pose().transform()), moved_(o1), o2_(o2), answers_(answers) {
+    answers_.begin(moved_, o2_);
+  }
 
   /// Whether the bodies collide after a translation of O1; exact.
   [[nodiscard]] bool collide(const Vec3& translation) {
@@ -43,7 +46,7 @@ class MovedPair {
   Transform pose_;
   shape::PosedBody moved_;
   const shape::PosedBody& o2_;
-  pair::PairAnswers answers_{0, std::nullopt};
+  pair::PairAnswers& answers_;
   std::optional<Vec3> at_{};
   std::size_t tries_ = 0;
 };

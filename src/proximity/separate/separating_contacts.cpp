@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <map>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "geometry/barycentric.h"
@@ -15,24 +16,6 @@ namespace {
 // Contacts that are farther apart than the nearest one by this fraction of the translation and of the size of
 // the bodies belong to the same touch.
 constexpr double kGapOfTranslation = 2e-3, kGapOfSize = 1e-6;
-
-// Sorted by patch, that with the deepest contact first, and by depth.
-void sort_contacts(std::vector<Contact>& contacts) {
-  std::map<std::uint32_t, double> deepest;
-  for (const Contact& c : contacts) {
-    const auto [found, added] = deepest.try_emplace(c.patch, c.depth);
-    if (!added) found->second = std::max(found->second, c.depth);
-  }
-  std::ranges::stable_sort(contacts, [&](const Contact& a, const Contact& b) {
-    const double of_a = deepest.at(a.patch), of_b = deepest.at(b.patch);
-    if (of_a != of_b) return of_a > of_b;
-    if (a.patch != b.patch) return a.patch < b.patch;
-    return a.depth > b.depth;
-  });
-  std::map<std::uint32_t, std::uint32_t> number;
-  for (Contact& c : contacts)
-    c.patch = number.try_emplace(c.patch, static_cast<std::uint32_t>(number.size())).first->second;
-}
 
 // How far O1 is to go along the normal of a contact of which t is free. The points may be farther apart:
 // those of the exit, on a wall beyond the one that O1 has left by, and those of surfaces that touch after t,
@@ -58,61 +41,110 @@ Contact exit_contact(const std::array<shape::PosedBody, 2>& bodies, const pairs:
   return exit;
 }
 
+double size_of(const shape::PosedBody& o1, const shape::PosedBody& o2) {
+  Box box = o1.box();
+  extend(box, o2.box());
+  return diagonal(box);
+}
+
 }  // namespace
+
+void SeparatingContacts::find(const shape::PosedBody& o1, const shape::PosedBody& o2,
+                              const SeparatingTranslation& out, const ContactFilter& filter) {
+  contacts_.clear();
+  if (!find_of_convex(o1, o2, out)) find_after(o1, o2, out, filter);
+}
+
+// The deepest contact of the patch is the one of the closest points after the translation.
+bool SeparatingContacts::find_of_convex(const shape::PosedBody& o1, const shape::PosedBody& o2,
+                                        const SeparatingTranslation& out) {
+  if (o1.body().convex_solid() == nullptr || o2.body().convex_solid() == nullptr) return false;
+  const double size = size_of(o1, o2);
+  const std::span<const Contact> patch = patch_.find(o1, o2, out.translation, size, kGapOfSize * size);
+  if (patch.empty()) return false;
+  contacts_.push_back(patch.front());
+  contacts_.back().id = ProximityQuery::kExitContact;
+  for (Contact contact : patch) {
+    if (!(contact.depth > -contact_margin_)) break;
+    contact.patch = 1;  // the exit is one by itself
+    contacts_.push_back(contact);
+  }
+  return true;
+}
 
 // After the translation t, contact i lets O1 move where n_i·x ≥ −g_i, with its normal n_i and the gap g_i
 // there. So before it, the distance to go along n_i is n_i·t − g_i.
-std::vector<Contact> contacts_after(const shape::PosedBody& o1, const shape::PosedBody& o2,
-                                    const SeparatingTranslation& out, double contact_margin,
-                                    const ContactFilter& filter) {
-  Box box = o1.box();
-  extend(box, o2.box());
+void SeparatingContacts::find_after(const shape::PosedBody& o1, const shape::PosedBody& o2,
+                                    const SeparatingTranslation& out, const ContactFilter& filter) {
   const Vec3& t = out.translation;
   std::array bodies{o1, o2};
   bodies[0].set_pose(Transform::translation(t) * o1.pose().transform());
-  pair::PairAnswers apart(0, std::nullopt);
-  apart.begin(bodies[0], bodies[1]);
-  pair::PairAnswers answers(
-      contact_margin + apart.separation().value + kGapOfTranslation * out.value + kGapOfSize * diagonal(box),
-      std::nullopt);
-  const pairs::FacePair closest = apart.known().closest_faces;
-  answers.begin(bodies[0], bodies[1], {.closest_faces = closest});
-  std::vector<Contact> contacts{exit_contact(bodies, closest, *apart.separation().witness, t)};
-  for (Contact c : filter ? filter(bodies, answers.contacts()) : answers.contacts()) {
+  apart_.begin(bodies[0], bodies[1]);
+  const BoundedLength separation = apart_.separation();
+  contacts_.push_back(exit_contact(bodies, apart_.known().closest_faces, *separation.witness, t));
+  const std::span<const Contact> all = apart_.contacts_within(
+      contact_margin_ + separation.value + kGapOfTranslation * out.value + kGapOfSize * size_of(o1, o2));
+  for (Contact c : filter ? filter(bodies, all) : all) {
     c.point1 = c.point1 - t;
     c.normal += Vec3{};  // no −0
     c.depth = depth_along(c, t);
     c.patch += 1;  // the exit is one by itself
-    if (c.depth > -contact_margin) contacts.push_back(c);
+    if (c.depth > -contact_margin_) contacts_.push_back(c);
   }
-  sort_contacts(contacts);
-  return contacts;
+  sort();
 }
 
-void keep_per_patch(std::vector<Contact>& contacts, std::size_t most) {
-  std::vector<Contact> kept;
-  for (std::size_t begin = 0, end = 0; begin < contacts.size(); begin = end) {
-    while (end < contacts.size() && contacts[end].patch == contacts[begin].patch) ++end;
-    if (end - begin <= most) {
-      kept.insert(kept.end(), contacts.begin() + begin, contacts.begin() + end);
-      continue;
-    }
-    std::vector<double> apart(end - begin, std::numeric_limits<double>::infinity());
-    std::vector<bool> chosen(end - begin);
-    std::size_t next = 0;  // the deepest
-    for (std::size_t count = 0; count < most; ++count) {
-      chosen[next] = true;
-      for (std::size_t i = 0; i < apart.size(); ++i)
-        apart[i] =
-            std::min(apart[i], squared_norm(contacts[begin + i].point2 - contacts[begin + next].point2));
-      next = std::ranges::max_element(apart) - apart.begin();
-      // The rest is at points that are kept: the next deepest.
-      if (apart[next] == 0) next = std::ranges::find(chosen, false) - chosen.begin();
-    }
-    for (std::size_t i = 0; i < chosen.size(); ++i)
-      if (chosen[i]) kept.push_back(contacts[begin + i]);
+// Sorts by patch, that with the deepest contact first, and by depth.
+void SeparatingContacts::sort() {
+  std::uint32_t patches = 0;
+  for (const Contact& c : contacts_) patches = std::max(patches, c.patch + 1);
+  deepest_.assign(patches, -std::numeric_limits<double>::infinity());
+  for (const Contact& c : contacts_) deepest_[c.patch] = std::max(deepest_[c.patch], c.depth);
+  order_.resize(contacts_.size());
+  std::iota(order_.begin(), order_.end(), 0u);
+  // Distinct keys make the order unique; a stable sort would allocate memory.
+  std::ranges::sort(order_, {}, [&](std::uint32_t i) {
+    const Contact& c = contacts_[i];
+    return std::tuple(-deepest_[c.patch], c.patch, -c.depth, i);
+  });
+  number_.assign(patches, kNone);
+  std::uint32_t next = 0;
+  sorted_.clear();
+  for (const std::uint32_t i : order_) {
+    Contact contact = contacts_[i];
+    if (number_[contact.patch] == kNone) number_[contact.patch] = next++;
+    contact.patch = number_[contact.patch];
+    sorted_.push_back(contact);
   }
-  contacts = std::move(kept);
+  std::swap(contacts_, sorted_);
+}
+
+void SeparatingContacts::keep_per_patch(std::size_t most) {
+  const std::span<const Contact> all = contacts_;
+  std::size_t kept = 0;
+  for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+    while (end < all.size() && all[end].patch == all[begin].patch) ++end;
+    choose(all.subspan(begin, end - begin), most);
+    for (std::size_t i = begin; i < end; ++i)
+      if (chosen_[i - begin] != 0) contacts_[kept++] = contacts_[i];
+  }
+  contacts_.resize(kept);
+}
+
+// The deepest contact of a patch, and then each time the one farthest from those that are chosen.
+void SeparatingContacts::choose(std::span<const Contact> patch, std::size_t most) {
+  chosen_.assign(patch.size(), patch.size() <= most ? 1 : 0);
+  if (patch.size() <= most) return;
+  distances_.assign(patch.size(), std::numeric_limits<double>::infinity());
+  std::size_t next = 0;  // the deepest
+  for (std::size_t count = 0; count < most; ++count) {
+    chosen_[next] = 1;
+    for (std::size_t i = 0; i < patch.size(); ++i)
+      distances_[i] = std::min(distances_[i], squared_norm(patch[i].point2 - patch[next].point2));
+    next = std::ranges::max_element(distances_) - distances_.begin();
+    // The rest is at points that are kept: the next deepest.
+    if (distances_[next] == 0) next = std::ranges::find(chosen_, 0) - chosen_.begin();
+  }
 }
 
 }  // namespace sdm::separate

@@ -3,11 +3,13 @@
 
 #include <sdm/proximity_query.h>
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
 
 #include "proximity/pair/pair_answers.h"
+#include "proximity/separate/convex_patch.h"
 #include "query/shape/posed_body.h"
 
 namespace sdm::separate {
@@ -16,15 +18,37 @@ namespace sdm::separate {
 using ContactFilter =
     std::function<std::span<const Contact>(std::span<const shape::PosedBody>, std::span<const Contact>)>;
 
-/// As ProximityQuery::separating_contacts(), of bodies that collide and leave each other by `out`. `filter`:
-/// of the contacts that they have then; all, if it is empty.
-[[nodiscard]] std::vector<Contact> contacts_after(const shape::PosedBody& o1, const shape::PosedBody& o2,
-                                                  const SeparatingTranslation& out, double contact_margin,
-                                                  const ContactFilter& filter);
+/// As ProximityQuery::separating_contacts(), of bodies that collide. Memory is reused from call to call;
+/// results do not depend on earlier calls.
+class SeparatingContacts {
+ public:
+  explicit SeparatingContacts(double contact_margin) : contact_margin_(contact_margin) {}
 
-/// Keeps so many contacts of each patch, or all if they are no more: the deepest, then always the one that is
-/// farthest from those that are kept, of several the deepest. Contacts are sorted by patch and depth, before
-/// and after.
-void keep_per_patch(std::vector<Contact>& contacts, std::size_t most);
+  /// The contacts of bodies that leave each other by `out`. `filter`: of the contacts that they have then;
+  /// all, if it is empty. Convex solids do not need it: their contacts are along normals of their faces.
+  void find(const shape::PosedBody& o1, const shape::PosedBody& o2, const SeparatingTranslation& out,
+            const ContactFilter& filter);
+  /// Takes these contacts.
+  void assign(std::span<const Contact> contacts) { contacts_.assign(contacts.begin(), contacts.end()); }
+  /// Keeps so many of each patch, at least 1. Requires that they are sorted by patch and depth.
+  void keep_per_patch(std::size_t most);
+  [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
+
+ private:
+  [[nodiscard]] bool find_of_convex(const shape::PosedBody& o1, const shape::PosedBody& o2,
+                                    const SeparatingTranslation& out);
+  void find_after(const shape::PosedBody& o1, const shape::PosedBody& o2, const SeparatingTranslation& out,
+                  const ContactFilter& filter);
+  void sort();
+  void choose(std::span<const Contact> patch, std::size_t most);
+
+  double contact_margin_;
+  pair::PairAnswers apart_{0, std::nullopt};
+  ConvexPatch patch_;
+  std::vector<Contact> contacts_, sorted_;
+  std::vector<double> deepest_, distances_;
+  std::vector<std::uint32_t> order_, number_;
+  std::vector<std::uint8_t> chosen_;
+};
 
 }  // namespace sdm::separate

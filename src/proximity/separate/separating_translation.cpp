@@ -9,6 +9,7 @@
 #include "proximity/separate/free_translations.h"
 #include "proximity/separate/moved_pair.h"
 #include "proximity/separate/overlap_cover.h"
+#include "query/convex/support_search.h"
 #include "query/shape/convexity.h"
 #include "query/shape/extreme_vertex.h"
 
@@ -20,10 +21,11 @@ constexpr double kClose = 0.98;      // ratio of bounds at which a search ends
 constexpr double kEnough = 0.85;     // the same, of the search for a cover
 constexpr double kLeastGap = 1e-12;  // of the size, beyond a translation after which bodies touch
 
-// The point of a body that is farthest along u, in space.
-Vec3 farthest(const shape::PosedBody& body, const Vec3& u) {
+// The point of a body that is farthest along u, in space. `convex`: the body, if it is a convex solid.
+Vec3 farthest(const shape::PosedBody& body, const convex::ConvexMesh* convex, const Vec3& u) {
   const auto& rows = body.pose().map.rows;
   const Vec3 local = normalized(u[0] * rows[0] + u[1] * rows[1] + u[2] * rows[2]);
+  if (convex != nullptr) return body.pose().map(convex->points[convex::farthest_vertex(*convex, local)]);
   return body.pose().map(shape::extreme_vertex(internals(body.body().sites()), local).point);
 }
 
@@ -38,8 +40,14 @@ void for_each_direction(const Work& work) {
 
 class TranslationSearch {
  public:
-  TranslationSearch(const shape::PosedBody& o1, const shape::PosedBody& o2, pair::PairAnswers& answers)
-      : o1_(o1), o2_(o2), answers_(answers), pair_(o1, o2) {
+  TranslationSearch(const shape::PosedBody& o1, const shape::PosedBody& o2, pair::PairAnswers& answers,
+                    TranslationWorkspace& workspace)
+      : o1_(o1),
+        o2_(o2),
+        convex_{o1.body().convex_solid(), o2.body().convex_solid()},
+        answers_(answers),
+        exit_workspace_(workspace.exit),
+        pair_(o1, o2, workspace.moved) {
     Box box = o1.box();
     extend(box, o2.box());
     size_ = diagonal(box);
@@ -47,13 +55,14 @@ class TranslationSearch {
 
   SeparatingTranslation find() {
     const ConvexExit exit = exit_of_hulls(
-        [&](const Vec3& u) {
-          return SupportPair{farthest(o1_, u), farthest(o2_, -u)};
+        [this](const Vec3& u) {
+          return SupportPair{farthest(o1_, convex_[0], u), farthest(o2_, convex_[1], -u)};
         },
-        size_);
+        size_, exit_workspace_);
     const Vec3 out = beyond(-std::max(0.0, exit.upper) * exit.direction, -exit.direction);
     // A body that falls short of its hull a little contains the hull scaled about a point.
-    const double short1 = o1_.body().convexity_deficit(), short2 = o2_.body().convexity_deficit();
+    const double short1 = convex_[0] ? 0 : o1_.body().convexity_deficit(),
+                 short2 = convex_[1] ? 0 : o2_.body().convexity_deficit();
     if (std::max(short1, short2) <= shape::kNearlyConvex)
       return result(exit.lower - short1 * diagonal(o1_.box()) - short2 * diagonal(o2_.box()), out);
     double lower = 0;
@@ -107,7 +116,9 @@ class TranslationSearch {
   }
 
   const shape::PosedBody &o1_, &o2_;
+  std::array<const convex::ConvexMesh*, 2> convex_;  // null for others
   pair::PairAnswers& answers_;
+  ExitWorkspace& exit_workspace_;
   MovedPair pair_;
   double size_ = 0;
 };
@@ -115,9 +126,9 @@ class TranslationSearch {
 }  // namespace
 
 SeparatingTranslation separating_translation(const shape::PosedBody& o1, const shape::PosedBody& o2,
-                                             pair::PairAnswers& answers) {
+                                             pair::PairAnswers& answers, TranslationWorkspace& workspace) {
   if (!answers.colliding()) return {{.certainty = Certainty::exact}};
-  return TranslationSearch(o1, o2, answers).find();
+  return TranslationSearch(o1, o2, answers, workspace).find();
 }
 
 }  // namespace sdm::separate

@@ -4,13 +4,21 @@
 #include <sdm/proximity_query.h>
 
 #include "proximity/pair/pair_answers.h"
+#include "proximity/separate/difference_hull.h"
 #include "query/shape/posed_body.h"
 
 namespace sdm::separate {
 
+/// Memory that searches reuse; results do not depend on it.
+struct TranslationWorkspace {
+  ExitWorkspace exit;
+  pair::PairAnswers moved{0, std::nullopt};
+};
+
 /// As ProximityQuery::separating_translation(). `answers`: of these bodies.
 [[nodiscard]] SeparatingTranslation separating_translation(const shape::PosedBody& o1,
                                                            const shape::PosedBody& o2,
-                                                           pair::PairAnswers& answers);
+                                                           pair::PairAnswers& answers,
+                                                           TranslationWorkspace& workspace);
 
 }  // namespace sdm::separate

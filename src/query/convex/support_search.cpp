@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/rounding.h"
 #include "query/convex/simplex_point.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
 // A vertex that is farthest along u, up to the height error: all are compared.
-HWY_INLINE std::uint32_t farthest_vertex(const ConvexMesh& mesh, const Vec3& u) {
+HWY_INLINE std::uint32_t nearly_farthest_vertex(const ConvexMesh& mesh, const Vec3& u) {
   const hn::CappedTag<float, ConvexMesh::kBlock> d;
   const hn::RebindToSigned<decltype(d)> di;
   const std::size_t lanes = hn::Lanes(d), count = (mesh.points.size() + lanes - 1) / lanes * lanes;
@@ -46,12 +47,12 @@ HWY_INLINE std::uint32_t farthest_vertex(const ConvexMesh& mesh, const Vec3& u) 
   return std::min(lane, static_cast<std::uint32_t>(mesh.points.size() - 1));
 }
 
-// The same up to the climb error, by neighbours of a vertex.
-HWY_INLINE std::uint32_t climb(const ConvexMesh& mesh, const Vec3& u, std::uint32_t vertex) {
+// The same, by neighbours of a vertex that are higher by more than `least`.
+HWY_INLINE std::uint32_t climb(const ConvexMesh& mesh, const Vec3& u, std::uint32_t vertex, double least) {
   for (;;) {
     const Vec3& from = mesh.points[vertex];
     std::uint32_t next = vertex;
-    double most = mesh.least_climb;
+    double most = least;
     for (const Spoke& spoke : mesh.spokes.of(vertex))
       if (const double higher = dot(u, mesh.points[spoke.end] - from); higher > most)
         most = higher, next = spoke.end;
@@ -102,8 +103,8 @@ class SupportSearch {
   }
   // The last vertex is near the next one in a similar direction.
   std::uint32_t farthest(const ConvexMesh& mesh, const Vec3& u, int side) const {
-    if (!mesh.climbs || !climb_) return farthest_vertex(mesh, u);
-    return climb(mesh, u, simplex_.points[simplex_.count - 1].vertices[side]);
+    if (!mesh.climbs || !climb_) return nearly_farthest_vertex(mesh, u);
+    return climb(mesh, u, simplex_.points[simplex_.count - 1].vertices[side], mesh.least_climb);
   }
 
   // The simplex of a similar pose is a better start than the centres, unless the poses differ much.
@@ -173,6 +174,15 @@ class SupportSearch {
 
 }  // namespace
 
+std::uint32_t FarthestVertex(const ConvexMesh& mesh, const Vec3& u) {
+  if (mesh.climbs) return climb(mesh, u, nearly_farthest_vertex(mesh, u), kFewRoundings * mesh.size);
+  std::uint32_t farthest = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::uint32_t v = 0; v < mesh.points.size(); ++v)
+    if (const double along = dot(u, mesh.points[v]); along > most) most = along, farthest = v;
+  return farthest;
+}
+
 Relation SearchBySupports(const SupportRequest& request, Simplex& simplex) {
   return SupportSearch(request, simplex).run();
 }
@@ -183,7 +193,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sdm::convex {
 
+HWY_EXPORT(FarthestVertex);
 HWY_EXPORT(SearchBySupports);
+
+std::uint32_t farthest_vertex(const ConvexMesh& mesh, const Vec3& u) {
+  return HWY_DYNAMIC_DISPATCH(FarthestVertex)(mesh, u);
+}
 
 Relation search_by_supports(const SupportRequest& request, Simplex& simplex) {
   return HWY_DYNAMIC_DISPATCH(SearchBySupports)(request, simplex);

@@ -84,6 +84,14 @@ void Body::require_boundary() const {
   boundary_->get([this](auto& value) { value.emplace(internals(sites_), inside_->sides()); });
 }
 
+const convex::ConvexMesh* Body::convex_solid() const {
+  if (convex_) return convex_.get();
+  const auto& found = refitted_convex_.get([this] {
+    return std::make_shared<std::unique_ptr<const convex::ConvexMesh>>(convex::recognise(internals(sites_)));
+  });
+  return found.get();
+}
+
 bool Body::is_small_and_convex() const {
   // After a refit, deciding it for more faces takes as long as the bounds by planes save.
   constexpr std::size_t kMostFaces = 512;
@@ -110,6 +118,7 @@ void Body::follow_positions() {
   cylinders_ = {};
   convex_.reset();
   is_convex_.outdate();
+  refitted_convex_.forget();
   box_ = bounds(sites_.mesh());
   ball_ = ball_about(0.5 * (box_.lo + box_.hi), internals(sites_));
   if (boundary_->value) boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();

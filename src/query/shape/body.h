@@ -56,6 +56,8 @@ class Body {
 
   /// The mesh, if it bounds a convex solid (see convex::recognise); none after a refit, as with cylinders().
   [[nodiscard]] const convex::ConvexMesh* convex() const { return convex_.get(); }
+  /// The same, also after a refit. Thread-safe; found by the first call after one.
+  [[nodiscard]] const convex::ConvexMesh* convex_solid() const;
   /// Whether it bounds a convex solid (see convex::is_convex) of so few faces that bounds by their planes
   /// take less time, also after a refit. Thread-safe; decided by the first call after one.
   [[nodiscard]] bool is_small_and_convex() const;
@@ -86,6 +88,7 @@ class Body {
   sites::CylinderTree cylinders_;
   std::unique_ptr<const convex::ConvexMesh> convex_;
   Kept<bool> is_convex_;
+  Kept<std::unique_ptr<const convex::ConvexMesh>> refitted_convex_;
   std::vector<ContactPart> contact_parts_;
 
   /// A value that queries build when they need it.

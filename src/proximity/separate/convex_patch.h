@@ -1,0 +1,42 @@
+// The contacts of two convex solids that overlap, from a face, an edge or a vertex of each.
+#pragma once
+
+#include <sdm/proximity_query.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "proximity/separate/support_feature.h"
+#include "query/shape/posed_body.h"
+
+namespace sdm::separate {
+
+/// The contact patch of two convex solids: the part that their supporting features have in common, seen along
+/// the separating translation. There is a contact at each corner of this part: at a vertex of one feature
+/// over the other one, and where two sides cross.
+class ConvexPatch {
+ public:
+  /// The contacts of convex solids that leave each other by the translation t ≠ 0 of O1, all with the normal
+  /// t / |t|: point1 and point2 are on the surfaces and above each other, to rounding, and depth is at most
+  /// |t|. Ids name the vertex or both edges. Sorted by depth, the deepest first, in the patch 0. Empty if
+  /// nothing is as deep as |t|, to `tolerance`: these are then not the features that touch after t. `size`:
+  /// of both bodies. The span is valid until the next call.
+  [[nodiscard]] std::span<const Contact> find(const shape::PosedBody& o1, const shape::PosedBody& o2,
+                                              const Vec3& t, double size, double tolerance);
+
+ private:
+  void clip();
+  void clip_by(const Vec2& a, const Vec2& b);
+  void cross_segments();
+  void add_contact(const Vec2& at);
+
+  std::array<SupportFeature, 2> features_;
+  std::vector<Vec2> corners_, clipped_;  // of the part in common, before and after a step
+  Vec3 t_{}, normal_{};
+  double near_ = 0;  // points of the plane that are no farther apart are one
+  std::vector<Contact> contacts_;
+};
+
+}  // namespace sdm::separate
