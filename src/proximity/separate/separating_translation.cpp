@@ -21,11 +21,16 @@ constexpr double kClose = 0.98;      // ratio of bounds at which a search ends
 constexpr double kEnough = 0.85;     // the same, of the search for a cover
 constexpr double kLeastGap = 1e-12;  // of the size, beyond a translation after which bodies touch
 
-// The point of a body that is farthest along u, in space. `convex`: the body, if it is a convex solid.
-Vec3 farthest(const shape::PosedBody& body, const convex::ConvexMesh* convex, const Vec3& u) {
+// The point of a body that is farthest along u, in space. `convex`: the body, if it is a convex solid, whose
+// `vertex` is one that is near; it receives that vertex.
+Vec3 farthest(const shape::PosedBody& body, const convex::ConvexMesh* convex, const Vec3& u,
+              std::uint32_t& vertex) {
   const auto& rows = body.pose().map.rows;
   const Vec3 local = normalized(u[0] * rows[0] + u[1] * rows[1] + u[2] * rows[2]);
-  if (convex != nullptr) return body.pose().map(convex->points[convex::farthest_vertex(*convex, local)]);
+  if (convex != nullptr) {
+    vertex = convex::farthest_vertex(*convex, local, vertex);
+    return body.pose().map(convex->points[vertex]);
+  }
   return body.pose().map(shape::extreme_vertex(internals(body.body().sites()), local).point);
 }
 
@@ -55,8 +60,11 @@ class TranslationSearch {
 
   SeparatingTranslation find() {
     const ConvexExit exit = exit_of_hulls(
-        [this](const Vec3& u) {
-          return SupportPair{farthest(o1_, convex_[0], u), farthest(o2_, convex_[1], -u)};
+        [this](const Vec3& u, const VertexPair& near) {
+          SupportPair found{.vertices = near};
+          found.x1 = farthest(o1_, convex_[0], u, found.vertices[0]);
+          found.x2 = farthest(o2_, convex_[1], -u, found.vertices[1]);
+          return found;
         },
         size_, exit_workspace_);
     const Vec3 out = beyond(-std::max(0.0, exit.upper) * exit.direction, -exit.direction);

@@ -174,8 +174,9 @@ class SupportSearch {
 
 }  // namespace
 
-std::uint32_t FarthestVertex(const ConvexMesh& mesh, const Vec3& u) {
-  if (mesh.climbs) return climb(mesh, u, nearly_farthest_vertex(mesh, u), kFewRoundings * mesh.size);
+std::uint32_t FarthestVertex(const ConvexMesh& mesh, const Vec3& u, std::uint32_t near) {
+  if (mesh.climbs)
+    return climb(mesh, u, near != kNone ? near : nearly_farthest_vertex(mesh, u), kFewRoundings * mesh.size);
   std::uint32_t farthest = 0;
   double most = -std::numeric_limits<double>::infinity();
   for (std::uint32_t v = 0; v < mesh.points.size(); ++v)
@@ -196,8 +197,8 @@ namespace sdm::convex {
 HWY_EXPORT(FarthestVertex);
 HWY_EXPORT(SearchBySupports);
 
-std::uint32_t farthest_vertex(const ConvexMesh& mesh, const Vec3& u) {
-  return HWY_DYNAMIC_DISPATCH(FarthestVertex)(mesh, u);
+std::uint32_t farthest_vertex(const ConvexMesh& mesh, const Vec3& u, std::uint32_t near) {
+  return HWY_DYNAMIC_DISPATCH(FarthestVertex)(mesh, u, near);
 }
 
 Relation search_by_supports(const SupportRequest& request, Simplex& simplex) {

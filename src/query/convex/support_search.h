@@ -31,9 +31,10 @@ struct SupportRequest {
   double rounding = 0;  ///< of a posed vertex
 };
 
-/// The vertex with the largest u·x, to rounding in double precision; among equal ones, a function of the mesh
-/// and u. Cost: that of comparing all vertices.
-[[nodiscard]] std::uint32_t farthest_vertex(const ConvexMesh& mesh, const Vec3& u);
+/// The vertex with the largest u·x, to rounding in double precision. `near`: that of a similar direction, or
+/// kNone; it decides between equal ones. Cost: that of comparing all vertices, or of some neighbours.
+[[nodiscard]] std::uint32_t farthest_vertex(const ConvexMesh& mesh, const Vec3& u,
+                                            std::uint32_t near = kNone);
 
 /// Gilbert, Johnson & Keerthi 1988: the point closest to the origin of simplices of differences x1 − x2, each
 /// extended by the vertices that are farthest in its direction. `simplex`: that of a similar pose, or none;
