@@ -176,6 +176,7 @@ void expect_patch(ProximityQuery& query) {
   std::set<std::uint64_t> ids;
   for (const Contact& c : all) {
     EXPECT_TRUE(ids.insert(c.id).second);
+    EXPECT_TRUE((c.id >> 62 & 1) != 0) << "of a patch, not of contacts()";
     EXPECT_LE(norm(c.normal - normal), 1e-12);
     EXPECT_LE(c.depth, (1 + 1e-15) * out.upper);
     EXPECT_LE(norm(c.point2 - c.point1 - dot(normal, c.point2 - c.point1) * normal), 1e-5);

@@ -50,6 +50,7 @@ class Grid {
       const double rounded = (to_ * p[k] + kShift) - kShift;
       point.at[k] = from_ * rounded, point.grid[k] = static_cast<std::int64_t>(rounded);
     }
+    point.distance = norm(point.at);
     return point;
   }
 
@@ -73,16 +74,25 @@ class DifferenceHull {
     for (std::size_t f = 0; f < 4; ++f) add(kCorners[f], kAcross[f]);
   }
 
-  [[nodiscard]] const Facet& facet(std::uint32_t f) const { return w_.facets[f]; }
-  [[nodiscard]] const VertexPair& vertices_of(const Facet& facet) const {
-    return w_.points[facet.corner[0]].vertices;
+  [[nodiscard]] double least(std::uint32_t f) const { return w_.facets[f].least; }
+  [[nodiscard]] std::array<VertexPair, 3> vertices_of(std::uint32_t f) const {
+    const auto& [a, b, c] = w_.facets[f].corner;
+    return {w_.points[a].vertices, w_.points[b].vertices, w_.points[c].vertices};
+  }
+  // A unit vector away from the origin: the normal, or to the closest point of a sliver.
+  [[nodiscard]] Vec3 out_of(std::uint32_t f) const {
+    const Facet& facet = w_.facets[f];
+    if (facet.reliable) return normalized(facet.normal);
+    return (origin_beyond(facet) ? -1.0 : 1.0) * normalized(closest_to_origin(facet));
   }
   [[nodiscard]] std::size_t size() const { return w_.points.size(); }
 
-  // The face nearest to the origin.
+  // Faces that are added from now on are left out by nearest() if they are farther.
+  void leave_out_beyond(double distance) { beyond_ = distance; }
+  // The face nearest to the origin; kNone if it is among those that were left out.
   std::uint32_t nearest() {
-    while (w_.facets[w_.order.front().second].removed) pop();
-    return w_.order.front().second;
+    while (!w_.order.empty() && w_.facets[w_.order.front().second].removed) pop();
+    return w_.order.empty() ? kNone : w_.order.front().second;
   }
 
   // Adds a point, if it is outside, most likely above this face. Returns whether it is.
@@ -122,26 +132,32 @@ class DifferenceHull {
   }
 
   void add(const std::array<std::uint32_t, 3>& corner, const std::array<std::uint32_t, 3>& across) {
-    const Vec3 &a = w_.points[corner[0]].at, &b = w_.points[corner[1]].at, &c = w_.points[corner[2]].at;
-    Facet facet{.corner = corner, .across = across, .normal = cross(b - a, c - a)};
+    const GridPoint &p = w_.points[corner[0]], &q = w_.points[corner[1]], &r = w_.points[corner[2]];
+    const Vec3 u = q.at - p.at, v = r.at - p.at;
+    Facet facet{.corner = corner, .across = across, .normal = cross(u, v)};
     const double area = norm(facet.normal),
-                 sides = std::max({squared_norm(b - a), squared_norm(c - a), squared_norm(c - b)});
+                 sides = std::max({squared_norm(u), squared_norm(v), squared_norm(v - u)});
+    const double far = std::max({p.distance, q.distance, r.distance});
     facet.doubt = kHeightError * sides * size_;
-    const double far = std::sqrt(std::max({squared_norm(a), squared_norm(b), squared_norm(c)}));
-    if (sides < kSliver * area) {
-      facet.out = (1 / area) * facet.normal;
-      facet.least = dot(facet.out, a) - kNormalError * far * (1 + sides / area);
-    } else {
-      // The nearest face of all is as far as its closest point is.
-      const Vec3 closest = closest_on_triangle({}, {a, b, c});
-      const bool beyond =
-          side_of_plane(w_.points[corner[0]], w_.points[corner[1]], w_.points[corner[2]], {}) > 0;
-      facet.out = (beyond ? -1.0 : 1.0) * normalized(closest);
-      facet.least = (beyond ? -1 : 1) * norm(closest) - kRounding * far;
-    }
-    w_.order.emplace_back(facet.least, static_cast<std::uint32_t>(w_.facets.size()));
-    std::push_heap(w_.order.begin(), w_.order.end(), std::greater{});
+    facet.reliable = sides < kSliver * area;
+    if (facet.reliable)
+      facet.least = (dot(facet.normal, p.at) - kNormalError * far * (area + sides)) / area;
+    else
+      facet.least = (origin_beyond(facet) ? -1 : 1) * norm(closest_to_origin(facet)) - kRounding * far;
+    const auto number = static_cast<std::uint32_t>(w_.facets.size());
     w_.facets.push_back(facet);
+    if (facet.least > beyond_) return;
+    w_.order.emplace_back(facet.least, number);
+    std::push_heap(w_.order.begin(), w_.order.end(), std::greater{});
+  }
+  // The nearest face of all is as far as its closest point is.
+  [[nodiscard]] Vec3 closest_to_origin(const Facet& facet) const {
+    const auto& [a, b, c] = facet.corner;
+    return closest_on_triangle({}, {w_.points[a].at, w_.points[b].at, w_.points[c].at});
+  }
+  [[nodiscard]] bool origin_beyond(const Facet& facet) const {
+    const auto& [a, b, c] = facet.corner;
+    return side_of_plane(w_.points[a], w_.points[b], w_.points[c], {}) > 0;
   }
   void pop() {
     std::pop_heap(w_.order.begin(), w_.order.end(), std::greater{});
@@ -171,6 +187,7 @@ class DifferenceHull {
   }
 
   const double size_;
+  double beyond_ = std::numeric_limits<double>::infinity();
   ExitWorkspace& w_;
 };
 
@@ -195,11 +212,17 @@ class ExitSearch {
     DifferenceHull hull(corner, size_, workspace_);
     while (true) {
       const std::uint32_t nearest = hull.nearest();
-      exit_.lower = hull.facet(nearest).least - kOffGrid * size_;
+      if (nearest == kNone) {
+        exit_.lower = exit_.upper;
+        break;
+      }
+      exit_.vertices = hull.vertices_of(nearest);
+      exit_.lower = hull.least(nearest) - kOffGrid * size_;
       if (exit_.upper - exit_.lower <= kPrecision * size_ || exit_.upper < 0) break;
-      const Vec3 out = hull.facet(nearest).out;
+      const Vec3 out = hull.out_of(nearest);
       if (out == Vec3{}) break;
-      const GridPoint p = farthest(out, hull.vertices_of(hull.facet(nearest)));
+      const GridPoint p = farthest(out, exit_.vertices[0]);
+      hull.leave_out_beyond(exit_.upper + kOffGrid * size_);
       if (hull.size() >= kMostPoints || !hull.add_point(nearest, p)) break;
     }
     exit_.lower = std::min(exit_.lower, exit_.upper);

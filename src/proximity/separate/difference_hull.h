@@ -31,6 +31,8 @@ using Support = std::function<SupportPair(const Vec3& u, const VertexPair& near)
 struct ConvexExit {
   double lower = 0, upper = 0;
   Vec3 direction{};
+  std::array<VertexPair, 3> vertices{kNoVertices, kNoVertices,
+                                     kNoVertices};  ///< between which they touch then
 };
 
 /// Memory that searches reuse; results do not depend on it.
@@ -39,6 +41,7 @@ struct ExitWorkspace {
   struct Point {
     Vec3 at{};
     std::array<std::int64_t, 3> grid{};
+    double distance = 0;  ///< from the origin
     VertexPair vertices{};
   };
   struct Facet {
@@ -46,8 +49,8 @@ struct ExitWorkspace {
     std::array<std::uint32_t, 3> across{};  ///< the face beyond the side from corner i to corner i + 1
     Vec3 normal{};                          ///< not normalised
     double doubt = 0;                       ///< what heights along it are larger than if their sign is known
-    Vec3 out{};  ///< a unit vector away from the origin: the normal, or to the closest point of a sliver
-    double least = 0;  ///< a lower bound on its distance from the origin, negative if that is beyond it
+    double least = 0;      ///< a lower bound on its distance from the origin, negative if that is beyond it
+    bool reliable = true;  ///< the normal; false for slivers
     bool removed = false;
   };
   std::vector<Point> points;

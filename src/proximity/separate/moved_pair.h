@@ -16,6 +16,8 @@ class MovedPair {
     answers_.begin(moved_, o2_);
   }
 
+  /// What helps after the next translation.
+  void set_hints(const pair::Hints& hints) { answers_.begin(moved_, o2_, hints); }
   /// Whether the bodies collide after a translation of O1; exact.
   [[nodiscard]] bool collide(const Vec3& translation) {
     move(translation);

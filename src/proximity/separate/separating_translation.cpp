@@ -67,6 +67,7 @@ class TranslationSearch {
           return found;
         },
         size_, exit_workspace_);
+    pair_.set_hints({.closest_vertices = closest_vertices(exit)});
     const Vec3 out = beyond(-std::max(0.0, exit.upper) * exit.direction, -exit.direction);
     // A body that falls short of its hull a little contains the hull scaled about a point.
     const double short1 = convex_[0] ? 0 : o1_.body().convexity_deficit(),
@@ -79,6 +80,17 @@ class TranslationSearch {
   }
 
  private:
+  // Those between which convex solids are closest after the exit.
+  [[nodiscard]] convex::Simplex closest_vertices(const ConvexExit& exit) const {
+    convex::Simplex simplex;
+    if (!convex_[0] || !convex_[1]) return simplex;
+    const auto& rows = o1_.pose().map.rows;
+    const Vec3& u = exit.direction;
+    simplex.away = -normalized(u[0] * rows[0] + u[1] * rows[1] + u[2] * rows[2]);
+    for (const VertexPair& vertices : exit.vertices)
+      if (vertices[0] != kNone) simplex.vertices[simplex.count++] = vertices;
+    return simplex;
+  }
   // A translation without a collision, by a little more than one after which the bodies touch at most.
   Vec3 beyond(const Vec3& translation, const Vec3& u) {
     for (double gap = kLeastGap; gap < 1; gap *= 10) {
