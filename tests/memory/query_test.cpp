@@ -101,6 +101,22 @@ TEST(FailedAllocations, AnswersAreGivenByTheNextCall) {
   for (const auto& call : kPair) expect_repeatable(pair_of_bodies, call);
 }
 
+std::unique_ptr<ProximityQuery> convex_bodies() {
+  auto query = std::make_unique<ProximityQuery>(Shape(cube(0.5)), Shape(sphere(1)));
+  query->set_pose(1, Transform::translation({0.9, 0.7, 0.3}));
+  return query;
+}
+
+// What a search that ended half-way leaves in memory that is reused.
+TEST(FailedAllocations, ContactsOfConvexSolidsAreGivenByTheNextCall) {
+  const std::function<Numbers(ProximityQuery&)> call = [](ProximityQuery& q) {
+    Numbers numbers;
+    for (const Contact& contact : q.separating_contacts(2)) add_contact(numbers, contact);
+    return numbers;
+  };
+  expect_repeatable(convex_bodies, call);
+}
+
 std::unique_ptr<MultiBodyQuery> bodies() {
   const AtlasOptions atlas{.resolution = 16};
   std::vector<Shape> shapes{Shape(first_mesh(), atlas), Shape(second_mesh()),

@@ -197,10 +197,13 @@ TEST(InternalEdges, AreThoseOfAWorldInAQueryOfTwo) {
   EXPECT_GT(left_out, 0u);
 }
 
-// Beside a box that is moved up out of a floor, vertices of the floor are closest to the walls of the box.
+// Beside a box that is moved up out of a floor, vertices of the floor are closest to the walls of the box. A
+// block far away makes the floor one that is not convex: contacts of convex solids are all along the way out.
 TEST(InternalEdges, AreNoneOfTheContactsThatPushApart) {
   const Shape box(brick({-0.6, -0.6, 0}, {0.6, 0.6, 0.6}));
-  const Shape floor(solid_of(floor_of([](int, int) { return 0.0; })));
+  const Mesh plate = solid_of(floor_of([](int, int) { return 0.0; }));
+  const Shape floor(joined(plate, brick({90, 0, 0}, {91, 1, 1})));
+  ProximityQuery convex(box, Shape(plate), {.contact_margin = kSlideMargin});
   ProximityQuery plain(box, floor, {.contact_margin = kSlideMargin});
   ProximityQuery pair(box, floor, {.contact_margin = kSlideMargin, .ignore_internal_edges = true});
   const auto sideways = [](std::span<const Contact> contacts) {
@@ -211,8 +214,10 @@ TEST(InternalEdges, AreNoneOfTheContactsThatPushApart) {
   for (int step = 0; step <= 20; ++step) {
     // A corner of a tile is 0.01 beside the box.
     const Transform pose = Transform::translation({3.39, 3.5 + step / 20.0, -0.03});
-    plain.set_pose(0, pose), pair.set_pose(0, pose);
+    for (ProximityQuery* query : {&plain, &pair, &convex}) query->set_pose(0, pose);
     ASSERT_TRUE(pair.colliding());
+    EXPECT_EQ(sideways(convex.separating_contacts()), 0);
+    EXPECT_GE(convex.separating_contacts().size(), 4u);
     left_out += sideways(plain.separating_contacts());
     EXPECT_EQ(sideways(pair.separating_contacts()), 0);
     EXPECT_GE(pair.separating_contacts().size(), 4u);

@@ -103,7 +103,7 @@ class DifferenceHull {
     }
     const auto point = static_cast<std::uint32_t>(w_.points.size());
     w_.points.push_back(p);
-    w_.from.resize(w_.points.size());
+    if (w_.from.size() < w_.points.size()) w_.from.resize(2 * w_.points.size());
     find_horizon(above, p);
     // The horizon is a closed line: each of its corners begins one side, and p is collinear with none, as it
     // would otherwise be in the planes of both faces there.
@@ -167,7 +167,7 @@ class DifferenceHull {
   // Removes the faces that p sees, which are connected, and collects the sides of those around them.
   void find_horizon(std::uint32_t above, const GridPoint& p) {
     w_.horizon.clear();
-    w_.open.assign(1, above);
+    w_.open.clear(), w_.open.push_back(above);
     w_.facets[above].removed = true;
     while (!w_.open.empty()) {
       const std::uint32_t face = w_.open.back();
@@ -200,8 +200,8 @@ Vec3 across(const Vec3& u) {
 // Finds the exit, and its first directions.
 class ExitSearch {
  public:
-  ExitSearch(const Support& support, double size, ExitWorkspace& workspace)
-      : support_(support), size_(size), grid_(size), workspace_(workspace) {}
+  ExitSearch(const Support& support, const Vec3& first, double size, ExitWorkspace& workspace)
+      : support_(support), first_(first), size_(size), grid_(size), workspace_(workspace) {}
 
   ConvexExit find() {
     std::array<GridPoint, 4> corner;
@@ -237,36 +237,37 @@ class ExitSearch {
     if (const double along = dot(u, p); along < exit_.upper) exit_.upper = along, exit_.direction = u;
     return grid_(p, found.vertices);
   }
-  // That of the two along u and −u for which far(p) is larger.
+  // Some point along u, or along −u, for which far(p) is more than `enough`, if there is one.
   template <class Far>
-  GridPoint farther(const Vec3& u, const Far& far) {
-    const GridPoint p = farthest(u), q = farthest(-u);
-    return far(p.at) >= far(q.at) ? p : q;
+  bool find_far(const Vec3& u, const Far& far, double enough, GridPoint& p) {
+    p = farthest(u);
+    if (far(p.at) > enough) return true;
+    p = farthest(-u);
+    return far(p.at) > enough;
   }
 
+  // The first two points are the farthest ones towards and away from the origin.
   bool find_simplex(std::array<GridPoint, 4>& corner) {
+    const double flat = kFlat * size_;
     const auto from_first = [&](const Vec3& p) { return norm(p - corner[0].at); };
-    corner[0] = farthest({1, 0, 0});
-    corner[1] = farther({-1, 0, 0}, from_first);
-    for (int k = 1; k < 3 && from_first(corner[1].at) <= kFlat * size_; ++k) {
-      Vec3 axis{};
-      axis[k] = 1;
-      corner[1] = farther(axis, from_first);
-    }
-    const Vec3 line = normalized(corner[1].at - corner[0].at);
+    corner[0] = farthest(first_);
+    const Vec3 beside = across(first_);
+    if (!find_far(-first_, from_first, flat, corner[1]) && !find_far(beside, from_first, flat, corner[1]) &&
+        !find_far(cross(first_, beside), from_first, flat, corner[1]))
+      return false;
+    const Vec3 line = normalized(corner[1].at - corner[0].at), side = across(line);
     const auto from_line = [&](const Vec3& p) { return norm(cross(line, p - corner[0].at)); };
-    const Vec3 side = across(line);
-    corner[2] = farther(side, from_line);
-    if (from_line(corner[2].at) <= kFlat * size_) corner[2] = farther(cross(line, side), from_line);
+    if (!find_far(side, from_line, flat, corner[2]) &&
+        !find_far(cross(line, side), from_line, flat, corner[2]))
+      return false;
     const Vec3 normal = normalized(cross(corner[1].at - corner[0].at, corner[2].at - corner[0].at));
-    if (normal == Vec3{}) return false;
     const auto from_plane = [&](const Vec3& p) { return std::abs(dot(normal, p - corner[0].at)); };
-    corner[3] = farther(normal, from_plane);
-    return from_plane(corner[3].at) > kFlat * size_ &&
+    return find_far(normal, from_plane, flat, corner[3]) &&
            side_of_plane(corner[0], corner[1], corner[2], corner[3]) != 0;
   }
 
   const Support& support_;
+  const Vec3 first_;
   double size_;
   Grid grid_;
   ExitWorkspace& workspace_;
@@ -275,8 +276,8 @@ class ExitSearch {
 
 }  // namespace
 
-ConvexExit exit_of_hulls(const Support& support, double size, ExitWorkspace& workspace) {
-  return ExitSearch(support, size, workspace).find();
+ConvexExit exit_of_hulls(const Support& support, const Vec3& first, double size, ExitWorkspace& workspace) {
+  return ExitSearch(support, first == Vec3{} ? Vec3{1, 0, 0} : first, size, workspace).find();
 }
 
 }  // namespace sdm::separate

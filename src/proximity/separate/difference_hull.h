@@ -66,8 +66,10 @@ struct ExitWorkspace {
 /// face nearest to the origin (van den Bergen 2001): its distance bounds h from below, and h of its normal
 /// from above. Points are rounded to a grid, by 2e-12 · size, on which it is decided exactly which faces a
 /// new one sees, so that the polytope is the hull of its points however flat it is. Bounds differ by at most
-/// 1e-10 · size, unless the difference has tens of thousands of faces that are equally near. `size`: of both
-/// bodies, whose points differ by no more. The upper bound is negative if the hulls are apart.
-[[nodiscard]] ConvexExit exit_of_hulls(const Support& support, double size, ExitWorkspace& workspace);
+/// 1e-10 · size, unless the difference has tens of thousands of faces that are equally near. `first`: a unit
+/// vector along which the exit may be, or 0. `size`: of both bodies, whose points differ by no more. The
+/// upper bound is negative if the hulls are apart.
+[[nodiscard]] ConvexExit exit_of_hulls(const Support& support, const Vec3& first, double size,
+                                       ExitWorkspace& workspace);
 
 }  // namespace sdm::separate

@@ -26,12 +26,13 @@ constexpr double kLeastGap = 1e-12;  // of the size, beyond a translation after 
 Vec3 farthest(const shape::PosedBody& body, const convex::ConvexMesh* convex, const Vec3& u,
               std::uint32_t& vertex) {
   const auto& rows = body.pose().map.rows;
-  const Vec3 local = normalized(u[0] * rows[0] + u[1] * rows[1] + u[2] * rows[2]);
+  const Vec3 local = u[0] * rows[0] + u[1] * rows[1] + u[2] * rows[2];
   if (convex != nullptr) {
-    vertex = convex::farthest_vertex(*convex, local, vertex);
+    const double scale = body.pose().scale;
+    vertex = convex::farthest_vertex(*convex, scale == 1 ? local : (1 / scale) * local, vertex);
     return body.pose().map(convex->points[vertex]);
   }
-  return body.pose().map(shape::extreme_vertex(internals(body.body().sites()), local).point);
+  return body.pose().map(shape::extreme_vertex(internals(body.body().sites()), normalized(local)).point);
 }
 
 // Directions along the axes of a cube, and its diagonals.
@@ -66,7 +67,7 @@ class TranslationSearch {
           found.x2 = farthest(o2_, convex_[1], -u, found.vertices[1]);
           return found;
         },
-        size_, exit_workspace_);
+        normalized(o2_.ball().centre - o1_.ball().centre), size_, exit_workspace_);
     pair_.set_hints({.closest_vertices = closest_vertices(exit)});
     const Vec3 out = beyond(-std::max(0.0, exit.upper) * exit.direction, -exit.direction);
     // A body that falls short of its hull a little contains the hull scaled about a point.
