@@ -198,11 +198,15 @@ TEST(InternalEdges, AreThoseOfAWorldInAQueryOfTwo) {
 }
 
 // Beside a box that is moved up out of a floor, vertices of the floor are closest to the walls of the box. A
-// block far away makes the floor one that is not convex: contacts of convex solids are all along the way out.
+// dent in its bottom makes the floor one that is not convex: contacts of convex solids are all along the way
+// out.
 TEST(InternalEdges, AreNoneOfTheContactsThatPushApart) {
   const Shape box(brick({-0.6, -0.6, 0}, {0.6, 0.6, 0.6}));
   const Mesh plate = solid_of(floor_of([](int, int) { return 0.0; }));
-  const Shape floor(joined(plate, brick({90, 0, 0}, {91, 1, 1})));
+  Mesh dented = plate;
+  dented.positions[dented.positions.size() / 2 + kTiles + 2][2] = -0.9;
+  const Shape floor(dented);
+  ASSERT_FALSE(floor.convex());
   ProximityQuery convex(box, Shape(plate), {.contact_margin = kSlideMargin});
   ProximityQuery plain(box, floor, {.contact_margin = kSlideMargin});
   ProximityQuery pair(box, floor, {.contact_margin = kSlideMargin, .ignore_internal_edges = true});
