@@ -159,7 +159,7 @@ void add_sequence_command(CLI::App& app) {
       "sequence", "Compute proximity, error bounds and maps of two deforming bodies, frame by frame");
   sequence->footer(
       "A sequence is a folder of numbered mesh files, a pattern such as walk_%04d.ply, mesh.obj+motion.npy\n"
-      "with positions (T, V, 3), or a glTF file with morph targets; any other mesh file is a body at rest.\n"
+      "with positions (T, V, 3), or an animated glTF file; any other mesh file is a body at rest.\n"
       "Writes frames.jsonl, frames.csv, plot.png, and, for O1, the minimum, mean and maximum distance over\n"
       "time: temporal.exr, min.png, mean.png, max.png; with --player a page that plays the frames, "
       "player.html.\n"

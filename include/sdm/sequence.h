@@ -45,14 +45,14 @@ struct TopologyChange {
 ///   walk.obj+motion.npy          positions of shape (T, V, 3), float32 or float64, for all V vertices
 ///                                listed in the mesh file, used or not; an NPY file that does not exist
 ///                                is looked up beside the mesh file
-///   walk.glb                     glTF with morph targets: the first animation that has weights
+///   walk.glb                     glTF with an animation of nodes, skins or morph targets
 ///   part.stl                     any other mesh file: a single frame
 /// Files are ordered by number. Numbers may start anywhere and increase in equal steps (the largest step that
 /// reaches every file); a missing number is a frame that cannot be read.
 ///
 /// Polygons are triangulated, vertices welded and unused ones dropped as in read_mesh, for all frames as in
-/// the first one (NPY: as in the mesh file). Holds one frame in memory at a time; for glTF, all morph
-/// targets.
+/// the first one (NPY: as in the mesh file). Holds one frame in memory at a time; for glTF, what moves, with
+/// its morph targets and joints.
 class SDM_API MeshSequence {
  public:
   /// Lists the frames and reads the first. Throws if there is none, or if it is unusable (see validate).

@@ -357,9 +357,10 @@ TEST(SequenceGltf, ErrorsNameTheFault) {
     contents.replace(contents.find(from), from.size(), to);
     expect_refused(write("morph.glb", contents), {"morph.glb: ", fault});
   };
-  refuse_with("\"weights\"", "\"rotate\"", "moves nodes");
-  refuse_with("\"node\":0", "\"node\":1", "does not change any mesh");
-  refuse_with("\"sampler\":0", "\"sampler\":7", "invalid glTF");
+  refuse_with("\"weights\"", "\"rotate\"", "does not change any mesh");
+  refuse_with("\"node\":0", "\"node\":1", "item 1 of nodes is referred to but does not exist");
+  refuse_with("\"sampler\":0", "\"sampler\":7",
+              "sampler 7 of an animation is referred to but does not exist");
   refuse_with("{\"POSITION\":1}", "{\"POSITION\":3}", "differ in their number of vertices");
   const std::string file = write("morph.glb", good);
   expect_refused(file, {"rate"}, {.rate = -1});

@@ -43,7 +43,8 @@ class FrameSource {
 [[nodiscard]] std::unique_ptr<FrameSource> npy_frames(const std::filesystem::path& mesh,
                                                       const std::filesystem::path& npy);
 
-/// Animated morph targets of a glTF file; null if it has no animation.
+/// The first animation of a glTF file that changes nodes or weights of morph targets; null if the file has no
+/// animation.
 [[nodiscard]] std::unique_ptr<FrameSource> gltf_frames(std::string_view bytes,
                                                        const std::filesystem::path& file,
                                                        std::optional<double> rate);

@@ -76,7 +76,8 @@ std::vector<GltfInstance> gltf_instances(const GltfDocument& document) {
           throw Error(fmt::format("node {} has more than 2^32 instances", index));
         document.charge(transforms.count() * sizeof(GltfInstance), "the instances of a mesh");
         for (std::size_t i = 0; i < transforms.count(); ++i) {
-          instance.to_scene = to_scene * transforms(i);
+          instance.to_node = transforms(i);
+          instance.to_scene = to_scene * instance.to_node;
           result.push_back(instance);
         }
       });

@@ -14,6 +14,7 @@ struct GltfInstance {
   std::size_t node, mesh;
   GltfTransform to_scene;
   std::optional<std::size_t> skin{};
+  GltfTransform to_node{};  ///< of a copy of the mesh; `to_scene` includes it
 };
 
 /// Returns all meshes of the default scene, in depth-first order of the nodes; those of a node with

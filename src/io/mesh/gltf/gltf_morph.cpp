@@ -4,6 +4,9 @@
 #include <sdm/error.h>
 
 #include <algorithm>
+#include <utility>
+
+#include "geometry/vec.h"
 
 namespace sdm::io {
 
@@ -43,6 +46,21 @@ std::vector<std::optional<GltfRows>> gltf_displacements(const GltfDocument& docu
     if (displacements->columns() != 3) throw Error("the positions of a morph target are not of type VEC3");
   }
   return result;
+}
+
+GltfPositions::GltfPositions(const GltfDocument& document, const json& primitive, std::vector<double> weights)
+    : rest_(document, whole_number(primitive.at("attributes"), "POSITION")),
+      displacements_(gltf_displacements(document, primitive)),
+      weights_(std::move(weights)) {
+  if (rest_.columns() != 3) throw Error("the positions of a mesh are not of type VEC3");
+  weights_.resize(std::min(weights_.size(), displacements_.size()));
+}
+
+Vec3 GltfPositions::operator[](std::size_t vertex) const {
+  Vec3 position = rest_.vec3(vertex);
+  for (std::size_t t = 0; t < weights_.size(); ++t)
+    if (weights_[t] != 0 && displacements_[t]) position += weights_[t] * displacements_[t]->vec3(vertex);
+  return position;
 }
 
 }  // namespace sdm::io

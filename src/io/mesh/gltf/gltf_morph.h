@@ -22,4 +22,20 @@ namespace sdm::io {
 [[nodiscard]] std::vector<std::optional<GltfRows>> gltf_displacements(const GltfDocument& document,
                                                                       const nlohmann::json& primitive);
 
+/// The vertices of a primitive, displaced by its morph targets, in the coordinates of the mesh. The document
+/// must outlive the object.
+class GltfPositions {
+ public:
+  /// Targets without a weight, beyond the last one, are left out. Throws sdm::Error for faults.
+  GltfPositions(const GltfDocument& document, const nlohmann::json& primitive, std::vector<double> weights);
+
+  [[nodiscard]] std::size_t size() const { return rest_.rows(); }
+  [[nodiscard]] Vec3 operator[](std::size_t vertex) const;
+
+ private:
+  GltfRows rest_;
+  std::vector<std::optional<GltfRows>> displacements_;
+  std::vector<double> weights_;
+};
+
 }  // namespace sdm::io

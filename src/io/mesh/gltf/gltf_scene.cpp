@@ -35,16 +35,8 @@ std::array<std::size_t, 3> corner_places(std::size_t mode, std::size_t i) {
 
 void add_positions(const GltfDocument& document, const json& primitive, const GltfPlacement& placement,
                    const std::vector<double>& weights, PolygonMesh& mesh) {
-  const GltfRows rest(document, whole_number(primitive.at("attributes"), "POSITION"));
-  if (rest.columns() != 3) throw Error("the positions of a mesh are not of type VEC3");
-  const auto displacements = gltf_displacements(document, primitive);
-  const std::size_t targets = std::min(weights.size(), displacements.size());
-  for (std::size_t v = 0; v < rest.rows(); ++v) {
-    Vec3 position = rest.vec3(v);
-    for (std::size_t t = 0; t < targets; ++t)
-      if (weights[t] != 0 && displacements[t]) position += weights[t] * displacements[t]->vec3(v);
-    mesh.positions.push_back(placement[v](position));
-  }
+  const GltfPositions positions(document, primitive, weights);
+  for (std::size_t v = 0; v < positions.size(); ++v) mesh.positions.push_back(placement[v](positions[v]));
 }
 
 // Returns whether the primitive has one for each of its vertices.
@@ -179,9 +171,9 @@ bool has_triangles(const GltfDocument& document, const json& primitive) {
 }
 
 PolygonMesh read_gltf_scene(const GltfDocument& document, const std::vector<GltfInstance>& instances,
-                            const std::set<std::size_t>& unmorphed, bool attributes) {
+                            const std::set<std::size_t>& unmorphed, bool attributes, const GltfPose* pose) {
   check_memory(document, instances, unmorphed);
-  GltfSkins skins(document);
+  GltfSkins skins(document, pose);
   PolygonMesh mesh;
   GltfAttributes of_vertices;
   for (const GltfInstance& instance : instances) {

@@ -6,6 +6,7 @@
 
 #include "io/mesh/gltf/document/gltf_document.h"
 #include "io/mesh/gltf/gltf_instances.h"
+#include "io/mesh/gltf/gltf_pose.h"
 #include "io/mesh/polygons/polygon_mesh.h"
 
 namespace sdm::io {
@@ -16,10 +17,11 @@ namespace sdm::io {
 
 /// Returns all triangles of the instances, which are all those of the document's scene. The vertices of their
 /// primitives are concatenated. Morph targets and skins are applied as they are in the file, but no morph
-/// targets to the nodes of `unmorphed`. `attributes`: also those of vertices, see GltfAttributes.
+/// targets to the nodes of `unmorphed`. `attributes`: also those of vertices, see GltfAttributes. `pose`: of
+/// the joints of skins; null: that of the file.
 [[nodiscard]] PolygonMesh read_gltf_scene(const GltfDocument& document,
                                           const std::vector<GltfInstance>& instances,
                                           const std::set<std::size_t>& unmorphed = {},
-                                          bool attributes = false);
+                                          bool attributes = false, const GltfPose* pose = nullptr);
 
 }  // namespace sdm::io

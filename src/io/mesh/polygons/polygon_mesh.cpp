@@ -48,31 +48,38 @@ std::uint64_t hash_seed() {
   return seed;
 }
 
-// An open hash table of positions.
+// An open hash table of positions, in one body or several.
 class PositionTable {
  public:
   PositionTable(std::size_t capacity, const std::vector<Vec3>& positions)
       : positions_(positions), slots_(std::bit_ceil(capacity + capacity / 2 + 1), kNone) {}
 
-  /// Returns the index of an equal position inserted earlier. Otherwise inserts and returns `index`; the
-  /// caller then appends p to `positions`.
-  std::uint32_t find_or_insert(const Vec3& p, std::uint32_t index) {
+  /// Returns the index of an equal position of the body inserted earlier. Otherwise inserts and returns
+  /// `index`; the caller then appends p to `positions`.
+  std::uint32_t find_or_insert(const Vec3& p, std::uint32_t body, std::uint32_t index) {
     const std::size_t mask = slots_.size() - 1;
-    for (std::size_t slot = hash(p) & mask;; slot = (slot + 1) & mask) {
-      if (slots_[slot] == kNone) return slots_[slot] = index;
-      if (positions_[slots_[slot]] == p) return slots_[slot];
+    for (std::size_t slot = hash(p, body) & mask;; slot = (slot + 1) & mask) {
+      if (slots_[slot] == kNone) {
+        if (body != 0) bodies_.resize(index, 0), bodies_.push_back(body);
+        return slots_[slot] = index;
+      }
+      if (positions_[slots_[slot]] == p && body_of(slots_[slot]) == body) return slots_[slot];
     }
   }
 
  private:
-  [[nodiscard]] std::size_t hash(const Vec3& p) const {
-    std::uint64_t h = seed_;
+  [[nodiscard]] std::uint32_t body_of(std::uint32_t index) const {
+    return index < bodies_.size() ? bodies_[index] : 0;
+  }
+  [[nodiscard]] std::size_t hash(const Vec3& p, std::uint32_t body) const {
+    std::uint64_t h = seed_ ^ body;
     for (const double x : p) h = mix(h ^ std::bit_cast<std::uint64_t>(x + 0.0));  // −0 + 0 = 0
     return h;
   }
 
   const std::vector<Vec3>& positions_;
   std::vector<std::uint32_t> slots_;
+  std::vector<std::uint32_t> bodies_;  // of the first positions inserted; 0 of all others
   std::uint64_t seed_ = hash_seed();
 };
 
@@ -91,7 +98,8 @@ std::vector<std::uint32_t> weld(const PolygonMesh& polygons, Mesh& mesh) {
     if (!finite(polygons.positions[v]))
       throw Error(fmt::format("vertex {} has a NaN or infinite coordinate", v));
     const auto next = static_cast<std::uint32_t>(mesh.positions.size());
-    renumbered[v] = table.find_or_insert(polygons.positions[v], next);
+    renumbered[v] =
+        table.find_or_insert(polygons.positions[v], polygons.bodies.empty() ? 0 : polygons.bodies[v], next);
     if (renumbered[v] == next) mesh.positions.push_back(polygons.positions[v]);
   }
   return renumbered;

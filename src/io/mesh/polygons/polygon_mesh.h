@@ -40,6 +40,8 @@ struct PolygonMesh {
   std::vector<std::uint32_t> corners;     ///< the vertex of each corner, polygon after polygon
   std::vector<std::uint32_t> corner_uvs;  ///< the uv of each corner, or kNone; may be empty
   std::vector<std::uint32_t> ends;        ///< for each polygon, one past its last corner
+  /// Of each vertex: only those of one body are welded. Empty: all are of one.
+  std::vector<std::uint32_t> bodies;
   PolygonNames objects, groups, materials, faces, colors;
   std::vector<PolygonAttribute> attributes;  ///< if asked for
   PolygonMaterials surfaces;                 ///< if asked for
@@ -51,8 +53,8 @@ struct PolygonMesh {
   void end_polygon();
 };
 
-/// Welds vertices whose positions are bit-identical (−0 equals 0), drops vertices without a face, and
-/// triangulates. Texture coordinates are kept if every corner has finite ones; see uv_fault(). Throws
+/// Welds vertices of a body whose positions are bit-identical (−0 equals 0), drops vertices without a face,
+/// and triangulates. Texture coordinates are kept if every corner has finite ones; see uv_fault(). Throws
 /// sdm::Error if an index is out of range, a coordinate is not finite, or there are no faces.
 [[nodiscard]] Mesh to_mesh(const PolygonMesh& polygons);
 
