@@ -9,7 +9,7 @@ import type { Body } from './engine';
 export class Film {
   private constructor(private readonly worker: SdmWorker, private readonly file: File, private animation: WorkerAnimation, private readonly motion = new Matrix4()) {}
 
-  /// Null: the file has no animation of morph targets.
+  /// Null: the file has no animation.
   static async of(worker: SdmWorker, file: File): Promise<Film | null> {
     const animation = await read(worker, file);
     return animation && new Film(worker, file, animation);

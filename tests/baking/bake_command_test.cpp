@@ -389,11 +389,8 @@ TEST_F(BakeCommandTest, ModelsPassTheKhronosValidator) {
     ASSERT_EQ(run({"--channels", channels, "--units", "mm", "--up", "z"}).code, 0);
     models += " '" + out + "/baked.glb'";
   }
-  const std::string install =
-      "cd '" SDM_VALIDATOR_FOLDER "' && flock package.json npm ci --silent --no-audit --no-fund";
-  ASSERT_EQ(std::system(install.c_str()), 0) << "npm is needed to install the validator";
   const std::string validate = "cd '" SDM_VALIDATOR_FOLDER "' && node '" SDM_VALIDATOR_SCRIPT "'" + models;
-  EXPECT_EQ(std::system(validate.c_str()), 0);
+  EXPECT_EQ(std::system(validate.c_str()), 0) << "npm is needed to install the validator";
 }
 
 }  // namespace

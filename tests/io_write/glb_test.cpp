@@ -328,11 +328,8 @@ TEST(Glb, PassesTheKhronosValidator) {
   animate("far_away.glb", ring(8, 1, {1e6, 1e6, -1e6}), true, 3, {});
   animate("long.glb", cube(), true, 600, {});
 
-  const std::string install =
-      "cd '" SDM_VALIDATOR_FOLDER "' && flock package.json npm ci --silent --no-audit --no-fund";
-  ASSERT_EQ(std::system(install.c_str()), 0) << "npm is needed to install the validator";
   const std::string validate = "cd '" SDM_VALIDATOR_FOLDER "' && node '" SDM_VALIDATOR_SCRIPT "'" + files;
-  EXPECT_EQ(std::system(validate.c_str()), 0);
+  EXPECT_EQ(std::system(validate.c_str()), 0) << "npm is needed to install the validator";
 }
 
 }  // namespace
