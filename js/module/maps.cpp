@@ -6,7 +6,6 @@
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
 #include <sdm/surface.h>
-#include <sdm/transfer.h>
 
 #include <cmath>
 #include <type_traits>
@@ -14,6 +13,7 @@
 #include "module/arguments.h"
 #include "module/lengths.h"
 #include "module/result.h"
+#include "module/transferred.h"
 
 namespace sdm::js {
 
@@ -203,12 +203,7 @@ SDM_EXPORT(sdm_transfer)
 Result* transfer_values(const Surface* surface, const Sites* sites, const DistanceMap* map,
                         const float* values, std::uint32_t count, std::uint32_t components,
                         std::uint32_t domain, bool fill) {
-  return guarded([&](Result& result) {
-    result.add(transfer(
-        *surface, *sites, *map,
-        {.values = {values, count}, .components = components, .domain = static_cast<AttributeDomain>(domain)},
-        {.fill = fill, .progress = host_progress()}));
-  });
+  return transferred(surface, sites, map, values, count, components, domain, fill);
 }
 
 SDM_EXPORT(sdm_hausdorff) Result* hausdorff(const Sites* a, const Sites* b, double precision) {

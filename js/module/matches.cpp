@@ -3,7 +3,6 @@
 #include <sdm/baked_geometry.h>
 #include <sdm/error.h>
 #include <sdm/match.h>
-#include <sdm/transfer.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +15,7 @@
 #include "module/arguments.h"
 #include "module/looks.h"
 #include "module/result.h"
+#include "module/transferred.h"
 
 namespace sdm::js {
 namespace {
@@ -82,12 +82,7 @@ SDM_EXPORT(sdm_transfer_matches)
 Result* transfer_matches(const Surface* surface, const Sites* sites, const TexelMatches* matches,
                          const float* values, std::uint32_t count, std::uint32_t components,
                          std::uint32_t domain, bool fill) {
-  return guarded([&](Result& result) {
-    result.add(transfer(
-        *surface, *sites, *matches,
-        {.values = {values, count}, .components = components, .domain = static_cast<AttributeDomain>(domain)},
-        {.fill = fill, .progress = host_progress()}));
-  });
+  return transferred(surface, sites, matches, values, count, components, domain, fill);
 }
 
 /// Of each channel of default_channels() its number and how many components its picture has, the factors of

@@ -24,6 +24,7 @@ export type {
 export type {
   CallOptions, SdmWorker, WorkerAnimation, WorkerLook, WorkerMap, WorkerMatches, WorkerPair, WorkerSites, WorkerSurface,
 } from './remote.js';
+export type { TransferOptions } from './transfer.js';
 
 export interface StartOptions {
   /**

@@ -3,7 +3,8 @@ import { type Bytes, float32, float64, uint32, wordNumber } from './bytes.js';
 import { type Look } from './look.js';
 import { type Module } from './module.js';
 import { Owned, type Sites, type Surface } from './surface.js';
-import { type NumberArray, type Progress, SdmError } from './types.js';
+import { type TransferOptions, transferred } from './transfer.js';
+import { type Progress, SdmError } from './types.js';
 
 /** `closest`: the closest point; `facing`: the closest one of the faces that face as the texel does; `ray`: the nearest hit along the normal. */
 export type MatchMethod = 'closest' | 'facing' | 'ray';
@@ -118,16 +119,9 @@ export class Matches extends Owned {
     return { kinds, faces: uint32(faces), barycentric: float32(barycentric) };
   }
 
-  /**
-   * Values of the sites' mesh at the points: of its vertices or corners, interpolated, or of its faces; `components` numbers each, NaN
-   * without a point. Texels that no face owns are filled from their surroundings, unless `fill` is false.
-   */
-  transfer(values: ArrayLike<number>, options: { components?: number; domain?: 'vertex' | 'face' | 'corner'; fill?: boolean; progress?: Progress } = {}): Float32Array {
-    const rows: NumberArray = values instanceof Float32Array ? values : Float32Array.from(values);
-    const domain = wordNumber(['vertex', 'face', 'corner'], options.domain ?? 'vertex', 'domain');
-    const [result] = this.module.call(
-      'sdm_transfer_matches', [...this.addresses(), rows, rows.length, options.components ?? 1, domain, options.fill === false ? 0 : 1], options.progress);
-    return float32(result!);
+  /** Values of the sites' mesh at the points; NaN where a texel of a face has none. */
+  transfer(values: ArrayLike<number>, options: TransferOptions = {}): Float32Array {
+    return transferred(this.module, 'sdm_transfer_matches', this.addresses(), values, options);
   }
 
   /** The textures of a look at the points: base colours, and what else differs between them. Texels without a point are filled. */

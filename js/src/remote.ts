@@ -10,6 +10,7 @@ import {
   type Atlas, type ClosestPoints, type Contacts, type Hausdorff, type MapOptions, type MapStatistics, type MapValues, type RayHits,
   type SignedDistances, type SurfaceOptions,
 } from './surface.js';
+import { type TransferOptions } from './transfer.js';
 import { type BoundedLength, type Indices, type Points, SdmError, type SignMethod } from './types.js';
 
 export interface CallOptions {
@@ -378,9 +379,7 @@ export class WorkerMap extends Remote {
   statistics(): Promise<MapStatistics> {
     return this.call('statistics', []);
   }
-  transfer(
-    values: ArrayLike<number>, options?: { components?: number; domain?: 'vertex' | 'face' | 'corner'; fill?: boolean } & CallOptions,
-  ): Promise<Float32Array> {
+  transfer(values: ArrayLike<number>, options?: Options<TransferOptions>): Promise<Float32Array> {
     return this.call('transfer', [values], options);
   }
   /** The keys of report.json. Of the module `full` only. */
@@ -433,9 +432,7 @@ export class WorkerMatches extends Remote {
   arrays(): Promise<MatchArrays> {
     return this.call('arrays', []);
   }
-  transfer(
-    values: ArrayLike<number>, options?: { components?: number; domain?: 'vertex' | 'face' | 'corner'; fill?: boolean } & CallOptions,
-  ): Promise<Float32Array> {
+  transfer(values: ArrayLike<number>, options?: Options<TransferOptions>): Promise<Float32Array> {
     return this.call('transfer', [values], options);
   }
   bake(look: WorkerLook, options?: CallOptions): Promise<BakedLook> {

@@ -2,8 +2,9 @@
 import { type Bytes, float32, float64, text, uint32, wordNumber } from './bytes.js';
 import { type Module } from './module.js';
 import { type MapSummary, type ReportOptions, type SummaryOptions, reportOf, summaryOf } from './report.js';
+import { type TransferOptions, transferred } from './transfer.js';
 import {
-  type AtlasKind, type BoundedLength, type Certainty, type Indices, type NumberArray, type Point, type Points, type Progress,
+  type AtlasKind, type BoundedLength, type Certainty, type Indices, type Point, type Points, type Progress,
   type SignMethod, type SiteType, SdmError, kAtlasKinds, kSignMethods,
 } from './types.js';
 
@@ -376,17 +377,10 @@ export class DistanceMap extends Owned {
     return Object.fromEntries(Array.from(float64(numbers!), (value, i) => [names[i]!, value])) as unknown as MapStatistics;
   }
 
-  /**
-   * Values of the sites' mesh at the closest point of each texel: of its vertices or corners, interpolated, or of its faces.
-   * `components` numbers each. Texels that no face owns are filled from their surroundings, unless `fill` is false.
-   */
-  transfer(values: ArrayLike<number>, options: { components?: number; domain?: 'vertex' | 'face' | 'corner'; fill?: boolean } = {}): Float32Array {
-    const rows: NumberArray = values instanceof Float32Array ? values : Float32Array.from(values);
-    const domain = wordNumber(['vertex', 'face', 'corner'], options.domain ?? 'vertex', 'domain');
-    const [result] = this.module.call('sdm_transfer', [
-      this.surface.handleIn(this.module), this.sites.handleIn(this.module), this.handle, rows, rows.length, options.components ?? 1, domain,
-      options.fill === false ? 0 : 1]);
-    return float32(result!);
+  /** Values of the sites' mesh at the closest point of each texel. */
+  transfer(values: ArrayLike<number>, options: TransferOptions = {}): Float32Array {
+    const [map, ...bodies] = this.addresses();
+    return transferred(this.module, 'sdm_transfer', [...bodies, map], values, options);
   }
 
   /** The keys of report.json: numbers, verdict, places, colours, histogram. Of the module `full` only. */
