@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sdm/baked_geometry.h>
+#include <sdm/error.h>
+#include <sdm/supersampling.h>
 
 #include <algorithm>
 
@@ -38,13 +40,10 @@ std::string check_channel(const std::string& name) {
   return fmt::format("{} is not one of {}", name, fmt::join(names, ", "));
 }
 
-/// The root of a number of samples; nothing if there is none.
-std::optional<std::uint32_t> sample_side(const std::string& text) {
-  constexpr std::uint32_t kMost = 8;
+/// Nothing if there are not as many samples of a texel.
+std::optional<std::uint32_t> side_of(const std::string& text) {
   const auto samples = parse_whole_number(text);
-  for (std::uint32_t side = 1; samples && side <= kMost; ++side)
-    if (*samples == side * side) return side;
-  return std::nullopt;
+  return samples ? sdm::sample_side(*samples) : std::nullopt;
 }
 
 void add_layout(CLI::App& app, BakeLayout& layout) {
@@ -91,12 +90,12 @@ void add_channels(CLI::App& app, BakeCommand& c) {
 
 void add_samples(CLI::App& app, BakeCommand& c) {
   app.add_option_function<std::string>(
-         "--samples", [&c](const std::string& text) { c.sample_side = *sample_side(text); },
+         "--samples", [&c](const std::string& text) { c.sample_side = *side_of(text); },
          "Samples in each texel, the square of 1 to 8: each has a point of HIGH, and the texel has their "
          "mean")
       ->check(CLI::Validator(
           [](const std::string& text) {
-            return sample_side(text) ? std::string() : text + " is not one of 1, 4, 9, 16, 25, 36, 49, 64";
+            return side_of(text) ? std::string() : text + " is not one of 1, 4, 9, 16, 25, 36, 49, 64";
           },
           ""))
       ->type_name("N")
@@ -148,21 +147,15 @@ std::string name_of(sdm::MatchMethod method) {
 }
 
 BakeLayout sample_layout(const BakeCommand& command) {
-  const std::uint32_t side = command.sample_side;
-  BakeLayout layout = command.layout;
-  layout.atlas.resolution *= side;
-  if (layout.atlas.rows) *layout.atlas.rows *= side;
-  layout.atlas.gutter = side * (layout.atlas.gutter + 1) - 1;  // so many whole texels
-  return layout;
+  return {command.layout.kind, sdm::sample_layout(command.layout.atlas, command.sample_side)};
 }
 
 void check_samples(const BakeCommand& command) {
-  constexpr std::uint32_t kMost = 32768;  // texels per row of a surface
-  const sdm::AtlasOptions atlas = sample_layout(command).atlas;
-  if (std::max(atlas.resolution, atlas.rows.value_or(0)) > kMost)
-    throw CLI::ValidationError("--samples",
-                               fmt::format("{} a texel are more than {} along a side of the texture",
-                                           command.sample_side * command.sample_side, kMost));
+  try {
+    (void)sample_layout(command);
+  } catch (const sdm::Error& error) {
+    throw CLI::ValidationError("--samples", error.what());
+  }
 }
 
 void add_options(CLI::App& app, BakeCommand& c) {

@@ -51,8 +51,7 @@ void add_options(CLI::App& app, BakeCommand& command);
 /// How points of HIGH are found. Throws CLI::ValidationError for options that exclude each other.
 [[nodiscard]] sdm::MatchOptions match_options(const BakeCommand& command);
 
-/// The layout of samples: with several a texel, that of a finer texture, in which charts of different texels
-/// do not meet.
+/// sdm::sample_layout() of the command.
 [[nodiscard]] BakeLayout sample_layout(const BakeCommand& command);
 
 /// Throws CLI::ValidationError for more samples than a surface can have.

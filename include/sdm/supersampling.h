@@ -4,9 +4,11 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/atlas.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,8 +35,17 @@ enum class SampleKind : std::uint8_t {
   directions  ///< its direction, of length 1: of three components that are unit vectors
 };
 
-// All functions throw sdm::Error unless the samples are whole rows of texels, and if there is not enough
-// memory. Their cost is linear in samples, all cores.
+/// Returns the side of the square of so many samples a texel: the root of 1, 4, 9 and so on up to 64; nothing
+/// for other numbers.
+[[nodiscard]] SDM_API std::optional<std::uint32_t> sample_side(std::int64_t samples);
+
+/// Returns the layout of samples, side · side for each texel of a layout: that of a finer texture, in which
+/// charts of different texels do not meet. Throws sdm::Error if it has fewer texels per row than a surface
+/// may have, or more samples.
+[[nodiscard]] SDM_API AtlasOptions sample_layout(const AtlasOptions& texels, std::uint32_t side);
+
+// The functions below throw sdm::Error unless the samples are whole rows of texels, and if there is not
+// enough memory. Their cost is linear in samples, all cores.
 
 /// Returns the means of samples of `components` numbers each. Those that are not all finite count as none.
 /// Directions that cancel out are those of the first sample.

@@ -4,6 +4,7 @@
 #include <nanobind/stl/vector.h>
 #include <sdm/bake_files.h>
 #include <sdm/error.h>
+#include <sdm/supersampling.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -69,28 +70,9 @@ Wanted wanted_of(const std::optional<std::vector<std::string>>& names) {
   return wanted;
 }
 
-/// The root of a number of samples.
 std::uint32_t side_of(std::int64_t samples) {
-  constexpr std::uint32_t kMost = 8;
-  for (std::uint32_t side = 1; side <= kMost; ++side)
-    if (samples == std::int64_t{side} * side) return side;
+  if (const auto side = sample_side(samples)) return *side;
   throw Error("samples must be one of 1, 4, 9, 16, 25, 36, 49, 64, not " + std::to_string(samples));
-}
-
-/// The layout of samples: with several a texel, that of a finer texture, in which charts of different texels
-/// do not meet.
-AtlasOptions sample_layout(AtlasOptions texels, std::uint32_t side) {
-  constexpr std::uint32_t kFewest = 16, kMost = 32768;  // texels per row of a surface
-  if (side == 1) return texels;
-  if (texels.resolution < kFewest) throw Error("resolution must be 16 at least");
-  if (std::uint64_t{texels.resolution} * side > kMost)
-    throw Error(std::to_string(side * side) + " samples a texel are more than " + std::to_string(kMost) +
-                " along a side of the texture");
-  texels.resolution *= side;
-  const std::uint64_t gutter = side * (std::uint64_t{texels.gutter} + 1) - 1;  // so many whole texels
-  texels.gutter =
-      static_cast<std::uint32_t>(std::min<std::uint64_t>(gutter, std::numeric_limits<std::uint32_t>::max()));
-  return texels;
 }
 
 BakeAtlas laid_out(const Mesh& mesh, AtlasOptions options, std::optional<AtlasKind> kind) {

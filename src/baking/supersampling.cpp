@@ -71,6 +71,29 @@ class Sum {
 
 }  // namespace
 
+std::optional<std::uint32_t> sample_side(std::int64_t samples) {
+  constexpr std::uint32_t kMost = 8;
+  for (std::uint32_t side = 1; side <= kMost; ++side)
+    if (samples == std::int64_t{side} * side) return side;
+  return std::nullopt;
+}
+
+AtlasOptions sample_layout(const AtlasOptions& texels, std::uint32_t side) {
+  constexpr std::uint32_t kFewest = 16, kMost = 32768;  // texels per row of a surface
+  if (side == 1) return texels;
+  if (texels.resolution < kFewest) throw Error("resolution must be 16 at least");
+  if (std::uint64_t{std::max(texels.resolution, texels.rows.value_or(0))} * side > kMost)
+    throw Error(std::to_string(side * side) + " samples a texel are more than " + std::to_string(kMost) +
+                " along a side of the texture");
+  AtlasOptions samples = texels;
+  samples.resolution *= side;
+  if (samples.rows) *samples.rows *= side;
+  const std::uint64_t gutter = side * (std::uint64_t{texels.gutter} + 1) - 1;  // so many whole texels
+  samples.gutter =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(gutter, std::numeric_limits<std::uint32_t>::max()));
+  return samples;
+}
+
 TexelMeans mean_of_samples(const SampleGrid& grid, std::size_t components, std::span<const float> samples,
                            SampleKind kind) try {
   const std::size_t rows = texel_rows(grid, components, samples.size()), texels = rows * grid.texels();

@@ -258,7 +258,7 @@ TEST_F(BakedChannels, SamplesAreAveragedInLinearLight) {
   EXPECT_THAT(run({"--samples", "5"}).err, HasSubstr("5 is not one of 1, 4, 9, 16"));
   const Outcome many = run({"--samples", "64"}, "8192");
   EXPECT_EQ(many.code, 2);
-  EXPECT_THAT(many.err, HasSubstr("64 a texel are more than 32768 along a side of the texture"));
+  EXPECT_THAT(many.err, HasSubstr("64 samples a texel are more than 32768 along a side of the texture"));
 }
 
 }  // namespace

@@ -63,5 +63,24 @@ TEST(Supersampling, GridsThatDoNotFitAreRefused) {
   EXPECT_EQ(error_of([&] { return mean_of_samples({6, 2}, 1, samples); }), "");
 }
 
+TEST(Supersampling, SamplesAreLaidOutInWholeTexels) {
+  for (std::uint32_t side = 1; side <= 8; ++side)
+    EXPECT_EQ(sample_side(std::int64_t{side} * side), std::optional(side));
+  for (const std::int64_t samples : {-1, 0, 2, 5, 63, 65, 81}) EXPECT_EQ(sample_side(samples), std::nullopt);
+  const AtlasOptions samples = sample_layout({.resolution = 100, .rows = 50, .gutter = 2}, 3);
+  EXPECT_EQ(samples.resolution, 300u);
+  EXPECT_EQ(samples.rows, std::optional(150u));
+  EXPECT_EQ(samples.gutter, 8u);  // charts in different texels, with two texels between them
+  EXPECT_EQ(sample_layout({.resolution = 16, .gutter = UINT32_MAX}, 2).gutter, UINT32_MAX);
+  EXPECT_EQ(sample_layout({.resolution = 8}, 1).resolution, 8u);
+}
+
+TEST(Supersampling, LayoutsThatNoSurfaceHasAreRefused) {
+  EXPECT_NE(error_of([] { return sample_layout({.resolution = 8}, 2); }), "");
+  EXPECT_NE(error_of([] { return sample_layout({.resolution = 4097}, 8); }), "");
+  EXPECT_NE(error_of([] { return sample_layout({.resolution = 16, .rows = 4097}, 8); }), "");
+  EXPECT_EQ(error_of([] { return sample_layout({.resolution = 4096, .rows = 4096}, 8); }), "");
+}
+
 }  // namespace
 }  // namespace sdm::test
