@@ -5,13 +5,13 @@
 #include <sdm/surface.h>
 
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/intact.h"
 #include "core/lazy/kept.h"
+#include "core/lazy/once.h"
 #include "query/convex/convex_mesh.h"
 #include "query/inside/inside.h"
 #include "query/inside/solid_boundary.h"
@@ -94,16 +94,13 @@ class Body {
   /// A value that queries build when they need it.
   template <class Value>
   struct Lazy {
-    std::once_flag built;
+    Once built;
     std::optional<Value> value;
 
     /// make(value) is called once.
     template <class Make>
     const Value& get(const Make& make) {
-      std::call_once(built, [&] {
-        const Alone alone;
-        make(value);
-      });
+      built.call([&] { make(value); });
       return *value;
     }
   };
