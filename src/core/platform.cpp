@@ -15,6 +15,13 @@
 #include <algorithm>
 #include <fstream>
 #include <string>
+#elif defined(_WIN32)
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <windows.h>
+
+#include <algorithm>
 #endif
 
 namespace sdm::core {
@@ -73,6 +80,36 @@ std::size_t available_memory() {
 std::uint64_t process_number() {
   return 0;  // there are no other processes
 }
+
+#elif defined(_WIN32)
+
+// What is free of the machine's memory, of what the process may commit, and of its address space.
+std::size_t available_memory() {
+  MEMORYSTATUSEX status{};
+  status.dwLength = sizeof status;
+  if (!GlobalMemoryStatusEx(&status)) return std::numeric_limits<std::size_t>::max();
+  return std::min({status.ullAvailPhys, status.ullAvailPageFile, status.ullAvailVirtual});
+}
+
+std::uint64_t process_number() {
+  return GetCurrentProcessId();
+}
+
+#if defined(__MINGW32__) && !defined(__clang__)
+// GCC has thread_local objects in memory that the destructor of one key of POSIX threads frees when the
+// thread ends, and destroys the objects by the destructor of another key, which is made when the first object
+// is. Destructors run in the order of their keys: the key of the objects must be made before that of the
+// memory, which any use makes.
+extern "C" int __cxa_thread_atexit(void (*)(void*), void*, void*) noexcept;
+
+namespace {
+
+[[gnu::constructor(101)]] void destroy_objects_before_their_memory() {
+  __cxa_thread_atexit([](void*) {}, nullptr, nullptr);
+}
+
+}  // namespace
+#endif
 
 #else
 

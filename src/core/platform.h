@@ -7,7 +7,7 @@
 namespace sdm::core {
 
 /// Bytes that can still be allocated: what the machine has available, or a lower limit of the process or its
-/// container. The largest std::size_t on systems other than Linux.
+/// container. The largest std::size_t on systems other than Linux and Windows.
 [[nodiscard]] std::size_t available_memory();
 
 /// A number that no other process on this machine has at the same time.

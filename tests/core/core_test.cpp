@@ -2,11 +2,15 @@
 #include <sdm/error.h>
 #include <sdm/threads.h>
 
+#include <array>
 #include <numeric>
 #include <random>
 #include <set>
+#include <thread>
+#include <vector>
 
 #include "core/disjoint_sets.h"
+#include "core/lazy/once.h"
 #include "core/memory.h"
 #include "core/platform.h"
 #include "core/rows.h"
@@ -198,8 +202,56 @@ TEST(SpatialOrder, IsAscendingInEachPacket) {
   for (Vec3& p : points) p = {1.0 * u(random), 1.0 * u(random), 1.0 * u(random)};
   const std::vector<std::uint32_t> order = spatial_order(points);
   for (std::size_t first = 0; first < order.size(); first += 16)
-    EXPECT_TRUE(
-        std::ranges::is_sorted(std::span(order).subspan(first, std::min(16ul, order.size() - first))));
+    EXPECT_TRUE(std::ranges::is_sorted(
+        std::span(order).subspan(first, std::min<std::size_t>(16, order.size() - first))));
+}
+
+// std::call_once of GCC for Windows waited forever in the second call.
+TEST(Once, CallsAgainAfterAnException) {
+  Once once;
+  int calls = 0;
+  const auto make = [&] {
+    if (++calls < 3) throw Error("not yet");
+  };
+  EXPECT_THROW(once.call(make), Error);
+  EXPECT_THROW(once.call(make), Error);
+  once.call(make);
+  once.call(make);
+  EXPECT_EQ(calls, 3);
+}
+
+TEST(Once, IsCalledByOneOfManyThreads) {
+  Once once;
+  int calls = 0;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 8; ++i)
+    threads.emplace_back([&] {
+      once.call([&] { ++calls; });
+      EXPECT_EQ(calls, 1);
+    });
+  for (std::thread& thread : threads) thread.join();
+}
+
+// GCC for Windows freed the memory of these objects first.
+TEST(ThreadLocal, ObjectsAreDestroyedBeforeTheirMemoryIsFreed) {
+  struct Watched {
+    std::array<int, 100> numbers{};
+    std::vector<int>* seen = nullptr;
+    ~Watched() {
+      // Takes what has been freed, of about its size.
+      for (std::size_t size = 4 * 64; size < 4 * 128; ++size) seen->push_back(std::vector<char>(size, -1)[0]);
+      seen->assign(numbers.begin(), numbers.end());
+    }
+  };
+  for (int round = 0; round < 3; ++round) {
+    std::vector<int> seen;
+    std::thread([&] {
+      thread_local Watched watched;
+      watched.numbers.fill(7);
+      watched.seen = &seen;
+    }).join();
+    EXPECT_EQ(seen, std::vector<int>(100, 7));
+  }
 }
 
 TEST(SpatialOrder, TakesNoPointsAndEqualPoints) {
