@@ -195,7 +195,7 @@ TEST(Sequence, WeldedVerticesMustStayTogether) {
   cracked.positions.back()[2] += 0.25;
   cracked.triangles[40][1] = 32;
   write("weld/2.stl", stl_binary(cracked));
-  MeshSequence sequence(write_file("marker", "").parent_path() / "weld");
+  MeshSequence sequence((write_file("marker", "").parent_path() / "weld").string());
   EXPECT_EQ(sequence.mesh().positions.size(), 32u);
   EXPECT_EQ(corner_positions(at(sequence.mesh(), copy(sequence.positions(1)))),
             corner_positions(at(mesh, frames[1])));
@@ -235,7 +235,8 @@ TEST(SequenceNpy, FindsTheArrayBesideTheMesh) {
   const std::string file = write("beside/four.off", off(mesh));
   write("beside/motion.npy", npy(frames_of(mesh, 3)));
   EXPECT_EQ(MeshSequence(file + "+motion.npy").frame_count(), 3u);
-  expect_refused(file + "+other.npy", {"beside/other.npy: cannot be opened: No such file"});
+  expect_refused(file + "+other.npy", {(std::filesystem::path("beside") / "other.npy").string() +
+                                       ": cannot be opened: No such file"});
 }
 
 // The array is that of the vertices in the file, which may repeat some and not use others.

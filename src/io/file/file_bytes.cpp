@@ -4,8 +4,8 @@
 #include <sdm/error.h>
 
 #include <cerrno>
-#include <cstdio>
-#include <cstring>
+#include <fstream>
+#include <system_error>
 
 #include "core/memory.h"
 
@@ -25,9 +25,9 @@ FileBytes read_bytes(const std::filesystem::path& file) {
   if (error) throw Error(fmt::format("cannot be read: {}", error.message()));
   if (type != std::filesystem::file_type::regular) throw Error("this is not a regular file");
 
-  const auto close = [](std::FILE* stream) { std::fclose(stream); };
-  const std::unique_ptr<std::FILE, decltype(close)> stream(std::fopen(file.c_str(), "rb"), close);
-  if (!stream) throw Error(fmt::format("cannot be opened: {}", std::strerror(errno)));
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Error(fmt::format("cannot be opened: {}", std::generic_category().message(errno)));
 
   FileBytes bytes;
   bytes.size = std::filesystem::file_size(file);
@@ -35,10 +35,9 @@ FileBytes read_bytes(const std::filesystem::path& file) {
   require_memory(bytes.size > SIZE_MAX / kMemoryPerByte ? SIZE_MAX : bytes.size * kMemoryPerByte,
                  "reading it");
   bytes.data = std::make_unique_for_overwrite<char[]>(bytes.size);
-  if (std::fread(bytes.data.get(), 1, bytes.size, stream.get()) != bytes.size)
-    throw Error(fmt::format("cannot be read: {}", std::ferror(stream.get())
-                                                      ? std::strerror(errno)
-                                                      : "it became shorter while it was being read"));
+  if (!stream.read(bytes.data.get(), static_cast<std::streamsize>(bytes.size)))
+    throw Error(fmt::format("cannot be read: {}", stream.eof() ? "it became shorter while it was being read"
+                                                               : std::generic_category().message(errno)));
   return bytes;
 }
 

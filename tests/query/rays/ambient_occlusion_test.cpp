@@ -1,4 +1,5 @@
 // Ambient occlusion against closed forms.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 

@@ -1,4 +1,5 @@
 // Rays against meshes: brute force in rational arithmetic, watertightness, and what must not change a result.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 

@@ -1,11 +1,9 @@
 // Sequences of positions in an NPY file, for the vertices of a mesh file.
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
+#include <fstream>
 #include <limits>
 #include <string>
 #include <system_error>
@@ -24,41 +22,38 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A regular file with random access.
+// A regular file with random access, without a buffer: the numbers of a frame in Fortran order are far from
+// each other.
 class RandomAccessFile {
  public:
-  explicit RandomAccessFile(const fs::path& file)
-      : descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-    struct stat status {};
-    if (descriptor_ < 0 || fstat(descriptor_, &status) != 0) {
-      const int fault = errno;
-      if (descriptor_ >= 0) close(descriptor_);
-      throw Error(fmt::format("cannot be opened: {}", std::generic_category().message(fault)));
-    }
-    if (!S_ISREG(status.st_mode)) {
-      close(descriptor_);
-      throw Error("this is not a regular file");
-    }
-    size_ = static_cast<std::uint64_t>(status.st_size);
+  explicit RandomAccessFile(const fs::path& file) {
+    std::error_code error;
+    const fs::file_type type = fs::status(file, error).type();
+    if (error) throw Error(fmt::format("cannot be opened: {}", error.message()));
+    if (type != fs::file_type::regular) throw Error("this is not a regular file");
+    stream_.rdbuf()->pubsetbuf(nullptr, 0);
+    errno = 0;
+    stream_.open(file, std::ios::binary);
+    if (!stream_) fail("opened");
+    size_ = fs::file_size(file);
   }
-  ~RandomAccessFile() { close(descriptor_); }
-  RandomAccessFile(const RandomAccessFile&) = delete;
-  RandomAccessFile& operator=(const RandomAccessFile&) = delete;
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  void read(std::uint64_t begin, char* bytes, std::size_t count) const {
-    while (count > 0) {
-      const ssize_t got = pread(descriptor_, bytes, count, static_cast<off_t>(begin));
-      if (got < 0 && errno == EINTR) continue;
-      if (got <= 0)
-        throw Error(fmt::format("cannot be read: {}", got == 0 ? "it became shorter while it was being read"
-                                                               : std::generic_category().message(errno)));
-      bytes += got, begin += static_cast<std::uint64_t>(got), count -= static_cast<std::size_t>(got);
-    }
+  void read(std::uint64_t begin, char* bytes, std::size_t count) {
+    errno = 0;
+    stream_.clear();
+    stream_.seekg(static_cast<std::streamoff>(begin));
+    if (stream_.read(bytes, static_cast<std::streamsize>(count))) return;
+    if (stream_.eof()) throw Error("cannot be read: it became shorter while it was being read");
+    fail("read");
   }
 
  private:
-  int descriptor_;
+  [[noreturn]] static void fail(const char* what) {
+    throw Error(fmt::format("cannot be {}: {}", what, std::generic_category().message(errno)));
+  }
+
+  std::ifstream stream_;
   std::uint64_t size_ = 0;
 };
 
@@ -99,7 +94,7 @@ class NpyFrames : public FrameSource {
   }
 
  private:
-  NpyHeader read_header() const {
+  NpyHeader read_header() {
     std::string begin(std::min<std::uint64_t>(file_.size(), kMaxNpyHeader), '\0');
     file_.read(0, begin.data(), begin.size());
     return parse_npy_header(begin);
