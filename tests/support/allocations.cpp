@@ -1,12 +1,11 @@
 #include "support/allocations.h"
 
-#include <dlfcn.h>
-#include <oneapi/tbb/detail/_small_object_pool.h>
-
 #include <atomic>
 #include <cstdlib>
 #include <limits>
 #include <new>
+
+#include "support/allocation_faults.h"
 
 namespace {
 
@@ -17,17 +16,29 @@ std::atomic<std::size_t> attempts = 0, failing = kNever;  // these, and tasks of
 
 std::atomic<bool> first_tasks = false;
 
-bool fails() {
-  return attempts++ == failing;
+#ifdef _WIN32
+void* allocate_aligned(std::size_t size, std::size_t alignment) {
+  return _aligned_malloc(size, alignment);
 }
+void free_aligned(void* memory) {
+  _aligned_free(memory);
+}
+#else
+void* allocate_aligned(std::size_t size, std::size_t alignment) {
+  void* memory = nullptr;
+  return posix_memalign(&memory, alignment, size) == 0 ? memory : nullptr;
+}
+void free_aligned(void* memory) {
+  std::free(memory);
+}
+#endif
 
 // Null for the one that is to fail.
 void* allocate(std::size_t size, std::size_t alignment) {
   ++count;
-  if (fails()) return nullptr;
+  if (sdm::test::allocation_fails()) return nullptr;
   if (alignment <= __STDCPP_DEFAULT_NEW_ALIGNMENT__) return std::malloc(size);
-  void* memory = nullptr;
-  return posix_memalign(&memory, alignment, size) == 0 ? memory : nullptr;
+  return allocate_aligned(size, alignment);
 }
 
 void* allocate_or_throw(std::size_t size, std::size_t alignment) {
@@ -57,35 +68,21 @@ void operator delete(void* memory, std::size_t) noexcept {
   std::free(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
+  free_aligned(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
+  free_aligned(memory);
 }
-
-// Memory of tasks, which oneTBB does not take from operator new. The program's own definition precedes that
-// of the library, which is called by its name there.
-namespace tbb::detail::r1 {
-
-void* allocate(d1::small_object_pool*& pool, std::size_t size, const d1::execution_data& data) {
-  static const auto of_library =
-      reinterpret_cast<void* (*)(d1::small_object_pool*&, std::size_t, const d1::execution_data&)>(dlsym(
-          RTLD_NEXT, "_ZN3tbb6detail2r18allocateERPNS0_2d117small_object_poolEmRKNS2_14execution_dataE"));
-  if (fails()) throw std::bad_alloc();
-  return of_library(pool, size, data);
-}
-
-// Of tasks that are not made by another task.
-void* allocate(d1::small_object_pool*& pool, std::size_t size) {
-  static const auto of_library = reinterpret_cast<void* (*)(d1::small_object_pool*&, std::size_t)>(
-      dlsym(RTLD_NEXT, "_ZN3tbb6detail2r18allocateERPNS0_2d117small_object_poolEm"));
-  if (first_tasks && fails()) throw std::bad_alloc();
-  return of_library(pool, size);
-}
-
-}  // namespace tbb::detail::r1
 
 namespace sdm::test {
+
+bool allocation_fails() {
+  return attempts++ == failing;
+}
+
+bool first_tasks_may_fail() {
+  return first_tasks;
+}
 
 std::size_t allocations() {
   return count;
