@@ -2,9 +2,9 @@
 # the sources in ziglang with exceptions and threads (js/runtime). ./build-wasm installs them.
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR wasm32)
-set(SDM_WASM_TOOLS ${CMAKE_CURRENT_LIST_DIR}/../../build/wasm-tools CACHE PATH "Where ./build-wasm has installed the compiler and Highway")
-list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES SDM_WASM_TOOLS)
-file(GLOB SDM_ZIG ${SDM_WASM_TOOLS}/python/lib/python3*/site-packages/ziglang)
+set(SDM_CROSS_TOOLS ${CMAKE_CURRENT_LIST_DIR}/../../build/wasm-tools CACHE PATH "Where ./build-wasm has installed the compiler and Highway")
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES SDM_CROSS_TOOLS)
+file(GLOB SDM_ZIG ${SDM_CROSS_TOOLS}/python/lib/python3*/site-packages/ziglang)
 cmake_path(ABSOLUTE_PATH SDM_ZIG NORMALIZE)
 if(NOT EXISTS ${SDM_ZIG}/zig)
   message(FATAL_ERROR "The compiler for WebAssembly is not installed: run ./build-wasm")
@@ -36,6 +36,6 @@ set(CMAKE_EXECUTABLE_SUFFIX .wasm)
 
 # Highway and the libraries of headers only; nothing else of the system.
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
-set(CMAKE_FIND_ROOT_PATH ${SDM_WASM_TOOLS})
+set(CMAKE_FIND_ROOT_PATH ${SDM_CROSS_TOOLS})
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE BOTH)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE BOTH)

@@ -1,5 +1,7 @@
-// Writes pairs of meshes and what the library computes of them, for comparison with its WebAssembly modules:
-// js_reference FOLDER. Arrays are files of plain numbers, and pairs.json names them.
+// Writes pairs of meshes and what the library computes of them, for comparison with its WebAssembly modules
+// and with builds for other systems: js_reference FOLDER [GIVEN]. Arrays are files of plain numbers, and
+// pairs.json names them. Positions and texture coordinates, which depend on the sines and roundings of a
+// system, are those in the folder GIVEN.
 #include <sdm/closest_points.h>
 #include <sdm/hausdorff.h>
 #include <sdm/map.h>
@@ -58,7 +60,19 @@ std::vector<Pair> pairs() {
 
 class Files {
  public:
-  explicit Files(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  Files(std::filesystem::path folder, std::filesystem::path given)
+      : folder_(std::move(folder)), given_(std::move(given)) {}
+  /// Replaces the values by those of the file in the other folder, if there is one.
+  template <class Value>
+  void take_given(const std::string& name, std::vector<Value>& values) const {
+    if (given_.empty()) return;
+    const auto bytes = std::as_writable_bytes(std::span(values));
+    if (std::filesystem::file_size(given_ / name) != bytes.size())
+      throw std::runtime_error(name + " has another size than expected");
+    std::ifstream in(given_ / name, std::ios::binary);
+    in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    if (!in) throw std::runtime_error(name + " was not read");
+  }
   template <class Range>
   void write(const std::string& name, const Range& values) const {
     std::ofstream out(folder_ / name, std::ios::binary);
@@ -68,7 +82,7 @@ class Files {
   }
 
  private:
-  std::filesystem::path folder_;
+  std::filesystem::path folder_, given_;
 };
 
 std::vector<Vec3> random_points(const Mesh& around, std::size_t count, unsigned seed) {
@@ -102,13 +116,18 @@ Mesh with_fixed_atlas(const Mesh& mesh, const Files& files, const std::string& n
       uvs.push_back(laid_out.corner_uvs[face][k]);
     }
   }
+  files.take_given(name + ".uvs", uvs);
+  for (std::size_t face = 0; face < result.triangles.size(); ++face)
+    for (std::size_t k = 0; k < 3; ++k) result.corner_uvs[face][k] = uvs[3 * face + k];
   files.write(name + ".uvs", uvs);
   return result;
 }
 
 /// Returns the numbers of the pair, as JSON.
-std::string write_pair(const Files& files, const Pair& pair, unsigned number) {
+std::string write_pair(const Files& files, Pair pair, unsigned number) {
   const std::string name = std::to_string(number);
+  files.take_given(name + ".o1.positions", pair.o1.positions);
+  files.take_given(name + ".o2.positions", pair.o2.positions);
   write_mesh(files, name + ".o1", pair.o1);
   write_mesh(files, name + ".o2", pair.o2);
   const Mesh apart = with_fixed_atlas(pair.o1, files, name + ".apart");
@@ -147,11 +166,12 @@ std::string write_pair(const Files& files, const Pair& pair, unsigned number) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 2) return std::cerr << "usage: js_reference FOLDER\n", 2;
+  if (count != 2 && count != 3) return std::cerr << "usage: js_reference FOLDER [GIVEN]\n", 2;
   std::filesystem::create_directories(arguments[1]);
-  const Files files(arguments[1]);
+  const Files files(arguments[1], count == 3 ? arguments[2] : "");
   std::string json;
   unsigned number = 0;
-  for (const Pair& pair : pairs()) json += (json.empty() ? "[\n" : ",\n") + write_pair(files, pair, number++);
+  for (Pair& pair : pairs())
+    json += (json.empty() ? "[\n" : ",\n") + write_pair(files, std::move(pair), number++);
   files.write("pairs.json", json + "\n]\n");
 }

@@ -1,9 +1,26 @@
-# What the library needs, for WebAssembly: Highway from its sources, as Debian's has no double precision there, and headers.
-set(highway ${SDM_WASM_TOOLS}/highway)
+# What the library needs, where ./build-wasm or ./build-windows has installed it: Highway and meshoptimizer from their sources, and
+# Debian's libraries of headers. That Highway is newer than Debian's, which has no double precision on WebAssembly.
+set(highway ${SDM_CROSS_TOOLS}/highway)
 add_library(hwy STATIC ${highway}/hwy/aligned_allocator.cc ${highway}/hwy/per_target.cc ${highway}/hwy/targets.cc ${highway}/hwy/abort.cc)
 target_include_directories(hwy SYSTEM PUBLIC ${highway})
 target_compile_features(hwy PUBLIC cxx_std_17)
 add_library(hwy::hwy ALIAS hwy)
+
+if(NOT SDM_BUILD_JS)
+  set(meshopt ${PROJECT_BINARY_DIR}/meshoptimizer)
+  sdm_download(https://static.crates.io/crates/meshopt/meshopt-0.4.0.crate ${meshopt}/source.tar.gz
+    a278a2ffc00b14e113fa542f08de253c8c989b9eb3588c87c93bbfa0931bbb18 reason)
+  if(reason)
+    message(FATAL_ERROR "${reason}")
+  endif()
+  set(source ${meshopt}/meshopt-0.4.0/vendor/src)
+  if(NOT EXISTS ${source}/simplifier.cpp)
+    file(ARCHIVE_EXTRACT INPUT ${meshopt}/source.tar.gz DESTINATION ${meshopt})
+  endif()
+  add_library(meshoptimizer STATIC ${source}/allocator.cpp ${source}/indexgenerator.cpp ${source}/simplifier.cpp ${source}/vfetchoptimizer.cpp)
+  target_include_directories(meshoptimizer SYSTEM PUBLIC ${source})
+  add_library(meshoptimizer::meshoptimizer ALIAS meshoptimizer)
+endif()
 
 # By links, as /usr/include has the C library of the system besides.
 set(headers ${PROJECT_BINARY_DIR}/headers)
