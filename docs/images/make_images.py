@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""Makes the pictures of the front page: make_images.py MESHES, the folder of CGAL's data/meshes; with `sdm` and
+"""Makes the pictures of the front page, and of docs/baking.md: make_images.py MESHES, the folder of CGAL's data/meshes; with `sdm` and
 `chromium-headless-shell` on the path."""
 
 import contextlib
+import functools
+import http.server
 import runpy
 import subprocess
 import sys
 import tempfile
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -79,13 +82,56 @@ def inspection_card() -> None:
         legend=False)  # fmt: skip
 
 
-def picture_of_page(page: str, picture: str) -> None:
+def picture_of_page(address: str, picture: str, width: int = 1280, height: int = 800) -> None:
     """What a browser shows of a page."""
     subprocess.run(
         ["chromium-headless-shell", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-         "--hide-scrollbars", "--force-device-scale-factor=1", "--window-size=1280,800", "--timeout=12000",
-         f"--screenshot={FOLDER / picture}", Path(page).absolute().as_uri()],
+         "--hide-scrollbars", "--force-device-scale-factor=1", f"--window-size={width},{height}", "--timeout=12000",
+         f"--screenshot={FOLDER / picture}", address],
         check=True)  # fmt: skip
+
+
+@contextlib.contextmanager
+def served(folder: str):
+    """The address of a server of the files in a folder, for pages that look into others."""
+    handler = functools.partial(http.server.SimpleHTTPRequestHandler, directory=folder)
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_address[1]}"
+        server.shutdown()
+
+
+# Shows what is in the canvas of a baked page, three times: the detailed mesh, the coarse one, and its triangles.
+THREE_VIEWS = """<!doctype html>
+<style>body { margin: 0; display: flex } iframe { border: 0; width: 440px; height: 340px }</style>
+<iframe src="asset/report.html"></iframe><iframe src="asset/report.html"></iframe><iframe src="asset/report.html"></iframe>
+<script>
+  const show = (frame, i) => {
+    const page = frame.contentDocument;
+    if (page.documentElement.dataset.ready === undefined) return setTimeout(show, 50, frame, i);
+    const style = page.createElement('style');
+    style.textContent = `#view { position: fixed !important; inset: 0; z-index: 9; width: 440px !important; height: 340px !important;
+      border: 0; border-radius: 0; background: white } #view > :not(canvas) { display: none }`;
+    page.head.append(style);
+    const split = page.getElementById('split');
+    split.value = i === 0 ? 0 : 1000;
+    split.dispatchEvent(new Event('input'));
+    if (i === 2) page.getElementById('edges').click();
+  };
+  addEventListener('load', () => document.querySelectorAll('iframe').forEach(show));
+</script>
+"""
+
+
+def baked_asteroid() -> None:
+    """The meshes of docs/baking.md."""
+    models = "/usr/share/glmark2/models/asteroid"
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        subprocess.run(["sdm", "map", f"{models}-high.3ds", f"{models}-low.3ds", "-o", "painted", "--write", "glb"], check=True)
+        subprocess.run(["sdm", "bake", "painted/model.glb", f"{models}-low.3ds", "-o", "asset"], check=True)
+        Path("views.html").write_text(THREE_VIEWS)
+        with served(folder) as address:
+            picture_of_page(f"{address}/views.html", "baking.png", 1320, 340)
 
 
 def painted_armadillo(file: str) -> None:
@@ -114,7 +160,7 @@ def baked_page() -> None:
         subprocess.run(
             ["sdm", "bake", "scan.ply", "low.glb", "-o", "asset", "--channels", "base_color,normal", "--match", "ray", "--cage", "3",
              "--units", "mm", "--gutter", "4"], check=True)  # fmt: skip
-        picture_of_page("asset/report.html", "baked-page.png")
+        picture_of_page(Path("asset/report.html").absolute().as_uri(), "baked-page.png")
 
 
 def report_page() -> None:
@@ -124,12 +170,13 @@ def report_page() -> None:
         subprocess.run(
             ["sdm", "map", "made/scan.ply", "made/part.ply", "--align", "--tolerance", "0.01", "--units", "cm", "--up", "z",
              "--write", "html", "-o", "out"])  # fmt: skip
-        picture_of_page("out/report.html", "report.png")
+        picture_of_page(Path("out/report.html").absolute().as_uri(), "report.png")
 
 
 bunny_and_armadillo()
 report_page()
 baked_page()
+baked_asteroid()
 inspection_card()
 python_card()
 proximity_card()

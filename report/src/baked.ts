@@ -118,7 +118,7 @@ function describe({ page, report, pictures }: BakedData): void {
     : `${high} is drawn with its colours and normals at the corners of triangles${parts}`;
   const picture = pictures.values().next().value;
   const smaller = picture && picture.width < resolution ? ` Textures are shown with ${count(picture.width)} × ${count(picture.height)} texels; the files have all.` : '';
-  byId('shown').textContent = `${drawn}. Both are drawn matt, in the same light; how rough and how metallic they are is not shown.${smaller}`;
+  byId('shown').textContent = `${drawn}. Both are drawn in the same light, with the roughness and the metal of their materials.${smaller}`;
 }
 
 function showNumbers({ atlas, texels, time_ms: time }: BakedReport): void {

@@ -13,6 +13,8 @@ interface BakedJson {
   pictures: Record<string, { bytes: number; text: string }>;
   base_color: [number, number, number, number];
   emissive: Vec;
+  metallic: number;
+  roughness: number;
   alpha_mode: number; ///< 0: opaque, 1: mask, 2: blend
   alpha_cutoff: number;
   arrays: ArrayIndex;
@@ -49,6 +51,7 @@ export interface Shape {
   place: Float32Array | null; ///< in the textures, from 0 to 1, y down
   tangent: Float32Array | null; ///< four a vertex
   color: Uint8Array | null; ///< four a vertex, in sRGB
+  surface: Uint8Array | null; ///< four a vertex: roughness in the second, metallic in the third; null: rough, and no metal
 }
 
 export interface BakedData {
@@ -104,7 +107,10 @@ export async function readBaked(): Promise<BakedData> {
   const inScene = (corner: Vec) => corner.map((x, k) => (origin[k] + step * x - centre[k]) / size) as Vec;
   const [low, high] = steps;
   const extent = [page.low.width, page.low.height];
-  const colors = arrays.get('high_color')!;
+  const ofVertices = (name: string) => {
+    const packed = arrays.get(name);
+    return packed ? new Uint8Array(packed.buffer) : null;
+  };
   return {
     page,
     report: JSON.parse(textOf('report')) as BakedReport,
@@ -118,6 +124,7 @@ export async function readBaked(): Promise<BakedData> {
       place: Float32Array.from(unguessed(arrays.get('low_place')!, 2, low.guesses), (x, i) => x / extent[i % 2]),
       tangent: tangentsOf(arrays.get('low_tangent')),
       color: null,
+      surface: null,
     },
     high: {
       position: toCentre(high.steps, page.place, centre, size),
@@ -125,7 +132,8 @@ export async function readBaked(): Promise<BakedData> {
       triangle: high.triangle,
       place: null,
       tangent: null,
-      color: new Uint8Array(colors.buffer),
+      color: ofVertices('high_color'),
+      surface: ofVertices('high_surface'),
     },
   };
 }

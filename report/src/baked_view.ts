@@ -9,9 +9,9 @@ const kShadings: Shading[] = ['lit', 'colours', 'shape'];
 
 const kVertexShader = `
   in vec2 place;
-  in vec4 tangent, paint;
-  out vec3 vNormal, vTangent, vPaint;
-  out vec2 vPlace;
+  in vec4 tangent, paint, surface;
+  out vec3 vNormal, vTangent, vPaint, vFromEye;
+  out vec2 vPlace, vSurface;
   out float vSign;
   vec3 linearOf(vec3 srgb) {
     return mix(pow((srgb + 0.055) / 1.055, vec3(2.4)), srgb / 12.92, lessThanEqual(srgb, vec3(0.04045)));
@@ -22,26 +22,49 @@ const kVertexShader = `
     vSign = tangent.w;
     vPaint = linearOf(paint.rgb);
     vPlace = place;
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+    vSurface = surface.yz;
+    vec4 fromEye = modelViewMatrix * vec4(position, 1.0);
+    vFromEye = fromEye.xyz;
+    gl_Position = projectionMatrix * fromEye;
   }
 `;
 
-// Matt, in the light of a lamp beside the camera and of the surroundings.
+// In the light of a lamp beside the camera and of the surroundings: glTF's material (appendix B), with the fit of Karis, "Physically
+// Based Shading on Mobile", for the light that is reflected from the surroundings.
 const kShader = `
   precision highp float;
   uniform int shading;
-  uniform bool painted, hasColors, hasNormals, hasOcclusion, hasEmission;
-  uniform sampler2D colors, normals, occlusion, emission;
+  uniform bool painted, hasColors, hasNormals, hasOcclusion, hasEmission, hasSurface;
+  uniform sampler2D colors, normals, occlusion, emission, surfaces;
   uniform vec4 baseColor;
   uniform vec3 emissive;
+  uniform vec2 roughMetal;
   uniform float cutoff;
-  in vec3 vNormal, vTangent, vPaint;
-  in vec2 vPlace;
+  in vec3 vNormal, vTangent, vPaint, vFromEye;
+  in vec2 vPlace, vSurface;
   in float vSign;
   out vec4 outColor;
+  const float kLamp = 0.7, kSurroundings = 0.42;
   vec3 srgbOf(vec3 light) {
     light = clamp(light, 0.0, 1.0);
     return mix(1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, 12.92 * light, lessThanEqual(light, vec3(0.0031308)));
+  }
+  // Of a bright sky above a darker ground; the rougher the surface, the more of both it mirrors at once.
+  float mirrored(vec3 direction, float roughness) {
+    float blurred = 0.75 + 0.25 * direction.y;
+    float sharp = 0.2 + 1.5 * smoothstep(-0.2, 0.35, direction.y);
+    return kSurroundings * mix(sharp, blurred, sqrt(roughness));
+  }
+  vec3 glossOf(vec3 f0, float roughness, float ambient, vec3 n, vec3 eye, vec3 lamp) {
+    float nv = max(dot(n, eye), 1e-3), nl = max(dot(n, lamp), 0.0);
+    vec3 between = normalize(eye + lamp);
+    float a2 = pow(max(roughness, 0.08), 4.0), nh = dot(n, between), d = nh * nh * (a2 - 1.0) + 1.0;
+    float visible = 0.5 / max(nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2), 1e-4);
+    vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - max(dot(eye, between), 0.0), 5.0);
+    vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+    float fit = min(r.x * r.x, exp2(-9.28 * nv)) * r.x + r.y;
+    vec3 share = f0 * (-1.04 * fit + r.z) + 1.04 * fit + r.w;
+    return kLamp * nl * a2 / (d * d) * visible * fresnel + ambient * mirrored(reflect(-eye, n), roughness) * share;
   }
   void main() {
     vec4 color = painted ? vec4(vPaint, 1.0) : hasColors ? texture(colors, vPlace) : baseColor;
@@ -54,10 +77,18 @@ const kShader = `
     n = normalize(n) * (gl_FrontFacing ? 1.0 : -1.0);
     vec3 lamp = normalize(vec3(0.35, 0.5, 0.8));
     float ambient = hasOcclusion ? texture(occlusion, vPlace).r : 1.0;
-    float light = 0.42 * ambient * (0.75 + 0.25 * n.y) + 0.7 * max(0.0, dot(n, lamp));
+    float light = kSurroundings * ambient * (0.75 + 0.25 * n.y) + kLamp * max(0.0, dot(n, lamp));
+    vec2 surface = !hasSurface ? roughMetal : painted ? vSurface : texture(surfaces, vPlace).gb;
     if (shading == 2) color.rgb = vec3(0.55);
     vec3 seen = shading == 1 ? color.rgb : light * color.rgb;
-    if (shading == 0 && !painted) seen += hasEmission ? texture(emission, vPlace).rgb : emissive;
+    if (shading == 0) {
+      vec3 eye = isOrthographic ? vec3(0.0, 0.0, 1.0) : normalize(-vFromEye);
+      seen *= 1.0 - surface.y;
+      // What is rough and no metal is matt, and costs nothing more.
+      float gloss = min(1.0, 4.0 * (1.0 - surface.x) + surface.y);
+      if (gloss > 0.0) seen += gloss * glossOf(mix(vec3(0.04), color.rgb, surface.y), surface.x, ambient, n, eye, lamp);
+      if (!painted) seen += hasEmission ? texture(emission, vPlace).rgb : emissive;
+    }
     outColor = vec4(srgbOf(seen), 1.0);
   }
 `;
@@ -90,6 +121,7 @@ function geometryOf(shape: Shape): BufferGeometry {
   geometry.setAttribute('normal', new BufferAttribute(shape.normal, 3, true));
   geometry.setAttribute('place', new BufferAttribute(shape.place ?? new Float32Array(2 * vertices), 2));
   geometry.setAttribute('tangent', new BufferAttribute(shape.tangent ?? new Float32Array(4 * vertices), 4));
+  geometry.setAttribute('surface', new BufferAttribute(shape.surface ?? new Uint8Array(4 * vertices), 4, true));
   geometry.setAttribute('paint', new BufferAttribute(shape.color ?? new Uint8Array(4 * vertices), 4, true));
   geometry.setIndex(new BufferAttribute(shape.triangle, 1));
   return geometry;
@@ -118,9 +150,9 @@ export class BakedView extends Viewer {
   }
 
   private makeMesh({ page, pictures }: BakedData, shape: Shape, painted: boolean): Mesh {
-    const [colors, normals, occlusion, emission] = painted
-      ? [null, null, null, null]
-      : [textureOf(pictures.get('base_color'), true), textureOf(pictures.get('normal'), false), textureOf(pictures.get('occlusion'), false), textureOf(pictures.get('emissive'), true)];
+    const texture = (name: string, isColor = false) => (painted ? null : textureOf(pictures.get(name), isColor));
+    const [colors, normals, occlusion] = [texture('base_color', true), texture('normal'), texture('occlusion')];
+    const [emission, surfaces] = [texture('emissive', true), texture('metallic_roughness')];
     const material = new ShaderMaterial({
       glslVersion: '300 es',
       vertexShader: kVertexShader,
@@ -136,10 +168,13 @@ export class BakedView extends Viewer {
         hasNormals: { value: normals !== null && shape.tangent !== null },
         hasOcclusion: { value: occlusion !== null },
         hasEmission: { value: emission !== null },
+        hasSurface: { value: surfaces !== null || shape.surface !== null },
         colors: { value: colors },
         normals: { value: normals },
         occlusion: { value: occlusion },
         emission: { value: emission },
+        surfaces: { value: surfaces },
+        roughMetal: { value: painted ? [1, 0] : [page.roughness, page.metallic] },
         baseColor: { value: page.base_color },
         emissive: { value: page.emissive },
         cutoff: { value: painted || page.alpha_mode === 0 ? -1 : page.alpha_mode === 1 ? page.alpha_cutoff : 0.02 },

@@ -102,6 +102,27 @@ TEST_F(BakedPage, DividesTrianglesWithATexture) {
   EXPECT_TRUE(passes("slides", page()));
 }
 
+// Roughness and metal, of a texture on one mesh and at the corners of the other.
+TEST_F(BakedPage, ShowsRoughnessAndMetal) {
+  const Mesh ball = sphere(5);
+  high = folder / "high.obj";
+  std::ofstream(folder / "high.mtl") << "newmtl metal\nKd 0.8 0.6 0.3\nPm 1\nPr 0.15\n"
+                                        "newmtl rough\nKd 0.8 0.6 0.3\nPm 0\nPr 1\n";
+  std::ofstream out_of_high(high);
+  out_of_high << "mtllib high.mtl\n";
+  for (const Vec3& p : ball.positions) out_of_high << fmt::format("v {} {} {}\n", p[0], p[1], p[2]);
+  for (const bool metal : {true, false}) {  // on either side of the middle of the picture
+    out_of_high << (metal ? "usemtl metal\n" : "usemtl rough\n");
+    for (const Triangle& t : ball.triangles)
+      if ((ball.positions[t[0]][0] > ball.positions[t[0]][2]) == metal)
+        out_of_high << fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  }
+  out_of_high.close();
+  low = write_obj(folder / "low.obj", sphere(4));
+  run();
+  EXPECT_TRUE(passes("shines", page()));
+}
+
 // The normals of the detailed mesh are what three.js decodes from the model, drawn into floats.
 TEST_F(BakedPage, NormalMapsAreThoseOfThreeJs) {
   if (!has_tangents()) GTEST_SKIP() << "without MikkTSpace";

@@ -67,6 +67,34 @@ module.exports = {
     assert.strictEqual((await compared(both, high, middle + 2, both.width, 0)).far, 0, 'right of the line is not the detailed mesh');
   },
 
+  // Of a ball of one colour, whose left half is rough and the right one polished metal, both meshes look alike in light. Metal mirrors a
+  // bright sky and a darker ground, and so has more different levels, although more of the lamp falls on the right.
+  async shines(page) {
+    const spread = ({ kept }, first, end) =>
+      kept.evaluate(({ width, height, data }, [from, to]) => {
+        const levels = [];
+        for (let y = 0; y < height; ++y)
+          for (let x = Math.ceil(from * width); x < to * width; ++x) if (data[4 * (y * width + x) + 3] === 255) levels.push(data[4 * (y * width + x)]);
+        levels.sort((a, b) => a - b);
+        return levels[Math.floor(0.97 * levels.length)] - levels[Math.floor(0.03 * levels.length)];
+      }, [first, end]);
+    const shown = async (shading, share) => {
+      await page.selectOption('#shading', shading);
+      await slide(page, share);
+      return pixels(page);
+    };
+    const spreads = async (picture) => [await spread(picture, 0, 0.48), await spread(picture, 0.52, 1)];
+    for (const share of [1000, 0]) {
+      const [a, b] = await spreads(await shown('colours', share));
+      assert(a < 12 && b < 12, `${share}: the colour is not the same everywhere, ${a} and ${b}`);
+      const [rough, metal] = await spreads(await shown('lit', share));
+      assert(metal > 1.2 * rough, `${share}: the spread of the rough half is ${rough}, that of the metal ${metal}`);
+    }
+    const low = await shown('lit', 1000);
+    const { both, far } = await compared(low, await shown('lit', 0), 0, low.width, 40);
+    assert(both > 1000 && far < 0.05, `${far} of the pixels of both have another light`);
+  },
+
   // By mouse, by keyboard, and side by side.
   async compares(page) {
     assert.strictEqual(await splitOf(page), 500);

@@ -72,6 +72,13 @@ Parts coarser(const Mesh& mesh) {
   return parts;
 }
 
+/// Whether no material is anything but rough and no metal, as Material is at first.
+bool is_matt(const MeshLook& look) {
+  return std::ranges::all_of(look.materials, [](const Material& material) {
+    return material.metallic == 0 && material.roughness == 1;
+  });
+}
+
 bool has_texture(const MeshLook& look) {
   return std::ranges::any_of(look.materials, [&](const Material& material) {
     const std::uint32_t texture = material.base_color_texture.texture;
@@ -115,22 +122,22 @@ std::uint32_t normal_at(const Mesh& mesh, const MeshAttribute& normals, const Su
       {static_cast<float>(normal[0]), static_cast<float>(normal[1]), static_cast<float>(normal[2])});
 }
 
-/// Red, green and blue in sRGB of each point.
-std::vector<std::uint32_t> corner_colors(const BakedFrom& from, const Parts& parts) {
+/// Red, green and blue of a channel's picture at each point, 8 bits each, red the lowest.
+std::vector<std::uint32_t> corner_values(const BakedFrom& from, const Parts& parts, BakeChannel channel) {
   // What a triangle of the page stands for.
   const double extent =
       std::sqrt(area_of(from.mesh) / static_cast<double>(std::max<std::size_t>(1, parts.triangles.size())));
-  LookValues look = look_at(from.mesh, from.look, BakeChannel::base_color, parts.points, extent);
+  LookValues look = look_at(from.mesh, from.look, channel, parts.points, extent);
   const auto points = static_cast<std::uint32_t>(parts.points.size());
-  const Image image = to_image({BakeChannel::base_color, points, look.components, std::move(look.values)});
-  std::vector<std::uint32_t> colors(points);
+  const Image image = to_image({channel, points, look.components, std::move(look.values)});
+  std::vector<std::uint32_t> values(points);
   for (std::size_t i = 0; i < points; ++i)
     for (std::size_t k = 0; k < 3; ++k)
-      colors[i] |= std::uint32_t{image.bytes[i * image.components + k]} << (8 * k);
-  return colors;
+      values[i] |= std::uint32_t{image.bytes[i * image.components + k]} << (8 * k);
+  return values;
 }
 
-using Numbers = std::array<std::uint32_t, 5>;  ///< of a vertex: position, normal, colour
+using Numbers = std::array<std::uint32_t, 6>;  ///< of a vertex: position, normal, colour, surface
 
 struct HashOfNumbers {
   std::size_t operator()(const Numbers& numbers) const {
@@ -174,13 +181,17 @@ std::vector<Numbers> numbers_of(const BakedFrom& from, const Parts& parts, const
   if (from.normals == nullptr) smooth = smooth_normals(mesh);
   const MeshAttribute& normals = smooth ? *smooth : *from.normals;
   require_normals(mesh, normals);
-  const std::vector<std::uint32_t> colors = corner_colors(from, parts);
+  const std::vector<std::uint32_t> colors = corner_values(from, parts, BakeChannel::base_color);
+  const std::vector<std::uint32_t> surfaces =
+      is_matt(from.look) ? std::vector<std::uint32_t>(colors.size())
+                         : corner_values(from, parts, BakeChannel::metallic_roughness);
   std::vector<Numbers> of_points(parts.points.size());
   for (std::size_t i = 0; i < of_points.size(); ++i) {
     const SurfacePoint& point = parts.points[i];
     const auto [a, b, c] = corners_of(mesh, point.face);
     const Vec3 at = point.barycentric[0] * a + point.barycentric[1] * b + point.barycentric[2] * c;
-    of_points[i] = {steps(at, 0), steps(at, 1), steps(at, 2), normal_at(mesh, normals, point), colors[i]};
+    of_points[i] = {steps(at, 0), steps(at, 1), steps(at, 2), normal_at(mesh, normals, point),
+                    colors[i],    surfaces[i]};
   }
   return of_points;
 }
@@ -201,15 +212,16 @@ DetailedView::DetailedView(const BakedFrom& from, const Mesh& o1) try {
   Parts parts = parts_of(from, data->counts);
   const std::vector<Numbers> vertices = join(parts.triangles, numbers_of(from, parts, data->steps));
   const FaceWalk walk = walk_over(parts.triangles, vertices.size());
-  std::vector<std::uint32_t> position, normal, color;
+  std::vector<std::uint32_t> position, normal, color, surface;
   for (const std::uint32_t v : walk.vertex) {
     position.insert(position.end(), vertices[v].begin(), vertices[v].begin() + 3);
-    normal.push_back(vertices[v][3]), color.push_back(vertices[v][4]);
+    normal.push_back(vertices[v][3]), color.push_back(vertices[v][4]), surface.push_back(vertices[v][5]);
   }
   data->arrays.add("high_triangle", corner_codes(walk.triangles));
   data->arrays.add_guessed("high_position", position, 3, guesses_of(walk.triangles));
   data->arrays.add("high_normal", std::move(normal));
   data->arrays.add("high_color", std::move(color));
+  if (!is_matt(from.look)) data->arrays.add("high_surface", std::move(surface));
   data->counts["triangles"] = walk.triangles.size();
   data_ = std::move(data);
 } catch (const std::bad_alloc&) {

@@ -11,7 +11,9 @@
 namespace sdm {
 
 /// Arrays: `high_triangle` (corner_codes()), and for each vertex `high_position` (three, in steps),
-/// `high_normal` (octahedral) and `high_color` (red, green and blue in sRGB, 8 bits each, red the lowest).
+/// `high_normal` (octahedral), `high_color` (red, green and blue in sRGB, 8 bits each, red the lowest) and,
+/// unless all is rough and no metal, `high_surface` (as metallic_roughness.png: roughness in green, metallic
+/// in blue).
 struct DetailedView::Data {
   io::Steps steps;  ///< of both meshes
   io::PackedArrays arrays{};

@@ -102,6 +102,8 @@ void write_baked_html(const std::filesystem::path& file, const Surface& surface,
   page["pictures"] = pictures;
   page["base_color"] = options.material.base_color;
   page["emissive"] = options.material.emissive;
+  page["metallic"] = options.material.metallic;
+  page["roughness"] = options.material.roughness;
   page["alpha_mode"] = static_cast<int>(options.material.alpha_mode);
   page["alpha_cutoff"] = options.material.alpha_cutoff;
   put_page(out.stream(), kBakedHtml.bytes, page, &report, arrays);
