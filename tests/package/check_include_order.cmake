@@ -25,6 +25,7 @@ set(order
   query/closest
   query/facing
   query/rays
+  query/inside/angles
   query/inside
   query/pairs
   query/convex
@@ -154,8 +155,9 @@ set(readers_of_nodes
   query/closest/descent.cpp            # appends all leaves within reach to a list, by vector instructions
   proximity/motion/parts.h             # nodes are divided into faces too, by time
   proximity/self/self_search.cpp       # marks the nodes whose faces are all excluded
-  query/inside/expansions.cpp          # computes an expansion for each child of a node
-  query/inside/solid_angles.cpp        # nodes whose errors are too large are opened again
+  query/inside/angles/expansions.cpp  # computes an expansion for each child of a node
+  query/inside/angles/packet_angles.cpp  # one search for several points, eight children at a time
+  query/inside/angles/solid_angles.cpp  # nodes whose errors are too large are opened again
   query/inside/solid_boundary.cpp      # faces are divided further, nearest first
   query/pairs/near_faces.cpp           # bounds the children of a pair, and marks those below a node
   query/pairs/pair_search.cpp          # bounds the children of a pair

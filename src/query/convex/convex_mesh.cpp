@@ -8,7 +8,7 @@
 
 #include "geometry/predicates.h"
 #include "geometry/triangle.h"
-#include "query/inside/solid_angle.h"
+#include "query/inside/angles/solid_angle.h"
 
 namespace sdm::convex {
 namespace {

@@ -82,12 +82,16 @@ bool InsideTest::behind(const Vec3& query, const ClosestPoint& closest) const {
   return dot(query - closest.point, sites::pseudonormal(sites_.normals, sites_.topology, closest)) < 0;
 }
 
-template <class Test>
-bool InsideTest::inside_ball(const Vec3& query, SiteType type, double distance, const Test& test) const {
+double InsideTest::clear_radius(SiteType type, double distance) const {
   // Distances of queries far from O2 may be too long by a fraction of themselves.
   constexpr double kRelative = 4e-6;
   const double far = method_ == SignMethod::winding ? kRelative * distance : 0;
-  const double radius = type == SiteType::none ? 0 : distance - far - std::max(signs_->clearance, error_);
+  return type == SiteType::none ? 0 : std::max(0.0, distance - far - std::max(signs_->clearance, error_));
+}
+
+template <class Test>
+bool InsideTest::inside_ball(const Vec3& query, SiteType type, double distance, const Test& test) const {
+  const double radius = clear_radius(type, distance);
   if (!(radius > 0)) return test(false).above;
   if (const auto known = balls.find(signs_->number, query, radius)) return *known;
   const WindingNumber::Side side = test(true);
@@ -137,18 +141,69 @@ bool InsideTest::at_boundary(const Vec3& query, const ClosestPoint& closest) con
   }
 }
 
+// Balls first; then one search for all others, unless a ball of one of them contains the rest; then one by
+// one.
+template <class Closest>
+std::uint32_t InsideTest::above_half(std::span<const Vec3> queries, const Closest& closest, bool few) const {
+  constexpr std::size_t kFewest = 4;
+  std::array<Vec3, kPacket> open_queries;
+  std::array<ClosestPoint, kPacket> open_closest;
+  std::array<std::uint8_t, kPacket> place;
+  std::size_t count = 0;
+  std::uint32_t inside = 0;
+  double largest = 0;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const ClosestPoint at = closest(i);
+    if (at.distance == 0) continue;
+    const double radius = clear_radius(at.type, at.distance);
+    if (const auto known = balls.find(signs_->number, queries[i], radius)) {
+      inside |= (*known ? 1u : 0u) << i;
+      continue;
+    }
+    open_queries[count] = queries[i], open_closest[count] = at, place[count++] = static_cast<std::uint8_t>(i);
+    largest = std::max(largest, radius);
+  }
+  PacketSides sides;
+  if (count >= kFewest) {
+    Box box;
+    for (const Vec3& query : std::span(open_queries).first(count)) extend(box, query);
+    if (largest < 0.25 * norm(box.hi - box.lo))
+      sides = winding_->above_half(std::span(open_queries).first(count), std::span(open_closest).first(count),
+                                   few);
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const bool is_inside = (sides.known >> k & 1u) != 0 ? (sides.above >> k & 1u) != 0
+                                                        : test(open_queries[k], open_closest[k], few);
+    inside |= (is_inside ? 1u : 0u) << place[k];
+  }
+  return inside;
+}
+
+std::uint32_t InsideTest::operator()(std::span<const Vec3> queries, std::span<const ClosestPoint> closest,
+                                     bool few) const {
+  if (method_ == SignMethod::winding)
+    return above_half(
+        queries, [&](std::size_t i) { return closest[i]; }, few);
+  std::uint32_t inside = 0;
+  for (std::size_t i = 0; i < queries.size(); ++i)
+    inside |= (test(queries[i], closest[i], few) ? 1u : 0u) << i;
+  return inside;
+}
+
 std::uint32_t InsideTest::operator()(std::span<const Vec3> queries,
                                      const sites::ClosestPacket& closest) const {
   std::uint32_t inside = 0;
   if (method_ == SignMethod::none) return inside;
+  const auto of = [&](std::size_t i) { return closest.get(i, queries[i]); };
+  if (method_ == SignMethod::winding) return above_half(queries.first(closest.count), of, false);
   for (std::size_t i = 0; i < closest.count; ++i) {
     const Vec3& query = queries[i];
     bool is_inside = false;
     if (method_ != SignMethod::exact)
-      is_inside = (*this)(query, closest.get(i, query));
+      is_inside = test(query, of(i), false);
     else if (sdm::contains(signs_->box, query) && closest.type[i] != SiteType::none)
       is_inside = inside_ball(query, closest.type[i], closest.distance[i],
-                              [&](bool) { return of_solid(inside_solid(query, closest.get(i, query))); });
+                              [&](bool) { return of_solid(inside_solid(query, of(i))); });
     inside |= static_cast<std::uint32_t>(is_inside) << i;
   }
   return inside;

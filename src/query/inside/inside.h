@@ -35,6 +35,9 @@ class InsideTest {
   [[nodiscard]] bool operator()(const Vec3& query, const ClosestPoint& closest) const;
   /// The same answer. Faster for queries of which most are the only one at their closest face.
   [[nodiscard]] bool of_few(const Vec3& query, const ClosestPoint& closest) const;
+  /// A bit mask of the queries that are inside, of at most kPacket. With `few`, as of_few().
+  [[nodiscard]] std::uint32_t operator()(std::span<const Vec3> queries, std::span<const ClosestPoint> closest,
+                                         bool few) const;
   /// A bit mask of the queries of a packet that are inside. Fastest if successive packets are near to each
   /// other.
   [[nodiscard]] std::uint32_t operator()(std::span<const Vec3> queries,
@@ -50,11 +53,17 @@ class InsideTest {
   [[nodiscard]] bool inside_solid(const Vec3& query, const ClosestPoint& closest) const;
   /// The side of an open O2, as of SignMethod::side.
   [[nodiscard]] bool behind(const Vec3& query, const ClosestPoint& closest) const;
+  /// How far around a query the surface is known not to be; 0 if it is not known.
+  [[nodiscard]] double clear_radius(SiteType type, double distance) const;
   /// By known balls, or by test(), which returns a WindingNumber::Side and adds a ball. `type` and `distance`
   /// are those of the closest point.
   template <class Test>
   [[nodiscard]] bool inside_ball(const Vec3& query, SiteType type, double distance, const Test& test) const;
   [[nodiscard]] bool test(const Vec3& query, const ClosestPoint& closest, bool few) const;
+  /// By winding numbers; closest(i) is the closest point of query i.
+  template <class Closest>
+  [[nodiscard]] std::uint32_t above_half(std::span<const Vec3> queries, const Closest& closest,
+                                         bool few) const;
 
   const sites::SitesData& sites_;
   SignMethod method_;

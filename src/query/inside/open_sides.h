@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "mesh/topology.h"
-#include "query/inside/oriented_faces.h"
+#include "query/inside/angles/oriented_faces.h"
 
 namespace sdm::inside {
 

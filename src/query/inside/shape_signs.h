@@ -15,7 +15,8 @@ namespace sdm::inside {
 /// Kept with the sites until they change, so that the tests of each query need not make it again. Each method
 /// has a part that is made when it is first used: for a solid, a byte for each face; for winding numbers of
 /// an open mesh, the closing faces with their tree and a byte for each face, and where they do not decide,
-/// 128 bytes for each node of the tree over its faces; for sides, a byte for each edge and vertex.
+/// 64 bytes for each child of a node of the wide tree over its faces, and 36 for each face; for sides, a byte
+/// for each edge and vertex.
 struct ShapeSigns {
   explicit ShapeSigns(const sites::SitesData& sites);
   /// For the same faces at other positions. Reuses the memory for solids.

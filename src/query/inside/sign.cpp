@@ -1,7 +1,10 @@
 #include <sdm/error.h>
 #include <sdm/sign.h>
 
+#include <algorithm>
+#include <array>
 #include <new>
+#include <span>
 #include <string>
 
 #include "core/memory.h"
@@ -50,9 +53,15 @@ std::vector<std::uint8_t> inside_flags(const Sites& sites, std::span<const Vec3>
   // Neighbours take over answers, and meet the same parts of the mesh.
   const std::vector<std::uint32_t> order = morton_order(queries, bounds(sites.mesh()));
   parallel_for(queries.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t i = order[k];
-      result[i] = few ? test.of_few(queries[i], closest[i]) : test(queries[i], closest[i]);
+    std::array<Vec3, inside::kPacket> points;
+    std::array<ClosestPoint, inside::kPacket> closest_of;
+    for (std::size_t first = begin; first < end; first += inside::kPacket) {
+      const std::size_t count = std::min(inside::kPacket, end - first);
+      for (std::size_t k = 0; k < count; ++k)
+        points[k] = queries[order[first + k]], closest_of[k] = closest[order[first + k]];
+      const std::uint32_t flags =
+          test(std::span(points).first(count), std::span(closest_of).first(count), few);
+      for (std::size_t k = 0; k < count; ++k) result[order[first + k]] = flags >> k & 1u;
     }
   });
   return result;

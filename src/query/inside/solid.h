@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "geometry/affine.h"
-#include "query/inside/oriented_faces.h"
+#include "query/inside/angles/oriented_faces.h"
 #include "sites/sites_data.h"
 
 namespace sdm::inside {

@@ -1,5 +1,7 @@
 #include "query/inside/winding_number.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -98,14 +100,34 @@ WindingNumber::Side WindingNumber::above_half(const Vec3& q) const {
   return above_half(q, closed(q));
 }
 
+std::optional<int> WindingNumber::closed(const Vec3& q, const ClosestPoint& closest, bool few) const {
+  const auto direct = [this](const Vec3& point) { return closed(point); };
+  if (sides_ && norm(tree::gap(sites_.tree.box(0), sites_.frame.to_unit(q))) == 0)
+    if (const std::optional<int> number = (*sides_)(q, closest, few, direct)) return number;
+  return direct(q);
+}
+
 WindingNumber::Side WindingNumber::above_half(const Vec3& q, const ClosestPoint& closest, bool few) const {
   if (sites_.tree.nodes.empty()) return {};
   poll();
-  const auto direct = [this](const Vec3& point) { return closed(point); };
-  std::optional<int> number;
-  const bool in_box = norm(tree::gap(sites_.tree.box(0), sites_.frame.to_unit(q))) == 0;
-  if (sides_ && in_box) number = (*sides_)(q, closest, few, direct);
-  return above_half(q, number ? number : direct(q));
+  return above_half(q, closed(q, closest, few));
+}
+
+PacketSides WindingNumber::above_half(std::span<const Vec3> points, std::span<const ClosestPoint> closest,
+                                      bool few) const {
+  if (sites_.tree.nodes.empty()) return {};
+  std::array<double, kPacket> limits{};
+  const auto used = std::span(limits).first(points.size());
+  if (!closing_.angles) {
+    std::ranges::fill(used, 0.5 * kSphere);
+    return sides_of_packet(mesh_angles(), points, used);
+  }
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const std::optional<int> number = closed(points[i], closest[i], few);
+    used[i] = number ? kSphere * (*number - 0.5) : kNoLimit;
+  }
+  const PacketSides sides = sides_of_packet(*closing_.angles, points, used);
+  return {sides.known, sides.known & ~sides.above};
 }
 
 }  // namespace sdm::inside

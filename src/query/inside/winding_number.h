@@ -4,11 +4,13 @@
 #include <sdm/types.h>
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/lazy/kept.h"
+#include "query/inside/angles/packet_angles.h"
+#include "query/inside/angles/solid_angles.h"
 #include "query/inside/open_sides.h"
-#include "query/inside/solid_angles.h"
 #include "sites/sites_data.h"
 
 namespace sdm::inside {
@@ -42,6 +44,9 @@ class WindingNumber {
   /// The same, faster where the number beside the closest site is known. `few`: most queries are the only one
   /// at their closest face.
   [[nodiscard]] Side above_half(const Vec3& q, const ClosestPoint& closest, bool few) const;
+  /// The same for points near to each other, at most kPacket, where one search of the tree decides it.
+  [[nodiscard]] PacketSides above_half(std::span<const Vec3> points, std::span<const ClosestPoint> closest,
+                                       bool few) const;
 
  private:
   /// The closing faces.
@@ -56,6 +61,7 @@ class WindingNumber {
   [[nodiscard]] OrientedFaces closing_faces() const;
   /// Of the closed surface; empty where no segment decides it.
   [[nodiscard]] std::optional<int> closed(const Vec3& q) const;
+  [[nodiscard]] std::optional<int> closed(const Vec3& q, const ClosestPoint& closest, bool few) const;
   /// With the number of the closed surface.
   [[nodiscard]] Side above_half(const Vec3& q, std::optional<int> closed) const;
   [[nodiscard]] const SolidAngles& mesh_angles() const;

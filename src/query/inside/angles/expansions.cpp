@@ -1,6 +1,7 @@
-#include "query/inside/expansions.h"
+#include "query/inside/angles/expansions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -50,8 +51,11 @@ class ExpansionsOfTree {
   ExpansionsOfTree(const OrientedFaces& faces, const tree::WideTree& wide) : faces_(faces), wide_(wide) {}
 
   // Children follow their parents.
-  std::vector<Expansions> build() {
-    std::vector<Expansions> blocks(wide_.nodes.size());
+  TreeExpansions build() {
+    TreeExpansions result;
+    result.nodes.resize(wide_.nodes.size());
+    std::vector<Expansions>& blocks = result.nodes;
+    result.faces.resize(faces_.faces.tree.items.size());
     std::vector<Moments> of_node(wide_.nodes.size());
     Poll due(256);
     for (std::size_t n = wide_.nodes.size(); n-- > 0;) {
@@ -60,7 +64,7 @@ class ExpansionsOfTree {
       parts_.clear();
       for (std::uint32_t i = 0; i < node.count; ++i) {
         const bool leaf = tree::WideTree::is_leaf(node.child[i]);
-        Moments child = leaf ? of_leaf(node.source[i]) : of_node[node.child[i]];
+        Moments child = leaf ? of_leaf(node.source[i], result.faces) : of_node[node.child[i]];
         child.radius =
             std::min(child.radius, radius_by_box(child.centre, faces_.faces.tree.box(node.source[i])));
         store(child, blocks[n], i);
@@ -70,7 +74,7 @@ class ExpansionsOfTree {
       for (const Moments& part : parts_)
         of_node[n].radius = std::max(of_node[n].radius, norm(part.centre - of_node[n].centre) + part.radius);
     }
-    return blocks;
+    return result;
   }
 
  private:
@@ -84,12 +88,20 @@ class ExpansionsOfTree {
     face_moments.area = norm(face_moments.moment);
     face_moments.second = face_moments.area / 36 * (squared_norm(ab) + squared_norm(bc) + squared_norm(ac));
     face_moments.edges = norm(ab) * norm(ac);
+    // From the centroid to a corner is a third of the sum of the sides there.
+    face_moments.radius =
+        (1.0 / 3) *
+        std::sqrt(std::max({squared_norm(ab + ac), squared_norm(bc - ab), squared_norm(ac + bc)}));
     return face_moments;
   }
-  [[nodiscard]] Moments of_leaf(std::uint32_t leaf) {
+  [[nodiscard]] Moments of_leaf(std::uint32_t leaf, FaceExpansions& of_each) {
     const FaceTree& faces = faces_.faces;
     of_faces_.clear();
-    for (const std::uint32_t face : faces.tree.items_of(leaf)) of_faces_.push_back(of_face(face));
+    std::size_t place = faces.tree.nodes[leaf].first;
+    for (const std::uint32_t face : faces.tree.items_of(leaf)) {
+      of_faces_.push_back(of_face(face));
+      store(of_faces_.back(), of_each, place++);
+    }
     Moments total = sum(of_faces_);
     double squared = 0;
     for (const std::uint32_t face : faces.tree.items_of(leaf))
@@ -132,6 +144,18 @@ class ExpansionsOfTree {
     block.noise[lane] = rounded_up(256 * (u * about.area + w * about.edges));
   }
 
+  static void store(const Moments& face, FaceExpansions& of_each, std::size_t place) {
+    constexpr double u = 0x1p-24, w = 0x1p-53, moved = FaceExpansions::kCentreRounding;
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      of_each.centre[axis][place] = static_cast<float>(face.centre[k]);
+      of_each.moment[axis][place] = static_cast<float>(face.moment[k]);
+    }
+    of_each.second[place] = rounded_up(face.second + face.area * moved * moved);
+    of_each.radius[place] = rounded_up((1 + kProductRounding) * face.radius + moved);
+    of_each.noise[place] = rounded_up(256 * (u * face.area + w * face.edges));
+  }
+
   OrientedFaces faces_;
   const tree::WideTree& wide_;
   std::vector<Moments> parts_, of_faces_;
@@ -139,7 +163,14 @@ class ExpansionsOfTree {
 
 }  // namespace
 
-std::vector<Expansions> expansions_of(const OrientedFaces& faces, const tree::WideTree& wide) {
+void FaceExpansions::resize(std::size_t faces) {
+  const std::size_t size = faces + Expansions::kWidth;
+  for (auto* three : {&centre, &moment})
+    for (std::vector<float>& of_axis : *three) of_axis.assign(size, 0);
+  for (auto* of_faces : {&second, &radius, &noise}) of_faces->assign(size, 0);
+}
+
+TreeExpansions expansions_of(const OrientedFaces& faces, const tree::WideTree& wide) {
   return ExpansionsOfTree(faces, wide).build();
 }
 

@@ -1,9 +1,11 @@
 // Expansions of the solid angles of groups of faces.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
-#include "query/inside/oriented_faces.h"
+#include "query/inside/angles/oriented_faces.h"
 #include "tree/wide_tree.h"
 
 namespace sdm::inside {
@@ -54,7 +56,23 @@ struct Expansions {
   alignas(32) float noise[kWidth] = {};   ///< 256·u·A + 256·w·P: the rounding of a value, times g²
 };
 
-/// Those of each node of the wide tree of these faces. Cost: linear.
-[[nodiscard]] std::vector<Expansions> expansions_of(const OrientedFaces& faces, const tree::WideTree& wide);
+/// The same for single faces, in the order of the leaves. About its centroid a flat face has T = 0.
+struct FaceExpansions {
+  /// Bounds the rounding of a centre, which is not chosen as a number of single precision.
+  static constexpr double kCentreRounding = 2e-7;
+
+  std::array<std::vector<float>, 3> centre, moment;
+  std::vector<float> second, radius, noise;  ///< with what the rounding of the centre adds
+
+  /// What vectors read beyond the last face is set.
+  void resize(std::size_t faces);
+};
+
+struct TreeExpansions {
+  std::vector<Expansions> nodes;  ///< of the wide tree
+  FaceExpansions faces;
+};
+/// Those of the wide tree of these faces, and of each face. Cost: linear.
+[[nodiscard]] TreeExpansions expansions_of(const OrientedFaces& faces, const tree::WideTree& wide);
 
 }  // namespace sdm::inside

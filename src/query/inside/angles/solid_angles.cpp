@@ -1,7 +1,7 @@
-#include "query/inside/solid_angles.h"
+#include "query/inside/angles/solid_angles.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query/inside/solid_angles.cpp"
+#define HWY_TARGET_INCLUDE "query/inside/angles/solid_angles.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -16,6 +16,7 @@
 #include "geometry/lanes/vec-inl.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
+#include "query/inside/angles/expansions-inl.h"
 
 #ifndef SDM_SOLID_ANGLES_ONCE
 #define SDM_SOLID_ANGLES_ONCE
@@ -41,7 +42,7 @@ double next_error(double most, double wanted, double sum) {
 // No face is seen from a point at this distance from the origin under more than A / g².
 SolidAngle far_away(const SolidAngles& angles, double from_origin) {
   double area = 0;
-  for (const float of_child : angles.expansions[0].area) area += of_child;
+  for (const float of_child : angles.expansions.nodes[0].area) area += of_child;
   const double gap = from_origin - 2;
   return {0, area / (gap * gap)};
 }
@@ -95,7 +96,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace lanes::HWY_NAMESPACE;
 
 constexpr size_t kWidth = Expansions::kWidth;
-using Floats = hn::CappedTag<float, kWidth>;
+using Floats = ChildFloats;
 
 // The sum at one point while it is refined.
 class Refinement {
@@ -172,7 +173,7 @@ class Refinement {
 
   // Adds the expansions of a node's children, and opens those whose errors would be large.
   void expand(uint32_t index) {
-    const Expansions& e = angles_.expansions[index];
+    const Expansions& e = angles_.expansions.nodes[index];
     const uint32_t children = angles_.wide.nodes[index].count;
     const Floats d;
     const hn::RebindToUnsigned<Floats> du;
@@ -194,26 +195,10 @@ class Refinement {
                                     hn::Mul(hn::Add(displacement, displacement), steepness));
       auto part = hn::And(hn::Gt(gap, hn::Zero(d)), hn::Le(error, most));
       part = hn::And(part, hn::FirstN(d, children - i));
-      add_terms(part, value(e, i, r, squared, inverse), error, gap, steepness,
+      add_terms(part, expansion_value(e, i, r, squared, inverse), error, gap, steepness,
                 hn::Add(hn::Iota(du, 0), hn::Set(du, static_cast<uint32_t>(index * kWidth + i))));
       open_others(i, part, children, index);
     }
-  }
-  // Of the expansion at r = c − q.
-  static hn::Vec<Floats> value(const Expansions& e, size_t i, const hn::Vec<Floats> (&r)[3],
-                               hn::Vec<Floats> squared, hn::Vec<Floats> inverse) {
-    const Floats d;
-    const auto of = [&](int k) HWY_ATTR { return hn::Load(d, e.first[k] + i); };
-    const auto two = hn::Set(d, 2);
-    const auto x = hn::MulAdd(of(0), r[0], hn::Mul(two, hn::Mul(of(3), r[1])));
-    const auto y = hn::MulAdd(of(1), r[1], hn::Mul(two, hn::Mul(of(4), r[2])));
-    const auto z = hn::MulAdd(of(2), r[2], hn::Mul(two, hn::Mul(of(5), r[0])));
-    const auto along = hn::MulAdd(r[2], z, hn::MulAdd(r[1], y, hn::Mul(r[0], x)));
-    hn::Vec<Floats> moment[3];
-    load(d, e.moment, i, moment);
-    const auto trace = hn::Add(hn::Add(of(0), of(1)), of(2));
-    const auto sum = hn::NegMulAdd(hn::Set(d, 3), hn::Div(along, squared), hn::Add(dot(moment, r), trace));
-    return hn::Mul(inverse, sum);
   }
   template <class V, class Mask, class Places>
   HWY_INLINE void add_terms(Mask part, V value, V error, V gap, V steepness, Places places) {
@@ -247,7 +232,7 @@ class Refinement {
     for (size_t first = 0; first < items.size(); first += kLanes)
       add_faces(items.subspan(first, std::min(kLanes, items.size() - first)));
     const double gap = norm(tree::gap(tree_.tree.box(leaf), unit_));
-    const double area = angles_.expansions[place / kWidth].area[place % kWidth];
+    const double area = angles_.expansions.nodes[place / kWidth].area[place % kWidth];
     nearest_leaf_ = std::min(nearest_leaf_, gap);
     steepness_of_leaves_ += gap > 0 ? area / (gap * gap * gap) : std::numeric_limits<double>::infinity();
   }
@@ -327,7 +312,7 @@ SolidAngles::SolidAngles(const OrientedFaces& all, const tree::WideTree& collaps
     : faces(all), wide(collapsed), expansions(expansions_of(all, collapsed)) {}
 
 SolidAngles::Sum SolidAngles::at(const Vec3& q, double limit, double tolerance) const {
-  if (expansions.empty()) return {{}, std::numeric_limits<double>::infinity()};
+  if (empty()) return {{}, std::numeric_limits<double>::infinity()};
   return HWY_DYNAMIC_DISPATCH(SumAt)(*this, q, limit, tolerance);
 }
 

@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "query/inside/expansions.h"
-#include "query/inside/oriented_faces.h"
-#include "query/inside/solid_angle.h"
+#include "query/inside/angles/expansions.h"
+#include "query/inside/angles/oriented_faces.h"
+#include "query/inside/angles/solid_angle.h"
 
 namespace sdm::inside {
 
@@ -28,12 +28,12 @@ class SolidAngles {
   /// is on a face.
   [[nodiscard]] Sum at(const Vec3& q, double limit, double tolerance) const;
 
-  [[nodiscard]] bool empty() const { return expansions.empty(); }
+  [[nodiscard]] bool empty() const { return expansions.nodes.empty(); }
 
   // For the sums.
   OrientedFaces faces;
   const tree::WideTree& wide;
-  std::vector<Expansions> expansions;  ///< of each node of the wide tree
+  TreeExpansions expansions;
 };
 
 }  // namespace sdm::inside

@@ -1,0 +1,27 @@
+// The solid angle of many triangles, compared with a limit at points near to each other.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <cstdint>
+#include <span>
+
+#include "query/inside/angles/solid_angles.h"
+
+namespace sdm::inside {
+
+/// Bits of the points of a packet whose side of the limit is known, and of those above it.
+struct PacketSides {
+  std::uint32_t known = 0, above = 0;
+};
+
+/// Compares the sums of the angles at `points`, at most kPacket, with a limit for each. One search of the
+/// tree serves all of them: what is far from the packet is expanded about its centre, up to the first
+/// derivative by the position of the point, and the faces that remain are evaluated at all points at once, in
+/// single precision, with a bound on all errors. Few sides remain unknown if the packet is not larger than
+/// what is around it; all of them do if too many faces are near, which costs less than a sum.
+inline constexpr std::size_t kPacket = 16;
+[[nodiscard]] PacketSides sides_of_packet(const SolidAngles& angles, std::span<const Vec3> points,
+                                          std::span<const double> limits);
+
+}  // namespace sdm::inside
