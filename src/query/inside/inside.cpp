@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 #include <optional>
 
@@ -41,6 +42,28 @@ class Balls {
   std::array<Ball, 8> balls_{};
 };
 thread_local Balls balls;
+
+// Whether packets of this thread are searched together: after one in which less than half of the points were
+// decided, some are not, twice as many each time. Answers do not depend on it.
+class PacketTrials {
+ public:
+  [[nodiscard]] bool due(std::uint64_t shape) {
+    if (shape != shape_) *this = {}, shape_ = shape;
+    if (to_skip_ == 0) return true;
+    --to_skip_;
+    return false;
+  }
+  void learn(bool paid) {
+    constexpr std::uint32_t kMostSkipped = 63;
+    skipped_ = paid ? 0 : std::min(2 * skipped_ + 1, kMostSkipped);
+    to_skip_ = skipped_;
+  }
+
+ private:
+  std::uint64_t shape_ = 0;
+  std::uint32_t to_skip_ = 0, skipped_ = 0;
+};
+thread_local PacketTrials packet_trials;
 
 // The answer of a test of a solid: it holds wherever a ball that the surface does not meet leads.
 WindingNumber::Side of_solid(bool inside) {
@@ -167,9 +190,11 @@ std::uint32_t InsideTest::above_half(std::span<const Vec3> queries, const Closes
   if (count >= kFewest) {
     Box box;
     for (const Vec3& query : std::span(open_queries).first(count)) extend(box, query);
-    if (largest < 0.25 * norm(box.hi - box.lo))
+    if (largest < 0.25 * norm(box.hi - box.lo) && packet_trials.due(signs_->number)) {
       sides = winding_->above_half(std::span(open_queries).first(count), std::span(open_closest).first(count),
                                    few);
+      packet_trials.learn(2 * static_cast<std::size_t>(std::popcount(sides.known)) >= count);
+    }
   }
   for (std::size_t k = 0; k < count; ++k) {
     const bool is_inside = (sides.known >> k & 1u) != 0 ? (sides.above >> k & 1u) != 0
