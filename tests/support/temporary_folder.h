@@ -13,8 +13,7 @@ class TemporaryFolder {
  public:
   TemporaryFolder() : TemporaryFolder(std::filesystem::temp_directory_path()) {}
   explicit TemporaryFolder(const std::filesystem::path& parent) {
-    std::random_device random;
-    do path_ = parent / ("sdm-test-" + std::to_string(random()));
+    do path_ = parent / ("sdm-test-" + random_letters());
     while (!std::filesystem::create_directory(path_));
   }
   ~TemporaryFolder() {
@@ -29,6 +28,14 @@ class TemporaryFolder {
   [[nodiscard]] bool empty() const { return std::filesystem::is_empty(path_); }
 
  private:
+  /// Always six, so that lines with a path of the folder are of one length.
+  static std::string random_letters() {
+    std::random_device random;
+    std::string letters(6, ' ');
+    for (char& letter : letters) letter = static_cast<char>('a' + random() % 26);
+    return letters;
+  }
+
   std::filesystem::path path_;
 };
 
