@@ -24,8 +24,8 @@ void parallel_invoke(const std::function<void()>& first, const std::function<voi
 /// The same for step(0) to step(count - 1): those that have not started are skipped when one throws.
 void parallel_steps(std::size_t count, const std::function<void(std::size_t)>& step);
 
-/// While it exists, this thread starts no other work when it waits in parallel_invoke or parallel_steps: to be
-/// held with every lock under which they may be called, as the other work might need the lock.
+/// While it exists, this thread starts no other work when it waits in parallel_invoke or parallel_steps: to
+/// be held with every lock under which they may be called, as the other work might need the lock.
 class Alone {
  public:
   explicit Alone(bool alone = true) noexcept;
