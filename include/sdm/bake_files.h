@@ -71,8 +71,8 @@ class SDM_API DetailedView {
   /// cores.
   DetailedView(const BakedFrom& from, const Mesh& o1);
 
-  /// As the page has it.
-  struct Data;
+  struct Data;  ///< of the library's own
+  /// What write_baked_html() writes.
   [[nodiscard]] const Data& data() const { return *data_; }
 
  private:
