@@ -70,7 +70,11 @@ Notes file_notes(const Input& o1, const Input& o2) {
 
 Notes notes_on(const Input& o1, const Input& o2) {
   Notes notes = file_notes(o1, o2);
-  append(notes, sdm::notes_on(sdm::bounds(o1.mesh), sdm::bounds(o2.mesh)));
+  // The mesh of an inspected input may have moved elsewhere.
+  const auto box = [](const Input& input) {
+    return input.info ? input.info->bounds : sdm::bounds(input.mesh);
+  };
+  append(notes, sdm::notes_on(box(o1), box(o2)));
   return notes;
 }
 

@@ -151,6 +151,14 @@ TEST_F(BakeCommandTest, ModelsLookLikeTheDetailedMesh) {
   }
 }
 
+// Once, the mesh of HIGH had moved into its sites before it was compared with LOW.
+TEST_F(BakeCommandTest, NotesThatUnitsDiffer) {
+  const Outcome outcome = run({"--transform-low", "scale:1000", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(Json::parse(outcome.out)["notes"].dump(),
+              HasSubstr("times the other; millimetres and metres?"));
+}
+
 TEST_F(BakeCommandTest, ReportsStateWhatWasFound) {
   const Outcome outcome = run({"--max-distance", "0.01", "--json", "--units", "mm"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
