@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Makes the pictures of the front page, and of docs/baking.md: make_images.py MESHES, the folder of CGAL's data/meshes; with `sdm` and
-`chromium-headless-shell` on the path."""
+`chromium-headless-shell` on the path, after a build of the tests, whose packages drive the browser."""
 
 import contextlib
 import functools
@@ -17,7 +17,8 @@ import numpy as np
 import sdm
 
 FOLDER = Path(__file__).resolve().parent
-MESHES = Path(sys.argv[1])
+MESHES = Path(sys.argv[1]).absolute()
+PACKAGES = FOLDER.parent.parent / "build" / "dev" / "dev_packages"
 
 
 def placed(mesh: sdm.Mesh, scale: float, shift: tuple[float, float, float], turn: float = 0) -> sdm.Mesh:
@@ -84,11 +85,7 @@ def inspection_card() -> None:
 
 def picture_of_page(address: str, picture: str, width: int = 1280, height: int = 800) -> None:
     """What a browser shows of a page."""
-    subprocess.run(
-        ["chromium-headless-shell", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-         "--hide-scrollbars", "--force-device-scale-factor=1", f"--window-size={width},{height}", "--timeout=12000",
-         f"--screenshot={FOLDER / picture}", address],
-        check=True)  # fmt: skip
+    subprocess.run(["node", FOLDER / "picture_of_page.cjs", address, FOLDER / picture, str(width), str(height)], cwd=PACKAGES, check=True)
 
 
 @contextlib.contextmanager
@@ -106,9 +103,7 @@ THREE_VIEWS = """<!doctype html>
 <style>body { margin: 0; display: flex } iframe { border: 0; width: 440px; height: 340px }</style>
 <iframe src="asset/report.html"></iframe><iframe src="asset/report.html"></iframe><iframe src="asset/report.html"></iframe>
 <script>
-  const show = (frame, i) => {
-    const page = frame.contentDocument;
-    if (page.documentElement.dataset.ready === undefined) return setTimeout(show, 50, frame, i);
+  const show = (page, i) => {
     const style = page.createElement('style');
     style.textContent = `#view { position: fixed !important; inset: 0; z-index: 9; width: 440px !important; height: 340px !important;
       border: 0; border-radius: 0; background: white } #view > :not(canvas) { display: none }`;
@@ -118,7 +113,14 @@ THREE_VIEWS = """<!doctype html>
     split.dispatchEvent(new Event('input'));
     if (i === 2) page.getElementById('edges').click();
   };
-  addEventListener('load', () => document.querySelectorAll('iframe').forEach(show));
+  const whenReady = (frame, i) =>
+    new Promise((resolve) => {
+      const look = () => frame.contentDocument.documentElement.dataset.ready === undefined ? setTimeout(look, 50)
+        : resolve(show(frame.contentDocument, i));
+      look();
+    });
+  addEventListener('load', () => Promise.all([...document.querySelectorAll('iframe')].map(whenReady))
+    .then(() => document.documentElement.dataset.ready = ''));
 </script>
 """
 
