@@ -86,7 +86,7 @@ class ChannelBaker {
   struct Filled {
     std::vector<float> values, coverage;
   };
-  /// Of samples, of which those that are not finite are none.
+  /// The texels that samples make; samples that are not finite count as missing.
   [[nodiscard]] Filled filled(std::size_t components, std::vector<float> samples,
                               sdm::SampleKind kind = sdm::SampleKind::numbers) const;
 
@@ -214,7 +214,7 @@ void ChannelBaker::add_normals(GeometryChannel channel, const std::vector<float>
   result.normal_map.png = std::move(png);
 }
 
-/// Of the model, unless a texture of HIGH is.
+/// Makes this the occlusion of the model, unless a texture of HIGH is.
 void ChannelBaker::add_occlusion(const std::vector<float>& values) {
   const auto encode = [&](std::uint32_t resolution, const std::vector<float>& of_size) {
     return sdm::encode_png(sdm::scalar_image(resolution, of_size, 0, 1, 8).image, false);

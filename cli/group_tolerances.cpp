@@ -74,7 +74,7 @@ std::string no_group(const std::string& name, const Input& mesh) {
 
 namespace {
 
-// Of several meshes that could have had it.
+// The sentence names all meshes that could have the group.
 std::string no_group_of(const std::string& name, std::span<const Input* const> meshes) {
   if (meshes.size() == 1) return no_group(name, *meshes[0]);
   std::vector<std::string> files, known;

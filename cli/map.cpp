@@ -73,7 +73,7 @@ Json report_of(const std::vector<MeshMaps>& meshes) {
   return {{"o1", meshes[0].report()}, {"o2", meshes[1].report()}};
 }
 
-/// Of each mesh the folder with its page, or with that of its first tile.
+/// The folder of each mesh's page; of a mesh in UDIM tiles, that of its first tile.
 std::vector<std::string> page_folders(const MapCommand& command, const std::vector<MeshMaps>& meshes) {
   std::vector<std::string> folders;
   for (const MeshMaps& mesh : meshes) {

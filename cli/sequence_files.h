@@ -28,7 +28,7 @@ class SequenceFiles {
   /// `first`: the bodies in their first frames. `command` and `out` must outlive the files.
   SequenceFiles(const SequenceCommand& command, OutputFolder& out, const std::array<sdm::Mesh, 2>& first);
 
-  /// Of the files of both inputs, for player.html.
+  /// Sets the checksums of both inputs' files, which player.html states.
   void set_checksums(std::array<std::string, 2> xxh3) { xxh3_ = std::move(xxh3); }
   /// Adds a line to frames.jsonl, and with --json to the standard output.
   void add_line(const nlohmann::ordered_json& json);

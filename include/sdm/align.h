@@ -108,8 +108,8 @@ struct Alignment {
   AlignResiduals after;
   std::size_t samples = 0;
   double fraction_used = 0;  ///< of the samples, in the last step; the others are taken for outliers
-  /// Of the samples: those used, and those within 1e-5 of the radius of gyration of O2, since rounding of
-  /// coordinates makes no outliers.
+  /// The fraction of the samples that were used or lie within 1e-5 of the radius of gyration of O2, since
+  /// rounding of coordinates makes no outliers.
   double fraction_fitting = 0;
   int iterations = 0;          ///< of all levels
   bool converged = false;      ///< the last step moved O1 by less than 1e-6 of its radius of gyration

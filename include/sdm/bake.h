@@ -45,7 +45,7 @@ inline constexpr BakeChannel kBakeChannels[] = {BakeChannel::base_color, BakeCha
 /// How the faces of a mesh look: of a MeshFile its arrays, with the pictures decoded.
 struct MeshLook {
   std::span<const Material> materials{};
-  /// For each face its material, or kNone: that of Material(). Empty: kNone for all.
+  /// The material of each face, or kNone: that of Material(). Empty: kNone for all.
   std::span<const std::uint32_t> face_materials{};
   /// The pictures that materials refer to. An empty one (width 0): there is no such texture.
   std::span<const Image> pictures{};

@@ -60,12 +60,12 @@ inline constexpr GeometryChannel kGeometryChannels[] = {
 
 /// Options of bake_geometry().
 struct GeometryOptions {
-  /// Of `normal` and `object_normal`, at the corners of O2's faces; null: smooth_normals() of O2.
+  /// Normals at the corners of O2's faces, for `normal` and `object_normal`; null: smooth_normals() of O2.
   const MeshAttribute* normals = nullptr;
-  /// Of `normal`: what the model of O1 is drawn with; both are needed.
+  /// What the model of O1 is drawn with, for `normal`, which needs both.
   const MeshAttribute *drawn_normals = nullptr, *drawn_tangents = nullptr;
-  /// Of `displacement`, at the corners of O1's faces; null: smooth_normals() of O1, so that displaced faces
-  /// meet at their edges.
+  /// Directions at the corners of O1's faces, for `displacement`; null: smooth_normals() of O1, so that
+  /// displaced faces meet at their edges.
   const MeshAttribute* directions = nullptr;
   AmbientOcclusionOptions occlusion{};             ///< its progress is ignored
   ThicknessMethod method = ThicknessMethod::ball;  ///< of `thickness`

@@ -23,10 +23,10 @@ struct HausdorffOptions {
   /// rounding permits no less.
   std::optional<double> precision{};
   static constexpr double kPrecision = 1e-6;
-  /// In degrees, above 0 and at most 180: points are measured only to the closed faces of the other surface
-  /// whose normal is within this angle of that of their own face; at 90 less than that. Without it, to all.
-  /// Normals are outward of closed, orientable meshes, otherwise by the order of corners; allowed is what
-  /// closest_facing_points() allows, decided in double precision.
+  /// An angle in degrees, above 0 and at most 180: points are measured only to the closed faces of the other
+  /// surface whose normal is within this angle of that of their own face; at 90 less than that. Without it,
+  /// to all. Normals are outward of closed, orientable meshes, otherwise by the order of corners; allowed is
+  /// what closest_facing_points() allows, decided in double precision.
   std::optional<double> facing{};
   Progress progress{};
 };
@@ -38,8 +38,8 @@ struct HausdorffDistance {
   /// most 1e-12 of the diagonal of the box of both meshes.
   BoundedLength distance{};
   std::array<std::uint32_t, 2> faces{kNone, kNone};  ///< a face of A and one of B that contain the witness
-  /// With HausdorffOptions::facing: the faces of A that have an area, but no allowed face of B, and their
-  /// share of A's area, in [0, 1]. They have no distance, and are left out.
+  /// Set with HausdorffOptions::facing: the number of faces of A that have an area, but no allowed face of B,
+  /// and their share of A's area, in [0, 1]. They have no distance, and are left out.
   std::size_t faces_without_match = 0;
   double area_without_match = 0;
 };

@@ -62,7 +62,7 @@ struct MeshFile {
   std::vector<MeshAttribute> attributes{};     ///< of glTF, OBJ and PLY
   std::vector<Material> materials{};           ///< of glTF, and of the MTL files of OBJ
   std::vector<TextureFile> textures{};         ///< that these refer to
-  /// For each triangle, the number of its material, or kNone; empty if there are no materials.
+  /// The number of each triangle's material, or kNone; empty if there are no materials.
   std::vector<std::uint32_t> face_materials{};
 };
 
@@ -202,7 +202,8 @@ SDM_API void write_views_png(const std::filesystem::path& file, const Surface& s
 
 /// Where a view is seen from, and what else it shows.
 struct ViewOptions {
-  /// From the part to the viewer: to the right, up (PictureOptions::up) and to the front. Not zero.
+  /// The direction from the part to the viewer: to the right, up (PictureOptions::up) and to the front. Not
+  /// zero.
   Vec3 towards{0.7, 0.5, 1};
   std::uint32_t width = 1200, height = 900;  ///< pixels of the view, from 64 to 8192; the legend is beside it
   const Mesh* other = nullptr;               ///< O2, which is drawn pale; null: O1 only
@@ -267,8 +268,8 @@ struct HtmlOptions {
   UpAxis up = UpAxis::y;                  ///< the axis of the meshes that points up
   const CoverageMap* coverage = nullptr;  ///< of `other`, on which it is drawn
   std::span<const FaceNames> names{};     ///< of the faces of O1: what a click on a group shows apart
-  /// Of wall thickness, and of the distance of a mesh to itself: the list of places is of the texels of least
-  /// value, or of largest value.
+  /// The list of places is that of the texels of least value, or of largest value: for wall thickness, and
+  /// for the distance of a mesh to itself.
   bool thinnest = false, thickest = false;
   // The size of the page, which grows with what it shows:
   std::uint32_t largest = 1024;              ///< the most texels a side; half from 200,000 triangles on

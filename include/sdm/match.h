@@ -34,7 +34,7 @@ enum class MatchKind : std::uint8_t {
   facing_away  ///< unmatched: no face faces as the sample does, at any distance
 };
 
-/// For each texel of the atlas of O1 (resolution · rows(), row 0 at the top): a point of O2.
+/// A point of O2 for each texel of the atlas of O1 (resolution · rows(), row 0 at the top).
 struct TexelMatches {
   std::uint32_t resolution = 0;  ///< texels per row
   std::vector<MatchKind> kind;
@@ -67,16 +67,16 @@ enum class MatchMethod : std::uint8_t {
 /// Options of match_texels().
 struct MatchOptions {
   MatchMethod method = MatchMethod::facing;
-  /// Of `facing` and `ray`, in degrees, above 0 and up to 180: allowed are the faces of O2 whose normal is
-  /// within it of the normal of the sample's face, as closest_facing_points() has it.
+  /// An angle in degrees, above 0 and up to 180, for `facing` and `ray`: allowed are the faces of O2 whose
+  /// normal is within it of the normal of the sample's face, as closest_facing_points() has it.
   double facing = 90;
-  /// Of `ray`, greater than 0, in units of the meshes: how far along the normal, to either side, hits are
-  /// searched for. Beyond a part of O1, hits may belong to another part of O2.
+  /// How far along the normal, to either side, `ray` searches for hits: greater than 0, in units of the
+  /// meshes. Beyond a part of O1, hits may belong to another part of O2.
   double cage = std::numeric_limits<double>::infinity();
   /// Greater than 0, in units of the meshes. Points of O2 farther than this do not match.
   double max_distance = std::numeric_limits<double>::infinity();
-  /// Of `ray`: normals at the corners of O1's faces, such as those of its file; null: smooth_normals(), which
-  /// leave no gap between the rays of faces that meet at an edge.
+  /// Normals at the corners of O1's faces, such as those of its file, for `ray`; null: smooth_normals(),
+  /// which leave no gap between the rays of faces that meet at an edge.
   const MeshAttribute* normals = nullptr;
   std::shared_ptr<const Engine> engine{};  ///< null: the cpu engine
   Progress progress{};

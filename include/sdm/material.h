@@ -23,8 +23,8 @@ enum class TextureWrap : std::uint8_t {
 struct TextureUse {
   std::uint32_t texture = kNone;  ///< of MeshFile::textures; kNone: there is none
   std::uint32_t uv_set = 0;       ///< 0: Mesh::corner_uvs; n: the attribute `uv<n>`
-  /// From texture coordinates to places in the texture, (0, 0) at its lower left and (1, 1) at its upper
-  /// right: rows of an affine map.
+  /// The affine map, by rows, from texture coordinates to places in the texture: (0, 0) at its lower left,
+  /// (1, 1) at its upper right.
   std::array<std::array<double, 3>, 2> place{{{1, 0, 0}, {0, 1, 0}}};
   std::array<TextureWrap, 2> wrap{};  ///< along u and v
 

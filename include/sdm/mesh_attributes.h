@@ -25,7 +25,7 @@ struct MeshAttribute {
   std::string name;
   std::size_t components = 1;
   std::vector<float> values;  ///< row after row
-  /// For each triangle of the mesh, the rows of its corners; kNone: the file has none. Arrays that the file
+  /// The rows of the corners of each triangle of the mesh; kNone: the file has none. Arrays that the file
   /// has for its vertices share them.
   std::shared_ptr<const std::vector<Triangle>> rows;
 };

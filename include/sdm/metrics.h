@@ -44,7 +44,7 @@ struct DirectedMetrics {
   BoundedNumber mean{};                      ///< of d
   BoundedNumber rms{};                       ///< the root of the mean of d²
   std::vector<BoundedNumber> percentiles{};  ///< for each percentile P, the least t with d ≤ t on P % of A
-  /// For each tolerance t, the fraction of A with d ≤ t, in [0, 1]. Rounding exceeds no tolerance: t is
+  /// The fraction of A with d ≤ t for each tolerance t, in [0, 1]. Rounding exceeds no tolerance: t is
   /// kRounding of the diagonal of the box of both meshes more than given.
   std::vector<BoundedNumber> within{};
   /// The mean of |n(p)·n(q)| for the normals of the faces at p and at its closest point q, in [0, 1]: an

@@ -23,7 +23,7 @@ namespace sdm {
 /// A region whose distances are all beyond the limit on the same side, or which has no distances. All its
 /// faces are judged by the same rows of a table.
 struct Place {
-  /// Of all its samples the one that is farthest beyond its limit; NaN where a tolerance asks for values, and
+  /// The distance of the sample that is farthest beyond its limit; NaN where a tolerance asks for values, and
   /// the samples have none.
   double distance = 0;
   Tolerance limits{};            ///< of that sample; infinite where there is none on a side
@@ -51,8 +51,8 @@ struct Places {
   bool by_tolerance = false;  ///< the limits are those of the tolerances; otherwise ±`p99_abs`
   double least_fraction = 0;  ///< of the area or the points: places below it are small
   PlaceTotals large, small;
-  /// At most kListed: first those that are not small, then the small ones, by how far they are beyond
-  /// the limit; of each those without a value last, by their extent.
+  /// The first kListed places: those that are not small, then the small ones, both by how far they are beyond
+  /// the limit; those without a value come last, by their extent.
   std::vector<Place> largest;
 
   static constexpr std::size_t kListed = 10;

@@ -172,7 +172,7 @@ struct PointDistancesOptions {
   TextDialect text{};                  ///< of a cloud in text, as of PointReader
   std::span<const FaceNames> names{};  ///< of the faces of O2
   std::span<const GroupTolerance> table{};  ///< tolerances of these names
-  /// Of this cloud: their points have no value and count for nothing but their number.
+  /// Islands of this cloud, whose points have no value and only add to a count.
   const CloudIslands* islands = nullptr;
 };
 

@@ -36,9 +36,9 @@ namespace sdm {
 
 /// Colour scales for distances.
 enum class Colormap {
-  /// With a tolerance, bands; otherwise viridis if no distance is negative, sequential if less than 5 % of
-  /// the area is on one side of 0, or nothing farther than a tenth of the 99th percentile of |distance|,
-  /// and diverging if neither.
+  /// Bands with a tolerance; otherwise viridis if no distance is negative, sequential if less than 5 % of
+  /// the area is on one side of 0, or nothing there farther than a tenth of the 99th percentile of
+  /// |distance|, and diverging if neither.
   automatic,
   viridis,
   sequential,  ///< viridis from 0 to the end of the one side, reds for the other one

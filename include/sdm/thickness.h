@@ -24,7 +24,7 @@ enum class ThicknessMethod : std::uint8_t {
 
 /// Options of thickness_maps() and thickness_at_vertices().
 struct ThicknessOptions {
-  /// Of the ball, in degrees, greater than 0 and less than 180: it is stopped by faces whose normal turns
+  /// An angle in degrees, greater than 0 and less than 180: the ball is stopped by faces whose normal turns
   /// from that of the point's face by more than this. Faces that turn less are the neighbourhood of the
   /// point, which would stop any ball at 0.
   double angle = 90;

@@ -46,8 +46,8 @@ struct ToleranceProof {
   /// Undecided because it depends on signs that are estimates (is_estimate()): some point
   /// is within the tolerance with one sign and out of it with the other.
   bool depends_on_signs = false;
-  /// With ToleranceProofOptions::facing: the faces of the surface with an area, but without an allowed face
-  /// of O2. They have no distance, so that nothing is proven to be inside.
+  /// Set with ToleranceProofOptions::facing: the number of faces of the surface with an area, but without an
+  /// allowed face of O2. They have no distance, so that nothing is proven to be inside.
   std::size_t faces_without_match = 0;
 };
 

@@ -30,8 +30,8 @@ struct AttributeArray {
   std::span<const float> values;  ///< row after row
   std::size_t components = 1;     ///< of a row
   AttributeDomain domain = AttributeDomain::vertex;
-  /// Of corners that share rows, as of MeshAttribute::rows: the rows of each face's corners, where kNone has
-  /// the value NaN. Empty: every corner has its own.
+  /// The rows of each face's corners, if corners share rows as in MeshAttribute::rows; kNone has the value
+  /// NaN. Empty: every corner has its own.
   std::span<const Triangle> rows{};
 };
 

@@ -34,7 +34,7 @@ struct PyBaked {
   AtlasOptions atlas;      ///< of the surface
   Surface surface;         ///< its texels are the samples
   std::uint32_t side = 1;  ///< of a texel, in samples
-  // For each texel.
+  // One entry a texel:
   std::vector<MatchKind> kinds;
   std::vector<float> coverage;  ///< the share of its samples that have a point
   std::vector<BakedChannel> channels;

@@ -162,7 +162,7 @@ bool has_point(MatchKind kind) {
   return kind == MatchKind::closest || kind == MatchKind::facing || kind == MatchKind::ray;
 }
 
-/// For each texel the kind of most of its samples that have a point; else of those that a face owns.
+/// The kind of most samples of each texel that have a point; if none has, of those that a face owns.
 std::vector<MatchKind> kinds_of_texels(const SampleGrid& grid, const std::vector<MatchKind>& samples) {
   if (grid.side == 1) return samples;
   const auto most = [&](bool with_point) {

@@ -33,7 +33,7 @@ std::vector<Triangle> rows_of(const Mesh& mesh, std::string_view domain) {
   return rows;
 }
 
-/// In sRGB, with alpha if there are four.
+/// Adds colours in sRGB, with alpha if they have four components.
 void add_colors(const Colors& colors, const std::string& domain, MeshFile& file) {
   const std::size_t count = domain == "vertex" ? file.mesh.positions.size()
                             : domain == "face" ? file.mesh.triangles.size()

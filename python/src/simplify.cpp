@@ -29,7 +29,7 @@ struct Limit {
       throw Error("simplify() takes either max_deviation or triangles");
     if (!count.is_none()) triangles = static_cast<std::size_t>(integer_of(count, "triangles", 1));
   }
-  /// Of a level, 0 for the finest one: each has twice the deviation, or half of the triangles.
+  /// Makes a level, 0 for the finest one: each has twice the deviation, or half of the triangles.
   [[nodiscard]] Simplified apply(Simplifier& simplifier, std::size_t level,
                                  const SimplifyOptions& options) const {
     const double factor = std::ldexp(1, static_cast<int>(level));

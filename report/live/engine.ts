@@ -14,14 +14,14 @@ export interface Body extends Triangles {
   film?: Film; ///< of an animated file
 }
 
-/// Of a moment.
+/// The map of one frame, while a body moves.
 export interface FrameResult {
   distances: Float32Array;
   separation: number;
   milliseconds: number; ///< that it took to compute
 }
 
-/// At rest.
+/// The map at full size, once nothing moves.
 export interface FineResult extends Omit<FrameResult, 'separation'> {
   atVertices: Float64Array | null; ///< null: those of the texels
   sites: Uint32Array; ///< 4 · number + type of each texel, 0xFFFFFFFF without one
@@ -180,7 +180,7 @@ export class Engine {
     return { distances: arrays.distances!, atVertices: atVertices?.distances ?? null, sites, milliseconds, report };
   }
 
-  /// For each texel of the fine map, the point of the reference that belongs to it.
+  /// The point of the reference that belongs to each texel of the fine map.
   match(options: MatchOptions): Promise<WorkerMatches> {
     return this.worker.match((this.fine ?? this.coarse!).surface, this.sites!, options);
   }

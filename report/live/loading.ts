@@ -65,7 +65,7 @@ export class Loading {
     await this.run((load) => this.put(filesOf([part, bodies[0]], units), load));
   }
 
-  /// Of the map at rest; a pair that is being loaded comes first.
+  /// Sets the size of the map at rest, after a pair that is being loaded.
   async setResolution(resolution: number): Promise<void> {
     this.wanted = resolution;
     while (this.current) await this.running;

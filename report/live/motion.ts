@@ -121,7 +121,7 @@ export class Motion {
     return result;
   }
 
-  /// Of a scene, those of its next frame; of files, the reference turns.
+  /// The positions in the next frame of a scene; of files, the reference turns.
   private async nextPositions(): Promise<[Float64Array, Float64Array] | null> {
     const { scene, pair } = this.session;
     if (scene) return scene.advance();

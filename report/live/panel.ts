@@ -96,7 +96,7 @@ export function showPlaying(playing: boolean): void {
   byId('play').textContent = playing ? 'Stop' : 'Play';
 }
 
-/// In words, an error.
+/// Shows an error as a sentence.
 export function sayFault(error: unknown): void {
   const words = error instanceof Error ? error.message : String(error);
   say(/[.?!]$/.test(words) ? words : `${words}.`, 'fault');

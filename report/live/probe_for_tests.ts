@@ -16,7 +16,7 @@ export class Probe {
   get numbers(): Report | null { return this.session.report; }
   get atRest(): boolean { return !this.motion.isPumping && !this.session.moving && !this.session.loading && (this.session.pair?.view.atRest ?? false); }
   get counts(): MatchCounts | null { return this.baking.counts; }
-  /// Of texels that have a point, the share whose pixels in `png` differ by more than `most` from what is shown.
+  /// The share of texels with a point whose pixels in `png` differ by more than `most` from what is shown.
   async differing(png: Uint8Array<ArrayBuffer>, most: number): Promise<number> {
     const shown = this.session.pair!.subject.surface.painted!.pixels;
     const { data } = await decoded(png);
@@ -51,7 +51,7 @@ export class Probe {
       .every(({ x, y }) => x >= 0 && y >= 0 && x <= clientWidth && y <= clientHeight);
   }
 
-  /// Of the surface that is drawn.
+  /// The layout of the surface that is drawn.
   get drawn() {
     const { model, map, areas } = this.session.pair!.subject.surface.layout;
     return { triangles: model.trianglesOfMesh, resolution: map.width, area: areas.reduce((a, b) => a + b, 0) };

@@ -14,7 +14,7 @@ export class Rate {
     this.average = Number.isNaN(this.average) ? milliseconds : (1 - kShare) * this.average + kShare * milliseconds;
   }
 
-  /// Of the average frame.
+  /// Frames a second, by the average frame.
   get perSecond(): number {
     return 1000 / this.average;
   }

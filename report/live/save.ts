@@ -13,7 +13,7 @@ interface Savable {
   report: () => Promise<string>;
 }
 
-/// Of a unit; 1 of one that is none of these.
+/// Metres in a unit; 1 for other names.
 export const metresOf = (units: string): number => ({ m: 1, cm: 1e-2, mm: 1e-3, um: 1e-6, 'µm': 1e-6, in: 0.0254, ft: 0.3048 })[units] ?? 1;
 
 /// The part, coloured at its vertices, as a GLB. glTF has y up, and metres.

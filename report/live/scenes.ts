@@ -5,7 +5,7 @@ import { figureInBox } from './figure';
 import { letters } from './letters';
 import type { Scene } from './scene';
 
-/// By their names in `?scene=`.
+/// The scenes, by their names in `?scene=`.
 export const kScenes: Record<string, { title: string; make: (worker: SdmWorker) => Promise<Scene> }> = {
   letters: { title: 'Letters E and G', make: letters },
   figure: { title: 'Figure in a box', make: async () => figureInBox() },

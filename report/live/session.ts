@@ -48,10 +48,10 @@ export class Session {
   }
 
   private get signs(): boolean { return this.report !== null && isSigned(this.report); }
-  /// With the space before it.
+  /// The unit with the space before it; empty without one.
   get unitText(): string { return this.units && `\u00a0${this.units}`; }
   valueText(distance: number): string { return distanceText(distance, this.report!, this.signs) + unitOf(this.report!); }
-  /// Of a moment; a distance with its sign, as in the table of numbers, a length without one.
+  /// The text of a distance has its sign, as in the table of numbers; that of a length has none.
   signedText(distance: number): string { return signedText(distance, this.signs, 3) + this.unitText; }
   lengthText(length: number): string { return signedText(length, false, 3) + this.unitText; }
 }

@@ -57,7 +57,7 @@ export class LiveView extends View {
     if (this.camera.aspect !== aspect && JSON.stringify(this.pose) === this.fittedPose) this.fitAll();
   }
 
-  /// Without a motion, in the middle of the reference.
+  /// Puts the pivot in the middle of the reference, with no motion.
   private centrePivot(): void {
     const { lo, hi } = boxOf(this.referencePosition);
     this.pivot.position.set(...(lo.map((x, k) => (x + hi[k]) / 2) as Vec));

@@ -23,7 +23,7 @@ export class AreaByValue {
     areaOfBin.forEach((area, i) => this.binSums.push(this.binSums[i] + area));
   }
 
-  /// Of texels with their distances, NaN without one, and areas, 0 for those of no face.
+  /// Sums texels by their distances (NaN: none) and areas (0: no face).
   static of(distances: Float32Array, areas: Float64Array): AreaByValue {
     let [lo, hi, total, without] = [Infinity, -Infinity, 0, 0];
     areas.forEach((area, i) => {

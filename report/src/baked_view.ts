@@ -29,7 +29,7 @@ const kVertexShader = `
   }
 `;
 
-// In the light of a lamp beside the camera and of the surroundings: glTF's material (appendix B), with the fit of Karis, "Physically
+// glTF's material (appendix B) in the light of a lamp beside the camera and of the surroundings, with the fit of Karis, "Physically
 // Based Shading on Mobile", for the light that is reflected from the surroundings.
 const kShader = `
   precision highp float;
@@ -49,7 +49,7 @@ const kShader = `
     light = clamp(light, 0.0, 1.0);
     return mix(1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, 12.92 * light, lessThanEqual(light, vec3(0.0031308)));
   }
-  // Of a bright sky above a darker ground; the rougher the surface, the more of both it mirrors at once.
+  // What a surface mirrors of a bright sky above a darker ground; the rougher it is, the more of both at once.
   float mirrored(vec3 direction, float roughness) {
     float blurred = 0.75 + 0.25 * direction.y;
     float sharp = 0.2 + 1.5 * smoothstep(-0.2, 0.35, direction.y);

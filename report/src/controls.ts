@@ -264,7 +264,7 @@ export function makeControls(
   const sectionDetails = make('div', { hidden: true }, sectionAt.element, flipRow, make('p', { id: 'section-words', class: 'hint' }));
   const [ghostRow, ghostBox] = check('ghost', 'Show the reference as a ghost', ghostShown, (value) => { state.ghost = value; changed(); });
   const [coverageRow, coverageBox] = check('coverage', 'Show where the reference was measured, without the part', false, (value) => { state.coverage = value; enableColours(); changed(); });
-  // In the picture of coverage there are no colours of distances.
+  // The picture of coverage has no colours of distances.
   const enableColours = () => {
     modeSelect.disabled = state.coverage;
     for (const slider of Object.values(sliders)) slider.enable(!state.coverage);

@@ -122,7 +122,7 @@ export class SectionView {
 
   /// `part` is null for clouds, `other` if the reference is not in the page; `size` of a unit of the scene.
   constructor(readonly part: CutPart | null, readonly other: Cuttable | null, private readonly size: number) {
-    // Without an inside of the part, none of the reference is known to be where the part is not.
+    // The reference is filled where the part is not, which is known only of a part that has an inside.
     const filled = part?.isClosed ?? false;
     this.caps = new Caps([filled, filled && (other?.isClosed ?? false)]);
     this.object.add(this.caps.object, this.gap, this.profile, this.reference);

@@ -42,7 +42,7 @@ export function showSure(report: Report, unjudged = 0): void {
   if (sure) sayHowSure(sure, rest);
 }
 
-/// Of a player: of the verdict on all frames.
+/// How sure the verdict of a player is, which is one on all frames.
 export function howSureOfFrames(verdict: Verdict, certified: boolean): Sure {
   if (verdict === 'NOT DECIDED') return ['open', 'in some frame neither PASS nor FAIL is proven.'];
   if (!certified) return ['an estimate', 'it depends on the sign of a distance, and signs are estimates here.'];

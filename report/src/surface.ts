@@ -170,12 +170,12 @@ export class Surface implements Subject {
   protected get lookShader(): string { return 'vec3 lookHere(inout vec3 n) { return lookOfValue(); }'; }
   protected lookUniforms(): Uniforms { return {}; }
 
-  /// Of other vertices or values, coarse copies are made again.
+  /// Has coarse copies made again, for other vertices or values.
   protected forgetCopies(): void {
     for (const mesh of this.coarse) mesh.forget();
   }
 
-  /// Of the triangles of a coarser copy, which have no texels.
+  /// Colours a coarser copy by the values at its vertices, as its triangles have no texels.
   protected showVertexValues(geometry: BufferGeometry): void {
     const values = geometry.getAttribute('value') as BufferAttribute;
     this.model.distance.forEach((d, v) => (values.array[v] = Number.isNaN(d) ? kNoValue : d));

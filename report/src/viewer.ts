@@ -74,7 +74,7 @@ export class Viewer {
     this.draw();
   }
 
-  /// Of the picture, or of as many as are beside each other in it.
+  /// Fits the camera to the canvas, or to one of as many pictures as are beside each other in it.
   protected setAspect(pictures = 1): void {
     this.camera.aspect = this.fitted[0] / pictures / Math.max(1, this.fitted[1]);
     this.camera.updateProjectionMatrix();

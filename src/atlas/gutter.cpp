@@ -40,8 +40,8 @@ void Gutter::find_blocks() {
 }
 
 std::uint32_t Gutter::search(std::uint32_t x, std::uint32_t y) const {
-  // Of the texels of a row, the nearest one along it is nearest. Rows are visited from the nearest on, until
-  // they are farther than a ring with an owned texel.
+  // The nearest texel of a row is the nearest one along it. Rows are visited from the nearest on, until they
+  // are farther than a ring with an owned texel.
   int ring = width_ + 1, squared = 0, best_row = 0;
   std::uint32_t best = kNone;
   const auto visit = [&](int dy) {

@@ -39,7 +39,7 @@ struct UvSet {
 
 /// A channel of a look: what its materials multiply.
 struct ChannelLook {
-  /// Of one material; the last one is that of faces without one.
+  /// What one material has in the channel; the last layer is that of faces without a material.
   struct Layer {
     const Material* material;
     const MipChain* picture;  ///< or null

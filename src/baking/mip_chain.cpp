@@ -21,7 +21,7 @@ struct Cover {
 };
 
 Cover cover_of(std::uint32_t i, std::uint32_t smaller, std::uint32_t larger) {
-  // In units of 1 / smaller of a pixel of the larger row, all are whole.
+  // All limits are whole numbers of 1 / smaller of a pixel of the larger row.
   const std::uint64_t begin = std::uint64_t{i} * larger, end = begin + larger;
   Cover cover{.first = static_cast<std::uint32_t>(begin / smaller)};
   for (std::uint64_t pixel = cover.first; pixel * smaller < end; ++pixel) {
@@ -40,7 +40,7 @@ std::uint32_t wrapped(std::int64_t i, std::uint32_t count, TextureWrap wrap) {
   return static_cast<std::uint32_t>(rest < n ? rest : period - 1 - rest);
 }
 
-// Without the care of std::hypot() for squares beyond the range: these lengths are infinite, or 0.
+// Squares beyond the range, which std::hypot() avoids, make lengths infinite or 0 here.
 double length_of(const Vec2& side) {
   return std::sqrt(side[0] * side[0] + side[1] * side[1]);
 }
@@ -83,7 +83,7 @@ void add_pixel(const Numbers& numbers, std::size_t pixel, float weight, std::arr
   for (std::size_t k = 0; k < N; ++k) sum[k] += weight * numbers(pixel * N + k, k);
 }
 
-// Of numbers far from the largest ones: std::floor() is a call where SSE 4.1 is not assumed.
+// The floor of numbers far from the largest ones: std::floor() is a call where SSE 4.1 is not assumed.
 std::int64_t floor_of(double x) {
   const auto whole = static_cast<std::int64_t>(x);
   return whole - (static_cast<double>(whole) > x ? 1 : 0);

@@ -14,7 +14,7 @@ namespace sdm::baking {
 /// A picture with smaller and smaller means of it, each half as wide and as high.
 class MipChain {
  public:
-  /// Of a picture that is not empty, whose colours are in sRGB or plain numbers; it must outlive this. Cost:
+  /// Makes the chain of a picture that is not empty, in sRGB or of plain numbers; it must outlive this. Cost:
   /// linear, all cores, and as much memory as two thirds of a picture of 8 bits.
   MipChain(const Image& image, bool srgb);
 

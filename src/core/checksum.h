@@ -12,7 +12,7 @@
 
 namespace sdm::core {
 
-/// Of bytes that arrive in parts; how they are divided changes nothing.
+/// The checksum of bytes that arrive in parts; how they are divided changes nothing.
 class Checksum {
  public:
   Checksum() { XXH3_64bits_reset(&state_); }

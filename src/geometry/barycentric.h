@@ -65,7 +65,7 @@ class BarycentricFrame {
     return squared_norm(v[0] * corners_[0] + v[1] * corners_[1] + v[2] * corners_[2] - p);
   }
 
-  /// Of squared lengths whose inverse is finite; what is shorter than their root counts as 0.
+  /// The least squared length whose inverse is finite; what is shorter than its root counts as 0.
   static constexpr double kLeast = std::numeric_limits<double>::min();
 
   Corners corners_{};

@@ -30,7 +30,7 @@ Found find(const Mesh& mesh, const Sites& sites, const MapOptions& options) {
   return found;
 }
 
-/// For each face around a vertex, the distance by its normal, and of these the one of least absolute value.
+/// Distances of vertices: of those by the normals of the faces around a vertex, the least in absolute value.
 std::vector<float> facing_distances(const Mesh& mesh, const Sites& sites, MapOptions options) {
   const facing::FacingSearch search(internals(sites), *options.facing);
   const bool is_signed = choose_sign(sites, options).method != SignMethod::none;

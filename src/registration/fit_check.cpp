@@ -21,7 +21,7 @@ using namespace registration;
 
 constexpr std::size_t kFew = 256, kSome = 1024;  // samples
 
-/// At most `count` samples of O1 as it was aligned, relative to their centre there.
+/// Samples of O1 as it was aligned, at most `count`, relative to their centre there.
 struct Aligned {
   CentredSamples o1;
   Affine pose;

@@ -71,7 +71,7 @@ Motions LockedMotion::allowed(const Pivot& pivot) const {
 }
 
 void LockedMotion::move(const Motion& motion, const Pivot& pivot) {
-  // With orthonormal B V / √λ, the coefficients of a motion in the span of B are V / √λ (B V / √λ)ᵀ motion.
+  // As B V / √λ is orthonormal, the coefficients of a motion in the span of B are V / √λ (B V / √λ)ᵀ motion.
   const Motions columns = tangents(pivot);
   const auto count = columns.cols();
   const Gram found = gram(columns);

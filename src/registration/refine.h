@@ -43,8 +43,9 @@ struct StepLimits {
 /// of a nearly symmetric part, and outliers do not.
 [[nodiscard]] double mismatch(const CentredSamples& o1, const Affine& pose, const Target& target);
 
-/// Of poses refined by at most so many steps, the one with the least mismatch: of the likely ones, or of all
-/// if none of these is good. `progress` is called with the number of each pose, before it is refined.
+/// Refines poses by at most so many steps, and returns the one with the least mismatch: of the likely ones,
+/// or of all if none of these is good. `progress` is called with the number of each pose, before it is
+/// refined.
 template <class Progress>
 [[nodiscard]] Fit best_match_of_axes(const CentredSamples& o1, const AxisMatches& candidates,
                                      const Target& target, int steps, Progress&& progress) {

@@ -13,7 +13,7 @@ namespace {
 
 // Bounds are this close, relative to the limit or the distance.
 constexpr double kClose = 0.01;
-// Of the diagonal: bounds are no closer without a limit.
+// Bounds are no closer than this share of the diagonal, unless a limit asks for it.
 constexpr double kLast = 1e-6;
 // So many parts of the result are examined at most: flat surfaces, at the distance 0 everywhere, would take
 // forever.

@@ -86,7 +86,7 @@ class Division {
  public:
   Division(const sites::SitesData& b, double limit, double least) : b_(b), limit_(limit), least_(least) {}
 
-  // Of these pieces, those for which no division helps go to `high`, and parts of others stay.
+  // Pieces for which no division helps go to `high`; parts of others stay.
   void divide(std::vector<Piece>& pieces, std::vector<Corners>& high, const Progress& progress) const {
     std::vector<Vec3> middles;
     middles.reserve(pieces.size());

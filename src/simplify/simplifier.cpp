@@ -173,8 +173,8 @@ std::vector<Simplifier::State::Step> Simplifier::State::coarser(const Wedges& we
                                                                 double limit,
                                                                 const SimplifyOptions& options) {
   std::vector<Step> steps;
-  // From the last mesh that keeps the limit, collapses up to `low` remove too few triangles, and those up to
-  // `high` exceed the limit.
+  // Collapses from the last mesh that keeps the limit: those up to `low` remove too few triangles, those up
+  // to `high` exceed the limit.
   double error = kFirstError * limit, low = 0, high = kNoLimit;
   int failures = 0;
   for (int n = 0; n < kMostSteps && failures <= (steps.empty() ? kMostHalvings : kMostFailures); ++n) {

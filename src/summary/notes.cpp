@@ -11,7 +11,7 @@
 namespace sdm {
 namespace {
 
-/// At most this many significant digits; below a million without an exponent.
+/// The text of a number with at most so many significant digits; below a million without an exponent.
 std::string text_of(double number, int digits) {
   constexpr double kLong = 1e6;
   if (std::abs(number) >= std::pow(10, digits) && std::abs(number) < kLong) {

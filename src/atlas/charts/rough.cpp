@@ -197,7 +197,7 @@ Clusters cluster_rough_faces(const Mesh& mesh, const FaceGeometry& faces, double
                              std::uint32_t resolution) {
   const std::uint64_t texels = std::uint64_t{resolution} * resolution;
   const std::size_t rough = std::max<std::size_t>(kFewClusters, texels / kTexelsPerGutter);
-  // At smaller angles many clusters are no sign of noise: smooth surfaces have as many.
+  // Many clusters at smaller angles are no sign of noise: smooth surfaces have as many.
   auto [first, charts] = cluster_faces(mesh, faces, cos_angle, cos_angle > kCosSmooth ? SIZE_MAX : rough);
   if (charts) return {std::move(*charts)};
   FaceGeometry smooth = faces;

@@ -71,7 +71,7 @@ Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity,
   return depth_;
 }
 
-// From the roots of the trees.
+// Searches from the roots of both trees.
 void DepthSearch::search_all() {
   for (int body = 0; body < 2; ++body)
     if (bodies_[1 - body]->body().solid()) leaving_[body].divide({.body = body, .what = NodePart{0}}, parts_);

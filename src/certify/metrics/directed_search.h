@@ -26,7 +26,7 @@ class DirectedSearch {
   [[nodiscard]] DirectedMetrics run();
 
  private:
-  /// Of each part, whether it should be bounded more closely.
+  /// Whether each part should be bounded more closely.
   using Chosen = std::vector<std::uint8_t>;
 
   void make_parts();

@@ -21,7 +21,7 @@
 namespace sdm {
 namespace {
 
-// Of the progress: the search for the largest distances takes about this much of the whole.
+// The search for the largest distances takes about this share of the whole progress.
 constexpr double kOfHausdorff = 0.2;
 
 BoundedNumber exactly(double value) {

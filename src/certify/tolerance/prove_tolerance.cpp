@@ -89,7 +89,7 @@ class Prover {
   }
 
  private:
-  // In place of a limit that is infinite: no distance is larger.
+  // Stands for an infinite limit: no distance is larger.
   static constexpr double kFarthest = std::numeric_limits<double>::max() / 4;
 
   /// Whether no distance is larger, of the points on one side of O2 or of all.

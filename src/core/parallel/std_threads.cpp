@@ -99,7 +99,7 @@ class Pool {
     if (job.error) std::rethrow_exception(job.error);
   }
 
-  /// To be called after a part was added to a job by one of its parts.
+  /// Must be called after a part of a job has added another part to it.
   void part_added() {
     const std::lock_guard lock(mutex_);
     wake();
@@ -252,7 +252,7 @@ unsigned thread_count() {
 
 void run_parallel_for(std::size_t count, std::size_t grain, const RangeBody& body) {
   Loop loop(count, std::max<std::size_t>(1, grain), body);
-  // With one part, or alone, there is nothing to share.
+  // One part, or one thread: there is nothing to share.
   if (count <= grain || thread_count() == 1) return loop.work();
   Pool::instance().run(loop);
 }

@@ -55,9 +55,9 @@ class PointCells {
   /// many are left.
   std::size_t keep_below(std::uint64_t points);
   [[nodiscard]] bool contains(const Vec3& at, int side) const;
-  /// Of all cells.
+  /// The number of points in all cells.
   [[nodiscard]] std::uint64_t points() const;
-  /// Of a cell: points in separate clusters are at least so far apart.
+  /// The width of a cell: points in separate clusters are at least so far apart.
   [[nodiscard]] double width() const;
   /// Points farther apart than this are in separate clusters unless others are between them.
   [[nodiscard]] double reach() const;

@@ -66,7 +66,7 @@ class NormalRays {
     for (std::size_t i = 0; i < rays_.size(); ++i)
       if (inwards_[i].t < found_[i].t) found_[i] = inwards_[i];
   }
-  /// Without a face where there is none.
+  /// A hit for each ray; its face is kNone where there is none.
   [[nodiscard]] std::span<const RayHit> hits() const { return found_; }
 
  private:

@@ -79,7 +79,7 @@ class LeafFrames {
   struct Store {
     explicit Store(std::size_t leaves);
     std::unique_ptr<FaceFrames[]> frames;  ///< not initialized: pages that no search reads take no memory
-    /// Of each leaf, the version for which its frames were made; kBeingMade while they are.
+    /// The version for which the frames of each leaf were made; kBeingMade while they are.
     std::unique_ptr<std::atomic<std::uint32_t>[]> made;
   };
   /// Owns a store that any thread may have allocated.

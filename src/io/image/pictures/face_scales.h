@@ -16,7 +16,7 @@ class FaceScales {
  public:
   FaceScales(const ColorScale& scale, const PictureOptions& options);
 
-  /// Of a distance on a face.
+  /// The colour of a distance on a face.
   [[nodiscard]] Rgb operator()(std::uint32_t face, double distance) const;
   [[nodiscard]] bool by_group() const { return tolerances_.has_value(); }
   /// The scale of the legend: that of all faces, or in units of the limits of each, from -2 to 2.

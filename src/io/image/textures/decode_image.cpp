@@ -21,7 +21,7 @@ namespace {
 std::mutex memory_mutex;
 std::size_t promised_memory = 0;
 
-// With the mutex locked.
+// The mutex must be locked.
 void require_picture_memory(std::size_t bytes) {
   try {
     require_memory(bytes + promised_memory, "a picture");

@@ -83,8 +83,8 @@ std::size_t coefficient_bytes(const jpeg_decompress_struct& jpeg) {
   return blocks * sizeof(JBLOCK);
 }
 
-// Without a profile, light passes the inks one after another. Files of Adobe's programs, which are nearly
-// all, store the light that each ink lets through.
+// CMYK without a profile: light passes the inks one after another. Files of Adobe's programs, which are
+// nearly all, store the light that each ink lets through.
 Image without_inks(const Image& cmyk, bool inverted) {
   Image rgb = blank_image(cmyk.width, cmyk.height, 3, 8);
   const auto through = [&](std::size_t i) -> unsigned {

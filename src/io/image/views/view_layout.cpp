@@ -85,7 +85,7 @@ Projection view_from(std::span<const Box> boxes, const Vec3& towards, UpAxis up_
   const auto [right, up, front] = front_frame(up_axis);
   Projection view{.width = width, .height = height};
   view.towards = normalized(towards[0] * right + towards[1] * up + towards[2] * front);
-  // From straight above or below, the front is at the bottom or the top, as in the views of both.
+  // Seen from straight above or below, the front is at the bottom or the top, as in the views of both.
   const bool vertical = std::hypot(towards[0], towards[2]) < 1e-6 * std::abs(towards[1]);
   view.right = vertical ? right : normalized(cross(up, view.towards));
   view.up = cross(view.towards, view.right);

@@ -14,8 +14,8 @@ namespace sdm::io {
 /// The local transform of a node over time.
 class GltfMotion {
  public:
-  /// At first that of the node. Throws sdm::Error if it is a matrix, which glTF forbids for a node that
-  /// moves.
+  /// Starts as the transform of the node. Throws sdm::Error if that is a matrix, which glTF forbids for a
+  /// node that moves.
   GltfMotion(const GltfDocument& document, std::size_t node);
 
   /// Adds a channel: `path` is "translation", "rotation" or "scale".
@@ -31,7 +31,7 @@ class GltfMotion {
   std::optional<GltfTrack> translations_, rotations_, scales_;
 };
 
-/// By node: the transforms of nodes, and the weights of their morph targets.
+/// The transforms of nodes, and the weights of their morph targets, by node.
 struct GltfAnimation {
   std::map<std::size_t, GltfMotion> motions{};
   std::map<std::size_t, GltfTrack> weights{};

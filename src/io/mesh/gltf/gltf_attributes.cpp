@@ -27,7 +27,7 @@ std::string known_name(const std::string& name) {
   return name.starts_with('_') ? name : "";
 }
 
-// By the inverse transpose, but for a factor: the matrix of cofactors.
+// Normals move by the matrix of cofactors, which is the inverse transpose but for a factor.
 Vec3 moved_normal(const GltfTransform& t, const Vec3& n) {
   const auto& [x, y, z] = t.linear;
   const Vec3 moved = n[0] * cross(y, z) + n[1] * cross(z, x) + n[2] * cross(x, y);

@@ -15,7 +15,7 @@ namespace sdm::io {
 
 /// The materials of a file, with their textures.
 struct PolygonMaterials {
-  /// From one polygon on, until another run begins.
+  /// A material of the polygons from one on, until another run begins.
   struct Run {
     std::uint32_t first_polygon, material;  ///< index into list, or kNone
   };

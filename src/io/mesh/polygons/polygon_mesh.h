@@ -40,7 +40,7 @@ struct PolygonMesh {
   std::vector<std::uint32_t> corners;     ///< the vertex of each corner, polygon after polygon
   std::vector<std::uint32_t> corner_uvs;  ///< the uv of each corner, or kNone; may be empty
   std::vector<std::uint32_t> ends;        ///< for each polygon, one past its last corner
-  /// Of each vertex: only those of one body are welded. Empty: all are of one.
+  /// The body of each vertex: only vertices of one body are welded. Empty: all are of one.
   std::vector<std::uint32_t> bodies;
   PolygonNames objects, groups, materials, faces, colors;
   std::vector<PolygonAttribute> attributes;  ///< if asked for

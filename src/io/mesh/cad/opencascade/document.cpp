@@ -47,7 +47,7 @@ class OpenDocument {
   Handle(TDocStd_Document) document;
 };
 
-/// Of all units of a file, each once.
+/// The names of all units of a file, each once.
 std::string unit_names(const TColStd_SequenceOfAsciiString& names) {
   std::string all;
   for (const TCollection_AsciiString& name : names) {

@@ -38,7 +38,7 @@ class Largest {
   CadClient& client_;
 };
 
-// Of parametric triangles, whose union is the face but for strips along its edges.
+// Measures parametric triangles, whose union is the face but for strips along its edges.
 void measure_surface(const TopoDS_Face& face, Largest& largest) {
   constexpr int kParts = 4;  // of each side
   TopLoc_Location place;
@@ -64,7 +64,7 @@ void measure_surface(const TopoDS_Face& face, Largest& largest) {
   }
 }
 
-// Of the curves of the edges, between the nodes on them.
+// Measures the curves of the edges, between the nodes on them.
 void measure_edges(const TopoDS_Face& face, Largest& largest) {
   constexpr int kParts = 4;
   TopLoc_Location place;
