@@ -6,6 +6,21 @@ if(place EQUAL -1)
   message(FATAL_ERROR "README.md does not contain examples/first_map.cpp word for word.")
 endif()
 
+# Its table has every command of the help.
+execute_process(COMMAND ${SDM} --help OUTPUT_VARIABLE help COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX REPLACE ".*\nSubcommands:\n(.*)\n\nExample.*" "\\1" commands "${help}")
+string(REGEX MATCHALL "\n  [a-z]+ " names "\n${commands}")
+list(LENGTH names count)
+if(count LESS 10)
+  message(SEND_ERROR "The help names ${count} commands only.")
+endif()
+foreach(name ${names})
+  string(STRIP "${name}" name)
+  if(NOT readme MATCHES "\n\\| `sdm ${name}[ `]")
+    message(SEND_ERROR "README.md does not list sdm ${name}.")
+  endif()
+endforeach()
+
 # Files that the README and the guide link to exist.
 file(GLOB pages ${SOURCE_DIR}/*.md ${SOURCE_DIR}/docs/*.md ${SOURCE_DIR}/docs/*/*.md)
 foreach(page ${pages})
