@@ -94,7 +94,7 @@ Expected expected_of(const std::vector<Transform>& poses, const Compounds& bodie
   return expected;
 }
 
-void expect_equal(const BoundedLength& found, const BoundedLength& expected) {
+void expect_same_length(const BoundedLength& found, const BoundedLength& expected) {
   EXPECT_EQ(found.value, expected.value);
   EXPECT_EQ(found.lower, expected.lower);
   EXPECT_EQ(found.upper, expected.upper);
@@ -144,14 +144,14 @@ TEST(CompoundBodies, AnswerAsTheirParts) {
         SCOPED_TRACE(std::to_string(round) + ": " + std::to_string(a) + " " + std::to_string(b));
         const Expected expected = expected_of(poses, bodies, a, b);
         const auto separation = find_pair(separations, a, b);
-        expect_equal(separation->separation, expected.separation);
+        expect_same_length(separation->separation, expected.separation);
         EXPECT_EQ(separation->parts, expected.nearest);
         EXPECT_EQ(separation->colliding, expected.colliding);
         EXPECT_EQ(find_pair(world.colliding(), a, b) != world.colliding().end(), expected.colliding);
         const auto depth = find_pair(depths, a, b);
         ASSERT_EQ(depth != depths.end(), expected.depth.has_value());
         if (expected.depth) {
-          expect_equal(depth->penetration_depth, *expected.depth);
+          expect_same_length(depth->penetration_depth, *expected.depth);
           EXPECT_EQ(depth->parts, expected.deepest);
         }
         expect_contacts(world.contacts(), a, b, expected.contacts);
@@ -175,7 +175,8 @@ TEST(CompoundBodies, OfOneShapeAreThatShape) {
     }
     const auto expected = plain.separations(), found = world.separations();
     ASSERT_EQ(found.size(), expected.size());
-    for (std::size_t i = 0; i < found.size(); ++i) expect_equal(found[i].separation, expected[i].separation);
+    for (std::size_t i = 0; i < found.size(); ++i)
+      expect_same_length(found[i].separation, expected[i].separation);
   }
 }
 
