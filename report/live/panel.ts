@@ -60,7 +60,8 @@ export function addPanel(scene: string, resolution: number, actions: Actions): v
     input.checked = value === 'none';
     return make('span', { class: 'segment' }, input, make('label', { for: `handles-${value}` }, label));
   };
-  byId('view').after(
+  // Above the picture, so that a window of 800 pixels shows it whole.
+  byId('view').before(
     make(
       'div', { id: 'transport' },
       make('button', { type: 'button', id: 'play', click: actions.togglePlay }, 'Play'),
@@ -73,8 +74,8 @@ export function addPanel(scene: string, resolution: number, actions: Actions): v
         make('div', {}, make('dt', {}, 'Computed'), make('dd', { id: 'rate' }, '–')),
       ),
     ),
-    make('p', { id: 'spoken', class: 'hidden', role: 'status', 'aria-live': 'polite' }),
   );
+  byId('view').after(make('p', { id: 'spoken', class: 'hidden', role: 'status', 'aria-live': 'polite' }));
   byId('keys').append(
     ' ',
     make('span', { class: 'by-mouse' }, 'Shift with arrows, Page up and Page down moves the reference, Shift with < and > turns it; P plays.'),

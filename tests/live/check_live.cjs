@@ -193,6 +193,26 @@ const checks = {
     await stays('refits', () => page.evaluate(() => window.refits(5000)));
   },
 
+  // On a phone, whose windows have maps of 512², two bodies of 50,000 faces together are within 100 MB: the module and the page.
+  async weighs(page) {
+    const out = folder();
+    const files = [1, 1.05].map((radius) => join(out, `${radius}.obj`));
+    [1, 1.05].forEach((radius, i) => writeFileSync(files[i], objOf(ball(80, radius))));
+    await atRest(page, () => choose(page, ['resolution', '512']));
+    await open(page, files);
+    await page.focus('#canvas');
+    await atRest(page, () => page.keyboard.press('Shift+ArrowRight'));
+    await isIdle(page);
+    const of = await numbers(page);
+    assert(of.atlas.resolution === 512 && of.o1.triangles + of.o2.triangles > 50000, JSON.stringify([of.atlas, of.o1.triangles, of.o2.triangles]));
+    const session = await page.context().newCDPSession(page);
+    await session.send('HeapProfiler.collectGarbage');
+    const { usedSize, backingStorageSize } = await session.send('Runtime.getHeapUsage');
+    const parts = [await page.evaluate(() => window.sdmLive.memoryBytes()), usedSize, backingStorageSize];
+    assert(parts.every((bytes) => bytes > 1e6), `${parts}`);
+    assert(parts.reduce((a, b) => a + b) <= 100e6, `${parts} bytes`);
+  },
+
   // A tolerance is judged as the library does.
   async judges(page) {
     const { extremes, error_bound: bound } = await numbers(page);
