@@ -4,7 +4,7 @@
 #include <sdm/sdm.h>
 
 #include <array>
-#include <barrier>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -235,11 +235,13 @@ TEST(KeptSigns, AreMadeOnceByConcurrentCalls) {
       const std::vector<Vec3> points = points_about(mesh, 20);
       std::array<std::vector<std::uint8_t>, 4> found;
       {
-        std::barrier together(static_cast<std::ptrdiff_t>(found.size()));
+        // Together, as soon as all have arrived; not by std::barrier, which may wait forever in GCC 12 for
+        // Windows.
+        std::atomic<std::size_t> arrived{0};
         std::vector<std::jthread> threads;
         for (auto& mine : found)
           threads.emplace_back([&] {
-            together.arrive_and_wait();
+            for (++arrived; arrived < found.size();) std::this_thread::yield();
             mine = flags(sites, points);
           });
       }
