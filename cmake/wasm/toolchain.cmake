@@ -2,7 +2,7 @@
 # the sources in ziglang with exceptions and threads (js/runtime). ./build-wasm installs them.
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR wasm32)
-set(SDM_CROSS_TOOLS ${CMAKE_CURRENT_LIST_DIR}/../../build/wasm-tools CACHE PATH "Where ./build-wasm has installed the compiler and Highway")
+set(SDM_CROSS_TOOLS ${CMAKE_CURRENT_LIST_DIR}/../../build/cross-tools CACHE PATH "Where ./build-wasm has installed the compiler and Highway")
 list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES SDM_CROSS_TOOLS)
 file(GLOB SDM_ZIG ${SDM_CROSS_TOOLS}/python/lib/python3*/site-packages/ziglang)
 cmake_path(ABSOLUTE_PATH SDM_ZIG NORMALIZE)

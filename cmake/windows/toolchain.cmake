@@ -2,7 +2,7 @@
 # need none beside those of Windows, and run in Wine. ./build-windows installs what that needs.
 set(CMAKE_SYSTEM_NAME Windows)
 set(CMAKE_SYSTEM_PROCESSOR x86_64)
-set(SDM_CROSS_TOOLS ${CMAKE_CURRENT_LIST_DIR}/../../build/wasm-tools CACHE PATH "Where ./build-windows has installed Highway")
+set(SDM_CROSS_TOOLS ${CMAKE_CURRENT_LIST_DIR}/../../build/cross-tools CACHE PATH "Where ./build-windows has installed Highway")
 list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES SDM_CROSS_TOOLS)
 set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc-posix)
 set(CMAKE_CXX_COMPILER x86_64-w64-mingw32-g++-posix)
