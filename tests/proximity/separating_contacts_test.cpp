@@ -11,6 +11,7 @@
 
 #include "geometry/vec.h"
 #include "proximity/separate/separating_contacts.h"
+#include "support/allocations.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 
@@ -218,6 +219,30 @@ TEST(SeparatingContacts, SeparateOpenSurfacesAndToriInTwentySteps) {
   for (const Mesh& a : meshes)
     for (const Mesh& b : meshes) pairs.push_back({Shape(a), Shape(b)});
   expect_solved(pairs, 120, 0.7);
+}
+
+TEST(SeparatingContacts, OfNonConvexBodiesAllocateNothingAfterTheFirstPoses) {
+  const ThreadLimit alone(1);  // threads that join later allocate memory of their own
+  const Mesh open = height_field(6);
+  const std::array pairs{std::array{ring(10), load("pig.off", "fit")}, std::array{ring(8), ring(10)},
+                         std::array{ring(8), open}};
+  for (const auto& [first, second] : pairs) {
+    ProximityQuery query(first, second, {.ignore_internal_edges = true});
+    std::size_t colliding = 0;
+    const auto taken = [&] {
+      const std::size_t before = allocations();
+      for (int i = 0; i < 8; ++i) {
+        query.set_pose(1, Transform::translation({0.3 - 0.02 * i, 0.1 * i, 0.03 * i}) *
+                              Transform::rotation({10.0 * i, 20.0 * i, 30}));
+        colliding += query.colliding() ? 1 : 0;
+        (void)query.separating_contacts(2);
+      }
+      return allocations() - before;
+    };
+    EXPECT_GT(taken(), 0u);
+    EXPECT_EQ(taken(), 0u);
+    EXPECT_GE(colliding, 8u);
+  }
 }
 
 }  // namespace

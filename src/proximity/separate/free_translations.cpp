@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
+#include <cstddef>
 
 namespace sdm::separate {
 namespace {
@@ -23,24 +23,42 @@ constexpr int kMostShortened = 16;
 constexpr double kClosed = 1e-4;
 constexpr std::array kShorter{0.97, 0.99, 0.997};
 
-// The point of least norm in the half-spaces, by the method of Hildreth: each multiplier in turn is set to
-// its best value, until all are settled.
-template <class Plane>
-Vec3 least_in(std::span<const Plane> planes) {
-  std::array<double, kMostPlanes> multiplier{};
-  Vec3 t{};
-  for (int sweep = 0; sweep < 64; ++sweep) {
-    double change = 0;
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-      const double next = std::max(0.0, multiplier[i] + planes[i].least - dot(planes[i].n, t));
-      t += (next - multiplier[i]) * planes[i].n;
-      change = std::max(change, std::abs(next - multiplier[i]));
-      multiplier[i] = next;
-    }
-    if (change <= 1e-6 * norm(t)) break;
+// The half-space n·t ≥ least.
+struct Plane {
+  Vec3 n{};
+  double least = 0;
+};
+
+// The latest half-spaces.
+class Planes {
+ public:
+  void add(const Plane& plane) {
+    if (count_ == all_.size()) std::shift_left(all_.begin(), all_.end(), 1), --count_;
+    all_[count_++] = plane;
   }
-  return t;
-}
+
+  // The point of least norm in all of them, by the method of Hildreth: each multiplier in turn is set to its
+  // best value, until all are settled.
+  [[nodiscard]] Vec3 least() const {
+    std::array<double, kMostPlanes> multiplier{};
+    Vec3 t{};
+    for (int sweep = 0; sweep < 64; ++sweep) {
+      double change = 0;
+      for (std::size_t i = 0; i < count_; ++i) {
+        const double next = std::max(0.0, multiplier[i] + all_[i].least - dot(all_[i].n, t));
+        t += (next - multiplier[i]) * all_[i].n;
+        change = std::max(change, std::abs(next - multiplier[i]));
+        multiplier[i] = next;
+      }
+      if (change <= 1e-6 * norm(t)) break;
+    }
+    return t;
+  }
+
+ private:
+  std::array<Plane, kMostPlanes> all_{};
+  std::size_t count_ = 0;
+};
 
 }  // namespace
 
@@ -97,15 +115,14 @@ void FreeTranslations::descend(const Vec3& from) {
 // The closest points of bodies that are apart give a plane for further translations; that of a convex contact
 // is exact. Steps to the shortest translation within the planes.
 Vec3 FreeTranslations::lowest(Vec3 t) {
-  planes_.clear();
+  Planes planes;
   for (int step = 0; step < kMostSteps; ++step) {
     const BoundedLength& separation = pair_.separation(t);
     const double gap = separation.value;
     if (!(gap > kTouching * size_)) return t;
     const Vec3 n = (1 / gap) * ((*separation.witness)[0] - (*separation.witness)[1]);
-    if (planes_.size() == kMostPlanes) planes_.erase(planes_.begin());
-    planes_.push_back({n, dot(n, t) - gap + kMargin * norm(t)});
-    const Vec3 target = least_in<Plane>(planes_);
+    planes.add({n, dot(n, t) - gap + kMargin * norm(t)});
+    const Vec3 target = planes.least();
     if (!(norm(target) < (1 - kSettled) * norm(t))) return t;
     const Vec3 by = target - t;
     t += free_step(t, by, gap) * by;

@@ -1,8 +1,6 @@
 // Short translations after which two bodies do not collide.
 #pragma once
 
-#include <vector>
-
 #include "geometry/vec.h"
 #include "proximity/separate/moved_pair.h"
 
@@ -28,11 +26,6 @@ class FreeTranslations {
   void improve() { descend(best_); }
 
  private:
-  /// The half-space n·t ≥ least.
-  struct Plane {
-    Vec3 n{};
-    double least = 0;
-  };
   /// Descends from a translation without a collision, and takes the result if it is the shortest so far.
   void descend(const Vec3& from);
   /// Steps to shorter translations in any direction, as far as that is easy.
@@ -45,7 +38,6 @@ class FreeTranslations {
   Vec3 best_;
   double size_;
   bool solids_;
-  std::vector<Plane> planes_;
 };
 
 }  // namespace sdm::separate

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numeric>
 #include <optional>
-#include <utility>
 
 #include "query/closest/closest_points.h"
 
@@ -33,11 +32,17 @@ double OverlapCover::Cube::reach() const {
   return std::sqrt(3.0) * half;
 }
 
-OverlapCover::OverlapCover(const shape::PosedBody& o1, const shape::PosedBody& o2, double error)
-    : bodies_{&o1, &o2}, to_frame_{inverse(o1.pose().map), inverse(o2.pose().map)}, error_(error) {
+void OverlapCover::start(const shape::PosedBody& o1, const shape::PosedBody& o2, double error) {
+  bodies_ = {&o1, &o2}, to_frame_ = {inverse(o1.pose().map), inverse(o2.pose().map)}, error_ = error;
+  measured_ = 0;
+  pairs_.clear(), deep_.clear(), open_.clear();
+  // In the same order for each search, so that those of equal ones need no more memory.
+  unused_.resize(lists_.size());
+  std::iota(unused_.rbegin(), unused_.rend(), 0u);
   std::array<std::size_t, 2> solid{};  // the number of balls; points follow
   for (int body = 0; body < 2; ++body) {
     const mesh::Similarity& pose = bodies_[body]->pose();
+    balls_[body].clear();
     const shape::InnerBalls& inner = bodies_[body]->body().inner_balls();
     for (const shape::Ball& ball : inner.balls)
       balls_[body].push_back({pose.map(ball.centre), pose.scale * ball.radius - error_});
@@ -68,14 +73,33 @@ double OverlapCover::measure(int body, const shape::Ball& ball, const Vec3& tran
 }
 
 double OverlapCover::bound_at_origin() {
-  std::vector<std::uint32_t> all(pairs_.size());
+  open_.assign(1, {.list = take_list()});
+  std::vector<std::uint32_t>& all = lists_[open_[0].list].pairs;
+  all.resize(pairs_.size());
   std::iota(all.begin(), all.end(), 0u);
-  open_.assign(1, {.pairs = std::make_shared<const std::vector<std::uint32_t>>(std::move(all))});
   double most = 0;
   for (const BallPair& pair : pairs_) most = std::max(most, pair.radius - norm(pair.centre));
   for (int body = 0; body < 2; ++body)
     for (const shape::Ball& ball : balls_[body]) most = std::max(most, measure(body, ball, {}));
   return most;
+}
+
+std::uint32_t OverlapCover::take_list() {
+  if (unused_.empty()) {
+    const auto next = static_cast<std::uint32_t>(lists_.size());
+    lists_.emplace_back();
+    unused_.reserve(lists_.capacity());
+    unused_.push_back(next);
+  }
+  const std::uint32_t list = unused_.back();
+  unused_.pop_back();
+  lists_[list].pairs.clear();
+  lists_[list].users = 1;
+  return list;
+}
+
+void OverlapCover::release(std::uint32_t list) {
+  if (--lists_[list].users == 0) unused_.push_back(list);
 }
 
 // Whether a pair of balls covers the cube. If not, leaves those that may be the best somewhere in the cube,
@@ -84,17 +108,16 @@ bool OverlapCover::covered_by_pairs(Cube& cube) {
   const double reach = cube.reach();
   double best = -std::numeric_limits<double>::infinity();
   values_.clear();
-  for (const std::uint32_t i : *cube.pairs) {
+  for (const std::uint32_t i : lists_[cube.list].pairs) {
     const double v = pairs_[i].radius - norm(cube.centre - pairs_[i].centre);
     if (v > reach) return true;
     best = std::max(best, v);
     if (v > -reach) values_.push_back({v, i});
   }
   std::erase_if(values_, [&](const Value& value) { return value.v < best - 2 * reach; });
-  std::vector<std::uint32_t> left;
-  left.reserve(values_.size());
-  for (const Value& value : values_) left.push_back(value.pair);
-  cube.pairs = std::make_shared<const std::vector<std::uint32_t>>(std::move(left));
+  release(cube.list);
+  cube.list = take_list();
+  for (const Value& value : values_) lists_[cube.list].pairs.push_back(value.pair);
   return false;
 }
 
@@ -124,12 +147,13 @@ void OverlapCover::learn(const Cube& cube, MovedPair& pair) {
 
 void OverlapCover::divide(const Cube& cube, double beyond) {
   for (unsigned corner = 0; corner < 8; ++corner) {
-    Cube child{.half = 0.5 * cube.half, .pairs = cube.pairs};
+    Cube child{.half = 0.5 * cube.half, .list = cube.list};
     for (unsigned k = 0; k < 3; ++k)
       child.centre[k] = cube.centre[k] + ((corner >> k & 1) != 0 ? child.half : -child.half);
     child.least = distance_from_origin(child.centre, child.half);
     if (!(child.least < beyond)) continue;
-    open_.push_back(std::move(child));
+    ++lists_[cube.list].users;
+    open_.push_back(child);
     std::ranges::push_heap(open_, kFarther);
   }
 }
@@ -143,9 +167,12 @@ double OverlapCover::cover(FreeTranslations& free, MovedPair& pair, double enoug
     const double bound = open_.front().least;
     if (bound >= enough * free.length() || cubes >= kMostCubes || measured_ >= kMostMeasured) return bound;
     std::ranges::pop_heap(open_, kFarther);
-    Cube cube = std::move(open_.back());
+    Cube cube = open_.back();
     open_.pop_back();
-    if (covered_by_pairs(cube) || (cubes > 0 && covered_by_measuring(cube))) continue;
+    if (covered_by_pairs(cube) || (cubes > 0 && covered_by_measuring(cube))) {
+      release(cube.list);
+      continue;
+    }
     const bool known = std::ranges::any_of(values_, [](const Value& value) { return value.v > 0; });
     if (!known && cube.half < kSmall * free.length() && norm(cube.centre) < enough * free.length() &&
         pair.tries() < tests && !free.try_translation(cube.centre) && depths < kMostDepths) {
@@ -153,6 +180,7 @@ double OverlapCover::cover(FreeTranslations& free, MovedPair& pair, double enoug
       learn(cube, pair);
     }
     divide(cube, free.length());
+    release(cube.list);
   }
   return free.length();
 }

@@ -52,7 +52,7 @@ class TranslationSearch {
         o2_(o2),
         convex_{o1.body().convex_solid(), o2.body().convex_solid()},
         answers_(answers),
-        exit_workspace_(workspace.exit),
+        workspace_(workspace),
         pair_(o1, o2, workspace.moved) {
     Box box = o1.box();
     extend(box, o2.box());
@@ -67,7 +67,7 @@ class TranslationSearch {
           found.x2 = farthest(o2_, convex_[1], -u, found.vertices[1]);
           return found;
         },
-        normalized(o2_.ball().centre - o1_.ball().centre), size_, exit_workspace_);
+        normalized(o2_.ball().centre - o1_.ball().centre), size_, workspace_.exit);
     pair_.set_hints({.closest_vertices = closest_vertices(exit)});
     const Vec3 out = beyond(-std::max(0.0, exit.upper) * exit.direction, -exit.direction);
     // A body that falls short of its hull a little contains the hull scaled about a point.
@@ -113,7 +113,8 @@ class TranslationSearch {
   Vec3 search(const Vec3& out, double& lower) {
     FreeTranslations free(pair_, out, size_, o1_.body().solid() || o2_.body().solid());
     free.improve();
-    OverlapCover cover(o1_, o2_, kExact * size_);
+    OverlapCover& cover = workspace_.cover;
+    cover.start(o1_, o2_, kExact * size_);
     lower = use_depth(free, cover);
     if (lower < kClose * free.length()) lower = std::max(lower, cover.bound_at_origin());
     if (lower < kClose * free.length())
@@ -139,7 +140,7 @@ class TranslationSearch {
   const shape::PosedBody &o1_, &o2_;
   std::array<const convex::ConvexMesh*, 2> convex_;  // null for others
   pair::PairAnswers& answers_;
-  ExitWorkspace& exit_workspace_;
+  TranslationWorkspace& workspace_;
   MovedPair pair_;
   double size_ = 0;
 };

@@ -5,6 +5,7 @@
 
 #include "proximity/pair/pair_answers.h"
 #include "proximity/separate/difference_hull.h"
+#include "proximity/separate/overlap_cover.h"
 #include "query/shape/posed_body.h"
 
 namespace sdm::separate {
@@ -12,6 +13,7 @@ namespace sdm::separate {
 /// Memory that searches reuse; results do not depend on it.
 struct TranslationWorkspace {
   ExitWorkspace exit;
+  OverlapCover cover;
   pair::PairAnswers moved{0, std::nullopt};
 };
 
