@@ -127,7 +127,8 @@ struct LookValues {
 
 /// Returns a channel with 8 bits a number, as textures of glTF have it: colours in sRGB, roughness in green
 /// and metallic in blue beside a red of 1, occlusion in grey. Texels without a value are black. Throws
-/// sdm::Error unless the values are whole rows of texels. Cost: linear, all cores.
+/// sdm::Error unless the values are whole rows of texels, of two numbers for roughness and metallic. Cost:
+/// linear, all cores.
 [[nodiscard]] SDM_API Image to_image(const BakedChannel& baked);
 
 }  // namespace sdm

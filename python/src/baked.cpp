@@ -82,6 +82,20 @@ inline constexpr auto kMembers<StoredBaked> = std::tuple{
 
 namespace {
 
+bool fits(BakeChannel channel, std::size_t components) {
+  switch (channel) {
+    case BakeChannel::base_color:
+      return components == 3 || components == 4;
+    case BakeChannel::metallic_roughness:
+      return components == 2;
+    case BakeChannel::occlusion:
+      return components == 1;
+    case BakeChannel::emissive:
+      break;
+  }
+  return components == 3;
+}
+
 std::size_t components_in(const BakedGeometry& of) {
   return is_number(of.channel) ? 0 : components_of(of.channel);
 }
@@ -91,14 +105,14 @@ void check_stored(const StoredBaked& stored, const Surface& surface) {
   if (side < 1 || surface.resolution() % side != 0 || surface.rows() % side != 0) throw Error(kDamaged);
   const std::uint32_t columns = surface.resolution() / side;
   const std::size_t texels = std::size_t{columns} * (surface.rows() / side);
-  bool fits = stored.kinds.size() == texels && stored.coverage.size() == texels;
+  bool whole = stored.kinds.size() == texels && stored.coverage.size() == texels;
   for (const BakedChannel& channel : stored.channels)
-    fits &= channel.resolution == columns && channel.components >= 1 && channel.components <= 4 &&
-            channel.values.size() == channel.components * texels;
+    whole &= channel.resolution == columns && fits(channel.channel, channel.components) &&
+             channel.values.size() == channel.components * texels;
   for (const BakedGeometry& of : stored.geometry)
-    fits &= of.values.size() == components_in(of) * texels &&
-            of.numbers.size() == (is_number(of.channel) ? texels : 0);
-  if (!fits) throw Error(kDamaged);
+    whole &= of.values.size() == components_in(of) * texels &&
+             of.numbers.size() == (is_number(of.channel) ? texels : 0);
+  if (!whole) throw Error(kDamaged);
 }
 
 void bind_baked_state() {
@@ -112,24 +126,28 @@ void bind_baked_state() {
       [](PyBaked* self, const nb::tuple& from) {
         auto stored = value_of<StoredBaked>(from[0]);
         validate(stored.mesh);
+        InPlace<PyBaked> made(self);
         run_sized(stored.mesh.triangles.size(), [&] {
           Surface surface(std::move(stored.mesh), stored.atlas);
           check_stored(stored, surface);
           std::optional<DrawnFrames> frames;
           if (std::ranges::count(stored.geometry, GeometryChannel::normal, &BakedGeometry::channel) > 0)
             frames.emplace(surface);
-          new (self) PyBaked{.atlas = std::move(stored.atlas),
-                             .surface = std::move(surface),
-                             .side = stored.side,
-                             .kinds = std::move(stored.kinds),
-                             .coverage = std::move(stored.coverage),
-                             .channels = std::move(stored.channels),
-                             .geometry = std::move(stored.geometry),
-                             .frames = std::move(frames),
-                             .material = std::move(stored.material),
-                             .material_names = std::move(stored.material_names),
-                             .notes = std::move(stored.notes)};
+          made.make([&] {
+            return PyBaked{.atlas = std::move(stored.atlas),
+                           .surface = std::move(surface),
+                           .side = stored.side,
+                           .kinds = std::move(stored.kinds),
+                           .coverage = std::move(stored.coverage),
+                           .channels = std::move(stored.channels),
+                           .geometry = std::move(stored.geometry),
+                           .frames = std::move(frames),
+                           .material = std::move(stored.material),
+                           .material_names = std::move(stored.material_names),
+                           .notes = std::move(stored.notes)};
+          });
         });
+        made.release();
       });
 }
 

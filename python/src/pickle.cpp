@@ -57,16 +57,11 @@ Positions moved_from(nb::handle state) {
   return state.is_none() ? nullptr : std::make_shared<std::vector<Vec3>>(unpacked<Vec3>(state));
 }
 
-/// Refits what an object that was just made holds; the object is gone if that throws.
+/// Refits what an object holds.
 template <class Object, class Held>
-void refit_to(Object* object, Held& held, const Positions& positions) {
-  try {
-    held.refit(*positions);
-  } catch (...) {
-    object->~Object();
-    throw;
-  }
-  object->positions = positions;
+void refit_to(Object& object, Held& held, const Positions& positions) {
+  held.refit(*positions);
+  object.positions = positions;
 }
 
 void bind_surface_state() {
@@ -84,10 +79,12 @@ void bind_surface_state() {
         Mesh mesh = mesh_from(from[0]);
         const AtlasOptions options = atlas_from(from[1]);
         const Positions positions = moved_from(from[2]);
+        InPlace<PySurface> made(self);
         run_sized(mesh.triangles.size(), [&] {
-          new (self) PySurface(std::move(mesh), options);
-          if (positions) refit_to(self, self->surface, positions);
+          PySurface& surface = made.make([&] { return PySurface(std::move(mesh), options); });
+          if (positions) refit_to(surface, surface.surface, positions);
         });
+        made.release();
       });
 }
 
@@ -247,10 +244,12 @@ void bind_pickle() {
       [](PySites* self, const nb::tuple& from) {
         Mesh mesh = mesh_from(from[0]);
         const Positions positions = moved_from(from[1]);
+        InPlace<PySites> made(self);
         run_sized(mesh.triangles.size(), [&] {
-          new (self) PySites(std::move(mesh));
-          if (positions) refit_to(self, self->sites, positions);
+          PySites& sites = made.make([&] { return PySites(std::move(mesh)); });
+          if (positions) refit_to(sites, sites.sites, positions);
         });
+        made.release();
       });
   bind_surface_state();
   bind_map_state();
@@ -263,7 +262,9 @@ void bind_pickle() {
       [](PyShape* self, const nb::tuple& from) {
         const Mesh mesh = mesh_from(from[0]);
         const auto resolution = nb::cast<std::optional<std::uint32_t>>(from[1]);
-        run_sized(mesh.triangles.size(), [&] { new (self) PyShape(mesh, resolution, {}); });
+        InPlace<PyShape> made(self);
+        run_sized(mesh.triangles.size(), [&] { made.make([&] { return PyShape(mesh, resolution, {}); }); });
+        made.release();
       });
   bind_closest_points_state();
   bind_state<PyCompound>(

@@ -91,7 +91,11 @@ atlas. Raises Error for a mesh that cannot be used.
           [](PyShape* self, nb::handle mesh, nb::handle faces, std::optional<std::uint32_t> resolution,
              nb::handle progress) {
             const Mesh value = mesh_of(mesh, faces);
-            run(progress, [&](const Progress& report) { new (self) PyShape(value, resolution, report); });
+            InPlace<PyShape> made(self);
+            run(progress, [&](const Progress& report) {
+              made.make([&] { return PyShape(value, resolution, report); });
+            });
+            made.release();
           },
           nb::arg("mesh").none(), nb::arg("faces") = nb::none(), nb::kw_only(),
           nb::arg("resolution") = nb::none(), nb::arg("progress") = nb::none(),

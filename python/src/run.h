@@ -8,6 +8,7 @@
 #include <atomic>
 #include <functional>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <shared_mutex>
 #include <type_traits>
@@ -46,6 +47,34 @@ auto run_sized(std::size_t size, Work work) {
     return std::move(*result);
   }
 }
+
+/// The object that run() or run_sized() makes in the memory of one of Python's, which Python destroys only
+/// after the call has returned. So it is destroyed here if the call throws: by what follows in the work, or
+/// by a signal that arrived while the work was finished.
+template <class Object>
+class InPlace {
+ public:
+  explicit InPlace(Object* at) : at_(at) {}
+  ~InPlace() {
+    if (made_) at_->~Object();
+  }
+  InPlace(const InPlace&) = delete;
+  InPlace& operator=(const InPlace&) = delete;
+
+  /// Makes it of the result of a function.
+  template <class Make>
+  Object& make(const Make& make) {
+    new (at_) Object(make());
+    made_ = true;
+    return *at_;
+  }
+  /// The call returns: the object is Python's.
+  void release() { made_ = false; }
+
+ private:
+  Object* at_;
+  bool made_ = false;
+};
 
 /// How many calls use an object, or that one changes it. Nothing waits, so that, unlike a mutex, it may be
 /// used several times by one thread, and given back by another one.

@@ -23,12 +23,16 @@ void bind_mesh(nb::class_<PySelfProximityQuery>& query) {
           [](PySelfProximityQuery* self, nb::handle rest, std::uint32_t rings, std::optional<double> geodesic,
              double max_distance, nb::handle progress) {
             Mesh mesh = mesh_of(rest, nb::none());
+            InPlace<PySelfProximityQuery> made(self);
             run(progress, [&](const Progress& report) {
               const SelfProximityOptions options{.exclusion = {.rings = rings, .geodesic = geodesic},
                                                  .max_distance = max_distance,
                                                  .progress = report};
-              new (self) PySelfProximityQuery{SelfProximityQuery(std::move(mesh), options), {}};
+              made.make([&] {
+                return PySelfProximityQuery{SelfProximityQuery(std::move(mesh), options), {}};
+              });
             });
+            made.release();
           },
           nb::arg("rest").none(), nb::kw_only(), nb::arg("rings") = 1, nb::arg("geodesic") = nb::none(),
           nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("progress") = nb::none(),

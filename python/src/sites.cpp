@@ -123,7 +123,9 @@ void bind_construction(nb::class_<PySites>& sites) {
       [](PySites* self, nb::handle mesh, nb::handle faces) {
         Mesh value = mesh_of(mesh, faces);
         const std::size_t size = value.triangles.size();
-        run_sized(size, [&] { new (self) PySites(std::move(value)); });
+        InPlace<PySites> made(self);
+        run_sized(size, [&] { made.make([&] { return PySites(std::move(value)); }); });
+        made.release();
       },
       nb::arg("mesh").none(), nb::arg("faces") = nb::none(),
       nb::sig("def __init__(self, mesh: object, faces: object = None) -> None"));

@@ -120,13 +120,15 @@ void bind_construction(nb::class_<PySurface>& surface) {
          const char* atlas, double max_stretch, nb::handle gutter, nb::handle progress) {
         const Layout options = layout(resolution, precision, atlas, max_stretch, gutter);
         Mesh value = mesh_of(mesh, faces);
+        InPlace<PySurface> made(self);
         run(progress, [&](const Progress& report) {
           AtlasOptions atlas_options = options.options;
           atlas_options.progress = report;
           if (options.precision)
             atlas_options.resolution = resolution_for(value, *options.precision, atlas_options);
-          new (self) PySurface(std::move(value), atlas_options);
+          made.make([&] { return PySurface(std::move(value), atlas_options); });
         });
+        made.release();
       },
       nb::arg("mesh").none(), nb::arg("faces") = nb::none(), nb::kw_only(), SDM_LAYOUT_ARGUMENTS,
       nb::arg("progress") = nb::none(),

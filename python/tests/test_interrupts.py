@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -61,6 +62,54 @@ CALLS = {
         "[surface.covering_radius() for _ in range(3000)]",
     ),
 }
+
+
+# A handler of signals that takes longer than the work: the object is finished when the exception is raised.
+LATE = """
+import mmap, pickle, signal, time
+import numpy as np, sdm
+
+n = 300
+i, j = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
+points = np.stack([i, j, np.sin(i * 0.1)], -1).reshape(-1, 3).astype(float)
+a = (i * n + j)[:-1, :-1].ravel()
+faces = np.concatenate([np.stack([a, a + n, a + n + 1], -1), np.stack([a, a + n + 1, a + 1], -1)])
+stored = pickle.dumps(sdm.Shape(points, faces))
+
+def used():
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1])
+
+def late(*_):
+    global interrupted
+    interrupted += 1
+    time.sleep(1.5)
+    raise KeyboardInterrupt
+
+signal.signal(signal.SIGALRM, late)
+call = {call}
+call()
+interrupted, before = 0, used()
+for _ in range(3):
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.02)
+        call()
+        signal.setitimer(signal.ITIMER_REAL, 0)
+    except KeyboardInterrupt:
+        pass
+shape = 480 * len(faces)  # bytes, about
+print(interrupted, mmap.PAGESIZE * (used() - before) / shape)
+"""
+
+
+# Regression: nothing destroyed the object, of which each such call left one.
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs /proc")
+@pytest.mark.parametrize("call", ["lambda: pickle.loads(stored)", "lambda: sdm.Shape(points, faces)"])
+def test_late_signals_leave_no_object(call):
+    result = subprocess.run([sys.executable, "-c", LATE.format(call=call)], capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
+    interrupted, shapes = result.stdout.split()
+    assert int(interrupted) == 3 and float(shapes) < 1.5
 
 
 @pytest.mark.parametrize("name", CALLS)

@@ -5,6 +5,7 @@ import enum
 import gc
 import os
 import pickle
+import struct
 import subprocess
 import sys
 import tempfile
@@ -379,6 +380,21 @@ def test_compounds_keep_their_shapes(pair):
     assert_equal(answers[0], answers[1], "separations")
     state = expected.__getstate__()
     assert state[0][0] is state[0][1] is shape and len(found) == 2
+
+
+# Regression: a picture of roughness and metallic was made of one number for each texel, and read beyond the last one.
+def test_stored_channels_have_their_components(pair):
+    baked = sdm.bake(pair[0], pair[1], vertex_colors=np.abs(pair[0].vertices) / 9, resolution=32)
+    (state,) = baked.__getstate__()
+    head, texels = "<BIQQ", 32 * 32  # number of the channel, texels of a row, components, numbers
+    before, found, after = state.partition(struct.pack(head, 0, 32, 3, 3 * texels))
+    assert found
+    made = type(baked).__new__(type(baked))
+    for channel, components in ((0, 1), (1, 1), (1, 3), (2, 3), (3, 1), (0, 5)):
+        values = np.zeros(components * texels, np.float32).tobytes()
+        wrong = before + struct.pack(head, channel, 32, components, components * texels) + values + after[12 * texels :]
+        with pytest.raises(sdm.Error, match="damaged"):
+            made.__setstate__((wrong,))
 
 
 def test_damaged_values_are_refused(pair):

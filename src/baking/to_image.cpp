@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <new>
+#include <string>
 
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -50,9 +51,12 @@ Image to_image(const BakedChannel& baked) try {
   if (baked.components == 0 || baked.resolution == 0 || baked.values.empty() ||
       baked.values.size() % (baked.components * baked.resolution) != 0)
     throw Error("a picture of a baked texture needs whole rows of texels");
+  const bool mixed = baked.channel == BakeChannel::metallic_roughness;
+  if (mixed && baked.components != 2)
+    throw Error("a picture of metallic_roughness needs 2 numbers for each texel, not " +
+                std::to_string(baked.components));
   static const SrgbBytes srgb;
   const std::size_t components = baked.components, texels = baked.values.size() / components;
-  const bool mixed = baked.channel == BakeChannel::metallic_roughness;
   Image image{.width = baked.resolution,
               .height = static_cast<std::uint32_t>(texels / baked.resolution),
               .components = mixed ? 3 : static_cast<std::uint32_t>(components),

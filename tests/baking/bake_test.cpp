@@ -341,5 +341,12 @@ TEST(BakedImages, HaveTheNearestOf256Colors) {
   EXPECT_EQ(to_image(all).bytes, std::vector<std::uint8_t>(768, 255));
 }
 
+// Regression: the number after the last one was read.
+TEST(BakedImages, OfRoughnessAndMetallicNeedTwoNumbers) {
+  EXPECT_THROW((void)to_image({BakeChannel::metallic_roughness, 2, 1, {0.25f, 0.5f, 0.75f, 1}}), Error);
+  EXPECT_EQ(to_image({BakeChannel::metallic_roughness, 1, 2, {0, 1}}).bytes,
+            (std::vector<std::uint8_t>{255, 0, 255}));
+}
+
 }  // namespace
 }  // namespace sdm::test
