@@ -146,6 +146,71 @@ TEST(WallDepth, DoesNotDependOnOtherPoses) {
   }
 }
 
+// A cup, from the middle of its bottom up the outside and back inside.
+Mesh cup_of(std::uint32_t around, double wall) {
+  const std::array<std::array<double, 2>, 10> profile{{{0.5, 0},
+                                                       {1, 0},
+                                                       {1, 0.5},
+                                                       {1, 1},
+                                                       {1 - wall, 1},
+                                                       {1 - wall, 0.5},
+                                                       {1 - wall, wall},
+                                                       {0.5, wall},
+                                                       {0, 0},
+                                                       {0, wall}}};
+  Mesh mesh;
+  for (std::size_t row = 0; row < 8; ++row)
+    for (std::uint32_t i = 0; i < around; ++i) {
+      const double angle = 2 * 3.141592653589793 * i / around;
+      mesh.positions.push_back(
+          {profile[row][0] * std::cos(angle), profile[row][0] * std::sin(angle), profile[row][1]});
+    }
+  for (const std::size_t middle : {8, 9}) mesh.positions.push_back({0, 0, profile[middle][1]});
+  for (std::uint32_t i = 0; i < around; ++i) {
+    const std::uint32_t j = (i + 1) % around;
+    for (std::uint32_t row = 0; row < 7; ++row) {
+      const std::uint32_t below = row * around, above = below + around;
+      mesh.triangles.push_back({below + i, above + j, above + i});
+      mesh.triangles.push_back({below + i, below + j, above + j});
+    }
+    mesh.triangles.push_back({8 * around, j, i});
+    mesh.triangles.push_back({8 * around + 1, 7 * around + i, 7 * around + j});
+  }
+  return mesh;
+}
+
+// Bounds hold for the balls that touch the faces at many points, also at ends of walls and where walls meet,
+// and are not much larger than those.
+TEST(WallThickness, BoundsTheBallsThatTouchEachFace) {
+  constexpr double kWall = 0.05;
+  const Mesh mesh = cup_of(16, kWall);
+  const shape::Body body(mesh, nullptr);
+  ASSERT_TRUE(body.solid());
+  const sites::SitesData& sites = internals(body.sites());
+  std::size_t bounded = 0;
+  for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
+    const double bound = body.wall_thickness().of_face(face);
+    bounded += bound < 1.5 * 0.5 * kWall;
+    const Corners at = corners_of(mesh, face);
+    constexpr int kDivisions = 12;
+    for (int i = 1; i < kDivisions; ++i)
+      for (int j = 1; i + j < kDivisions; ++j) {
+        const double u = static_cast<double>(i) / kDivisions, v = static_cast<double>(j) / kDivisions;
+        const Vec3 x = (1 - u - v) * at[0] + u * at[1] + v * at[2];
+        double radius = 0.5;  // of the largest ball, which shrinks until nothing is in it
+        for (int step = 0; step < 60; ++step) {
+          const Vec3 centre = x - radius * sites.normals.face[face];
+          const Vec3 to = x - closest_points(body.sites(), std::array{centre})[0].point;
+          const double along = dot(to, sites.normals.face[face]);
+          if (!(along > 1e-12)) break;
+          radius = std::min(radius, squared_norm(to) / (2 * along));
+        }
+        EXPECT_LE(radius, bound + 1e-6) << face;
+      }
+  }
+  EXPECT_GT(bounded, mesh.triangles.size() * 9 / 10);
+}
+
 // A bound on the thickness holds for what is below a face, whatever is above it.
 TEST(WallDepth, OfABlockUnderSlantedPlatesIsNotThatOfThePlates) {
   const auto plate = [](double up) {
@@ -159,7 +224,7 @@ TEST(WallDepth, OfABlockUnderSlantedPlatesIsNotThatOfThePlates) {
   const shape::Body body(joined(joined(moved(cube(6), {0, 0, -6}), plate(0)), plate(2)), nullptr);
   ASSERT_TRUE(body.solid());
   for (std::uint32_t face = 0; face < 12; ++face)
-    for (int call = 0; call < 2; ++call) EXPECT_FALSE(body.wall_thickness().is_within(face, 0.3)) << face;
+    for (int call = 0; call < 2; ++call) EXPECT_GT(body.wall_thickness().of_face(face), 0.3) << face;
 }
 
 // Where two bodies of a solid overlap, a wall ends where the last of them does, also if they are inside out.
@@ -173,7 +238,7 @@ TEST(WallDepth, DoesNotEndInsideOfSolidsThatAreInsideOut) {
       const Vec3 middle = (1.0 / 3) * (at[0] + at[1] + at[2]);
       const bool on_top = middle[2] == 10 && std::abs(middle[0] - 5) < 2 && std::abs(middle[1] - 5) < 2;
       if (on_top) {
-        EXPECT_FALSE(body.wall_thickness().is_within(face, 3)) << "points below it are 4 deep";
+        EXPECT_GT(body.wall_thickness().of_face(face), 3) << "points below it are 4 deep";
       }
     }
   }

@@ -23,7 +23,8 @@ constexpr int kFirstDirections = 3;
 // So many parts of the boundary are found for a triangle before it is divided.
 constexpr std::uint32_t kMostCuts = 4;
 // If more parts have to be measured, walls may be thin. While fewer than so many parts are open for each that
-// has been measured, the search is likely to end before a new one would, and goes on up to kMostEasy.
+// has been measured, the search is likely to end before a new one would, and goes on up to kMostEasy, or
+// until a depth is known that is enough for all points in the walls.
 constexpr std::size_t kEasy = 256, kMostEasy = 1024, kOpenOfMeasured = 6;
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
 
@@ -54,7 +55,8 @@ Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity,
   budget_ = kEasy;
   search_all();
   const auto is_unfinished = [&] { return parts_.upper() > parts_.enough() && !within_budget(); };
-  while (is_unfinished() && budget_ < kMostEasy && parts_.open_count() < kOpenOfMeasured * measured_) {
+  while (is_unfinished() && budget_ < kMostEasy && parts_.open_count() < kOpenOfMeasured * measured_ &&
+         !walls_are_no_deeper()) {
     budget_ *= 2;
     search::branch_and_bound(*this, parts_);
   }
@@ -76,6 +78,13 @@ void DepthSearch::search_all() {
   for (int body = 0; body < 2; ++body)
     if (bodies_[1 - body]->body().solid()) leaving_[body].divide({.body = body, .what = NodePart{0}}, parts_);
   search::branch_and_bound(*this, parts_);
+}
+
+// Whether no point in most of the walls of each solid is deeper than what is enough.
+bool DepthSearch::walls_are_no_deeper() const {
+  for (int body = 0; body < 2; ++body)
+    if (bodies_[1 - body]->body().solid() && !leaving_[body].has_walls(parts_.enough())) return false;
+  return true;
 }
 
 // Whether those of a solid are thin: nodes of any size may then be excluded as a whole.

@@ -47,6 +47,7 @@ class DepthSearch : public search::Policy {
 
  private:
   void search_all();
+  [[nodiscard]] bool walls_are_no_deeper() const;
   [[nodiscard]] bool look_at_walls();
   void find_exits(int body);
   [[nodiscard]] bool improve(int body, const Vec3& p, const BoundaryDistance& b);

@@ -9,7 +9,6 @@
 #include "geometry/vec.h"
 #include "query/shape/wall_column.h"
 #include "sites/sites_data.h"
-#include "tree/visit.h"
 
 namespace sdm::depth {
 namespace {
@@ -18,7 +17,7 @@ constexpr std::uint64_t kFaceStep = std::uint64_t{1} << 32;  // between the plac
 // Walls are thin if they are at most so many times as thick as the depth that is enough, and that depth is at
 // most this fraction of the size of the solid.
 constexpr double kThin = 3, kThinOfSize = 1.0 / 100;
-constexpr std::size_t kSampledFaces = 16, kMostFaces = 512;
+constexpr std::size_t kSampledFaces = 16;
 
 // Sets where a triangle is measured.
 void measure_at(Part& part, TrianglePart& triangle, const CornerValues& weights) {
@@ -106,34 +105,23 @@ void Leaving::evaluate(Part& part, Value& value, const ClosestPoint& closest, bo
 // between c and p were that deep, as b is continuous, and closest to a face that is not farther from c than
 // the radius and that depth.
 bool Leaving::walls_are_thin(const shape::Ball& ball, double enough) const {
-  const sites::SitesData& sites = internals(solid_->sites());
-  const shape::WallThickness& walls = solid_->wall_thickness();
-  const double reach =
-      (1 + kSingleRounding) * (ball.radius + enough) + kUnitDistanceRounding / sites.frame.scale;
-  const Vec3 at = sites.frame.to_unit(ball.centre);
-  const double in_unit = sites.frame.scale * reach + kSingleRounding;
-  std::size_t faces = 0;  // of a ball with many, a part of it is asked for anyway
-  bool thin = true;
-  const auto near = [&](tree::Subtree subtree) {
-    return thin && squared_norm(gap(sites.tree.box(subtree.root), at)) <= in_unit * in_unit;
-  };
-  const auto test = [&](std::uint32_t leaf) {
-    for (const std::uint32_t face : sites.tree.items_of(leaf))
-      thin = thin && ++faces <= kMostFaces && walls.is_within(face, {ball.centre, reach}, enough);
-  };
-  tree::visit(sites.tree, tree::InOrder{near, test});
-  return thin;
+  return solid_->wall_thickness().is_within({ball.centre, ball.radius + enough}, enough);
 }
 
 void Leaving::look_at_walls(double enough) {
+  thin_ = walls_within(enough, kThin);
+}
+
+// Whether no point is deeper than so many times this depth below half of some faces.
+bool Leaving::walls_within(double enough, double times) const {
   const double depth = enough / scale_;
   const std::size_t faces = internals(solid_->sites()).mesh.triangles.size();
-  if (depth > kThinOfSize * diagonal(solid_->box())) return;
+  if (depth > kThinOfSize * diagonal(solid_->box())) return false;
   std::size_t thin = 0;
   for (std::size_t i = 0; i < kSampledFaces; ++i)
-    thin += solid_->wall_thickness().is_within(static_cast<std::uint32_t>(i * faces / kSampledFaces),
-                                               kThin * depth);
-  thin_ = 2 * thin >= kSampledFaces;
+    thin += solid_->wall_thickness().of_face(static_cast<std::uint32_t>(i * faces / kSampledFaces)) <=
+            times * depth;
+  return 2 * thin >= kSampledFaces;
 }
 
 void Leaving::bound_by_walls(Part& part, const ClosestPoint& closest, const BoundaryDistance& b, bool inside,

@@ -45,6 +45,8 @@ class Leaving {
   /// Finds whether the walls of the solid are thin. If so, evaluate() bounds parts by their thickness, too: a
   /// search that has measured many parts starts anew after this.
   void look_at_walls(double enough);
+  /// Whether no point is deeper than that in most of the walls of the solid, and it is little for its size.
+  [[nodiscard]] bool has_walls(double enough) const { return walls_within(enough, 1); }
   [[nodiscard]] bool thin() const { return thin_; }
   /// Puts the pieces of a part, or settles them.
   void divide(const Part& part, Parts& parts) const;
@@ -55,6 +57,7 @@ class Leaving {
                                                       const std::array<BoundaryPart, 2>& boundary) const;
   [[nodiscard]] double bound_outside(const Part& part, const TrianglePart& triangle, const Value& value,
                                      double distance, double enough) const;
+  [[nodiscard]] bool walls_within(double enough, double times) const;
   [[nodiscard]] bool walls_are_thin(const shape::Ball& ball, double enough) const;
   void bound_by_walls(Part& part, const ClosestPoint& closest, const BoundaryDistance& b, bool inside,
                       double enough) const;

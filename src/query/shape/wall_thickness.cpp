@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "geometry/point_triangle.h"
+#include "geometry/rounding.h"
+#include "geometry/triangle.h"
 #include "geometry/vec.h"
 #include "query/shape/passages.h"
 #include "query/shape/wall_column.h"
@@ -26,7 +28,13 @@ constexpr double kAngleRounding = 1e-6;
 // Of the corners, at a point of a face that is not right above or below edges of regular meshes.
 constexpr Vec3 kWeights{0.4142, 0.3183, 0.2675};
 constexpr double kSteepest = 1.3;
-constexpr std::size_t kMostAround = 24;
+constexpr std::size_t kMostAround = 40;
+// Relative to the size of the solid: columns are so long, and other walls at most so thick.
+constexpr double kDeepest = 0.2, kThickest = 0.04;
+// A column with more faces takes too long.
+constexpr std::size_t kMostBelow = 2048;
+// Of a ball that meets more, a part of it is asked for anyway.
+constexpr std::size_t kMostNodes = 2048;
 
 double angle(const Vec3& a, const Vec3& b) {
   return std::acos(std::clamp(dot(a, b), -1.0, 1.0));
@@ -104,11 +112,6 @@ double angle_at_vertex(const sites::SitesData& solid, std::uint32_t vertex) {
   return cap + beside;
 }
 
-Corners corners_of(const sites::SitesData& solid, std::uint32_t face) {
-  const auto& [i, j, k] = solid.mesh.triangles[face];
-  return {solid.mesh.positions[i], solid.mesh.positions[j], solid.mesh.positions[k]};
-}
-
 std::array<Corners, 4> quarters_of(const Corners& at) {
   Corners middle;
   for (int k = 0; k < 3; ++k) middle[k] = 0.5 * (at[k] + at[(k + 1) % 3]);
@@ -121,13 +124,12 @@ bool beyond(const Corners& at, const Ball& ball) {
   return norm(closest_on_triangle(ball.centre, at) - ball.centre) > ball.radius;
 }
 
-// Whether there are so many faces below a large one that a bound takes too long. The same for any `most`, so
-// that bounds do not depend on those that were asked for before.
-bool has_many_below(const sites::SitesData& solid, const WallColumn& column, std::vector<Polygon>& faces) {
-  constexpr std::size_t kMany = 2048;
-  constexpr double kDepth = 0.2;  // of the size of the solid: walls are less than that
-  faces.clear();
-  return Passages(solid, column, {column.lo[0] - kDepth / solid.frame.scale, 0}, kMany, faces).overflow();
+// Finds a bound on first use. `find` returns the same in all threads, and not 0.
+template <class Find>
+double known_or(std::atomic<double>& bound, const Find& find) {
+  double value = bound.load(std::memory_order_relaxed);
+  if (value == 0) bound.store(value = find(), std::memory_order_relaxed);
+  return value;
 }
 
 }  // namespace
@@ -136,7 +138,9 @@ WallThickness::WallThickness(const sites::SitesData& solid, const inside::Inside
     : solid_(&solid),
       inside_(&inside),
       count_(solid.mesh.triangles.size()),
-      bounds_(std::make_unique<std::atomic<double>[]>(count_)),
+      node_count_(solid.tree.nodes.size()),
+      bounds_(std::make_unique<Bound[]>(count_)),
+      nodes_(std::make_unique<Bound[]>(node_count_)),
       parts_(std::make_unique<std::atomic<Bounds*>[]>(count_)) {}
 
 WallThickness::~WallThickness() {
@@ -144,34 +148,75 @@ WallThickness::~WallThickness() {
 }
 
 void WallThickness::forget() {
+  for (std::size_t node = 0; node < node_count_; ++node) nodes_[node] = 0;
   for (std::size_t face = 0; face < count_; ++face) {
     bounds_[face] = 0;
     if (Bounds* parts = parts_[face].load())
-      for (std::atomic<double>& bound : *parts) bound = 0;
+      for (Bound& bound : *parts) bound = 0;
   }
 }
 
-template <class Find>
-bool WallThickness::compare(std::atomic<double>& bound, double most, const Find& find) {
-  const double known = bound.load(std::memory_order_relaxed);
-  if (known > 0) return known <= most;
-  if (-known >= most) return false;
-  const double found = find();
-  bound.store(found <= most ? found : -most, std::memory_order_relaxed);
-  return found <= most;
+double WallThickness::of_face(std::uint32_t face) const {
+  return known_or(bounds_[face], [&] { return find(face, corners_of(solid_->mesh, face)); });
 }
 
-bool WallThickness::is_within(std::uint32_t face, double most) const {
-  return compare(bounds_[face], most, [&] { return find(face, corners_of(*solid_, face), most); });
+double WallThickness::of_subtree(tree::Subtree subtree) const {
+  return known_or(nodes_[subtree.root], [&] {
+    const tree::AabbTree::Node& node = solid_->tree.nodes[subtree.root];
+    double most = 0;
+    if (!node.leaf()) {
+      most = of_subtree({subtree.root + 1, node.right});
+      if (most < kNoWall) most = std::max(most, of_subtree({node.right, subtree.end}));
+      return most;
+    }
+    for (const std::uint32_t face : solid_->tree.items_of(subtree.root))
+      if (most < kNoWall) most = std::max(most, of_face(face));
+    return most;
+  });
 }
 
-bool WallThickness::is_within(std::uint32_t face, const Ball& near, double most) const {
-  if (is_within(face, most)) return true;
-  const Corners at = corners_of(*solid_, face);
-  if (beyond(at, near)) return true;
+struct WallThickness::NearBall {
+  Ball ball;
+  double most;
+  Vec3 at;            // in the unit frame
+  double reach;       // the radius there
+  std::size_t nodes;  // looked at so far
+};
+
+bool WallThickness::is_within(const Ball& ball, double most) const {
+  const UnitFrame& frame = solid_->frame;
+  const double reach = (1 + kSingleRounding) * ball.radius + kUnitDistanceRounding / frame.scale;
+  NearBall near{
+      {ball.centre, reach}, most, frame.to_unit(ball.centre), frame.scale * reach + kSingleRounding, 0};
+  return is_within(tree::whole(solid_->tree), near);
+}
+
+bool WallThickness::is_within(tree::Subtree subtree, NearBall& near) const {
+  const tree::AabbTree::Node& node = solid_->tree.nodes[subtree.root];
+  if (squared_norm(gap(node.box, near.at)) > near.reach * near.reach) return true;
+  double to_corner = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double x = std::max(near.at[k] - node.box.lo[k], node.box.hi[k] - near.at[k]);
+    to_corner += x * x;
+  }
+  const bool covered = to_corner <= near.reach * near.reach;
+  near.nodes += covered ? subtree.end - subtree.root : 1;
+  if (near.nodes > kMostNodes) return false;
+  if (covered && of_subtree(subtree) <= near.most) return true;
+  if (node.leaf())
+    return std::ranges::all_of(solid_->tree.items_of(subtree.root),
+                               [&](std::uint32_t face) { return is_within(face, near); });
+  return is_within({subtree.root + 1, node.right}, near) && is_within({node.right, subtree.end}, near);
+}
+
+bool WallThickness::is_within(std::uint32_t face, const NearBall& near) const {
+  if (of_face(face) <= near.most) return true;
+  const Corners at = corners_of(solid_->mesh, face);
+  if (beyond(at, near.ball)) return true;
   Bounds& parts = parts_of(face);
   const auto part_is_within = [&](std::size_t part, const Corners& corners) {
-    return beyond(corners, near) || compare(parts[part], most, [&] { return find(face, corners, most); });
+    return beyond(corners, near.ball) ||
+           known_or(parts[part], [&] { return find(face, corners); }) <= near.most;
   };
   const std::array<Corners, 4> quarters = quarters_of(at);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -192,35 +237,41 @@ WallThickness::Bounds& WallThickness::parts_of(std::uint32_t face) const {
   return *known;
 }
 
+double WallThickness::find(std::uint32_t face, const Corners& corners) const {
+  const sites::SitesData& solid = *solid_;
+  if (solid.sliver[face] != 0 || inside_->sides().of_face(face) != Sides::boundary) return kNoWall;
+  double angle = 0;
+  for (int k = 0; k < 3; ++k)
+    angle = std::max(
+        {angle, angle_at_edge(solid, face, k), angle_at_vertex(solid, solid.mesh.triangles[face][k])});
+  if (angle > kSteepest) return kNoWall;
+  const TouchedTriangle triangle{corners, solid.normals.face[face], angle + kAngleRounding};
+  const double in_column = find_in_column(triangle);
+  if (in_column < kNoWall) return in_column;
+  return bound_of_touching_balls(solid, inside_->sides(), triangle, kThickest / solid.frame.scale);
+}
+
 // Let x be the closest point on the face F of a point p inside, b = |p − x|, and θ the angle between the
 // outward normal n of F and x − p. If the section of the column of F at a depth L below it is outside, the
 // way from p to it along −n leaves the solid, so b ≤ L − b cos θ, and b ≤ L / (1 + cos θ). The column must
 // contain p, so that it is wider than F by b sin θ ≤ L tan(θ/2). No point p closest to x is deeper: the point
 // of the way to it at the distance L / (1 + cos θ) would be in the column and closest to x, but closer to
 // that section.
-double WallThickness::find(std::uint32_t face, const Corners& corners, double most) const {
+double WallThickness::find_in_column(const TouchedTriangle& triangle) const {
   const sites::SitesData& solid = *solid_;
-  if (solid.sliver[face] != 0 || inside_->sides().of_face(face) != Sides::boundary) return kNoWall;
-  double most_angle = 0;
-  for (int k = 0; k < 3; ++k)
-    most_angle = std::max(
-        {most_angle, angle_at_edge(solid, face, k), angle_at_vertex(solid, solid.mesh.triangles[face][k])});
-  if (most_angle > kSteepest) return kNoWall;
-  most_angle += kAngleRounding;
-  const Vec3& n = solid.normals.face[face];
+  const Corners& corners = triangle.at;
   const Vec3 beside = kWeights[0] * corners[0] + kWeights[1] * corners[1] + kWeights[2] * corners[2] -
-                      inside_->sides().offset() * n;
+                      inside_->sides().offset() * triangle.normal;
   thread_local std::vector<Polygon> faces;
   thread_local std::vector<Levels> taken;
-  if (has_many_below(solid, WallColumn::around(corners, beside, n), faces)) return kNoWall;
   double wider = 0;
   for (int turn = 0; turn < 3; ++turn) {
-    WallColumn column = WallColumn::around(corners, beside, n);
+    WallColumn column = WallColumn::around(corners, beside, triangle.normal);
     column.enlarge(wider);
     faces.clear();
-    const Levels limits{column.lo[0] - 2 * most - 2 * kLeastGap / solid.frame.scale, 0};
-    // So many as there are, so that a bound does not depend on `most`.
-    const Passages passages(solid, column, limits, std::numeric_limits<std::size_t>::max(), faces);
+    const Levels limits{column.lo[0] - kDeepest / solid.frame.scale, 0};
+    const Passages passages(solid, column, limits, kMostBelow, faces);
+    if (passages.overflow()) return kNoWall;
     taken.clear();
     for (const Polygon& polygon : faces) taken.push_back(passages.levels(polygon));
     std::ranges::sort(taken, {}, &Levels::lo);
@@ -233,8 +284,8 @@ double WallThickness::find(std::uint32_t face, const Corners& corners, double mo
       lo = std::max(lo, t.hi);
     }
     if (depth == kNoWall) return kNoWall;
-    const double needed = depth * std::tan(0.5 * most_angle);
-    if (needed <= wider) return (1 + kDoubleRounding) * depth / (1 + std::cos(most_angle));
+    const double needed = depth * std::tan(0.5 * triangle.angle);
+    if (needed <= wider) return (1 + kDoubleRounding) * depth / (1 + std::cos(triangle.angle));
     wider = 1.01 * needed + kDoubleRounding / solid.frame.scale;
   }
   return kNoWall;
