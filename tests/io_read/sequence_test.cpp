@@ -229,6 +229,25 @@ TEST(SequenceNpy, EveryLayout) {
       }
 }
 
+// Arrays in Fortran order that are read in several parts: more bytes than one part has, and columns of more
+// frames than that.
+TEST(SequenceNpy, LongArraysInFortranOrder) {
+  struct Size {
+    std::size_t frames;
+    Mesh mesh;
+  };
+  for (const auto& [count, mesh] : {Size{100, torus(300, 100)}, {150'000, tetrahedron()}}) {
+    Frames frames(count, mesh.positions);
+    for (std::size_t t = 0; t < count; ++t)
+      for (Vec3& p : frames[t]) p = (1 + 1e-3 * static_cast<double>(t)) * p;
+    const std::string file = write("long.obj", obj(mesh));
+    MeshSequence sequence(file + "+" + write("long.npy", npy(frames, {8, true})));
+    ASSERT_EQ(sequence.frame_count(), count);
+    for (const std::size_t t : {std::size_t{0}, count - 1, count / 2, count / 2 + 1, std::size_t{1}})
+      EXPECT_EQ(copy(sequence.positions(t)), frames[t]) << t;
+  }
+}
+
 TEST(SequenceNpy, FindsTheArrayBesideTheMesh) {
   const Mesh mesh = tetrahedron();
   fresh("beside");

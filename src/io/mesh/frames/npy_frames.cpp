@@ -2,13 +2,16 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <string>
 #include <system_error>
 #include <utility>
 
+#include "core/cancellation.h"
 #include "core/memory.h"
 #include "io/file/byte_scanner.h"
 #include "io/file/error_prefix.h"
@@ -22,8 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A regular file with random access, without a buffer: the numbers of a frame in Fortran order are far from
-// each other.
+// A regular file with random access, without a buffer: what is read is large.
 class RandomAccessFile {
  public:
   explicit RandomAccessFile(const fs::path& file) {
@@ -66,8 +68,10 @@ class NpyFrames : public FrameSource {
     PolygonMesh polygons = with_error_prefix(
         polygons_name(), [&] { return read_polygons(read_bytes(mesh_name_).view(), mesh_name_); });
     with_error_prefix(npy_name_.string(), [&] { check_shape(polygons.positions.size()); });
-    require_memory(header_.shape[1] * 3 * header_.number_bytes, "a frame");
-    bytes_.resize(header_.shape[1] * 3 * header_.number_bytes);
+    frame_bytes_ = header_.shape[1] * 3 * header_.number_bytes;
+    most_frames_ = header_.fortran_order ? frames_of_block() : 1;
+    require_memory(most_frames_ * frame_bytes_, "a frame");
+    bytes_.resize(most_frames_ * frame_bytes_);
     return polygons;
   }
 
@@ -80,12 +84,9 @@ class NpyFrames : public FrameSource {
   std::vector<fs::path> files() const override { return {mesh_name_, npy_name_}; }
 
   void read(std::size_t frame, std::vector<Vec3>& positions) override {
-    if (header_.fortran_order)
-      read_strided(frame);
-    else
-      file_.read(header_.data_begin + frame * bytes_.size(), bytes_.data(), bytes_.size());
+    if (frame - first_ >= frames_) read_block(frame);
     positions.resize(header_.shape[1]);
-    const char* at = bytes_.data();
+    const char* at = bytes_.data() + (frame - first_) * frame_bytes_;
     for (Vec3& p : positions)
       for (double& x : p) {
         x = header_.number_bytes == 4 ? load<float>(at, header_.order) : load<double>(at, header_.order);
@@ -120,19 +121,51 @@ class NpyFrames : public FrameSource {
                       data, shape[0], frame_bytes));
   }
 
-  // Reads Fortran order, where element (t, v, k) has the index t + T·(v + V·k).
-  void read_strided(std::size_t frame) {
-    const std::uint64_t frames = header_.shape[0], vertices = header_.shape[1], size = header_.number_bytes;
-    for (std::uint64_t k = 0; k < 3; ++k)
-      for (std::uint64_t v = 0; v < vertices; ++v)
-        file_.read(header_.data_begin + (frame + frames * (v + vertices * k)) * size,
-                   bytes_.data() + (3 * v + k) * size, size);
+  // In Fortran order the numbers of a frame are spread over the whole file, which is read once for many
+  // frames.
+  [[nodiscard]] std::uint64_t frames_of_block() const {
+    constexpr std::uint64_t kMostBytes = 64 << 20;
+    return std::clamp<std::uint64_t>(kMostBytes / frame_bytes_, 1, header_.shape[0]);
+  }
+
+  void read_block(std::uint64_t first) {
+    frames_ = 0;  // in case of an error
+    const std::uint64_t count = std::min(most_frames_, header_.shape[0] - first);
+    if (header_.fortran_order)
+      read_columns(first, count);
+    else
+      file_.read(header_.data_begin + first * frame_bytes_, bytes_.data(), frame_bytes_);
+    first_ = first, frames_ = count;
+  }
+
+  // Reads Fortran order, where element (t, v, k) has the index t + T·(v + V·k), a run of columns (v, k) at a
+  // time: from the first frame of its first column to the last frame of its last one.
+  void read_columns(std::uint64_t first, std::uint64_t count) {
+    constexpr std::uint64_t kRun = 1 << 20;  // bytes
+    const std::uint64_t vertices = header_.shape[1], size = header_.number_bytes;
+    const std::uint64_t column_bytes = header_.shape[0] * size, columns = 3 * vertices;
+    const std::uint64_t most = std::max<std::uint64_t>(1, kRun / column_bytes);
+    for (std::uint64_t begin = 0; begin < columns; begin += most) {
+      poll();
+      const std::uint64_t run = std::min(most, columns - begin);
+      run_.resize((run - 1) * column_bytes + count * size);
+      file_.read(header_.data_begin + begin * column_bytes + first * size, run_.data(), run_.size());
+      for (std::uint64_t c = 0; c < run; ++c) {
+        const std::uint64_t v = (begin + c) % vertices, k = (begin + c) / vertices;
+        char* to = bytes_.data() + (3 * v + k) * size;
+        const char* from = run_.data() + c * column_bytes;
+        for (std::uint64_t t = 0; t < count; ++t) std::memcpy(to + t * frame_bytes_, from + t * size, size);
+      }
+    }
   }
 
   fs::path mesh_name_, npy_name_;
   RandomAccessFile file_;
   NpyHeader header_;
-  std::vector<char> bytes_;  // of one frame, in C order
+  std::uint64_t frame_bytes_ = 0, most_frames_ = 0;
+  std::vector<char> bytes_;               // of consecutive frames, in C order
+  std::uint64_t first_ = 0, frames_ = 0;  // of those
+  std::vector<char> run_;
 };
 
 }  // namespace
