@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sdm/baked_geometry.h>
+#include <sdm/cancellation.h>
 #include <sdm/supersampling.h>
 
 #include <algorithm>
@@ -178,13 +179,20 @@ std::vector<float> ChannelBaker::samples_of(GeometryChannel channel) {
         "{}: its normals are not moved by --transform-high; smooth ones are baked", pair_.high.file);
     if (std::ranges::count(notes_, note) == 0) notes_.push_back(note);
   }
-  return sdm::bake_geometry(pair_.surface, pair_.sites, pair_.matches, channel,
-                            {.normals = pair_.normals,
-                             .drawn_normals = &result.normal_map.normals,
-                             .drawn_tangents = &result.normal_map.tangents,
-                             .occlusion = command.occlusion,
-                             .method = command.thickness,
-                             .progress = command.map.progress});
+  try {
+    return sdm::bake_geometry(pair_.surface, pair_.sites, pair_.matches, channel,
+                              {.normals = pair_.normals,
+                               .drawn_normals = &result.normal_map.normals,
+                               .drawn_tangents = &result.normal_map.tangents,
+                               .occlusion = command.occlusion,
+                               .method = command.thickness,
+                               .progress = command.map.progress});
+  } catch (const sdm::Cancelled&) {
+    throw;
+  } catch (const sdm::Error& error) {
+    if (channel != GeometryChannel::thickness) throw;
+    throw sdm::Error(fmt::format("{}: {}", pair_.high.file, error.what()), error.remedy());
+  }
 }
 
 void ChannelBaker::bake(GeometryChannel channel) {

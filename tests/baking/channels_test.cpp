@@ -206,7 +206,7 @@ TEST_F(BakedChannels, WhatCannotBeBakedIsSaid) {
   std::ofstream(high, std::ios::app) << "f 1 2 3\n";  // an edge of three faces
   const Outcome thickness = run({"--channels", "thickness"});
   EXPECT_EQ(thickness.code, 1);
-  EXPECT_THAT(thickness.err, HasSubstr("has no thickness"));
+  EXPECT_THAT(thickness.err, HasSubstr(high + ": a mesh that is open has no thickness"));
   EXPECT_FALSE(std::filesystem::exists(out));
   std::filesystem::remove(folder / "high.mtl");
   const Outcome material = run({"--channels", "material"});
