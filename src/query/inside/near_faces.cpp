@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "geometry/rounding.h"
+#include "query/inside/face_pairs.h"
 #include "tree/visit.h"
 
 namespace sdm::inside {
@@ -156,16 +157,13 @@ bool has_clear_fan(const sites::SitesData& sites, std::uint32_t vertex) {
 /// The pairs of near faces of which one is in a leaf, and the other one in it or in a later leaf.
 class NearPairs {
  public:
-  /// Uses the memory of `reaches`.
-  NearPairs(const sites::SitesData& sites, std::span<const std::uint8_t> clear_fans,
-            std::vector<std::uint8_t>& flags, std::vector<Box>& reaches)
-      : sites_(sites), clear_fans_(clear_fans), flags_(flags), reaches_(reaches) {}
+  NearPairs(const sites::SitesData& sites, const FaceBoxes& boxes, std::span<const std::uint8_t> clear_fans,
+            std::vector<std::uint8_t>& flags)
+      : sites_(sites), boxes_(boxes), clear_fans_(clear_fans), flags_(flags) {}
 
   void flag(std::uint32_t leaf) {
-    reaches_.clear();
-    const std::span<const std::uint32_t> faces = sites_.tree.items_of(leaf);
-    for (const std::uint32_t face : faces) reaches_.push_back(reach_of_face(sites_, face));
-    for (std::size_t i = 0; i < faces.size(); ++i) compare(faces.first(i), faces[i]);
+    pairs_.clear();
+    append_overlapping(sites_, boxes_, leaf, leaf, pairs_);
     // More than the clearance, and than its rounding.
     constexpr float kMargin = 1.25F * static_cast<float>(kClearance);
     tree::FloatBox reach = sites_.tree.box(leaf);
@@ -175,38 +173,45 @@ class NearPairs {
       return below.end > leaf + 1 && meet(sites_.tree.box(below.root), reach);
     };
     const auto visit_leaf = [&](std::uint32_t other) {
-      if (other <= leaf) return;
-      for (const std::uint32_t face : sites_.tree.items_of(other)) compare(faces, face);
+      if (other > leaf) append_overlapping(sites_, boxes_, leaf, other, pairs_);
     };
     visit(sites_.tree, tree::InOrder{enter, visit_leaf});
+    for (const FacePair& pair : pairs_) compare(pair);
+  }
+  /// Those that wait for others.
+  void finish() {
+    const std::uint32_t apart = triangles_.apart(kClearance);
+    for (std::size_t i = 0; i < triangles_.size(); ++i)
+      if ((apart >> i & 1u) == 0 && !clear_of(sites_, waiting_[i][0], waiting_[i][1])) flag(waiting_[i]);
+    triangles_.clear();
   }
 
  private:
-  // The first ones of the leaf with another face.
-  void compare(std::span<const std::uint32_t> faces, std::uint32_t other) {
-    const Box box = box_of_face(sites_.mesh, other);
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-      if (!overlap(reaches_[i], box) || known_to_be_clear(faces[i], other) ||
-          clear_of(sites_, faces[i], other))
-        continue;
-      for (const std::uint32_t near : {faces[i], other})
-        std::atomic_ref(flags_[near]).store(1, std::memory_order_relaxed);
-    }
-  }
-  // Whether they share one corner only, where all faces are clear of each other.
-  [[nodiscard]] bool known_to_be_clear(std::uint32_t face, std::uint32_t other) const {
-    const Triangle &a = sites_.mesh.triangles[face], &b = sites_.mesh.triangles[other];
+  void compare(const FacePair& pair) {
+    const Triangle &a = sites_.mesh.triangles[pair[0]], &b = sites_.mesh.triangles[pair[1]];
     std::uint32_t corner = kNone;
     int shared = 0;
     for (const std::uint32_t v : a)
       if (v == b[0] || v == b[1] || v == b[2]) corner = v, ++shared;
-    return shared == 1 && clear_fans_[corner] != 0;
+    if (shared == 0) {
+      waiting_[triangles_.size()] = pair;
+      triangles_.add(unit_corners(sites_, pair[0]), unit_corners(sites_, pair[1]));
+      if (triangles_.full()) finish();
+    } else if (!(shared == 1 && clear_fans_[corner] != 0) && !clear_of(sites_, pair[0], pair[1])) {
+      flag(pair);
+    }
+  }
+  void flag(const FacePair& pair) {
+    for (const std::uint32_t near : pair) std::atomic_ref(flags_[near]).store(1, std::memory_order_relaxed);
   }
 
   const sites::SitesData& sites_;
+  const FaceBoxes& boxes_;
   std::span<const std::uint8_t> clear_fans_;  ///< of each vertex: has_clear_fan()
   std::vector<std::uint8_t>& flags_;
-  std::vector<Box>& reaches_;
+  std::vector<FacePair> pairs_;
+  TrianglePairs triangles_;
+  std::array<FacePair, TrianglePairs::kMost> waiting_{};
 };
 
 }  // namespace
@@ -264,10 +269,11 @@ void flag_faces_with_near(const sites::SitesData& sites, std::vector<std::uint8_
     for (std::size_t v = begin; v < end; ++v)
       clear_fans[v] = has_clear_fan(sites, static_cast<std::uint32_t>(v));
   });
+  const FaceBoxes boxes(sites, 0.625 * kClearance);  // together more than it, by more than rounding
   parallel_for(leaves.size(), 256, [&](std::size_t begin, std::size_t end) {
-    thread_local std::vector<Box> reaches;
-    NearPairs pairs(sites, clear_fans, flags, reaches);
+    NearPairs pairs(sites, boxes, clear_fans, flags);
     for (std::size_t i = begin; i < end; ++i) pairs.flag(leaves[i]);
+    pairs.finish();
   });
 }
 
