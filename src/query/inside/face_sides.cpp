@@ -8,6 +8,12 @@
 #include "query/inside/solid.h"
 
 namespace sdm::inside {
+namespace {
+
+// Sides of so many faces are found one by one, however few there are.
+constexpr std::size_t kOneByOne = 256;
+
+}  // namespace
 
 double offset_beside_faces(const sites::SitesData& sites) {
   const Box box = bounds(sites.mesh);
@@ -27,24 +33,26 @@ void FaceSides::renew() {
   offset_ = offset_beside_faces(*solid_);
   for (std::size_t f = 0; f < solid_->mesh.triangles.size(); ++f)
     sides_[f].store(Sides::unknown, std::memory_order_relaxed);
-  found_ = 0;
+  found_ = direct_ = 0;
 }
 
 Sides FaceSides::of_face(std::uint32_t face) const {
   Sides sides = sides_[face].load(std::memory_order_relaxed);
-  if (sides != Sides::unknown && sides != kAsked) return sides;
+  if (sides != Sides::unknown) return sides;
   // The others may be asked meanwhile, and are found one by one then.
-  constexpr std::size_t kFew = 256;
-  if (found_.fetch_add(1, std::memory_order_relaxed) == kFew + solid_->mesh.triangles.size() / 8) find_all();
+  if (found_.fetch_add(1, std::memory_order_relaxed) == kOneByOne + solid_->mesh.triangles.size() / 8)
+    find_all();
   sides = sides_[face].load(std::memory_order_relaxed);
-  if (sides == Sides::unknown || sides == kAsked)
-    sides_[face].store(sides = find(face), std::memory_order_relaxed);
+  if (sides == Sides::unknown) sides_[face].store(sides = find(face), std::memory_order_relaxed);
   return sides;
 }
 
-bool FaceSides::first_asked(std::uint32_t face) const {
-  Sides unknown = Sides::unknown;
-  return sides_[face].compare_exchange_strong(unknown, kAsked, std::memory_order_relaxed);
+bool FaceSides::direct(std::uint32_t face) const {
+  if (sides_[face].load(std::memory_order_relaxed) != Sides::unknown) return false;
+  const std::size_t enough = kOneByOne + solid_->mesh.triangles.size() / 2;
+  const std::size_t before = direct_.fetch_add(1, std::memory_order_relaxed);
+  if (before == enough) find_all();
+  return before < enough;
 }
 
 Sides FaceSides::of_site(SiteType type, std::uint32_t site) const {
@@ -114,7 +122,7 @@ Sides FaceSides::known_to_neighbour(std::uint32_t face) const {
   for (const std::uint32_t edge : solid_->topology.face_edges[face])
     for (const std::uint32_t other : solid_->topology.edge_faces(edge)) {
       const Sides sides = sides_[other].load(std::memory_order_relaxed);
-      if (sides != Sides::unknown && sides != kAsked && sides != Sides::mixed) return sides;
+      if (sides != Sides::unknown && sides != Sides::mixed) return sides;
     }
   return Sides::unknown;
 }

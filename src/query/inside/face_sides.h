@@ -41,9 +41,10 @@ class FaceSides {
 
   /// Cost: O(log n) for the first call, constant for others.
   [[nodiscard]] Sides of_face(std::uint32_t face) const;
-  /// Whether the sides of a face are not known, and this has not been asked before. Those of a face that few
-  /// queries ask for cost more than their winding numbers.
-  [[nodiscard]] bool first_asked(std::uint32_t face) const;
+  /// Whether the winding number of a query beside this face is to be found without its sides. These take as
+  /// long as several winding numbers, and those of all faces as half as many as there are faces: at that many
+  /// calls of this they are found. Answers do not depend on it.
+  [[nodiscard]] bool direct(std::uint32_t face) const;
   /// offset_beside_faces(); if 0, all sides are `mixed`.
   [[nodiscard]] double offset() const { return offset_; }
   /// The sides of the faces around a site, if they are all the same: then the pseudonormal of the site
@@ -51,9 +52,6 @@ class FaceSides {
   [[nodiscard]] Sides of_site(SiteType type, std::uint32_t site) const;
 
  private:
-  /// Not known, but asked for.
-  static constexpr Sides kAsked = static_cast<Sides>(0xFF);
-
   [[nodiscard]] Sides find(std::uint32_t face) const;
   void find_all() const;
   [[nodiscard]] Sides beside(std::uint32_t face) const;
@@ -62,7 +60,8 @@ class FaceSides {
   const sites::SitesData* solid_;
   double offset_ = 0;
   std::unique_ptr<std::atomic<Sides>[]> sides_;
-  mutable std::atomic<std::size_t> found_ = 0;  ///< one by one
+  mutable std::atomic<std::size_t> found_ = 0;   ///< one by one
+  mutable std::atomic<std::size_t> direct_ = 0;  ///< queries without sides
 };
 
 }  // namespace sdm::inside

@@ -5,6 +5,7 @@
 #include <bit>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "geometry/vec.h"
 
@@ -43,9 +44,9 @@ class Balls {
 };
 thread_local Balls balls;
 
-// Whether packets of this thread are searched together: after one in which less than half of the points were
-// decided, some are not, twice as many each time. Answers do not depend on it.
-class PacketTrials {
+// Whether something that may fail is tried on this thread: after a failure some trials are left out, twice as
+// many each time. Answers do not depend on it.
+class Trials {
  public:
   [[nodiscard]] bool due(std::uint64_t shape) {
     if (shape != shape_) *this = {}, shape_ = shape;
@@ -54,7 +55,7 @@ class PacketTrials {
     return false;
   }
   void learn(bool paid) {
-    constexpr std::uint32_t kMostSkipped = 63;
+    constexpr std::uint32_t kMostSkipped = 15;
     skipped_ = paid ? 0 : std::min(2 * skipped_ + 1, kMostSkipped);
     to_skip_ = skipped_;
   }
@@ -63,7 +64,34 @@ class PacketTrials {
   std::uint64_t shape_ = 0;
   std::uint32_t to_skip_ = 0, skipped_ = 0;
 };
-thread_local PacketTrials packet_trials;
+thread_local Trials packet_trials, ball_trials;
+
+// Winding numbers of points of a solid, none of them on its surface, one after the other on this thread: by a
+// segment to the point before, if that is shorter than the way out of the box.
+class WindingWalk {
+ public:
+  [[nodiscard]] int winding(const ShapeSigns& signs, const sites::SitesData& solid, const Vec3& point) {
+    std::optional<int> number;
+    const double way = way_out(signs.box, point);
+    if (signs.number == shape_ && squared_norm(point - last_) < way * way)
+      if (const std::optional<int> turns = crossings(solid, point, last_)) number = number_ + *turns;
+    number_ = number ? *number : inside::winding(solid, point);
+    shape_ = signs.number, last_ = point;
+    return number_;
+  }
+
+ private:
+  static double way_out(const Box& box, const Vec3& point) {
+    double way = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k) way = std::min({way, point[k] - box.lo[k], box.hi[k] - point[k]});
+    return std::max(way, 0.0);
+  }
+
+  std::uint64_t shape_ = 0;
+  Vec3 last_{};
+  int number_ = 0;
+};
+thread_local WindingWalk winding_walk;
 
 // The answer of a test of a solid: it holds wherever a ball that the surface does not meet leads.
 WindingNumber::Side of_solid(bool inside) {
@@ -115,9 +143,9 @@ double InsideTest::clear_radius(SiteType type, double distance) const {
 template <class Test>
 bool InsideTest::inside_ball(const Vec3& query, SiteType type, double distance, const Test& test) const {
   const double radius = clear_radius(type, distance);
-  if (!(radius > 0)) return test(false).above;
+  if (!(radius > 0)) return test(0.0).above;
   if (const auto known = balls.find(signs_->number, query, radius)) return *known;
-  const WindingNumber::Side side = test(true);
+  const WindingNumber::Side side = test(radius);
   balls.add(signs_->number, {query, radius, side.reach, side.above});
   return side.above;
 }
@@ -126,14 +154,15 @@ bool InsideTest::test(const Vec3& query, const ClosestPoint& closest, bool few) 
   switch (method_) {
     case SignMethod::exact:
       if (closest.type == SiteType::none || !sdm::contains(signs_->box, query)) return false;
-      return inside_ball(query, closest.type, closest.distance, [&](bool clear) {
-        const bool direct = few && clear && sides_->first_asked(sites_.face_of(closest.type, closest.site));
-        return of_solid(direct ? winding(sites_, query) != 0 : inside_solid(query, closest));
+      return inside_ball(query, closest.type, closest.distance, [&](double clear) {
+        const bool direct = few && clear > 0 && sides_->direct(sites_.face_of(closest.type, closest.site));
+        return of_solid(direct ? winding_walk.winding(*signs_, sites_, query) != 0
+                               : inside_solid(query, closest));
       });
     case SignMethod::winding:
       if (closest.distance == 0) return false;
       return inside_ball(query, closest.type, closest.distance,
-                         [&](bool) { return winding_->above_half(query, closest, few); });
+                         [&](double clear) { return above_half(query, closest, few, clear); });
     case SignMethod::side:
       return behind(query, closest);
     default:
@@ -164,10 +193,22 @@ bool InsideTest::at_boundary(const Vec3& query, const ClosestPoint& closest) con
   }
 }
 
+// Tries to decide a ball around the query. Larger ones meet the surface in places, and are rarely decided.
+WindingNumber::Side InsideTest::above_half(const Vec3& query, const ClosestPoint& closest, bool few,
+                                           double clear) const {
+  constexpr double kOfClear = 0.15;
+  const bool due = clear > 0 && ball_trials.due(signs_->number);
+  const double radius = due ? kOfClear * clear : 0;
+  const WindingNumber::Side side = winding_->above_half(query, closest, few, radius);
+  if (due) ball_trials.learn(side.reach >= radius);
+  return side;
+}
+
 // Balls first; then one search for all others, unless a ball of one of them contains the rest; then one by
 // one.
 template <class Closest>
-std::uint32_t InsideTest::above_half(std::span<const Vec3> queries, const Closest& closest, bool few) const {
+std::uint32_t InsideTest::above_half(std::span<const Vec3> queries, const Closest& closest, bool few,
+                                     double widest) const {
   constexpr std::size_t kFewest = 4;
   std::array<Vec3, kPacket> open_queries;
   std::array<ClosestPoint, kPacket> open_closest;
@@ -175,6 +216,7 @@ std::uint32_t InsideTest::above_half(std::span<const Vec3> queries, const Closes
   std::size_t count = 0;
   std::uint32_t inside = 0;
   double largest = 0;
+  std::size_t largest_place = 0;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const ClosestPoint at = closest(i);
     if (at.distance == 0) continue;
@@ -183,14 +225,19 @@ std::uint32_t InsideTest::above_half(std::span<const Vec3> queries, const Closes
       inside |= (*known ? 1u : 0u) << i;
       continue;
     }
+    if (radius > largest) largest = radius, largest_place = count;
     open_queries[count] = queries[i], open_closest[count] = at, place[count++] = static_cast<std::uint8_t>(i);
-    largest = std::max(largest, radius);
   }
+  if (count == 0) return inside;
+  // The ball of the first one that is tested may answer for the others.
+  std::swap(open_queries[0], open_queries[largest_place]);
+  std::swap(open_closest[0], open_closest[largest_place]);
+  std::swap(place[0], place[largest_place]);
   PacketSides sides;
   if (count >= kFewest) {
     Box box;
     for (const Vec3& query : std::span(open_queries).first(count)) extend(box, query);
-    if (largest < 0.25 * norm(box.hi - box.lo) && packet_trials.due(signs_->number)) {
+    if (largest < widest * norm(box.hi - box.lo) && packet_trials.due(signs_->number)) {
       sides = winding_->above_half(std::span(open_queries).first(count), std::span(open_closest).first(count),
                                    few);
       packet_trials.learn(2 * static_cast<std::size_t>(std::popcount(sides.known)) >= count);
@@ -206,9 +253,10 @@ std::uint32_t InsideTest::above_half(std::span<const Vec3> queries, const Closes
 
 std::uint32_t InsideTest::operator()(std::span<const Vec3> queries, std::span<const ClosestPoint> closest,
                                      bool few) const {
+  constexpr double kWidest = 0.25;
   if (method_ == SignMethod::winding)
     return above_half(
-        queries, [&](std::size_t i) { return closest[i]; }, few);
+        queries, [&](std::size_t i) { return closest[i]; }, few, kWidest);
   std::uint32_t inside = 0;
   for (std::size_t i = 0; i < queries.size(); ++i)
     inside |= (test(queries[i], closest[i], few) ? 1u : 0u) << i;
@@ -220,7 +268,9 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries,
   std::uint32_t inside = 0;
   if (method_ == SignMethod::none) return inside;
   const auto of = [&](std::size_t i) { return closest.get(i, queries[i]); };
-  if (method_ == SignMethod::winding) return above_half(queries.first(closest.count), of, false);
+  // Samples of a surface or a grid are close together.
+  constexpr double kWidest = 4;
+  if (method_ == SignMethod::winding) return above_half(queries.first(closest.count), of, false, kWidest);
   for (std::size_t i = 0; i < closest.count; ++i) {
     const Vec3& query = queries[i];
     bool is_inside = false;
@@ -228,7 +278,7 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries,
       is_inside = test(query, of(i), false);
     else if (sdm::contains(signs_->box, query) && closest.type[i] != SiteType::none)
       is_inside = inside_ball(query, closest.type[i], closest.distance[i],
-                              [&](bool) { return of_solid(inside_solid(query, of(i))); });
+                              [&](double) { return of_solid(inside_solid(query, of(i))); });
     inside |= static_cast<std::uint32_t>(is_inside) << i;
   }
   return inside;

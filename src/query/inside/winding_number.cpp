@@ -20,6 +20,7 @@ namespace {
 constexpr double kSphere = 4 * std::numbers::pi;
 constexpr double kNoLimit = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint32_t kLeafFaces = 4;
+constexpr std::size_t kManyClosing = 2000;
 
 bool certain(const SolidAngle& angle, double limit) {
   return std::abs(angle.value - limit) > angle.error;
@@ -107,10 +108,27 @@ std::optional<int> WindingNumber::closed(const Vec3& q, const ClosestPoint& clos
   return direct(q);
 }
 
-WindingNumber::Side WindingNumber::above_half(const Vec3& q, const ClosestPoint& closest, bool few) const {
+std::optional<WindingNumber::Side> WindingNumber::coarse_side(const Vec3& q, std::optional<int> closed,
+                                                              double clear) const {
+  const bool by_closing = closing_.angles.has_value();
+  // The sum of few takes little time, and reaches far.
+  if (by_closing && (!closed || closing_.triangles.size() < kManyClosing)) return {};
+  const SolidAngles& angles = by_closing ? *closing_.angles : mesh_angles();
+  const double limit = kSphere * (by_closing ? *closed - 0.5 : 0.5);
+  double reach = clear;
+  PacketSides side = clear > 0 ? side_of_ball(angles, q, clear, limit) : PacketSides{};
+  if (side.known == 0) side = sides_of_packet(angles, {&q, 1}, {&limit, 1}), reach = 0;
+  if (side.known == 0) return {};
+  return Side{(side.above != 0) != by_closing, reach};
+}
+
+WindingNumber::Side WindingNumber::above_half(const Vec3& q, const ClosestPoint& closest, bool few,
+                                              double clear) const {
   if (sites_.tree.nodes.empty()) return {};
   poll();
-  return above_half(q, closed(q, closest, few));
+  const std::optional<int> number = closed(q, closest, few);
+  if (const std::optional<Side> side = coarse_side(q, number, clear)) return *side;
+  return above_half(q, number);
 }
 
 PacketSides WindingNumber::above_half(std::span<const Vec3> points, std::span<const ClosestPoint> closest,

@@ -42,8 +42,9 @@ class WindingNumber {
   /// The side of 1/2 on which the number around q is; as above.
   [[nodiscard]] Side above_half(const Vec3& q) const;
   /// The same, faster where the number beside the closest site is known. `few`: most queries are the only one
-  /// at their closest face.
-  [[nodiscard]] Side above_half(const Vec3& q, const ClosestPoint& closest, bool few) const;
+  /// at their closest face. `clear`: tries to decide all points nearer than this, where the mesh is not; the
+  /// reach is not less if that succeeds.
+  [[nodiscard]] Side above_half(const Vec3& q, const ClosestPoint& closest, bool few, double clear = 0) const;
   /// The same for points near to each other, at most kPacket, where one search of the tree decides it.
   [[nodiscard]] PacketSides above_half(std::span<const Vec3> points, std::span<const ClosestPoint> closest,
                                        bool few) const;
@@ -64,6 +65,8 @@ class WindingNumber {
   [[nodiscard]] std::optional<int> closed(const Vec3& q, const ClosestPoint& closest, bool few) const;
   /// With the number of the closed surface.
   [[nodiscard]] Side above_half(const Vec3& q, std::optional<int> closed) const;
+  /// The same in single precision; empty where that does not decide it.
+  [[nodiscard]] std::optional<Side> coarse_side(const Vec3& q, std::optional<int> closed, double clear) const;
   [[nodiscard]] const SolidAngles& mesh_angles() const;
 
   const sites::SitesData& sites_;

@@ -75,6 +75,57 @@ TEST(PacketAngles, AreOnTheSideOfSumsInExtendedPrecision) {
     }
 }
 
+// Balls of all sizes up to that which touches the mesh: where the side is known, no point of them is on the
+// other one. Most of a tenth of that size beside a smooth surface are known.
+TEST(PacketAngles, BallsAreOnTheSideOfSumsInExtendedPrecision) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> u(-1, 1);
+  const Mesh ball = test::soup_of(test::sphere(5));
+  std::vector<test::OpenMesh> meshes = open_meshes();
+  meshes.push_back({"fine soup", ball});
+  for (const auto& [name, mesh] : meshes)
+    for (const double far : {0.0, 1e6}) {
+      SCOPED_TRACE(name + " at " + std::to_string(far));
+      const Vec3 offset{far, -2 * far, 0.7 * far};
+      const Sites sites(test::moved(mesh, offset));
+      const inside::SolidAngles angles = angles_of(sites);
+      std::vector<Vec3> centres = test::points_about(mesh, 3);
+      for (Vec3& p : centres) p += offset;
+      const std::vector<ClosestPoint> closest = closest_points(sites, centres);
+      std::size_t known = 0, tried = 0;
+      for (std::size_t i = 0; i < centres.size(); ++i)
+        for (const double part : {0.01, 0.1, 0.25, 0.5, 0.99}) {
+          const double radius = part * closest[i].distance;
+          const bool far_from_limit = random() % 2 == 0;
+          const double limit =
+              kWhole * (brute_force_winding(sites, centres[i]) + (far_from_limit ? 0.5 : -0.1));
+          const inside::PacketSides side = inside::side_of_ball(angles, centres[i], radius, limit);
+          EXPECT_EQ(side.above & ~side.known, 0u);
+          if (part == 0.1 && far_from_limit) ++tried, known += side.known;
+          if (side.known == 0) continue;
+          for (int sample = 0; sample < 6; ++sample) {
+            const Vec3 direction = normalized(Vec3{u(random), u(random), u(random)});
+            const Vec3 q = centres[i] + (sample % 2 == 0 ? 1 : 0.5) * radius * direction;
+            ASSERT_EQ(side.above != 0, kWhole * brute_force_winding(sites, q) > limit) << part;
+          }
+        }
+      if (name == "fine soup" && far == 0) {
+        EXPECT_GT(known, tried / 3);
+      }
+    }
+}
+
+TEST(PacketAngles, BallsThatMeetFacesAreUnknown) {
+  const Sites sites(test::open_meshes()[3].mesh);
+  const inside::SolidAngles angles = angles_of(sites);
+  for (const Vec3& q : test::points_about(sites.mesh(), 5)) {
+    const double distance = closest_points(sites, std::vector{q})[0].distance;
+    for (const double part : {1.0001, 2.0, 10.0})
+      EXPECT_EQ(inside::side_of_ball(angles, q, part * distance + 1e-9, 100).known, 0u);
+  }
+  EXPECT_EQ(inside::side_of_ball(angles, {1e9, 0, 0}, 1, 100).known, 0u);
+}
+
 TEST(PacketAngles, AreUnknownOnFacesAndWhereRoundingDecides) {
   const Sites sites(test::open_meshes()[3].mesh);
   const inside::SolidAngles angles = angles_of(sites);

@@ -2,22 +2,28 @@
 #include "query/inside/solid.h"
 
 #include <gtest/gtest.h>
+#include <sdm/closest_points.h>
 #include <sdm/mesh.h>
+#include <sdm/sign.h>
 #include <sdm/sites.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <vector>
 
+#include "geometry/triangle_pair.h"
 #include "poses.h"
+#include "query/inside/face_pairs.h"
 #include "query/inside/near_faces.h"
 #include "sites/sites_data.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
 #include "support/points.h"
 #include "support/shapes.h"
+#include "support/simd_targets.h"
 
 namespace sdm::inside {
 namespace {
@@ -86,16 +92,92 @@ TEST(Solid, CrossingsOfFacesInLanesAreThoseOfTheTree) {
   }
 }
 
+// Those of pairs in lanes are separated by any plane, so that more of them are known to be apart.
 TEST(Solid, FacesNearOthersAreThoseFoundOneByOne) {
+  for (const test::SimdTarget target : test::simd_targets()) {
+    const test::UseSimdTarget use(target);
+    for (const Mesh& mesh : closed_meshes()) {
+      const Sites sites(mesh);
+      ASSERT_TRUE(internals(sites).is_solid());
+      std::vector<std::uint8_t> flags;
+      flag_faces_with_near(internals(sites), flags);
+      std::vector<std::uint32_t> near;
+      for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+        find_near_faces(internals(sites), f, near);
+        if (flags[f] != 0) {
+          EXPECT_FALSE(near.empty()) << f << " of " << mesh.triangles.size();
+        } else {
+          for (const std::uint32_t other : near) {
+            const Corners a = unit_corners(internals(sites), f), b = unit_corners(internals(sites), other);
+            EXPECT_GT(closest_or_common(a, b).squared, kClearance * kClearance) << f << " and " << other;
+          }
+        }
+      }
+    }
+  }
+}
+
+// Triangles of all sizes and shapes, near each other or not.
+TEST(Solid, TrianglesKnownToBeApartAre) {
+  std::mt19937 random(29);
+  std::uniform_real_distribution<double> u(-1, 1);
+  const auto point = [&] { return Vec3{u(random), u(random), u(random)}; };
+  for (const test::SimdTarget target : test::simd_targets()) {
+    const test::UseSimdTarget use(target);
+    std::size_t far = 0, found = 0;
+    for (int round = 0; round < 2000; ++round) {
+      const double size = std::pow(10.0, -6 * std::abs(u(random))),
+                   clearance = round % 2 == 0 ? 4e-6 : 0.3 * size;
+      TrianglePairs pairs;
+      std::vector<std::array<Corners, 2>> all;
+      const std::size_t count = 1 + random() % TrianglePairs::kMost;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Vec3 at = point();
+        Corners a{at, at + size * point(), at + size * point()};
+        if (i % 4 == 1) a[2] = a[1] + 1e-9 * (a[1] - a[0]);  // a needle
+        if (i % 8 == 2) a[1] = a[2] = a[0];
+        const Vec3 moved = size * point();
+        Corners b{a[0] + moved, a[1] + moved, a[2] + moved + size * point()};
+        if (i % 3 == 0) b = {a[1] + 0.1 * moved, a[2], a[2] + moved};
+        pairs.add(a, b);
+        all.push_back({a, b});
+      }
+      const std::uint32_t apart = pairs.apart(clearance);
+      EXPECT_EQ(apart >> all.size(), 0u);
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        const double distance = std::sqrt(closest_or_common(all[i][0], all[i][1]).squared);
+        if ((apart >> i & 1u) != 0) {
+          ASSERT_GT(distance, clearance) << size;
+        }
+        if (distance > 2 * clearance + 0.1 * size) ++far, found += apart >> i & 1u;
+      }
+    }
+    EXPECT_GT(found, 0.9 * static_cast<double>(far));
+  }
+}
+
+// The first ones are found by segments, those of later calls by the sides of faces.
+TEST(Solid, FewPointsHaveTheSameSignsInEveryCall) {
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> u(-1, 1);
   for (const Mesh& mesh : closed_meshes()) {
     const Sites sites(mesh);
-    ASSERT_TRUE(internals(sites).is_solid());
-    std::vector<std::uint8_t> flags;
-    flag_faces_with_near(internals(sites), flags);
-    std::vector<std::uint32_t> near;
-    for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
-      find_near_faces(internals(sites), f, near);
-      EXPECT_EQ(flags[f] != 0, !near.empty()) << f << " of " << mesh.triangles.size();
+    std::vector<Vec3> points;
+    for (std::size_t i = 0; i < std::min<std::size_t>(200, mesh.triangles.size() - 1); ++i) {
+      const Vec3 near = mesh.positions[random() % mesh.positions.size()];
+      const double far = i % 2 == 0 ? 0.01 : 1;
+      points.push_back(near + far * Vec3{u(random), u(random), u(random)});
+    }
+    const std::vector<ClosestPoint> closest = closest_points(sites, points);
+    std::vector<std::uint8_t> expected;
+    for (const Vec3& p : points) expected.push_back(contains(internals(sites), p) ? 1 : 0);
+    const std::size_t calls = 4 + (256 + mesh.triangles.size() / 2) / points.size();
+    for (std::size_t call = 0; call < calls; ++call) {
+      const std::vector<std::uint8_t> flags = inside_flags(sites, points, closest, SignMethod::exact);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        if (closest[i].distance > 1e-5) {
+          ASSERT_EQ(flags[i], expected[i]) << call << ", " << i;
+        }
     }
   }
 }

@@ -7,7 +7,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -15,23 +14,17 @@
 #include "core/cancellation.h"
 #include "geometry/lanes/vec-inl.h"
 #include "geometry/vec.h"
-#include "query/inside/angles/expansions-inl.h"
+#include "query/inside/angles/far_field-inl.h"
 
 #ifndef SDM_PACKET_ANGLES_ONCE
 #define SDM_PACKET_ANGLES_ONCE
 namespace sdm::inside {
 namespace {
 
-// Rounding in single precision.
-constexpr double kHalfUlpF = 0x1p-24;
 // Expansions with larger errors, in solid angle, are replaced by those of their parts, or by faces.
-constexpr float kMostErrorOfPacket = 0.05F;
+constexpr float kMostErrorOfPacket = 0.05F, kMostErrorOfPoint = 0.3F, kMostErrorOfBall = 0.04F;
 // Sums decide little with larger errors: beside a surface they are half a turn, 2π, from the limit.
 constexpr double kUsefulError = 4.5;
-// With more near faces and expansions than this, in vectors, a packet costs more than its points one by one.
-constexpr std::size_t kMostNear = 1500, kMostSteps = 4096;
-// Beyond this in the unit frame, single precision does not have the range.
-constexpr double kFarthestPacket = 0x1p20;
 
 // A face relative to the centre of the packet, in the unit frame.
 struct PacketFace {
@@ -39,23 +32,22 @@ struct PacketFace {
   float displacement;  // of a corner and a point, relative to each other, by rounding
 };
 
-// Points relative to their centre, which has no error, in the unit frame.
+// Points relative to the centre of a ball that contains them, in the unit frame.
 struct PacketPoints {
-  Vec3 centre{};
+  AngleBall ball;
   alignas(64) float at[3][kPacket] = {};
-  double radius = 0;        // of a ball around the centre
-  double displacement = 0;  // by rounding
 
   PacketPoints(const UnitFrame& frame, std::span<const Vec3> points) {
     Box box;
     for (const Vec3& p : points) extend(box, frame.to_unit(p));
-    for (int k = 0; k < 3; ++k) centre[k] = static_cast<float>(0.5 * (box.lo[k] + box.hi[k]));
+    ball = {0.5 * (box.lo + box.hi), 0};
+    double radius = 0;
     for (std::size_t i = 0; i < kPacket; ++i) {
-      const Vec3 offset = frame.to_unit(points[std::min(i, points.size() - 1)]) - centre;
+      const Vec3 offset = frame.to_unit(points[std::min(i, points.size() - 1)]) - ball.centre;
       radius = std::max(radius, norm(offset));
       for (int k = 0; k < 3; ++k) at[k][i] = static_cast<float>(offset[k]);
     }
-    displacement = 2 * kHalfUlpF * radius + Expansions::kDisplacement * (1 + norm(centre) + radius);
+    ball = {ball.centre, radius};
   }
 };
 
@@ -69,158 +61,7 @@ namespace {
 
 using PointFloats = hn::CappedTag<float, kPacket>;
 using PointVec = hn::Vec<PointFloats>;
-
-// What is far from the packet: value + gradient · (q − centre), to within `error`.
-struct FarField {
-  double value = 0, error = 0, gradient[3] = {};
-};
-
-// Collects the far field and the faces that are not part of it.
-//
-// A point q = q₀ + δ of the packet, |δ| ≤ ρ, sees a face point x at r₀ + u, where r₀ = c − q₀ and
-// u = (x − c) − δ. So the series about r₀ has the terms of Expansions, with the gradient −∇(M·K)(r₀)·δ in
-// addition, and the same remainder with R + ρ in place of R, and of the integral of |u|², which is at most
-// (√∫|x − c|² dA + ρ√A)². The noise contains the rounding of the gradient, too: with |δ| < d it is rounded by
-// less than 120·u·A/d².
-class FarSum {
- public:
-  // Sets `near` to the faces.
-  FarSum(const SolidAngles& angles, const PacketPoints& points, float most, std::vector<std::uint32_t>& near)
-      : angles_(angles), points_(points), most_(most), near_(near) {
-    const ChildFloats d;
-    value_ = error_ = seen_ = gradient_[0] = gradient_[1] = gradient_[2] = hn::Zero(d);
-    radius_ = static_cast<float>((1 + 1e-6) * points.radius);
-    displacement_ = static_cast<float>((1 + 1e-6) * points.displacement);
-    near_.clear();
-  }
-
-  // Whether few faces are near.
-  bool collect() {
-    thread_local std::vector<std::uint32_t> open;
-    open.assign(1, 0);
-    while (!open.empty()) {
-      const std::uint32_t index = open.back();
-      open.pop_back();
-      const tree::WideTree::Node& node = angles_.wide.nodes[index];
-      for (std::uint32_t rest = add_children(index); rest != 0; rest &= rest - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-        if (tree::WideTree::is_leaf(node.child[i]))
-          add_faces(node.source[i]);
-        else
-          open.push_back(node.child[i]);
-      }
-      if (near_.size() > kMostNear || steps_ > kMostSteps) return false;
-    }
-    return true;
-  }
-
-  FarField sum() const {
-    const ChildFloats d;
-    const auto total = [&](ChildVec v) HWY_ATTR { return double{hn::GetLane(hn::SumOfLanes(d, v))}; };
-    FarField field{.value = total(value_)};
-    for (int k = 0; k < 3; ++k) field.gradient[k] = total(gradient_[k]);
-    // A value and a gradient times δ are at most 9·A/g² together. The bounds are rounded in as many steps.
-    const double rounding = 2 * kHalfUlpF * static_cast<double>(steps_ + 16);
-    field.error = (1 + rounding + 1e-5) * (total(error_) + 9 * rounding * total(seen_));
-    return field;
-  }
-
- private:
-  // Of groups of faces, or of faces.
-  struct Terms {
-    ChildVec r[3], moment[3];  // r = c − q₀
-    ChildVec radius, area, second, noise;
-    float displacement = 0;
-  };
-
-  // The bits of the children of a node that are not part of the far field.
-  std::uint32_t add_children(std::uint32_t index) {
-    const Expansions& e = angles_.expansions.nodes[index];
-    const std::uint32_t children = angles_.wide.nodes[index].count;
-    const ChildFloats d;
-    std::uint32_t others = 0;
-    for (size_t i = 0; i < children; i += hn::Lanes(d)) {
-      Terms t;
-      for (int k = 0; k < 3; ++k)
-        t.r[k] = hn::Sub(hn::Load(d, e.centre[k] + i), hn::Set(d, static_cast<float>(points_.centre[k])));
-      lanes::HWY_NAMESPACE::load(d, e.moment, i, t.moment);
-      t.radius = hn::Load(d, e.radius + i), t.area = hn::Load(d, e.area + i);
-      t.second = hn::Load(d, e.second + i), t.noise = hn::Load(d, e.noise + i);
-      t.displacement = displacement_;
-      others |= add(t, children - i,
-                    [&](ChildVec squared, ChildVec inverse)
-                        HWY_ATTR { return expansion_value(e, i, t.r, squared, inverse); })
-                << i;
-    }
-    return others;
-  }
-  // Of a leaf.
-  void add_faces(std::uint32_t leaf) {
-    const FaceExpansions& e = angles_.expansions.faces;
-    const tree::AabbTree& tree = angles_.faces.faces.tree;
-    const std::size_t first = tree.nodes[leaf].first, end = first + tree.nodes[leaf].count;
-    const ChildFloats d;
-    for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
-      Terms t;
-      for (int k = 0; k < 3; ++k) {
-        const auto axis = static_cast<std::size_t>(k);
-        t.r[k] = hn::Sub(hn::LoadU(d, e.centre[axis].data() + i),
-                         hn::Set(d, static_cast<float>(points_.centre[k])));
-        t.moment[k] = hn::LoadU(d, e.moment[axis].data() + i);
-      }
-      // Not smaller than it is.
-      t.area = hn::Mul(hn::Sqrt(lanes::HWY_NAMESPACE::dot(t.moment, t.moment)), hn::Set(d, 1 + 1e-6F));
-      t.area = hn::Add(t.area, hn::Set(d, 1e-18F));
-      t.radius = hn::LoadU(d, e.radius.data() + i), t.second = hn::LoadU(d, e.second.data() + i);
-      t.noise = hn::LoadU(d, e.noise.data() + i);
-      t.displacement = displacement_ + static_cast<float>(FaceExpansions::kCentreRounding);
-      std::uint32_t others = add(t, end - i, [&](ChildVec, ChildVec inverse) HWY_ATTR {
-        return hn::Mul(inverse, lanes::HWY_NAMESPACE::dot(t.moment, t.r));
-      });
-      for (; others != 0; others &= others - 1)
-        near_.push_back(tree.items[i + static_cast<std::size_t>(std::countr_zero(others))]);
-    }
-  }
-  // Adds the first `count` of those whose errors are small. The bits of the others.
-  template <class Value>
-  HWY_INLINE std::uint32_t add(const Terms& t, std::size_t count, const Value& value) {
-    const ChildFloats d;
-    const auto squared = lanes::HWY_NAMESPACE::dot(t.r, t.r), distance = hn::Sqrt(squared);
-    const auto packet = hn::Set(d, radius_), displacement = hn::Set(d, t.displacement);
-    const auto radius = hn::Add(t.radius, packet);
-    const auto gap = hn::MulSub(distance, hn::Set(d, 1 - 16 * 0x1p-24F), hn::Add(radius, displacement));
-    const auto inverse_gap = hn::Div(hn::Set(d, 1), gap), by_gap2 = hn::Mul(inverse_gap, inverse_gap);
-    const auto inverse = hn::Div(hn::Set(d, 1), hn::Mul(squared, distance));
-    const auto root = hn::MulAdd(packet, hn::Sqrt(t.area), hn::Sqrt(t.second));
-    const auto size = hn::NegMulAdd(hn::Set(d, 2), radius, hn::Mul(hn::Set(d, 3), distance));
-    const auto remainder = hn::Mul(hn::Mul(root, root), hn::Mul(size, inverse));
-    const auto steep = hn::Mul(hn::Add(displacement, displacement), hn::Mul(t.area, inverse_gap));
-    const auto error = hn::Mul(hn::Add(hn::Add(remainder, t.noise), steep), by_gap2);
-    auto part = hn::And(hn::Gt(gap, hn::Zero(d)), hn::Le(error, hn::Set(d, most_)));
-    part = hn::And(part, hn::FirstN(d, count));
-    const auto add_to = [&](ChildVec& sum, ChildVec term)
-                            HWY_ATTR { sum = hn::Add(sum, hn::IfThenElseZero(part, term)); };
-    add_to(value_, value(squared, inverse));
-    add_to(error_, error);
-    add_to(seen_, hn::Mul(t.area, by_gap2));
-    // 3·(M·r)·r/d⁵ − M/d³
-    const auto along = hn::Mul(hn::Set(d, 3), hn::Div(lanes::HWY_NAMESPACE::dot(t.moment, t.r), squared));
-    for (int k = 0; k < 3; ++k)
-      add_to(gradient_[k], hn::Mul(inverse, hn::MulSub(along, t.r[k], t.moment[k])));
-    ++steps_;
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, part, bytes);
-    return ~std::uint32_t{bytes[0]} & ((1u << std::min<std::size_t>(hn::Lanes(d), count)) - 1);
-  }
-
-  const SolidAngles& angles_;
-  const PacketPoints& points_;
-  float most_;
-  std::vector<std::uint32_t>& near_;
-  float radius_, displacement_;
-  ChildVec value_, error_, seen_, gradient_[3];
-  std::size_t steps_ = 0;
-};
+using PointVec3 = lanes::HWY_NAMESPACE::Vec3Of<PointVec>;
 
 void gather_faces(const SolidAngles& angles, const PacketPoints& points, std::span<const std::uint32_t> near,
                   std::vector<PacketFace>& faces) {
@@ -230,11 +71,11 @@ void gather_faces(const SolidAngles& angles, const PacketPoints& points, std::sp
     double farthest = 0;
     const std::array<Vec3, 3> corners = angles.faces.corners(index);
     for (std::size_t j = 0; j < 3; ++j) {
-      const Vec3 corner = angles.faces.faces.frame.to_unit(corners[j]) - points.centre;
+      const Vec3 corner = angles.faces.faces.frame.to_unit(corners[j]) - points.ball.centre;
       farthest = std::max(farthest, std::abs(corner[0]) + std::abs(corner[1]) + std::abs(corner[2]));
       for (int k = 0; k < 3; ++k) face.corner[j][k] = static_cast<float>(corner[k]);
     }
-    face.displacement = static_cast<float>(1.01 * (kHalfUlpF * farthest + points.displacement));
+    face.displacement = static_cast<float>(1.01 * (kHalfUlpF * farthest + points.ball.displacement));
   }
 }
 
@@ -253,20 +94,17 @@ class NearSum {
     imaginary_ = turns_ = error_ = hn::Zero(d);
   }
 
-  HWY_INLINE void add(const PacketFace& face, PointVec x, PointVec y, PointVec z) {
+  // The corners relative to the points; `eta` displaces them.
+  HWY_INLINE void add(const PointVec3& a, const PointVec3& b, const PointVec3& c, PointVec eta) {
     using lanes::HWY_NAMESPACE::cross, lanes::HWY_NAMESPACE::dot;
     const PointFloats d;
-    const lanes::HWY_NAMESPACE::Vec3Of<PointVec> q{x, y, z};
-    const auto a = sub(lanes::HWY_NAMESPACE::splat(d, face.corner[0]), q),
-               b = sub(lanes::HWY_NAMESPACE::splat(d, face.corner[1]), q),
-               c = sub(lanes::HWY_NAMESPACE::splat(d, face.corner[2]), q);
     const auto la = hn::Sqrt(dot(a, a)), lb = hn::Sqrt(dot(b, b)), lc = hn::Sqrt(dot(c, c));
     const auto bc = hn::Mul(lb, lc), one = hn::Set(d, 1), inverse = hn::Div(one, hn::Mul(la, bc));
     const auto lengths = hn::MulAdd(la, hn::Add(lb, lc), bc);
     const auto dots = hn::MulAdd(dot(a, b), lc, hn::MulAdd(dot(b, c), la, hn::Mul(dot(c, a), lb)));
     const auto real = hn::MulAdd(dots, inverse, one), imaginary = hn::Mul(dot(a, cross(b, c)), inverse);
     const auto bound =
-        hn::MulAdd(hn::Set(d, 8 * face.displacement), hn::Mul(lengths, inverse), hn::Set(d, 128 * 0x1p-24F));
+        hn::MulAdd(hn::Mul(hn::Set(d, 8), eta), hn::Mul(lengths, inverse), hn::Set(d, 128 * 0x1p-24F));
     multiply(real, imaginary, bound);
   }
   // The sum, to within 0.01 and error().
@@ -315,6 +153,35 @@ class NearSum {
   PointVec real_, imaginary_, turns_, error_;
 };
 
+// The sums of both for one point, with a face per lane.
+PacketSides compare(const FarField& far, std::span<const PacketFace> faces, const float (&point)[3],
+                    double limit) {
+  const PointFloats d;
+  const std::size_t width = hn::Lanes(d);
+  // All corners in one point make no angle.
+  static constexpr PacketFace kNothing{{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}}, 0};
+  alignas(64) float corner[3][3][kPacket], displacement[kPacket];
+  const PointVec3 q = lanes::HWY_NAMESPACE::splat(d, point);
+  NearSum near;
+  for (std::size_t first = 0; first < faces.size(); first += width) {
+    for (std::size_t i = 0; i < width; ++i) {
+      const PacketFace& face = first + i < faces.size() ? faces[first + i] : kNothing;
+      for (int j = 0; j < 3; ++j)
+        for (int k = 0; k < 3; ++k) corner[j][k][i] = face.corner[j][k];
+      displacement[i] = face.displacement;
+    }
+    const auto at = [&](int j) HWY_ATTR { return sub(lanes::HWY_NAMESPACE::load(d, corner[j], 0), q); };
+    near.add(at(0), at(1), at(2), hn::Load(d, displacement));
+  }
+  const auto total_of = [&](PointVec v) HWY_ATTR { return double{hn::GetLane(hn::SumOfLanes(d, v))}; };
+  const double from_limit = far.value - limit, total = from_limit + total_of(near.sum());
+  const double size = std::abs(from_limit) + total_of(hn::Abs(near.sum()));
+  // The argument of each lane is approximate, and the rest rounded in few steps.
+  const double error =
+      1.001 * (far.error + total_of(near.error())) + 0.01 * static_cast<double>(width) + 1e-5 * size;
+  return {std::abs(total) > error ? 1u : 0u, total > error ? 1u : 0u};
+}
+
 // The sums of both, compared with the limits.
 PacketSides compare(const FarField& far, std::span<const PacketFace> faces, const PacketPoints& points,
                     std::span<const double> limits) {
@@ -326,7 +193,11 @@ PacketSides compare(const FarField& far, std::span<const PacketFace> faces, cons
     const auto x = hn::Load(d, points.at[0] + i), y = hn::Load(d, points.at[1] + i),
                z = hn::Load(d, points.at[2] + i);
     NearSum near;
-    for (const PacketFace& face : faces) near.add(face, x, y, z);
+    const PointVec3 q{x, y, z};
+    for (const PacketFace& face : faces) {
+      const auto at = [&](int j) HWY_ATTR { return sub(lanes::HWY_NAMESPACE::splat(d, face.corner[j]), q); };
+      near.add(at(0), at(1), at(2), hn::Set(d, face.displacement));
+    }
     const auto slope = [&](int k) HWY_ATTR { return hn::Set(d, static_cast<float>(far.gradient[k])); };
     const auto linear = hn::MulAdd(slope(0), x, hn::MulAdd(slope(1), y, hn::Mul(slope(2), z)));
     const auto start = hn::Load(d, from_limit + i), angle = near.sum();
@@ -353,14 +224,14 @@ PacketSides compare(const FarField& far, std::span<const PacketFace> faces, cons
 PacketSides SidesOfPacket(const SolidAngles& angles, std::span<const Vec3> points,
                           std::span<const double> limits) {
   const PacketPoints packet(angles.faces.faces.frame, points);
-  if (!(norm(packet.centre) + packet.radius < kFarthestPacket)) return {};
+  if (!packet.ball.in_range()) return {};
   thread_local std::vector<std::uint32_t> near;
   thread_local std::vector<PacketFace> faces;
   FarField field;
-  float most = kMostErrorOfPacket;
+  float most = points.size() == 1 ? kMostErrorOfPoint : kMostErrorOfPacket;
   for (const int last : {0, 1}) {
     poll();
-    FarSum far(angles, packet, most, near);
+    FarSum far(angles, packet.ball, false, most, near);
     if (!far.collect()) return {};
     field = far.sum();
     if (last != 0 || field.error < kUsefulError) break;
@@ -369,7 +240,26 @@ PacketSides SidesOfPacket(const SolidAngles& angles, std::span<const Vec3> point
     most *= static_cast<float>(std::max(factor * factor, 1.0 / 16));
   }
   gather_faces(angles, packet, near, faces);
+  if (points.size() == 1) {
+    const float at[3] = {packet.at[0][0], packet.at[1][0], packet.at[2][0]};
+    return compare(field, faces, at, limits[0]);
+  }
   return compare(field, faces, packet, limits);
+}
+
+PacketSides SideOfBall(const SolidAngles& angles, const Vec3& centre, double radius, double limit) {
+  const UnitFrame& frame = angles.faces.faces.frame;
+  const AngleBall ball(frame.to_unit(centre), (1 + 1e-6) * radius * frame.scale);
+  if (!ball.in_range()) return {};
+  thread_local std::vector<std::uint32_t> near;
+  poll();
+  FarSum far(angles, ball, true, kMostErrorOfBall, near);
+  if (!far.collect()) return {};
+  const FarField field = far.sum();
+  const Vec3 gradient{field.gradient[0], field.gradient[1], field.gradient[2]};
+  const double from_limit = field.value - limit, change = ball.radius * norm(gradient);
+  const double error = 1.001 * field.error + change + 1e-5 * (std::abs(from_limit) + change);
+  return {std::abs(from_limit) > error ? 1u : 0u, from_limit > error ? 1u : 0u};
 }
 
 }  // namespace sdm::inside::HWY_NAMESPACE
@@ -379,6 +269,7 @@ HWY_AFTER_NAMESPACE();
 namespace sdm::inside {
 
 HWY_EXPORT(SidesOfPacket);
+HWY_EXPORT(SideOfBall);
 
 PacketSides sides_of_packet(const SolidAngles& angles, std::span<const Vec3> points,
                             std::span<const double> limits) {
@@ -389,6 +280,11 @@ PacketSides sides_of_packet(const SolidAngles& angles, std::span<const Vec3> poi
     return sides;
   }
   return HWY_DYNAMIC_DISPATCH(SidesOfPacket)(angles, points, limits);
+}
+
+PacketSides side_of_ball(const SolidAngles& angles, const Vec3& centre, double radius, double limit) {
+  if (angles.empty()) return {1, limit < 0 ? 1u : 0u};
+  return HWY_DYNAMIC_DISPATCH(SideOfBall)(angles, centre, radius, limit);
 }
 
 }  // namespace sdm::inside

@@ -24,4 +24,11 @@ inline constexpr std::size_t kPacket = 16;
 [[nodiscard]] PacketSides sides_of_packet(const SolidAngles& angles, std::span<const Vec3> points,
                                           std::span<const double> limits);
 
+/// The side of all points that are nearer to `centre` than `radius`, in bit 0: known if the sums there are
+/// all on one side of the limit by their expansions about the centre alone. No face may be as near as
+/// `radius`, and the sides of few balls are known whose radius is more than a fifth of the distance to the
+/// nearest.
+[[nodiscard]] PacketSides side_of_ball(const SolidAngles& angles, const Vec3& centre, double radius,
+                                       double limit);
+
 }  // namespace sdm::inside
