@@ -40,7 +40,7 @@ Sides FaceSides::of_face(std::uint32_t face) const {
   Sides sides = sides_[face].load(std::memory_order_relaxed);
   if (sides != Sides::unknown) return sides;
   // The others may be asked meanwhile, and are found one by one then.
-  if (found_.fetch_add(1, std::memory_order_relaxed) == kOneByOne + solid_->mesh.triangles.size() / 8)
+  if (found_.fetch_add(1, std::memory_order_relaxed) == kOneByOne + solid_->mesh.triangles.size() / 32)
     find_all();
   sides = sides_[face].load(std::memory_order_relaxed);
   if (sides == Sides::unknown) sides_[face].store(sides = find(face), std::memory_order_relaxed);

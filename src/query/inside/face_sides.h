@@ -28,10 +28,10 @@ enum class Sides : std::uint8_t {
   return outer == 0 ? Sides::boundary : outer == -1 ? Sides::reversed : Sides::buried;
 }
 
-/// The sides of the faces of a solid, each found on first use, and those of all once an eighth of them was
-/// asked for: all together take less time. The winding number is constant on one side of a face that no other
-/// face meets, and passes to neighbours across their common edge. Thread-safe; signs do not depend on the
-/// order of calls.
+/// The sides of the faces of a solid, each found on first use, and those of all once a thirty-second of them
+/// was asked for: all together take less time. The winding number is constant on one side of a face that no
+/// other face meets, and passes to neighbours across their common edge. Thread-safe; signs do not depend on
+/// the order of calls.
 class FaceSides {
  public:
   /// `solid` must be a solid, outlive this object, and not change until renew().

@@ -64,6 +64,11 @@ bool unfolded(const Vec3& p, const Vec3& q, const Vec3& c, const Vec3& d) {
 // Neither face of an edge is turned over more than this, by their unit normals.
 constexpr double kUnfolded = -0.99;
 
+bool surely_unfolded(const sites::SitesData& sites, std::uint32_t face, std::uint32_t other) {
+  return !sites.sliver[face] && !sites.sliver[other] &&
+         dot(sites.normals.face[face], sites.normals.face[other]) > kUnfolded;
+}
+
 // Whether `face` has the clearance from `other`, whose box overlaps its enlarged one.
 bool clear_of(const sites::SitesData& sites, std::uint32_t face, std::uint32_t other) {
   const Triangle &a = sites.mesh.triangles[face], &b = sites.mesh.triangles[other];
@@ -90,9 +95,7 @@ bool clear_of(const sites::SitesData& sites, std::uint32_t face, std::uint32_t o
                              {at[b[theirs[1]]] - corner, at[b[theirs[2]]] - corner});
     }
     case 2:
-      if (!sites.sliver[face] && !sites.sliver[other] &&
-          dot(sites.normals.face[face], sites.normals.face[other]) > kUnfolded)
-        return true;
+      if (surely_unfolded(sites, face, other)) return true;
       return unfolded(at[a[mine[0]]], at[a[mine[1]]], at[a[mine[2]]], at[b[theirs[2]]]);
     default:
       return false;
@@ -197,7 +200,9 @@ class NearPairs {
       waiting_[triangles_.size()] = pair;
       triangles_.add(unit_corners(sites_, pair[0]), unit_corners(sites_, pair[1]));
       if (triangles_.full()) finish();
-    } else if (!(shared == 1 && clear_fans_[corner] != 0) && !clear_of(sites_, pair[0], pair[1])) {
+    } else if (!(shared == 1 && clear_fans_[corner] != 0) &&
+               !(shared == 2 && surely_unfolded(sites_, pair[0], pair[1])) &&
+               !clear_of(sites_, pair[0], pair[1])) {
       flag(pair);
     }
   }
