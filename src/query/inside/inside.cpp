@@ -93,6 +93,10 @@ class WindingWalk {
 };
 thread_local WindingWalk winding_walk;
 
+// How far from the surface, in sizes of a packet, points are searched together that are far from each other,
+// or whose sums have few faces.
+constexpr double kWidestOfSparse = 0.25;
+
 // The answer of a test of a solid: it holds wherever a ball that the surface does not meet leads.
 WindingNumber::Side of_solid(bool inside) {
   return {inside, std::numeric_limits<double>::infinity()};
@@ -253,10 +257,9 @@ std::uint32_t InsideTest::above_half(std::span<const Vec3> queries, const Closes
 
 std::uint32_t InsideTest::operator()(std::span<const Vec3> queries, std::span<const ClosestPoint> closest,
                                      bool few) const {
-  constexpr double kWidest = 0.25;
   if (method_ == SignMethod::winding)
     return above_half(
-        queries, [&](std::size_t i) { return closest[i]; }, few, kWidest);
+        queries, [&](std::size_t i) { return closest[i]; }, few, kWidestOfSparse);
   std::uint32_t inside = 0;
   for (std::size_t i = 0; i < queries.size(); ++i)
     inside |= (test(queries[i], closest[i], few) ? 1u : 0u) << i;
@@ -270,7 +273,9 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries,
   const auto of = [&](std::size_t i) { return closest.get(i, queries[i]); };
   // Samples of a surface or a grid are close together.
   constexpr double kWidest = 4;
-  if (method_ == SignMethod::winding) return above_half(queries.first(closest.count), of, false, kWidest);
+  if (method_ == SignMethod::winding)
+    return above_half(queries.first(closest.count), of, false,
+                      winding_->sums_many_faces() ? kWidest : kWidestOfSparse);
   for (std::size_t i = 0; i < closest.count; ++i) {
     const Vec3& query = queries[i];
     bool is_inside = false;

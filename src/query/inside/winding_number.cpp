@@ -20,7 +20,6 @@ namespace {
 constexpr double kSphere = 4 * std::numbers::pi;
 constexpr double kNoLimit = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint32_t kLeafFaces = 4;
-constexpr std::size_t kManyClosing = 2000;
 
 bool certain(const SolidAngle& angle, double limit) {
   return std::abs(angle.value - limit) > angle.error;
@@ -111,8 +110,7 @@ std::optional<int> WindingNumber::closed(const Vec3& q, const ClosestPoint& clos
 std::optional<WindingNumber::Side> WindingNumber::coarse_side(const Vec3& q, std::optional<int> closed,
                                                               double clear) const {
   const bool by_closing = closing_.angles.has_value();
-  // The sum of few takes little time, and reaches far.
-  if (by_closing && (!closed || closing_.triangles.size() < kManyClosing)) return {};
+  if (!sums_many_faces() || (by_closing && !closed)) return {};
   const SolidAngles& angles = by_closing ? *closing_.angles : mesh_angles();
   const double limit = kSphere * (by_closing ? *closed - 0.5 : 0.5);
   double reach = clear;

@@ -49,6 +49,12 @@ class WindingNumber {
   [[nodiscard]] PacketSides above_half(std::span<const Vec3> points, std::span<const ClosestPoint> closest,
                                        bool few) const;
 
+  /// Whether sums have many faces; those of few reach far, and need no packets where the mesh is not near.
+  [[nodiscard]] bool sums_many_faces() const {
+    constexpr std::size_t kMany = 2000;
+    return !closing_.angles || closing_.triangles.size() >= kMany;
+  }
+
  private:
   /// The closing faces.
   struct Closing {
