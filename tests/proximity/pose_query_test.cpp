@@ -111,6 +111,41 @@ TEST_F(ManyPoses, AllocateTheResultsOnly) {
   EXPECT_EQ(allocations() - before, 1u);
 }
 
+// Of convex solids, many poses are decided at once; what is not, and the other obstacles, one by one.
+TEST_F(ManyPoses, OfConvexSolidsHaveTheAnswersOfPairs) {
+  shape_ = Shape(cube(0.3));
+  obstacles_.push_back(shape_);
+  places_.push_back(Transform::translation({-1, -1, -1}) * Transform::scaling(0.5));
+  for (const double x : {0.7, 0.7 - 1e-9, 0.7 + 1e-9, 0.7 - 1e-3})  // beside the cube
+    poses_.push_back(Transform::translation({1.5 + x, 0, 0.2}));
+  for (std::size_t count : {4u, 2u}) {  // the first two of which are convex
+    obstacles_.erase(obstacles_.begin() + static_cast<std::ptrdiff_t>(count), obstacles_.end());
+    places_.resize(count);
+    PoseQuery query = this->query();
+    const std::vector<std::uint8_t> colliding = query.colliding(poses_);
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      bool hit = false;
+      for (std::size_t obstacle = 0; obstacle < count; ++obstacle)
+        hit = hit || pair(poses_[i], obstacle).colliding();
+      EXPECT_EQ(colliding[i] != 0, hit) << i;
+    }
+    EXPECT_GT(std::ranges::count(colliding, 1), 10);
+    EXPECT_GT(std::ranges::count(colliding, 0), 10);
+  }
+  const ThreadLimit alone(1);
+  PoseQuery query = this->query();
+  std::vector<std::uint8_t> results(poses_.size());
+  for (int i = 0; i < 2; ++i) query.colliding(poses_, results);
+  const std::size_t before = allocations();
+  query.colliding(poses_, results);
+  EXPECT_EQ(allocations() - before, 0u);
+  poses_[70].rows[0][0] = 9;
+  EXPECT_THAT([&] { query.colliding(poses_, results); },
+              testing::ThrowsMessage<Error>(testing::StartsWith("pose 70: ")));
+  PoseQuery none(shape_, std::vector<Shape>{});
+  EXPECT_THROW(none.colliding(poses_, results), Error);
+}
+
 TEST_F(ManyPoses, OfOpenSurfacesHaveNoDepth) {
   PoseQuery query(obstacles_[2], obstacles_[2]);
   for (const BoundedNumber& depth : query.penetration_depths(poses_)) {

@@ -13,6 +13,7 @@
 #include "core/parallel.h"
 #include "proximity/bodies/pool.h"
 #include "proximity/pair/pair_answers.h"
+#include "query/convex/pose_packet.h"
 #include "query/shape/posed_body.h"
 
 namespace sdm {
@@ -86,6 +87,33 @@ decltype(auto) with_memory_of_poses(const Work& work) try {
   throw out_of_memory("a query of many poses");
 }
 
+// Errors name the pose.
+void begin_pose(PosedShape& posed, std::span<const Transform> poses, std::size_t i) {
+  try {
+    posed.begin(poses[i]);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    throw Error("pose " + std::to_string(i) + ": " + error.what(), error.remedy());
+  }
+}
+
+// Of a body to all obstacles: overlap if one of them does, apart if all are, unknown otherwise.
+using Relations = std::array<convex::Relation, convex::PosePacket::kPoses>;
+Relations relations_to_all(std::span<const std::optional<convex::PosePacket>> packets,
+                           std::span<const Transform> poses) {
+  using enum convex::Relation;
+  Relations all, one;
+  all.fill(packets.empty() ? unknown : apart);
+  for (const std::optional<convex::PosePacket>& packet : packets) {
+    one.fill(unknown);
+    if (packet) packet->decide(poses, std::span(one).first(poses.size()));
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      if (all[i] != overlap && one[i] != apart) all[i] = one[i];
+  }
+  return all;
+}
+
 const PoseQueryOptions& checked(const PoseQueryOptions& options) {
   pair::check_options(0, options.depth_precision);
   return options;
@@ -98,6 +126,7 @@ struct PoseQuery::Impl {
   std::vector<shape::PosedBody> obstacles;
   PoseQueryOptions options;
   bodies::Pool<PosedShape> pool;
+  std::vector<std::optional<convex::PosePacket>> packets;
 
   Impl(Shape of, std::vector<Shape> others, const PoseQueryOptions& asked)
       : shape(std::move(of)), options(asked) {
@@ -105,29 +134,43 @@ struct PoseQuery::Impl {
     for (Shape& other : others) obstacles.emplace_back(std::move(other));
   }
 
-  // results[i] = find(shape in poses[i]), on all cores.
-  template <class Result, class Find>
-  void for_each(std::span<const Transform> poses, std::span<Result> results, const Find& find) {
+  // Those that decide collisions with the obstacles; none of bodies that are not convex.
+  const std::vector<std::optional<convex::PosePacket>>& make_packets() {
+    packets.resize(obstacles.size());
+    const convex::ConvexMesh* const moving = internals(shape)->convex();
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
+      packets[i].reset();
+      const convex::ConvexMesh* const resting = obstacles[i].body().convex();
+      if (moving != nullptr && resting != nullptr) packets[i].emplace(*moving, *resting, obstacles[i].pose());
+    }
+    return packets;
+  }
+
+  // find_some(posed shape, begin, end) for ranges of poses, on all cores.
+  template <class Result, class FindSome>
+  void for_ranges(std::span<const Transform> poses, std::span<Result> results, std::size_t grain,
+                  const FindSome& find_some) {
     if (results.size() != poses.size())
       throw Error("there are " + std::to_string(poses.size()) + " poses, but room for " +
                   std::to_string(results.size()) + " results; give one for each pose");
-    const auto find_some = [&](std::size_t begin, std::size_t end) {
+    const auto take_and_find = [&](std::size_t begin, std::size_t end) {
       std::unique_ptr<PosedShape> posed = pool.take(
           [&] { return std::make_unique<PosedShape>(shape, obstacles.size(), options.depth_precision); });
-      for (std::size_t i = begin; i < end; ++i) {
-        try {
-          posed->begin(poses[i]);
-        } catch (const Cancelled&) {
-          throw;
-        } catch (const Error& error) {
-          throw Error("pose " + std::to_string(i) + ": " + error.what(), error.remedy());
-        }
-        results[i] = find(*posed);
-      }
+      find_some(*posed, begin, end);
       pool.give_back(std::move(posed));
     };
+    with_memory_of_poses([&] { parallel_for(poses.size(), grain, take_and_find); });
+  }
+  // results[i] = find(shape in poses[i]), on all cores.
+  template <class Result, class Find>
+  void for_each(std::span<const Transform> poses, std::span<Result> results, const Find& find) {
     constexpr std::size_t kGrain = 8;
-    with_memory_of_poses([&] { parallel_for(poses.size(), kGrain, find_some); });
+    for_ranges(poses, results, kGrain, [&](PosedShape& posed, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        begin_pose(posed, poses, i);
+        results[i] = find(posed);
+      }
+    });
   }
 };
 
@@ -156,8 +199,22 @@ std::vector<std::uint8_t> PoseQuery::colliding(std::span<const Transform> poses)
 }
 
 void PoseQuery::colliding(std::span<const Transform> poses, std::span<std::uint8_t> results) {
-  impl_->for_each(poses, results, [&](PosedShape& posed) -> std::uint8_t {
-    return posed.colliding(impl_->obstacles) ? 1 : 0;
+  constexpr std::size_t kPacket = convex::PosePacket::kPoses;
+  const auto& packets = with_memory_of_poses([&]() -> const auto& { return impl_->make_packets(); });
+  impl_->for_ranges(poses, results, kPacket, [&](PosedShape& posed, std::size_t begin, std::size_t end) {
+    for (std::size_t first = begin; first < end; first += kPacket) {
+      const std::size_t last = std::min(end, first + kPacket);
+      const Relations known = relations_to_all(packets, poses.subspan(first, last - first));
+      for (std::size_t i = first; i < last; ++i) {
+        const convex::Relation relation = known[i - first];
+        if (relation == convex::Relation::unknown) {
+          begin_pose(posed, poses, i);
+          results[i] = posed.colliding(impl_->obstacles) ? 1 : 0;
+        } else {
+          results[i] = relation == convex::Relation::overlap ? 1 : 0;
+        }
+      }
+    }
   });
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include "geometry/predicates.h"
 #include "geometry/triangle.h"
@@ -13,6 +14,8 @@
 namespace sdm::convex {
 namespace {
 
+constexpr double kMostSides = 1e6;           // squared side over area of a face whose normal is reliable
+constexpr double kContinued = 1 - 1e-14;     // cosine of normals of faces in one plane
 constexpr float kSingleHeightError = 1e-6F;  // of a height of coordinates of at most 1, in single precision
 
 // The corner of a face that is not on the edge.
@@ -95,6 +98,36 @@ void set_vertices(ConvexMesh& convex, const sites::SitesData& sites) {
   });
 }
 
+bool has_reliable_normal(const Corners& face) {
+  const auto& [a, b, c] = face;
+  const double sides = std::max({squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)});
+  return sides < kMostSides * norm(cross(b - a, c - a));
+}
+
+// Faces that continue one with a smaller number, in a plane.
+std::vector<bool> continuing_faces(const ConvexMesh& convex) {
+  std::vector<bool> continuing(convex.normals.size(), false);
+  for (const Spoke& spoke : convex.spokes.items) {
+    const auto& [a, b] = spoke.faces;
+    if (dot(convex.normals[a], convex.normals[b]) > kContinued) continuing[std::max(a, b)] = true;
+  }
+  return continuing;
+}
+
+void set_planes(ConvexMesh& convex, const Mesh& mesh) {
+  const std::vector<bool> continuing = continuing_faces(convex);
+  std::array<std::vector<float>, 3> planes;
+  for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
+    const Corners corners = corners_of(mesh, face);
+    const Vec3& normal = convex.normals[face];
+    const double distance = dot(normal, corners[0] - convex.centre);
+    if (!has_reliable_normal(corners) || !(distance > 0)) return;
+    if (continuing[face]) continue;
+    for (int k = 0; k < 3; ++k) planes[k].push_back(static_cast<float>(convex.size / distance * normal[k]));
+  }
+  convex.planes = std::move(planes);
+}
+
 // Sets the coordinates in single precision.
 void set_coordinates(ConvexMesh& convex) {
   const std::size_t count = convex.points.size();
@@ -158,6 +191,7 @@ std::unique_ptr<const ConvexMesh> recognise(const sites::SitesData& sites) {
   convex->size = diagonal(box), convex->lengths = convex->size + norm(convex->centre);
   convex->inner_radius = (1 - kDoubleRounding) * radius - kDoubleRounding * norm(convex->centre);
   set_vertices(*convex, sites);
+  set_planes(*convex, mesh);
   set_coordinates(*convex);
   set_climbing(*convex);
   return convex;

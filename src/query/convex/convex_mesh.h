@@ -29,8 +29,11 @@ struct ConvexMesh {
   std::array<std::vector<float>, 3>
       along;  ///< coordinates about the centre, those of a vertex repeated at the end
   std::vector<Vec3> points;
-  std::vector<std::uint32_t> vertex;      ///< the number of each in the mesh
-  std::vector<Vec3> normals;              ///< of the faces, to rounding, outwards
+  std::vector<std::uint32_t> vertex;  ///< the number of each in the mesh
+  std::vector<Vec3> normals;          ///< of the faces, to rounding, outwards
+  /// Normals times the size over the distance of the plane from the centre, of each plane that has faces;
+  /// empty if the normal of a face is not reliable.
+  std::array<std::vector<float>, 3> planes;
   core::CompressedRows<Spoke> spokes;     ///< of each vertex
   std::vector<std::uint32_t> first_face;  ///< the smallest number of a face, of each vertex
   int outward = 1;                        ///< −1 if the mesh is inside out
