@@ -30,8 +30,9 @@ constexpr float kRelaxation = 1.9F;  // of the way to a plane, by which a point 
 // Steps of the searches, in their order: those that find most first. With more planes, a step takes so long
 // that poses one by one take less.
 constexpr char kApart = 'a', kCentres = 'c';  // others: at a point that may be inside
-constexpr std::string_view kSteps = "aciaiaiaiaiiiaiiiaiiiaiiii", kFewSteps = "acaiaiai";
-constexpr std::size_t kManyPlanes = 150;
+constexpr std::string_view kSteps = "aciaiaiaiaiiiaiiiaiiiaiiii", kFewSteps = "acaiaiai",
+                           kFewestSteps = "aca";
+constexpr std::size_t kManyPlanes = 150, kMostPlanes = 600;
 
 // Poses by their entries. Of those that are not used, the offset is NaN, which decides nothing.
 struct PoseEntries {
@@ -399,7 +400,7 @@ PosePacket::PosePacket(const ConvexMesh& moving, const ConvexMesh& resting, cons
            .least_inside = 0,
            .has_planes = !moving.planes[0].empty() && !resting.planes[0].empty(),
            .least_open = 1,
-           .steps = kSteps,
+           .steps = {},
            .usable = true};
   for (int j = 0; j < 3; ++j)
     for (int k = 0; k < 3; ++k) data_.turn[j][k] = pose.map.rows[k][j] / pose.scale;
@@ -409,11 +410,12 @@ PosePacket::PosePacket(const ConvexMesh& moving, const ConvexMesh& resting, cons
   data_.farthest = kFar * unit;
   const double thickness = std::min(moving.inner_radius, pose.scale * resting.inner_radius) / unit;
   data_.least_inside = static_cast<float>(kMargin / thickness);
-  // A step costs as much as so many poses one by one.
-  constexpr std::size_t kPerPose = 400, kMostPoints = 300;
+  // A step costs as much as a pose by itself, for so many points.
+  constexpr std::size_t kPerPose = 400, kMostPoints = 600;
   const std::size_t points = moving.points.size() + resting.points.size();
   data_.least_open = 1 + points / kPerPose;
-  if (moving.planes[0].size() + resting.planes[0].size() > kManyPlanes) data_.steps = kFewSteps;
+  const std::size_t planes = moving.planes[0].size() + resting.planes[0].size();
+  data_.steps = planes > kMostPlanes ? kFewestSteps : planes > kManyPlanes ? kFewSteps : kSteps;
   data_.usable = points <= kMostPoints && unit > kLeastUnit && unit < kMostUnit &&
                  norm(moving.centre) < kFar * unit && norm(centre) < kFar * unit &&
                  norm(pose.map.offset) < kFar * unit && std::min(moving.size, rest_size) > kLeastSize * unit;
