@@ -34,6 +34,30 @@ Mesh mesh_of(const std::string& name, std::uint32_t parts, const Vec3& half) {
   return convex_hull(mesh);
 }
 
+constexpr std::size_t kRandomPoses = 2000;
+
+// Random rotations, with offsets in a cube about the origin.
+std::vector<Affine> poses_within(double reach, std::size_t count, std::mt19937& random) {
+  std::uniform_real_distribution<double> offset(-reach, reach);
+  std::vector<Affine> poses;
+  while (poses.size() < count) {
+    Affine& pose = poses.emplace_back(random_rotation(random));
+    for (double& x : pose.offset) x = offset(random);
+  }
+  return poses;
+}
+
+// 3 × 4 for each, by rows.
+std::vector<double> entries_of(const std::vector<Affine>& poses) {
+  std::vector<double> entries;
+  for (const Affine& pose : poses)
+    for (std::size_t row = 0; row < 3; ++row) {
+      entries.insert(entries.end(), pose.rows[row].begin(), pose.rows[row].end());
+      entries.push_back(pose.offset[row]);
+    }
+  return entries;
+}
+
 // Microseconds for each pose, of all in one call.
 double time_batch(PoseQuery& query, const std::vector<Transform>& poses,
                   const std::vector<std::uint8_t>& expected) {
@@ -56,8 +80,10 @@ int main(int argc, char** argv) try {
       "float64, 3) and separating_contacts (their number, uint32); the microseconds on one core, "
       "separation_us, colliding_us, contacts_us and separating_contacts_us, and on all cores, "
       "contacts_all_us. batch_us: those "
-      "for each pose of a call of PoseQuery::colliding for all poses, on one core and on all. clock_us: the "
-      "time that the clock takes.");
+      "for each pose of a call of PoseQuery::colliding for all poses, on one core and on all. Of convex "
+      "bodies, "
+      "random_poses (3 × 4), random_colliding (uint8) and random_us, the same for other random poses, few of "
+      "which touch. clock_us: the time that the clock takes.");
   std::string o1, o2;
   std::filesystem::path out;
   std::uint32_t parts = 1, count = 200;
@@ -73,17 +99,12 @@ int main(int argc, char** argv) try {
   const std::vector<Affine> placements = bench::random_poses(Sites(m1), Sites(m2), count, random);
   ProximityQuery query(m1, m2);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::vector<double> poses, separation(count), separation_us(count, kInfinity),
-      colliding_us(count, kInfinity), contacts_us(count, kInfinity), contacts_all_us(count, kInfinity),
+  std::vector<double> separation(count), separation_us(count, kInfinity), colliding_us(count, kInfinity),
+      contacts_us(count, kInfinity), contacts_all_us(count, kInfinity),
       separating_contacts_us(count, kInfinity);
   std::vector<std::uint8_t> colliding(count);
   std::vector<std::uint32_t> contacts(count), separating_contacts(count);
   std::vector<Vec3> translation(count);
-  for (const Affine& pose : placements)
-    for (std::size_t row = 0; row < 3; ++row) {
-      poses.insert(poses.end(), pose.rows[row].begin(), pose.rows[row].end());
-      poses.push_back(pose.offset[row]);
-    }
   // Every pose follows another one, as in use: what the last pose leaves is no help.
   constexpr int kTurns = 3;
   const auto time = [&](std::vector<double>& best, const auto& answer) {
@@ -131,18 +152,36 @@ int main(int argc, char** argv) try {
     exchanged.set_pose(0, pose);
     expected.push_back(exchanged.colliding());
   }
-  std::vector<double> batch_us(2, kInfinity);
-  for (int turn = 0; turn < kTurns; ++turn) {
-    batch_us[1] = std::min(batch_us[1], bench::time_batch(many, transforms, expected));
-    const ThreadLimit alone(1);
-    batch_us[0] = std::min(batch_us[0], bench::time_batch(many, transforms, expected));
+  const auto time_batches = [&](const char* file, const std::vector<Transform>& batch,
+                                const std::vector<std::uint8_t>& hits) {
+    std::vector<double> batch_us(2, kInfinity);
+    for (int turn = 0; turn < kTurns; ++turn) {
+      batch_us[1] = std::min(batch_us[1], bench::time_batch(many, batch, hits));
+      const ThreadLimit alone(1);
+      batch_us[0] = std::min(batch_us[0], bench::time_batch(many, batch, hits));
+    }
+    bench::write_array<double>(out / file, batch_us);
+  };
+  time_batches("batch_us", transforms, expected);
+  if (convex) {
+    const double reach = 0.3 * (diagonal(bounds(m1)) + diagonal(bounds(m2)));
+    const std::vector<Affine> places = bench::poses_within(reach, bench::kRandomPoses, random);
+    std::vector<Transform> batch;
+    std::vector<std::uint8_t> hits;
+    for (const Affine& place : places) {
+      batch.push_back(mesh::Similarity{.map = place}.transform());
+      exchanged.set_pose(0, batch.back());
+      hits.push_back(exchanged.colliding());
+    }
+    time_batches("random_us", batch, hits);
+    bench::write_array<double>(out / "random_poses", bench::entries_of(places));
+    bench::write_array<std::uint8_t>(out / "random_colliding", hits);
   }
-  bench::write_array<double>(out / "batch_us", batch_us);
   bench::write_array<Vec3>(out / "vertices1", m1.positions);
   bench::write_array<Vec3>(out / "vertices2", m2.positions);
   bench::write_array<Triangle>(out / "triangles1", m1.triangles);
   bench::write_array<Triangle>(out / "triangles2", m2.triangles);
-  bench::write_array<double>(out / "poses", poses);
+  bench::write_array<double>(out / "poses", bench::entries_of(placements));
   bench::write_array<double>(out / "separation", separation);
   bench::write_array<double>(out / "separation_us", separation_us);
   bench::write_array<std::uint8_t>(out / "colliding", colliding);
