@@ -156,7 +156,7 @@ set(readers_of_nodes
   proximity/motion/parts.h             # nodes are divided into faces too, by time
   proximity/self/self_search.cpp       # marks the nodes whose faces are all excluded
   query/inside/angles/expansions.cpp  # computes an expansion for each child of a node
-  query/inside/angles/packet_angles.cpp  # one search for several points, eight children at a time
+  query/inside/angles/far_field-inl.h  # one search for several points, eight children at a time
   query/inside/angles/solid_angles.cpp  # nodes whose errors are too large are opened again
   query/inside/solid_boundary.cpp      # faces are divided further, nearest first
   query/pairs/near_faces.cpp           # bounds the children of a pair, and marks those below a node

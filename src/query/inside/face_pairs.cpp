@@ -102,13 +102,18 @@ std::uint32_t ApartBits(const TrianglePairs& pairs, double clearance) {
 void AppendOverlapping(const tree::AabbTree& tree, const FaceBoxes& boxes, std::uint32_t leaf,
                        std::uint32_t other, std::vector<FacePair>& pairs) {
   const PairFloats d;
-  const tree::AabbTree::Node &a = tree.nodes[leaf], &b = tree.nodes[other];
-  for (size_t i = a.first; i < a.first + a.count; i += hn::Lanes(d)) {
+  // Places in the order of the leaves.
+  const auto begin_of = [&](std::uint32_t node) {
+    return static_cast<size_t>(tree.items_of(node).data() - tree.items.data());
+  };
+  const size_t begin = begin_of(leaf), end = begin + tree.items_of(leaf).size();
+  const size_t begin_other = begin_of(other), end_other = begin_other + tree.items_of(other).size();
+  for (size_t i = begin; i < end; i += hn::Lanes(d)) {
     PairVec lo[3], hi[3];
     for (size_t k = 0; k < 3; ++k)
       lo[k] = hn::LoadU(d, boxes.lo[k].data() + i), hi[k] = hn::LoadU(d, boxes.hi[k].data() + i);
-    const size_t left = a.first + a.count - i;
-    for (size_t j = b.first; j < b.first + b.count; ++j) {
+    const size_t left = end - i;
+    for (size_t j = begin_other; j < end_other; ++j) {
       // Within a leaf those before j only.
       const size_t count = leaf != other ? left : j > i ? std::min(left, j - i) : 0;
       auto meet = hn::FirstN(d, count);
