@@ -21,7 +21,7 @@ struct ProximityQuery::Impl {
   std::optional<SeparatingTranslation> separating_translation{};
   separate::TranslationWorkspace translation_workspace{};
   separate::SeparatingContacts separating_contacts;
-  // With ignore_internal_edges.
+  // Only with ignore_internal_edges.
   std::optional<bodies::ExternalContacts> external_contacts{}, external_contacts_after{};
 
   Impl(Shape o1, Shape o2, const ProximityOptions& options)
@@ -35,7 +35,7 @@ struct ProximityQuery::Impl {
     const std::span<const Contact> all = answers.contacts();
     return external_contacts ? external_contacts->of(bodies, all) : all;
   }
-  // Of the contacts after the separating translation.
+  // Chooses among the contacts after the separating translation.
   [[nodiscard]] separate::ContactFilter filter_after() {
     if (!external_contacts_after) return {};
     return [this](const auto& bodies_after, const auto& all) {

@@ -30,7 +30,7 @@ void on_behalf_of(std::size_t body, const Work& work) {
 /// the body. Of bodies of one shape, which have that of the body as their frame, the parts are the bodies.
 class BodyParts {
  public:
-  /// Of bodies of one shape.
+  /// Makes bodies of one shape each.
   explicit BodyParts(std::size_t bodies);
   /// Appends the shapes to `shapes`. Throws sdm::Error for a body without parts, and for poses that no shape
   /// can have.
@@ -53,8 +53,8 @@ class BodyParts {
 
   /// The pose of a part of a body in that pose.
   [[nodiscard]] Transform pose_of(std::uint32_t part, const Transform& body) const;
-  /// Of each part, in bodies that make these motions; all turn with their body, about the centre of its box.
-  /// Throws sdm::Error, naming the body, as Motion::at does.
+  /// The motion of each part, in bodies that make these motions: parts turn with their body, about the centre
+  /// of its box. Throws sdm::Error, naming the body, as Motion::at does.
   [[nodiscard]] std::vector<motion::DividedMotion> divided(std::span<const shape::PosedBody> parts,
                                                            std::span<const Motion> motions) const;
   /// The pose of a body at a time of its motion.

@@ -18,8 +18,8 @@ namespace sdm::bodies {
 /// one with an edge that a body slides across.
 class InternalContacts {
  public:
-  /// For the bodies in their poses, until one moves; with parts of one body side by side, too. Cost: a sweep
-  /// over the fixed bodies. Reuses memory.
+  /// Finds internal edges of the bodies in their poses, until one moves; also between parts of one body, side
+  /// by side. Cost: a sweep over the fixed bodies. Reuses memory.
   void follow(std::span<const shape::PosedBody> bodies, const PairFilter& filter);
 
   [[nodiscard]] bool contains(const Contact& contact, const Sweep::Pair& pair);

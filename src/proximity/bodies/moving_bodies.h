@@ -18,7 +18,7 @@ class MovingBodies {
   MovingBodies(std::span<const shape::PosedBody> bodies, std::span<const motion::DividedMotion> motions)
       : bodies_(bodies), motions_(motions) {}
 
-  /// Of the pairs that pass the filter; on all cores.
+  /// The first contacts of the pairs that pass the filter; on all cores.
   [[nodiscard]] std::vector<PairTimeOfContact> first_contacts(const PairFilter& filter, double tolerance,
                                                               const TimeOfContactOptions& options) const;
 

@@ -98,7 +98,7 @@ void begin_pose(PosedShape& posed, std::span<const Transform> poses, std::size_t
   }
 }
 
-// Of a body to all obstacles: overlap if one of them does, apart if all are, unknown otherwise.
+// The relation of a body to all obstacles: overlap if one of them does, apart if all are, otherwise unknown.
 using Relations = std::array<convex::Relation, convex::PosePacket::kPoses>;
 Relations relations_to_all(std::span<const std::optional<convex::PosePacket>> packets,
                            std::span<const Transform> poses) {

@@ -16,9 +16,9 @@ namespace {
 // Edges with an end in contact have contacts between their ends only if they are longer than this part of the
 // smaller body: of shorter ones, the end is near enough.
 constexpr double kShortEdge = 1.0 / 16;
-// Of edges longer than kLongEdge, relative to the smaller body, each part that ends at the surface of the
-// other body, or comes within the margin of it, has a contact at least half as deep as any of its points, but
-// for a fraction of the length of the edge. Of others, no point is deeper than the ends by more than half of
+// Edges longer than kLongEdge, relative to the smaller body: each part that ends at the surface of the other
+// body, or comes within the margin of it, has a contact at least half as deep as any of its points, but for a
+// fraction of the length of the edge. No point of a shorter edge is deeper than its ends by more than half of
 // that length.
 constexpr double kLongEdge = 2 * kShortEdge, kMuchDeeper = 2, kDeeper = 1.0 / 8;
 // The sine of the angle between faces below which their edge is flat: its points are in contact no sooner
@@ -29,7 +29,7 @@ constexpr double kFlat = 1e-4;
 constexpr std::uint64_t kEdge = std::uint64_t{2} << 60;
 // Between the numbers of contacts on one edge.
 constexpr std::uint64_t kNextOnEdge = std::uint64_t{1} << 32;
-// Of an end of a supported part, which keeps its number if the other end is lost. Other points have the
+// Marks an end of a supported part, which keeps its number if the other end is lost. Other points have the
 // number of the part of the edge in contact that they are on, whether they are in its middle or deep.
 constexpr std::uint64_t kSupported = std::uint64_t{1} << 59;
 
@@ -120,7 +120,7 @@ void FeatureContacts::find_on_edge(std::uint32_t edge, bool a_touches, bool b_to
     if (may_be_deep) deepen(in_other, part, first, on_part);
     on_part.key += kNextOnEdge;
   }
-  // Without a point near the surface, the edge is inside as a whole if its ends are.
+  // An edge without a point near the surface is inside as a whole if its ends are.
   if (may_be_deep && edge_contacts_.in_contact().empty() && a_touches && b_touches)
     deepen(in_other, whole_edge(), features_.size(), on_part);
 }
@@ -173,7 +173,7 @@ void FeatureContacts::find_on_inside_edge(std::uint32_t edge) {
   deepen(in_other, whole_edge(), features_.size(), feature);
 }
 
-// Of a part of an edge inside, the contacts at its ends, where faces support it and at its middle may all be
+// The contacts of a part of an edge inside, at its ends, where faces support it and at its middle, may all be
 // much shallower than a point between them: that has a contact then, in place of the middle.
 void FeatureContacts::deepen(const EdgeContacts::Edge& edge, const EdgeContacts::InContact& part,
                              std::size_t first, const Feature& feature) {

@@ -81,7 +81,7 @@ class PairAnswers {
  private:
   [[nodiscard]] pairs::MeshPair meshes() const;
   [[nodiscard]] bool boxes_or_balls_apart(double distance) const;
-  /// Of two convex solids.
+  /// The search for two convex solids; nothing for other bodies.
   [[nodiscard]] std::optional<convex::ConvexPair> convex_pair(const pairs::MeshPair& meshes) const;
   [[nodiscard]] bool find_collision();
   void set_bodies(const shape::PosedBody& o1, const shape::PosedBody& o2);

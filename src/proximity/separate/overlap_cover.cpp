@@ -36,7 +36,7 @@ void OverlapCover::start(const shape::PosedBody& o1, const shape::PosedBody& o2,
   bodies_ = {&o1, &o2}, to_frame_ = {inverse(o1.pose().map), inverse(o2.pose().map)}, error_ = error;
   measured_ = 0;
   pairs_.clear(), deep_.clear(), open_.clear();
-  // In the same order for each search, so that those of equal ones need no more memory.
+  // Lists are used in the same order by each search, so that equal searches need no more memory.
   unused_.resize(lists_.size());
   std::iota(unused_.rbegin(), unused_.rend(), 0u);
   std::array<std::size_t, 2> solid{};  // the number of balls; points follow

@@ -129,7 +129,7 @@ SupportFeature::Above SupportFeature::above(const Vec2& at) const {
   return at_corner(squared(corners_.front()) <= squared(corners_.back()) ? 0 : corners_.size() - 1);
 }
 
-// In the face that contains the point, or that it is least outside of.
+// The point is on the face that contains it, or that it is least outside of.
 SupportFeature::Above SupportFeature::above_face(const Vec2& at) const {
   const Mesh& mesh = mesh_of(*body_);
   double most = -std::numeric_limits<double>::infinity();

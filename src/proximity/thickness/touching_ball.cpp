@@ -18,7 +18,7 @@ void reach_point(const Vec3& n, const Vec3& q, double size, Reached& least) {
   if (radius < least.radius) least = {radius, q};
 }
 
-// On a line a + s d, with α = n·a and β = n·d, the radius is convex where w = α + β s > 0, with its minimum
+// The radius on a line a + s d, with α = n·a and β = n·d, is convex where w = α + β s > 0, with its minimum
 // at
 //   D β s² + 2 D α s + 2 (a·d) α − β |a|² = 0,  D = |d|²,
 // whose discriminant is D |β a − α d|²: w = |β a − α d| / √D there. Of the two forms of the root, each sums

@@ -91,7 +91,7 @@ HWY_INLINE BlockVec squared_to_faces(const sites::FaceFrames& faces, size_t i, c
                  h = dot(r, load(d, faces.normal, i)), length = hn::Load(d, faces.length + i);
   const auto beyond = [&](BlockVec t, BlockVec end)
                           HWY_ATTR { return hn::Sub(t, hn::Min(hn::Max(t, zero), end)); };
-  // In the plane, from a side that starts at (u − along, 0); `left`: how far to its left.
+  // The squared distance in the plane from a side that starts at (u − along, 0); `left`: how far to its left.
   const auto from_side = [&](const sites::FaceFrames::Side& side, BlockVec along, BlockVec& left) HWY_ATTR {
     const BlockVec x = hn::Load(d, side.along + i), y = hn::Load(d, side.beside + i);
     const BlockVec e = beyond(hn::MulAdd(along, x, hn::Mul(v, y)), hn::Load(d, side.length + i));

@@ -131,7 +131,7 @@ class Proof {
     return (side == 0 ? pair_.o1 : pair_.o2).mesh.triangles[face];
   }
 
-  // By how much the feature of a side is the highest, along u for O1 and −u for O2.
+  // How much higher the feature of a side is than the rest, along u for O1 and −u for O2.
   [[nodiscard]] double drop(int side, const Vec3& u) const {
     const ConvexMesh& mesh = *meshes_[side];
     const auto& rows = pair_.pose.rows;
@@ -228,7 +228,7 @@ class Proof {
     const Vec3 p = point(vertex_side, features_[vertex_side].vertex[0]);
     const int face_side = 1 - vertex_side;
     const ConvexMesh& mesh = *meshes_[face_side];
-    // Of faces in one plane, any may have the closest point. Each is met at two spokes of a vertex.
+    // Any of the faces in one plane may have the closest point. Each is met at two spokes of a vertex.
     const auto& [a, b, c] = features_[face_side].vertex;
     const Vec3 normal = normalized(cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]));
     constexpr double kSamePlane = 1 - 1e-6;  // cosine

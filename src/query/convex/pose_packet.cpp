@@ -251,7 +251,7 @@ class PoseLanes {
     Lanes most, nearly;
     LaneVec plane;
   };
-  // Of u, about the centre; `length`: at least its own. `size`: of the body, in units.
+  // The support along u, about the centre; `length`: at least that of u. `size`: of the body, in units.
   [[nodiscard]] HWY_INLINE Above above(const ConvexMesh& mesh, const LaneVec& u, float size,
                                        Lanes length) const {
     const hn::RebindToSigned<Floats> di;
@@ -271,7 +271,7 @@ class PoseLanes {
             most,
             {hn::GatherIndex(d_, x, at), hn::GatherIndex(d_, y, at), hn::GatherIndex(d_, z, at)}};
   }
-  // From there to the plane, and a little beyond.
+  // The way from there to the plane, and a little beyond.
   [[nodiscard]] HWY_INLINE LaneVec down(const Above& above, float size) const {
     const Lanes t =
         hn::Mul(hn::Set(d_, kRelaxation * size),

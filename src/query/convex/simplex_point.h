@@ -93,7 +93,7 @@ struct SimplexPoints {
     const Vec3 v = w(i) + (t / length) * side;
     return {squared_norm(v), v, 2, {i, j, 0}};
   }
-  // By the regions of the triangle (Ericson, Real-Time Collision Detection, 5.1.5).
+  // Distinguishes the regions of the triangle (Ericson, Real-Time Collision Detection, 5.1.5).
   [[nodiscard]] Nearest of_triangle(int i, int j, int k) const {
     const Vec3 &a = w(i), &b = w(j), &c = w(k);
     const Vec3 ab = b - a, ac = c - a;

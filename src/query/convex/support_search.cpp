@@ -151,7 +151,7 @@ class SupportSearch {
     return relation;
   }
 
-  // Of four points about the origin, which is within rounding of a face.
+  // The simplex has four points about the origin, which is within rounding of a face.
   Relation keep_nearest_face() {
     v_ = -simplex_.keep_nearest_face();
     return keep(Relation::unknown);

@@ -75,7 +75,7 @@ class Touching {
     const Vec3& p = meshes_[side]->points[v];
     return side == 0 ? p : pair_.pose(p);
   }
-  // In space, of length 1, outwards.
+  // The normal in space, of length 1, outwards.
   [[nodiscard]] Vec3 normal_of(int side, std::uint32_t face) const {
     const Vec3 normal = meshes_[side]->normals[face];
     return side == 0 ? normal : normalized(pair_.pose.linear(normal));
@@ -147,7 +147,7 @@ class Touching {
     }
   }
 
-  // By the plane through an edge of O1 that has the direction of one of O2.
+  // Whether the plane through an edge of O1 with the direction of one of O2 separates the bodies.
   [[nodiscard]] bool edges_separate() const {
     std::array<std::array<std::uint32_t, 2>, 2> ends{};
     for (int side = 0; side < 2; ++side) {

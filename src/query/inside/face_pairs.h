@@ -39,7 +39,7 @@ class TrianglePairs {
   /// The others may be nearer.
   [[nodiscard]] std::uint32_t apart(double clearance) const;
 
-  // For the comparison: corners relative to one of them, in units of the largest coordinate.
+  // What is compared: corners relative to one of them, in units of the largest coordinate.
   alignas(64) float at[2][3][3][kMost] = {};  ///< of a triangle, a corner, a coordinate
   alignas(64) float unit[kMost] = {};         ///< rounded up
 

@@ -74,7 +74,7 @@ Sides FaceSides::find(std::uint32_t face) const {
   return sides != Sides::unknown ? sides : beside(face);
 }
 
-// Of a face that no other one meets.
+// The sides of a face that no other one meets.
 Sides FaceSides::beside(std::uint32_t face) const {
   const auto& [a, b, c] = solid_->mesh.triangles[face];
   const std::vector<Vec3>& p = solid_->mesh.positions;

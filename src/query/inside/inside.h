@@ -55,16 +55,17 @@ class InsideTest {
   [[nodiscard]] bool behind(const Vec3& query, const ClosestPoint& closest) const;
   /// How far around a query the surface is known not to be; 0 if it is not known.
   [[nodiscard]] double clear_radius(SiteType type, double distance) const;
-  /// By known balls, or by test(clear radius), which returns a WindingNumber::Side and adds a ball. `type`
-  /// and `distance` are those of the closest point.
+  /// Decides by known balls, or by test(clear radius), which returns a WindingNumber::Side and adds a ball.
+  /// `type` and `distance` are those of the closest point.
   template <class Test>
   [[nodiscard]] bool inside_ball(const Vec3& query, SiteType type, double distance, const Test& test) const;
   [[nodiscard]] bool test(const Vec3& query, const ClosestPoint& closest, bool few) const;
-  /// By the winding number.
+  /// Decides by the winding number.
   [[nodiscard]] WindingNumber::Side above_half(const Vec3& query, const ClosestPoint& closest, bool few,
                                                double clear) const;
-  /// By winding numbers; closest(i) is the closest point of query i. Together if none is farther from the
-  /// surface than `widest` times the size of the packet: balls take less time if they contain it.
+  /// Decides by winding numbers; closest(i) is the closest point of query i. The queries are searched
+  /// together if none is farther from the surface than `widest` times the size of the packet: balls take less
+  /// time if they contain it.
   template <class Closest>
   [[nodiscard]] std::uint32_t above_half(std::span<const Vec3> queries, const Closest& closest, bool few,
                                          double widest) const;

@@ -68,7 +68,7 @@ class OpenSides {
   /// A point on the outer side of a face, so near that no other face lies between them.
   [[nodiscard]] Vec3 beside(std::uint32_t face) const;
   [[nodiscard]] bool outside(const Vec3& q, const ClosestPoint& closest) const;
-  /// With how many signed crossings a segment leads from q to a point beside the closest one.
+  /// The number of signed crossings of a segment that leads from q to a point beside the closest one.
   [[nodiscard]] std::optional<int> crossings_of_closing(const Vec3& q, const ClosestPoint& closest) const;
   [[nodiscard]] std::span<const std::uint32_t> faces_of(SiteType type, const std::uint32_t& site) const;
 

@@ -19,7 +19,7 @@ namespace sdm::inside {
 /// for each edge and vertex.
 struct ShapeSigns {
   explicit ShapeSigns(const sites::SitesData& sites);
-  /// For the same faces at other positions. Reuses the memory for solids.
+  /// Starts anew, for the same faces at other positions. Reuses the memory for solids.
   void renew();
 
   Box box;               ///< of O2: no point outside it is inside O2, even where rounding would decide

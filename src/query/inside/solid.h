@@ -34,7 +34,7 @@ template <class Crossings>
 /// The winding number of a solid moved by `pose` around a point that does not lie on its surface: 0 outside.
 /// Exact; 0 for a point on an edge. Cost: usually one call of the above.
 [[nodiscard]] int winding(const sites::SitesData& solid, const Affine& pose, const Vec3& point);
-/// Of a solid where it is. The same; a fraction of the time.
+/// The same for a solid where it is, in a fraction of the time.
 [[nodiscard]] int winding(const sites::SitesData& solid, const Vec3& point);
 
 /// Whether a solid moved by `pose` contains a point that does not lie on its surface: whether its winding

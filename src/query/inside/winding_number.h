@@ -66,10 +66,10 @@ class WindingNumber {
 
   void build_closing(std::vector<Triangle> triangles);
   [[nodiscard]] OrientedFaces closing_faces() const;
-  /// Of the closed surface; empty where no segment decides it.
+  /// The number of the closed surface; empty where no segment decides it.
   [[nodiscard]] std::optional<int> closed(const Vec3& q) const;
   [[nodiscard]] std::optional<int> closed(const Vec3& q, const ClosestPoint& closest, bool few) const;
-  /// With the number of the closed surface.
+  /// Decides with the number of the closed surface.
   [[nodiscard]] Side above_half(const Vec3& q, std::optional<int> closed) const;
   /// The same in single precision; empty where that does not decide it.
   [[nodiscard]] std::optional<Side> coarse_side(const Vec3& q, std::optional<int> closed, double clear) const;

@@ -66,7 +66,7 @@ class Body {
   /// Balls inside and points of the surface. Thread-safe; computed by the first call.
   [[nodiscard]] const InnerBalls& inner_balls() const;
 
-  /// Of a solid. Thread-safe; made by the first call, and filled by its functions.
+  /// The walls of a solid. Thread-safe; made by the first call, and filled by its functions.
   [[nodiscard]] const WallThickness& wall_thickness() const;
 
   /// Around the nodes of the tree; none after a refit, for which they would take longer than a few searches

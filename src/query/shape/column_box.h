@@ -19,7 +19,7 @@ namespace sdm::shape {
 /// away from it than rounding.
 class ColumnBox {
  public:
-  /// From `lo` to `hi` along unit vectors, from an origin; in the frame of the solid.
+  /// The box from `lo` to `hi` along unit vectors, from an origin; in the frame of the solid.
   ColumnBox(const UnitFrame& frame, const Vec3& origin, const std::array<Vec3, 3>& axes, const Vec3& lo,
             const Vec3& hi) {
     const Vec3 from = frame.to_unit(origin);

@@ -33,10 +33,10 @@ struct WallColumn {
   Vec3 origin{};                     ///< a point of the part
   std::array<Vec3, 3> axes{};        ///< u, and two directions across
   std::array<double, 3> lo{}, hi{};  ///< of the points of the part, along the axes
-  /// Of a triangle, the half-planes h of the directions across that contain it: h[0] x + h[1] y ≤ h[2].
+  /// The half-planes h of the directions across that contain a triangle: h[0] x + h[1] y ≤ h[2].
   std::array<Vec3, 3> sides{};
   std::size_t side_count = 0;
-  /// Of a triangle that is not seen as a line: a point of its plane, at (x, y) across, has the level
+  /// Set for a triangle that is not seen as a line: a point of its plane, at (x, y) across, has the level
   /// slope·(x, y).
   std::optional<Vec2> slope{};
 

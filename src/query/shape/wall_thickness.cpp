@@ -25,7 +25,7 @@ using inside::Sides;
 constexpr double kNoWall = std::numeric_limits<double>::infinity();
 // Added to angles and their cosines, for rounding.
 constexpr double kAngleRounding = 1e-6;
-// Of the corners, at a point of a face that is not right above or below edges of regular meshes.
+// Weights of corners, at a point of a face that is not right above or below edges of regular meshes.
 constexpr Vec3 kWeights{0.4142, 0.3183, 0.2675};
 constexpr double kSteepest = 1.3;
 constexpr std::size_t kMostAround = 40;
@@ -33,7 +33,7 @@ constexpr std::size_t kMostAround = 40;
 constexpr double kDeepest = 0.2, kThickest = 0.04;
 // A column with more faces takes too long.
 constexpr std::size_t kMostBelow = 2048;
-// Of a ball that meets more, a part of it is asked for anyway.
+// A ball that meets more is divided anyway.
 constexpr std::size_t kMostNodes = 2048;
 
 double angle(const Vec3& a, const Vec3& b) {

@@ -55,7 +55,7 @@ class WallThickness {
   std::size_t count_, node_count_;
   std::unique_ptr<Bound[]> bounds_;  // of faces
   std::unique_ptr<Bound[]> nodes_;   // of nodes of the tree: the largest of their faces
-  /// Of the parts of faces, where they were asked for.
+  /// The bounds of the parts of faces, where they were asked for.
   std::unique_ptr<std::atomic<Bounds*>[]> parts_;
 };
 

@@ -121,7 +121,7 @@ class NpyFrames : public FrameSource {
                       data, shape[0], frame_bytes));
   }
 
-  // In Fortran order the numbers of a frame are spread over the whole file, which is read once for many
+  // The numbers of a frame in Fortran order are spread over the whole file, which is read once for many
   // frames.
   [[nodiscard]] std::uint64_t frames_of_block() const {
     constexpr std::uint64_t kMostBytes = 64 << 20;

@@ -19,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using ChildFloats = hn::CappedTag<float, Expansions::kWidth>;
 using ChildVec = hn::Vec<ChildFloats>;
 
-/// Of the children from i on at r = c − q, whose squared length and 1/|r|³ are given.
+/// The values of the children from i on at r = c − q, whose squared length and 1/|r|³ are given.
 HWY_INLINE ChildVec expansion_value(const Expansions& e, size_t i, const ChildVec (&r)[3], ChildVec squared,
                                     ChildVec inverse) {
   const ChildFloats d;

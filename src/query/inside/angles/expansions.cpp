@@ -88,7 +88,7 @@ class ExpansionsOfTree {
     face_moments.area = norm(face_moments.moment);
     face_moments.second = face_moments.area / 36 * (squared_norm(ab) + squared_norm(bc) + squared_norm(ac));
     face_moments.edges = norm(ab) * norm(ac);
-    // From the centroid to a corner is a third of the sum of the sides there.
+    // The vector from the centroid to a corner is a third of the sum of the sides there.
     face_moments.radius =
         (1.0 / 3) *
         std::sqrt(std::max({squared_norm(ab + ac), squared_norm(bc - ab), squared_norm(ac + bc)}));
@@ -120,7 +120,7 @@ class ExpansionsOfTree {
     for (const Moments& part : parts) total.add(part);
     return total;
   }
-  // To the farthest corner of the box.
+  // The distance to the farthest corner of the box.
   [[nodiscard]] static double radius_by_box(const Vec3& centre, const tree::FloatBox& box) {
     Vec3 farthest;
     for (int k = 0; k < 3; ++k)

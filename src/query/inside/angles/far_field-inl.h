@@ -48,7 +48,7 @@ struct AngleBall {
 HWY_BEFORE_NAMESPACE();
 namespace sdm::inside::HWY_NAMESPACE {
 
-// With more near faces and expansions than this, in vectors, a packet costs more than its points one by one.
+// A packet with more near faces and expansions, in vectors, costs more than its points one by one.
 constexpr std::size_t kMostNear = 1500, kMostSteps = 4096;
 
 // What is far from the packet: value + gradient · (q − centre), to within `error`.
@@ -109,7 +109,7 @@ class FarSum {
   }
 
  private:
-  // Of groups of faces, or of faces.
+  // The terms of groups of faces, or of faces.
   struct Terms {
     ChildVec r[3], moment[3];  // r = c − q₀
     ChildVec radius, area, second, noise;
@@ -137,7 +137,7 @@ class FarSum {
     }
     return others;
   }
-  // Of a leaf.
+  // Adds the faces of a leaf.
   void add_faces(std::uint32_t leaf) {
     const FaceExpansions& e = angles_.expansions.faces;
     const tree::AabbTree& tree = angles_.faces.faces.tree;

@@ -123,7 +123,7 @@ class NearSum {
     const auto either_side = hn::And(hn::Le(real, bound), hn::Le(hn::Abs(imaginary), bound));
     const auto eight = hn::Mul(hn::Set(d, 8), bound);
     const auto known = hn::AndNot(either_side, hn::Gt(squared, hn::Mul(eight, eight)));
-    // Of any size near 1 for the product, and to within a tenth for the bound, which has as much to spare.
+    // An estimate: the product may have any size near 1, and the bound has a tenth to spare.
     const auto inverse = hn::ApproximateReciprocalSqrt(squared);
     const auto turned = hn::MulAdd(eight, inverse, hn::Set(d, 16 * 0x1p-24F));
     error_ = hn::Add(error_, hn::IfThenElse(known, turned, hn::Inf(d)));

@@ -22,12 +22,12 @@ struct SolidAngle {
 struct HalfSolidAngle {
   double real = 0, imaginary = 0;
   double distance = 0;  ///< from 0
-  /// Of the whole angle: bounds the rounding. Infinite where the origin is so near to the triangle that its
+  /// Bounds the rounding of the whole angle. Infinite where the origin is so near to the triangle that its
   /// side is not known.
   double error = 0;
 };
 
-/// With u = 2⁻⁵³ and L = |a||b||c|, coordinates that are differences have relative errors u, so that both
+/// Let u = 2⁻⁵³ and L = |a||b||c|. Coordinates that are differences have relative errors u, so that both
 /// parts are computed within 64·u·L. An error of the number turns it by at most π/2 times the error over its
 /// distance from 0.
 inline HalfSolidAngle half_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -225,7 +225,7 @@ class Refinement {
                             static_cast<uint32_t>(std::countr_zero(others)));
   }
 
-  // Of a leaf.
+  // Adds the faces of a leaf.
   void add_faces(uint32_t place) {
     const uint32_t leaf = angles_.wide.nodes[place / kWidth].source[place % kWidth];
     const std::span<const uint32_t> items = tree_.tree.items_of(leaf);
@@ -236,7 +236,7 @@ class Refinement {
     nearest_leaf_ = std::min(nearest_leaf_, gap);
     steepness_of_leaves_ += gap > 0 ? area / (gap * gap * gap) : std::numeric_limits<double>::infinity();
   }
-  // At most as many as there are lanes. As half_solid_angle() does.
+  // Adds at most as many faces as there are lanes, as half_solid_angle() does.
   void add_faces(std::span<const uint32_t> items) {
     Vec3Lanes corners[3];
     for (size_t j = 0; j < items.size(); ++j) {

@@ -30,7 +30,7 @@ class SolidAngles {
 
   [[nodiscard]] bool empty() const { return expansions.nodes.empty(); }
 
-  // For the sums.
+  // What sums are made of.
   OrientedFaces faces;
   const tree::WideTree& wide;
   TreeExpansions expansions;
