@@ -33,6 +33,15 @@ template <class V>
 HWY_INLINE Vec3Of<V> mul(V s, const Vec3Of<V>& a) {
   return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
 }
+template <class V>
+HWY_INLINE Vec3Of<V> neg(const Vec3Of<V>& a) {
+  return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)};
+}
+// a + s b
+template <class V>
+HWY_INLINE Vec3Of<V> add_mul(const Vec3Of<V>& a, V s, const Vec3Of<V>& b) {
+  return {hn::MulAdd(s, b.x, a.x), hn::MulAdd(s, b.y, a.y), hn::MulAdd(s, b.z, a.z)};
+}
 // a − s b
 template <class V>
 HWY_INLINE Vec3Of<V> sub_mul(const Vec3Of<V>& a, V s, const Vec3Of<V>& b) {
