@@ -137,7 +137,7 @@ namespace sdm::inside {
 HWY_EXPORT(ApartBits);
 HWY_EXPORT(AppendOverlapping);
 
-FaceBoxes::FaceBoxes(const sites::SitesData& sites, double margin) {
+void FaceBoxes::set(const sites::SitesData& sites, double margin) {
   const std::vector<std::uint32_t>& faces = sites.tree.items;
   // Vectors read beyond the last one.
   for (auto* boxes : {&lo, &hi})

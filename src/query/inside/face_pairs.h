@@ -17,8 +17,9 @@ using FacePair = std::array<std::uint32_t, 2>;
 struct FaceBoxes {
   std::array<std::vector<float>, 3> lo, hi;
 
-  /// `margin` in the unit frame, larger than the rounding there. Cost: linear, all cores.
-  FaceBoxes(const sites::SitesData& sites, double margin);
+  /// `margin` in the unit frame, larger than the rounding there. Reuses the memory.
+  /// Cost: linear, all cores.
+  void set(const sites::SitesData& sites, double margin);
 };
 
 /// Appends the pairs of faces of two leaves of the tree whose boxes overlap; within one leaf each pair once.

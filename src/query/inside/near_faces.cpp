@@ -160,9 +160,10 @@ bool has_clear_fan(const sites::SitesData& sites, std::uint32_t vertex) {
 /// The pairs of near faces of which one is in a leaf, and the other one in it or in a later leaf.
 class NearPairs {
  public:
+  /// Uses the memory of `pairs`.
   NearPairs(const sites::SitesData& sites, const FaceBoxes& boxes, std::span<const std::uint8_t> clear_fans,
-            std::vector<std::uint8_t>& flags)
-      : sites_(sites), boxes_(boxes), clear_fans_(clear_fans), flags_(flags) {}
+            std::vector<std::uint8_t>& flags, std::vector<FacePair>& pairs)
+      : sites_(sites), boxes_(boxes), clear_fans_(clear_fans), flags_(flags), pairs_(pairs) {}
 
   void flag(std::uint32_t leaf) {
     pairs_.clear();
@@ -214,7 +215,7 @@ class NearPairs {
   const FaceBoxes& boxes_;
   std::span<const std::uint8_t> clear_fans_;  ///< of each vertex: has_clear_fan()
   std::vector<std::uint8_t>& flags_;
-  std::vector<FacePair> pairs_;
+  std::vector<FacePair>& pairs_;
   TrianglePairs triangles_;
   std::array<FacePair, TrianglePairs::kMost> waiting_{};
 };
@@ -274,9 +275,12 @@ void flag_faces_with_near(const sites::SitesData& sites, std::vector<std::uint8_
     for (std::size_t v = begin; v < end; ++v)
       clear_fans[v] = has_clear_fan(sites, static_cast<std::uint32_t>(v));
   });
-  const FaceBoxes boxes(sites, 0.625 * kClearance);  // together more than it, by more than rounding
+  thread_local FaceBoxes kept_boxes;
+  FaceBoxes& boxes = kept_boxes;
+  boxes.set(sites, 0.625 * kClearance);  // together more than it, by more than rounding
   parallel_for(leaves.size(), 256, [&](std::size_t begin, std::size_t end) {
-    NearPairs pairs(sites, boxes, clear_fans, flags);
+    thread_local std::vector<FacePair> of_leaf;
+    NearPairs pairs(sites, boxes, clear_fans, flags, of_leaf);
     for (std::size_t i = begin; i < end; ++i) pairs.flag(leaves[i]);
     pairs.finish();
   });
