@@ -1,0 +1,112 @@
+// What a query of many bodies consists of.
+#pragma once
+
+#include <sdm/error.h>
+#include <sdm/multi_body_query.h>
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/intact.h"
+#include "proximity/bodies/body_parts.h"
+#include "proximity/bodies/contact_store.h"
+#include "proximity/bodies/internal_contacts.h"
+#include "proximity/bodies/near_pairs.h"
+#include "proximity/bodies/pool.h"
+#include "proximity/pair/pair_answers.h"
+#include "query/shape/posed_body.h"
+
+namespace sdm {
+
+struct MultiBodyQuery::Impl {
+  MultiBodyOptions options;
+  bodies::BodyParts parts;
+  std::vector<shape::PosedBody> posed;       // the parts, and so in `near`
+  std::vector<Transform> given_poses;        // of bodies
+  Intact intact{"a MultiBodyQuery object"};  // every call but construction requires it first
+  bodies::Pool<pair::PairAnswers> pool;
+  bodies::NearPairs near;
+  std::vector<std::size_t> unknown;  // the pairs of `near` that a call computes
+
+  // What the calls have returned.
+  std::vector<BodyPair> colliding;
+  std::vector<PairSeparation> separations;
+  std::size_t candidates = 0;
+  std::vector<PairDepth> depths;
+  std::vector<PairContacts> contacts;
+  bodies::ContactStore stored_contacts;
+  bodies::InternalContacts internal_contacts;
+
+  Impl(std::vector<Shape> shapes, bodies::BodyParts of_bodies, const MultiBodyOptions& asked)
+      : options(asked), parts(std::move(of_bodies)), given_poses(parts.bodies()), near(parts.body_of()) {
+    posed.reserve(shapes.size());
+    for (Shape& shape : shapes) posed.emplace_back(std::move(shape));
+    for (std::uint32_t part = 0; part < posed.size(); ++part)
+      if (parts.any_compound()) posed[part].set_pose(parts.pose_of(part, {}));
+  }
+
+  [[nodiscard]] std::size_t checked(std::size_t body) const {
+    intact.require();
+    if (body >= parts.bodies())
+      throw Error("there is no body " + std::to_string(body) + " among " + std::to_string(parts.bodies()) +
+                  "; they are numbered from 0");
+    return body;
+  }
+  [[nodiscard]] const shape::PosedBody& part_of(std::size_t body, std::size_t part) const {
+    return posed[parts.checked(checked(body), part)];
+  }
+  [[nodiscard]] Sweep::Pair checked_pair(std::size_t a, std::size_t b) const {
+    if (checked(a) == checked(b))
+      throw Error("body " + std::to_string(a) + " and itself are no pair; give two bodies");
+    return {static_cast<std::uint32_t>(std::min(a, b)), static_cast<std::uint32_t>(std::max(a, b))};
+  }
+  void check_count(std::size_t count, const char* what) const {
+    intact.require();
+    if (count != parts.bodies())
+      throw Error("there are " + std::to_string(parts.bodies()) + " bodies, but " + what + " for " +
+                  std::to_string(count) + " were given; give one entry per body");
+  }
+  void check(std::size_t body, std::span<const Vec3> positions) const {
+    bodies::on_behalf_of(body, [&] {
+      parts.require_one_shape(body, "vertices that can be moved");
+      posed[parts.begin(body)].check_refit(positions);
+    });
+  }
+
+  // Compares bits, since 0 and −0 may give zeros of other signs.
+  [[nodiscard]] bool has_pose(std::size_t body, const Transform& pose) const {
+    return std::memcmp(&given_poses[body], &pose, sizeof pose) == 0;
+  }
+  void set_pose(std::size_t body, const Transform& pose) {
+    if (has_pose(body, pose)) return;
+    if (parts.count(body) > 1) check_pose(body, pose);
+    for (std::uint32_t part = parts.begin(body); part < parts.end(body); ++part) {
+      bodies::on_behalf_of(body, [&] { posed[part].set_pose(parts.pose_of(part, pose)); });
+      near.moved(part);
+    }
+    given_poses[body] = pose;
+  }
+  void check_pose(std::size_t body, const Transform& pose) const {
+    bodies::on_behalf_of(body, [&] {
+      for (std::uint32_t part = parts.begin(body); part < parts.end(body); ++part)
+        (void)posed[part].checked_pose(parts.pose_of(part, pose));
+    });
+  }
+
+  // Each finds what the call of its name returns.
+  void find_colliding();
+  void find_separations(double max_distance);
+  void find_depths();
+  void find_contacts();
+
+ private:
+  template <class IsUnknown, class Compute>
+  void complete(double reach, const IsUnknown& is_unknown, const Compute& compute);
+  template <class IsListed>
+  void list_separations_if(const IsListed& is_listed);
+};
+
+}  // namespace sdm
