@@ -163,6 +163,7 @@ set(readers_of_nodes
   query/pairs/pair_search.cpp          # bounds the children of a pair
   query/pairs/separating_axis.cpp      # the boxes below the root
   query/shape/body.cpp                 # the boxes below the root
+  query/shape/wall_thickness.cpp       # keeps a bound for each node, found on first use
   sites/bounding_cylinders.cpp)        # computes a cylinder for each node
 foreach(file ${files})
   file(STRINGS ${SOURCE_DIR}/src/${file} reads REGEX "(tree|wide)_?(\\.|->)nodes\\[")
