@@ -73,6 +73,7 @@ class PoseLanes {
   // How far inside both a point is looked for, of the heights of planes; and by how much of the way to a
   // plane a point is moved: almost a reflection.
   static constexpr float kInside = 0.999F, kRelaxation = 1.9F;
+  static constexpr float kThinnest = 1e-5F;  // the squared sine of an angle
 
  public:
   PoseLanes(const PosePacket::Data& data, OpenPoses& open, std::size_t first)
@@ -203,10 +204,13 @@ class PoseLanes {
     const LaneVec on_a = add_mul(w, part(wa, aa), a), on_b = add_mul(w, part(wb, bb), b);
     const LaneMask b_nearer = hn::Lt(dot(on_b, on_b), dot(on_a, on_a));
     LaneVec best = choose(b_nearer, on_b, on_a);
-    const Lanes determinant = hn::Max(hn::Sub(hn::Mul(aa, bb), hn::Mul(ab, ab)), least);
+    // Of a triangle as thin as rounding, such as that of the first step, the weights mean nothing.
+    const Lanes thinnest = hn::Mul(hn::Set(d_, kThinnest), hn::Mul(aa, bb));
+    const Lanes determinant = hn::Sub(hn::Mul(aa, bb), hn::Mul(ab, ab));
     const Lanes s = hn::Div(hn::Sub(hn::Mul(wa, bb), hn::Mul(wb, ab)), determinant);
     const Lanes t = hn::Div(hn::Sub(hn::Mul(wb, aa), hn::Mul(wa, ab)), determinant);
-    const LaneMask within = hn::And(hn::And(hn::Ge(s, zero), hn::Ge(t, zero)), hn::Le(hn::Add(s, t), one));
+    const LaneMask within = hn::And(hn::And(hn::Ge(s, zero), hn::Ge(t, zero)),
+                                    hn::And(hn::Le(hn::Add(s, t), one), hn::Gt(determinant, thinnest)));
     return choose(within, add_mul(add_mul(w, s, a), t, b), best);
   }
   static HWY_INLINE LaneVec choose(LaneMask which, const LaneVec& a, const LaneVec& b) {
