@@ -86,6 +86,26 @@ double size_of(const Mesh& a, const Mesh& b) {
   return diagonal(box);
 }
 
+// Coordinates of space are rounded there by more than the bounds were apart: the lower one was above the
+// truth, and the result exact.
+TEST(SeparatingTranslation, BoundsHoldFarFromTheOrigin) {
+  for (const auto& [half, far] : {std::pair(1e-6, 1e6), std::pair(1e-3, 1e6), std::pair(1.0, 1e12)})
+    for (int step = 0; step < 20; ++step) {
+      SCOPED_TRACE(half);
+      const Shape box(cube(half));
+      ProximityQuery query(box, box);
+      const double place = far + 1.5 * half * (1 + 0.003 * step);
+      query.set_pose(0, Transform::translation({far, 0, 0}));
+      query.set_pose(1, Transform::translation({place, 0, 0}));
+      const SeparatingTranslation& found = query.separating_translation();
+      const double truth = 2 * half - (place - far);
+      EXPECT_LE(found.lower, truth);
+      EXPECT_GE(found.upper, truth - 1e-15 * far);
+      const double allowed = found.certainty == Certainty::exact ? 1e-6 * half : 1e-9 * far;
+      EXPECT_NEAR(found.value, truth, allowed);
+    }
+}
+
 // What holds of any two bodies.
 void expect_valid(ProximityQuery& query) {
   const SeparatingTranslation found = query.separating_translation();

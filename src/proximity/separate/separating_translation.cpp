@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "geometry/vec.h"
 #include "proximity/separate/difference_hull.h"
@@ -20,6 +21,8 @@ constexpr double kExact = 1e-6;      // of the size: bounds that are as close ar
 constexpr double kClose = 0.98;      // ratio of bounds at which a search ends
 constexpr double kEnough = 0.85;     // the same, of the search for a cover
 constexpr double kLeastGap = 1e-12;  // of the size, beyond a translation after which bodies touch
+// Of the largest coordinate: what rounding of two points in space, and of their difference, may amount to.
+constexpr double kSpaceRounding = 16 * std::numeric_limits<double>::epsilon();
 
 // The point of a body that is farthest along u, in space. `convex`: the body, if it is a convex solid, whose
 // `vertex` is one that is near; it receives that vertex.
@@ -57,6 +60,9 @@ class TranslationSearch {
     Box box = o1.box();
     extend(box, o2.box());
     size_ = diagonal(box);
+    for (int k = 0; k < 3; ++k)
+      rounding_ =
+          std::max({rounding_, kSpaceRounding * std::abs(box.lo[k]), kSpaceRounding * std::abs(box.hi[k])});
   }
 
   SeparatingTranslation find() {
@@ -105,7 +111,7 @@ class TranslationSearch {
     SeparatingTranslation found;
     found.translation = translation + Vec3{};  // no −0
     found.value = found.upper = norm(translation);
-    found.lower = std::clamp(lower, 0.0, found.upper);
+    found.lower = std::clamp(lower - rounding_, 0.0, found.upper);
     found.certainty = found.upper - found.lower <= kExact * size_ ? Certainty::exact : Certainty::bounded;
     return found;
   }
@@ -142,7 +148,7 @@ class TranslationSearch {
   pair::PairAnswers& answers_;
   TranslationWorkspace& workspace_;
   MovedPair pair_;
-  double size_ = 0;
+  double size_ = 0, rounding_ = 0;
 };
 
 }  // namespace
