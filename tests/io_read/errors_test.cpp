@@ -247,6 +247,20 @@ TEST(Errors, Utf16Text) {
       }
 }
 
+// Whatever the extension says.
+TEST(Errors, CompressedFiles) {
+  using namespace std::string_literals;
+  const std::string rest(100, '\x5A');
+  for (const char* name : {"a.stl", "a.ply.gz", "a.obj", "a"}) {
+    expect_fault(name, "\x1F\x8B\x08" + rest, "is compressed with gzip; decompress it first");
+    expect_fault(name, "BZh" + rest, "is compressed with bzip2; decompress it first");
+    expect_fault(name, "\xFD" + "7zXZ\0"s + rest, "is compressed with xz; decompress it first");
+    expect_fault(name, "\x28\xB5\x2F\xFD" + rest, "is compressed with zstd; decompress it first");
+    expect_fault(name, "7z\xBC\xAF\x27\x1C" + rest, "is a 7z archive; extract it first");
+    expect_fault(name, "PK\x03\x04" + rest, "is a ZIP archive, as 3MF is; extract or convert it first");
+  }
+}
+
 // A glTF file with one triangle, some of whose text is replaced.
 std::string gltf_with(const std::string& from, const std::string& to) {
   const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};

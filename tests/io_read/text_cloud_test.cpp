@@ -186,6 +186,17 @@ TEST(TextCloud, Utf16IsNamed) {
     }
 }
 
+TEST(TextCloud, CompressedFilesAreNamed) {
+  EXPECT_EQ(fault("\x1F\x8B\x08" + std::string(100, 'x')), "is compressed with gzip; decompress it first");
+}
+
+// The fault had neither the file nor the number of the point in it.
+TEST(TextCloud, APointThatIsTooFarAwayIsNamed) {
+  EXPECT_EQ(fault("0 0 0\n1 2 3\n0 -1e38 0\n"),
+            "point 2 has a coordinate beyond 1e37, too large for the computation; scale the cloud down");
+  EXPECT_EQ(points_of("0 0 0\n1e37 2 3\n"), (Points{{0, 0, 0}, {1e37, 2, 3}}));
+}
+
 TEST(TextCloud, MeshesAreRefusedByTheirFormat) {
   const Mesh mesh = cube(1);
   EXPECT_EQ(fault(off(mesh)), "this is a mesh (OFF), not a point cloud; sdm map measures meshes");

@@ -8,6 +8,7 @@
 #include <array>
 #include <vector>
 
+#include "io/file/archive.h"
 #include "io/file/text_scanner.h"
 #include "io/file/utf16.h"
 #include "io/mesh/formats.h"
@@ -121,6 +122,7 @@ const Format* find_format(const Content& content, const std::filesystem::path& f
   for (const Format& format : kFormats)
     if (format.matches(content)) return &format;
   if (is_utf16(content.bytes)) throw Error(std::string(kUtf16Fault));
+  refuse_archive(content.bytes);
   return format_of_extension(file.extension().string());
 }
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "io/file/archive.h"
 #include "io/file/utf16.h"
 #include "io/mesh/read_polygons.h"
 #include "io/points/binary_rows.h"
@@ -74,6 +75,7 @@ CloudFile::CloudFile(const std::filesystem::path& file, const TextDialect& given
   std::string bytes(std::min<std::uint64_t>(size, kMaxCloudHeader), '\0');
   take(stream, bytes.data(), bytes.size());
   if (is_utf16(bytes)) throw Error(std::string(kUtf16Fault));
+  refuse_archive(bytes);
   const std::uint64_t skipped = bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0;  // the UTF-8 byte order mark
   const std::string_view begin = std::string_view(bytes).substr(skipped);
 

@@ -1,7 +1,9 @@
 #include <sdm/error.h>
 #include <sdm/points.h>
 
+#include <cmath>
 #include <random>
+#include <span>
 #include <string>
 
 #include "core/intact.h"
@@ -9,6 +11,7 @@
 #include "io/file/error_prefix.h"
 #include "io/mesh/read_polygons.h"
 #include "io/points/cloud_file.h"
+#include "mesh/validate.h"
 
 namespace sdm {
 
@@ -20,7 +23,21 @@ struct PointReader::Impl {
   std::string name;
   CloudFile file;
   Intact intact{"a point reader"};  // a row that cannot be read would be left out of later reads
+  std::uint64_t points_read = 0;
 };
+
+namespace {
+
+/// `first`: the number of the first of these points in the file. Points may lack coordinates.
+void check_coordinates(std::span<const Vec3> points, std::uint64_t first) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (const double x : points[i])
+      if (std::isfinite(x) && std::abs(x) > mesh::kMaxCoordinate)
+        throw Error("point " + std::to_string(first + i) +
+                    " has a coordinate beyond 1e37, too large for the computation; scale the cloud down");
+}
+
+}  // namespace
 
 PointReader::PointReader(const std::filesystem::path& file, const TextDialect& text)
     : impl_(with_error_prefix(file.string(), [&] { return std::make_unique<Impl>(file, text); })) {}
@@ -47,8 +64,13 @@ std::optional<std::uint64_t> PointReader::count() const {
 bool PointReader::read(std::size_t most, std::vector<Vec3>& points, std::vector<Vec3>& normals) {
   points.clear();
   normals.clear();
-  with_error_prefix(impl_->name,
-                    [&] { impl_->intact.change([&] { impl_->file.source->read(most, points, normals); }); });
+  with_error_prefix(impl_->name, [&] {
+    impl_->intact.change([&] {
+      impl_->file.source->read(most, points, normals);
+      check_coordinates(points, impl_->points_read);
+    });
+  });
+  impl_->points_read += points.size();
   return !points.empty();
 }
 
