@@ -6,8 +6,9 @@
 #include "option_checks.h"
 
 void add_doubt_options(CLI::App& app, DoubtCommand& command) {
-  app.add_flag("--accept-doubts", command.accept,
-               "PASS stays PASS where the alignment or the coverage leave a doubt, instead of DOUBTFUL");
+  app.add_flag(
+      "--accept-doubts", command.accept,
+      "PASS stays PASS where units, the alignment or the coverage leave a doubt, instead of DOUBTFUL");
   CLI::Option* least = app.add_option("--min-coverage", command.min_coverage,
                                       "Measure which fraction of O2's area has a measured point near it (by "
                                       "--reach D) and doubt a PASS if "

@@ -127,14 +127,17 @@ int run(MapCommand command) {
   std::vector<MeshMaps> meshes;
   out.fill([&] {
     MapTask task{command, pair.o1, pair.o2, aligned, pair.import_ms};
+    const bool judged = command.picture.tolerance.has_value() || !command.groups.rows.empty();
     if (command.align.on) {
       progress.step("align");
       task.sites = std::make_unique<sdm::Sites>(pair.o2.mesh);
-      command.align.judged = command.picture.tolerance.has_value() || !command.groups.rows.empty();
+      command.align.judged = judged;
       aligned = align_mesh(pair.o1.mesh, *task.sites, pair.o2, command.align, progress.callback());
       write_text(out.staging() / kAlignmentFile, to_text(to_json(*aligned, command.picture.units)));
     }
-    if (aligned && command.align.judged) task.doubts = doubts_of(*aligned);
+    if (judged)
+      task.doubts = aligned ? doubts_of(*aligned)
+                            : doubts_in_place(sdm::find_other_unit_in_place(pair.o1.mesh, pair.o2.mesh));
     const std::vector<sdm::Doubt> doubts = task.doubts;
     if (command.doubts.min_coverage) measure_coverage(task, progress);
     meshes.push_back(measure_mesh(std::move(task), out, progress));

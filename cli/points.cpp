@@ -128,10 +128,23 @@ void align_cloud(PointsCommand& command, const sdm::Sites& sites, const Input& o
   write_text(folder / "alignment.json", to_text(to_json(*outcome.aligned, command.picture.units)));
 }
 
+// A cloud that is in place may be in another unit. It is read again only if its size is that of another unit.
+void doubt_unit(const PointsCommand& command, const sdm::PointDistancesOptions& options, const sdm::Mesh& o2,
+                PointsOutcome& outcome, ProgressLine& progress) {
+  const bool judged = command.picture.tolerance.has_value() || !command.groups.rows.empty();
+  if (!judged || !sdm::sizes_differ(outcome.found.bounds, sdm::bounds(o2))) return;
+  constexpr std::size_t kSample = std::size_t{1} << 18;
+  sdm::PointSample sample =
+      sdm::sample_points(command.cloud, kSample, {command.text, progress.callback(), options.islands});
+  sdm::transform(sample.points, options.placement);
+  outcome.summary.doubts = doubts_in_place(sdm::find_other_unit_in_place(sample.points, o2));
+}
+
 // Withholds a PASS where there are doubts.
 void judge_doubts(const PointsCommand& command, const sdm::PointDistancesOptions& options, const Input& o2,
                   PointsOutcome& outcome, ProgressLine& progress) {
   if (outcome.aligned && command.align.judged) outcome.summary.doubts = doubts_of(*outcome.aligned);
+  if (!outcome.aligned) doubt_unit(command, options, o2.mesh, outcome, progress);
   if (command.doubts.min_coverage)
     measure_cloud_coverage(command, options.placement, options.islands, o2.mesh, outcome, progress);
   sdm::withhold_pass(outcome.summary, command.doubts.accept);

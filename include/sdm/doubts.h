@@ -37,6 +37,9 @@ struct Doubt {
                                                    const std::optional<OtherUnit>& other_unit,
                                                    const std::optional<MirroredFit>& mirrored = {});
 
+/// Returns the doubt that O1 is in another unit, of find_other_unit() or find_other_unit_in_place().
+[[nodiscard]] SDM_API Doubt doubt_of(const OtherUnit& unit);
+
 /// Returns the doubt that a coverage below `least` leaves: by its value, not by its bounds.
 [[nodiscard]] SDM_API std::optional<Doubt> doubt_of(const Coverage& coverage, double least);
 

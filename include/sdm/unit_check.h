@@ -19,6 +19,7 @@ struct OtherUnit {
   double factor = 1;  ///< 10, 25.4, 304.8 or 1000, or the inverse of one
   double misfit = 0;
   double misfit_as_given = 0;
+  bool same_box = false;  ///< of find_other_unit_in_place(): O1 has the box of O2 at that size
 };
 
 /// Aligns O1, times each ratio of two common units of length, to O2 as align() does with these options, and
@@ -36,5 +37,19 @@ struct OtherUnit {
                                                                std::span<const Vec3> normals, const Sites& o2,
                                                                const Alignment& found,
                                                                const AlignOptions& options = {});
+
+/// The same without an alignment, for an O1 that is in place: returns the ratio of two units that scales O1,
+/// about the origin of its coordinates, to the box of O2, up to 5 % of the diagonal; otherwise the one whose
+/// misfit is the least, if that is at most 2 % and a quarter of a misfit as given above 2 %. Nothing unless
+/// sizes_differ(). Throws sdm::Error if a mesh is unusable (see validate), or if there is not enough memory.
+/// Cost: linear in O1; if the sizes differ, also that of Sites of O2.
+[[nodiscard]] SDM_API std::optional<OtherUnit> find_other_unit_in_place(const Mesh& o1, const Mesh& o2);
+
+/// The same for points, all with finite coordinates. Nothing without points.
+[[nodiscard]] SDM_API std::optional<OtherUnit> find_other_unit_in_place(std::span<const Vec3> points,
+                                                                        const Mesh& o2);
+
+/// Whether the diagonals of two boxes differ as much as units do: by more than 5 times.
+[[nodiscard]] SDM_API bool sizes_differ(const Box& a, const Box& b);
 
 }  // namespace sdm

@@ -1,16 +1,20 @@
 #include <sdm/unit_check.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "geometry/vec.h"
+#include "registration/correspondences.h"
 #include "registration/samples.h"
 
 namespace sdm {
 namespace {
 
 constexpr std::size_t kUnitSamples = 1024;
+constexpr std::array kUnitRatios{10.0, 25.4, 304.8, 1000.0};
+constexpr double kFits = 0.02, kMuchBetter = 0.25;  // misfits, as fractions of the radius of gyration
 
 double misfit_of(const Alignment& alignment) {
   return alignment.gyration_radius > 0 ? alignment.after.rms / alignment.gyration_radius : 0;
@@ -18,7 +22,7 @@ double misfit_of(const Alignment& alignment) {
 
 std::optional<OtherUnit> best_unit(const registration::Samples& samples, const Sites& o2,
                                    const Alignment& found, AlignOptions options) {
-  constexpr double kFits = 0.02, kMuchBetter = 0.25, kAcceptable = 0.1;
+  constexpr double kAcceptable = 0.1;
   constexpr double kTooLarge = 2;  // times the size of O2: most of O1 would be far from it
   const double as_given = misfit_of(found);
   if (!(as_given > kFits)) return std::nullopt;
@@ -27,7 +31,7 @@ std::optional<OtherUnit> best_unit(const registration::Samples& samples, const S
   for (const Vec3& p : samples.points) extend(box, p);
   const double size = diagonal(box), most = kTooLarge * diagonal(bounds(o2.mesh()));
   options.samples = kUnitSamples;
-  for (const double ratio : {10.0, 25.4, 304.8, 1000.0})
+  for (const double ratio : kUnitRatios)
     for (const double factor : {ratio, 1 / ratio}) {
       if (!(factor * size <= most)) continue;
       std::vector<Vec3> scaled = samples.points;
@@ -36,6 +40,66 @@ std::optional<OtherUnit> best_unit(const registration::Samples& samples, const S
       if (misfit < best.misfit) best.factor = factor, best.misfit = misfit;
     }
   return best.factor != 1 ? std::optional(best) : std::nullopt;
+}
+
+std::vector<Vec3> times(double factor, std::span<const Vec3> points) {
+  std::vector<Vec3> scaled(points.begin(), points.end());
+  for (Vec3& p : scaled) p = factor * p;
+  return scaled;
+}
+
+Box box_of(std::span<const Vec3> points) {
+  Box box;
+  for (const Vec3& p : points) extend(box, p);
+  return box;
+}
+
+/// The root of the mean squared distance of the points to their mean.
+double gyration_radius(std::span<const Vec3> points) {
+  Vec3 mean{};
+  for (const Vec3& p : points) mean += (1.0 / static_cast<double>(points.size())) * p;
+  double sum = 0;
+  for (const Vec3& p : points) sum += squared_norm(p - mean);
+  return std::sqrt(sum / static_cast<double>(points.size()));
+}
+
+double misfit_in_place(const registration::Samples& samples, const registration::Target& o2) {
+  const registration::Correspondences pairs = registration::find_correspondences(samples, {}, o2);
+  double sum = 0;
+  for (const double d : pairs.distances) sum += d * d;
+  const double radius = gyration_radius(samples.points);
+  return radius > 0 ? std::sqrt(sum / static_cast<double>(samples.points.size())) / radius : 0;
+}
+
+/// How far the corners of both boxes are from each other at most along an axis, as a fraction of the second
+/// one's diagonal.
+double distance_of_corners(const Box& a, const Box& b) {
+  double most = 0;
+  for (int k = 0; k < 3; ++k)
+    most = std::max({most, std::abs(a.lo[k] - b.lo[k]), std::abs(a.hi[k] - b.hi[k])});
+  return most / diagonal(b);
+}
+
+/// `box`: of all of O1, which the samples are taken from.
+std::optional<OtherUnit> unit_in_place(const registration::Samples& samples, const Box& box, const Mesh& o2) {
+  constexpr double kSame = 0.05, kFar = 1;
+  const Box to = bounds(o2);
+  const Sites sites(o2);
+  const registration::Target target(sites);
+  const double as_given = misfit_in_place(samples, target);
+  std::optional<OtherUnit> best;
+  double least = as_given > kFits ? std::min(kMuchBetter * as_given, kFits) : 0;
+  for (const double ratio : kUnitRatios)
+    for (const double factor : {ratio, 1 / ratio}) {
+      const double apart = distance_of_corners({factor * box.lo, factor * box.hi}, to);
+      const bool same = apart <= kSame;
+      if (!same && !(least > 0 && apart <= kFar)) continue;
+      const double misfit = misfit_in_place({times(factor, samples.points), samples.normals}, target);
+      const OtherUnit unit{factor, misfit, as_given, same};
+      if (same) return unit;
+      if (misfit <= least) best = unit, least = misfit;
+    }
+  return best;
 }
 
 }  // namespace
@@ -50,6 +114,27 @@ std::optional<OtherUnit> find_other_unit(std::span<const Vec3> points, std::span
                                          const Sites& o2, const Alignment& found,
                                          const AlignOptions& options) {
   return best_unit(registration::cloud_source(points, normals)(kUnitSamples), o2, found, options);
+}
+
+bool sizes_differ(const Box& a, const Box& b) {
+  constexpr double kRatio = 5;  // less than that of any two units, as O1 may be a part of O2
+  const double first = diagonal(a), second = diagonal(b);
+  return first > kRatio * second || second > kRatio * first;
+}
+
+std::optional<OtherUnit> find_other_unit_in_place(const Mesh& o1, const Mesh& o2) {
+  validate(o1);
+  validate(o2);
+  const Box box = bounds(o1);
+  if (!sizes_differ(box, bounds(o2))) return std::nullopt;
+  return unit_in_place(registration::surface_source(o1)(kUnitSamples), box, o2);
+}
+
+std::optional<OtherUnit> find_other_unit_in_place(std::span<const Vec3> points, const Mesh& o2) {
+  validate(o2);
+  const Box box = box_of(points);
+  if (points.empty() || !sizes_differ(box, bounds(o2))) return std::nullopt;
+  return unit_in_place(registration::cloud_source(points, {})(kUnitSamples), box, o2);
 }
 
 }  // namespace sdm

@@ -15,22 +15,29 @@ struct UnitNames {
   const char *larger, *smaller;
 };
 
+/// What was found, of an O1 that is so many times too small or too large.
+std::string found_text(const OtherUnit& unit, const std::string& times) {
+  if (unit.same_box) return "O1 has the size and the place of O2 if it is " + times;
+  constexpr double kLeastShown = 1e-5;
+  const std::string misfit =
+      unit.misfit < kLeastShown ? "less than 0.001" : number_text(100 * unit.misfit, 2);
+  return "O1 fits O2 far better " + times + " (to " + misfit + " % of its size, instead of " +
+         number_text(100 * unit.misfit_as_given, 2) + " %)";
+}
+
 Doubt unit_doubt(const OtherUnit& unit) {
-  constexpr std::array kNames{UnitNames{10, "cm", "mm"}, UnitNames{25.4, "in", "mm"},
-                              UnitNames{304.8, "ft", "mm"}, UnitNames{1000, "m", "mm"}};
+  constexpr std::array kNames{
+      UnitNames{10, "centimetres", "millimetres"}, UnitNames{25.4, "inches", "millimetres"},
+      UnitNames{304.8, "feet", "millimetres"}, UnitNames{1000, "metres", "millimetres"}};
   const bool grows = unit.factor > 1;
   const double ratio = grows ? unit.factor : 1 / unit.factor;
   const UnitNames& names =
       *std::ranges::min_element(kNames, {}, [&](const UnitNames& n) { return std::abs(n.factor - ratio); });
   const std::string o1 = grows ? names.larger : names.smaller, o2 = grows ? names.smaller : names.larger;
-  constexpr double kLeastShown = 1e-5;
   constexpr int kExact = 15;  // digits: ratios of units are decimal numbers, or their inverses
-  const std::string misfit =
-      unit.misfit < kLeastShown ? "less than 0.001" : number_text(100 * unit.misfit, 2);
   return {DoubtReason::other_unit,
-          "O1 fits O2 far better " + number_text(ratio, 4) + " times as " + (grows ? "large" : "small") +
-              ", as if it was in " + o1 + " and O2 in " + o2 + " (to " + misfit +
-              " % of its size, instead of " + number_text(100 * unit.misfit_as_given, 2) + " %)",
+          found_text(unit, number_text(ratio, 4) + " times as " + (grows ? "large" : "small") +
+                               ", as if it were in " + o1 + " and O2 in " + o2),
           // Not --units-o1 and --units-o2: these also scale O2 where --units names another unit, so that a
           // tolerance would mean another length than in this run.
           "--transform-o1 scale:" + number_text(unit.factor, kExact) +
@@ -67,6 +74,10 @@ std::vector<Doubt> doubts_of(const Alignment& alignment, const std::optional<Oth
                           (free == 1 ? " freedom" : " freedoms") + " of the alignment",
                       "place O1 by --transform-o1 instead of --align, or lock them by --align-free"});
   return doubts;
+}
+
+Doubt doubt_of(const OtherUnit& unit) {
+  return unit_doubt(unit);
 }
 
 std::optional<Doubt> doubt_of(const Coverage& coverage, double least) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sdm/io.h>
 
 #include <nlohmann/json.hpp>
 
@@ -94,6 +95,42 @@ TEST_F(Verdicts, TheSamePartInTheSameUnitIsNotDoubted) {
     const Outcome run = map(scan_of(part, 1), o2, {"--align", "--tolerance", "1"});
     EXPECT_EQ(run.code, 0) << name << run.out << run.err;
     EXPECT_THAT(run.out, Not(HasSubstr("doubt")));
+  }
+}
+
+// Without an alignment, the scan lies in one corner of the part, within the tolerance.
+TEST_F(Verdicts, AUnitIsMistakenInPlaceToo) {
+  const Mesh part = placed(cube(0.5), "translate:0.5:0.5:0.5,scale:100");
+  const std::string o1 = folder / "scan.ply", o2 = write_obj(folder / "part.obj", part);
+  for (const auto& [factor, unit] : kUnits) {
+    SCOPED_TRACE(unit);
+    write_ply(o1, placed(part, fmt::format("scale:{}", 1 / factor)));
+    for (const char* command : {"map", "points"}) {
+      SCOPED_TRACE(command);
+      std::vector<std::string> arguments{command, o1, o2, "-o", out, "--tolerance", "12"};
+      const Outcome withheld = run_sdm(arguments);
+      EXPECT_EQ(withheld.code, 5) << withheld.out << withheld.err;
+      EXPECT_THAT(
+          withheld.out,
+          HasSubstr(fmt::format("O1 has the size and the place of O2 if it is {} times as large", factor)));
+      arguments.insert(arguments.end(), {"--transform-o1", fmt::format("scale:{}", factor)});
+      EXPECT_EQ(run_sdm(arguments).code, 0);
+    }
+    EXPECT_EQ(map(o1, o2, {"--tolerance", "12", "--accept-doubts"}).code, 0);
+  }
+}
+
+// A small region of a part, near its origin, is not a part in another unit.
+TEST_F(Verdicts, APartialScanInPlaceIsNotDoubted) {
+  const Mesh part = load("fandisk.off", "fit,scale:100");
+  const std::string o2 = write_obj(folder / "part.obj", part);
+  for (const double radius : {5.0, 8.0, 12.0}) {
+    Mesh scan = part;
+    const Vec3 middle = part.positions[part.triangles[0][0]];
+    std::erase_if(scan.triangles,
+                  [&](const Triangle& t) { return norm(part.positions[t[0]] - middle) > radius; });
+    const Outcome run = map(write_obj(folder / "scan.obj", scan), o2, {"--tolerance", "1"});
+    EXPECT_EQ(run.code, 0) << radius << run.out << run.err;
   }
 }
 
