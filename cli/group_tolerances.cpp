@@ -111,6 +111,22 @@ void check_groups(const GroupTolerances& table, std::initializer_list<const Inpu
       throw sdm::Error(fmt::format("{}: {}", table.file, no_group_of(table.rows[row].group, meshes)));
 }
 
+std::optional<std::string> note_on_unjudged(const GroupTolerances& table, const Input& input) {
+  std::vector<bool> has_limits(input.mesh.triangles.size());
+  for (const sdm::NamedFaces& named : sdm::faces_of_groups(input.names, table.rows))
+    for (const std::uint32_t face : named.faces) has_limits[face] = true;
+  double all = 0, judged = 0;
+  for (std::size_t face = 0; face < has_limits.size(); ++face) {
+    const auto& [a, b, c] = input.mesh.triangles[face];
+    const std::vector<sdm::Vec3>& p = input.mesh.positions;
+    const double area = sdm::norm(sdm::cross(p[b] - p[a], p[c] - p[a]));
+    all += area, judged += has_limits[face] ? area : 0;
+  }
+  if (judged == 0 || judged == all) return std::nullopt;
+  return fmt::format("{} % of the area of {} has no limits and is not judged",
+                     number(100 * (all - judged) / all, 3), input.file);
+}
+
 Json to_json(const sdm::GroupVerdicts& verdicts, bool of_points) {
   Json groups = Json::array();
   for (const sdm::GroupVerdict& g : verdicts.groups) {

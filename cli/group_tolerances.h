@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ void add_tolerance_table_option(CLI::App& app, GroupTolerances& table,
 
 /// States that no face of a mesh has the name, and which names there are.
 [[nodiscard]] std::string no_group(const std::string& name, const Input& mesh);
+
+/// States the share of the area of a mesh whose faces are of no row, if some faces are.
+[[nodiscard]] std::optional<std::string> note_on_unjudged(const GroupTolerances& table, const Input& mesh);
 
 /// Throws sdm::Error for a row whose group none of the meshes has, naming groups that they have.
 void check_groups(const GroupTolerances& table, std::initializer_list<const Input*> meshes);

@@ -161,6 +161,8 @@ Notes all_notes(const MapTask& task, const AtlasPart& part, const sdm::Summary& 
   if (const auto note = note_on_welding(summary.sign, task.command.map.sign, task.to)) all.push_back(*note);
   std::ranges::copy(part.notes, std::back_inserter(all));
   if (task.aligned) std::ranges::copy(notes(*task.aligned), std::back_inserter(all));
+  if (!task.command.picture.tolerance)
+    if (auto note = note_on_unjudged(task.command.groups, task.on)) all.push_back(std::move(*note));
   return all;
 }
 

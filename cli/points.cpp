@@ -85,6 +85,8 @@ void add_notes(const PointsCommand& command, const Input& o2, const sdm::Sites& 
   if (const auto note = note_on_welding(outcome.found.sign, command.map.sign, o2)) all.push_back(*note);
   std::ranges::copy(sdm::notes_on(box, sdm::bounds(o2.mesh)), std::back_inserter(all));
   if (outcome.aligned) std::ranges::copy(notes(*outcome.aligned), std::back_inserter(all));
+  if (!command.picture.tolerance)
+    if (auto note = note_on_unjudged(command.groups, o2)) all.push_back(std::move(*note));
   if (outcome.found.measured.kind == sdm::DistanceKind::closest)
     if (auto note = sdm::note_on_walls(sites, command.picture.tolerance, o2.names, command.groups.rows,
                                        command.picture.units))

@@ -22,6 +22,7 @@ namespace {
 using test::error_of;
 using test::run_sdm;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // A cube with named faces, and one that is higher by 0.1: the top is up to 0.1 inside it, the rest on it.
 class GroupTolerancesOption : public testing::Test {
@@ -49,6 +50,16 @@ class GroupTolerancesOption : public testing::Test {
   const test::TemporaryFolder folder;
   const std::string part = folder / "part.obj", higher = folder / "higher.obj", out = folder / "out";
 };
+
+// The sides and the bottom are 5 of 6 equal faces.
+TEST_F(GroupTolerancesOption, ANoteStatesTheAreaThatIsNotJudged) {
+  const std::string file = table("group,lower,upper\n\"top, red\",-0.2,0.2\n");
+  const std::string note = part + " has no limits and is not judged";
+  const test::Outcome outcome = map(file);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("note      83.3 % of the area of " + note));
+  EXPECT_THAT(map(file, {"--tolerance", "0.2"}).out, Not(HasSubstr(note)));
+}
 
 TEST_F(GroupTolerancesOption, JudgesEachGroupAndTakesTheWorst) {
   const std::string file = table("group,lower,upper\nbottom,-0.001,0.001\n\"top, red\",-0.05,0.05\n");
