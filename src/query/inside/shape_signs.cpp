@@ -1,17 +1,12 @@
 #include "query/inside/shape_signs.h"
 
-#include <atomic>
 #include <memory>
 
+#include "core/unique_number.h"
 #include "query/inside/near_faces.h"
 
 namespace sdm::inside {
 namespace {
-
-std::uint64_t unique_number() {
-  static std::atomic<std::uint64_t> last{0};
-  return ++last;
-}
 
 std::string open_reason(const sites::SitesData& sites) {
   if (sites.is_solid()) return {};

@@ -42,6 +42,11 @@ struct AngleBall {
   [[nodiscard]] bool in_range() const { return norm(centre) + radius < 0x1p20; }
 };
 
+/// What has an error larger than this, in solid angle, is not part of a field.
+struct FarLimits {
+  float group, face;
+};
+
 }  // namespace sdm::inside
 #endif
 
@@ -65,11 +70,11 @@ struct FarField {
 // less than 120·u·A/d².
 class FarSum {
  public:
-  // Sets `near` to the faces. What has an error larger than `most` is not part of the field; `whole`: only
-  // what the ball meets, and groups whose error is larger at its centre.
-  FarSum(const SolidAngles& angles, const AngleBall& ball, bool whole, float most,
+  // Sets `near` to the faces that are not part of the field. `whole`: only what the ball meets is not, and
+  // groups whose error is larger than the limit at its centre.
+  FarSum(const SolidAngles& angles, const AngleBall& ball, bool whole, const FarLimits& limits,
          std::vector<std::uint32_t>& near)
-      : angles_(angles), ball_(ball), whole_(whole), most_(most), near_(near) {
+      : angles_(angles), ball_(ball), whole_(whole), limits_(limits), near_(near) {
     const ChildFloats d;
     value_ = error_ = seen_ = gradient_[0] = gradient_[1] = gradient_[2] = hn::Zero(d);
     radius_ = static_cast<float>((1 + 1e-6) * ball.radius);
@@ -130,7 +135,7 @@ class FarSum {
       t.radius = hn::Load(d, e.radius + i), t.area = hn::Load(d, e.area + i);
       t.second = hn::Load(d, e.second + i), t.noise = hn::Load(d, e.noise + i);
       t.displacement = displacement_;
-      others |= add(t, children - i, most_,
+      others |= add(t, children - i, limits_.group,
                     [&](ChildVec squared, ChildVec inverse)
                         HWY_ATTR { return expansion_value(e, i, t.r, squared, inverse); })
                 << i;
@@ -157,7 +162,7 @@ class FarSum {
       t.radius = hn::LoadU(d, e.radius.data() + i), t.second = hn::LoadU(d, e.second.data() + i);
       t.noise = hn::LoadU(d, e.noise.data() + i);
       t.displacement = displacement_ + static_cast<float>(FaceExpansions::kCentreRounding);
-      const float most = whole_ ? std::numeric_limits<float>::max() : most_;
+      const float most = whole_ ? std::numeric_limits<float>::max() : limits_.face;
       std::uint32_t others = add(t, end - i, most, [&](ChildVec, ChildVec inverse) HWY_ATTR {
         return hn::Mul(inverse, lanes::HWY_NAMESPACE::dot(t.moment, t.r));
       });
@@ -201,7 +206,7 @@ class FarSum {
   const SolidAngles& angles_;
   const AngleBall& ball_;
   bool whole_;
-  float most_;
+  FarLimits limits_;
   std::vector<std::uint32_t>& near_;
   float radius_, displacement_;
   ChildVec value_, error_, seen_, gradient_[3];

@@ -7,6 +7,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "geometry/lanes/vec-inl.h"
 #include "geometry/vec.h"
 #include "query/inside/angles/far_field-inl.h"
+#include "query/inside/angles/solid_angle.h"
 
 #ifndef SDM_PACKET_ANGLES_ONCE
 #define SDM_PACKET_ANGLES_ONCE
@@ -22,9 +24,34 @@ namespace sdm::inside {
 namespace {
 
 // Expansions with larger errors, in solid angle, are replaced by those of their parts, or by faces.
-constexpr float kMostErrorOfPacket = 0.05F, kMostErrorOfPoint = 0.3F, kMostErrorOfBall = 0.04F;
+constexpr FarLimits kLimitsOfPoint{0.3F, 0.3F}, kLimitsOfBall{0.04F, 0.04F};
 // Sums decide little with larger errors: beside a surface they are half a turn, 2π, from the limit.
 constexpr double kUsefulError = 4.5;
+
+// The limits with which the sum of all errors stays below what is useful, by those of the packets of the same
+// shape before on this thread. Answers do not depend on them.
+class LearnedLimits {
+ public:
+  [[nodiscard]] FarLimits of(std::uint64_t shape) {
+    constexpr float kFirst = 0.05F, kOfFaces = 0.5F;
+    if (shape != shape_) most_ = kFirst, shape_ = shape;
+    return {most_, kOfFaces * most_};
+  }
+  // Whether a sum with this error is useful. If not, the limits are smaller now.
+  [[nodiscard]] bool learn(double error) {
+    constexpr float kGrowth = 1.05F, kLargest = 0.1F;
+    if (error < 0.7 * kUsefulError) most_ = std::min(kGrowth * most_, kLargest);
+    if (error < kUsefulError) return true;
+    // The sum of the errors is about as the root of the largest.
+    const double factor = 0.8 * kUsefulError / error;
+    most_ *= static_cast<float>(std::max(factor * factor, 1.0 / 16));
+    return false;
+  }
+
+ private:
+  float most_ = 0;
+  std::uint64_t shape_ = 0;
+};
 
 // A face relative to the centre of the packet, in the unit frame.
 struct PacketFace {
@@ -79,13 +106,21 @@ void gather_faces(const SolidAngles& angles, const PacketPoints& points, std::sp
   }
 }
 
+template <class Mask>
+HWY_INLINE std::uint32_t bits_of(Mask mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(PointFloats(), mask, bytes);
+  return std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8;
+}
+
 // Sums of solid angles, one per lane, as SolidAngleSum has them.
 //
 // With a, b, c the corners relative to a point, L = |a||b||c|, and z the complex number of half_solid_angle()
 // over L. By u = 2⁻²⁴, z is rounded by less than 128·u. A displacement of each corner by η changes the
 // numerator by at most √17·η·(|b||c| + |a||c| + |a||b|)·(1 + η/l)², where l is the least length, so z by less
 // than 8·η·(1/|a| + 1/|b| + 1/|c|), unless η > 0.39·l: then eight times this bound exceeds |z| ≤ √17, and the
-// angle counts as unknown. Lengths whose product underflows make the bound infinite or no number.
+// angle counts as unknown. Lengths whose product underflows make the bound infinite or no number, and the
+// angle unknown.
 class NearSum {
  public:
   NearSum() {
@@ -94,8 +129,9 @@ class NearSum {
     imaginary_ = turns_ = error_ = hn::Zero(d);
   }
 
-  // The corners relative to the points; `eta` displaces them.
-  HWY_INLINE void add(const PointVec3& a, const PointVec3& b, const PointVec3& c, PointVec eta) {
+  // The corners relative to the points; `eta` displaces them. Adds the angles that single precision decides,
+  // and returns the bits of the others, where points are beside the face.
+  HWY_INLINE std::uint32_t add(const PointVec3& a, const PointVec3& b, const PointVec3& c, PointVec eta) {
     using lanes::HWY_NAMESPACE::cross, lanes::HWY_NAMESPACE::dot;
     const PointFloats d;
     const auto la = hn::Sqrt(dot(a, a)), lb = hn::Sqrt(dot(b, b)), lc = hn::Sqrt(dot(c, c));
@@ -105,7 +141,7 @@ class NearSum {
     const auto real = hn::MulAdd(dots, inverse, one), imaginary = hn::Mul(dot(a, cross(b, c)), inverse);
     const auto bound =
         hn::MulAdd(hn::Mul(hn::Set(d, 8), eta), hn::Mul(lengths, inverse), hn::Set(d, 128 * 0x1p-24F));
-    multiply(real, imaginary, bound);
+    return multiply(real, imaginary, bound);
   }
   // The sum, to within 0.01 and error().
   PointVec sum() const {
@@ -116,17 +152,24 @@ class NearSum {
   PointVec error() const { return error_; }
 
  private:
-  HWY_INLINE void multiply(PointVec real, PointVec imaginary, PointVec bound) {
+  HWY_INLINE std::uint32_t multiply(PointVec real, PointVec imaginary, PointVec bound) {
     const PointFloats d;
     const auto zero = hn::Zero(d);
-    const auto squared = hn::MulAdd(real, real, hn::Mul(imaginary, imaginary));
+    auto squared = hn::MulAdd(real, real, hn::Mul(imaginary, imaginary));
     const auto either_side = hn::And(hn::Le(real, bound), hn::Le(hn::Abs(imaginary), bound));
-    const auto eight = hn::Mul(hn::Set(d, 8), bound);
+    auto eight = hn::Mul(hn::Set(d, 8), bound);
     const auto known = hn::AndNot(either_side, hn::Gt(squared, hn::Mul(eight, eight)));
+    std::uint32_t unknown = 0;
+    if (!hn::AllTrue(d, known)) {
+      unknown = bits_of(hn::Not(known));
+      const auto one = hn::Set(d, 1);
+      squared = hn::IfThenElse(known, squared, one), real = hn::IfThenElse(known, real, one);
+      imaginary = hn::IfThenElseZero(known, imaginary), eight = hn::IfThenElseZero(known, eight);
+    }
     // An estimate: the product may have any size near 1, and the bound has a tenth to spare.
     const auto inverse = hn::ApproximateReciprocalSqrt(squared);
     const auto turned = hn::MulAdd(eight, inverse, hn::Set(d, 16 * 0x1p-24F));
-    error_ = hn::Add(error_, hn::IfThenElse(known, turned, hn::Inf(d)));
+    error_ = hn::Add(error_, turned);
     const auto re = hn::Mul(real, inverse), im = hn::Mul(imaginary, inverse);
     const auto next_real = hn::MulSub(real_, re, hn::Mul(imaginary_, im));
     const auto next = hn::MulAdd(real_, im, hn::Mul(imaginary_, re));
@@ -136,6 +179,7 @@ class NearSum {
     turns_ = hn::Add(turns_, hn::IfThenElseZero(more, hn::Set(d, 1)));
     turns_ = hn::Sub(turns_, hn::IfThenElseZero(fewer, hn::Set(d, 1)));
     real_ = next_real, imaginary_ = next;
+    return unknown;
   }
   // The argument of the product to within 0.0038 (S. Rajan et al., Efficient approximations for the
   // arctangent function, 2006).
@@ -153,15 +197,51 @@ class NearSum {
   PointVec real_, imaginary_, turns_, error_;
 };
 
+// What single precision leaves open of the angles of faces beside points.
+class BesideFaces {
+ public:
+  BesideFaces(const SolidAngles& angles, std::span<const std::uint32_t> faces)
+      : angles_(angles), faces_(faces) {
+    open_.clear();
+  }
+
+  // Adds the face in this place, for these points.
+  void add(std::size_t place, std::uint32_t points) { open_.push_back({faces_[place], points}); }
+  [[nodiscard]] bool empty() const { return open_.empty(); }
+  // Their sum at a point, in double precision.
+  [[nodiscard]] SolidAngle at(const Vec3& q, std::uint32_t bit) const {
+    SolidAngleSum sum;
+    for (const Open& open : open_) {
+      if ((open.points & bit) == 0) continue;
+      const auto [a, b, c] = angles_.faces.corners(open.face);
+      sum.add(half_solid_angle(a - q, b - q, c - q));
+    }
+    return sum.sum();
+  }
+
+ private:
+  struct Open {
+    std::uint32_t face, points;
+  };
+  static std::vector<Open>& memory() {
+    thread_local std::vector<Open> open;
+    return open;
+  }
+
+  const SolidAngles& angles_;
+  std::span<const std::uint32_t> faces_;
+  std::vector<Open>& open_ = memory();
+};
+
 // The sums of both for one point, with a face per lane.
-PacketSides compare(const FarField& far, std::span<const PacketFace> faces, const float (&point)[3],
-                    double limit) {
+PacketSides compare(const FarField& far, std::span<const PacketFace> faces, BesideFaces& beside,
+                    const float (&point)[3], const Vec3& q, double limit) {
   const PointFloats d;
   const std::size_t width = hn::Lanes(d);
   // All corners in one point make no angle.
   static constexpr PacketFace kNothing{{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}}, 0};
   alignas(64) float corner[3][3][kPacket], displacement[kPacket];
-  const PointVec3 q = lanes::HWY_NAMESPACE::splat(d, point);
+  const PointVec3 at_q = lanes::HWY_NAMESPACE::splat(d, point);
   NearSum near;
   for (std::size_t first = 0; first < faces.size(); first += width) {
     for (std::size_t i = 0; i < width; ++i) {
@@ -170,33 +250,42 @@ PacketSides compare(const FarField& far, std::span<const PacketFace> faces, cons
         for (int k = 0; k < 3; ++k) corner[j][k][i] = face.corner[j][k];
       displacement[i] = face.displacement;
     }
-    const auto at = [&](int j) HWY_ATTR { return sub(lanes::HWY_NAMESPACE::load(d, corner[j], 0), q); };
-    near.add(at(0), at(1), at(2), hn::Load(d, displacement));
+    const auto at = [&](int j) HWY_ATTR { return sub(lanes::HWY_NAMESPACE::load(d, corner[j], 0), at_q); };
+    std::uint32_t open = near.add(at(0), at(1), at(2), hn::Load(d, displacement));
+    for (; open != 0; open &= open - 1) {
+      const std::size_t place = first + static_cast<std::size_t>(std::countr_zero(open));
+      if (place < faces.size()) beside.add(place, 1);
+    }
   }
   const auto total_of = [&](PointVec v) HWY_ATTR { return double{hn::GetLane(hn::SumOfLanes(d, v))}; };
-  const double from_limit = far.value - limit, total = from_limit + total_of(near.sum());
-  const double size = std::abs(from_limit) + total_of(hn::Abs(near.sum()));
+  const SolidAngle exact = beside.at(q, 1);
+  const double from_limit = far.value - limit, total = from_limit + exact.value + total_of(near.sum());
+  const double size = std::abs(from_limit) + std::abs(exact.value) + total_of(hn::Abs(near.sum()));
   // The argument of each lane is approximate, and the rest rounded in few steps.
-  const double error =
-      1.001 * (far.error + total_of(near.error())) + 0.01 * static_cast<double>(width) + 1e-5 * size;
+  const double error = 1.001 * (far.error + exact.error + total_of(near.error())) +
+                       0.01 * static_cast<double>(width) + 1e-5 * size;
   return {std::abs(total) > error ? 1u : 0u, total > error ? 1u : 0u};
 }
 
 // The sums of both, compared with the limits.
-PacketSides compare(const FarField& far, std::span<const PacketFace> faces, const PacketPoints& points,
+PacketSides compare(const FarField& far, std::span<const PacketFace> faces, BesideFaces& beside,
+                    const PacketPoints& points, std::span<const Vec3> exact_points,
                     std::span<const double> limits) {
   const PointFloats d;
   alignas(64) float from_limit[kPacket] = {};
   for (std::size_t i = 0; i < limits.size(); ++i) from_limit[i] = static_cast<float>(far.value - limits[i]);
   PacketSides sides;
+  alignas(64) float total_at[kPacket], error_at[kPacket];
   for (size_t i = 0; i < limits.size(); i += hn::Lanes(d)) {
     const auto x = hn::Load(d, points.at[0] + i), y = hn::Load(d, points.at[1] + i),
                z = hn::Load(d, points.at[2] + i);
     NearSum near;
     const PointVec3 q{x, y, z};
-    for (const PacketFace& face : faces) {
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const PacketFace& face = faces[f];
       const auto at = [&](int j) HWY_ATTR { return sub(lanes::HWY_NAMESPACE::splat(d, face.corner[j]), q); };
-      near.add(at(0), at(1), at(2), hn::Set(d, face.displacement));
+      const std::uint32_t open = near.add(at(0), at(1), at(2), hn::Set(d, face.displacement));
+      if (open != 0) beside.add(f, open << i);
     }
     const auto slope = [&](int k) HWY_ATTR { return hn::Set(d, static_cast<float>(far.gradient[k])); };
     const auto linear = hn::MulAdd(slope(0), x, hn::MulAdd(slope(1), y, hn::Mul(slope(2), z)));
@@ -206,16 +295,18 @@ PacketSides compare(const FarField& far, std::span<const PacketFace> faces, cons
     const auto size = hn::Add(hn::Add(hn::Abs(start), hn::Abs(angle)), hn::Abs(linear));
     const auto error = hn::Add(hn::MulAdd(hn::Set(d, 1e-5F), size, near.error()),
                                hn::Set(d, static_cast<float>(1.001 * far.error + 0.01)));
-    const auto bits = [&](auto mask) HWY_ATTR {
-      std::uint8_t bytes[8] = {};
-      hn::StoreMaskBits(d, mask, bytes);
-      return (std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8) << i;
-    };
-    sides.known |= bits(hn::Gt(hn::Abs(total), error));
-    sides.above |= bits(hn::Gt(total, hn::Zero(d)));
+    hn::Store(total, d, total_at + i);
+    hn::Store(error, d, error_at + i);
   }
-  sides.known &= (1u << limits.size()) - 1;
-  sides.above &= sides.known;
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    double total = total_at[i], error = error_at[i];
+    if (!beside.empty()) {
+      const SolidAngle exact = beside.at(exact_points[i], 1u << i);
+      total += exact.value, error += exact.error;
+    }
+    sides.known |= (std::abs(total) > error ? 1u : 0u) << i;
+    sides.above |= (total > error ? 1u : 0u) << i;
+  }
   return sides;
 }
 
@@ -227,24 +318,21 @@ PacketSides SidesOfPacket(const SolidAngles& angles, std::span<const Vec3> point
   if (!packet.ball.in_range()) return {};
   thread_local std::vector<std::uint32_t> near;
   thread_local std::vector<PacketFace> faces;
+  thread_local LearnedLimits learned;
+  const bool one = points.size() == 1;
   FarField field;
-  float most = points.size() == 1 ? kMostErrorOfPoint : kMostErrorOfPacket;
-  for (const int last : {0, 1}) {
+  for (const bool last : {one, true}) {
     poll();
-    FarSum far(angles, packet.ball, false, most, near);
+    FarSum far(angles, packet.ball, false, one ? kLimitsOfPoint : learned.of(angles.number), near);
     if (!far.collect()) return {};
     field = far.sum();
-    if (last != 0 || field.error < kUsefulError) break;
-    // The sum of the errors is about as the root of the largest.
-    const double factor = 0.8 * kUsefulError / field.error;
-    most *= static_cast<float>(std::max(factor * factor, 1.0 / 16));
+    if (last || learned.learn(field.error)) break;
   }
   gather_faces(angles, packet, near, faces);
-  if (points.size() == 1) {
-    const float at[3] = {packet.at[0][0], packet.at[1][0], packet.at[2][0]};
-    return compare(field, faces, at, limits[0]);
-  }
-  return compare(field, faces, packet, limits);
+  BesideFaces beside(angles, near);
+  if (!one) return compare(field, faces, beside, packet, points, limits);
+  const float at[3] = {packet.at[0][0], packet.at[1][0], packet.at[2][0]};
+  return compare(field, faces, beside, at, points[0], limits[0]);
 }
 
 PacketSides SideOfBall(const SolidAngles& angles, const Vec3& centre, double radius, double limit) {
@@ -253,7 +341,7 @@ PacketSides SideOfBall(const SolidAngles& angles, const Vec3& centre, double rad
   if (!ball.in_range()) return {};
   thread_local std::vector<std::uint32_t> near;
   poll();
-  FarSum far(angles, ball, true, kMostErrorOfBall, near);
+  FarSum far(angles, ball, true, kLimitsOfBall, near);
   if (!far.collect()) return {};
   const FarField field = far.sum();
   const Vec3 gradient{field.gradient[0], field.gradient[1], field.gradient[2]};

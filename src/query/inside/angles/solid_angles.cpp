@@ -13,6 +13,7 @@
 #include <span>
 
 #include "core/cancellation.h"
+#include "core/unique_number.h"
 #include "geometry/lanes/vec-inl.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
@@ -309,7 +310,7 @@ namespace sdm::inside {
 HWY_EXPORT(SumAt);
 
 SolidAngles::SolidAngles(const OrientedFaces& all, const tree::WideTree& collapsed)
-    : faces(all), wide(collapsed), expansions(expansions_of(all, collapsed)) {}
+    : number(unique_number()), faces(all), wide(collapsed), expansions(expansions_of(all, collapsed)) {}
 
 SolidAngles::Sum SolidAngles::at(const Vec3& q, double limit, double tolerance) const {
   if (empty()) return {{}, std::numeric_limits<double>::infinity()};

@@ -3,6 +3,7 @@
 
 #include <sdm/types.h>
 
+#include <cstdint>
 #include <vector>
 
 #include "query/inside/angles/expansions.h"
@@ -30,6 +31,7 @@ class SolidAngles {
 
   [[nodiscard]] bool empty() const { return expansions.nodes.empty(); }
 
+  std::uint64_t number;  ///< unique, over all objects
   // What sums are made of.
   OrientedFaces faces;
   const tree::WideTree& wide;
