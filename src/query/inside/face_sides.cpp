@@ -33,7 +33,7 @@ void FaceSides::renew() {
   offset_ = offset_beside_faces(*solid_);
   for (std::size_t f = 0; f < solid_->mesh.triangles.size(); ++f)
     sides_[f].store(Sides::unknown, std::memory_order_relaxed);
-  found_ = direct_ = 0;
+  found_ = direct_ = 0, known_ = false;
 }
 
 Sides FaceSides::of_face(std::uint32_t face) const {
@@ -115,6 +115,7 @@ void FaceSides::find_all() const {
           }
     }
   }
+  known_.store(true, std::memory_order_relaxed);
 }
 
 // No face comes between those of an edge if one of them is met by none.

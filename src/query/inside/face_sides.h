@@ -42,9 +42,11 @@ class FaceSides {
   /// Cost: O(log n) for the first call, constant for others.
   [[nodiscard]] Sides of_face(std::uint32_t face) const;
   /// Whether the winding number of a query beside this face is to be found without its sides. These take as
-  /// long as several winding numbers, and those of all faces as half as many as there are faces: at that many
-  /// calls of this they are found. Answers do not depend on it.
+  /// long as several winding numbers, and those of all faces as twice as many as there are faces: at that
+  /// many calls of this they are found. Answers do not depend on it.
   [[nodiscard]] bool direct(std::uint32_t face) const;
+  /// Whether those of all faces were found together.
+  [[nodiscard]] bool known() const { return known_.load(std::memory_order_relaxed); }
   /// offset_beside_faces(); if 0, all sides are `mixed`.
   [[nodiscard]] double offset() const { return offset_; }
   /// The sides of the faces around a site, if they are all the same: then the pseudonormal of the site
@@ -62,6 +64,7 @@ class FaceSides {
   std::unique_ptr<std::atomic<Sides>[]> sides_;
   mutable std::atomic<std::size_t> found_ = 0;   ///< one by one
   mutable std::atomic<std::size_t> direct_ = 0;  ///< queries without sides
+  mutable std::atomic<bool> known_ = false;
 };
 
 }  // namespace sdm::inside

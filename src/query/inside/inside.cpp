@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/vec.h"
+#include "query/inside/winding_walk.h"
 
 namespace sdm::inside {
 namespace {
@@ -66,31 +67,6 @@ class Trials {
 };
 thread_local Trials packet_trials, ball_trials;
 
-// Winding numbers of points of a solid, none of them on its surface, one after the other on this thread: by a
-// segment to the point before, if that is shorter than the way out of the box.
-class WindingWalk {
- public:
-  [[nodiscard]] int winding(const ShapeSigns& signs, const sites::SitesData& solid, const Vec3& point) {
-    std::optional<int> number;
-    const double way = way_out(signs.box, point);
-    if (signs.number == shape_ && squared_norm(point - last_) < way * way)
-      if (const std::optional<int> turns = crossings(solid, point, last_)) number = number_ + *turns;
-    number_ = number ? *number : inside::winding(solid, point);
-    shape_ = signs.number, last_ = point;
-    return number_;
-  }
-
- private:
-  static double way_out(const Box& box, const Vec3& point) {
-    double way = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 3; ++k) way = std::min({way, point[k] - box.lo[k], box.hi[k] - point[k]});
-    return std::max(way, 0.0);
-  }
-
-  std::uint64_t shape_ = 0;
-  Vec3 last_{};
-  int number_ = 0;
-};
 thread_local WindingWalk winding_walk;
 
 // How far from the surface, in sizes of a packet, points are searched together that are far from each other,
@@ -159,9 +135,9 @@ bool InsideTest::test(const Vec3& query, const ClosestPoint& closest, bool few) 
     case SignMethod::exact:
       if (closest.type == SiteType::none || !sdm::contains(signs_->box, query)) return false;
       return inside_ball(query, closest.type, closest.distance, [&](double clear) {
-        const bool direct = few && clear > 0 && sides_->direct(sites_.face_of(closest.type, closest.site));
-        return of_solid(direct ? winding_walk.winding(*signs_, sites_, query) != 0
-                               : inside_solid(query, closest));
+        if (few && clear > 0 && sides_->direct(sites_.face_of(closest.type, closest.site)))
+          return of_solid(*winding_walk.winding(*signs_, sites_, query, clear, false) != 0);
+        return of_solid(inside_solid(query, closest));
       });
     case SignMethod::winding:
       if (closest.distance == 0) return false;
@@ -261,9 +237,22 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries, std::span<co
     return above_half(
         queries, [&](std::size_t i) { return closest[i]; }, few, kWidestOfSparse);
   std::uint32_t inside = 0;
+  const bool dense = method_ == SignMethod::exact && !few && !sides_->known();
+  if (dense) winding_walk.approach(*signs_, sites_, queries);
   for (std::size_t i = 0; i < queries.size(); ++i)
-    inside |= (test(queries[i], closest[i], few) ? 1u : 0u) << i;
+    inside |= ((dense ? dense_test(queries[i], closest[i]) : test(queries[i], closest[i], few)) ? 1u : 0u)
+              << i;
   return inside;
+}
+
+// Until the sides of all faces are known: by points near this one, without those sides, where these mostly
+// lead to it.
+bool InsideTest::dense_test(const Vec3& query, const ClosestPoint& closest) const {
+  if (closest.type == SiteType::none || !sdm::contains(signs_->box, query)) return false;
+  const double clear = clear_radius(closest.type, closest.distance);
+  if (clear > 0)
+    if (const auto number = winding_walk.winding(*signs_, sites_, query, clear, true)) return *number != 0;
+  return inside_solid(query, closest);
 }
 
 std::uint32_t InsideTest::operator()(std::span<const Vec3> queries,

@@ -60,6 +60,7 @@ class InsideTest {
   template <class Test>
   [[nodiscard]] bool inside_ball(const Vec3& query, SiteType type, double distance, const Test& test) const;
   [[nodiscard]] bool test(const Vec3& query, const ClosestPoint& closest, bool few) const;
+  [[nodiscard]] bool dense_test(const Vec3& query, const ClosestPoint& closest) const;
   /// Decides by the winding number.
   [[nodiscard]] WindingNumber::Side above_half(const Vec3& query, const ClosestPoint& closest, bool few,
                                                double clear) const;

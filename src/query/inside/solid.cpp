@@ -5,7 +5,6 @@
 #include "core/cancellation.h"
 #include "geometry/predicates.h"
 #include "geometry/rounding.h"
-#include "query/rays/trace.h"
 #include "tree/visit.h"
 
 namespace sdm::inside {
@@ -85,18 +84,19 @@ std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, co
   return crossings(oriented_faces(sites), pose, p, q);
 }
 
-std::optional<int> crossings(const sites::SitesData& sites, const Vec3& p, const Vec3& q) {
+std::optional<int> crossings(const sites::SitesData& sites, const rays::Segment& segment,
+                             const rays::NearNodes* near) {
   thread_local rays::Scratch scratch;
   poll();
   int turns = 0;
   bool decided = true;
   const auto cross = [&](std::uint32_t face) {
-    const std::optional<int> sign = crossing(p, q, corners_of(sites.mesh, face));
+    const std::optional<int> sign = crossing(segment.p, segment.q, corners_of(sites.mesh, face));
     decided = sign.has_value();
     if (sign) turns += sites.inverted[face] != 0 ? -*sign : *sign;
     return !decided;
   };
-  rays::visit_faces_on_segment(sites, p, q, rays::visitor(cross), scratch);
+  rays::visit_faces_on_segment(sites, segment, near, rays::visitor(cross), scratch);
   return decided ? std::optional(turns) : std::nullopt;
 }
 
@@ -110,7 +110,9 @@ int winding(const sites::SitesData& solid, const Affine& pose, const Vec3& point
 int winding(const sites::SitesData& solid, const Vec3& point) {
   if (solid.tree.nodes.empty()) return 0;
   return winding_by_segments(solid.face_tree(), {}, point, kMostSegments,
-                             [&](const Vec3& q) { return crossings(solid, point, q); })
+                             [&](const Vec3& q) {
+                               return crossings(solid, rays::Segment{point, q});
+                             })
       .value_or(0);
 }
 

@@ -7,6 +7,7 @@
 
 #include "geometry/affine.h"
 #include "query/inside/angles/oriented_faces.h"
+#include "query/rays/trace.h"
 #include "sites/sites_data.h"
 
 namespace sdm::inside {
@@ -22,8 +23,10 @@ namespace sdm::inside {
 /// outside.
 [[nodiscard]] std::optional<int> crossings(const OrientedFaces& faces, const Affine& pose, const Vec3& p,
                                            const Vec3& q);
-/// Those of the faces of sites, where they are. The same; faces are excluded eight at a time.
-[[nodiscard]] std::optional<int> crossings(const sites::SitesData& sites, const Vec3& p, const Vec3& q);
+/// Those of the faces of sites, where they are. The same; faces are excluded eight at a time. Only the given
+/// part of the segment is searched. `near`: of a box in which that lies, or null.
+[[nodiscard]] std::optional<int> crossings(const sites::SitesData& sites, const rays::Segment& segment,
+                                           const rays::NearNodes* near = nullptr);
 
 /// A segment from a point to a point outside the box of the tree, moved by `pose`, for which crossings(q) is
 /// set: its value. 0 if the point is outside the box; empty if none of the first `most` segments has one.

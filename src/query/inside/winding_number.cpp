@@ -64,7 +64,7 @@ std::optional<int> WindingNumber::closed(const Vec3& q) const {
   constexpr int kMostSegments = 4;
   const OrientedFaces closing = closing_faces();
   return winding_by_segments(sites_.face_tree(), {}, q, kMostSegments, [&](const Vec3& end) {
-    const std::optional<int> through_mesh = crossings(sites_, q, end);
+    const std::optional<int> through_mesh = crossings(sites_, rays::Segment{q, end});
     if (!through_mesh || closing.faces.tree.nodes.empty()) return through_mesh;
     const std::optional<int> through_closing = crossings(closing, {}, q, end);
     return through_closing ? std::optional(*through_mesh + *through_closing) : std::nullopt;

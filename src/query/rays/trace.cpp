@@ -154,12 +154,95 @@ void FirstHitsAmong(const sites::SitesData& sites, std::span<const Ray> rays, co
   first_hits_among(sites, rays, accepts, scratch, hits);
 }
 
-void VisitFacesOnSegment(const sites::SitesData& sites, const Vec3& p, const Vec3& q,
+// Calls visit(face) for the faces below these nodes that the ray may meet, until it returns true.
+template <class Visit>
+HWY_INLINE void for_each_face_below(const sites::SitesData& sites, std::span<const tree::WideTree::Node> from,
+                                    const UnitRay& ray, std::vector<uint32_t>& stack, const Visit& visit) {
+  alignas(64) float enter[kWidth];
+  stack.clear();
+  // Whether to go on.
+  const auto open = [&](const tree::WideTree::Node& node) HWY_ATTR {
+    for (uint32_t met = boxes_met(node, ray, enter); met != 0; met &= met - 1) {
+      const uint32_t child = node.child[std::countr_zero(met)];
+      if (!tree::WideTree::is_leaf(child)) {
+        stack.push_back(child);
+        continue;
+      }
+      const sites::Regions& regions = sites.regions;
+      const uint32_t leaf = tree::WideTree::leaf_number(child), first = regions.leaves[leaf];
+      uint32_t faces =
+          discs_met(regions.bounds[leaf], regions.leaves[leaf + 1] - first, ray) | regions.thin[leaf];
+      for (; faces != 0; faces &= faces - 1)
+        if (visit(regions.owners[first + static_cast<uint32_t>(std::countr_zero(faces))].face)) return false;
+    }
+    return true;
+  };
+  for (const tree::WideTree::Node& node : from)
+    if (!open(node)) return;
+  while (!stack.empty()) {
+    const uint32_t index = stack.back();
+    stack.pop_back();
+    if (!open(sites.wide.nodes[index])) return;
+  }
+}
+
+void VisitFacesOnSegment(const sites::SitesData& sites, const Segment& segment, const NearNodes* near,
                          const FaceVisitor& visitor, Scratch& scratch) {
   UnitRay unit;
-  const Ray ray{.origin = p, .direction = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, .t_min = 0, .t_max = 1};
+  const Vec3 &p = segment.p, &q = segment.q;
+  const Ray ray{.origin = p,
+                .direction = {q[0] - p[0], q[1] - p[1], q[2] - p[2]},
+                .t_min = segment.first,
+                .t_max = segment.last};
   if (!unit.place(ray, sites.frame)) return;
-  for_each_face(sites, unit, scratch, [&](uint32_t face) { return visitor.visit(visitor.data, face); });
+  const std::span<const tree::WideTree::Node> from =
+      near ? std::span(near->nodes) : std::span(sites.wide.nodes).first(1);
+  for_each_face_below(sites, from, unit, scratch.nodes,
+                      [&](uint32_t face) { return visitor.visit(visitor.data, face); });
+}
+
+// The children of a node whose boxes meet the box.
+HWY_INLINE uint32_t boxes_meeting(const tree::WideTree::Node& node, const tree::FloatBox& box) {
+  return select(node.count, [&](size_t i) HWY_ATTR {
+    const Block d;
+    auto meet = hn::FirstN(d, kWidth);
+    for (int k = 0; k < 3; ++k)
+      meet = hn::And(meet, hn::And(hn::Le(hn::Load(d, node.lo[k] + i), hn::Set(d, box.hi[k])),
+                                   hn::Ge(hn::Load(d, node.hi[k] + i), hn::Set(d, box.lo[k]))));
+    return meet;
+  });
+}
+
+void FindNearNodes(const sites::SitesData& sites, const tree::FloatBox& box, NearNodes& near) {
+  constexpr size_t kFew = 8;  // nodes of eight
+  near.nodes.assign(1, sites.wide.nodes[0]);
+  for (;;) {
+    near.next.clear();
+    bool lower = false;
+    const auto add = [&](const tree::WideTree::Node& node, uint32_t i) {
+      if (near.next.empty() || near.next.back().count == kWidth) near.next.emplace_back();
+      tree::WideTree::Node& to = near.next.back();
+      const uint32_t at = to.count++;
+      for (int k = 0; k < 3; ++k) to.lo[k][at] = node.lo[k][i], to.hi[k][at] = node.hi[k][i];
+      to.child[at] = node.child[i];
+    };
+    for (const tree::WideTree::Node& node : near.nodes) {
+      for (uint32_t meet = boxes_meeting(node, box); meet != 0; meet &= meet - 1) {
+        const auto i = static_cast<uint32_t>(std::countr_zero(meet));
+        if (tree::WideTree::is_leaf(node.child[i])) {
+          add(node, i);
+          continue;
+        }
+        lower = true;
+        const tree::WideTree::Node& below = sites.wide.nodes[node.child[i]];
+        for (uint32_t bits = boxes_meeting(below, box); bits != 0; bits &= bits - 1)
+          add(below, static_cast<uint32_t>(std::countr_zero(bits)));
+      }
+      if (near.next.size() > kFew) return;
+    }
+    std::swap(near.nodes, near.next);
+    if (!lower) return;
+  }
 }
 
 void Occluded(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, uint8_t* result) {
@@ -184,6 +267,7 @@ namespace sdm::rays {
 HWY_EXPORT(FirstHits);
 HWY_EXPORT(FirstHitsAmong);
 HWY_EXPORT(VisitFacesOnSegment);
+HWY_EXPORT(FindNearNodes);
 HWY_EXPORT(Occluded);
 
 void first_hits(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, RayHit* hits) {
@@ -193,9 +277,12 @@ void first_hits(const sites::SitesData& sites, std::span<const Ray> rays, const 
                 Scratch& scratch, RayHit* hits) {
   HWY_DYNAMIC_DISPATCH(FirstHitsAmong)(sites, rays, filter, scratch, hits);
 }
-void visit_faces_on_segment(const sites::SitesData& sites, const Vec3& p, const Vec3& q,
+void find_near_nodes(const sites::SitesData& sites, const tree::FloatBox& box, NearNodes& near) {
+  HWY_DYNAMIC_DISPATCH(FindNearNodes)(sites, box, near);
+}
+void visit_faces_on_segment(const sites::SitesData& sites, const Segment& segment, const NearNodes* near,
                             const FaceVisitor& visitor, Scratch& scratch) {
-  HWY_DYNAMIC_DISPATCH(VisitFacesOnSegment)(sites, p, q, visitor, scratch);
+  HWY_DYNAMIC_DISPATCH(VisitFacesOnSegment)(sites, segment, near, visitor, scratch);
 }
 void occluded(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch,
               std::uint8_t* result) {

@@ -17,6 +17,7 @@ namespace sdm::rays {
 /// Per-thread memory, reused between rays.
 struct Scratch {
   std::vector<tree::OpenNode> stack;
+  std::vector<std::uint32_t> nodes;
 };
 
 /// As sdm::first_hits, into `hits`, on the calling thread. Dispatches at run time to the best vector
@@ -51,8 +52,22 @@ template <class Visit>
   return {[](const void* data, std::uint32_t face) { return (*static_cast<const Visit*>(data))(face); },
           &visit};
 }
-/// Visits all faces that the segment from p to q meets, and some that it does not meet.
-void visit_faces_on_segment(const sites::SitesData& sites, const Vec3& p, const Vec3& q,
+/// The nodes and leaves of the wide tree that meet a box, as children of nodes of their own: where searches
+/// begin for several segments in the box.
+struct NearNodes {
+  std::vector<tree::WideTree::Node> nodes, next;
+};
+/// Sets them to the lowest that are few. The box is in the unit frame.
+void find_near_nodes(const sites::SitesData& sites, const tree::FloatBox& box, NearNodes& near);
+
+/// The part of the segment from p to q between two parameters.
+struct Segment {
+  Vec3 p, q;
+  double first = 0, last = 1;
+};
+/// Visits all faces that the segment meets, and some that it does not meet. `near`: of a box in which it
+/// lies, or null.
+void visit_faces_on_segment(const sites::SitesData& sites, const Segment& segment, const NearNodes* near,
                             const FaceVisitor& visitor, Scratch& scratch);
 
 /// As sdm::occluded.

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -138,6 +139,33 @@ TEST(PacketAngles, AreUnknownOnFacesAndWhereRoundingDecides) {
   const std::vector<Vec3> out{{1e9, 0, 0}, {1e9, 1, 0}};
   EXPECT_EQ(inside::sides_of_packet(angles, out, std::vector(2, 0.5 * kWhole)).known, 0u);
   EXPECT_EQ(inside::sides_of_packet(angles, {}, {}).known, 0u);
+}
+
+// So near to a face that single precision does not decide its angle, in packets and alone.
+TEST(PacketAngles, AreKnownBesideFaces) {
+  const Sites sites(test::soup_of(test::sphere(3)));
+  const inside::SolidAngles angles = angles_of(sites);
+  const auto& p = sites.mesh().positions;
+  std::size_t known = 0, all = 0;
+  for (const Triangle& t : sites.mesh().triangles) {
+    const Vec3 centre = (1.0 / 3) * (p[t[0]] + p[t[1]] + p[t[2]]);
+    const Vec3 normal = normalized(cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]));
+    std::vector<Vec3> points;
+    for (const double height : {1e-9, -1e-9, 1e-8, -1e-7}) points.push_back(centre + height * normal);
+    for (const bool alone : {false, true})
+      for (std::size_t i = 0; i < points.size(); i += alone ? 1 : points.size()) {
+        const auto packet = std::span(points).subspan(i, alone ? 1 : points.size());
+        const inside::PacketSides sides =
+            inside::sides_of_packet(angles, packet, std::vector(packet.size(), 0.5 * kWhole));
+        for (std::size_t k = 0; k < packet.size(); ++k) {
+          ++all;
+          if ((sides.known >> k & 1u) == 0) continue;
+          ++known;
+          ASSERT_EQ((sides.above >> k & 1u) != 0, brute_force_winding(sites, packet[k]) > 0.5);
+        }
+      }
+  }
+  EXPECT_GT(known, all * 9 / 10);
 }
 
 // Turns are counted: sixty shells, one in the other, of both orientations.

@@ -87,7 +87,7 @@ TEST(Solid, CrossingsOfFacesInLanesAreThoseOfTheTree) {
       if (i % 4 == 1) q = p + Vec3{0, 0, 2};
       if (i % 4 == 2) q = p + 2 * (vertex() - p);  // through a corner
       if (i % 4 == 3) q = p + 2 * (0.5 * (vertex() + vertex()) - p);
-      ASSERT_EQ(crossings(internals(sites), p, q), winding(internals(sites), {}, p, q)) << i;
+      ASSERT_EQ(crossings(internals(sites), rays::Segment{p, q}), winding(internals(sites), {}, p, q)) << i;
     }
   }
 }
