@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/points.h>
+#include <sdm/sites.h>
 
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <random>
 #include <string>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "io_read/writers.h"
 #include "support/error_of.h"
 #include "support/shapes.h"
+#include "support/temporary_folder.h"
 
 namespace sdm {
 namespace {
@@ -192,8 +195,13 @@ TEST(TextCloud, CompressedFilesAreNamed) {
 
 // The fault had neither the file nor the number of the point in it.
 TEST(TextCloud, APointThatIsTooFarAwayIsNamed) {
-  EXPECT_EQ(fault("0 0 0\n1 2 3\n0 -1e38 0\n"),
-            "point 2 has a coordinate beyond 1e37, too large for the computation; scale the cloud down");
+  const TemporaryFolder folder;
+  const std::string cloud = folder / "cloud.txt";
+  std::ofstream(cloud) << "0 0 0\n1 2 3\n0 -1e38 0\n";
+  const std::string expected =
+      cloud + ": point 2 has a coordinate beyond 1e37, too large for the computation; scale the cloud down";
+  EXPECT_EQ(error_of([&] { (void)sample_points(cloud, 100); }), expected);
+  EXPECT_EQ(error_of([&] { (void)measure_points(cloud, Sites(cube()), folder / "points.ply"); }), expected);
   EXPECT_EQ(points_of("0 0 0\n1e37 2 3\n"), (Points{{0, 0, 0}, {1e37, 2, 3}}));
 }
 

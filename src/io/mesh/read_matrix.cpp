@@ -11,10 +11,10 @@
 #include "core/excerpt.h"
 #include "core/parse_number.h"
 #include "io/file/byte_scanner.h"
+#include "io/file/encodings.h"
 #include "io/file/error_prefix.h"
 #include "io/file/file_bytes.h"
 #include "io/file/npy_header.h"
-#include "io/file/utf16.h"
 #include "io/mesh/read_polygons.h"
 
 namespace sdm {
@@ -81,7 +81,7 @@ std::vector<double> numbers_in_json(std::string_view text) {
 
 std::vector<double> numbers_in(std::string_view bytes) {
   if (bytes.starts_with("\x93NUMPY")) return numbers_in_npy(bytes);
-  if (is_utf16(bytes)) throw Error(std::string(kUtf16Fault));
+  refuse_encoded(bytes);
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);  // the UTF-8 byte order mark
   if (bytes.find_first_not_of(" \t\r\n") != std::string_view::npos &&
       bytes[bytes.find_first_not_of(" \t\r\n")] == '{')

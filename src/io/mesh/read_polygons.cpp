@@ -8,9 +8,8 @@
 #include <array>
 #include <vector>
 
-#include "io/file/archive.h"
+#include "io/file/encodings.h"
 #include "io/file/text_scanner.h"
-#include "io/file/utf16.h"
 #include "io/mesh/formats.h"
 
 namespace sdm::io {
@@ -121,8 +120,7 @@ const Format* format_of_extension(std::string_view extension) {
 const Format* find_format(const Content& content, const std::filesystem::path& file) {
   for (const Format& format : kFormats)
     if (format.matches(content)) return &format;
-  if (is_utf16(content.bytes)) throw Error(std::string(kUtf16Fault));
-  refuse_archive(content.bytes);
+  refuse_encoded(content.bytes);
   return format_of_extension(file.extension().string());
 }
 

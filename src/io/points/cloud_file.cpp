@@ -5,18 +5,19 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <string_view>
 
-#include "io/file/archive.h"
-#include "io/file/utf16.h"
+#include "io/file/encodings.h"
 #include "io/mesh/read_polygons.h"
 #include "io/points/binary_rows.h"
 #include "io/points/cloud_layout.h"
 #include "io/points/text/ptx_scans.h"
 #include "io/points/text/text_dialect.h"
 #include "io/points/text/text_rows.h"
+#include "mesh/validate.h"
 
 namespace sdm::io {
 namespace {
@@ -69,13 +70,20 @@ void take(std::ifstream& stream, char* to, std::size_t count) {
     throw Error("cannot be read: it became shorter while it was being read");
 }
 
+void require_near(const Vec3& point, std::uint64_t number) {
+  for (const double x : point)
+    if (std::isfinite(x) && std::abs(x) > mesh::kMaxCoordinate)
+      throw Error(fmt::format(
+          "point {} has a coordinate beyond 1e37, too large for the computation; scale the cloud down",
+          number));
+}
+
 CloudFile::CloudFile(const std::filesystem::path& file, const TextDialect& given) {
   validate(given);
   const std::uint64_t size = open(stream, file);
   std::string bytes(std::min<std::uint64_t>(size, kMaxCloudHeader), '\0');
   take(stream, bytes.data(), bytes.size());
-  if (is_utf16(bytes)) throw Error(std::string(kUtf16Fault));
-  refuse_archive(bytes);
+  refuse_encoded(bytes);
   const std::uint64_t skipped = bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0;  // the UTF-8 byte order mark
   const std::string_view begin = std::string_view(bytes).substr(skipped);
 

@@ -21,6 +21,9 @@ void seek(std::ifstream& stream, std::uint64_t place);
 /// Reads bytes. Throws sdm::Error if there are fewer.
 void take(std::ifstream& stream, char* to, std::size_t count);
 
+/// Throws sdm::Error for a point that is too far away to be measured. `number`: its place in the file.
+void require_near(const Vec3& point, std::uint64_t number);
+
 struct CloudFile {
   /// Opens a file of any format of points. Throws sdm::Error, which does not name the file.
   CloudFile(const std::filesystem::path& file, const TextDialect& given);

@@ -17,8 +17,10 @@
 #include "geometry/vec.h"
 #include "io/file/atomic_file.h"
 #include "io/file/byte_scanner.h"
+#include "io/file/error_prefix.h"
 #include "io/file/little_endian.h"
 #include "io/image/pictures/color_scale.h"
+#include "io/points/cloud_file.h"
 #include "io/points/cloud_groups.h"
 #include "io/points/cloud_places.h"
 #include "io/points/measured_rows.h"
@@ -153,6 +155,10 @@ class Measurement {
       for (const Vec3& p : chunk.points) chunk.island.push_back(options_.islands->contains(p) ? 1 : 0);
     for (Vec3& p : chunk.points) p = options_.placement(p);
     for (Vec3& n : chunk.normals) n = options_.placement.normal(n);
+    with_error_prefix(cloud_, [&] {
+      for (std::size_t i = 0; i < chunk.points.size(); ++i)  // those before the chunk are in the result
+        if (!is_island(chunk, i)) require_near(chunk.points[i], result_.points + i);
+    });
     // Points without a measurement are replaced by a point of O2, which costs nothing.
     std::vector<Vec3> queries = chunk.points;
     const Vec3 anywhere = sites_.mesh().positions[sites_.mesh().triangles[0][0]];

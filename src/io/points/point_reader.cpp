@@ -1,9 +1,7 @@
 #include <sdm/error.h>
 #include <sdm/points.h>
 
-#include <cmath>
 #include <random>
-#include <span>
 #include <string>
 
 #include "core/intact.h"
@@ -11,7 +9,6 @@
 #include "io/file/error_prefix.h"
 #include "io/mesh/read_polygons.h"
 #include "io/points/cloud_file.h"
-#include "mesh/validate.h"
 
 namespace sdm {
 
@@ -23,21 +20,7 @@ struct PointReader::Impl {
   std::string name;
   CloudFile file;
   Intact intact{"a point reader"};  // a row that cannot be read would be left out of later reads
-  std::uint64_t points_read = 0;
 };
-
-namespace {
-
-/// `first`: the number of the first of these points in the file. Points may lack coordinates.
-void check_coordinates(std::span<const Vec3> points, std::uint64_t first) {
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (const double x : points[i])
-      if (std::isfinite(x) && std::abs(x) > mesh::kMaxCoordinate)
-        throw Error("point " + std::to_string(first + i) +
-                    " has a coordinate beyond 1e37, too large for the computation; scale the cloud down");
-}
-
-}  // namespace
 
 PointReader::PointReader(const std::filesystem::path& file, const TextDialect& text)
     : impl_(with_error_prefix(file.string(), [&] { return std::make_unique<Impl>(file, text); })) {}
@@ -64,13 +47,8 @@ std::optional<std::uint64_t> PointReader::count() const {
 bool PointReader::read(std::size_t most, std::vector<Vec3>& points, std::vector<Vec3>& normals) {
   points.clear();
   normals.clear();
-  with_error_prefix(impl_->name, [&] {
-    impl_->intact.change([&] {
-      impl_->file.source->read(most, points, normals);
-      check_coordinates(points, impl_->points_read);
-    });
-  });
-  impl_->points_read += points.size();
+  with_error_prefix(impl_->name,
+                    [&] { impl_->intact.change([&] { impl_->file.source->read(most, points, normals); }); });
   return !points.empty();
 }
 
@@ -84,22 +62,25 @@ PointSample sample_points(const std::filesystem::path& file, std::size_t most,
   PointReader reader(file, options.text);
   PointSample sample;
   std::mt19937_64 random;  // its sequence is that of the standard
-  std::uint64_t seen = 0;
+  std::uint64_t seen = 0, number = 0;
   std::vector<Vec3> points, normals;
   while (reader.read(kChunk, points, normals)) {
     if (options.progress && !options.progress("sample", 0))
       throw Cancelled();  // of a number that may not be known
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Vec3& p = points[i];
-      if (!finite(p) || (options.islands && options.islands->contains(p))) continue;
-      // Reservoir sampling, Waterman's algorithm R.
-      const std::uint64_t place = seen < most ? seen : random() % (seen + 1);
-      ++seen;
-      if (place >= most) continue;
-      if (place == sample.points.size()) sample.points.emplace_back(), sample.normals.emplace_back();
-      sample.points[place] = p;
-      if (!normals.empty()) sample.normals[place] = normals[i];
-    }
+    with_error_prefix(file.string(), [&] {
+      for (std::size_t i = 0; i < points.size(); ++i, ++number) {
+        const Vec3& p = points[i];
+        if (!finite(p) || (options.islands && options.islands->contains(p))) continue;
+        require_near(p, number);
+        // Reservoir sampling, Waterman's algorithm R.
+        const std::uint64_t place = seen < most ? seen : random() % (seen + 1);
+        ++seen;
+        if (place >= most) continue;
+        if (place == sample.points.size()) sample.points.emplace_back(), sample.normals.emplace_back();
+        sample.points[place] = p;
+        if (!normals.empty()) sample.normals[place] = normals[i];
+      }
+    });
   }
   if (!reader.has_normals()) sample.normals.clear();
   return sample;
