@@ -91,7 +91,7 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
   if (outcome.aligned) text += summary(*outcome.aligned, s.units);
   if (found.text) text += text_summary(*found.text);
   text += fmt::format("  points    {}\n", found.points) + measured_line(s);
-  if (found.invalid > 0) text += fmt::format("            {} have no coordinates\n", found.invalid);
+  if (found.invalid > 0) text += fmt::format("            {} without coordinates\n", found.invalid);
   if (d.texels == 0) {
     text += "  distance  no point has a value\n";
   } else {

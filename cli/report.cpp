@@ -185,7 +185,7 @@ const char* side_word(const sdm::SignUsed& sign) {
 std::string coverage_line(const sdm::Summary& summary) {
   if (!summary.coverage) return {};
   const sdm::Coverage& c = *summary.coverage;
-  return fmt::format("  coverage  {} % of O2 have a measured point within {}{} ({} %)\n",
+  return fmt::format("  coverage  {} % of O2 has a measured point within {}{} ({} %)\n",
                      number(100 * c.value, 4), number(c.reach), unit_suffix(summary.units),
                      bounds_text(100 * c.lower, 100 * c.upper, 4));
 }

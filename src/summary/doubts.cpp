@@ -84,7 +84,7 @@ std::optional<Doubt> doubt_of(const Coverage& coverage, double least) {
   if (!(coverage.value < least)) return std::nullopt;
   return Doubt{DoubtReason::low_coverage,
                "only " + number_text(100 * coverage.value, 3) +
-                   " % of the area of O2 have a measured point within " + number_text(coverage.reach, 5) +
+                   " % of the area of O2 has a measured point within " + number_text(coverage.reach, 5) +
                    ", less than " + number_text(100 * least, 3) + " %",
                "measure the rest, or choose a lower --min-coverage"};
 }

@@ -155,6 +155,15 @@ TEST_F(PointsCommand, DistancesAreThoseOfAllFacesInTheOrderOfTheInput) {
   EXPECT_EQ(report["distance"]["p99_abs"], sorted[2969]);
 }
 
+// Places were small below four points of one: "below 4e+02 % each".
+TEST_F(PointsCommand, APlaceOfAllPointsIsNotSmall) {
+  const std::string cloud = folder / "one.xyz";
+  std::ofstream(cloud) << "1 2 3\n";
+  const Outcome run = run_sdm({"points", cloud, o2, "-o", out, "--tolerance", "0.01"});
+  EXPECT_EQ(run.code, 3) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("1 out of tolerance, with 1 point, 100 % of them"));
+}
+
 TEST_F(PointsCommand, WritesTheFilesThatAreAsked) {
   ASSERT_EQ(run(xyz(points), {"--write", "ply"}).code, 0);
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"points.ply", "report.json"}));
