@@ -31,10 +31,15 @@ def numpy_of(array: Any, name: str) -> npt.NDArray[Any]:
                 return np.from_dlpack(array)
             except (BufferError, RuntimeError, TypeError):  # such as tensors that require gradients
                 return np.asarray(array)
-        return np.asarray(array)
+        numbers = np.asarray(array)
+        if numbers.ndim == 0 and numbers.dtype.kind not in "biufc":  # None, text, a set, a generator
+            raise Error(f"{name} must be an array of numbers, not {type(array).__name__}")
+        return numbers
     except Error:
         raise
     except Exception as fault:
+        if "inhomogeneous" in str(fault):
+            raise Error(f"{name} must be an array of numbers, with as many in each row") from None
         raise Error(f"{name} must be an array of numbers ({fault})") from None
 
 

@@ -40,8 +40,12 @@ std::int64_t integer_of(nb::handle value, const char* name, std::int64_t least, 
   const nb::object owner = nb::steal(index);
   int overflow = 0;
   const long long result = PyLong_AsLongLongAndOverflow(index, &overflow);
-  if (overflow != 0 || result < least || result > most) throw Error(std::string(name) + " is out of range");
-  return result;
+  if (overflow == 0 && result >= least && result <= most) return result;
+  // Larger limits are those of a type.
+  constexpr std::int64_t kStated = 1'000'000'000;
+  const std::string from = std::to_string(least), to = std::to_string(most);
+  throw Error(std::string(name) + " is out of range; use " +
+              (most <= kStated ? from + " to " + to : "at least " + from));
 }
 
 std::optional<double> facing_of(nb::handle value) {

@@ -115,6 +115,29 @@ def test_text_is_no_number(small_map, value):
             small_map.check(value)
 
 
+@pytest.mark.parametrize("value", [None, "abc", b"abc", {}, {1, 2}, (row for row in [[0, 0, 0]])], ids=lambda v: type(v).__name__)
+def test_what_is_no_array_is_named(value):
+    sites = sdm.Sites(*meshes.box())
+    for call in (sites.closest_points, sites.contains, sites.refit):
+        with pytest.raises(sdm.Error, match=f"must be an array of numbers, not {type(value).__name__}$"):
+            call(value)
+
+
+def test_rows_of_different_lengths_are_named_in_one_sentence():
+    vertices, faces = meshes.box()
+    for call in (
+        lambda: sdm.Sites(vertices, faces).closest_points([[0, 0, 0], [1, 2]]),
+        lambda: sdm.Sites(vertices, [[0, 1, 2], [0, 1]]),
+    ):
+        with pytest.raises(sdm.Error, match="must be an array of numbers, with as many in each row$"):
+            call()
+
+
+def test_integers_out_of_range_have_a_range():
+    with pytest.raises(sdm.Error, match="triangles is out of range; use at least 1$"):
+        sdm.simplify(meshes.sphere(), triangles=0)
+
+
 def masked(array, kind=float):
     array = np.ma.array(array, kind)
     array[1] = np.ma.masked
