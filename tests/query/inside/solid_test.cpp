@@ -81,13 +81,22 @@ TEST(Solid, CrossingsOfFacesInLanesAreThoseOfTheTree) {
   for (const Mesh& mesh : closed_meshes()) {
     const Sites sites(mesh);
     const auto vertex = [&] { return mesh.positions[random() % mesh.positions.size()]; };
+    rays::NearNodes near;
     for (int i = 0; i < 3000; ++i) {
       const Vec3 p{u(random), u(random), u(random)};
       Vec3 q{u(random), u(random), u(random)};
       if (i % 4 == 1) q = p + Vec3{0, 0, 2};
       if (i % 4 == 2) q = p + 2 * (vertex() - p);  // through a corner
       if (i % 4 == 3) q = p + 2 * (0.5 * (vertex() + vertex()) - p);
-      ASSERT_EQ(crossings(internals(sites), rays::Segment{p, q}), winding(internals(sites), {}, p, q)) << i;
+      const std::optional<int> expected = winding(internals(sites), {}, p, q);
+      ASSERT_EQ(crossings(internals(sites), rays::Segment{p, q}), expected) << i;
+      // From the nodes that meet a box around the segment.
+      Box box;
+      for (const Vec3& end : {p, q}) extend(box, internals(sites).frame.to_unit(end));
+      const Vec3 margin{1e-5, 1e-5, 1e-5};
+      rays::find_near_nodes(internals(sites), tree::FloatBox::around({box.lo - margin, box.hi + margin}),
+                            near);
+      ASSERT_EQ(crossings(internals(sites), rays::Segment{p, q}, &near), expected) << i;
     }
   }
 }
