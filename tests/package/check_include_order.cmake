@@ -162,6 +162,7 @@ set(readers_of_nodes
   query/pairs/near_faces.cpp           # bounds the children of a pair, and marks those below a node
   query/pairs/pair_search.cpp          # bounds the children of a pair
   query/pairs/separating_axis.cpp      # the boxes below the root
+  query/rays/trace.cpp                 # segments in a box begin at the nodes that meet it
   query/shape/body.cpp                 # the boxes below the root
   query/shape/wall_thickness.cpp       # keeps a bound for each node, found on first use
   sites/bounding_cylinders.cpp)        # computes a cylinder for each node

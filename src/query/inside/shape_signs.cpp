@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "core/unique_number.h"
+#include "core/lazy/unique_number.h"
 #include "query/inside/near_faces.h"
 
 namespace sdm::inside {

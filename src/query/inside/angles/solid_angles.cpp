@@ -13,7 +13,7 @@
 #include <span>
 
 #include "core/cancellation.h"
-#include "core/unique_number.h"
+#include "core/lazy/unique_number.h"
 #include "geometry/lanes/vec-inl.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
