@@ -34,6 +34,7 @@ void WindingWalk::keep(const Vec3& point, double clear, int number) {
 void WindingWalk::approach(const ShapeSigns& signs, const sites::SitesData& solid,
                            std::span<const Vec3> points) {
   start(signs.number);
+  near_ = false;  // also if this fails
   near_box_ = {};
   for (const Vec3& p : points) extend(near_box_, p);
   // The point before is mostly near, too.
