@@ -74,16 +74,24 @@ def matrix(array: Any, name: str) -> npt.NDArray[Any]:
     return _floats(array, name, (4, 4))
 
 
+def pose(array: Any, name: str) -> npt.NDArray[Any]:
+    """A matrix, or a position and a quaternion."""
+    numbers = numpy_of(array, name)
+    if numbers.shape not in ((4, 4), (7,)):
+        raise Error(f"{name} must have the shape (4, 4) or (7,), not {_shape(numbers.shape)}")
+    return _floats(numbers, name, numbers.shape)
+
+
 def motion(poses: Any, name: str) -> npt.NDArray[Any]:
     """The poses at the start and at the end: two of them, or one for both; None: the identity."""
     if poses is None:
         poses = np.eye(4)
     numbers = numpy_of(poses, name)
-    if numbers.ndim == 2:
+    if numbers.shape in ((4, 4), (7,)):
         numbers = np.stack((numbers, numbers))
-    if numbers.shape != (2, 4, 4):
-        raise Error(f"{name} must be a 4 × 4 matrix or two of them, not an array of the shape {_shape(np.shape(poses))}")
-    return _floats(numbers, name, (2, 4, 4))
+    if numbers.shape not in ((2, 4, 4), (2, 7)):
+        raise Error(f"{name} must have the shape (4, 4) or (7,), or be two of these, not {_shape(np.shape(poses))}")
+    return _floats(numbers, name, numbers.shape)
 
 
 def poses(array: Any, name: str) -> npt.NDArray[Any]:

@@ -160,7 +160,7 @@ void bind_align(nb::module_& module) {
 o1, o2: any form of a mesh (see Mesh); o2 also Sites.
 start: 'pose', at ``pose``; or 'principal_axes', where centres and principal axes of both agree, which needs
 most of the surface of O1.
-pose: a 4 × 4 matrix of a rotation and a translation; None: O1 as it is.
+pose: of a rotation and a translation, as of ProximityQuery.set_pose(); None: O1 as it is.
 samples: of the surface of O1, at least 64. max_iterations: per level of refinement.
 free: the motions that may be used, such as 'xyz,rz': translations along x, y and z and a rotation about z, with
 the axes of O2's coordinates through ``about``, three numbers (None: the origin); None: all. Others are locked.

@@ -120,14 +120,25 @@ Transform affine(const double* numbers, const char* name) {
   return result;
 }
 
+/// Of a position x y z and a quaternion w x y z.
+Transform rigid(const double* n) {
+  return Transform::translation({n[0], n[1], n[2]}) * Transform::quaternion({n[3], n[4], n[5], n[6]});
+}
+
 }  // namespace
 
-Transform transform(nb::handle matrix, const char* name) {
+Transform transform(nb::handle pose, const char* name) {
   using Matrix = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
-  Matrix numbers;
-  if (!may_be_used(matrix) || !nb::try_cast(matrix, numbers, false))
-    numbers = nb::cast<Matrix>(converted("matrix", matrix, name));
-  return affine(numbers.data(), name);
+  Matrix matrix;
+  if (may_be_used(pose) && nb::try_cast(pose, matrix, false)) return affine(matrix.data(), name);
+  using Numbers = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+  const auto numbers = nb::cast<Numbers>(converted("pose", pose, name));
+  if (numbers.ndim() == 2) return affine(numbers.data(), name);
+  try {
+    return rigid(numbers.data());
+  } catch (const Error& error) {
+    throw Error(std::string(name) + ": " + error.what());
+  }
 }
 
 Poses::Poses(nb::handle array, const char* name) {
@@ -145,10 +156,8 @@ Poses::Poses(nb::handle array, const char* name) {
   using Rows = nb::ndarray<const double, nb::shape<-1, 7>, nb::c_contig, nb::device::cpu>;
   const auto rows = nb::cast<Rows>(numbers);
   for (std::size_t i = 0; i < rows.shape(0); ++i) {
-    const double* n = rows.data() + 7 * i;
     try {
-      of_quaternions_.push_back(Transform::translation({n[0], n[1], n[2]}) *
-                                Transform::quaternion({n[3], n[4], n[5], n[6]}));
+      of_quaternions_.push_back(rigid(rows.data() + 7 * i));
     } catch (const Error& error) {
       throw Error(std::string(name) + " " + std::to_string(i) + ": " + error.what());
     }
@@ -157,9 +166,9 @@ Poses::Poses(nb::handle array, const char* name) {
 }
 
 std::array<Transform, 2> motion(nb::handle poses, const char* name) {
-  using Matrices = nb::ndarray<const double, nb::shape<2, 4, 4>, nb::c_contig, nb::device::cpu>;
-  const auto numbers = nb::cast<Matrices>(converted("motion", poses, name));
-  return {affine(numbers.data(), name), affine(numbers.data() + 16, name)};
+  const nb::object numbers = converted("motion", poses, name);
+  const Poses two(numbers, name);
+  return {two.get()[0], two.get()[1]};
 }
 
 nb::object matrix(const Transform& transform) {

@@ -69,12 +69,14 @@ class Lengths {
 [[nodiscard]] std::vector<std::uint32_t> indices(nb::handle array, const char* name);
 /// Copies m × 3 × 2 numbers.
 [[nodiscard]] std::vector<std::array<Vec2, 3>> corner_uvs(nb::handle array);
-/// Reads a 4 × 4 matrix whose last row is (0, 0, 0, 1).
-[[nodiscard]] Transform transform(nb::handle matrix, const char* name);
-/// n poses: n such matrices, or n × 7 numbers, each a position x y z and a quaternion w x y z of any length.
+/// Reads a pose: a 4 × 4 matrix whose last row is (0, 0, 0, 1), or 7 numbers, a position x y z and a
+/// quaternion w x y z of any length. Throws sdm::Error for any other array, and for a quaternion that is zero
+/// or not finite.
+[[nodiscard]] Transform transform(nb::handle pose, const char* name);
+/// n poses: an array of the shape (n, 4, 4) or (n, 7).
 class Poses {
  public:
-  /// Throws sdm::Error for any other array, and for a quaternion that is zero or not finite.
+  /// Throws sdm::Error as transform().
   Poses(nb::handle array, const char* name);
 
   [[nodiscard]] std::span<const Transform> get() const { return poses_; }
@@ -84,7 +86,7 @@ class Poses {
   std::vector<Transform> of_quaternions_;
   std::span<const Transform> poses_;
 };
-/// Reads two such matrices, or one for both; None: the identity.
+/// Reads two poses, or one for both; None: the identity.
 [[nodiscard]] std::array<Transform, 2> motion(nb::handle poses, const char* name);
 [[nodiscard]] nb::object matrix(const Transform& transform);
 [[nodiscard]] nb::object vector_of(const Vec3& vector);

@@ -165,8 +165,9 @@ void bind_motion(nb::class_<PyProximityQuery>& query) {
           nb::arg("body"), nb::arg("pose").none(),
           nb::sig("def set_pose(self, body: int, pose: object) -> None"),
           R"(Sets the pose of a body, 0 or 1: a 4 × 4 matrix from the frame of its mesh to space, for
-column vectors, of a rotation, a uniform scale and a translation. Initially the identity. Raises Error, and
-changes nothing, if it differs from such a matrix by more than 1e-5 of the scale. Cost: constant.)")
+column vectors, of a rotation, a uniform scale and a translation; or 7 numbers, a position x y z and a
+quaternion w x y z. Initially the identity. Raises Error, and changes nothing, if the matrix differs from such
+a one by more than 1e-5 of the scale. Cost: constant.)")
       .def(
           "pose",
           [](const PyProximityQuery& self, int body) {

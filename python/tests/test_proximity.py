@@ -91,6 +91,30 @@ def test_separating_contacts():
         query.separating_contacts(most_per_patch=0)
 
 
+def test_a_pose_is_a_matrix_or_seven_numbers():
+    box = sdm.Mesh(*meshes.box())
+    seven = [1.5, -0.25, 2, 2 * np.cos(0.4), 0, 2 * np.sin(0.4), 0]  # a quaternion of any length
+    about_y = np.eye(4)
+    about_y[[0, 0, 2, 2], [0, 2, 0, 2]] = np.cos(0.8), np.sin(0.8), -np.sin(0.8), np.cos(0.8)
+    about_y[:3, 3] = seven[:3]
+    query, poses, bodies = sdm.ProximityQuery(box, box), sdm.PoseQuery(box, box), sdm.MultiBodyQuery([box, box])
+    for owner in (query, bodies):
+        owner.set_pose(1, seven)
+        np.testing.assert_allclose(owner.pose(1), about_y, atol=1e-15)
+    poses.set_pose(0, seven)
+    assert poses.separations([np.eye(4)])[0] == query.separation().value
+    np.testing.assert_allclose(sdm.map(box, box, resolution=64, transform=seven).surface.vertices, sdm.Mesh(box).transformed(about_y).vertices, atol=1e-14)
+    first, second = [-4, 0, 0, 1, 0, 0, 0], [4, 0, 0, 1, 0, 0, 0]
+    by_numbers = sdm.time_of_contact(box, [first, second], box, seven, tolerance=1e-4)
+    by_matrices = sdm.time_of_contact(box, [shift(*first[:3]), shift(*second[:3])], box, query.pose(1), tolerance=1e-4)
+    assert by_numbers.time == by_matrices.time
+    for bad in ([0] * 7, [0, 0, 0, np.nan, 0, 0, 0], [1, 2, 3], np.zeros((1, 7))):
+        with pytest.raises(sdm.Error):
+            query.set_pose(1, bad)
+    with pytest.raises(sdm.Error, match=r"pose must have the shape \(4, 4\) or \(7,\), not \(3, 3\)"):
+        query.set_pose(1, np.eye(3))
+
+
 def test_refit_and_shared_shapes():
     vertices, faces = meshes.box()
     query = sdm.ProximityQuery((vertices, faces), (vertices + [3, 0, 0], faces))

@@ -268,7 +268,12 @@ struct Resume : SequenceCommand {
   /// The number of frames that were kept.
   std::size_t interrupt(const std::vector<std::string>& more = {}, int after_lines = 5,
                         int signal = SIGINT) const {
-    const Outcome run = run_sdm(into(out, more), {.interrupt_after_lines = after_lines, .signal = signal});
+    Outcome run = interrupted(more, after_lines, signal);
+    // On a busy machine, the signal may come after the last frame.
+    for (int again = 0; run.code == 0 && again < 5 && std::ranges::count(more, "--resume") == 0; ++again) {
+      std::filesystem::remove_all(out);
+      run = interrupted(more, after_lines, signal);
+    }
     EXPECT_EQ(run.code, 128 + signal) << run.err;
     const std::size_t kept = lines().size();
     EXPECT_GE(kept, static_cast<std::size_t>(after_lines));
@@ -305,6 +310,9 @@ struct Resume : SequenceCommand {
   }
 
  private:
+  [[nodiscard]] Outcome interrupted(const std::vector<std::string>& more, int after_lines, int signal) const {
+    return run_sdm(into(out, more), {.interrupt_after_lines = after_lines, .signal = signal});
+  }
   static std::string without_times(const std::string& in) {
     std::istringstream text(contents(in + "/frames.jsonl"));
     std::string result;
