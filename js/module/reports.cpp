@@ -56,13 +56,8 @@ Reported report_of(const DistanceMap& map, const Surface& surface, const Sites& 
   result.at_vertices = distances_at_vertices(
       surface.mesh(), sites,
       {.sign = map.sign.method, .max_distance = choices.max_distance, .facing = map.measured.facing});
-  Summary summary =
+  const Summary summary =
       summarize(surface, sites, map, result.at_vertices, summary_options(surface, sites, choices, units));
-  std::ranges::move(notes_on(bounds(surface.mesh()), bounds(sites.mesh())),
-                    std::back_inserter(summary.notes));
-  if (summary.tolerance)
-    if (auto note = note_on_walls(sites, summary.tolerance->tolerance, units))
-      summary.notes.push_back(std::move(*note));
   const auto mesh = [&](const Mesh& of, std::size_t i) {
     return ReportedMesh{.file = words.at("names").at(i), .info = inspect(of), .xxh3 = words.at("xxh3").at(i)};
   };

@@ -133,3 +133,11 @@ test('a mesh file in a Buffer is read, and stays', { timeout: 120000 }, async ()
   assert.deepEqual([stl.length, parts['parts/a.bin'].length], [files['a.stl'].length, 168]);
   worker.terminate();
 });
+
+test('a note on the sizes of the meshes is given once', async () => {
+  const small = ball(12, 1);
+  const surface = new sdm.Surface(small.positions.map((x) => 1000 * x), small.indices, { resolution: 64 });
+  const map = surface.map(new sdm.Sites(small.positions, small.indices));
+  const { notes } = await map.summary();
+  assert.equal(notes.filter((note) => /millimetres and metres/.test(note)).length, 1, notes.join('; '));
+});
