@@ -535,6 +535,11 @@ async function served(browser, faults) {
     await page.close();
     server.close();
   }
+  // Before the program of the page runs there is no verdict, nor an empty badge in its place.
+  const unscripted = await (await browser.newContext({ javaScriptEnabled: false })).newPage();
+  await unscripted.goto(pathToFileURL(file).href);
+  assert(!(await unscripted.isVisible('#verdict')), 'a badge without a verdict');
+  await unscripted.context().close();
 }
 
 void inBrowser(async (browser, faults) => {
