@@ -19,6 +19,7 @@
 #include "print.h"
 #include "progress_line.h"
 #include "proximity_report.h"
+#include "report.h"
 #include "stopwatch.h"
 #include "unit_options.h"
 
@@ -31,6 +32,7 @@ struct HausdorffCommand : PairFiles, RunOptions {
   sdm::HausdorffOptions options;
   bool both = false;
   std::optional<double> tolerance;
+  bool accept_doubts = false;
 };
 
 /// The distance that was asked for, and those in single directions as far as they were computed.
@@ -40,35 +42,42 @@ struct HausdorffAnswer {
   std::vector<sdm::HausdorffDistance> directions;
   double size = 0;  ///< of the smaller mesh, for the digits of places
   Notes notes;
+  std::optional<sdm::Doubt> doubt{};  ///< that both meshes are in the same unit
 };
 
 HausdorffAnswer measure(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o1,
                         const sdm::HausdorffOptions& options) {
   if (sites.size() == 1) {
     const sdm::HausdorffDistance d = sdm::one_sided_hausdorff(o1, sites[0], options);
-    return {d, 0, {d}, 0, {}};
+    return {.distance = d, .directions = {d}};
   }
   const sdm::SymmetricHausdorff both = sdm::symmetric_hausdorff(sites[0], sites[1], options);
-  return {both.larger, both.larger_from, {both.from.begin(), both.from.end()}, 0, {}};
+  return {
+      .distance = both.larger, .from = both.larger_from, .directions = {both.from.begin(), both.from.end()}};
 }
 
 struct HausdorffVerdict {
   bool within = true;      // as far as the bounds tell
   bool certified = true;   // by both bounds
   bool unmatched = false;  // not within, as there are faces without a distance
+  bool doubted = false;    // a PASS is withheld
 
   [[nodiscard]] sdm::Verdict word() const {
     if (!certified) return sdm::Verdict::not_decided;
-    return within ? sdm::Verdict::pass : sdm::Verdict::fail;
+    if (!within) return sdm::Verdict::fail;
+    return doubted ? sdm::Verdict::doubtful : sdm::Verdict::pass;
   }
 };
 
-HausdorffVerdict verdict(const HausdorffAnswer& answer, double tolerance) {
+HausdorffVerdict verdict(const HausdorffAnswer& answer, const HausdorffCommand& command) {
+  const double tolerance = *command.tolerance;
   const sdm::BoundedLength& d = answer.distance.distance;
   const bool unmatched =
       std::ranges::any_of(answer.directions, [](const auto& h) { return h.faces_without_match > 0; });
   if (unmatched) return {.within = false, .unmatched = true};
-  return {d.lower <= tolerance, d.lower > tolerance || d.upper <= tolerance};
+  return {.within = d.lower <= tolerance,
+          .certified = d.lower > tolerance || d.upper <= tolerance,
+          .doubted = answer.doubt && !command.accept_doubts};
 }
 
 /// Computes the distance, with closer bounds if the tolerance is between them.
@@ -78,7 +87,7 @@ HausdorffAnswer decide(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o1
   sdm::HausdorffOptions options = command.options;
   options.progress = progress;
   HausdorffAnswer answer = measure(sites, o1, options);
-  while (command.tolerance && !verdict(answer, *command.tolerance).certified) {
+  while (command.tolerance && !verdict(answer, command).certified) {
     const double gap = answer.distance.distance.upper - answer.distance.distance.lower;
     if (!(gap > 0)) break;
     options.precision = kCloser * gap;
@@ -152,8 +161,8 @@ std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAn
     text += distance_line("O2 -> O1", answer.directions[1], unit);
   }
   text += unmatched_lines(answer);
-  if (command.tolerance)
-    text += tolerance_line(verdict(answer, *command.tolerance), *command.tolerance, unit);
+  if (command.tolerance) text += tolerance_line(verdict(answer, command), *command.tolerance, unit);
+  if (answer.doubt) text += doubt_lines({&*answer.doubt, 1}, 13);
   return text;
 }
 
@@ -165,12 +174,16 @@ Json report_of(const HausdorffCommand& command, const InputPair& pair, const Hau
   json["o1_to_o2"] = direction_json(command, answer.directions[0]);
   json["o2_to_o1"] = command.both ? direction_json(command, answer.directions[1]) : Json(nullptr);
   if (command.tolerance) {
-    const HausdorffVerdict v = verdict(answer, *command.tolerance);
+    const HausdorffVerdict v = verdict(answer, command);
     json["tolerance"] = {{"value", *command.tolerance},
                          {"verdict", sdm::name_of(v.word())},
                          {"within", v.within},
                          {"certified", v.certified}};
   }
+  json["doubts"] = Json::array();
+  if (const auto& doubt = answer.doubt)
+    json["doubts"].push_back(
+        {{"reason", name_of(doubt->reason)}, {"text", doubt->text}, {"remedy", doubt->remedy}});
   json["notes"] = answer.notes;
   return json;
 }
@@ -193,6 +206,9 @@ int run(const HausdorffCommand& command) {
   if (command.tolerance && !command.options.facing)
     if (auto note = sdm::note_on_walls(sites.back(), *command.tolerance, command.units))
       answer.notes.push_back(std::move(*note));
+  if (command.tolerance && verdict(answer, command).word() == sdm::Verdict::pass)
+    if (const auto unit = sdm::find_other_unit_in_place(pair.o1.mesh, pair.o2.mesh))
+      answer.doubt = sdm::doubt_of(*unit);
   const double query_ms = watch.lap();
 
   const auto report = [&] {
@@ -201,9 +217,8 @@ int run(const HausdorffCommand& command) {
     return json;
   };
   print(command, report, [&] { return hausdorff_summary(command, answer) + note_lines(answer.notes, 13); });
-  const auto& tolerance = command.tolerance;
-  if (!tolerance) return kSuccess;
-  return exit_code(verdict(answer, *tolerance).word());
+  if (!command.tolerance) return kSuccess;
+  return exit_code(verdict(answer, command).word());
 }
 
 }  // namespace
@@ -239,6 +254,8 @@ void add_hausdorff_command(CLI::App& app) {
           "between them")
       ->check(no_negative_number())
       ->type_name("T");
+  hausdorff->add_flag("--accept-doubts", c.accept_doubts,
+                      "PASS stays PASS where O1 seems to be in another unit, instead of DOUBTFUL");
   hausdorff->add_option("--units", c.units, "Units of the meshes, for printed values")->type_name("NAME");
   add_run_options(*hausdorff, c, "JSON instead of a summary");
   hausdorff->callback([command] {

@@ -93,6 +93,27 @@ TEST_F(HausdorffCommand, ExitsWithThreeWhereTheToleranceIsExceeded) {
   EXPECT_EQ(run_sdm({"hausdorff", o1, o1, "--tolerance", "0"}).code, 0);
 }
 
+// A scan in metres lies in a corner of the part.
+TEST_F(HausdorffCommand, APassInAnotherUnitIsDoubtful) {
+  const std::string part = write_obj(folder / "part.obj", cube(100));
+  const std::string scan = write_obj(folder / "scan.obj", cube(0.1));
+  const std::vector<std::string> arguments{"hausdorff", scan, part, "--tolerance", "0.5"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), arguments.begin(), arguments.end());
+    return run_sdm(more);
+  };
+  const Outcome run = with({});
+  EXPECT_EQ(run.code, 5) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("tolerance  DOUBTFUL: no point is farther than 0.5\n  doubt      O1 "));
+  EXPECT_THAT(run.out, HasSubstr("--transform-o1 scale:1000"));
+  const Json json = Json::parse(with({"--json"}).out);
+  EXPECT_EQ(json["tolerance"]["verdict"], "DOUBTFUL");
+  EXPECT_EQ(json["tolerance"]["within"], true);
+  EXPECT_EQ(json["doubts"][0]["reason"], "other unit");
+  EXPECT_EQ(with({"--accept-doubts"}).code, 0);
+  EXPECT_EQ(with({"--transform-o1", "scale:1000"}).code, 0);
+}
+
 // Beyond half a wall, the closest point is on the other skin.
 TEST_F(HausdorffCommand, ThinWallsAreNoted) {
   const std::string box = write_obj(folder / "box.obj", cube(1));
