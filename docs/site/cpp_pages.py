@@ -12,7 +12,7 @@ PLAIN = re.compile(r"\(variable\)|\w+\((\w+ ?&&|const \w+ ?&)\)|operator=|operat
 # Headers by subject, in the order of the reference.
 SUBJECTS = {
     "Meshes": ["types", "vec", "bounds", "mesh", "mesh_attributes", "material", "mesh_edit", "transform", "weld", "tessellation", "self_intersections", "solid", "convex_hull"],
-    "Files": ["io", "image", "report", "points", "sequence", "field_files", "bake_files"],
+    "Files": ["io", "image", "report", "points", "sequence", "field_files", "shape_files", "bake_files"],
     "Distance maps": ["surface", "atlas", "uv_tiles", "sites", "map", "map_samples", "distance_kind", "along", "sign", "engine", "gl",
                       "closest_points", "closest_in_parts", "facing", "vertex_distances"],
     "Results of maps": ["channels", "summary", "units", "statistics", "sampling_bound", "tolerance", "tolerance_proof",

@@ -7,12 +7,21 @@
 #include <sdm/sites.h>
 #include <sdm/surface.h>
 
+#include <cstddef>
+#include <functional>
 #include <memory>
+#include <span>
 
 namespace sdm {
 namespace shape {
 class Body;
 }
+
+/// Memory that has a stored shape.
+struct StoredShape {
+  std::span<std::byte> bytes;         ///< writable, at an address that is a multiple of 64
+  std::shared_ptr<const void> owner;  ///< whatever keeps them; null if they outlive the shape anyway
+};
 
 /// The sites of a mesh and, if it is to have maps, its atlas, in the frame of the mesh. Copies share them: a
 /// thousand bodies of one shape need the memory of one. Copies may be used by several threads at once, as the
@@ -25,7 +34,21 @@ class SDM_API Shape {
   explicit Shape(const Mesh& mesh);
   /// Makes a shape with an atlas. Throws sdm::Error as Surface and Sites do. Cost: theirs.
   Shape(const Mesh& mesh, const AtlasOptions& atlas);
+  /// Takes the bytes that store() wrote: nothing is built, and the shape reads them where they are. Nothing
+  /// else may use them while the shape or copies of it exist. All results are those of the shape that was
+  /// stored, to the bit. Throws sdm::Error if they are of another version of sdm, incomplete or damaged. A
+  /// checksum finds all damage, and all indices are checked as well; but whoever changes coordinates and
+  /// bounds on purpose, with the checksum, can make queries wrong or fail: take shapes from those only whom
+  /// you would take a program from. Cost: linear, all cores, a small part of building.
+  explicit Shape(StoredShape stored);
 
+  /// Calls write(bytes) for all bytes of the shape, part after part: some twenty times those of its mesh, for
+  /// caches and files, as write_shape() makes them. They can be used by the same version of the format only,
+  /// on any little-endian machine. Throws what write() throws. Cost: linear.
+  void store(const std::function<void(std::span<const std::byte>)>& write) const;
+
+  /// Whether there is an atlas.
+  [[nodiscard]] bool has_surface() const;
   /// Throws sdm::Error if there is no atlas.
   [[nodiscard]] const Surface& surface() const;
   /// The sites, in the frame of the mesh.

@@ -71,7 +71,9 @@ class SDM_API Sites {
   [[nodiscard]] bool orientable() const;
 
  private:
+  explicit Sites(std::unique_ptr<sites::SitesData> data);
   friend const sites::SitesData& internals(const Sites&);
+  friend Sites with_data(std::unique_ptr<sites::SitesData>);
 
   std::unique_ptr<sites::SitesData> data_;
 };

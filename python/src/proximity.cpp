@@ -5,7 +5,9 @@
 
 #include <nanobind/stl/optional.h>
 #include <sdm/error.h>
+#include <sdm/shape_files.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -113,6 +115,26 @@ atlas. Raises Error for a mesh that cannot be used.
           "Whether the mesh bounds a convex solid, exactly: two such shapes are compared in less time, with "
           "the "
           "same results. See convex_hull().")
+      .def(
+          "save",
+          [](const PyShape& self, nb::handle file) {
+            const std::filesystem::path name = path_of(file);
+            run_sized(self.shape.sites().mesh().triangles.size(), [&] { write_shape(name, self.shape); });
+          },
+          nb::arg("file").none(), nb::sig("def save(self, file: str | os.PathLike[str]) -> None"),
+          R"(Writes the shape, some twenty times the size of its mesh, for load(). The complete file appears, or
+none. Raises Error, naming the file and the fault.)")
+      .def_static(
+          "load",
+          [](nb::handle file) {
+            const std::filesystem::path name = path_of(file);
+            return run_sized(std::size_t{1} << 20, [&] { return PyShape(read_shape(name)); });
+          },
+          nb::arg("file").none(), nb::sig("def load(file: str | os.PathLike[str]) -> Shape"),
+          R"(The shape that save() wrote, in a small part of the time of making it, with the same results to
+the bit. Its arrays are those of the file, which processes share; it may be deleted or saved again, but not be
+changed in place. Raises Error, naming the file and the fault, if another version of sdm wrote it, or if it is
+incomplete or damaged: make the shape again from its mesh.)")
       .def("__repr__", [](const PyShape& self) {
         const Mesh& mesh = self.shape.sites().mesh();
         return nb::str("sdm.Shape({} vertices, {} faces)")
@@ -133,6 +155,17 @@ const char* name_of(Certainty certainty) {
 PyShape::PyShape(const Mesh& mesh, std::optional<std::uint32_t> side, const Progress& progress)
     : resolution(side),
       shape(side ? Shape(mesh, {.resolution = *side, .progress = progress}) : Shape(mesh)) {}
+
+namespace {
+
+std::optional<std::uint32_t> resolution_of(const Shape& shape) {
+  if (!shape.has_surface()) return {};
+  return shape.surface().resolution();
+}
+
+}  // namespace
+
+PyShape::PyShape(Shape made) : resolution(resolution_of(made)), shape(std::move(made)) {}
 
 Shape shape_of(nb::handle body) {
   if (nb::isinstance<PyShape>(body)) return nb::cast<const PyShape&>(body).shape;

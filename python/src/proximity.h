@@ -41,6 +41,7 @@ struct PyMultiBodyQuery {
 /// A mesh prepared for proximity queries, as of sdm.Shape.
 struct PyShape {
   PyShape(const Mesh& mesh, std::optional<std::uint32_t> side, const Progress& progress);
+  explicit PyShape(Shape shape);
 
   std::optional<std::uint32_t> resolution;  ///< of the atlas, if it has one
   Shape shape;

@@ -1,5 +1,6 @@
 """Two bodies, many bodies, a mesh and itself."""
 
+import pickle
 import subprocess
 import sys
 import threading
@@ -132,6 +133,41 @@ def test_refit_and_shared_shapes():
                 lambda: sdm.ProximityQuery(shape, 3)):  # fmt: skip
         with pytest.raises(sdm.Error):
             bad()
+
+
+def test_stored_shapes(tmp_path):
+    vertices, faces = meshes.sphere(radius=0.5)
+    other = sdm.Shape(meshes.box())
+    for resolution in (None, 64):
+        built = sdm.Shape(vertices, faces, resolution=resolution)
+        file = tmp_path / "ball.shape"
+        built.save(file)
+        loaded = sdm.Shape.load(str(file))
+        file.unlink()
+        assert loaded.faces.tolist() == built.faces.tolist() and repr(loaded) == repr(built)
+        assert repr(pickle.loads(pickle.dumps(loaded))) == repr(built)
+        for x in (0.2, 3):
+            results = []
+            for shape in (built, loaded):
+                query = sdm.ProximityQuery(shape, other)
+                query.set_pose(0, shift(x, 0.1, 0.2))
+                results.append((query.separation().value, query.colliding(), query.contacts().depth.tolist()))
+            assert results[0] == results[1]
+
+
+def test_stored_shapes_that_are_damaged(tmp_path):
+    file = tmp_path / "box.shape"
+    with pytest.raises(sdm.Error, match="box.shape: there is no such file"):
+        sdm.Shape.load(file)
+    sdm.Shape(meshes.box()).save(file)
+    stored = file.read_bytes()
+    for changed, fault in ((stored[:-64], "is incomplete"), (stored[:-70] + b"1" + stored[-69:], "is damaged"),
+                           (stored[:8] + b"9" + stored[9:], "another version"), (b"", "is empty"), (b"solid", "not a stored shape")):  # fmt: skip
+        file.write_bytes(changed)
+        with pytest.raises(sdm.Error, match=f"box.shape: .*{fault}"):
+            sdm.Shape.load(file)
+    with pytest.raises(sdm.Error, match="cannot write"):
+        sdm.Shape(meshes.box()).save(tmp_path / "none" / "box.shape")
 
 
 def test_many_bodies():

@@ -5,15 +5,18 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
+
+#include "core/array.h"
 
 namespace sdm::core {
 
 /// Row i is items[offsets[i]] up to, but not including, items[offsets[i + 1]].
 template <class Item, class Offset = std::uint32_t>
 struct CompressedRows {
-  std::vector<Offset> offsets;  ///< start of each row, and the end of the last
-  std::vector<Item> items;
+  Array<Offset> offsets;  ///< start of each row, and the end of the last
+  Array<Item> items;
 
   [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
   [[nodiscard]] std::span<const Item> of(std::size_t row) const {
@@ -21,6 +24,13 @@ struct CompressedRows {
   }
   [[nodiscard]] std::span<Item> of(std::size_t row) {
     return {items.data() + offsets[row], items.data() + offsets[row + 1]};
+  }
+
+  /// See core/stored_arrays.h.
+  template <class Self, class Visit>
+  static void for_each_member(Self& self, const Visit& visit) {
+    auto& [offsets, items] = self;
+    visit(offsets), visit(items);
   }
 };
 
@@ -30,13 +40,13 @@ template <class Item, class Offset = std::uint32_t, class Visit>
 CompressedRows<Item, Offset> make_rows(std::size_t count, const Visit& visit) {
   // offsets[i + 2] counts row i; offsets[i + 1] then advances from the start of row i to its end, where row i
   // + 1 starts.
-  CompressedRows<Item, Offset> rows{std::vector<Offset>(count + 2, 0), {}};
-  visit([&](std::size_t row, const Item&) { ++rows.offsets[row + 2]; });
-  std::partial_sum(rows.offsets.begin(), rows.offsets.end(), rows.offsets.begin());
-  rows.items.resize(rows.offsets.back());
-  visit([&](std::size_t row, const Item& item) { rows.items[rows.offsets[row + 1]++] = item; });
-  rows.offsets.pop_back();
-  return rows;
+  std::vector<Offset> offsets(count + 2, 0);
+  visit([&](std::size_t row, const Item&) { ++offsets[row + 2]; });
+  std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+  std::vector<Item> items(offsets.back());
+  visit([&](std::size_t row, const Item& item) { items[offsets[row + 1]++] = item; });
+  offsets.pop_back();
+  return {std::move(offsets), std::move(items)};
 }
 
 }  // namespace sdm::core

@@ -90,8 +90,7 @@ VertexFaces edited_faces(const VertexFaces& before, const ChangedVertices& chang
     if (next < kept) {
       const std::uint32_t first = before.offsets[next];
       const auto shift = static_cast<std::uint32_t>(after.items.size()) - first;  // modulo 2^32
-      after.items.insert(after.items.end(), before.items.begin() + first,
-                         before.items.begin() + before.offsets[kept]);
+      after.items.append(before.items.begin() + first, before.items.begin() + before.offsets[kept]);
       for (; next < kept; ++next) after.offsets.push_back(before.offsets[next] + shift);
     }
     for (; next < end; ++next) after.offsets.push_back(static_cast<std::uint32_t>(after.items.size()));
@@ -100,7 +99,7 @@ VertexFaces edited_faces(const VertexFaces& before, const ChangedVertices& chang
     keep_until(changed.vertices[i]);
     after.offsets.push_back(static_cast<std::uint32_t>(after.items.size()));
     const auto row = changed.faces.of(i);
-    after.items.insert(after.items.end(), row.begin(), row.end());
+    after.items.append(row.begin(), row.end());
     ++next;
   }
   keep_until(count);
@@ -119,7 +118,7 @@ class EdgeMerge {
     renumbered_.resize(before.edges.size());
   }
 
-  Topology run(std::vector<std::array<std::uint32_t, 3>> face_edges) && {
+  Topology run(Array<std::array<std::uint32_t, 3>> face_edges) && {
     std::size_t next = 0;  // edge before
     for (std::size_t i = 0; i < changed_.vertices.size(); ++i) {
       const std::uint32_t vertex = changed_.vertices[i];
@@ -149,9 +148,8 @@ class EdgeMerge {
     const std::uint32_t first = before_.incident.offsets[begin], last = before_.incident.offsets[end];
     const auto shift = static_cast<std::uint32_t>(after_.incident.items.size()) - first;  // modulo 2^32
     const auto place = static_cast<std::uint32_t>(after_.edges.size() - begin);           // likewise
-    after_.edges.insert(after_.edges.end(), before_.edges.begin() + static_cast<std::ptrdiff_t>(begin),
-                        before_.edges.begin() + static_cast<std::ptrdiff_t>(end));
-    after_.incident.items.insert(after_.incident.items.end(), before_.incident.items.begin() + first,
+    after_.edges.append(before_.edges.begin() + begin, before_.edges.begin() + end);
+    after_.incident.items.append(before_.incident.items.begin() + first,
                                  before_.incident.items.begin() + last);
     for (std::size_t e = begin; e < end; ++e) {
       after_.incident.offsets.push_back(before_.incident.offsets[e] + shift);
@@ -171,7 +169,7 @@ class EdgeMerge {
     }
   }
 
-  void renumber(std::vector<std::array<std::uint32_t, 3>>& face_edges) {
+  void renumber(Array<std::array<std::uint32_t, 3>>& face_edges) {
     parallel_for(face_edges.size(), kEditGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f)
         for (std::uint32_t& e : face_edges[f])
@@ -201,7 +199,7 @@ bool edit_topology(const TriangleEdit& edit, const TopologyBefore& before, Topol
   if (!sort_and_count(changed)) return false;
   std::vector<std::array<std::uint32_t, 3>> face_edges;
   face_edges.reserve(edit.after.size());
-  face_edges = before.topology.face_edges;
+  face_edges.assign(before.topology.face_edges.begin(), before.topology.face_edges.end());
   face_edges.resize(edit.after.size(), {kNone, kNone, kNone});
   std::size_t collapsed = before.topology.collapsed_faces;
   for (const std::uint32_t f : edit.changed) {

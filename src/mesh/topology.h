@@ -13,10 +13,9 @@ namespace sdm::mesh {
 /// Edges and their incident faces. Faces with repeated corners, and duplicates of an earlier face (same three
 /// vertices, in any order), are *ignored*: they have no edges here.
 struct Topology {
-  std::vector<std::array<std::uint32_t, 2>> edges;  ///< (smaller, larger) vertex, lexicographic order
-  std::vector<std::array<std::uint32_t, 3>>
-      face_edges;                          ///< edges (v0 v1), (v1 v2), (v2 v0); kNone if ignored
-  CompressedRows<std::uint32_t> incident;  ///< faces of each edge, in increasing order
+  Array<std::array<std::uint32_t, 2>> edges;       ///< (smaller, larger) vertex, lexicographic order
+  Array<std::array<std::uint32_t, 3>> face_edges;  ///< edges (v0 v1), (v1 v2), (v2 v0); kNone if ignored
+  CompressedRows<std::uint32_t> incident;          ///< faces of each edge, in increasing order
   std::size_t duplicate_faces = 0;
   std::size_t collapsed_faces = 0;  ///< faces with repeated corners
 
@@ -26,6 +25,13 @@ struct Topology {
   /// Whether every edge has exactly two faces.
   [[nodiscard]] bool closed() const;
   [[nodiscard]] bool ignored(std::size_t face) const { return face_edges[face][0] == kNone; }
+
+  /// See core/stored_arrays.h.
+  template <class Self, class Visit>
+  static void for_each_member(Self& self, const Visit& visit) {
+    auto& [edges, face_edges, incident, duplicate_faces, collapsed_faces] = self;
+    visit(edges), visit(face_edges), visit(incident), visit(duplicate_faces), visit(collapsed_faces);
+  }
 };
 
 /// Cost: O(n log d), d the largest valence, all cores.
@@ -35,10 +41,17 @@ struct Topology {
 /// flipping the fewer faces of each component of such neighbours; `orientable` is false when no choice
 /// satisfies all of them. Ignored faces are not flipped.
 struct Orientation {
-  std::vector<std::uint8_t> flipped;      ///< 1 for each face to flip
-  std::vector<std::uint32_t> component;   ///< of each face, over two-face edges; kNone if ignored
-  std::vector<std::uint32_t> first_face;  ///< of each component
+  Array<std::uint8_t> flipped;      ///< 1 for each face to flip
+  Array<std::uint32_t> component;   ///< of each face, over two-face edges; kNone if ignored
+  Array<std::uint32_t> first_face;  ///< of each component
   bool orientable = true;
+
+  /// See core/stored_arrays.h.
+  template <class Self, class Visit>
+  static void for_each_member(Self& self, const Visit& visit) {
+    auto& [flipped, component, first_face, orientable] = self;
+    visit(flipped), visit(component), visit(first_face), visit(orientable);
+  }
 };
 [[nodiscard]] Orientation orient(std::span<const Triangle> triangles, const Topology& topology);
 

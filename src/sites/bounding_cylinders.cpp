@@ -259,8 +259,24 @@ HWY_EXPORT(EncloseCylinders);
 CylinderTree::CylinderTree(const WideTree& wide, const Regions& regions) {
   if (regions.leaves.size() <= kLeastLeaves) return;
   nodes.resize(wide.nodes.size());
+  find_leaves(wide);
+  parallel_for(nodes.size(), 64, [&](std::size_t begin, std::size_t end) {
+    HWY_DYNAMIC_DISPATCH(EncloseFaces)(*this, wide, regions, begin, end);
+  });
+  HWY_DYNAMIC_DISPATCH(EncloseCylinders)(*this, wide);
+}
+
+bool CylinderTree::set_nodes(Array<BoundingCylinders> stored, const WideTree& wide) {
+  if (!stored.empty() && stored.size() != wide.nodes.size()) return false;
+  nodes = std::move(stored);
+  leaves_.clear();
+  if (!nodes.empty()) find_leaves(wide);
+  return true;
+}
+
+// Children follow their parents, and the leaves below a node each other.
+void CylinderTree::find_leaves(const WideTree& wide) {
   leaves_.resize(wide.nodes.size());
-  // Children follow their parents, and the leaves below a node each other.
   for (std::size_t n = wide.nodes.size(); n-- > 0;) {
     leaves_[n] = {kNone, 0};
     for (std::uint32_t i = 0; i < wide.nodes[n].count; ++i) {
@@ -268,10 +284,6 @@ CylinderTree::CylinderTree(const WideTree& wide, const Regions& regions) {
       leaves_[n] = {std::min(leaves_[n].first, child.first), leaves_[n].count + child.count};
     }
   }
-  parallel_for(nodes.size(), 64, [&](std::size_t begin, std::size_t end) {
-    HWY_DYNAMIC_DISPATCH(EncloseFaces)(*this, wide, regions, begin, end);
-  });
-  HWY_DYNAMIC_DISPATCH(EncloseCylinders)(*this, wide);
 }
 
 CylinderTree::LeafRange CylinderTree::leaves_of(std::uint32_t child) const {

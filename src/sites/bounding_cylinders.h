@@ -41,9 +41,14 @@ class CylinderTree {
     return leaves_of(child).count <= kFewLeaves;
   }
 
-  std::vector<BoundingCylinders> nodes;  ///< as those of the wide tree, or none
+  /// Those of a tree with these nodes; false if there cannot be so many. Cost: linear.
+  [[nodiscard]] bool set_nodes(Array<BoundingCylinders> stored, const tree::WideTree& wide);
+
+  Array<BoundingCylinders> nodes;  ///< as those of the wide tree, or none
 
  private:
+  void find_leaves(const tree::WideTree& wide);
+
   std::vector<LeafRange> leaves_;  // below each node
 };
 

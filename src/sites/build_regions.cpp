@@ -40,20 +40,24 @@ class SiteOrder {
     vertices_.reserve(vertex_place_.size());
   }
 
-  void run(std::span<const std::uint32_t> faces, std::vector<Regions::Owner>& owners, SitePlaces& places) {
-    places.corners.reserve(faces.size());
-    places.edges.reserve(edge_place_.size());
+  void run(std::span<const std::uint32_t> faces, Regions& regions) {
+    std::vector<Regions::Owner> owners;
+    corners_.reserve(faces.size());
+    edge_faces_.reserve(edge_place_.size());
     owners.reserve(faces.size() + 1);
     Poll due(kRegionGrain);
     for (const std::uint32_t face : faces) {
       due();
       owners.push_back(next_owner(face));
       const Triangle& t = s_.triangles[face];
-      Triangle& corners = places.corners.emplace_back();
+      Triangle& corners = corners_.emplace_back();
       for (int k = 0; k < 3; ++k) corners[k] = place_of(t[k], vertex_place_, vertices_);
-      for (int k = 0; k < 3; ++k) meet(s_.topology.face_edges[face][k], t, k, places);
+      for (int k = 0; k < 3; ++k) meet(s_.topology.face_edges[face][k], t, k);
     }
     owners.push_back(next_owner(kNone));
+    regions.owners = std::move(owners);
+    regions.places.corners = std::move(corners_);
+    regions.places.edges = std::move(edge_faces_);
   }
 
   // The site at each region index.
@@ -75,15 +79,15 @@ class SiteOrder {
   }
 
   // Records that side k of the last face, t, is this edge.
-  void meet(std::uint32_t edge, const Triangle& t, int k, SitePlaces& places) {
-    const auto face = static_cast<std::uint32_t>(places.corners.size() - 1);
-    const Triangle& corners = places.corners.back();
+  void meet(std::uint32_t edge, const Triangle& t, int k) {
+    const auto face = static_cast<std::uint32_t>(corners_.size() - 1);
+    const Triangle& corners = corners_.back();
     const std::uint32_t third = corners[(k + 2) % 3], place = place_of(edge, edge_place_, edges_);
-    if (place == places.edges.size()) {
+    if (place == edge_faces_.size()) {
       const int from = mesh::runs_forward(t, k) ? k : (k + 1) % 3,
                 to = mesh::runs_forward(t, k) ? (k + 1) % 3 : k;
-      places.edges.push_back({{corners[from], corners[to], third, third}, {face, face}});
-    } else if (SitePlaces::Edge& met = places.edges[place]; met.faces[1] == met.faces[0]) {
+      edge_faces_.push_back({{corners[from], corners[to], third, third}, {face, face}});
+    } else if (SitePlaces::Edge& met = edge_faces_[place]; met.faces[1] == met.faces[0]) {
       met.corners[3] = third;
       met.faces[1] = face;
     }
@@ -92,6 +96,8 @@ class SiteOrder {
   const RegionSource& s_;
   std::vector<std::uint32_t> edge_place_, vertex_place_;  // kNone: not assigned yet
   std::vector<std::uint32_t> edges_, vertices_;
+  std::vector<Triangle> corners_;  // as those of places
+  std::vector<SitePlaces::Edge> edge_faces_;
 };
 
 }  // namespace
@@ -108,12 +114,12 @@ Regions build_regions(const RegionSource& s, const tree::AabbTree& tree) {
         regions.enclosed.resize(faces);
       },
       [&] {
-        sites.run(tree.items, regions.owners, places);
-        for (const std::uint32_t leaf : leaf_nodes(tree))
-          regions.leaves.push_back(
-              static_cast<std::uint32_t>(tree.items_of(leaf).data() - tree.items.data()));
-        regions.leaves.push_back(static_cast<std::uint32_t>(faces));
-        regions.leaves.shrink_to_fit();
+        sites.run(tree.items, regions);
+        std::vector<std::uint32_t> leaves = leaf_nodes(tree);
+        for (std::uint32_t& leaf : leaves) leaf = tree.nodes[leaf].first;
+        leaves.push_back(static_cast<std::uint32_t>(faces));
+        leaves.shrink_to_fit();
+        regions.leaves = std::move(leaves);
       });
   const std::size_t vertices = sites.vertices().size();
   CompressedRows<std::uint32_t> neighbours;  // of each vertex, by places

@@ -149,7 +149,7 @@ Shells find_shells(const mesh::Orientation& orientation) {
 
 // A shell is hollow, a cavity, if it lies inside an odd number of those that it does not intersect.
 void orient_outward(const inside::FaceTree& faces, const mesh::Orientation& orientation, const Shells& shells,
-                    std::vector<std::uint8_t>& inverted) {
+                    Array<std::uint8_t>& inverted) {
   inverted = orientation.flipped;
   const std::span<const std::uint32_t> component = orientation.component;
   const bool several = shells.size() > 1;

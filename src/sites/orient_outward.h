@@ -17,6 +17,6 @@ using Shells = CompressedRows<std::uint32_t>;
 /// shells that it touches or intersects do not count. Cost: linear, all cores, plus a ray for each shell and
 /// the pairs of faces of different shells whose boxes overlap, if there are several.
 void orient_outward(const inside::FaceTree& faces, const mesh::Orientation& orientation, const Shells& shells,
-                    std::vector<std::uint8_t>& inverted);
+                    Array<std::uint8_t>& inverted);
 
 }  // namespace sdm::sites

@@ -13,8 +13,15 @@
 namespace sdm::sites {
 
 struct Pseudonormals {
-  std::vector<Vec3> face;    ///< unit length, 0 for faces without area and ignored ones
-  std::vector<Vec3> vertex;  ///< sum of its faces' normals, weighted by their angles at it
+  Array<Vec3> face;    ///< unit length, 0 for faces without area and ignored ones
+  Array<Vec3> vertex;  ///< sum of its faces' normals, weighted by their angles at it
+
+  /// See core/stored_arrays.h.
+  template <class Self, class Visit>
+  static void for_each_member(Self& self, const Visit& visit) {
+    auto& [face, vertex] = self;
+    visit(face), visit(vertex);
+  }
 };
 
 /// The pseudonormal of the site of a closest point; of an edge, the sum of its faces' normals.

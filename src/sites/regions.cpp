@@ -76,8 +76,8 @@ void find_leaf_boxes(const Regions& regions, const UnitFrame& frame, std::span<c
   });
 }
 
-void refit(Regions& regions, const Placement& placement, Pseudonormals& normals,
-           std::vector<std::uint8_t>& sliver, std::vector<FaceShape>& shapes) {
+void refit(Regions& regions, const Placement& placement, Pseudonormals& normals, Array<std::uint8_t>& sliver,
+           std::vector<FaceShape>& shapes) {
   shapes.resize(regions.faces.size());
   parallel_for(regions.bounds.size(), kLeaves, [&](std::size_t begin, std::size_t end) {
     compute_faces(regions, placement, shapes, begin, end);

@@ -74,10 +74,17 @@ struct SitePlaces {
     std::array<std::uint32_t, 4> corners;  ///< its ends, and the third corners of its first two faces
     std::array<std::uint32_t, 2> faces;    ///< these faces, or the only one twice
   };
-  std::vector<Triangle> corners;  ///< of each face
-  std::vector<Edge> edges;
-  std::vector<std::array<std::uint32_t, VertexRegion::kRays>> neighbours;  ///< of each vertex: ends of rays
+  Array<Triangle> corners;  ///< of each face
+  Array<Edge> edges;
+  Array<std::array<std::uint32_t, VertexRegion::kRays>> neighbours;  ///< of each vertex: ends of rays
   CompressedRows<std::uint32_t> fans;  ///< of each vertex: 4f + k for each face f, of which it is corner k
+
+  /// See core/stored_arrays.h.
+  template <class Self, class Visit>
+  static void for_each_member(Self& self, const Visit& visit) {
+    auto& [corners, edges, neighbours, fans] = self;
+    visit(corners), visit(edges), visit(neighbours), visit(fans);
+  }
 };
 
 /// The sites, in the order of the leaves of a tree over the faces. Each edge and vertex is owned by the first
@@ -87,18 +94,27 @@ struct Regions {
   struct Owner {
     std::uint32_t face, edges, vertices;
   };
-  std::vector<std::uint32_t> leaves;  ///< the first face of each leaf, in the order of owners; and an end
-  std::vector<FaceBounds> bounds;     ///< of each leaf
-  std::vector<std::uint8_t> thin;     ///< of each leaf: a bit for each face whose normal may be unreliable
-  std::vector<Owner> owners;          ///< one for each face in the tree's order, and an end
-  std::vector<FaceRegion> faces;      ///< of each owner
-  std::vector<EdgeRegion> edges;
-  std::vector<VertexRegion> vertices;
-  std::vector<UnitVertex> points;  ///< of vertices
-  float largest_radius = 0;        ///< of `bounds`
+  Array<std::uint32_t> leaves;  ///< the first face of each leaf, in the order of owners; and an end
+  Array<FaceBounds> bounds;     ///< of each leaf
+  Array<std::uint8_t> thin;     ///< of each leaf: a bit for each face whose normal may be unreliable
+  Array<Owner> owners;          ///< one for each face in the tree's order, and an end
+  Array<FaceRegion> faces;      ///< of each owner
+  Array<EdgeRegion> edges;
+  Array<VertexRegion> vertices;
+  Array<UnitVertex> points;  ///< of vertices
+  float largest_radius = 0;  ///< of `bounds`
 
-  std::vector<std::uint8_t> enclosed;  ///< of each owner: whether the faces around it form a closed sheet
+  Array<std::uint8_t> enclosed;  ///< of each owner: whether the faces around it form a closed sheet
   SitePlaces places;
+
+  /// See core/stored_arrays.h.
+  template <class Self, class Visit>
+  static void for_each_member(Self& self, const Visit& visit) {
+    auto& [leaves, bounds, thin, owners, faces, edges, vertices, points, largest_radius, enclosed, places] =
+        self;
+    visit(leaves), visit(bounds), visit(thin), visit(owners), visit(faces), visit(edges), visit(vertices);
+    visit(points), visit(largest_radius), visit(enclosed), visit(places);
+  }
 };
 
 /// The input from which regions are built.
@@ -140,7 +156,7 @@ struct Placement {
 /// Computes the regions, and the data that signs require: pseudonormals, which point outwards if `inverted`
 /// is correct, and which faces are slivers, too thin for reliable normals. `shapes`, one per owner, are
 /// intermediate results. Cost: linear, all cores.
-void refit(Regions& regions, const Placement& placement, Pseudonormals& normals,
-           std::vector<std::uint8_t>& sliver, std::vector<FaceShape>& shapes);
+void refit(Regions& regions, const Placement& placement, Pseudonormals& normals, Array<std::uint8_t>& sliver,
+           std::vector<FaceShape>& shapes);
 
 }  // namespace sdm::sites

@@ -14,6 +14,12 @@ Sites::Sites(Mesh mesh) try : data_(std::make_unique<sites::SitesData>(std::move
   throw out_of_memory("the sites of a mesh");
 }
 
+Sites::Sites(std::unique_ptr<sites::SitesData> data) : data_(std::move(data)) {}
+
+Sites with_data(std::unique_ptr<sites::SitesData> data) {
+  return Sites(std::move(data));
+}
+
 Sites::~Sites() = default;
 Sites::Sites(Sites&&) noexcept = default;
 Sites& Sites::operator=(Sites&&) noexcept = default;

@@ -5,7 +5,10 @@
 
 #include "core/parallel.h"
 #include "geometry/vec.h"
+#include "mesh/check_topology.h"
 #include "mesh/validate.h"
+#include "sites/check_regions.h"
+#include "tree/check_tree.h"
 
 namespace sdm::sites {
 namespace {
@@ -45,10 +48,32 @@ SitesData::SitesData(Mesh given) {
   compute_regions(refit);
 }
 
+// The frame, the shells and whether the mesh is closed take less time to find than to load and check.
+SitesData::SitesData(ArrayReader& stored) {
+  stored(*this);
+  validate(mesh);
+  frame = UnitFrame::of(bounds(mesh));
+  const auto one_or_none = [](std::uint8_t flag) { return flag <= 1; };
+  bool valid_topology = false, valid_trees = false;
+  parallel_invoke([&] { valid_topology = mesh::is_topology(topology, vertex_faces, mesh); },
+                  [&] {
+                    valid_trees =
+                        !tree.items.empty() && tree::is_tree(tree, kLeafFaces) && tree::is_tree(wide, tree);
+                  });
+  if (!valid_topology || !valid_trees || !mesh::is_orientation(orientation, topology) ||
+      !sites::match(*this) || !std::ranges::all_of(inverted, one_or_none))
+    stored.fail();
+  find_shells();
+}
+
 void SitesData::find_orientation() {
   orientation = mesh::orient(mesh.triangles, topology);
+  find_shells();
+}
+
+void SitesData::find_shells() {
   closed = topology.closed();
-  shells = is_solid() ? find_shells(orientation) : Shells{};
+  shells = is_solid() ? sites::find_shells(orientation) : Shells{};
   consistently_oriented = is_solid() && std::ranges::count(orientation.flipped, 1) == 0;
 }
 

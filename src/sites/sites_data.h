@@ -7,6 +7,7 @@
 
 #include "core/intact.h"
 #include "core/lazy/kept.h"
+#include "core/stored_arrays.h"
 #include "mesh/crossings/ray_parity.h"
 #include "mesh/topology.h"
 #include "sites/frames/face_frames.h"
@@ -27,6 +28,9 @@ class SitesData {
  public:
   /// As Sites::Sites.
   explicit SitesData(Mesh mesh);
+  /// Those that were stored. Throws sdm::Error if they are damaged in a way that would make a query read
+  /// beyond an array or never end. Cost: linear, all cores.
+  explicit SitesData(ArrayReader& stored);
   void refit(std::span<const Vec3> positions);
   void edit(const MeshEdit& edit);
   /// Throws sdm::Error if a refit failed half-way.
@@ -55,7 +59,7 @@ class SitesData {
   bool consistently_oriented = false;  ///< closed, with the same orientation of neighbouring faces
   mesh::Orientation orientation;
   Shells shells;  ///< if closed and orientable
-  std::vector<std::uint8_t>
+  Array<std::uint8_t>
       inverted;  ///< of each face: opposite to the outward orientation; if open, to its neighbours
 
   UnitFrame frame;      ///< of the faces that have sites
@@ -64,8 +68,17 @@ class SitesData {
   Regions regions;      ///< by the leaves of both
   LeafFrames frames;    ///< of the leaves of both
   Pseudonormals normals;
-  std::vector<std::uint8_t> sliver;  ///< of each face: too thin for a reliable normal
-  Kept<inside::ShapeSigns> signs;    ///< of the present shape: see inside::signs_of()
+  Array<std::uint8_t> sliver;      ///< of each face: too thin for a reliable normal
+  Kept<inside::ShapeSigns> signs;  ///< of the present shape: see inside::signs_of()
+
+  /// What is stored; the rest is derived from it. See core/stored_arrays.h.
+  template <class Self, class Visit>
+  static void for_each_member(Self& self, const Visit& visit) {
+    visit(self.mesh.positions), visit(self.mesh.triangles), visit(self.mesh.corner_uvs);
+    visit(self.topology), visit(self.vertex_faces), visit(self.orientation), visit(self.inverted);
+    visit(self.tree), visit(self.wide), visit(self.regions), visit(self.normals), visit(self.sliver);
+    visit(self.faces_added_to_tree_);
+  }
 
  private:
   /// Intermediate data of a refit, whose memory the next one reuses.
@@ -82,6 +95,7 @@ class SitesData {
   void build_tree();
   [[nodiscard]] bool edit_tree(const SitesData& before);
   void find_orientation();
+  void find_shells();
   void assign_sites(Refit& refit);  ///< to the leaves of the tree
   void set_inverted();
   void compute_regions(Refit& refit);  ///< refit.placed: the present positions
@@ -100,5 +114,8 @@ namespace sdm {
   sites.data_->require_intact();
   return *sites.data_;
 }
+
+/// Sites with this data.
+[[nodiscard]] Sites with_data(std::unique_ptr<sites::SitesData> data);
 
 }  // namespace sdm

@@ -84,7 +84,28 @@ bool valid(const SurfaceData& s, std::uint64_t charts) {
   return !s.samples.empty();
 }
 
+Header read_header(std::span<const std::uint8_t> bytes) {
+  const Header expected;
+  if (bytes.size() < sizeof(Header) || std::memcmp(bytes.data(), &expected, sizeof expected.magic) != 0)
+    throw Error("it is not a stored atlas");
+  Header header;
+  std::memcpy(&header, bytes.data(), sizeof(Header));
+  if (header.version != expected.version) throw Error("another version of sdm has stored the atlas");
+  return header;
+}
+
 }  // namespace
+
+AtlasOptions stored_options(std::span<const std::uint8_t> bytes) {
+  const Header header = read_header(bytes);
+  if (header.kind > static_cast<std::uint32_t>(AtlasKind::uv) || header.first_rows > atlas::kMaxRows)
+    throw Error("the stored atlas is damaged");
+  return {.kind = static_cast<AtlasKind>(header.kind),
+          .resolution = header.resolution,
+          .rows = static_cast<std::uint32_t>(header.first_rows),
+          .max_stretch = header.stretch_limit,
+          .gutter = header.gutter};
+}
 
 std::vector<std::uint8_t> store_atlas(const SurfaceData& s) {
   Header header = header_of(s);
@@ -109,13 +130,8 @@ std::vector<std::uint8_t> store_atlas(const SurfaceData& s) {
 }
 
 void restore_atlas(SurfaceData& s, const AtlasOptions& options, std::span<const std::uint8_t> bytes) {
-  Header header;
-  const Header expected = header_of(s);
-  if (bytes.size() < sizeof(Header) || std::memcmp(bytes.data(), &expected, sizeof expected.magic) != 0)
-    throw Error("it is not a stored atlas");
-  std::memcpy(&header, bytes.data(), sizeof(Header));
+  const Header header = read_header(bytes), expected = header_of(s);
   bytes = bytes.subspan(sizeof(Header));
-  if (header.version != expected.version) throw Error("another version of sdm has stored the atlas");
   if (header.vertices != expected.vertices || header.faces != expected.faces || header.mesh != expected.mesh)
     throw Error("the stored atlas belongs to another mesh");
   if (header.kind != expected.kind || header.resolution != expected.resolution ||

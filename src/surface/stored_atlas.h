@@ -18,4 +18,7 @@ class SurfaceData;
 /// Throws sdm::Error as Surface's constructor from a stored atlas does. Cost: linear.
 void restore_atlas(SurfaceData& surface, const AtlasOptions& options, std::span<const std::uint8_t> bytes);
 
+/// The options that restore_atlas() requires. Throws sdm::Error if the bytes are not a stored atlas.
+[[nodiscard]] AtlasOptions stored_options(std::span<const std::uint8_t> bytes);
+
 }  // namespace sdm::surface

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/array.h"
 #include "geometry/unit_frame.h"
 
 namespace sdm::tree {
@@ -56,12 +57,19 @@ struct AabbTree {
 
     [[nodiscard]] bool leaf() const { return count > 0; }
   };
-  std::vector<Node> nodes;           ///< empty when there are no items
-  std::vector<std::uint32_t> items;  ///< indices of boxes, in the order of the leaves
+  Array<Node> nodes;           ///< empty when there are no items
+  Array<std::uint32_t> items;  ///< indices of boxes, in the order of the leaves
 
   [[nodiscard]] const FloatBox& box(std::uint32_t node) const { return nodes[node].box; }
   [[nodiscard]] std::span<const std::uint32_t> items_of(std::uint32_t leaf) const {
     return {items.data() + nodes[leaf].first, nodes[leaf].count};
+  }
+
+  /// See core/stored_arrays.h.
+  template <class Self, class Visit>
+  static void for_each_member(Self& self, const Visit& visit) {
+    auto& [nodes, items] = self;
+    visit(nodes), visit(items);
   }
 };
 

@@ -246,8 +246,8 @@ HWY_EXPORT(BuildNodes);
 AabbTree build_aabb_tree(std::span<const FloatBox> boxes, std::vector<std::uint32_t> indices,
                          std::uint32_t leaf_size) {
   AabbTree tree;
+  if (!indices.empty()) tree.nodes = HWY_DYNAMIC_DISPATCH(BuildNodes)(boxes, indices, leaf_size);
   tree.items = std::move(indices);
-  if (!tree.items.empty()) tree.nodes = HWY_DYNAMIC_DISPATCH(BuildNodes)(boxes, tree.items, leaf_size);
   return tree;
 }
 

@@ -21,10 +21,10 @@ class TreeEditor {
         [&](std::uint32_t node, std::uint32_t left, std::uint32_t right) {
           used_[node] = used_[left] || used_[right];
         });
-    result_.nodes.reserve(tree_.nodes.size() + 2 * edit_.added.size());
-    result_.items.reserve(tree_.items.size() + edit_.added.size());
+    nodes_.reserve(tree_.nodes.size() + 2 * edit_.added.size());
+    items_.reserve(tree_.items.size() + edit_.added.size());
     copy(0);
-    return std::move(result_);
+    return {std::move(nodes_), std::move(items_)};
   }
 
  private:
@@ -55,10 +55,10 @@ class TreeEditor {
     if (node.leaf()) return copy_leaf(index);
     if (!used_[index + 1]) return copy(node.right);
     if (!used_[node.right]) return copy(index + 1);
-    const std::size_t place = result_.nodes.size();
-    result_.nodes.push_back(node);
+    const std::size_t place = nodes_.size();
+    nodes_.push_back(node);
     copy(index + 1);
-    result_.nodes[place].right = static_cast<std::uint32_t>(result_.nodes.size());
+    nodes_[place].right = static_cast<std::uint32_t>(nodes_.size());
     copy(node.right);
   }
 
@@ -67,12 +67,12 @@ class TreeEditor {
     for (const std::uint32_t item : tree_.items_of(leaf))
       if (edit_.kept[item]) items.push_back(item);
     for (const auto& addition : added_to(leaf)) items.push_back(addition.second);
-    const auto first_item = static_cast<std::uint32_t>(result_.items.size());
+    const auto first_item = static_cast<std::uint32_t>(items_.size());
     if (items.size() <= leaf_size_) {
-      AabbTree::Node& node = result_.nodes.emplace_back(tree_.nodes[leaf]);
+      AabbTree::Node& node = nodes_.emplace_back(tree_.nodes[leaf]);
       node.first = first_item;
       node.count = static_cast<std::uint32_t>(items.size());
-      result_.items.insert(result_.items.end(), items.begin(), items.end());
+      items_.insert(items_.end(), items.begin(), items.end());
       return;
     }
     std::vector<FloatBox> boxes;
@@ -80,15 +80,15 @@ class TreeEditor {
     std::vector<std::uint32_t> all(items.size());
     std::iota(all.begin(), all.end(), 0u);
     const AabbTree part = build_aabb_tree(std::span<const FloatBox>(boxes), std::move(all), leaf_size_);
-    const auto first_node = static_cast<std::uint32_t>(result_.nodes.size());
+    const auto first_node = static_cast<std::uint32_t>(nodes_.size());
     for (AabbTree::Node node : part.nodes) {
       if (node.leaf())
         node.first += first_item;
       else
         node.right += first_node;
-      result_.nodes.push_back(node);
+      nodes_.push_back(node);
     }
-    for (const std::uint32_t i : part.items) result_.items.push_back(items[i]);
+    for (const std::uint32_t i : part.items) items_.push_back(items[i]);
   }
 
   const AabbTree& tree_;
@@ -96,7 +96,8 @@ class TreeEditor {
   const std::uint32_t leaf_size_;
   std::vector<std::uint8_t> used_;                                  ///< of each node: has an item now
   std::vector<std::pair<std::uint32_t, std::uint32_t>> additions_;  ///< leaf and item, by leaf
-  AabbTree result_;
+  std::vector<AabbTree::Node> nodes_;
+  std::vector<std::uint32_t> items_;
 };
 
 }  // namespace
@@ -115,7 +116,7 @@ void append(AabbTree& forest, const AabbTree& tree) {
       node.right += nodes;
     forest.nodes.push_back(node);
   }
-  forest.items.insert(forest.items.end(), tree.items.begin(), tree.items.end());
+  forest.items.append(tree.items.begin(), tree.items.end());
 }
 
 }  // namespace sdm::tree

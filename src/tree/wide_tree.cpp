@@ -17,8 +17,8 @@ class Collapser {
 
   WideTree collapse() {
     add({0, 0}, 1);
-    wide_.nodes.shrink_to_fit();
-    return std::move(wide_);
+    nodes_.shrink_to_fit();
+    return {std::move(nodes_)};
   }
 
  private:
@@ -40,24 +40,24 @@ class Collapser {
       measure(largest);
       measure(count++);
     }
-    const auto index = static_cast<std::uint32_t>(wide_.nodes.size());
-    wide_.nodes.emplace_back();
-    wide_.nodes[index].count = count;
+    const auto index = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.emplace_back();
+    nodes_[index].count = count;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t node = open[i];
       const bool leaf = tree_.nodes[node].leaf();
       const std::uint32_t child =
           leaf ? WideTree::leaf(leaf_number_[node]) : add({node + 1, tree_.nodes[node].right}, 2);
-      wide_.nodes[index].child[i] = child;
-      wide_.nodes[index].leaves |= (leaf ? 1u : 0u) << i;
-      wide_.nodes[index].source[i] = node;
+      nodes_[index].child[i] = child;
+      nodes_[index].leaves |= (leaf ? 1u : 0u) << i;
+      nodes_[index].source[i] = node;
     }
     return index;
   }
 
   const AabbTree& tree_;
   std::vector<std::uint32_t> leaf_number_;
-  WideTree wide_;
+  std::vector<WideTree::Node> nodes_;
 };
 
 }  // namespace

@@ -25,8 +25,16 @@ struct WideTree {
     std::uint32_t source[kWidth] = {};  ///< node of the binary tree for each child
     std::uint32_t count = 0;            ///< children in use, which come first
     std::uint32_t leaves = 0;           ///< a bit for each child that is a leaf
+    std::uint32_t padding[6] = {};      ///< 0, so that stored trees have no bytes without a value
   };
-  std::vector<Node> nodes;  ///< the root is nodes[0]; empty for an empty tree
+  Array<Node> nodes;  ///< the root is nodes[0]; empty for an empty tree
+
+  /// See core/stored_arrays.h.
+  template <class Self, class Visit>
+  static void for_each_member(Self& self, const Visit& visit) {
+    auto& [nodes] = self;
+    visit(nodes);
+  }
 
  private:
   static constexpr std::uint32_t kLeafBit = 0x80000000u;

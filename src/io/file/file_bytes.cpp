@@ -17,14 +17,18 @@ constexpr std::size_t kMemoryPerByte = 5;
 
 }  // namespace
 
-FileBytes read_bytes(const std::filesystem::path& file) {
+void require_regular_file(const std::filesystem::path& file, std::string_view kind) {
   std::error_code error;
   const auto type = std::filesystem::status(file, error).type();
   if (type == std::filesystem::file_type::not_found) throw Error("there is no such file");
-  if (type == std::filesystem::file_type::directory) throw Error("this is a folder, not a mesh file");
+  if (type == std::filesystem::file_type::directory)
+    throw Error(fmt::format("this is a folder, not a {} file", kind));
   if (error) throw Error(fmt::format("cannot be read: {}", error.message()));
   if (type != std::filesystem::file_type::regular) throw Error("this is not a regular file");
+}
 
+FileBytes read_bytes(const std::filesystem::path& file) {
+  require_regular_file(file, "mesh");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw Error(fmt::format("cannot be opened: {}", std::generic_category().message(errno)));

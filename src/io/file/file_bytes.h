@@ -15,6 +15,10 @@ struct FileBytes {
   [[nodiscard]] std::string_view view() const { return {data.get(), size}; }
 };
 
+/// Throws sdm::Error unless it is a regular file; the message does not name the file. `kind`: of files, for
+/// the message: "mesh".
+void require_regular_file(const std::filesystem::path& file, std::string_view kind);
+
 /// Reads a regular file, after checking that there is enough memory for it and for the mesh built from it.
 /// Throws sdm::Error; the message does not name the file.
 [[nodiscard]] FileBytes read_bytes(const std::filesystem::path& file);

@@ -127,7 +127,7 @@ void InternalContacts::find_faces(const sites::SitesData& sites, const SurfacePo
 // concave there.
 bool InternalContacts::off_flat_faces(const shape::PosedBody& body, const Exit& exit) const {
   const sites::SitesData& sites = internals(body.body().sites());
-  const std::vector<Vec3>& normals = sites.normals.face;
+  const Array<Vec3>& normals = sites.normals.face;
   double along = -1, spread = 1;
   for (const std::uint32_t face : faces_) {
     const double cosine = dot(normals[face], exit.direction);

@@ -106,7 +106,7 @@ class Neighbours {
       std::ranges::sort(around);
       around.erase(std::unique(around.begin(), around.end()), around.end());
       if (around.size() < 2) continue;
-      patches_at_.items.insert(patches_at_.items.end(), around.begin(), around.end());
+      patches_at_.items.append(around.begin(), around.end());
       patches_at_.offsets.push_back(static_cast<std::uint32_t>(patches_at_.items.size()));
     }
     joints_of_ = make_rows<std::uint32_t>(patches_.count(), [&](const auto& put) {
@@ -226,8 +226,8 @@ Exclusion::Exclusion(const Mesh& rest, const ExclusionOptions& options) try {
   }
   if (rule.geodesic) keep_mutual();
   patch_of_ = std::move(grouped.of);
-  patch_faces_ = std::move(grouped.faces.items);
-  face_offsets_ = std::move(grouped.faces.offsets);
+  patch_faces_ = std::move(grouped.faces.items).to_vector();
+  face_offsets_ = std::move(grouped.faces.offsets).to_vector();
 } catch (const std::bad_alloc&) {
   throw out_of_memory(kNeighbourhoods);
 }

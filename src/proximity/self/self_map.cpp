@@ -36,8 +36,8 @@ void gather_around(std::span<const Vec3> points, double max_distance, self::Self
 }
 
 // The tiles of each patch one after another.
-std::vector<std::uint32_t> by_patch(const surface::Tiles& tiles, const self::PatchTree& patches,
-                                    const Exclusion& exclusion) {
+Array<std::uint32_t> by_patch(const surface::Tiles& tiles, const self::PatchTree& patches,
+                              const Exclusion& exclusion) {
   std::vector<std::uint32_t> place(exclusion.patches());
   for (std::uint32_t i = 0; i < place.size(); ++i) place[patches.order[i]] = i;
   return make_rows<std::uint32_t>(place.size(),
@@ -71,7 +71,7 @@ DistanceMap compute_self_map(const Surface& surface, const Sites& sites, const E
   map.sign.reason = "the distance of a surface to itself has no sign";
   const surface::Tiles tiles(surface);
   const self::PatchTree patches(internals(sites), exclusion);
-  const std::vector<std::uint32_t> order = by_patch(tiles, patches, exclusion);
+  const Array<std::uint32_t> order = by_patch(tiles, patches, exclusion);
   std::atomic<std::size_t> none{0};
   // Large enough that few patches are divided: each division excludes them again.
   const std::size_t grain = std::clamp<std::size_t>(order.size() / 256, kGrain, 16384);
@@ -104,7 +104,7 @@ std::vector<float> self_distances_at_vertices(const Sites& sites, const Exclusio
   const self::PatchTree patches(internals(sites), exclusion);
   // Faces that Sites ignores are skipped; +∞ for vertices of others.
   std::vector<float> least(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
-  const std::vector<std::uint32_t>& faces = internals(sites).tree.items;
+  const Array<std::uint32_t>& faces = internals(sites).tree.items;
   for (const std::uint32_t f : faces)
     for (const std::uint32_t v : mesh.triangles[f]) least[v] = std::numeric_limits<float>::infinity();
   // The faces of a patch exclude the same: one search from each vertex for all of them.

@@ -39,8 +39,8 @@ bool FacePair::before(const FacePair& other) const {
 }
 
 PatchTree::PatchTree(const sites::SitesData& sites, const Exclusion& exclusion) {
-  const std::vector<std::uint32_t>& leaf_begin = sites.regions.leaves;
-  const std::vector<WideTree::Node>& nodes = sites.wide.nodes;
+  const Array<std::uint32_t>& leaf_begin = sites.regions.leaves;
+  const Array<WideTree::Node>& nodes = sites.wide.nodes;
   const auto leaf_count = static_cast<std::uint32_t>(leaf_begin.size() - 1);
   const auto patch_at = [&](std::uint32_t i) { return exclusion.patch_of(sites.tree.items[i]); };
   place_of_leaf.assign(leaf_count, kNone);

@@ -107,7 +107,7 @@ HWY_INLINE void transpose_four(const typename TypedBlock::Region* const (&region
 
 // Builds a list of the regions at these places; id(place) is their SiteId.
 template <class TypedBlock, class Id>
-void gather(std::span<const uint32_t> places, const std::vector<typename TypedBlock::Region>& regions,
+void gather(std::span<const uint32_t> places, std::span<const typename TypedBlock::Region> regions,
             const Id& id, SiteList<TypedBlock>& list) {
   constexpr size_t kWidth = SiteBlock::kWidth, kAhead = 4 * kWidth;
   list.used = (places.size() + kWidth - 1) / kWidth;

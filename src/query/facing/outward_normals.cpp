@@ -28,7 +28,7 @@ tree::AabbTree tree_of(const Mesh& mesh, const mesh::Topology& topology, const U
 }
 
 /// The faces of which the order of corners is clockwise seen from outside; empty if there is no outside.
-std::vector<std::uint8_t> inward_faces(const Mesh& mesh) {
+Array<std::uint8_t> inward_faces(const Mesh& mesh) {
   const mesh::Topology topology = mesh::build_topology(mesh.positions.size(), mesh.triangles);
   if (!topology.closed()) return {};
   const mesh::Orientation orientation = mesh::orient(mesh.triangles, topology);
@@ -36,7 +36,7 @@ std::vector<std::uint8_t> inward_faces(const Mesh& mesh) {
   const sites::Shells shells = sites::find_shells(orientation);
   const UnitFrame frame = UnitFrame::of(bounds(mesh));
   const tree::AabbTree tree = shells.size() > 1 ? tree_of(mesh, topology, frame) : tree::AabbTree{};
-  std::vector<std::uint8_t> inverted;
+  Array<std::uint8_t> inverted;
   sites::orient_outward({mesh.positions, mesh.triangles, frame, tree}, orientation, shells, inverted);
   return inverted;
 }
@@ -45,7 +45,7 @@ std::vector<std::uint8_t> inward_faces(const Mesh& mesh) {
 
 std::vector<Vec3> outward_normals(const Mesh& mesh) {
   constexpr std::size_t kFaces = 4096;
-  const std::vector<std::uint8_t> inward = inward_faces(mesh);
+  const Array<std::uint8_t> inward = inward_faces(mesh);
   std::vector<Vec3> normals(mesh.triangles.size());
   parallel_for(normals.size(), kFaces, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {

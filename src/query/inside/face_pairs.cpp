@@ -138,7 +138,7 @@ HWY_EXPORT(ApartBits);
 HWY_EXPORT(AppendOverlapping);
 
 void FaceBoxes::set(const sites::SitesData& sites, double margin) {
-  const std::vector<std::uint32_t>& faces = sites.tree.items;
+  const Array<std::uint32_t>& faces = sites.tree.items;
   // Vectors read beyond the last one.
   for (auto* boxes : {&lo, &hi})
     for (std::vector<float>& values : *boxes) values.resize(faces.size() + TrianglePairs::kMost);

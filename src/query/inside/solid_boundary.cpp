@@ -114,7 +114,7 @@ SolidBoundary::SolidBoundary(const sites::SitesData& solid, const FaceSides& sid
       sides_(solid.mesh.triangles.size()),
       mixed_number_(sides_.size(), kNone),
       beside_(sides.offset()) {
-  const std::vector<std::uint32_t>& faces = solid.tree.items;  // neighbours one after another
+  const Array<std::uint32_t>& faces = solid.tree.items;  // neighbours one after another
   parallel_for(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) sides_[faces[i]] = sides.of_face(faces[i]);
   });
@@ -336,7 +336,7 @@ SolidBoundary::Closest SolidBoundary::closest(const Vec3& p) const {
 }
 
 SolidBoundary::Volume SolidBoundary::volume() const {
-  const std::vector<std::uint32_t>& faces = solid_.tree.items;
+  const Array<std::uint32_t>& faces = solid_.tree.items;
   // Six times the volume, and what the parts that may or may not be boundary contribute; in parts that do not
   // depend on the number of threads.
   struct Sum {

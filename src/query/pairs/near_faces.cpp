@@ -149,7 +149,7 @@ class NearFacesSearch {
   }
 
   uint32_t count_of(int side, uint32_t leaf) const {
-    const std::vector<uint32_t>& leaves = sites_[side]->regions.leaves;
+    const Array<uint32_t>& leaves = sites_[side]->regions.leaves;
     return leaves[leaf + 1] - leaves[leaf];
   }
 

@@ -8,9 +8,23 @@
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "query/shape/convexity.h"
+#include "surface/stored_atlas.h"
 
 namespace sdm::shape {
 namespace {
+
+// The version changes with all that is stored, and with what it means.
+constexpr StoredFormat kFormat{{'s', 'd', 'm', 's', 'h', 'a', 'p', 'e'}, 1, "shape", "mesh"};
+
+bool are_parts(std::span<const ContactPart> parts, const sites::SitesData& sites) {
+  const std::size_t leaves = sites.regions.bounds.size();
+  if (parts.size() != sites.tree.nodes.size()) return false;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if ((parts[i].part > i && parts[i].part != kNone) || parts[i].first_leaf > parts[i].last_leaf ||
+        parts[i].last_leaf > leaves)
+      return false;
+  return true;
+}
 
 // The ball about a point that contains the boxes two levels below the root of the tree.
 Ball ball_about(const Vec3& centre, const sites::SitesData& sites) {
@@ -42,6 +56,31 @@ Body::Body(const Mesh& mesh, const AtlasOptions* atlas) : sites_(mesh) {
   if (atlas) surface_.emplace(mesh, *atlas);
   follow_positions();
   find_parts();
+}
+
+Body::Body(StoredBytes stored) : Body(ArrayReader(std::move(stored), kFormat)) {}
+
+Body::Body(ArrayReader stored) : sites_(with_data(std::make_unique<sites::SitesData>(stored))) {
+  Array<sites::BoundingCylinders> cylinders;
+  bool is_convex = false;
+  std::vector<std::uint8_t> atlas;
+  stored(cylinders), stored(contact_parts_), stored(is_convex), stored(atlas);
+  stored.finish();
+  follow_positions();
+  const sites::SitesData& sites = internals(sites_);
+  if (!are_parts(contact_parts_, sites) || !cylinders_.set_nodes(std::move(cylinders), sites.wide))
+    stored.fail();
+  if (is_convex) convex_ = convex::recognise(sites);
+  if (!atlas.empty()) surface_.emplace(sites.mesh, surface::stored_options(atlas), atlas);
+}
+
+void Body::store(const std::function<void(std::span<const std::byte>)>& write) const {
+  require_intact();
+  const bool is_convex = convex_ != nullptr;
+  const std::vector<std::uint8_t> atlas = surface_ ? surface_->stored_atlas() : std::vector<std::uint8_t>{};
+  ArrayWriter list;
+  list(internals(sites_)), list(cylinders_.nodes), list(contact_parts_), list(is_convex), list(atlas);
+  list.write(kFormat, write);
 }
 
 void Body::refit(std::span<const Vec3> positions) {

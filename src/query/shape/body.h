@@ -4,14 +4,18 @@
 #include <sdm/sites.h>
 #include <sdm/surface.h>
 
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "core/array.h"
 #include "core/intact.h"
 #include "core/lazy/kept.h"
 #include "core/lazy/once.h"
+#include "core/stored_arrays.h"
 #include "query/convex/convex_mesh.h"
 #include "query/inside/inside.h"
 #include "query/inside/solid_boundary.h"
@@ -27,6 +31,11 @@ class Body {
  public:
   /// Throws sdm::Error as Surface and Sites do. `atlas`: none if null.
   Body(const Mesh& mesh, const AtlasOptions* atlas);
+  /// The body that was stored. Throws sdm::Error if the bytes are not one, or are damaged.
+  explicit Body(StoredBytes stored);
+  /// Calls write(bytes) for all bytes of the body in its present shape. What queries build when they need it
+  /// is not among them.
+  void store(const std::function<void(std::span<const std::byte>)>& write) const;
 
   /// Moves the vertices to positions that are valid for this mesh (see validate_positions).
   void refit(std::span<const Vec3> positions);
@@ -37,6 +46,7 @@ class Body {
   /// else that uses it.
   void require_intact() const { intact_.require(); }
 
+  [[nodiscard]] bool has_surface() const { return surface_.has_value(); }
   /// Throws sdm::Error if there is no atlas.
   [[nodiscard]] const Surface& surface() const;
   [[nodiscard]] const Sites& sites() const { return sites_; }
@@ -76,6 +86,7 @@ class Body {
   [[nodiscard]] std::span<const ContactPart> contact_parts() const { return contact_parts_; }
 
  private:
+  explicit Body(ArrayReader stored);
   void follow_positions();
   void find_parts();
 
@@ -89,7 +100,7 @@ class Body {
   std::unique_ptr<const convex::ConvexMesh> convex_;
   Kept<bool> is_convex_;
   Kept<std::unique_ptr<const convex::ConvexMesh>> refitted_convex_;
-  std::vector<ContactPart> contact_parts_;
+  Array<ContactPart> contact_parts_;
 
   /// A value that queries build when they need it.
   template <class Value>

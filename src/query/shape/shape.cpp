@@ -1,6 +1,7 @@
 #include <sdm/shape.h>
 
 #include <new>
+#include <utility>
 
 #include "core/memory.h"
 #include "query/shape/body.h"
@@ -17,6 +18,21 @@ Shape::Shape(const Mesh& mesh, const AtlasOptions& atlas) try
   throw out_of_memory("a shape");
 }
 
+Shape::Shape(StoredShape stored) try
+    : body_(std::make_shared<shape::Body>(StoredBytes{stored.bytes, std::move(stored.owner)})) {
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a shape");
+}
+
+void Shape::store(const std::function<void(std::span<const std::byte>)>& write) const try {
+  body_->store(write);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("storing a shape");
+}
+
+bool Shape::has_surface() const {
+  return body_->has_surface();
+}
 const Surface& Shape::surface() const {
   return body_->surface();
 }
