@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -33,18 +34,34 @@ sdm::Mesh wavy_torus(std::uint32_t n, std::uint32_t m) {
   return mesh;
 }
 
-double median_ms(int times, const std::function<void()>& call) {
-  std::vector<double> ms;
-  for (int i = 0; i < times; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
-    call();
-    ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
-  }
-  std::ranges::nth_element(ms, ms.begin() + times / 2);
-  return ms[static_cast<std::size_t>(times) / 2];
+struct Cost {
+  double wall_ms, processor_ms;  // the latter of all threads
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
 }
 
-// The same for queries of a fresh shape, and their results.
+Cost median_cost(int times, const std::function<void()>& call) {
+  std::vector<double> wall, processor;
+  for (int i = 0; i < times; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t used = std::clock();
+    call();
+    processor.push_back(1e3 * static_cast<double>(std::clock() - used) / CLOCKS_PER_SEC);
+    wall.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+  }
+  return {median(wall), median(processor)};
+}
+
+void print(const char* step, const Cost& cost) {
+  std::printf("%-24s %8.2f %8.2f\n", step, cost.wall_ms, cost.processor_ms);
+}
+
+// The results of the first queries of a fresh shape.
 std::vector<double> answers(const sdm::Shape& shape, const sdm::Shape& other) {
   sdm::ProximityQuery query(shape, other);
   std::vector<double> found;
@@ -78,17 +95,16 @@ int main(int argc, char** argv) try {
   if (answers(sdm::read_shape(file), other) != answers(built, other))
     throw std::runtime_error("the stored shape has other answers");
   std::optional<sdm::Shape> shape;
-  const double building = median_ms(times, [&] { shape.emplace(mesh); });
-  const double reading = median_ms(times, [&] { shape.emplace(sdm::read_shape(file)); });
-  const double writing = median_ms(times, [&] { sdm::write_shape(file, built); });
-  const double queries_built = median_ms(times, [&] { answers(shape.emplace(mesh), other); });
-  const double queries_read = median_ms(times, [&] { answers(shape.emplace(sdm::read_shape(file)), other); });
+  std::printf("%zu triangles, %.1f MB, %u threads; medians of %d, ms\n%-24s %8s %8s\n", mesh.triangles.size(),
+              size / 1e6, threads, times, "", "wall", "processor");
+  print("build", median_cost(times, [&] { shape.emplace(mesh); }));
+  print("read", median_cost(times, [&] { shape.emplace(sdm::read_shape(file)); }));
+  print("write", median_cost(times, [&] { sdm::write_shape(file, built); }));
+  print("build, first queries", median_cost(times, [&] { answers(shape.emplace(mesh), other); }));
+  print("read, first queries",
+        median_cost(times, [&] { answers(shape.emplace(sdm::read_shape(file)), other); }));
   shape.reset();
   std::filesystem::remove(file);
-  std::printf("%zu triangles, %.1f MB, %u threads; medians of %d, ms\n", mesh.triangles.size(), size / 1e6,
-              threads, times);
-  std::printf("build %.2f, read %.2f, write %.2f\n", building, reading, writing);
-  std::printf("build and first queries %.2f, read and first queries %.2f\n", queries_built, queries_read);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "stored_shapes: %s\n", error.what());
   return 1;
