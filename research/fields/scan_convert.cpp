@@ -4,8 +4,8 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/arrays/rows.h"
 #include "core/parallel.h"
-#include "core/rows.h"
 #include "research/fields/draw_span.h"
 #include "research/fields/drawn_sites.h"
 #include "research/fields/slice_polygon.h"

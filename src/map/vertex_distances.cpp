@@ -6,9 +6,9 @@
 #include <limits>
 #include <new>
 
+#include "core/arrays/rows.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/rows.h"
 #include "query/facing/facing_search.h"
 #include "query/facing/outward_normals.h"
 #include "query/inside/open_sides.h"

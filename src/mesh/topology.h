@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/rows.h"
+#include "core/arrays/rows.h"
 
 namespace sdm::mesh {
 
@@ -26,7 +26,7 @@ struct Topology {
   [[nodiscard]] bool closed() const;
   [[nodiscard]] bool ignored(std::size_t face) const { return face_edges[face][0] == kNone; }
 
-  /// See core/stored_arrays.h.
+  /// See core/arrays/stored_arrays.h.
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [edges, face_edges, incident, duplicate_faces, collapsed_faces] = self;
@@ -46,7 +46,7 @@ struct Orientation {
   Array<std::uint32_t> first_face;  ///< of each component
   bool orientable = true;
 
-  /// See core/stored_arrays.h.
+  /// See core/arrays/stored_arrays.h.
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [flipped, component, first_face, orientable] = self;

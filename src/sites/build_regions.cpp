@@ -116,7 +116,8 @@ Regions build_regions(const RegionSource& s, const tree::AabbTree& tree) {
       [&] {
         sites.run(tree.items, regions);
         std::vector<std::uint32_t> leaves = leaf_nodes(tree);
-        for (std::uint32_t& leaf : leaves) leaf = tree.nodes[leaf].first;
+        for (std::uint32_t& leaf : leaves)
+          leaf = static_cast<std::uint32_t>(tree.items_of(leaf).data() - tree.items.data());
         leaves.push_back(static_cast<std::uint32_t>(faces));
         leaves.shrink_to_fit();
         regions.leaves = std::move(leaves);

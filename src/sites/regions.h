@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "mesh/topology.h"
-#include "sites/pseudonormals.h"
+#include "sites/normals/pseudonormals.h"
 #include "tree/aabb_tree.h"
 
 namespace sdm::sites {
@@ -79,7 +79,7 @@ struct SitePlaces {
   Array<std::array<std::uint32_t, VertexRegion::kRays>> neighbours;  ///< of each vertex: ends of rays
   CompressedRows<std::uint32_t> fans;  ///< of each vertex: 4f + k for each face f, of which it is corner k
 
-  /// See core/stored_arrays.h.
+  /// See core/arrays/stored_arrays.h.
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [corners, edges, neighbours, fans] = self;
@@ -107,7 +107,7 @@ struct Regions {
   Array<std::uint8_t> enclosed;  ///< of each owner: whether the faces around it form a closed sheet
   SitePlaces places;
 
-  /// See core/stored_arrays.h.
+  /// See core/arrays/stored_arrays.h.
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [leaves, bounds, thin, owners, faces, edges, vertices, points, largest_radius, enclosed, places] =

@@ -5,14 +5,14 @@
 
 #include <vector>
 
+#include "core/arrays/stored_arrays.h"
 #include "core/intact.h"
 #include "core/lazy/kept.h"
-#include "core/stored_arrays.h"
 #include "mesh/crossings/ray_parity.h"
 #include "mesh/topology.h"
 #include "sites/frames/face_frames.h"
+#include "sites/normals/pseudonormals.h"
 #include "sites/orient_outward.h"
-#include "sites/pseudonormals.h"
 #include "sites/regions.h"
 #include "tree/aabb_tree.h"
 #include "tree/wide_tree.h"
@@ -71,7 +71,7 @@ class SitesData {
   Array<std::uint8_t> sliver;      ///< of each face: too thin for a reliable normal
   Kept<inside::ShapeSigns> signs;  ///< of the present shape: see inside::signs_of()
 
-  /// What is stored; the rest is derived from it. See core/stored_arrays.h.
+  /// What is stored; the rest is derived from it. See core/arrays/stored_arrays.h.
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     visit(self.mesh.positions), visit(self.mesh.triangles), visit(self.mesh.corner_uvs);

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/array.h"
+#include "core/arrays/array.h"
 #include "geometry/unit_frame.h"
 
 namespace sdm::tree {
@@ -65,7 +65,7 @@ struct AabbTree {
     return {items.data() + nodes[leaf].first, nodes[leaf].count};
   }
 
-  /// See core/stored_arrays.h.
+  /// See core/arrays/stored_arrays.h.
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [nodes, items] = self;

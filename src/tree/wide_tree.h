@@ -29,7 +29,7 @@ struct WideTree {
   };
   Array<Node> nodes;  ///< the root is nodes[0]; empty for an empty tree
 
-  /// See core/stored_arrays.h.
+  /// See core/arrays/stored_arrays.h.
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [nodes] = self;

@@ -9,11 +9,11 @@
 #include <thread>
 #include <vector>
 
+#include "core/arrays/rows.h"
 #include "core/disjoint_sets.h"
 #include "core/lazy/once.h"
 #include "core/memory.h"
 #include "core/platform.h"
-#include "core/rows.h"
 #include "geometry/barycentric.h"
 #include "geometry/boxes/box_groups.h"
 #include "geometry/boxes/sweep.h"

@@ -6,6 +6,7 @@ cmake_minimum_required(VERSION 3.23)
 set(order
   core/numbers
   core
+  core/arrays
   core/lazy
   core/parallel
   geometry
@@ -21,6 +22,7 @@ set(order
   surface
   surface/sampling_bound
   sites/frames
+  sites/normals
   sites
   query/closest
   query/facing
@@ -63,6 +65,7 @@ set(order
   summary/verdict
   summary
   io/file
+  io/shape
   io/image/textures
   io/mesh/polygons
   io/mesh
@@ -165,6 +168,7 @@ set(readers_of_nodes
   query/rays/trace.cpp                 # segments in a box begin at the nodes that meet it
   query/shape/body.cpp                 # the boxes below the root
   query/shape/wall_thickness.cpp       # keeps a bound for each node, found on first use
+  sites/check_regions.cpp              # compares its leaves with those of regions
   sites/bounding_cylinders.cpp)        # computes a cylinder for each node
 foreach(file ${files})
   file(STRINGS ${SOURCE_DIR}/src/${file} reads REGEX "(tree|wide)_?(\\.|->)nodes\\[")

@@ -47,7 +47,7 @@ Shape shape_from(std::span<const std::byte> block) {
   return Shape(StoredShape{{data, block.size()}, owner});
 }
 
-// The header and the table of sizes, as core/stored_arrays.h describes them.
+// The header and the table of sizes, as core/arrays/stored_arrays.h describes them.
 constexpr std::size_t kVersionAt = 8, kCountAt = 12, kSizeAt = 16, kSumAt = 24, kTableAt = 32;
 
 template <class T>

@@ -8,9 +8,9 @@
 
 #include "atlas/charts/bucket_queue.h"
 #include "atlas/charts/normal_cone.h"
+#include "core/arrays/rows.h"
 #include "core/cancellation.h"
 #include "core/parallel.h"
-#include "core/rows.h"
 #include "core/scattered_order.h"
 #include "geometry/unit_frame.h"
 #include "geometry/vec.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/arrays/rows.h"
 #include "core/cancellation.h"
-#include "core/rows.h"
 
 namespace sdm::atlas {
 namespace {

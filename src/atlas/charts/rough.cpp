@@ -8,8 +8,8 @@
 #include "atlas/charts/cluster.h"
 #include "atlas/charts/overlap.h"
 #include "atlas/charts/snap.h"
+#include "core/arrays/rows.h"
 #include "core/parallel.h"
-#include "core/rows.h"
 #include "geometry/vec.h"
 
 namespace sdm::atlas {

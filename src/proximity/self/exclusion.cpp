@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
+#include "core/arrays/rows.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/rows.h"
 #include "geometry/point_triangle.h"
 #include "geometry/triangle_pair.h"
 #include "proximity/self/patches.h"

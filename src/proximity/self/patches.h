@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/rows.h"
+#include "core/arrays/rows.h"
 
 namespace sdm::self {
 

@@ -7,10 +7,10 @@
 #include <limits>
 #include <new>
 
+#include "core/arrays/rows.h"
 #include "core/atomic_extremes.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/rows.h"
 #include "geometry/vec.h"
 #include "map/map_writer.h"
 #include "proximity/self/self_search.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/rows.h"
+#include "core/arrays/rows.h"
 #include "sites/sites_data.h"
 
 namespace sdm::self {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/rows.h"
+#include "core/arrays/rows.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
 

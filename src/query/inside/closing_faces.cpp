@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <span>
 
+#include "core/arrays/rows.h"
 #include "core/cancellation.h"
-#include "core/rows.h"
 
 namespace sdm::inside {
 namespace {

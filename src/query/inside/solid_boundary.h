@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "core/rows.h"
+#include "core/arrays/rows.h"
 #include "query/inside/face_sides.h"
 #include "query/inside/near_faces.h"
 

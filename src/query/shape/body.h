@@ -11,11 +11,11 @@
 #include <span>
 #include <vector>
 
-#include "core/array.h"
+#include "core/arrays/array.h"
+#include "core/arrays/stored_arrays.h"
 #include "core/intact.h"
 #include "core/lazy/kept.h"
 #include "core/lazy/once.h"
-#include "core/stored_arrays.h"
 #include "query/convex/convex_mesh.h"
 #include "query/inside/inside.h"
 #include "query/inside/solid_boundary.h"

@@ -5,7 +5,7 @@
 
 #include "io/file/atomic_file.h"
 #include "io/file/error_prefix.h"
-#include "io/file/mapped_file.h"
+#include "io/shape/mapped_file.h"
 
 namespace sdm {
 

@@ -16,7 +16,7 @@ struct Pseudonormals {
   Array<Vec3> face;    ///< unit length, 0 for faces without area and ignored ones
   Array<Vec3> vertex;  ///< sum of its faces' normals, weighted by their angles at it
 
-  /// See core/stored_arrays.h.
+  /// See core/arrays/stored_arrays.h.
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [face, vertex] = self;

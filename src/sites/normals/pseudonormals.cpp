@@ -1,4 +1,4 @@
-#include "sites/pseudonormals.h"
+#include "sites/normals/pseudonormals.h"
 
 #include "geometry/vec.h"
 

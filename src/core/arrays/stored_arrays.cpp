@@ -1,4 +1,4 @@
-#include "core/stored_arrays.h"
+#include "core/arrays/stored_arrays.h"
 
 #include <algorithm>
 #include <bit>

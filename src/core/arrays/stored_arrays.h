@@ -21,7 +21,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/array.h"
+#include "core/arrays/array.h"
 
 namespace sdm::core {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/array.h"
+#include "core/arrays/array.h"
 
 namespace sdm::core {
 
@@ -26,7 +26,7 @@ struct CompressedRows {
     return {items.data() + offsets[row], items.data() + offsets[row + 1]};
   }
 
-  /// See core/stored_arrays.h.
+  /// See core/arrays/stored_arrays.h.
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [offsets, items] = self;

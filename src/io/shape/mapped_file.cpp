@@ -1,4 +1,4 @@
-#include "io/file/mapped_file.h"
+#include "io/shape/mapped_file.h"
 
 #include <fmt/format.h>
 #include <sdm/error.h>
