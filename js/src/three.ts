@@ -7,7 +7,11 @@ import { type Rgb, kAbove, kBelow, kColormaps, kNoValue, kWithin } from './color
 import { type Atlas } from './surface.js';
 import { SdmError } from './types.js';
 
-/** The positions and indices of a geometry, as surface(), sites() and their constructors take them: `...fromBufferGeometry(geometry)`. */
+/**
+ * The positions and indices of a geometry, as surface(), sites() and their constructors take them: `...fromBufferGeometry(geometry)`.
+ * Vertices stay apart where normals or texture coordinates differ, so that the mesh is open there: for signs, merge them first by
+ * `mergeVertices` of three.js, without these attributes.
+ */
 export function fromBufferGeometry(geometry: BufferGeometry): [positions: Float64Array, indices: Uint32Array] {
   const position = geometry.getAttribute('position');
   if (!position) throw new SdmError('input', 'the geometry has no positions');

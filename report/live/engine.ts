@@ -65,6 +65,7 @@ export class Engine {
   private closed: [boolean, boolean] = [false, false];
   private bodies: [Body, Body] | null = null;
   private motion = new Matrix4(); // of the reference
+  private placed = new Matrix4(); // the motion that the sites have; the coarse surface makes up for the difference
   private turned = false; // the fine surface has other vertices than the part
   private changed = false; // the bodies are not those that were loaded
   private facing: number | undefined; // degrees: distances are to faces that face the same way
@@ -100,6 +101,7 @@ export class Engine {
     [this.bodies, this.sites, this.pair, this.coarse] = [bodies, sites, pair, coarse];
     this.closed = [isClosed(part), sites.closed];
     this.motion = new Matrix4();
+    this.placed = new Matrix4();
     this.turned = this.changed = false;
     return coarse.atlas;
   }
@@ -131,15 +133,25 @@ export class Engine {
     if (this.fine) this.release(this.fine);
     this.fine = null;
     if (resolution <= kCoarse) return null;
+    await this.settle();
     this.fine = await this.measured(this.bodies![0], this.sites!, resolution, say);
     return this.fine.atlas;
   }
 
-  /// Moves the reference rigidly: a matrix in the units of the files.
+  /// Moves the reference rigidly: a matrix in the units of the files. It is the coarse surface that moves the other way, as to
+  /// refit a surface takes a small part of the time that sites take.
   async place(motion: Matrix4): Promise<void> {
     this.motion = motion.clone();
-    const { positions } = this.bodies![1];
-    await Promise.all([this.sites!.refit(moved(positions, motion)), this.pair!.setPose(1, motion.elements)]);
+    const back = this.placed.clone().multiply(motion.clone().invert());
+    await Promise.all([this.coarse!.surface.refit(moved(this.bodies![0].positions, back)), this.pair!.setPose(1, motion.elements)]);
+  }
+
+  /// Moves the sites to where place() has moved the reference, and the coarse surface back.
+  private async settle(): Promise<void> {
+    if (this.placed.equals(this.motion)) return;
+    this.placed = this.motion.clone();
+    const [part, reference] = this.bodies!;
+    await Promise.all([this.sites!.refit(moved(reference.positions, this.motion)), this.coarse!.surface.refit(part.positions)]);
   }
 
   /// Moves the vertices of both bodies.
@@ -147,10 +159,10 @@ export class Engine {
     const [part, reference] = this.bodies!;
     part.positions = positions[0];
     reference.positions = positions[1];
-    const placed = moved(reference.positions, this.motion);
+    this.placed = this.motion.clone();
     this.turned = this.changed = true;
     await Promise.all([
-      this.sites!.refit(placed), this.coarse!.surface.refit(part.positions),
+      this.sites!.refit(moved(reference.positions, this.placed)), this.coarse!.surface.refit(part.positions),
       this.pair!.refit(0, part.positions), this.pair!.refit(1, reference.positions), this.pair!.setPose(1, this.motion.elements),
     ]);
   }
@@ -167,6 +179,7 @@ export class Engine {
     const began = performance.now();
     const measured = this.fine ?? this.coarse!;
     const [part] = this.bodies!;
+    await this.settle();
     if (this.turned && this.fine) await this.fine.surface.refit(part.positions);
     this.turned = false;
     await measured.map.update({ ...this.matching, progress: (_, f) => say('Measuring', f) });
@@ -181,7 +194,8 @@ export class Engine {
   }
 
   /// The point of the reference that belongs to each texel of the fine map.
-  match(options: MatchOptions): Promise<WorkerMatches> {
+  async match(options: MatchOptions): Promise<WorkerMatches> {
+    await this.settle();
     return this.worker.match((this.fine ?? this.coarse!).surface, this.sites!, options);
   }
 
