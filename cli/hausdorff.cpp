@@ -39,9 +39,9 @@ struct HausdorffCommand : PairFiles, RunOptions {
 struct HausdorffAnswer {
   sdm::HausdorffDistance distance;
   int from = 0;  ///< the mesh, 0 or 1, that the witness starts on
-  std::vector<sdm::HausdorffDistance> directions;
+  std::vector<sdm::HausdorffDistance> directions{};
   double size = 0;  ///< of the smaller mesh, for the digits of places
-  Notes notes;
+  Notes notes{};
   std::optional<sdm::Doubt> doubt{};  ///< that both meshes are in the same unit
 };
 
