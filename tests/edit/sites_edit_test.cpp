@@ -8,6 +8,7 @@
 #include "edit/random_edits.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
+#include "support/arrays.h"
 #include "support/oracle.h"
 #include "support/points.h"
 #include "support/shapes.h"
@@ -47,7 +48,8 @@ void expect_same_data(const sites::SitesData& a, const sites::SitesData& b) {
   for (std::size_t v = 0; v < a.normals.vertex.size(); ++v)
     off = std::max(off, norm(a.normals.vertex[v] - b.normals.vertex[v]));
   EXPECT_LE(off, 1e-12);
-  std::vector<std::uint32_t> of_a = a.tree.items, of_b = b.tree.items;
+  std::vector<std::uint32_t> of_a(a.tree.items.begin(), a.tree.items.end()),
+      of_b(b.tree.items.begin(), b.tree.items.end());
   std::ranges::sort(of_a);
   std::ranges::sort(of_b);
   EXPECT_EQ(of_a, of_b);

@@ -6,8 +6,10 @@
 #include <map>
 #include <random>
 #include <set>
+#include <span>
 #include <vector>
 
+#include "support/arrays.h"
 #include "support/shapes.h"
 
 namespace sdm {
@@ -87,7 +89,7 @@ bool agree(const Triangle& f, bool f_turned, const Triangle& g, bool g_turned, c
 }
 
 bool satisfied(const std::vector<Triangle>& soup, const mesh::Topology& topology,
-               const std::vector<std::uint8_t>& turned) {
+               std::span<const std::uint8_t> turned) {
   for (std::size_t e = 0; e < topology.edges.size(); ++e) {
     const auto faces = topology.edge_faces(e);
     if (faces.size() == 2 &&

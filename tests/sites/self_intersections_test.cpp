@@ -181,7 +181,7 @@ TEST(SelfIntersections, OfManyFacesAroundVerticesAndEdgesAreThoseOfAllPairs) {
     const sites::SitesData& data = internals(sites);
     const sites::FaceSoup soup{data.mesh.positions, data.mesh.triangles, data.tree};
     Pairs all;
-    std::vector<std::uint32_t> faces = data.tree.items;
+    std::vector<std::uint32_t> faces(data.tree.items.begin(), data.tree.items.end());
     std::ranges::sort(faces);
     for (std::size_t a = 0; a < faces.size(); ++a)
       for (std::size_t b = a + 1; b < faces.size(); ++b)

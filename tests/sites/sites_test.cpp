@@ -2,10 +2,11 @@
 #include <sdm/sites.h>
 #include <sdm/threads.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "geometry/vec.h"
@@ -32,9 +33,8 @@ Mesh rough_torus() {
   return mesh;
 }
 
-template <class T>
-bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+bool same_bits(const auto& a, const auto& b) {
+  return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
 }
 
 void expect_same(const sites::SitesData& a, const sites::SitesData& b) {

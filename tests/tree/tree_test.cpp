@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "geometry/vec.h"
+#include "support/arrays.h"
 #include "tree/aabb_tree.h"
 #include "tree/fold.h"
 #include "tree/visit.h"
