@@ -33,7 +33,7 @@ void FaceSides::renew() {
   offset_ = offset_beside_faces(*solid_);
   for (std::size_t f = 0; f < solid_->mesh.triangles.size(); ++f)
     sides_[f].store(Sides::unknown, std::memory_order_relaxed);
-  found_ = direct_ = 0, known_ = false;
+  found_ = direct_ = walked_ = 0, known_ = false;
 }
 
 Sides FaceSides::of_face(std::uint32_t face) const {
@@ -45,6 +45,13 @@ Sides FaceSides::of_face(std::uint32_t face) const {
   sides = sides_[face].load(std::memory_order_relaxed);
   if (sides == Sides::unknown) sides_[face].store(sides = find(face), std::memory_order_relaxed);
   return sides;
+}
+
+bool FaceSides::walked(std::size_t queries) const {
+  constexpr std::size_t kQueriesPerFace = 4;
+  return !known_.load(std::memory_order_relaxed) &&
+         walked_.fetch_add(queries, std::memory_order_relaxed) <
+             kQueriesPerFace * solid_->mesh.triangles.size();
 }
 
 bool FaceSides::direct(std::uint32_t face) const {

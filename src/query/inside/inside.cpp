@@ -237,7 +237,7 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries, std::span<co
     return above_half(
         queries, [&](std::size_t i) { return closest[i]; }, few, kWidestOfSparse);
   std::uint32_t inside = 0;
-  const bool dense = method_ == SignMethod::exact && !few && !sides_->known();
+  const bool dense = method_ == SignMethod::exact && !few && sides_->walked(queries.size());
   if (dense) winding_walk.approach(*signs_, sites_, queries);
   for (std::size_t i = 0; i < queries.size(); ++i)
     inside |= ((dense ? dense_test(queries[i], closest[i]) : test(queries[i], closest[i], few)) ? 1u : 0u)
@@ -245,8 +245,7 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries, std::span<co
   return inside;
 }
 
-// Until the sides of all faces are known: by points near this one, without those sides, where these mostly
-// lead to it.
+// By points near this one, without the sides of faces, where these points mostly lead to it.
 bool InsideTest::dense_test(const Vec3& query, const ClosestPoint& closest) const {
   if (closest.type == SiteType::none || !sdm::contains(signs_->box, query)) return false;
   const double clear = clear_radius(closest.type, closest.distance);
