@@ -49,9 +49,8 @@ Sides FaceSides::of_face(std::uint32_t face) const {
 
 bool FaceSides::walked(std::size_t queries) const {
   constexpr std::size_t kQueriesPerFace = 4;
-  return !known_.load(std::memory_order_relaxed) &&
-         walked_.fetch_add(queries, std::memory_order_relaxed) <
-             kQueriesPerFace * solid_->mesh.triangles.size();
+  return !known_.load(std::memory_order_relaxed) && walked_.fetch_add(queries, std::memory_order_relaxed) <
+                                                        kQueriesPerFace * solid_->mesh.triangles.size();
 }
 
 bool FaceSides::direct(std::uint32_t face) const {
