@@ -120,7 +120,7 @@ Transform affine(const double* numbers, const char* name) {
   return result;
 }
 
-/// Of a position x y z and a quaternion w x y z.
+/// The pose of a position x y z and a quaternion w x y z.
 Transform rigid(const double* n) {
   return Transform::translation({n[0], n[1], n[2]}) * Transform::quaternion({n[3], n[4], n[5], n[6]});
 }

@@ -77,8 +77,32 @@ value.)")
       });
 }
 
+void bind_shape_files(nb::class_<PyShape>& shape) {
+  shape
+      .def(
+          "save",
+          [](const PyShape& self, nb::handle file) {
+            const std::filesystem::path name = path_of(file);
+            run_sized(self.shape.sites().mesh().triangles.size(), [&] { write_shape(name, self.shape); });
+          },
+          nb::arg("file").none(), nb::sig("def save(self, file: str | os.PathLike[str]) -> None"),
+          R"(Writes the shape, some twenty times the size of its mesh, for load(). The complete file appears, or
+none. Raises Error, naming the file and the fault.)")
+      .def_static(
+          "load",
+          [](nb::handle file) {
+            const std::filesystem::path name = path_of(file);
+            return run_sized(std::size_t{1} << 20, [&] { return PyShape(read_shape(name)); });
+          },
+          nb::arg("file").none(), nb::sig("def load(file: str | os.PathLike[str]) -> Shape"),
+          R"(The shape that save() wrote, in a small part of the time of making it, with the same results to
+the bit. Its arrays are those of the file, which processes share; it may be deleted or saved again, but not be
+changed in place. Raises Error, naming the file and the fault, if another version of sdm wrote it, or if it is
+incomplete or damaged: make the shape again from its mesh.)");
+}
+
 void bind_shape(nb::module_& module) {
-  nb::class_<PyShape>(
+  nb::class_<PyShape> shape(
       module, "Shape", nb::is_weak_referenceable(),
       R"(A mesh prepared for proximity queries, which any number of bodies can share: a thousand bodies of
 one shape need the memory of one.
@@ -87,7 +111,8 @@ mesh, faces: as Mesh. resolution: texels per side of an atlas, for maps of the b
 atlas. Raises Error for a mesh that cannot be used.
 
 >>> shape = sdm.Shape(box)
->>> query = sdm.ProximityQuery(shape, shape))")
+>>> query = sdm.ProximityQuery(shape, shape))");
+  shape
       .def(
           "__init__",
           [](PyShape* self, nb::handle mesh, nb::handle faces, std::optional<std::uint32_t> resolution,
@@ -115,31 +140,12 @@ atlas. Raises Error for a mesh that cannot be used.
           "Whether the mesh bounds a convex solid, exactly: two such shapes are compared in less time, with "
           "the "
           "same results. See convex_hull().")
-      .def(
-          "save",
-          [](const PyShape& self, nb::handle file) {
-            const std::filesystem::path name = path_of(file);
-            run_sized(self.shape.sites().mesh().triangles.size(), [&] { write_shape(name, self.shape); });
-          },
-          nb::arg("file").none(), nb::sig("def save(self, file: str | os.PathLike[str]) -> None"),
-          R"(Writes the shape, some twenty times the size of its mesh, for load(). The complete file appears, or
-none. Raises Error, naming the file and the fault.)")
-      .def_static(
-          "load",
-          [](nb::handle file) {
-            const std::filesystem::path name = path_of(file);
-            return run_sized(std::size_t{1} << 20, [&] { return PyShape(read_shape(name)); });
-          },
-          nb::arg("file").none(), nb::sig("def load(file: str | os.PathLike[str]) -> Shape"),
-          R"(The shape that save() wrote, in a small part of the time of making it, with the same results to
-the bit. Its arrays are those of the file, which processes share; it may be deleted or saved again, but not be
-changed in place. Raises Error, naming the file and the fault, if another version of sdm wrote it, or if it is
-incomplete or damaged: make the shape again from its mesh.)")
       .def("__repr__", [](const PyShape& self) {
         const Mesh& mesh = self.shape.sites().mesh();
         return nb::str("sdm.Shape({} vertices, {} faces)")
             .format(mesh.positions.size(), mesh.triangles.size());
       });
+  bind_shape_files(shape);
 }
 
 std::size_t faces_of(const ProximityQuery& query) {

@@ -21,7 +21,7 @@ constexpr double kExact = 1e-6;      // of the size: bounds that are as close ar
 constexpr double kClose = 0.98;      // ratio of bounds at which a search ends
 constexpr double kEnough = 0.85;     // the same, of the search for a cover
 constexpr double kLeastGap = 1e-12;  // of the size, beyond a translation after which bodies touch
-// Of the largest coordinate: what rounding of two points in space, and of their difference, may amount to.
+// What rounding of two points in space, and of their difference, may amount to, over the largest coordinate.
 constexpr double kSpaceRounding = 16 * std::numeric_limits<double>::epsilon();
 
 // The point of a body that is farthest along u, in space. `convex`: the body, if it is a convex solid, whose

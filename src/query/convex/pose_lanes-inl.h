@@ -204,7 +204,7 @@ class PoseLanes {
     const LaneVec on_a = add_mul(w, part(wa, aa), a), on_b = add_mul(w, part(wb, bb), b);
     const LaneMask b_nearer = hn::Lt(dot(on_b, on_b), dot(on_a, on_a));
     LaneVec best = choose(b_nearer, on_b, on_a);
-    // Of a triangle as thin as rounding, such as that of the first step, the weights mean nothing.
+    // Weights mean nothing if the triangle is as thin as rounding, such as that of the first step.
     const Lanes thinnest = hn::Mul(hn::Set(d_, kThinnest), hn::Mul(aa, bb));
     const Lanes determinant = hn::Sub(hn::Mul(aa, bb), hn::Mul(ab, ab));
     const Lanes s = hn::Div(hn::Sub(hn::Mul(wa, bb), hn::Mul(wb, ab)), determinant);

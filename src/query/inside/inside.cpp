@@ -245,7 +245,7 @@ std::uint32_t InsideTest::operator()(std::span<const Vec3> queries, std::span<co
   return inside;
 }
 
-// By points near this one, without the sides of faces, where these points mostly lead to it.
+// Tests a point by those near it, without the sides of faces, where these points mostly lead to it.
 bool InsideTest::dense_test(const Vec3& query, const ClosestPoint& closest) const {
   if (closest.type == SiteType::none || !sdm::contains(signs_->box, query)) return false;
   const double clear = clear_radius(closest.type, closest.distance);

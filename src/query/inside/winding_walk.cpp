@@ -68,7 +68,7 @@ std::optional<int> WindingWalk::winding(const ShapeSigns& signs, const sites::Si
     const Vec3 from{at_[0][best], at_[1][best], at_[2][best]};
     const double length = norm(from - point);
     const bool near = near_ && sdm::contains(near_box_, from) && sdm::contains(near_box_, point);
-    // From the one ball to the other.
+    // Only the part between the two balls can meet faces.
     const auto turns = crossings(solid, {point, from, clear / length, 1 - clear_[best] / length},
                                  near ? &near_nodes_ : nullptr);
     if (turns) number = number_[best] + *turns;

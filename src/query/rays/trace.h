@@ -57,7 +57,7 @@ template <class Visit>
 struct NearNodes {
   std::vector<tree::WideTree::Node> nodes, next;
 };
-/// Sets them to the lowest that are few. The box is in the unit frame.
+/// Sets `near` to the lowest nodes that are few. The box is in the unit frame.
 void find_near_nodes(const sites::SitesData& sites, const tree::FloatBox& box, NearNodes& near);
 
 /// The part of the segment from p to q between two parameters.
