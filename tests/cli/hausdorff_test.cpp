@@ -95,8 +95,8 @@ TEST_F(HausdorffCommand, ExitsWithThreeWhereTheToleranceIsExceeded) {
 
 // A scan in metres lies in a corner of the part.
 TEST_F(HausdorffCommand, APassInAnotherUnitIsDoubtful) {
-  const std::string part = write_obj(folder / "part.obj", cube(100));
-  const std::string scan = write_obj(folder / "scan.obj", cube(0.1));
+  const std::string part = write_obj(folder / "part.obj", test::moved(cube(100), {100, 100, 100}));
+  const std::string scan = write_obj(folder / "scan.obj", test::moved(cube(0.1), {0.1, 0.1, 0.1}));
   const std::vector<std::string> arguments{"hausdorff", scan, part, "--tolerance", "0.5"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), arguments.begin(), arguments.end());
