@@ -77,17 +77,17 @@ function(sdm_add_library name)
   set_property(GLOBAL APPEND PROPERTY SDM_LIBRARIES ${name})
 endfunction()
 
-# sdm_add_sanitized(<objects>): with SDM_SANITIZED_TESTS, adds <objects>_sanitized, which has the sources and the properties
+# sdm_add_sanitized(<objects>): with SDM_ALL_TESTS, adds <objects>_sanitized, which has the sources and the properties
 # of the object library, with AddressSanitizer and UndefinedBehaviorSanitizer and for fewer instruction sets. Call it in the
 # folder of the object library, after all is set.
 set(SDM_SANITIZERS -fsanitize=address,undefined -fno-sanitize=null,alignment,object-size -fno-sanitize-recover=all
   -fno-omit-frame-pointer)
 function(sdm_add_sanitized objects)
-  if(NOT SDM_SANITIZED_TESTS)
+  if(NOT SDM_ALL_TESTS)
     return()
   endif()
   if(BUILD_SHARED_LIBS)
-    message(FATAL_ERROR "SDM_SANITIZED_TESTS needs static libraries: BUILD_SHARED_LIBS must be OFF")
+    message(FATAL_ERROR "SDM_ALL_TESTS needs static libraries: BUILD_SHARED_LIBS must be OFF")
   endif()
   set(name ${objects}_sanitized)
   get_target_property(sources ${objects} SOURCES)
