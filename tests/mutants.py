@@ -111,6 +111,7 @@ HEADER = """#pragma once
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wsign-compare"
 #pragma GCC diagnostic ignored "-Wunused"
+#pragma GCC diagnostic ignored "-Wtype-limits"
 #include <cstdlib>
 inline const int sdm_mutant = [] {
   const char* const text = std::getenv("SDM_MUTANT");
