@@ -17,6 +17,7 @@ import os
 import random
 import re
 import shlex
+import signal
 import subprocess
 import sys
 import time
@@ -245,6 +246,7 @@ def run(build, count, jobs, only):
         print(f"{fault['number']}: {fault['found']} ({fault['seconds']} s)", flush=True)
         return fault
 
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # programs expect it not to be ignored
     if only:
         faults = [fault for fault in faults if fault["number"] in only]
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:

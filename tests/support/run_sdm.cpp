@@ -89,6 +89,7 @@ Outcome run_program(const char* program, const std::vector<std::string>& argumen
     dup2(out[1], STDOUT_FILENO);
     dup2(err[1], STDERR_FILENO);
     for (const int end : {out[0], out[1], err[0], err[1]}) close(end);
+    std::signal(SIGINT, SIG_DFL);  // which a shell ignores in what it starts in the background
     if (options.file_size) std::signal(SIGXFSZ, SIG_IGN);
     set_limit(RLIMIT_FSIZE, options.file_size);
     set_limit(RLIMIT_AS, options.memory);
