@@ -20,12 +20,6 @@
 namespace sdm::test {
 namespace {
 
-bool page_looks(const std::string& check, const std::string& page) {
-  const std::string command =
-      "cd '" SDM_REPORT_PACKAGES "' && node '" SDM_CHECK_LOOKS "' " + check + " '" + page + "'";
-  return std::system(command.c_str()) == 0;
-}
-
 /// A ball with bumps, whose colours change smoothly.
 Mesh bumpy_ball(int levels) {
   Mesh ball = sphere(levels);
@@ -69,8 +63,8 @@ TEST_F(BakedPage, ComparesBothMeshes) {
   EXPECT_TRUE(passes("compares", page()));
   EXPECT_TRUE(
       passes("statesFacts", page(), {report(), "with its colours and normals at the corners of triangles."}));
-  EXPECT_TRUE(page_looks("looks", page()));
-  EXPECT_TRUE(page_looks("touches", page()));
+  EXPECT_TRUE(looks("looks", page()));
+  EXPECT_TRUE(looks("touches", page()));
 }
 
 // Without a normal map, the coarse mesh has its own shape.

@@ -1,12 +1,9 @@
 // Checks how a report.html or player.html looks and moves, in headless Chromium: node check_looks.cjs CHECK PAGE [ARGUMENT...].
-// Packages are found from the current folder. Prints what is wrong and exits with 1.
+// Packages are found from the current folder. Prints what is wrong and exits with 1. Tests run these checks by serve_checks.cjs.
 const assert = require('assert');
 const { execFileSync } = require('child_process');
 const { pathToFileURL } = require('url');
 const { inBrowser, opened } = require('./checks/browser.cjs');
-
-const [check, file, ...rest] = process.argv.slice(2);
-const url = pathToFileURL(file).href;
 
 const atRest = (page) => page.waitForFunction(() => (window.sdmPage ?? window.sdmPlayer ?? window.sdmBaked).view.atRest);
 
@@ -321,11 +318,15 @@ const checks = {
   },
 };
 
-void inBrowser((browser, faults) => {
+/// Runs a check of a page in windows of a browser.
+function run(browser, faults, check, file, ...rest) {
   // The page in a window of its own, when it is ready.
   const open = async ({ width = 1280, height = 800, scheme = 'light', touch = false }) => {
     const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, hasTouch: touch, isMobile: touch });
-    return opened(context, url, faults);
+    return opened(context, pathToFileURL(file).href, faults);
   };
   return checks[check](open, ...rest);
-});
+}
+
+module.exports = { run };
+if (require.main === module) void inBrowser((browser, faults) => run(browser, faults, ...process.argv.slice(2)));

@@ -1,13 +1,11 @@
 // Checks a report.html or player.html in headless Chromium: node check_page.cjs CHECK PAGE [ARGUMENT...]. Packages are found from the
-// current folder. Prints what is wrong and exits with 1.
+// current folder. Prints what is wrong and exits with 1. Tests run these checks by serve_checks.cjs.
 const assert = require('assert');
 const { readFileSync } = require('fs');
-const { pathToFileURL } = require('url');
+const { fileURLToPath, pathToFileURL } = require('url');
 const { inBrowser, opened } = require('./checks/browser.cjs');
 const { animationPage, decodingPage } = require('./checks/model_pages.cjs');
 const { pictureOf, plain, settled } = require('./checks/support.cjs');
-
-const [check, file, ...rest] = process.argv.slice(2);
 
 const checks = {
   ...require('./checks/values.cjs'),
@@ -42,7 +40,7 @@ const checks = {
     const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save-page')]);
     assert.strictEqual(download.suggestedFilename(), 'report.html');
     await download.saveAs(saved);
-    const original = readFileSync(file, 'utf8');
+    const original = readFileSync(fileURLToPath(page.url()), 'utf8');
     const again = await page.context().browser().newPage({ viewport: page.viewportSize() });
     await again.goto(pathToFileURL(saved).href);
     await again.waitForSelector('html[data-ready]');
@@ -222,7 +220,8 @@ const checks = {
   },
 };
 
-void inBrowser(async (browser, faults) => {
+/// Runs a check of a page in a window of a browser.
+async function run(browser, faults, check, file, ...rest) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 } });
   // Those that a model is shown by are written to the file that the last argument names.
   const made = { animates: animationPage, decodes: decodingPage }[check];
@@ -233,4 +232,7 @@ void inBrowser(async (browser, faults) => {
     }),
   );
   await checks[check](page, ...rest);
-});
+}
+
+module.exports = { run };
+if (require.main === module) void inBrowser((browser, faults) => run(browser, faults, ...process.argv.slice(2)));

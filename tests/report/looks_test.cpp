@@ -6,25 +6,17 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
 
 #include "cli/samples.h"
+#include "report/page_browser.h"
 #include "support/run_sdm.h"
 
 namespace sdm::test {
 namespace {
-
-/// Runs a check of check_looks.cjs, in a browser.
-bool looks(const std::string& check, const std::string& page, const std::vector<std::string>& more = {}) {
-  std::string command("cd '" SDM_REPORT_PACKAGES "' && node '" SDM_CHECK_LOOKS "' " + check + " '" + page +
-                      "'");
-  for (const std::string& argument : more) command.append(" '").append(argument).append("'");
-  return std::system(command.c_str()) == 0;
-}
 
 /// A torus above a square, at whose height all distances are.
 struct Looks : ::testing::Test {

@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "cli/samples.h"
+#include "report/page_browser.h"
 #include "support/run_sdm.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"
@@ -16,19 +16,6 @@
 namespace sdm::test {
 
 using Json = nlohmann::json;
-
-inline std::string quoted(const std::string& text) {
-  return std::string("'").append(text).append("'");
-}
-
-/// Runs a check of check_page.cjs, in a browser.
-inline bool passes(const std::string& check, const std::string& page,
-                   const std::vector<std::string>& more = {}) {
-  std::string command("cd '" SDM_REPORT_PACKAGES "' && node '" SDM_CHECK_PAGE "' ");
-  command.append(check).append(" ").append(quoted(page));
-  for (const std::string& argument : more) command.append(" ").append(quoted(argument));
-  return std::system(command.c_str()) == 0;
-}
 
 /// A torus above a square: the distance is the height, |z + 2|.
 struct Page : ::testing::Test {

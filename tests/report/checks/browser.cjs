@@ -28,18 +28,31 @@ async function opened(context, url, faults) {
   return page;
 }
 
-/// Calls a check with a browser and a list of faults, which has to stay empty. Prints what is wrong, and makes the program
-/// exit with 1.
+/// A browser. Pages are put together without OpenGL, as they are without a GPU: only their own pictures are drawn with it.
+function launched() {
+  return chromium.launch({
+    executablePath: findBrowser(),
+    args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-gpu-compositing'],
+  });
+}
+
+/// Calls a check with a browser and a list of faults, which has to stay empty. Closes all windows after it.
+async function checked(browser, check) {
+  const faults = [];
+  try {
+    await check(browser, faults);
+    assert.deepStrictEqual(faults, []);
+  } finally {
+    await Promise.all(browser.contexts().map((context) => context.close()));
+  }
+}
+
+/// Calls a check in a browser of its own. Prints what is wrong, and makes the program exit with 1.
 async function inBrowser(check) {
   try {
-    const browser = await chromium.launch({
-      executablePath: findBrowser(),
-      args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-    });
+    const browser = await launched();
     try {
-      const faults = [];
-      await check(browser, faults);
-      assert.deepStrictEqual(faults, []);
+      await checked(browser, check);
     } finally {
       await browser.close();
     }
@@ -49,4 +62,4 @@ async function inBrowser(check) {
   }
 }
 
-module.exports = { inBrowser, opened };
+module.exports = { checked, inBrowser, launched, opened };
