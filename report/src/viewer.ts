@@ -91,6 +91,7 @@ export class Viewer {
         requestAnimationFrame(frame);
         return;
       }
+      this.resize(); // here, or the first picture would be drawn again: the page has grown around it
       this.drawNow(this.pace.moving);
       this.pace.drawn();
     };
