@@ -134,16 +134,20 @@ const checks = {
   // Every text is large enough, has contrast, is in the page and over no other, at three sizes and in both schemes, folded
   // and unfolded; the same on paper.
   async looks(open) {
-    for (const [width, height] of kSizes)
+    for (const [width, height] of kSizes) {
+      const page = await open({ width, height, touch: width < 600 });
+      await atRest(page);
+      const folds = await page.$$eval('details', (list) => list.map((d) => d.open));
       for (const scheme of ['light', 'dark']) {
-        const page = await open({ width, height, scheme, touch: width < 600 });
-        await atRest(page);
+        await page.emulateMedia({ colorScheme: scheme }); // colours are all that depends on it
         const found = await page.evaluate(faultsOfTexts, 12);
         await page.evaluate(() => document.querySelectorAll('details').forEach((d) => (d.open = true)));
         found.push(...(await page.evaluate(faultsOfTexts, 12)));
+        await page.evaluate((opened) => document.querySelectorAll('details').forEach((d, i) => (d.open = opened[i])), folds);
         assert(found.length === 0, `at ${width} × ${height}, ${scheme}:\n${found.slice(0, 12).join('\n')}`);
-        await page.context().close();
       }
+      await page.context().close();
+    }
     const page = await open({ width: 703 }); // 186 mm
     await atRest(page);
     await page.emulateMedia({ media: 'print' });
@@ -321,8 +325,8 @@ const checks = {
 /// Runs a check of a page in windows of a browser.
 function run(browser, faults, check, file, ...rest) {
   // The page in a window of its own, when it is ready.
-  const open = async ({ width = 1280, height = 800, scheme = 'light', touch = false }) => {
-    const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, hasTouch: touch, isMobile: touch });
+  const open = async ({ width = 1280, height = 800, touch = false }) => {
+    const context = await browser.newContext({ viewport: { width, height }, hasTouch: touch, isMobile: touch });
     return opened(context, pathToFileURL(file).href, faults);
   };
   return checks[check](open, ...rest);
