@@ -9,6 +9,7 @@
 
 #include "cli/samples.h"
 #include "report/page_browser.h"
+#include "report/shared_runs.h"
 #include "support/run_sdm.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"
@@ -27,9 +28,9 @@ struct Page : ::testing::Test {
 
   /// Maps, and returns the report.
   Json map(std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments{"map", o1, o2, "-o", out, "--write", "exr,html"};
+    std::vector<std::string> arguments{"map", o1, o2, "--write", "exr,html"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome run = run_sdm(arguments);
+    const Outcome run = run_shared(arguments, out);
     EXPECT_TRUE(run.code == 0 || run.code == 3 || run.code == 4) << run.err;
     return Json::parse(contents(out + "/report.json"));
   }
