@@ -7,12 +7,18 @@ const { inBrowser, opened } = require('./checks/browser.cjs');
 
 const atRest = (page) => page.waitForFunction(() => (window.sdmPage ?? window.sdmPlayer ?? window.sdmBaked).view.atRest);
 
-/// How the last picture was drawn.
-const drawn = (page) =>
+/// Keeps how each picture is drawn from now on. Where the machine does other things, many may pass between two questions.
+const watched = (page) =>
   page.evaluate(() => {
     const { view } = window.sdmPage ?? window.sdmPlayer ?? window.sdmBaked;
-    const { triangles, points } = view.renderer.info.render;
-    return { width: view.canvas.width, elements: triangles + points, moving: document.getElementById('view').classList.contains('moving') };
+    const { drawNow } = view;
+    window.pictures = [];
+    view.drawNow = function (...args) {
+      drawNow.apply(this, args);
+      const { triangles, points } = view.renderer.info.render;
+      window.pictures.push({ width: view.canvas.width, elements: triangles + points, moving: document.getElementById('view').classList.contains('moving') });
+    };
+    view.drawNow();
   });
 
 /// In the page: what is wrong with the texts that are seen, as sentences. `least`: the pixels of the smallest font.
@@ -276,7 +282,9 @@ const checks = {
   async drags(open, most) {
     const page = await open({});
     await atRest(page);
-    const fine = await drawn(page);
+    await watched(page);
+    const last = () => page.evaluate(() => window.pictures.at(-1));
+    const fine = await last();
     const pace = (milliseconds) =>
       page.evaluate((time) => {
         const { pace } = window.sdmPage.view;
@@ -287,12 +295,13 @@ const checks = {
     const x = canvas.x + canvas.width / 2;
     const y = canvas.y + canvas.height / 2;
     const pictures = async (change) => {
-      const seen = [];
+      await page.evaluate(() => (window.pictures = []));
       for (let i = 0; i < 5; ++i) {
         await change(i);
         await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-        seen.push(await drawn(page));
       }
+      const seen = await page.evaluate(() => window.pictures);
+      assert(seen.length > 1, `${seen.length} pictures`);
       return seen;
     };
     const drag = async () => {
@@ -312,7 +321,7 @@ const checks = {
       assert(coarse.moving && coarse.width <= fine.width / 2, `${coarse.width} pixels of ${fine.width}`);
       assert(coarse.elements > 100 && coarse.elements <= Number(most), `${coarse.elements} of ${fine.elements} are drawn`);
       await atRest(page);
-      assert.deepStrictEqual(await drawn(page), fine);
+      assert.deepStrictEqual(await last(), fine);
       assert.deepStrictEqual(await place(), under);
       await pace(1);
       for (const picture of await move()) assert.deepStrictEqual(picture, fine);

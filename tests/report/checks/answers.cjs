@@ -16,11 +16,11 @@ async function inWindow(page, ids, [width, height]) {
 
 module.exports = {
   // The verdict, and how sure it is; nothing of it where nothing is judged.
-  async isSure(page, verdict, words) {
+  async isSure(page, verdict, ...words) {
     const [badge, sure] = await inWindow(page, ['verdict', 'sure'], [1280, 800]);
     assert(badge.endsWith(verdict), badge);
-    if (words === 'nothing') assert.strictEqual(sure, null);
-    else assert(sure.startsWith('How sure: ') && sure.includes(words), sure);
+    if (words[0] === 'nothing') assert.strictEqual(sure, null);
+    else assert(sure.startsWith('How sure: ') && words.every((word) => sure.includes(word)), sure);
   },
 
   // The triangles of a group have the bands of its limits: greens where it passes, other colours where it fails; a
