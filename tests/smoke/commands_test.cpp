@@ -66,6 +66,15 @@ TEST_F(SmokeCommands, MapMeasuresByOtherRules) {
   EXPECT_LE(map({"--facing", "60", "--atlas", "triangles"})["distance"]["max"].get<double>(), kCorner + 1e-5);
   EXPECT_GE(map({"--facing", "60"})["distance"]["min"].get<double>(), 0.1 - 1e-5);
   EXPECT_NEAR(map({"--along", "normal"})["distance"]["max"], 0.1, 1e-5);
+}
+
+TEST_F(SmokeCommands, MapAlignsAndWelds) {
+  const auto map = [&](std::vector<std::string> more, int code = 0) {
+    const std::vector<std::string> first{"map",          large, small,     "-o",  out,
+                                         "--resolution", "32",  "--write", "none"};
+    more.insert(more.begin(), first.begin(), first.end());
+    return json_of(more, code);
+  };
   EXPECT_EQ(map({"--engine", "reference", "--align", "--tolerance", "0.2"}, 0)["engine"], "reference");
   const std::string apart = file_of("apart.ply", taken_apart(cube(1), 1e-6));
   EXPECT_EQ(json_of({"map", large, apart, "-o", out, "--resolution", "32", "--write", "none", "--weld",

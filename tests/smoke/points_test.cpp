@@ -235,7 +235,7 @@ TEST(SmokePoints, RaysHitWhatRationalArithmeticFinds) {
   for (const Mesh& mesh : meshes) {
     const Sites sites(mesh);
     const double size = scene_diagonal(mesh, mesh);
-    for (const std::size_t count : {0, 1, 5, 17}) {
+    for (const std::size_t count : {0, 1, 17}) {
       const std::vector<Vec3> origins = random_points(around(mesh), count, 31),
                               targets = random_points(bounds(mesh), count, 32);
       std::vector<Ray> rays;
