@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <random>
+#include <span>
 #include <utility>
 #include <vector>
 

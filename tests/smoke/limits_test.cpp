@@ -10,8 +10,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -225,7 +227,8 @@ TEST(SmokeLimits, ColorsFollowTheDistances) {
   distances.p05 = 0;
   EXPECT_EQ(color_range({}, distances).colormap, Colormap::sequential);
   const ColorRange one = color_range({}, distances);
-  EXPECT_EQ(widest(one, {.colormap = Colormap::sequential, .range = {-1.5, 1}}).colormap, Colormap::diverging);
+  EXPECT_EQ(widest(one, {.colormap = Colormap::sequential, .range = {-1.5, 1}}).colormap,
+            Colormap::diverging);
   EXPECT_EQ(color_range({.colormap = Colormap::paper2006}, distances).colormap, Colormap::paper2006);
   EXPECT_EQ(default_bands(Tolerance(0.2, 0.4), true).size(), 5u);
   EXPECT_EQ(default_bands(Tolerance(-std::numeric_limits<double>::infinity(), 0.4), true).size(), 3u);

@@ -10,9 +10,13 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <new>
 #include <optional>
+#include <random>
 #include <set>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/triangle_pair.h"
