@@ -16,7 +16,7 @@ constexpr double kLimit = 1.3;  // of the length of edges, relative to rest
 
 /// The ball falls freely, but while it touches the cloth, at this speed: it is much heavier than the cloth,
 /// and held back.
-constexpr double kPushingSpeed = 0.5, kGravity = 9.81;
+constexpr double kPushingSpeed = 0.5, kFallAcceleration = 9.81;
 
 class TearingCloth : public Simulation {
  public:
@@ -39,7 +39,7 @@ class TearingCloth : public Simulation {
     constexpr double kStep = kTimeStep / kSteps;
     const bool touches = distance_to_cloth() < kBallRadius + 2 * cloth_.thickness();
     for (int i = 0; i < kSteps; ++i) {
-      speed_ = touches ? kPushingSpeed : speed_ + kStep * kGravity;
+      speed_ = touches ? kPushingSpeed : speed_ + kStep * kFallAcceleration;
       centre_[2] -= kStep * speed_;
       if (centre_[2] < kBallRadius) centre_[2] = kBallRadius, speed_ = 0;
       solids_[0].refit(ball_at(centre_).positions);
