@@ -1,44 +1,19 @@
 // The sdm command.
-#include "bake.h"
-#include "bodies.h"
-#include "completion.h"
-#include "devices.h"
+#include "command_line.h"
 #include "exit_codes.h"
 #include "freed_memory.h"
-#include "hausdorff.h"
-#include "help_text.h"
-#include "info.h"
 #include "interrupts.h"
-#include "map.h"
-#include "metrics.h"
 #include "output_folder.h"
-#include "points.h"
-#include "proximity.h"
-#include "scene.h"
-#include "self.h"
-#include "sequence.h"
-#include "simplify.h"
 #include "terminal_text.h"
-#include "thickness.h"
-#include "usage_error.h"
-#include "volume.h"
 
 #include <sdm/error.h>
-#include <sdm/version.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
-#include <string>
-#include <string_view>
 
 namespace {
-
-void flush_output() {
-  if (!std::cout.flush()) throw sdm::Error("cannot write to standard output; the disk may be full");
-}
 
 /// The option that remedies the error, as text for its message.
 const char* advice(sdm::Remedy remedy) {
@@ -62,56 +37,6 @@ const char* advice(sdm::Remedy remedy) {
   std::_Exit(1);
 }
 
-/// Returns the exit code.
-int run(int argc, char** argv) {
-  CLI::App app(
-      "Computes surface distance maps: the distance from every point of one triangle mesh to another.",
-      "sdm");
-  app.set_version_flag("--version", std::string("sdm ") + sdm::kVersion);
-  app.require_subcommand(0, 1);
-  app.formatter(help_formatter(help_width()));
-  app.footer(
-      "Example:\n"
-      "  sdm map scan.ply part.stl -o out --units mm\n"
-      "  sdm map --help");
-  try {
-    add_map_command(app);
-    add_points_command(app);
-    add_proximity_command(app);
-    add_hausdorff_command(app);
-    add_metrics_command(app);
-    add_bodies_command(app);
-    add_sequence_command(app);
-    add_self_command(app);
-    add_thickness_command(app);
-    add_bake_command(app);
-    add_volume_command(app);
-    add_simplify_command(app);
-    add_info_command(app);
-    add_devices_command(app);
-    add_scene_command(app);
-    add_completion_command(app);
-    app.failure_message(usage_error);
-    if (argc == 3 && std::string_view(argv[1]) == "help" && std::string_view(argv[2]) == "--man") {
-      std::cout << manual_page(app);
-      flush_output();
-      return kSuccess;
-    }
-    app.parse(arguments(app, argc, argv));
-    if (app.get_subcommands().empty()) std::cout << app.help();
-    flush_output();
-    return kSuccess;
-  } catch (const CLI::RuntimeError& outcome) {
-    return outcome.get_exit_code();
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kSuccess : kInvalidUsage;  // 0: --help and --version
-  } catch (const UnknownCommand& error) {
-    std::cerr << "sdm: error: " << printable_lines(error.what())
-              << "\nRun sdm --help for the list of commands.\n";
-    return kInvalidUsage;
-  }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -120,7 +45,7 @@ int main(int argc, char** argv) {
   const Interrupts interrupts;
   try {
     const PrintableOutput output;
-    return run(argc, argv);
+    return run_command_line(argc, argv);
   } catch (const sdm::Cancelled& error) {
     std::cerr << "sdm: error: " << error.what() << '\n';
   } catch (const std::bad_alloc&) {

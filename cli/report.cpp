@@ -208,7 +208,7 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
   const std::string unit = unit_suffix(s.units);
   std::string text = heading(fmt::format("{} -> {}", on.file, to.file), judged(s, outcome.groups));
   const auto add = [&]<class... Values>(fmt::format_string<Values...> line, Values&&... values) {
-    fmt::format_to(std::back_inserter(text), line, std::forward<Values>(values)...);
+    text += fmt::format(line, std::forward<Values>(values)...);
   };
   text += measured_line(s);
   if (d.texels == 0 || !s.extremes) {

@@ -98,14 +98,15 @@ nlohmann::ordered_json describe(const SceneCommand& command, const Scene& scene,
 }
 
 /// The files that an earlier run has written, by its description.
-std::vector<fs::path> earlier_files(const fs::path& folder) {
+std::vector<fs::path> earlier_scene_files(const fs::path& folder) {
   std::vector<fs::path> files{"scene.json"};
   std::ifstream in(folder / "scene.json");
-  const auto description = nlohmann::json::parse(in, nullptr, false);
-  const auto bodies =
-      description.is_object() ? description.value("bodies", nlohmann::json()) : nlohmann::json();
+  const auto description = nlohmann::ordered_json::parse(in, nullptr, false);
+  const auto bodies = description.is_object() ? description.value("bodies", nlohmann::ordered_json())
+                                              : nlohmann::ordered_json();
   for (const auto& body : bodies) {
-    const auto name_value = body.is_object() ? body.value("name", nlohmann::json()) : nlohmann::json();
+    const auto name_value =
+        body.is_object() ? body.value("name", nlohmann::ordered_json()) : nlohmann::ordered_json();
     if (!name_value.is_string()) continue;
     const fs::path name = name_value.get<std::string>();
     if (name != name.filename() || name.empty() || name.string().starts_with('.')) continue;
@@ -125,7 +126,7 @@ void run(const SceneCommand& command) {
   limit_threads(command.threads);
   if (command.kind == kScan)
     return write_made_scan(command.mesh, command.triangles, command.out, command.quiet);
-  OutputFolder out(command.out, [&] { return earlier_files(command.out); });
+  OutputFolder out(command.out, [&] { return earlier_scene_files(command.out); });
   ProgressLine progress(command.quiet);
   const sdm::Progress report = progress.callback();
   nlohmann::ordered_json description;

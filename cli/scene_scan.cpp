@@ -15,7 +15,7 @@ namespace {
 
 std::string cloud_text(const std::vector<sdm::Vec3>& points) {
   std::string text;
-  for (const sdm::Vec3& p : points) fmt::format_to(std::back_inserter(text), "{} {} {}\n", p[0], p[1], p[2]);
+  for (const sdm::Vec3& p : points) text += fmt::format("{} {} {}\n", p[0], p[1], p[2]);
   return text;
 }
 
