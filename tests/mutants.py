@@ -208,13 +208,16 @@ def insert(source, build, seed, count, spare):
         json.dump(faults, file, indent=1)
 
 
-def run(build, count, jobs, only):
+def run(build, jobs, only):
     build = os.path.abspath(build)
     with open(os.path.join(build, "mutants.json"), encoding="utf-8") as file:
         faults = json.load(file)
 
     def programs_of(fault):
-        programs = [os.path.join(build, "tests", name) for name in PARTS[fault["part"]][1] + ["smoke_test"]]
+        names = PARTS[fault["part"]][1] + ["smoke_test"]
+        if fault["kind"] == "memory after a failed allocation" and "memory_test" not in names:
+            names.insert(0, "memory_test")
+        programs = [os.path.join(build, "tests", name) for name in names]
         if fault["kind"] in MISREAD:
             programs += [program + "_sanitized" for program in programs]
         return [program for program in programs if os.path.exists(program)]
@@ -277,7 +280,7 @@ def main():
     if given.step == "insert":
         insert(given.source, given.build, given.seed, given.of_each_kind, given.spare)
         return 0
-    return run(given.build, given.of_each_kind, given.jobs, given.only)
+    return run(given.build, given.jobs, given.only)
 
 
 if __name__ == "__main__":
