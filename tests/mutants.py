@@ -249,7 +249,7 @@ def run(build, jobs, only):
         print(f"{fault['number']}: {fault['found']} ({fault['seconds']} s)", flush=True)
         return fault
 
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # programs expect it not to be ignored
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have it ignored, also by programs started here
     if only:
         faults = [fault for fault in faults if fault["number"] in only]
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:

@@ -89,7 +89,8 @@ Outcome run_program(const char* program, const std::vector<std::string>& argumen
     dup2(out[1], STDOUT_FILENO);
     dup2(err[1], STDERR_FILENO);
     for (const int end : {out[0], out[1], err[0], err[1]}) close(end);
-    std::signal(SIGINT, SIG_DFL);  // which a shell ignores in what it starts in the background
+    // Shells and nohup ignore some of them in what they start.
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
     if (options.file_size) std::signal(SIGXFSZ, SIG_IGN);
     set_limit(RLIMIT_FSIZE, options.file_size);
     set_limit(RLIMIT_AS, options.memory);
