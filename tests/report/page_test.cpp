@@ -415,6 +415,11 @@ TEST_F(CloudPage, ShowsTheValuesOfThePoints) {
   write_cloud(20000, 0.01);
   measure({"--units", "mm", "--up", "z"});
   EXPECT_TRUE(passes("points", page(), {out + "/points.ply"}));
+}
+
+TEST_F(CloudPage, RecoloursAtOnceAndCalloutsStay) {
+  write_cloud(3000, 0.01);
+  measure({"--units", "mm", "--up", "z"});
   EXPECT_TRUE(passes("recolours", page()));
   EXPECT_TRUE(passes("callouts", page()));
 }
