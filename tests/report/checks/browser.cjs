@@ -5,6 +5,8 @@ const { createRequire } = require('module');
 const { delimiter, join } = require('path');
 const { chromium } = createRequire(process.cwd() + '/')('playwright-core');
 
+const kPatience = 120000; // milliseconds, on a machine that does other things
+
 function findBrowser() {
   const found = process.env.PATH.split(delimiter).map((folder) => join(folder, 'chromium-headless-shell')).find(existsSync);
   assert(found, 'chromium-headless-shell is needed for this test (Debian package of that name)');
@@ -15,6 +17,7 @@ function findBrowser() {
 /// is ready.
 async function opened(context, url, faults) {
   const page = await context.newPage();
+  page.setDefaultTimeout(kPatience);
   // That pixels are read is what a check asks for.
   page.on('console', (message) => /GPU stall due to ReadPixels/.test(message.text()) || faults.push(`console: ${message.text()}`));
   page.on('pageerror', (error) => faults.push(`error: ${error.message}`));
@@ -23,8 +26,8 @@ async function opened(context, url, faults) {
   });
   await page.goto(url);
   await page
-    .waitForSelector('html[data-ready]', { state: 'attached', timeout: 60000 })
-    .catch(async () => assert.fail(`the page says: ${await page.textContent('#message')} ${faults}`));
+    .waitForSelector('html[data-ready]', { state: 'attached' })
+    .catch(async () => assert.fail(`the page says: ${await page.locator('#message').allTextContents()} ${faults}`));
   return page;
 }
 
