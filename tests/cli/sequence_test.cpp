@@ -14,6 +14,7 @@
 #include "io_write/read_png.h"
 #include "support/oracle.h"
 #include "support/run_sdm.h"
+#include "support/same_contents.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
@@ -292,10 +293,11 @@ struct Resume : SequenceCommand {
     EXPECT_EQ(columns(out), columns(whole));
     for (const std::string& name : names_in(whole))
       if (name != "maps" && !name.starts_with("frames") && name != "plot.png") {
-        EXPECT_EQ(contents(out + "/" + name), contents(whole + "/" + name)) << name;
+        EXPECT_TRUE(same_contents(name, contents(out + "/" + name), contents(whole + "/" + name))) << name;
       }
     for (const std::string& name : names_in(whole + "/maps"))
-      EXPECT_EQ(contents(out + "/maps/" + name), contents(whole + "/maps/" + name)) << name;
+      EXPECT_TRUE(same_contents(name, contents(out + "/maps/" + name), contents(whole + "/maps/" + name)))
+          << name;
   }
   void expect_refusal(const std::vector<std::string>& arguments, const std::string& reason) const {
     const auto names = names_in(out);

@@ -190,6 +190,7 @@ TEST(SeparatingTranslation, OfRingsThatAreLinkedIsZero) {
   EXPECT_EQ(query.separating_translation().certainty, Certainty::exact);
 }
 
+#ifdef SDM_MINKOWSKI_ORACLE
 TEST(SeparatingTranslation, OfSolidsAgreesWithMinkowskiSums) {
   const Mesh loop = ring(5), bracket = angle_bracket();
   const std::array<std::array<Mesh, 2>, 4> pairs{
@@ -216,6 +217,7 @@ TEST(SeparatingTranslation, OfSolidsAgreesWithMinkowskiSums) {
   }
   EXPECT_GE(compared, subset(4, 8));
 }
+#endif
 
 // Ten pairs of non-convex bodies, overlapping by little and by much.
 TEST(SeparatingTranslation, OfOtherBodiesHasCloseBounds) {
