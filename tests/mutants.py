@@ -208,7 +208,7 @@ def insert(source, build, seed, count, spare):
         json.dump(faults, file, indent=1)
 
 
-def run(build, jobs, only):
+def run(build, jobs, only, least):
     build = os.path.abspath(build)
     with open(os.path.join(build, "mutants.json"), encoding="utf-8") as file:
         faults = json.load(file)
@@ -263,7 +263,7 @@ def run(build, jobs, only):
     found = [fault for fault in faults if fault["found"]]
     plain = [fault for fault in found if "_sanitized" not in fault["found"]]
     print(f"\n{len(found)} of {len(faults)} found, {len(plain)} of them without sanitizers")
-    return 0 if len(found) == len(faults) else 1
+    return 0 if len(found) >= (len(faults) if least is None else least) else 1
 
 
 def main():
@@ -276,11 +276,12 @@ def main():
     arguments.add_argument("--spare", type=int, default=0, help="further faults of each kind")
     arguments.add_argument("--jobs", type=int, default=os.cpu_count())
     arguments.add_argument("--only", type=int, nargs="*", help="numbers of faults to run")
+    arguments.add_argument("--least", type=int, help="how many have to be found; all by default")
     given = arguments.parse_args()
     if given.step == "insert":
         insert(given.source, given.build, given.seed, given.of_each_kind, given.spare)
         return 0
-    return run(given.build, given.jobs, given.only)
+    return run(given.build, given.jobs, given.only, given.least)
 
 
 if __name__ == "__main__":
