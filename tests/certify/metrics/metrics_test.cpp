@@ -7,6 +7,7 @@
 #include <sdm/threads.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -309,7 +310,12 @@ TEST(SurfaceMetrics, SymmetricOnesAreMadeOfBothDirections) {
   EXPECT_NEAR(m.assd.value, (from.area * from.mean.value + to.area * to.mean.value) / all, 1e-9);
   EXPECT_NEAR(m.masd.value, (from.mean.value + to.mean.value) / 2, 1e-9);
   EXPECT_NEAR(m.chamfer_l1.value, from.mean.value + to.mean.value, 1e-9);
-  EXPECT_EQ(m.percentiles[0].upper, std::max(from.percentiles[0].upper, to.percentiles[0].upper));
+  for (const auto& [both, one, other] : {std::array{m.percentiles[0], from.percentiles[0], to.percentiles[0]},
+                                         std::array{m.hausdorff, from.hausdorff, to.hausdorff},
+                                         std::array{back.hausdorff, to.hausdorff, from.hausdorff}}) {
+    EXPECT_EQ(both.lower, std::max(one.lower, other.lower));
+    EXPECT_EQ(both.upper, std::max(one.upper, other.upper));
+  }
   EXPECT_EQ(m.assd.value, back.assd.value);
   EXPECT_EQ(m.surface_dice[0].lower, back.surface_dice[0].lower);
   EXPECT_EQ(m.from[0].mean.value, back.from[1].mean.value);

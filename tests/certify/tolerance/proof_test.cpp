@@ -252,6 +252,16 @@ TEST(ToleranceProof, OfALimitOnOneSide) {
   EXPECT_EQ(prove(square(2, 0.2), square(4, 0), -kNone, 0.1), Proof::outside) << "unsigned";
 }
 
+// The boxes of spheres are farther apart than half of the limit.
+TEST(ToleranceProof, FindsTheLeastDistance) {
+  const Mesh a = moved(sphere(2), {0, 0, 2.3}), b = sphere(2);
+  const ToleranceProof found = prove_tolerance(a, Sites(b), Tolerance(0.4, 10));
+  EXPECT_EQ(found.proof, Proof::outside);
+  ASSERT_TRUE(found.witness);
+  EXPECT_NEAR(found.witness->distance, 0.3, 1e-12);
+  EXPECT_TRUE(found.at_lower);
+}
+
 TEST(ToleranceProof, RejectsWhatHasNoMeaning) {
   const Sites sites(cube(1));
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
