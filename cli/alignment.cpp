@@ -130,11 +130,6 @@ AlignOutcome align_points(std::span<const sdm::Vec3> points, std::span<const sdm
        [&](const sdm::Alignment& found) { return sdm::find_scale(points, normals, sites, found); }});
 }
 
-std::vector<sdm::Doubt> doubts_in_place(const std::optional<sdm::OtherUnit>& unit) {
-  if (!unit) return {};
-  return {sdm::doubt_of(*unit)};
-}
-
 std::vector<sdm::Doubt> doubts_of(const AlignOutcome& outcome) {
   return sdm::doubts_of(outcome.alignment, outcome.other_unit, outcome.mirrored);
 }

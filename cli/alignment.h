@@ -38,9 +38,6 @@ struct AlignOutcome {
 /// The doubts that it leaves.
 [[nodiscard]] std::vector<sdm::Doubt> doubts_of(const AlignOutcome& outcome);
 
-/// The doubt about an O1 that is not aligned, of sdm::find_other_unit_in_place(); none without a unit.
-[[nodiscard]] std::vector<sdm::Doubt> doubts_in_place(const std::optional<sdm::OtherUnit>& unit);
-
 /// The object of alignment.json, and of the key `alignment` of reports. sdm::read_matrix reads both.
 [[nodiscard]] nlohmann::ordered_json to_json(const AlignOutcome& outcome, const std::string& units);
 /// What was done and what is left between the surfaces, in lines.

@@ -2,13 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "option_checks.h"
 
+using Json = nlohmann::ordered_json;
+
+void add_accept_doubts(CLI::App& app, bool& accept, const char* what) {
+  app.add_flag("--accept-doubts", accept,
+               std::string("PASS stays PASS where ") + what + ", instead of DOUBTFUL");
+}
+
 void add_doubt_options(CLI::App& app, DoubtCommand& command) {
-  app.add_flag(
-      "--accept-doubts", command.accept,
-      "PASS stays PASS where units, the alignment or the coverage leave a doubt, instead of DOUBTFUL");
+  add_accept_doubts(app, command.accept, "units, the alignment or the coverage leave a doubt");
   CLI::Option* least = app.add_option("--min-coverage", command.min_coverage,
                                       "Measure which fraction of O2's area has a measured point near it (by "
                                       "--reach D) and doubt a PASS if "
@@ -29,4 +35,27 @@ double reach_of(const DoubtCommand& command, const std::optional<sdm::Tolerance>
 void check_doubts(const DoubtCommand& command, const std::optional<sdm::Tolerance>& tolerance) {
   if (command.min_coverage && !(reach_of(command, tolerance) > 0))
     throw CLI::ValidationError("--min-coverage", "needs --reach, or a tolerance other than 0");
+}
+
+std::vector<sdm::Doubt> doubts_in_place(const std::optional<sdm::OtherUnit>& unit) {
+  if (!unit) return {};
+  return {sdm::doubt_of(*unit)};
+}
+
+Json to_json(std::span<const sdm::Doubt> doubts) {
+  Json json = Json::array();
+  for (const sdm::Doubt& doubt : doubts)
+    json.push_back({{"reason", name_of(doubt.reason)}, {"text", doubt.text}, {"remedy", doubt.remedy}});
+  return json;
+}
+
+std::vector<sdm::Doubt> doubts_from(const Json& json) {
+  using enum sdm::DoubtReason;
+  std::vector<sdm::Doubt> doubts;
+  for (const Json& doubt : json) {
+    doubts.push_back({.text = doubt.at("text"), .remedy = doubt.at("remedy")});
+    for (const sdm::DoubtReason reason : {other_unit, mirrored, poor_fit, undetermined, low_coverage})
+      if (doubt.at("reason") == name_of(reason)) doubts.back().reason = reason;
+  }
+  return doubts;
 }

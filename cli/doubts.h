@@ -5,7 +5,10 @@
 #include <sdm/tolerance.h>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
+#include <vector>
 
 struct DoubtCommand {
   bool accept = false;
@@ -13,11 +16,21 @@ struct DoubtCommand {
   std::optional<double> reach{};  ///< of a measured point; by default the larger limit of the tolerance
 };
 
+/// Adds --accept-doubts; `what` may leave a doubt.
+void add_accept_doubts(CLI::App& app, bool& accept, const char* what);
+
 /// Adds --accept-doubts, --min-coverage and --reach.
 void add_doubt_options(CLI::App& app, DoubtCommand& command);
 
 /// Throws CLI::ValidationError if there is a least coverage, but no reach.
 void check_doubts(const DoubtCommand& command, const std::optional<sdm::Tolerance>& tolerance);
+
+/// The doubt about an O1 that is not aligned, of sdm::find_other_unit_in_place(); none without a unit.
+[[nodiscard]] std::vector<sdm::Doubt> doubts_in_place(const std::optional<sdm::OtherUnit>& unit);
+
+/// The value of the key `doubts` of reports, and its inverse.
+[[nodiscard]] nlohmann::ordered_json to_json(std::span<const sdm::Doubt> doubts);
+[[nodiscard]] std::vector<sdm::Doubt> doubts_from(const nlohmann::ordered_json& json);
 
 /// The reach of a measured point.
 [[nodiscard]] double reach_of(const DoubtCommand& command, const std::optional<sdm::Tolerance>& tolerance);

@@ -10,6 +10,7 @@
 
 #include "bounds_text.h"
 #include "common_options.h"
+#include "doubts.h"
 #include "exit_codes.h"
 #include "facing.h"
 #include "format.h"
@@ -42,7 +43,7 @@ struct HausdorffAnswer {
   std::vector<sdm::HausdorffDistance> directions{};
   double size = 0;  ///< of the smaller mesh, for the digits of places
   Notes notes{};
-  std::optional<sdm::Doubt> doubt{};  ///< that both meshes are in the same unit
+  std::vector<sdm::Doubt> doubts{};  ///< that both meshes are in the same unit
 };
 
 HausdorffAnswer measure(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o1,
@@ -77,7 +78,7 @@ HausdorffVerdict verdict(const HausdorffAnswer& answer, const HausdorffCommand& 
   if (unmatched) return {.within = false, .unmatched = true};
   return {.within = d.lower <= tolerance,
           .certified = d.lower > tolerance || d.upper <= tolerance,
-          .doubted = answer.doubt && !command.accept_doubts};
+          .doubted = !answer.doubts.empty() && !command.accept_doubts};
 }
 
 /// Computes the distance, with closer bounds if the tolerance is between them.
@@ -162,8 +163,7 @@ std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAn
   }
   text += unmatched_lines(answer);
   if (command.tolerance) text += tolerance_line(verdict(answer, command), *command.tolerance, unit);
-  if (answer.doubt) text += doubt_lines({&*answer.doubt, 1}, 13);
-  return text;
+  return text + doubt_lines(answer.doubts, 13);
 }
 
 Json report_of(const HausdorffCommand& command, const InputPair& pair, const HausdorffAnswer& answer) {
@@ -180,10 +180,7 @@ Json report_of(const HausdorffCommand& command, const InputPair& pair, const Hau
                          {"within", v.within},
                          {"certified", v.certified}};
   }
-  json["doubts"] = Json::array();
-  if (const auto& doubt = answer.doubt)
-    json["doubts"].push_back(
-        {{"reason", name_of(doubt->reason)}, {"text", doubt->text}, {"remedy", doubt->remedy}});
+  json["doubts"] = to_json(answer.doubts);
   json["notes"] = answer.notes;
   return json;
 }
@@ -207,8 +204,7 @@ int run(const HausdorffCommand& command) {
     if (auto note = sdm::note_on_walls(sites.back(), *command.tolerance, command.units))
       answer.notes.push_back(std::move(*note));
   if (command.tolerance && verdict(answer, command).word() == sdm::Verdict::pass)
-    if (const auto unit = sdm::find_other_unit_in_place(pair.o1.mesh, pair.o2.mesh))
-      answer.doubt = sdm::doubt_of(*unit);
+    answer.doubts = doubts_in_place(sdm::find_other_unit_in_place(pair.o1.mesh, pair.o2.mesh));
   const double query_ms = watch.lap();
 
   const auto report = [&] {
@@ -254,8 +250,7 @@ void add_hausdorff_command(CLI::App& app) {
           "between them")
       ->check(no_negative_number())
       ->type_name("T");
-  hausdorff->add_flag("--accept-doubts", c.accept_doubts,
-                      "PASS stays PASS where O1 seems to be in another unit, instead of DOUBTFUL");
+  add_accept_doubts(*hausdorff, c.accept_doubts, "O1 seems to be in another unit");
   hausdorff->add_option("--units", c.units, "Units of the meshes, for printed values")->type_name("NAME");
   add_run_options(*hausdorff, c, "JSON instead of a summary");
   hausdorff->callback([command] {

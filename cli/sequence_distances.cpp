@@ -45,7 +45,8 @@ FrameDistances distances_from(const Json& json) {
   };
   FrameDistances d{.min = number("min"), .mean = number("mean"), .max = number("max")};
   if (!json.contains("verdict")) return d;
-  for (const sdm::Verdict verdict : {sdm::Verdict::pass, sdm::Verdict::fail, sdm::Verdict::not_decided})
+  for (const sdm::Verdict verdict :
+       {sdm::Verdict::pass, sdm::Verdict::fail, sdm::Verdict::not_decided, sdm::Verdict::doubtful})
     if (json.at("verdict") == sdm::name_of(verdict)) d.verdict = verdict;
   d.exceeded_area_fraction = json.at("exceeded_area_fraction");
   d.certified = json.value("certified", false);

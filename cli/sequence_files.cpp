@@ -133,6 +133,8 @@ void SequenceFiles::write_collected(const std::vector<Frame>& frames) {
     for (const Frame& frame : frames) options.verdicts->of_frames.push_back(frame.verdict());
     options.verdicts->of_all = verdict_of(frames);
     options.verdicts->certified = is_certified(frames);
+    if (options.verdicts->of_all == sdm::Verdict::doubtful)
+      options.verdicts->doubt = deciding_frame(frames)->doubts.front().text;
   }
   if (command_.outputs.player) {
     player_->write(folder_ / "player.html", player_panels(frames, pair.units), options);

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "doubts.h"
 #include "interrupts.h"
 #include "stopwatch.h"
 
@@ -149,6 +150,12 @@ void FrameLoop::compute_maps(Frame& frame) {
                                            frame.error_bound[b], command_.picture.tolerance);
     });
   }
+  if (!command_.picture.tolerance) return;
+  naming_frame(frame.index, [&] {
+    frame.doubts =
+        doubts_in_place(sdm::find_other_unit_in_place(pair_.sites(0).mesh(), pair_.sites(1).mesh()));
+  });
+  if (!command_.accept_doubts) frame.withhold_pass();
 }
 
 void FrameLoop::write(const std::filesystem::path& folder) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common_options.h"
+#include "doubts.h"
 #include "option_checks.h"
 
 using Json = nlohmann::ordered_json;
@@ -20,6 +21,7 @@ void add_output_options(CLI::App& app, SequenceCommand& c) {
   app.add_flag("--both", c.both,
                "Also measure O2: its distances to O1, maps NNNN_o2 with --maps, colours in the player");
   add_tolerance_option(app, c.picture.tolerance);
+  add_accept_doubts(app, c.accept_doubts, "O1 seems to be in another unit");
   add_color_options(app, c.picture);
   add_up_option(app, c.picture.up, "player.html and animation.glb");
   app.add_option("--maps", c.outputs.maps_every, "Write the map of O1 of every K-th frame, as EXR and PNG")
@@ -98,5 +100,6 @@ Json options_json(const SequenceCommand& c) {
           {"--up", c.picture.up},
           {"--colormap", c.picture.colormap},
           {"--range", range ? Json(*range) : Json::array()},
-          {"--tolerance", tolerance ? Json{tolerance->lo, tolerance->hi} : Json(nullptr)}};
+          {"--tolerance", tolerance ? Json{tolerance->lo, tolerance->hi} : Json(nullptr)},
+          {"--accept-doubts", c.accept_doubts}};
 }

@@ -35,6 +35,7 @@ struct SequenceCommand {
   SequenceOutputs outputs;
   sdm::PictureOptions picture;
   bool both = false, keep_going = false, resume = false;
+  bool accept_doubts = false;
 
   /// The number of bodies with distances to the other one, O1 first.
   [[nodiscard]] int measured_bodies() const { return both ? 2 : 1; }

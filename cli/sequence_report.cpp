@@ -7,9 +7,11 @@
 #include <initializer_list>
 #include <limits>
 
+#include "doubts.h"
 #include "format.h"
 #include "notes.h"
 #include "proximity_report.h"
+#include "report.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -100,6 +102,8 @@ Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
   json["resolution"] = frame.resolution;
   for (int b = 0; b < 2; ++b)
     if (const auto& distances = frame.distances[b]) json["distance"][kBodies[b]] = to_json(*distances);
+  if (std::ranges::any_of(frame.distances, [](const auto& d) { return d && d->verdict; }))
+    json["doubts"] = to_json(frame.doubts);
   for (int b = 0; b < 2; ++b)
     if (const auto& topology = frame.topology[b])
       json["topology"][kBodies[b]] = {{"removed_faces", topology->removed_faces},
@@ -116,6 +120,11 @@ sdm::Verdict verdict_of(const std::vector<Frame>& frames) {
   sdm::Verdict verdict = sdm::Verdict::pass;
   for (const Frame& frame : frames) verdict = worse(verdict, frame.verdict());
   return verdict;
+}
+
+const Frame* deciding_frame(const std::vector<Frame>& frames) {
+  const auto found = std::ranges::find(frames, verdict_of(frames), &Frame::verdict);
+  return found == frames.end() ? nullptr : &*found;
 }
 
 bool is_certified(const std::vector<Frame>& frames) {
@@ -159,6 +168,7 @@ Frame frame_from(const Json& line) {
   for (int b = 0; b < 2 && line.contains("distance"); ++b)
     if (const Json& all = line.at("distance"); all.contains(kBodies[b]))
       frame.distances[b] = distances_from(all.at(kBodies[b]));
+  frame.doubts = doubts_from(line.value("doubts", Json::array()));
   for (int b = 0; b < 2 && line.contains("topology"); ++b)
     if (const Json& all = line.at("topology"); all.contains(kBodies[b])) {
       const Json& body = all.at(kBodies[b]);
@@ -273,17 +283,19 @@ std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame
                       number(error(*std::ranges::max_element(frames, {}, error))), unit);
   for (int b = 0; b < 2; ++b)
     if (const auto& first = frames.front().distances[b]; first && first->verdict) {
-      const auto out = std::ranges::count_if(frames, [&](const Frame& f) {
-        return f.distances[b] && f.distances[b]->judged() == sdm::Verdict::fail;
-      });
-      const bool decided = std::ranges::none_of(frames, [&](const Frame& f) {
-        return f.distances[b] && f.distances[b]->judged() == sdm::Verdict::not_decided;
-      });
-      text += fmt::format("  tolerance  O{}: {}\n", b + 1,
-                          out > 0   ? fmt::format("FAIL in {} of {} frames", out, frames.size())
-                          : decided ? "PASS in all frames"
-                                    : "NOT DECIDED in some frames, PASS in the others");
+      sdm::Verdict worst = sdm::Verdict::pass;
+      for (const Frame& f : frames)
+        if (f.distances[b]) worst = worse(worst, f.distances[b]->judged());
+      const auto count = std::ranges::count_if(
+          frames, [&](const Frame& f) { return f.distances[b] && f.distances[b]->judged() == worst; });
+      text +=
+          fmt::format("  tolerance  O{}: {}\n", b + 1,
+                      worst == sdm::Verdict::pass
+                          ? "PASS in all frames"
+                          : fmt::format("{} in {} of {} frames", sdm::name_of(worst), count, frames.size()));
     }
+  const auto doubted = std::ranges::find_if(frames, [](const Frame& f) { return !f.doubts.empty(); });
+  if (doubted != frames.end()) text += doubt_lines(doubted->doubts, 13);
   text += topology_summary(frames);
   const auto ms = [&](double FrameTimes::*step) {
     return number(std::round(100 * median(frames, [=](const Frame& f) { return f.time.*step; })) / 100);

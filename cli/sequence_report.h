@@ -40,8 +40,15 @@ struct Frame {
   std::array<std::optional<TopologyReport>, 2> topology{};   ///< of bodies that have changed
   std::uint32_t resolution = 0;                              ///< texels per row of O1's atlas
   std::array<std::optional<FrameDistances>, 2> distances{};  ///< of each body, where asked for
+  std::vector<sdm::Doubt> doubts{};                          ///< of a tolerance
   FrameTimes time;
 
+  /// Makes each PASS doubtful, if there are doubts.
+  void withhold_pass() {
+    if (doubts.empty()) return;
+    for (auto& d : distances)
+      if (d && d->verdict == sdm::Verdict::pass) d->verdict = sdm::Verdict::doubtful;
+  }
   /// The verdict on both bodies; a pass without a tolerance.
   [[nodiscard]] sdm::Verdict verdict() const {
     sdm::Verdict both = sdm::Verdict::pass;
@@ -53,6 +60,8 @@ struct Frame {
 
 /// The verdict on all frames; a pass without a tolerance.
 [[nodiscard]] sdm::Verdict verdict_of(const std::vector<Frame>& frames);
+/// The first frame whose verdict is that on all frames; null without frames.
+[[nodiscard]] const Frame* deciding_frame(const std::vector<Frame>& frames);
 /// Whether that is proven: PASS in each frame, FAIL in one.
 [[nodiscard]] bool is_certified(const std::vector<Frame>& frames);
 

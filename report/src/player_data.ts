@@ -33,6 +33,7 @@ interface PlayerJson {
   scale: Scale;
   verdict?: Verdict; ///< on all frames, if there is a tolerance
   certified?: boolean; ///< the verdict is proven
+  doubt?: string; ///< a clause: why a verdict is DOUBTFUL
   tolerance?: { lower: number; upper: number };
   verdicts?: Verdict[]; ///< on each of them
   arrays: ArrayIndex;

@@ -41,6 +41,7 @@ export function showVerdict(data: PlayerData, show: (place: number) => void): vo
   const words =
     verdict === 'FAIL' ? `Out of ${limits} in ${count(of(verdict))} of ${all} frames`
     : verdict === 'PASS' ? `Within ${limits} in all ${all} frames`
+    : verdict === 'DOUBTFUL' ? `Within ${limits}, but in doubt in ${count(of(verdict))} of ${all} frames, as ${page.doubt}`
     : `Not decided in ${count(of(verdict))} of ${all} frames, within ${limits} in the others`;
   const worst = worstFrame(data, tolerance);
   if (!worst) byId('judged').textContent = `${words}.`;

@@ -6,6 +6,8 @@ import { isCloud, verdictOf, type Verdict } from './verdict';
 
 type Sure = [word: string, why: string];
 
+const kInDoubt: Sure = ['in doubt', 'the numbers pass, but what they rest on may be wrong.'];
+
 export function sayHowSure([word, why]: Sure, more = ''): void {
   byId('sure').replaceChildren('How sure: ', make('b', {}, word), ` – ${why}${more}`);
   byId('sure').hidden = false;
@@ -28,7 +30,7 @@ function howSure(report: Report, verdict: Verdict): Sure | null {
     case 'NOT DECIDED':
       return ['open', 'neither PASS nor FAIL is proven.'];
     case 'DOUBTFUL':
-      return ['in doubt', 'the numbers pass, but what they rest on may be wrong.'];
+      return kInDoubt;
     default:
       return null;
   }
@@ -45,6 +47,7 @@ export function showSure(report: Report, unjudged = 0): void {
 /// How sure the verdict of a player is, which is one on all frames.
 export function howSureOfFrames(verdict: Verdict, certified: boolean): Sure {
   if (verdict === 'NOT DECIDED') return ['open', 'in some frame neither PASS nor FAIL is proven.'];
+  if (verdict === 'DOUBTFUL') return kInDoubt;
   if (!certified) return ['an estimate', 'it depends on the sign of a distance, and signs are estimates here.'];
   return ['proven', verdict === 'FAIL' ? 'a frame with a place that is out was found.' : 'for every point in every frame; nothing is said between frames.'];
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "mesh/validate.h"
 #include "registration/correspondences.h"
 #include "registration/samples.h"
 
@@ -80,11 +81,24 @@ double distance_of_corners(const Box& a, const Box& b) {
   return most / diagonal(b);
 }
 
+/// Throws sdm::Error. A mesh in motion has the places of removed faces.
+void validate_in_place(const Mesh& mesh) {
+  if (std::ranges::any_of(mesh.triangles, is_removed))
+    mesh::validate_edited(mesh);
+  else
+    validate(mesh);
+}
+
+Mesh without_removed_faces(Mesh mesh) {
+  std::erase_if(mesh.triangles, is_removed);
+  return mesh;
+}
+
 /// `box`: of all of O1, which the samples are taken from.
 std::optional<OtherUnit> unit_in_place(const registration::Samples& samples, const Box& box, const Mesh& o2) {
   constexpr double kSame = 0.05, kFar = 1;
   const Box to = bounds(o2);
-  const Sites sites(o2);
+  const Sites sites(without_removed_faces(o2));
   const registration::Target target(sites);
   const double as_given = misfit_in_place(samples, target);
   std::optional<OtherUnit> best;
@@ -123,8 +137,8 @@ bool sizes_differ(const Box& a, const Box& b) {
 }
 
 std::optional<OtherUnit> find_other_unit_in_place(const Mesh& o1, const Mesh& o2) {
-  validate(o1);
-  validate(o2);
+  validate_in_place(o1);
+  validate_in_place(o2);
   const Box box = bounds(o1);
   if (!sizes_differ(box, bounds(o2))) return std::nullopt;
   return unit_in_place(registration::surface_source(o1)(kUnitSamples), box, o2);

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <sdm/io.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/samples.h"
 #include "geometry/vec.h"
@@ -117,6 +119,49 @@ TEST_F(Verdicts, AUnitIsMistakenInPlaceToo) {
       EXPECT_EQ(run_sdm(arguments).code, 0);
     }
     EXPECT_EQ(map(o1, o2, {"--tolerance", "12", "--accept-doubts"}).code, 0);
+  }
+}
+
+// As of a map, in each frame: the part moves into the place where its unit is mistaken, and loses a face
+// there.
+TEST_F(Verdicts, AUnitIsMistakenInASequenceToo) {
+  Mesh part = placed(cube(0.5), "translate:0.5:0.5:0.5");
+  for (Vec3& p : part.positions) p = {40 * p[0], 60 * p[1], 20 * p[2]};
+  const Mesh scan = placed(part, "scale:0.001");
+  const std::string o2 = write_obj(folder / "part.obj", part);
+  const std::string frames = (std::filesystem::create_directory(folder / "scan"), folder / "scan");
+  write_obj(std::filesystem::path(frames) / "0.obj", placed(scan, "translate:0:0:10"));
+  Mesh open = scan;
+  open.triangles.pop_back();
+  write_obj(std::filesystem::path(frames) / "1.obj", open);
+  const auto run = [&](const std::string& o1, const std::vector<std::string>& more,
+                       const char* tolerance = "0.1") {
+    std::vector<std::string> arguments{"sequence",     o1,  o2, "-o", out, "--tolerance", tolerance,
+                                       "--resolution", "32"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_sdm(arguments);
+  };
+  const std::string still = write_obj(folder / "scan.obj", scan);
+  const Outcome withheld = run(still, {"--both", "--json"});
+  EXPECT_EQ(withheld.code, 3) << "O2 is farther from O1 than O1 from O2" << withheld.err;
+  const Outcome doubtful = run(still, {"--player"});
+  EXPECT_EQ(doubtful.code, 5) << doubtful.err;
+  EXPECT_THAT(doubtful.out, HasSubstr("DOUBTFUL: " + still));
+  EXPECT_THAT(doubtful.out, HasSubstr("tolerance  O1: DOUBTFUL in 1 of 1 frames\n"));
+  EXPECT_THAT(doubtful.out, HasSubstr("the size and the place of O2 if it is 1000 times as large"));
+  EXPECT_THAT(contents(out + "/player.html"), HasSubstr("1000 times as large"));
+  const Json line = Json::parse(contents(out + "/frames.jsonl"));
+  EXPECT_EQ(line["distance"]["o1"]["verdict"], "DOUBTFUL");
+  EXPECT_EQ(line["doubts"][0]["reason"], "other unit");
+  EXPECT_EQ(run(still, {"--accept-doubts"}).code, 0);
+  EXPECT_EQ(Json::parse(contents(out + "/frames.jsonl"))["doubts"], line["doubts"]);
+
+  EXPECT_EQ(run(frames, {"--allow-topology"}, "11").code, 5);
+  std::istringstream lines(contents(out + "/frames.jsonl"));
+  for (const std::size_t doubts : {0u, 1u}) {
+    std::string text;
+    std::getline(lines, text);
+    EXPECT_EQ(Json::parse(text)["doubts"].size(), doubts) << text;
   }
 }
 

@@ -117,6 +117,7 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
   if (options.verdicts) {
     page["verdict"] = name_of(options.verdicts->of_all);
     page["certified"] = options.verdicts->certified;
+    if (!options.verdicts->doubt.empty()) page["doubt"] = options.verdicts->doubt;
     page["tolerance"] = {{"lower", options.verdicts->tolerance.lo},
                          {"upper", options.verdicts->tolerance.hi}};
     page["verdicts"] = Json::array();

@@ -26,6 +26,7 @@ struct PlayerVerdicts {
   Verdict of_all = Verdict::pass;
   std::vector<Verdict> of_frames;  ///< one for each frame added
   bool certified = false;          ///< of_all is proven
+  std::string doubt{};             ///< a clause: why of_all is Verdict::doubtful
 };
 
 /// Options of a SequencePlayer.
