@@ -17,6 +17,7 @@ enum class DistanceKind : std::uint8_t {
   facing,     ///< the closest point of the faces of O2 that face the same way as the sample
   along,      ///< the nearest point of O2 on a line through the sample
   thickness,  ///< of the wall below the sample, which is of the part itself
+  self,       ///< the closest point of the faces that the sample's face does not exclude, of the same mesh
 };
 
 /// What was measured, for reports.

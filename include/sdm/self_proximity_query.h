@@ -92,7 +92,8 @@ struct SelfMapOptions {
 /// are unsigned, exact up to double rounding, stored in float. A texel with nothing in range, because every
 /// face is excluded or farther than max_distance, has the distance +∞, the vector 0, kNone and
 /// SiteType::none, and counts as beyond_max_distance; NaN means that no face owns the texel. Within a face
-/// the distance is 1-Lipschitz; between faces it may jump, as their exclusions differ.
+/// the distance is 1-Lipschitz; between faces it may jump, as their exclusions differ: the map is of
+/// DistanceKind::self, whose samples do not bound the points between them.
 ///
 /// `surface` and `sites` must be built from the same mesh and positions, `exclusion` from the same mesh at
 /// rest. Throws sdm::Error if their numbers of faces differ, for a maximum distance out of range, or if there

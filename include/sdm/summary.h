@@ -240,7 +240,7 @@ SDM_API void withhold_pass(Summary& summary, bool accept_doubts);
 [[nodiscard]] SDM_API const char* name_of(Colormap colormap);
 /// "none", "exact", "winding" or "side"; "automatic" before the choice.
 [[nodiscard]] SDM_API const char* name_of(SignMethod method);
-/// "closest", "facing", "along" or "thickness".
+/// "closest", "facing", "along", "thickness" or "self".
 [[nodiscard]] SDM_API const char* name_of(DistanceKind kind);
 /// "charts", "triangles" or "uv".
 [[nodiscard]] SDM_API const char* name_of(AtlasKind kind);

@@ -104,7 +104,7 @@ DistanceMap map_from(nb::handle packed, std::size_t texels) {
   map.distance = unpacked<float>(state[1]), map.vector = unpacked<Vec3f>(state[2]);
   map.site = unpacked<std::uint32_t>(state[3]), map.site_type = unpacked<SiteType>(state[4]);
   map.sign = {sign_of(nb::cast<std::string>(sign[0]).c_str()), nb::cast<std::string>(sign[1])};
-  map.measured = {enumerator<DistanceKind>(measured[0], DistanceKind::thickness),
+  map.measured = {enumerator<DistanceKind>(measured[0], DistanceKind::self),
                   nb::cast<std::string>(measured[1]), nb::cast<std::optional<double>>(measured[2])};
   map.beyond_max_distance = nb::cast<std::size_t>(state[7]);
   map.without_match = nb::cast<std::size_t>(state[8]);

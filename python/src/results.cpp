@@ -108,7 +108,7 @@ inline constexpr auto kLast<DecimalMark> = DecimalMark::comma;
 template <>
 inline constexpr auto kLast<SignMethod> = SignMethod::side;
 template <>
-inline constexpr auto kLast<DistanceKind> = DistanceKind::thickness;
+inline constexpr auto kLast<DistanceKind> = DistanceKind::self;
 template <>
 inline constexpr auto kMembers<TextDialect> = std::tuple{&TextDialect::separator, &TextDialect::decimal,
                                                          &TextDialect::columns, &TextDialect::header_line};

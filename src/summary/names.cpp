@@ -84,6 +84,8 @@ const char* name_of(DistanceKind kind) {
       return "along";
     case DistanceKind::thickness:
       return "thickness";
+    case DistanceKind::self:
+      return "self";
   }
   return "";
 }

@@ -163,6 +163,7 @@ Summary summarize_self(const Surface& surface, const DistanceMap& map, const Sum
   Summary result{.units = options.units,
                  .of_itself = true,
                  .sign = map.sign,
+                 .measured = map.measured,
                  .distance = statistics_of(surface, map, options),
                  .beyond_max_distance = map.beyond_max_distance,
                  .max_distance = options.max_distance};

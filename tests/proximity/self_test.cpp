@@ -417,6 +417,29 @@ TEST(Self, DistanceAcrossAFoldIsItsGap) {
   }
 }
 
+// Distances to other points jump between faces, whose exclusions differ: samples prove nothing.
+TEST(Self, SamplesDoNotProveATolerance) {
+  const Mesh mesh = folded(0.2, 60, 8);
+  const Surface surface(mesh, {.resolution = 128});
+  const Sites sites(mesh);
+  const Exclusion exclusion(flat(60, 8), {.rule = {.geodesic = 0.6}});
+  const DistanceMap map = compute_self_map(surface, sites, exclusion);
+  EXPECT_EQ(map.measured.kind, DistanceKind::self);
+  const std::vector<float> at_vertices = self_distances_at_vertices(sites, exclusion);
+  const double accuracy = engine_accuracy(engines().front(), mesh, mesh);
+  const double bound = covering_radius(surface);
+  const Tolerance tolerance(10);
+  const ToleranceVerdict verdict = check_tolerance(surface, map, at_vertices, bound, accuracy, tolerance);
+  EXPECT_EQ(verdict.verdict, Verdict::pass) << "of all samples";
+  EXPECT_FALSE(verdict.certified);
+  const CertifiedVerdict judged = certify_tolerance(surface, sites, map, at_vertices, tolerance,
+                                                    {.error_bound = bound, .accuracy = accuracy});
+  EXPECT_FALSE(judged.certified);
+  EXPECT_FALSE(judged.proof) << "the distance to all of the mesh is 0";
+  EXPECT_FALSE(
+      evidence_of(surface, map, std::vector<float>(at_vertices.size(), INFINITY), bound, accuracy).unmatched);
+}
+
 TEST(Self, NoDistanceWhereAllIsExcluded) {
   const Mesh mesh = tetrahedron();
   const Surface surface(mesh, {.resolution = 32});

@@ -172,7 +172,7 @@ TEST(SmokeLimits, EnumeratorsHaveNames) {
     EXPECT_STRNE(name_of(static_cast<Colormap>(i)), "");
   for (int i = 0; i <= static_cast<int>(SignMethod::side); ++i)
     EXPECT_STRNE(name_of(static_cast<SignMethod>(i)), "");
-  for (int i = 0; i <= static_cast<int>(DistanceKind::thickness); ++i)
+  for (int i = 0; i <= static_cast<int>(DistanceKind::self); ++i)
     EXPECT_STRNE(name_of(static_cast<DistanceKind>(i)), "");
   for (int i = 0; i <= static_cast<int>(AtlasKind::uv); ++i)
     EXPECT_STRNE(name_of(static_cast<AtlasKind>(i)), "");

@@ -20,6 +20,7 @@ namespace {
 MatchKind kind_of(const MeasuredDistance& measured) {
   switch (measured.kind) {
     case DistanceKind::closest:
+    case DistanceKind::self:
       return MatchKind::closest;
     case DistanceKind::facing:
       return MatchKind::facing;

@@ -68,6 +68,7 @@ DistanceMap compute_self_map(const Surface& surface, const Sites& sites, const E
     throw Error("surface and sites belong to different meshes: their numbers of faces differ");
   DistanceMap map;
   map::clear(map, surface);
+  map.measured = {DistanceKind::self, "distance to the closest point of faces that are not excluded"};
   map.sign.reason = "the distance of a surface to itself has no sign";
   const surface::Tiles tiles(surface);
   const self::PatchTree patches(internals(sites), exclusion);

@@ -25,7 +25,9 @@ struct WithoutValue {
   /// Vertices do not say what they lack: they count as the texels of the group or, if these have values, of
   /// the map.
   [[nodiscard]] bool is_unmatched(const DistanceMap& map) const {
-    if (unmatched || beyond || !vertex || map.measured.kind == DistanceKind::closest) return unmatched;
+    const bool always_matches =
+        map.measured.kind == DistanceKind::closest || map.measured.kind == DistanceKind::self;
+    if (unmatched || beyond || !vertex || always_matches) return unmatched;
     return map.without_match > 0 || map.beyond_max_distance == 0;
   }
 };
