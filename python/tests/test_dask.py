@@ -318,6 +318,22 @@ def test_parts_of_arrays_in_files(tmp_path):
         sdm.dask.split(meshes.box(), tmp_path / "parts")
 
 
+def test_files_of_the_user_are_not_removed(tmp_path):
+    vertices, faces = meshes.sphere()
+    work = tmp_path / "incomplete"
+    work.mkdir()
+    for name, mesh in (("f-0", work / "f-0"), ("notes.txt", vertices)):
+        with open(work / name, "wb") as opened:
+            np.save(opened, vertices)
+        with pytest.raises(sdm.Error, match=name):
+            sdm.dask.split(mesh, tmp_path, faces=faces)
+        assert [file.name for file in work.iterdir()] == [name]
+        (work / name).unlink()
+    (work / "f-0").write_text("left by a killed process")
+    sdm.dask.split(vertices, tmp_path, faces=faces)
+    assert not work.exists()
+
+
 def test_meshes_that_cannot_be_divided(tmp_path):
     vertices, faces = meshes.sphere()
     bad = vertices.copy()

@@ -1,6 +1,8 @@
 """Divides a mesh into parts that are close together in space. Reads arrays in chunks: they need not fit in memory."""
 
+import contextlib
 import os
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +20,8 @@ _CHUNK = 1 << 22  # faces read at a time
 _CELLS = 32  # per axis of the grid that orders faces, at each level
 _EDGES_AT_A_TIME = 1 << 25
 _LARGEST = 1e37
+# What split() writes into the folder "incomplete".
+_OF_WORK = re.compile(r"f(-\d+)+|edges-\d+|part-\d{6,}\.npz|\.[0-9a-f]{32}\.npz")
 
 
 @dataclass(frozen=True)
@@ -94,8 +98,7 @@ def split(
             raise sdm.Error(f"{folder} has the parts of another mesh, or of another size; use another folder or empty it")
         return Parts.open(folder)
 
-    work = Path(folder, "incomplete")
-    work.mkdir(exist_ok=True)
+    work = _work_folder(folder, [path for path in (mesh, faces) if isinstance(path, (str, os.PathLike))])
     lists = _with_area(_divided(positions, triangles, None, faces_per_part, work, "f"), positions, triangles)
     boxes = [_write_part(number, ids, positions, triangles, Path(folder)) for number, ids in enumerate(lists)]
     edges = _number_edges(len(boxes), len(positions), 3 * len(triangles), Path(folder), work)
@@ -105,10 +108,25 @@ def split(
         "part_faces": [count for _, _, count in boxes],
     }  # fmt: skip
     for file in work.iterdir():
-        file.unlink()
-    work.rmdir()
+        if _OF_WORK.fullmatch(file.name):
+            file.unlink()
+    with contextlib.suppress(OSError):  # something else is in it
+        work.rmdir()
     _files.write_json(Path(folder, "parts.json"), about)
     return Parts.open(folder)
+
+
+def _work_folder(folder: str, inputs: "list[Any]") -> Path:
+    """The folder for files of the work. Raises sdm.Error if there is something else in it, or an input."""
+    work = Path(folder, "incomplete")
+    work.mkdir(exist_ok=True)
+    for file in work.iterdir():
+        if not _OF_WORK.fullmatch(file.name):
+            raise sdm.Error(f"{file} is in the folder of files that split() removes; move it, or use another folder")
+        for path in inputs:
+            if os.path.exists(path) and os.path.samefile(file, path):
+                raise sdm.Error(f"split() would remove {file}: it is the input {os.fsdecode(path)}; use another folder")
+    return work
 
 
 def _arrays(mesh: Any, faces: Any) -> tuple[Any, ...]:
