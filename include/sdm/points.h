@@ -218,7 +218,8 @@ struct PointDistances {
 /// Computes the distance of each point of a file to O2, and writes the points in their order as binary PLY:
 /// x, y, z (double), nx, ny, nz (float, if the file has normals), distance (float; NaN if there is none),
 /// face (int; -1 if there is none), red, green, blue. Throws sdm::Error as PointReader, closest_points and
-/// compute_map do, if the file cannot be written, and for a cloud without points; Cancelled. Cost: a search
+/// compute_map do, if the file cannot be written or is the cloud itself, and for a cloud without points;
+/// Cancelled. Cost: a search
 /// per point, and reading the distances back three times; memory for `chunk` points.
 [[nodiscard]] SDM_API PointDistances measure_points(const std::filesystem::path& cloud, const Sites& sites,
                                                     const std::filesystem::path& ply,

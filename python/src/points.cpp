@@ -11,6 +11,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -161,6 +162,18 @@ sdm.Error: ...
 )");
 }
 
+/// Throws if the input is a file, and the one that is to be written.
+void require_other(const std::filesystem::path& output, nb::handle input) {
+  if (!nb::isinstance<nb::str>(input) && !nb::isinstance<nb::bytes>(input) &&
+      !nb::hasattr(input, "__fspath__"))
+    return;
+  const std::filesystem::path file = path_of(input);
+  std::error_code missing;
+  if (std::filesystem::equivalent(output, file, missing))
+    throw Error("cannot write " + output.string() + ": it is the input " + file.string() +
+                "; choose another name");
+}
+
 PointDistances measure(nb::handle cloud, nb::handle o2, nb::handle output, nb::handle motion,
                        const char* engine, const char* sign, double max_distance, nb::handle facing,
                        nb::handle along, nb::handle tolerance, const std::string& colormap,
@@ -169,6 +182,7 @@ PointDistances measure(nb::handle cloud, nb::handle o2, nb::handle output, nb::h
                        const std::string& decimal, nb::handle tolerance_table, nb::handle names,
                        nb::handle island_points) {
   const std::filesystem::path from = path_of(cloud), ply = path_of(output);
+  for (const nb::handle input : {cloud, o2, tolerance_table}) require_other(ply, input);
   SitesInUse to(o2);
   PointDistancesOptions options{.map = {.engine = engine_of(engine),
                                         .sign = sign_of(sign),
@@ -241,7 +255,7 @@ memory. For points in memory, use Sites.closest_points().
 cloud: a file of read_points(), with its columns, separator and decimal.
 o2: any form of a mesh (see Mesh); Sites are used as they are.
 output: a PLY file to write, with the points in their order: x, y, z, the normals if there are any, distance,
-face and colours.
+face and colours. It must not be one of the inputs.
 transform: a 4 × 4 affine matrix that moves the points first, such as Alignment.transform.
 engine, sign, max_distance, facing, along: as of map(); facing and along='normal' need the normals of the cloud.
 Along a direction, a cloud without normals is measured to any face. tolerance, colormap, range: of the colours, as of DistanceMap.save();

@@ -1,5 +1,7 @@
 """Distance fields, point clouds in files, and scenes."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -131,6 +133,20 @@ def test_clouds(tmp_path):
         with pytest.raises(sdm.Error, match=name):
             sdm.measure_points(tmp_path / name, sites, tmp_path / "bad.ply")
     assert not (tmp_path / "bad.ply").exists()
+
+
+def test_points_are_not_written_over_an_input(tmp_path):
+    cloud, part, table = tmp_path / "cloud.xyz", tmp_path / "part.ply", tmp_path / "table.csv"
+    cloud.write_text("0 0 0\n1 2 3\n")
+    sdm.Mesh(*meshes.box()).save(part)
+    table.write_text("group,lower,upper\ntop,-1,1\n")
+    (tmp_path / "link.ply").symlink_to(part)
+    os.link(cloud, tmp_path / "other.ply")
+    before = {file: file.read_bytes() for file in tmp_path.iterdir()}
+    for output, named in (("cloud.xyz", cloud), ("other.ply", cloud), ("part.ply", part), ("link.ply", part), ("table.csv", table)):
+        with pytest.raises(sdm.Error, match=f"cannot write .*{output}: it is the input .*{named.name}"):
+            sdm.measure_points(cloud, part, tmp_path / output, tolerance_table=table)
+    assert {file: file.read_bytes() for file in tmp_path.iterdir()} == before
 
 
 def test_scenes():

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "core/memory.h"
+#include "io/file/input_files.h"
 
 namespace sdm::io {
 namespace {
@@ -25,6 +26,7 @@ void require_regular_file(const std::filesystem::path& file, std::string_view ki
     throw Error(fmt::format("this is a folder, not a {} file", kind));
   if (error) throw Error(fmt::format("cannot be read: {}", error.message()));
   if (type != std::filesystem::file_type::regular) throw Error("this is not a regular file");
+  note_input(file);
 }
 
 FileBytes read_bytes(const std::filesystem::path& file) {

@@ -14,6 +14,7 @@
 #include "core/excerpt.h"
 #include "core/parse_number.h"
 #include "core/printable.h"
+#include "io/file/input_files.h"
 
 namespace sdm {
 namespace {
@@ -119,6 +120,7 @@ std::vector<GroupTolerance> table_in_json(std::string_view text) {
 
 std::vector<GroupTolerance> read_tolerance_table(const std::filesystem::path& file) try {
   if (std::filesystem::is_directory(file)) throw Error("is a folder");
+  io::note_input(file);
   std::ifstream in(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (in.fail() && text.empty()) throw Error("cannot be read");

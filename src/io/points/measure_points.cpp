@@ -18,6 +18,7 @@
 #include "io/file/atomic_file.h"
 #include "io/file/byte_scanner.h"
 #include "io/file/error_prefix.h"
+#include "io/file/input_files.h"
 #include "io/file/little_endian.h"
 #include "io/image/pictures/color_scale.h"
 #include "io/points/cloud_file.h"
@@ -70,6 +71,7 @@ class Measurement {
   }
 
   PointDistances write(const std::filesystem::path& ply) {
+    require_other_file(ply, cloud_);
     if (!reader_.count()) count_points();
     if (options_.islands) {
       result_.islands = options_.islands->found(options_.placement);

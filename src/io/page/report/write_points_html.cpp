@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "geometry/vec.h"
 #include "io/file/atomic_file.h"
+#include "io/file/input_files.h"
 #include "io/page/report/compress_arrays.h"
 #include "io/page/report/embedded_page.h"
 #include "io/page/report/largest_by_cell.h"
@@ -164,6 +165,7 @@ Json add_cloud(PackedArrays& arrays, std::span<const Shown> shown, const Box& bo
 void write_points_html(const std::filesystem::path& file, const std::filesystem::path& ply,
                        const PointDistances& found, const std::string& report,
                        const HtmlOptions& options) try {
+  require_other_file(file, ply);
   AtomicFile out(file);
   MeasuredRows rows(ply, found.points, found.has_normals);
   const Contents contents = contents_of(rows, found);
