@@ -10,6 +10,7 @@
 
 #include "group_tolerances.h"
 #include "option_checks.h"
+#include "src/io/file/input_files.h"
 
 namespace {
 
@@ -121,6 +122,7 @@ sdm::AlignRegion region_of(const AlignCommand& command, const Input& o2) {
 
 sdm::Transform read_321(const std::string& file) {
   constexpr std::size_t kRows = 6;
+  sdm::io::note_input(file);
   std::ifstream in(file);
   if (!in || std::filesystem::is_directory(file))
     throw sdm::Error(file + ": there is no such file, or it cannot be read");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "output_folder.h"
+#include "src/io/file/input_files.h"
 
 namespace fs = std::filesystem;
 
@@ -20,6 +21,7 @@ std::vector<std::uint8_t> read_bytes(const fs::path& file, const sdm::Mesh& mesh
   if (!fs::is_regular_file(file)) throw sdm::Error("it is not a stored atlas");
   const std::uint64_t most = 1024 + 128 * mesh.triangles.size() + 8 * resolution * resolution;
   std::vector<std::uint8_t> bytes(std::min<std::uint64_t>(fs::file_size(file), most));
+  sdm::io::note_input(file);
   std::ifstream in(file, std::ios::binary);
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!in) throw sdm::Error("it cannot be read");

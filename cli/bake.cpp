@@ -28,10 +28,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// All files that any run of the command writes.
-std::vector<std::filesystem::path> files_of_baking() {
-  std::vector<std::filesystem::path> files = files_of_channels();
-  files.insert(files.end(), {"report.json", "report.html", "baked.glb"});
+/// The files that are written whatever is baked.
+std::vector<std::filesystem::path> planned_files(const BakeCommand& command) {
+  std::vector<std::filesystem::path> files{"report.json", "baked.glb"};
+  if (command.page) files.emplace_back("report.html");
   return files;
 }
 
@@ -182,7 +182,7 @@ Json bake_into(const BakeCommand& command, Input& high, Input& low, const std::f
 void run_baking(BakeCommand command) {
   Stopwatch watch;
   limit_threads(command.threads);
-  OutputFolder out(command.out, files_of_baking);
+  OutputFolder out(command.out, {.command = "bake", .planned = planned_files(command)});
   ProgressLine progress(command.quiet);
   command.layout.atlas.progress = command.map.progress = progress.callback();
   command.map.sign = sdm::SignMethod::none;

@@ -292,15 +292,3 @@ BakedChannels bake_channels(const BakePair& pair, const fs::path& folder, Notes&
     for (const GeometryChannel channel : selected->geometry) baker.bake(channel);
   return std::move(baker.result);
 }
-
-std::vector<fs::path> files_of_channels() {
-  std::vector<fs::path> files;
-  for (const sdm::BakeChannel channel : sdm::kBakeChannels)
-    files.emplace_back(file_of(sdm::name_of(channel), "png"));
-  for (const GeometryChannel channel : sdm::kGeometryChannels) {
-    const Storage storage = storage_of(channel);
-    if (storage.png) files.emplace_back(file_of(sdm::name_of(channel), "png"));
-    if (storage.exr) files.emplace_back(file_of(sdm::name_of(channel), "exr"));
-  }
-  return files;
-}

@@ -47,6 +47,3 @@ struct BakedChannels {
 /// functions of <sdm/baked_geometry.h> do, and for `material` of a mesh that has none.
 [[nodiscard]] BakedChannels bake_channels(const BakePair& pair, const std::filesystem::path& folder,
                                           Notes& notes);
-
-/// The files of all channels.
-[[nodiscard]] std::vector<std::filesystem::path> files_of_channels();

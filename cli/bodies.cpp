@@ -36,14 +36,12 @@ struct BodiesCommand : RunOptions {
   MapFiles map_files{.views = false};
 };
 
-/// The files of a run with any number of bodies.
-std::vector<std::filesystem::path> earlier_files(const std::filesystem::path& out) {
+/// The files that are written whatever the meshes are.
+std::vector<std::filesystem::path> planned_files(const BodiesCommand& command) {
   std::vector<std::filesystem::path> files{"report.json"};
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(out, ignored)) {
-    const std::filesystem::path folder = entry.path().filename();
-    if (folder.string().find_first_not_of("0123456789") != std::string::npos) continue;
-    for (const std::string& file : all_names()) files.push_back(folder / file);
+  for (std::size_t body = 0; body < command.files.size(); ++body) {
+    const std::filesystem::path folder = fmt::to_string(body);
+    for (const std::string& file : names(command.map_files)) files.push_back(folder / file);
     files.push_back(folder / "body.npy");
   }
   return files;
@@ -137,7 +135,8 @@ void set_poses(sdm::MultiBodyQuery& bodies, const std::vector<sdm::Transform>& p
 void run(BodiesCommand command) {
   limit_threads(command.threads);
   std::optional<OutputFolder> out;
-  if (!command.out.empty()) out.emplace(command.out, [&] { return earlier_files(command.out); });
+  if (!command.out.empty())
+    out.emplace(command.out, OutputFiles{.command = "bodies", .planned = planned_files(command)});
   ProgressLine progress(command.quiet);
   command.atlas.progress = progress.callback();
 

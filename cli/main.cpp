@@ -4,6 +4,7 @@
 #include "freed_memory.h"
 #include "interrupts.h"
 #include "output_folder.h"
+#include "read_files.h"
 #include "terminal_text.h"
 
 #include <sdm/error.h>
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
   std::set_terminate(end_by_uncaught_exception);
   const Interrupts interrupts;
   try {
+    watch_inputs({argv, static_cast<std::size_t>(argc)});
     const PrintableOutput output;
     return run_command_line(argc, argv);
   } catch (const sdm::Cancelled& error) {

@@ -31,20 +31,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kAlignmentFile = "alignment.json";
 
-/// All files that any run of the command writes, with the UDIM tiles that there are in the folder.
-std::vector<std::filesystem::path> stale_files(const std::filesystem::path& out) {
-  std::vector<std::filesystem::path> files{kAlignmentFile, "ball.exr", "ray.exr"};  // and of sdm thickness
-  for (const std::filesystem::path mesh : {"", "o1", "o2"}) {
-    std::vector<std::filesystem::path> folders{mesh};
-    std::error_code ignored;
-    for (const auto& entry : std::filesystem::directory_iterator(out / mesh, ignored))
-      if (const std::string name = entry.path().filename().string();
-          name.size() == 4 && std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; }))
-        folders.push_back(mesh / name);
-    for (const std::filesystem::path& folder : folders) {
-      for (const std::string& file : all_names()) files.push_back(folder / file);
-      files.push_back(folder / "report.json");
-    }
+/// The files that are written whatever the meshes are. UDIM tiles have folders of their own.
+std::vector<std::filesystem::path> planned_files(const MapCommand& command) {
+  std::vector<std::filesystem::path> files;
+  if (command.align.on) files.emplace_back(kAlignmentFile);
+  for (const std::filesystem::path folder : command.both ? std::vector{"o1", "o2"} : std::vector{""}) {
+    if (command.layout.atlas.kind == sdm::AtlasKind::uv) continue;
+    files.push_back(folder / "report.json");
+    for (const std::string& name : names(command.output.files)) files.push_back(folder / name);
   }
   return files;
 }
@@ -108,7 +102,7 @@ std::string text_of(const MapCommand& command, const std::vector<MeshMaps>& mesh
 int run(MapCommand command) {
   Stopwatch total;
   limit_threads(command.threads);
-  OutputFolder out(command.output.folder, [&] { return stale_files(command.output.folder); });
+  OutputFolder out(command.output.folder, {.command = "map", .planned = planned_files(command)});
   ProgressLine progress(command.quiet);
   command.layout.atlas.progress = command.map.progress = progress.callback();
   command.map.engine = make_engine(command.engine, command.gl, command.layout.atlas);

@@ -54,12 +54,6 @@ std::vector<std::string> names(const MapFiles& files) {
   return names;
 }
 
-std::vector<std::string> all_names() {
-  MapFiles all;
-  for (const Kind& kind : kinds()) all.*kind.chosen = true;
-  return names(all);
-}
-
 std::string listed(const MapFiles& files) {
   std::string text;
   for (const std::string& name : names(files)) text += name + " ";

@@ -30,8 +30,6 @@ struct MapFiles {
 [[nodiscard]] std::vector<std::string> names(const MapFiles& files);
 /// The same, each followed by a space.
 [[nodiscard]] std::string listed(const MapFiles& files);
-/// The names of all files that can be written.
-[[nodiscard]] std::vector<std::string> all_names();
 
 /// --write, which sets `files`; `of_one_input`: also to files of the input's vertices, and to report.html if
 /// this build can write it.

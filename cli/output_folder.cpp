@@ -5,6 +5,7 @@
 #include <sdm/error.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,6 +20,7 @@
 #include <new>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -114,7 +116,7 @@ void remove_abandoned(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(folder, error))
-    if (is_staging(entry.path())) found.push_back(entry.path());
+    if (is_staging(entry.path()) && !is_among_arguments(entry.path())) found.push_back(entry.path());
   for (const fs::path& staging : found)
     if (const FolderLock lock(staging); lock.held()) remove_staging(staging);
 }
@@ -153,10 +155,27 @@ std::pair<fs::path, std::shared_ptr<const void>> make_staging(const fs::path& fo
 }
 
 /// Files that show that results are complete, or that they can be completed.
-bool concludes(const fs::path& file) {
+bool concludes(const std::string& file) {
   constexpr std::array<std::string_view, 4> kNames{"report.json", "frames.jsonl", "scene.json",
                                                    "resume.state"};
-  return std::ranges::find(kNames, file.filename().string()) != kNames.end();
+  return std::ranges::find(kNames, fs::path(file).filename().string()) != kNames.end();
+}
+
+[[noreturn]] void refuse_to_write(const fs::path& file, const fs::path& input) {
+  throw InputConflict(fmt::format("cannot write {}: it is the input {}; choose another name or folder",
+                                  file.string(), input.string()));
+}
+
+[[noreturn]] void refuse_to_remove(const fs::path& file, const fs::path& input) {
+  throw InputConflict(
+      fmt::format("cannot remove {}, which an earlier run has written: it is the input {}; choose another "
+                  "folder",
+                  file.string(), input.string()));
+}
+
+void require_writable(const fs::path& file) {
+  if (fs::is_directory(file)) fail(file, "a folder with the name of an output file exists");
+  if (const auto input = input_at(file)) refuse_to_write(file, *input);
 }
 
 fs::path without_trailing_slash(fs::path path) {
@@ -166,8 +185,8 @@ fs::path without_trailing_slash(fs::path path) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& folder, Earlier earlier)
-    : folder_(without_trailing_slash(folder)), earlier_(std::move(earlier)) {
+OutputFolder::OutputFolder(const fs::path& folder, OutputFiles files)
+    : folder_(without_trailing_slash(folder)), files_(std::move(files)) {
   if (folder == "-")
     throw sdm::Error("results are files and cannot go to standard output; give a folder with -o");
   std::error_code ignored;
@@ -175,7 +194,10 @@ OutputFolder::OutputFolder(const fs::path& folder, Earlier earlier)
   while (!fs::exists(existing_, ignored) && existing_.has_relative_path())
     existing_ = existing_.parent_path();
   if (!fs::is_directory(existing_, ignored)) fail(existing_, "it is not a folder");
-  if (existing_ == folder_) remove_abandoned(folder_);
+  if (existing_ == folder_) {
+    plan();
+    remove_abandoned(folder_);
+  }
   const Interrupts::Protected whole;
   try {
     std::tie(staging_, lock_) = make_staging(folder_);
@@ -225,8 +247,9 @@ void OutputFolder::remove_traces(const fs::path& staging) {
 void OutputFolder::fill(const std::function<void()>& work, const std::function<void()>& finish) {
   try {
     work();
+    const std::vector<WrittenFile> written = staged_files();
     const auto turn = turn_to_move(folder_);
-    commit();
+    commit(written);
     if (finish) finish();
   } catch (const sdm::Cancelled&) {
     throw;
@@ -253,36 +276,166 @@ std::string OutputFolder::with_final_path(std::string message) const {
   return message;
 }
 
-void OutputFolder::commit() {
-  const Interrupts::Protected whole;
-  const std::vector<fs::path> earlier = earlier_ ? earlier_() : std::vector<fs::path>();
+void OutputFolder::plan() {
+  for (const fs::path& file : files_.planned) {
+    const fs::path path = folder_ / file;
+    if (const auto input = input_at(path)) refuse_to_write(path, *input);
+    if (const auto identity = identity_of(path)) planned_.try_emplace(*identity, path, std::nullopt);
+  }
+  if (!has_manifest()) return;
+  for (WrittenFile& file : read_manifest(folder_)) {
+    if (file.command != files_.command || is_kept(file.path)) continue;
+    const fs::path path = folder_ / file.path;
+    if (const auto identity = identity_of(path)) planned_.try_emplace(*identity, path, std::move(file));
+  }
+}
+
+void OutputFolder::require_not_planned(const FileIdentity& identity, const fs::path& input) {
+  for (const OutputFolder* folder = current_; folder != nullptr; folder = folder->outer_) {
+    const auto found = folder->planned_.find(identity);
+    if (found == folder->planned_.end()) continue;
+    const auto& [path, obsolete] = found->second;
+    if (!obsolete) refuse_to_write(path, input);
+    if (is_unchanged(folder->folder_, *obsolete)) refuse_to_remove(path, input);
+  }
+}
+
+/// The files of this run. Their checksums are needed only where the folder has results.
+std::vector<WrittenFile> OutputFolder::staged_files() {
   const fs::path files = staging();
-  std::vector<std::pair<fs::path, fs::path>> moves;
+  std::vector<WrittenFile> written;
   for (const auto& entry : fs::recursive_directory_iterator(files)) {
     if (!entry.is_regular_file()) continue;
-    moves.emplace_back(entry.path(), folder_ / fs::relative(entry.path(), files));
-    if (fs::is_directory(moves.back().second))
-      fail(moves.back().second, "a folder with the name of an output file exists");
+    const fs::path path = fs::relative(entry.path(), files);
+    written.push_back(has_manifest() ? written_file(path, files_.command, entry.path())
+                                     : WrittenFile{.path = path.generic_string()});
   }
-  // Those of earlier runs are absent while files are moved: where there is one, the results are of one run,
-  // even if the process is killed here.
-  const auto is_last = [](const auto& move) { return concludes(move.second); };
-  std::stable_partition(moves.begin(), moves.end(), std::not_fn(is_last));
+  // Those that conclude come last.
+  std::ranges::stable_partition(written, std::not_fn(concludes), &WrittenFile::path);
+  return written;
+}
+
+bool OutputFolder::is_kept(const std::string& file) const {
+  return files_.keeps && files_.keeps(file);
+}
+
+// Results of earlier runs that are neither replaced nor kept.
+std::vector<WrittenFile> OutputFolder::obsolete_files(const std::set<std::string>& replaced) const {
+  std::vector<WrittenFile> obsolete;
+  for (const WrittenFile& file : earlier_)
+    if (file.command == files_.command && !replaced.contains(file.path) && !is_kept(file.path))
+      obsolete.push_back(file);
+  return obsolete;
+}
+
+// Before any file is moved.
+void OutputFolder::require_no_inputs(const std::vector<WrittenFile>& written,
+                                     const std::vector<WrittenFile>& obsolete) const {
+  find_inputs_again();
+  for (const WrittenFile& file : obsolete)
+    if (const auto input = input_at(folder_ / file.path); input && is_unchanged(folder_, file))
+      refuse_to_remove(folder_ / file.path, *input);
+  for (const WrittenFile& file : written) require_writable(folder_ / file.path);
+  if (has_manifest()) require_writable(folder_ / kManifestFile);
+}
+
+// Lists the files of earlier runs and of this one.
+std::pair<fs::path, fs::path> OutputFolder::staged_manifest(const std::vector<WrittenFile>& written) {
+  std::vector<WrittenFile> listed = earlier_;
+  listed.insert(listed.end(), written.begin(), written.end());
+  fs::path file = staging() / kManifestFile;
+  write_text(file, manifest_text(listed));
+  return {std::move(file), folder_ / kManifestFile};
+}
+
+// The results of earlier runs that conclude are absent while files are moved: where there is one, the results
+// are of one run, even if the process is killed here. What can fail for lack of memory or space comes before.
+void OutputFolder::commit(const std::vector<WrittenFile>& written) {
+  const Interrupts::Protected whole;
+  if (files_.check) files_.check();
+  if (has_manifest()) earlier_ = read_manifest(folder_);
+  std::set<std::string> replaced;
+  for (const WrittenFile& file : written) replaced.insert(file.path);
+  const std::vector<WrittenFile> obsolete = obsolete_files(replaced);
+  require_no_inputs(written, obsolete);
+  std::vector<std::pair<fs::path, fs::path>> moves;
+  if (has_manifest()) moves.push_back(staged_manifest(written));
+  const fs::path staged = staging();
+  for (const WrittenFile& file : written) moves.emplace_back(staged / file.path, folder_ / file.path);
   for (const auto& [from, to] : moves) create_folder(to.parent_path());
+
   std::error_code ignored;
-  for (const fs::path& file : earlier)
-    if (concludes(file)) fs::remove(folder_ / file, ignored);
-  for (const auto& [from, to] : moves) {
-    std::error_code error;
-    fs::rename(from, to, error);
-    if (error) fail(to, error.message());
+  for (const WrittenFile& file : obsolete)
+    if (concludes(file.path)) remove_unchanged(file);
+  for (const WrittenFile& file : written) {
+    if (!has_manifest() || !concludes(file.path) || is_kept(file.path)) continue;
+    const fs::path path = folder_ / file.path;
+    if (identity_of(path) && !input_at(path)) fs::remove(path, ignored);
   }
-  for (const fs::path& file : earlier) {
-    const fs::path stale = folder_ / file;
-    if (std::ranges::find(moves, stale, &std::pair<fs::path, fs::path>::second) != moves.end()) continue;
-    fs::remove(stale, ignored);
-    if (stale.parent_path() != folder_) fs::remove(stale.parent_path(), ignored);  // if it is empty
+  for (const auto& [from, to] : moves) move_into_place(from, to);
+  for (const WrittenFile& file : obsolete) {
+    if (!concludes(file.path)) remove_unchanged(file);
+    const fs::path parent = (folder_ / file.path).parent_path();
+    if (parent != folder_) fs::remove(parent, ignored);  // if it is empty
   }
+  shorten_manifest(written, replaced);
+}
+
+// Until then it also lists what is gone, which does no harm: so nothing that fails here is an error.
+void OutputFolder::shorten_manifest(const std::vector<WrittenFile>& written,
+                                    const std::set<std::string>& replaced) {
+  std::error_code ignored;
+  const auto is_gone = [&](const WrittenFile& file) {
+    return replaced.contains(file.path) || !fs::exists(folder_ / file.path, ignored);
+  };
+  if (std::erase_if(earlier_, is_gone) == 0) return;
+  try {
+    const auto [from, to] = staged_manifest(written);
+    move_into_place(from, to);
+  } catch (const std::exception&) {
+  }
+}
+
+// What is at the place is taken away in the same step, and looked at: another process can have put an input
+// there since all places were checked. Some file systems cannot do that; there the check comes just before.
+void OutputFolder::move_into_place(const fs::path& from, const fs::path& to) const {
+  constexpr unsigned kNoReplace = 1, kExchange = 2;  // RENAME_NOREPLACE, RENAME_EXCHANGE
+  const auto rename_with = [&](unsigned flags) {
+    return syscall(SYS_renameat2, AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), flags) == 0 ? 0 : errno;
+  };
+  int error = 0;
+  while ((error = rename_with(kNoReplace)) == EEXIST) {
+    error = rename_with(kExchange);
+    if (error == ENOENT) continue;  // it has gone meanwhile
+    if (error != 0) break;
+    const auto input = input_at(from);
+    if (input || fs::is_directory(fs::symlink_status(from))) {
+      rename_with(kExchange);
+      require_writable(to);
+      continue;
+    }
+    std::error_code ignored;
+    fs::remove(from, ignored);
+    return;
+  }
+  if (error == 0) return;
+  require_writable(to);
+  std::error_code failure;
+  fs::rename(from, to, failure);
+  if (failure) fail(to, failure.message());
+}
+
+// Files that were changed are the user's.
+void OutputFolder::remove_unchanged(const WrittenFile& file) const {
+  const fs::path path = folder_ / file.path;
+  if (input_at(path) || !is_unchanged(folder_, file)) return;
+  std::error_code ignored;
+  fs::remove(path, ignored);
+}
+
+void OutputFolder::remove_earlier(const fs::path& file) {
+  for (const WrittenFile& earlier : earlier_)
+    if (earlier.command == files_.command && earlier.path == file) remove_unchanged(earlier);
 }
 
 void write_text(const fs::path& file, std::string_view text) {
@@ -295,7 +448,7 @@ void write_text(const fs::path& file, std::string_view text) {
 void write_whole(const fs::path& path, std::string_view text) {
   if (fs::exists(path) && !fs::is_regular_file(path)) return write_text(path, text);
   const fs::path file = fs::weakly_canonical(fs::absolute(path));  // a link remains one
-  OutputFolder out(file.parent_path());
+  OutputFolder out(file.parent_path(), {.planned = {file.filename()}});
   out.fill([&] { write_text(out.staging() / file.filename(), text); });
 }
 

@@ -1,7 +1,6 @@
 #include "part_file.h"
 
 #include "cad_options.h"
-#include "map_files.h"
 #include "stopwatch.h"
 #include "weld.h"
 
@@ -14,8 +13,8 @@ LoadedPart load_part(const PartFile& part, bool vertices) {
   return {std::move(input), watch.lap()};
 }
 
-std::vector<std::filesystem::path> files_of_part() {
-  std::vector<std::filesystem::path> files{"report.json", "ball.exr", "ray.exr"};
-  for (const std::string& file : all_names()) files.emplace_back(file);
-  return files;
+std::vector<std::filesystem::path> planned_files(const MapFiles& files) {
+  std::vector<std::filesystem::path> planned{"report.json"};
+  for (const std::string& file : names(files)) planned.emplace_back(file);
+  return planned;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "map_files.h"
 #include "report.h"
 
 /// The options on its file.
@@ -27,5 +28,5 @@ struct LoadedPart {
 /// files of values at vertices. Throws sdm::Error as load_input() and weld() do.
 [[nodiscard]] LoadedPart load_part(const PartFile& part, bool vertices);
 
-/// All files that any run of such a command writes.
-[[nodiscard]] std::vector<std::filesystem::path> files_of_part();
+/// The files that such a command writes in any case.
+[[nodiscard]] std::vector<std::filesystem::path> planned_files(const MapFiles& files);

@@ -98,6 +98,14 @@ std::string files(const PointsCommand& command) {
                      command.html ? "report.html " : "");
 }
 
+std::vector<std::filesystem::path> planned_files(const PointsCommand& command) {
+  std::vector<std::filesystem::path> planned{"report.json"};
+  if (command.align.on) planned.emplace_back("alignment.json");
+  if (command.ply) planned.emplace_back("points.ply");
+  if (command.html) planned.emplace_back("report.html");
+  return planned;
+}
+
 // The mesh that is measured to, and the tolerances of its groups.
 Input load_reference(PointsCommand& command) {
   Input o2 = load_input("o2", command.o2, command.transform_o2, {.tessellation = command.tessellation});
@@ -158,9 +166,7 @@ void judge_doubts(const PointsCommand& command, const sdm::PointDistancesOptions
 int run(PointsCommand command) {
   Stopwatch total, watch;
   limit_threads(command.threads);
-  OutputFolder out(command.out, [] {
-    return std::vector<std::filesystem::path>{"points.ply", "report.html", "alignment.json", "report.json"};
-  });
+  OutputFolder out(command.out, {.command = "points", .planned = planned_files(command)});
   ProgressLine progress(command.quiet);
   command.map.progress = progress.callback();
 

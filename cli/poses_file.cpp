@@ -8,6 +8,7 @@
 #include <string>
 
 #include "option_checks.h"
+#include "src/io/file/input_files.h"
 
 namespace {
 
@@ -47,6 +48,7 @@ std::vector<sdm::Transform> read_poses(const std::filesystem::path& file, std::s
   std::error_code error;
   if (!std::filesystem::exists(file, error))
     throw sdm::Error(fmt::format("{}: there is no such file", file.string()));
+  sdm::io::note_input(file);
   std::ifstream stream(file);
   if (!stream || std::filesystem::is_directory(file, error))
     throw sdm::Error(fmt::format("{}: cannot be read", file.string()));

@@ -13,7 +13,6 @@
 #include <sdm/threads.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -97,36 +96,11 @@ nlohmann::ordered_json describe(const SceneCommand& command, const Scene& scene,
           {"bodies", bodies}};
 }
 
-/// The files that an earlier run has written, by its description.
-std::vector<fs::path> earlier_scene_files(const fs::path& folder) {
-  std::vector<fs::path> files{"scene.json"};
-  std::ifstream in(folder / "scene.json");
-  const auto description = nlohmann::ordered_json::parse(in, nullptr, false);
-  const auto bodies = description.is_object() ? description.value("bodies", nlohmann::ordered_json())
-                                              : nlohmann::ordered_json();
-  for (const auto& body : bodies) {
-    const auto name_value =
-        body.is_object() ? body.value("name", nlohmann::ordered_json()) : nlohmann::ordered_json();
-    if (!name_value.is_string()) continue;
-    const fs::path name = name_value.get<std::string>();
-    if (name != name.filename() || name.empty() || name.string().starts_with('.')) continue;
-    files.push_back(name.string() + ".ply");
-    files.push_back(name.string() + ".npy");
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder / name, error))
-      if (const fs::path& frame = entry.path();
-          frame.extension() == ".ply" &&
-          frame.stem().string().find_first_not_of("0123456789") == std::string::npos)
-        files.push_back(name / frame.filename());
-  }
-  return files;
-}
-
 void run(const SceneCommand& command) {
   limit_threads(command.threads);
   if (command.kind == kScan)
     return write_made_scan(command.mesh, command.triangles, command.out, command.quiet);
-  OutputFolder out(command.out, [&] { return earlier_scene_files(command.out); });
+  OutputFolder out(command.out, {.command = "scene", .planned = {"scene.json"}});
   ProgressLine progress(command.quiet);
   const sdm::Progress report = progress.callback();
   nlohmann::ordered_json description;

@@ -34,9 +34,8 @@ nlohmann::ordered_json describe(const std::filesystem::path& part, const sdm::sc
 
 void write_made_scan(const std::filesystem::path& part, std::size_t triangles,
                      const std::filesystem::path& folder, bool quiet) {
-  OutputFolder out(folder, [] {
-    return std::vector<std::filesystem::path>{"part.ply", "scan.ply", "scan.xyz", "scene.json"};
-  });
+  OutputFolder out(folder,
+                   {.command = "scene", .planned = {"part.ply", "scan.ply", "scan.xyz", "scene.json"}});
   sdm::scenes::MadeScan scan;
   out.fill([&] {
     const sdm::Mesh mesh = sdm::read_mesh(part);

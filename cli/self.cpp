@@ -110,7 +110,7 @@ std::string self_summary(const SelfCommand& command, const Json& report) {
 void run(SelfCommand command) {
   Stopwatch total;
   limit_threads(command.threads);
-  OutputFolder out(command.out, files_of_part);
+  OutputFolder out(command.out, {.command = "map", .planned = planned_files(command.files)});
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.self.progress = progress.callback();
 

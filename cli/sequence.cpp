@@ -115,10 +115,13 @@ void check_end(FrameLoop::End end, const FrameLoop& loop, std::size_t finished, 
 int run(SequenceCommand command) {
   limit_threads(command.pair.threads);
   Checkpoint checkpoint(command.out, options_json(command), command.resume);
-  OutputFolder out(command.out, [&] {
-    checkpoint.check_unchanged();
-    return SequenceFiles::earlier(command.out, checkpoint.resumes());
-  });
+  OutputFolder out(command.out, {.command = "sequence",
+                                 .planned = SequenceFiles::planned(command.outputs),
+                                 .keeps =
+                                     [&](const std::filesystem::path& file) {
+                                       return checkpoint.resumes() && file != "frames.jsonl";
+                                     },
+                                 .check = [&] { checkpoint.check_unchanged(); }});
   ProgressLine progress(command.pair.quiet);
   command.atlas.progress = progress.callback();
 
@@ -145,7 +148,7 @@ int run(SequenceCommand command) {
         loop.write(out.staging());
       },
       [&] {
-        if (loop.complete()) checkpoint.remove();
+        if (loop.complete()) out.remove_earlier(SequenceState::kFile);
       });
   if (!command.pair.json && !command.pair.quiet) std::cout << sequence_summary(command, loop, files, notes);
   check_end(end, loop, checkpoint.finished(), count, command.out.string());

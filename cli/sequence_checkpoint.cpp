@@ -37,11 +37,6 @@ void Checkpoint::write(const std::filesystem::path& folder, const sdm::TemporalM
   state_.write(folder / SequenceState::kFile);
 }
 
-void Checkpoint::remove() const {
-  std::error_code ignored;
-  std::filesystem::remove(folder_ / SequenceState::kFile, ignored);
-}
-
 std::filesystem::file_time_type Checkpoint::written() const {
   std::error_code missing;
   return std::filesystem::last_write_time(folder_ / SequenceState::kFile, missing);

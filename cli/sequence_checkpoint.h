@@ -39,8 +39,6 @@ class Checkpoint {
 
   /// Writes the state of this run to `folder`. Throws sdm::Error.
   void write(const std::filesystem::path& folder, const sdm::TemporalMaps& temporal);
-  /// Removes what an earlier run has left.
-  void remove() const;
 
  private:
   [[nodiscard]] std::filesystem::file_time_type written() const;

@@ -17,20 +17,10 @@ constexpr std::string_view kOfO2 = "_o2";  // ends the names of O2's maps
 
 }  // namespace
 
-std::vector<fs::path> SequenceFiles::earlier(const fs::path& folder, bool resumed) {
-  if (resumed) return {"frames.jsonl"};
-  std::vector<fs::path> files{"frames.jsonl",  "frames.csv",        "plot.png", "temporal.exr",
-                              "min.png",       "mean.png",          "max.png",  "player.html",
-                              "animation.glb", SequenceState::kFile};
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder / "maps", error)) {
-    const fs::path& file = entry.path();
-    std::string name = file.stem().string();
-    if (name.ends_with(kOfO2)) name.resize(name.size() - kOfO2.size());
-    const bool numbered = name.find_first_not_of("0123456789") == std::string::npos;
-    if (numbered && (file.extension() == ".exr" || file.extension() == ".png"))
-      files.push_back(fs::path("maps") / file.filename());
-  }
+std::vector<fs::path> SequenceFiles::planned(const SequenceOutputs& outputs) {
+  std::vector<fs::path> files{"frames.jsonl", "frames.csv"};
+  if (outputs.player) files.emplace_back("player.html");
+  if (outputs.animation) files.emplace_back("animation.glb");
   return files;
 }
 

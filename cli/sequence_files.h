@@ -21,9 +21,8 @@
 /// Writes the files of one run. All functions throw sdm::Error if a file cannot be written.
 class SequenceFiles {
  public:
-  /// The files of earlier runs that a run into the folder replaces. `resumed`: it continues one.
-  [[nodiscard]] static std::vector<std::filesystem::path> earlier(const std::filesystem::path& folder,
-                                                                  bool resumed);
+  /// The files that are written whatever the frames are.
+  [[nodiscard]] static std::vector<std::filesystem::path> planned(const SequenceOutputs& outputs);
 
   /// `first`: the bodies in their first frames. `command` and `out` must outlive the files.
   SequenceFiles(const SequenceCommand& command, OutputFolder& out, const std::array<sdm::Mesh, 2>& first);

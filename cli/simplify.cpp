@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bounds_text.h"
@@ -214,7 +215,11 @@ void write_report(const SimplifyCommand& command, const SimplifyOutcome& outcome
 
 void run(const SimplifyCommand& command) {
   limit_threads(command.threads);
-  OutputFolder out(fs::absolute(command.out).parent_path());  // found before anything is computed
+  std::vector<fs::path> planned;
+  for (unsigned level = 0; level <= command.lods; ++level) planned.push_back(command.file(level).filename());
+  if (!command.report.empty()) planned.push_back(fs::absolute(command.report));
+  OutputFolder out(fs::absolute(command.out).parent_path(),
+                   {.planned = std::move(planned)});  // found before anything is computed
   ProgressLine progress(command.quiet);
   progress.step("import");
   SimplifyOutcome outcome;

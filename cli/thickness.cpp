@@ -240,7 +240,7 @@ std::string thickness_summary(const ThicknessCommand& command, const ThicknessRe
 int run(ThicknessCommand command) {
   Stopwatch total;
   limit_threads(command.threads);
-  OutputFolder out(command.out, files_of_part);
+  OutputFolder out(command.out, {.command = "map", .planned = planned_files(command.files)});
   ProgressLine progress(command.quiet);
   command.atlas.progress = command.thickness.progress = progress.callback();
 

@@ -66,8 +66,8 @@ VolumeOutcome compute(const FieldCommand& command, Input& o2, const sdm::Progres
 
 void run(const FieldCommand& command) {
   limit_threads(command.threads);
-  OutputFolder out(
-      std::filesystem::absolute(command.out).parent_path());  // found before the field is computed
+  OutputFolder out(std::filesystem::absolute(command.out).parent_path(),
+                   {.planned = {command.out.filename()}});  // found before the field is computed
   ProgressLine progress(command.quiet);
   progress.step("import");
   Input o2;

@@ -141,7 +141,9 @@ Outcome compute(const Command& command, Input& o2, const sdm::Progress& progress
 void run(const Command& command) {
   limit_threads(command.threads);
   std::optional<OutputFolder> out;  // found before the field is computed
-  if (!command.out.empty()) out.emplace(std::filesystem::absolute(command.out).parent_path());
+  if (!command.out.empty())
+    out.emplace(std::filesystem::absolute(command.out).parent_path(),
+                OutputFiles{.planned = {command.out.filename()}});
   ProgressLine progress(command.quiet);
   progress.step("import");
   Input o2;

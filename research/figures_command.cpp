@@ -23,9 +23,7 @@ struct FiguresCommand : RunOptions {
 
 void run(FiguresCommand command) {
   limit_threads(command.threads);
-  OutputFolder out(command.out, [] {
-    return std::vector<std::filesystem::path>{"report.json", "report.html"};
-  });
+  OutputFolder out(command.out, {.command = "figures", .planned = {"report.json", "report.html"}});
   ProgressLine progress(command.quiet);
   command.options.step = [&](std::string_view name) { progress.step(name); };
   sdm::figures::Reproduction result;

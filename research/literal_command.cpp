@@ -85,7 +85,7 @@ Json report_of(const Command& command, const sdm::Surface& surface, const sdm::f
 
 void run(const Command& command) {
   limit_threads(command.threads);
-  OutputFolder out(command.out);
+  OutputFolder out(command.out, {.command = "literal", .planned = {"report.json", "map.exr"}});
   ProgressLine progress(command.quiet);
   Json report;
   out.fill([&] {

@@ -7,6 +7,7 @@
 
 #include "cli/help_text.h"
 #include "cli/interrupts.h"
+#include "cli/read_files.h"
 #include "cli/terminal_text.h"
 #include "cli/usage_error.h"
 #include "research/field_command.h"
@@ -41,6 +42,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   const Interrupts interrupts;
   try {
+    watch_inputs({argv, static_cast<std::size_t>(argc)});
     const PrintableOutput output;
     return run(argc, argv);
   } catch (const std::exception& error) {

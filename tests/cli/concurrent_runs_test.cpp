@@ -30,6 +30,13 @@ FileContents files_in(const fs::path& folder) {
   return files;
 }
 
+/// The same without the manifest.
+FileContents results_in(const fs::path& folder) {
+  FileContents files = files_in(folder);
+  EXPECT_EQ(files.erase(kManifest), 1u);
+  return files;
+}
+
 /// A lock on the output folder, as a run that moves its files has.
 class HeldFolder {
  public:
@@ -72,7 +79,7 @@ TEST_F(ConcurrentRuns, IntoOneFolderGiveTheCompleteResultOfOne) {
     const std::string place = folder / ("alone" + std::to_string(i));
     const Outcome run = run_sdm(arguments(i, place));
     ASSERT_EQ(run.code, 0) << run.err;
-    FileContents files = files_in(place);
+    FileContents files = results_in(place);
     const int resolution = resolution_of(files);
     alone[resolution] = std::move(files);
   }
@@ -86,7 +93,7 @@ TEST_F(ConcurrentRuns, IntoOneFolderGiveTheCompleteResultOfOne) {
         threads.emplace_back([&, i] { runs[i] = run_sdm(arguments(i, out)); });
     }
     for (const Outcome& run : runs) EXPECT_EQ(run.code, 0) << run.err;
-    FileContents found = files_in(out);
+    FileContents found = results_in(out);
     const int resolution = resolution_of(found);
     ASSERT_TRUE(alone.contains(resolution));
     const FileContents& whole = alone[resolution];
@@ -178,9 +185,9 @@ TEST_F(ConcurrentRuns, WithFewerBodiesOrFramesLeaveNoneOfMore) {
     return run_sdm({"scene", "letters", "--format", "ply", "--frames", count, "-o", scene}).code;
   };
   ASSERT_EQ(frames("4"), 0);
-  const FileContents four = files_in(scene);
+  const FileContents four = results_in(scene);
   ASSERT_EQ(frames("2"), 0);
-  EXPECT_EQ(files_in(scene).size() - 1, (four.size() - 1) / 2) << "besides scene.json";
+  EXPECT_EQ(results_in(scene).size() - 1, (four.size() - 1) / 2) << "besides scene.json";
 }
 
 // The frames before the interrupt are those in the folder, or the run would mix two.

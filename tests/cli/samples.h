@@ -26,11 +26,14 @@ inline std::string contents(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The names in a folder, sorted.
+/// Where a folder has the list of the files that runs have written into it.
+constexpr const char* kManifest = ".sdm-files.json";
+
+/// The names in a folder, sorted, without the manifest.
 inline std::vector<std::string> names_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
-    names.push_back(entry.path().filename());
+    if (entry.path().filename() != kManifest) names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   return names;
 }

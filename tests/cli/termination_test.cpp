@@ -69,13 +69,13 @@ struct Termination : ::testing::TestWithParam<Command>, TwoTori {
       arguments.insert(arguments.end(), {"--resolution", resolution});
     return arguments;
   }
-  /// All files but those in staging folders.
+  /// All files but the manifest and those in staging folders.
   [[nodiscard]] Files results() const {
     Files files;
     if (!fs::exists(out)) return files;
     for (const auto& entry : fs::recursive_directory_iterator(out)) {
       const std::string name = fs::relative(entry.path(), out);
-      if (entry.is_regular_file() && !name.starts_with(kStaging)) files[name] = contents(entry.path());
+      if (entry.is_regular_file() && !name.starts_with(kStaging) && name != kManifest) files[name] = contents(entry.path());
     }
     return files;
   }
