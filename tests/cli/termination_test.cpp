@@ -75,7 +75,8 @@ struct Termination : ::testing::TestWithParam<Command>, TwoTori {
     if (!fs::exists(out)) return files;
     for (const auto& entry : fs::recursive_directory_iterator(out)) {
       const std::string name = fs::relative(entry.path(), out);
-      if (entry.is_regular_file() && !name.starts_with(kStaging) && name != kManifest) files[name] = contents(entry.path());
+      if (entry.is_regular_file() && !name.starts_with(kStaging) && name != kManifest)
+        files[name] = contents(entry.path());
     }
     return files;
   }
