@@ -16,6 +16,8 @@ constexpr int kMostDivisions = 200;
 constexpr double kProgress = 0.5;
 // Distances that differ by less than this fraction of the precision count as equal.
 constexpr double kEqual = 1.0 / 16;
+// How far a part may be on the wrong side of a plane that keeps it out of B, in precisions.
+constexpr double kSlack = 1.0 / 16;
 
 }  // namespace
 
@@ -83,7 +85,11 @@ void PartSearch::evaluate(const Part& part, Found& found) const {
   if (const Side* side = found.lower.side; side != nullptr && nearest.lower > 0 && !side->has(highest)) {
     // The way from the point to one on the side that counts leads through B.
     const double beyond = (1 + kFewRoundings) * reach - nearest.lower;
-    better.upper = side->is_one_sided(part.at) ? 0 : std::clamp(beyond, 0.0, better.upper);
+    const double slack = kSlack * precision_;
+    better.upper = side->is_one_sided(part.at) ? 0
+                   : nearest.lower > precision_ && side->only_touches(part.at, slack)
+                       ? std::min(better.upper, 2 * slack)
+                       : std::clamp(beyond, 0.0, better.upper);
     better.stalled = true;
     if (better.upper + rounding(part) <= found.lower.value + precision_) {
       found.settled = std::max(found.settled, better.upper + rounding(part));

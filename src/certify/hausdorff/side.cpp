@@ -1,6 +1,8 @@
 #include "certify/hausdorff/side.h"
 
 #include <algorithm>
+#include <limits>
+#include <vector>
 
 #include "geometry/rounding.h"
 #include "geometry/triangle_pair.h"
@@ -32,6 +34,50 @@ bool Side::is_one_sided(const Corners& triangle) const {
   };
   tree::visit(solid_.tree, tree::NearestFirst{bound, enter, leaf});
   return apart;
+}
+
+// Where the triangle T meets the surface of B, all faces there are on one side of the plane and T on the
+// other. Close to such a place, what is strictly above the plane meets no face and so is all inside of B or
+// all outside; the points of T that are not on B are as these are, as T is connected.
+bool Side::only_touches(const Corners& triangle, double slack) const {
+  constexpr std::size_t kMost = 64;
+  constexpr double kFlattest =
+      1.0 / 16;  // height of a face, in sizes of the triangle, for its plane to be exact
+  Box box;
+  double size = 0;
+  for (int k = 0; k < 3; ++k) {
+    extend(box, solid_.frame.to_unit(triangle[k]));
+    size = std::max(size, norm(triangle[k < 2 ? k + 1 : 0] - triangle[k]));
+  }
+  const double reach = 4 * slack;
+  const tree::FloatBox around = tree::FloatBox::around(box);
+  std::vector<Corners> faces;
+  const auto bound = [&](const tree::FloatBox& other) { return norm(tree::gap(around, other)); };
+  const auto enter = [&](double distance) {
+    return faces.size() <= kMost && distance <= reach * solid_.frame.scale + 2 * kFewRoundings;
+  };
+  const auto leaf = [&](std::uint32_t node) {
+    for (const std::uint32_t face : solid_.tree.items_of(node)) {
+      const Corners corners = corners_of(solid_.mesh, face);
+      if (closest_or_common(triangle, corners).squared <= reach * reach) faces.push_back(corners);
+    }
+  };
+  tree::visit(solid_.tree, tree::NearestFirst{bound, enter, leaf});
+  if (faces.size() > kMost) return false;
+  const auto separates = [&](const Corners& plane) {
+    const Vec3 normal = cross(plane[1] - plane[0], plane[2] - plane[0]);
+    const double area = norm(normal),
+                 longest = std::max(
+                     {norm(plane[1] - plane[0]), norm(plane[2] - plane[1]), norm(plane[0] - plane[2])});
+    if (!(area >= kFlattest * longest * std::min(size, longest))) return false;
+    const auto height = [&](const Vec3& p) { return dot(normal, p - plane[0]) / area; };
+    double least = std::numeric_limits<double>::infinity(), most = -least, lowest = least, highest = most;
+    for (const Vec3& p : triangle) least = std::min(least, height(p)), most = std::max(most, height(p));
+    for (const Corners& face : faces)
+      for (const Vec3& p : face) lowest = std::min(lowest, height(p)), highest = std::max(highest, height(p));
+    return (least >= -slack && highest <= slack) || (most <= slack && lowest >= -slack);
+  };
+  return separates(triangle) || std::ranges::any_of(faces, separates);
 }
 
 }  // namespace sdm::hausdorff

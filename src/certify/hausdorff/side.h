@@ -17,6 +17,11 @@ class Side {
   /// Whether the triangle has no point in common with the surface, so that all of it is on the same side.
   [[nodiscard]] bool is_one_sided(const Corners& triangle) const;
 
+  /// Whether a plane separates the triangle from all faces of B that are closer than 4 · `slack` to it, both
+  /// up to `slack`: it then touches B at most, and none of its points is farther than 2 · `slack` inside or
+  /// outside of B if one of them is on the other side. False if there are too many faces to look at.
+  [[nodiscard]] bool only_touches(const Corners& triangle, double slack) const;
+
  private:
   const sites::SitesData& solid_;
   bool inside_;
