@@ -2,7 +2,7 @@
 import type { MatchCounts, MatchMethod } from 'sdm';
 import { byId, make } from '../src/dom';
 import { select } from '../src/fields';
-import { count, percent } from '../src/numbers';
+import { count, percent, typedNumber } from '../src/numbers';
 import { capital } from '../src/words';
 import type { Baking } from './baking';
 import { addTabs } from './tabs';
@@ -15,12 +15,13 @@ const sentence = (note: string): string => `${capital(note)}.`;
 /// The rows of a field for a number greater than 0; empty: none.
 function numberField(id: string, label: string, value: string, set: (value: number | null) => void): HTMLElement {
   const input = make('input', {
-    type: 'number', id, value, min: 0, step: 'any',
+    type: 'text', inputmode: 'decimal', autocomplete: 'off', id, value,
     change: () => {
-      const number = Number(input.value);
-      const valid = input.value === '' ? !input.validity.badInput : number > 0;
+      const number = typedNumber(input.value);
+      const isEmpty = input.value.trim() === '';
+      const valid = isEmpty || number > 0;
       input.setAttribute('aria-invalid', String(!valid));
-      if (valid) set(input.value === '' ? null : number);
+      if (valid) set(isEmpty ? null : number);
     },
   });
   return make('div', { class: 'field-of' }, make('label', { for: id }, label), input);

@@ -12,7 +12,7 @@ import { outsideOf, whatIf } from '../src/verdict';
 import { quantityOf } from '../src/words';
 import { kRest } from './motion';
 import { kUp } from './pair';
-import { showReport } from './results';
+import { showLimits, showReport } from './results';
 import { addSaveButtons, glbOf } from './save';
 import type { Session } from './session';
 
@@ -135,6 +135,7 @@ export class Display {
     const limits: [number, number] | null = Number.isFinite(lower) || Number.isFinite(upper) ? [lower, upper] : null;
     if (String(limits) === String(session.tolerance)) return;
     session.tolerance = limits;
+    if (!session.moving) showLimits(session, limits);
     const { version } = session;
     const isCurrent = () => String(limits) === String(session.tolerance) && version === session.version && !session.moving && !session.loading;
     window.setTimeout(() => {

@@ -28,6 +28,15 @@ export function showReport(session: Session, of: Report): void {
   });
 }
 
+/// Limits are new: there is no verdict on them yet, and without any there is none.
+export function showLimits(session: Session, limits: [number, number] | null): void {
+  const { tolerance: _, doubts: __, ...unjudged } = session.report!;
+  session.report = unjudged;
+  byId('report').textContent = JSON.stringify(unjudged, null, 2);
+  showVerdict(unjudged);
+  if (limits) byId('sentence').textContent = 'The verdict on these limits follows.';
+}
+
 /// Until the next rest there is no verdict.
 export function showNoVerdict({ report }: Session): void {
   if (report) showMoving(report);

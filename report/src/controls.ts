@@ -2,10 +2,10 @@
 import { kViridis, Mode, Scale } from './color_scale';
 import { byId, make } from './dom';
 import { check, select } from './fields';
-import { text } from './numbers';
+import { text, typedNumber } from './numbers';
 import type { AreaByValue } from './area_by_value';
 import type { Report, Vec } from './page_data';
-import { canJudge, isLimited, isSigned, limitsOf } from './verdict';
+import { canJudge, isLimited, isSigned, limitsOf, whatIf } from './verdict';
 
 export interface State {
   scale: Scale;
@@ -29,7 +29,7 @@ interface SliderOptions {
   isValid: (value: number) => boolean;
   set: (value: number) => void;
   round?: (value: number) => number; ///< of a value by the slider; default: to four digits
-  clear?: () => void; ///< the field may be empty: then the value is infinite
+  unset?: () => void; ///< the field may be empty; it is, or holds what is no value
 }
 
 /// A slider and a field for the same number.
@@ -49,10 +49,11 @@ class Slider {
       input: () => this.changed(this.rounded(options.toValue(Number(this.range.value) / kSteps)), this.range),
     });
     this.field = make('input', {
-      type: 'number',
-      step: 'any',
+      type: 'text',
+      inputmode: 'decimal',
+      autocomplete: 'off',
       'aria-label': `${label}${unit ? `, in ${unit}` : ''}`,
-      input: () => this.changed(Number(this.field.value), this.field),
+      input: () => this.changed(typedNumber(this.field.value), this.field),
     });
     this.element = make(
       'div',
@@ -70,11 +71,10 @@ class Slider {
   }
 
   private changed(value: number, by: HTMLInputElement): void {
-    const valid = by.value !== '' && this.options.isValid(value);
-    const clear = by.value === '' && !by.validity.badInput ? this.options.clear : undefined;
-    this.field.setAttribute('aria-invalid', String(!valid && !clear));
-    if (clear) clear();
-    if (!valid) return;
+    const valid = this.options.isValid(value);
+    const mayBeEmpty = this.options.unset !== undefined && by.value.trim() === '';
+    this.field.setAttribute('aria-invalid', String(!valid && !mayBeEmpty));
+    if (!valid) return void this.options.unset?.();
     this.show(value, by);
     this.options.set(value);
   }
@@ -94,6 +94,12 @@ class Slider {
     if (except !== this.field) this.field.value = String(this.options.round ? this.options.round(value) : Number(value.toPrecision(6)));
     this.range.setAttribute('aria-valuetext', `${text(value)} ${this.options.unit}`);
   }
+}
+
+/// What the sliders ask has no answer.
+function showNoLimits(report: Report): void {
+  const none = { lower: -Infinity, upper: Infinity };
+  document.getElementById('what-if')?.replaceChildren(whatIf(report, none, 0)[0]);
 }
 
 /// The settings that a page opens with; `byGroup`: triangles have limits by their groups.
@@ -166,34 +172,40 @@ export function makeControls(
     else if (scale.hi >= -scale.lo) [scale.lo, scale.hi] = [-shorter * x, x];
     else [scale.lo, scale.hi] = [-x, shorter * x];
   };
+  // Limits that were given stay those of the colours while the field has none.
+  const unset = (take: () => void) => () => {
+    if (limits) return showNoLimits(report);
+    take();
+    changed();
+  };
   const sliders = {
     reach: new Slider({
       id: 'range', label: signs ? 'Colours up to ±' : 'Colours up to', unit, value: reach(), ...cubic, isValid: positive,
       set: (x) => { setReach(x); changed(); },
     }),
     lo: new Slider({
-      id: 'range-lo', label: 'Colours from', unit, value: state.scale.lo, ...linear, isValid: (x) => x < state.scale.hi,
+      id: 'range-lo', label: 'Colours from', unit, value: state.scale.lo, ...linear, isValid: (x) => x < state.scale.hi && Number.isFinite(x),
       set: (x) => { state.scale.lo = x; changed(); },
     }),
     hi: new Slider({
-      id: 'range-hi', label: 'Colours to', unit, value: state.scale.hi, ...linear, isValid: (x) => x > state.scale.lo,
+      id: 'range-hi', label: 'Colours to', unit, value: state.scale.hi, ...linear, isValid: (x) => x > state.scale.lo && Number.isFinite(x),
       set: (x) => { state.scale.hi = x; changed(); },
     }),
     tolerance: new Slider({
       id: 'tolerance', label: signs ? 'Tolerance ±' : 'Tolerance', unit, value: state.scale.upper, ...cubic,
       isValid: (x) => Number.isFinite(x) && x >= 0,
       set: (x) => { state.scale.upper = x; state.scale.lower = -x; changed(); },
-      clear: limits ? undefined : () => { state.scale.upper = Infinity; state.scale.lower = -Infinity; changed(); },
+      unset: unset(() => { state.scale.upper = Infinity; state.scale.lower = -Infinity; }),
     }),
     lower: new Slider({
       id: 'tolerance-lower', label: 'Lower limit', unit, value: state.scale.lower, ...bothSides,
       isValid: (x) => x <= state.scale.upper, set: (x) => { state.scale.lower = x; changed(); },
-      clear: Number.isFinite(limits?.lower) ? undefined : () => { state.scale.lower = -Infinity; changed(); },
+      unset: Number.isFinite(limits?.lower) ? () => showNoLimits(report) : () => { state.scale.lower = -Infinity; changed(); },
     }),
     upper: new Slider({
       id: 'tolerance-upper', label: 'Upper limit', unit, value: state.scale.upper, ...bothSides,
       isValid: (x) => x >= state.scale.lower, set: (x) => { state.scale.upper = x; changed(); },
-      clear: Number.isFinite(limits?.upper) ? undefined : () => { state.scale.upper = Infinity; changed(); },
+      unset: Number.isFinite(limits?.upper) ? () => showNoLimits(report) : () => { state.scale.upper = Infinity; changed(); },
     }),
   };
   const oneTolerance = limits ? limits.lower === -limits.upper : !report.thickness;

@@ -3,6 +3,13 @@ import type { Vec } from './page_data';
 
 export const kMinus = '\u2212';
 
+/// The number that a person typed, with a point or a comma as its decimal mark; NaN for what is no number. Fields of
+/// type number drop a comma, so that 0,05 would be 5.
+export function typedNumber(typed: string): number {
+  const plain = typed.trim().replace(kMinus, '-').replace(',', '.');
+  return /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(plain) ? Number(plain) : Number.NaN;
+}
+
 /// A number to some digits, without a long tail of zeros: 0.0123, 1.5, 12300, 1.2e-7.
 export function text(value: number | null | undefined, digits = 4): string {
   if (value === null || value === undefined || Number.isNaN(value)) return 'none';

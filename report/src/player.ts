@@ -3,7 +3,7 @@ import { kViridis, Mode, Scale } from './color_scale';
 import { byId, make } from './dom';
 import { drawLegend } from './legend';
 import { showMade } from './made';
-import { count, signedText } from './numbers';
+import { count, signedText, typedNumber } from './numbers';
 import { openPage } from './open_page';
 import { Chart } from './player_charts';
 import { distancesOf, hasSigns, placeFrame, PlayerData, readPlayer } from './player_data';
@@ -157,13 +157,14 @@ class Player {
     ];
     if (page.scale.mode === 'tolerance') modes.unshift(['tolerance', 'Tolerance bands']);
     const range = make('input', {
-      type: 'number',
+      type: 'text',
+      inputmode: 'decimal',
+      autocomplete: 'off',
       id: 'range',
-      step: 'any',
       value: Number(this.scale.hi.toPrecision(4)),
       input: () => {
-        const hi = Number(range.value);
-        const valid = range.value !== '' && hi > 0 && hi > (this.scale.mode === 'tolerance' ? this.scale.upper : 0);
+        const hi = typedNumber(range.value);
+        const valid = hi > 0 && hi > (this.scale.mode === 'tolerance' ? this.scale.upper : 0);
         range.setAttribute('aria-invalid', String(!valid));
         if (!valid) return;
         this.scale = { ...this.scale, hi, lo: page.scale.mode === 'sequential' ? (page.scale.lo / page.scale.hi) * hi : page.scale.lo < 0 ? -hi : Math.min(page.scale.lo, hi / 2) };

@@ -40,6 +40,7 @@ function howSure(report: Report, verdict: Verdict): Sure | null {
 export function showSure(report: Report, unjudged = 0): void {
   const sure = howSure(report, verdictOf(report).verdict);
   byId('sure').hidden = !sure;
+  if (!sure) byId('sure').replaceChildren();
   const rest = unjudged > 0 && !report.tolerance ? ` About ${text(100 * unjudged, 2)}\u00a0% of the area has no limits and is not judged.` : '';
   if (sure) sayHowSure(sure, rest);
 }

@@ -224,9 +224,18 @@ const checks = {
     await verdict(0.9 * extremes.max.distance, 'FAIL');
     await verdict(extremes.max.distance + 2 * bound, 'PASS');
     assert((await page.textContent('#sentence')).startsWith('Every point'));
+    for (const typed of ['-1', '']) {
+      await verdict(extremes.max.distance + 2 * bound, 'PASS');
+      assert.match(await page.textContent('#sure'), /proven/);
+      await page.fill('input[aria-label^="Tolerance"]', typed);
+      await page.waitForFunction(() => document.getElementById('verdict').textContent.trim() === 'i MEASURED', null, { timeout: kPatience });
+      assert.strictEqual(await page.textContent('#sure'), '', typed);
+    }
+    await page.fill('input[aria-label^="Tolerance"]', '0,05');
+    await page.waitForFunction(() => document.getElementById('what-if').textContent.includes('0.05'), null, { timeout: kPatience });
     await page.fill('input[aria-label^="Tolerance"]', '');
     await page.waitForFunction(() => document.getElementById('verdict').textContent.trim() === 'i MEASURED', null, { timeout: kPatience });
-    assert.strictEqual(await page.textContent('#worst-title'), 'Largest distances');
+    await page.waitForFunction(() => document.getElementById('worst-title').textContent === 'Largest distances', null, { timeout: kPatience });
   },
 
   // Two files, chosen and dropped; one in place of the other; both swapped.

@@ -100,7 +100,7 @@ const checks = {
   async names(page) {
     const session = await page.context().newCDPSession(page);
     const { nodes } = await session.send('Accessibility.getFullAXTree');
-    const roles = new Set(['button', 'slider', 'spinbutton', 'combobox', 'checkbox', 'link', 'image', 'img', 'application', 'table', 'region', 'DisclosureTriangle']);
+    const roles = new Set(['button', 'slider', 'spinbutton', 'textbox', 'combobox', 'checkbox', 'link', 'image', 'img', 'application', 'table', 'region', 'DisclosureTriangle']);
     const named = nodes.filter((node) => !node.ignored && roles.has(node.role?.value));
     assert(named.length > 20, 'controls were found');
     for (const node of named) assert(node.name?.value, `a ${node.role.value} without a name: ${JSON.stringify(node.properties)}`);
@@ -202,7 +202,7 @@ const checks = {
     const session = await page.context().newCDPSession(page);
     const { nodes } = await session.send('Accessibility.getFullAXTree');
     for (const node of nodes)
-      if (!node.ignored && ['button', 'slider', 'spinbutton', 'combobox', 'image', 'application'].includes(node.role?.value))
+      if (!node.ignored && ['button', 'slider', 'spinbutton', 'textbox', 'combobox', 'image', 'application'].includes(node.role?.value))
         assert(node.name?.value, `a ${node.role.value} without a name`);
   },
 

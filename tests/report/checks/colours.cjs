@@ -12,7 +12,7 @@ module.exports = {
     const legend = () => page.innerHTML('#legend');
     const chart = () => page.innerHTML('#histogram-chart svg');
     const setField = async (id, value) => {
-      await page.locator(`.slider:has(#${id}) input[type=number]`).fill(value);
+      await page.locator(`.slider:has(#${id}) .field input`).fill(value);
       await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
     };
     let before = [await picture(), await legend(), await chart()];

@@ -12,7 +12,7 @@ module.exports = {
   // Without a tolerance nothing is judged until the reader sets one, and again when it is taken away. The distances are
   // from 1.6 to 2.4; just above, samples alone do not decide.
   async unjudged(page) {
-    const field = page.locator('.slider:has(#tolerance) input[type=number]');
+    const field = page.locator('.slider:has(#tolerance) .field input');
     const none = async () => {
       assert.strictEqual(await field.inputValue(), '');
       assert.strictEqual(await marks(page), 0);
@@ -24,11 +24,23 @@ module.exports = {
     for (const [limit, words] of [
       ['2', /^Would be FAIL with ±2\. About [\d.]+ % of the area is out of it\.$/],
       ['100', /^Would be PASS with ±100\. No sample is out of it\.$/],
+      ['2,4001', /^Would be NOT DECIDED with ±2\.4\./],
+      ['0,05', /^Would be FAIL with ±0\.05\./],
       ['2.4001', /^Would be NOT DECIDED with ±2\.4\. No sample is out of it\. .* the command does, with this tolerance\.$/],
     ]) {
       await field.fill(limit);
-      assert.match((await whatIf(page)).replace(/with 2/, 'with ±2').replace('with 100', 'with ±100'), words);
+      assert.match((await whatIf(page)).replace(/with 2/, 'with ±2').replace('with 100', 'with ±100').replace('with 0.05', 'with ±0.05'), words);
+      assert.strictEqual(await field.getAttribute('aria-invalid'), 'false');
     }
+    // What is no tolerance leaves nothing of the one before.
+    for (const typed of ['-1', 'two', '1.000,5', '0.1 mm']) {
+      await field.fill('100');
+      await field.fill(typed);
+      assert.strictEqual(await field.getAttribute('aria-invalid'), 'true', typed);
+      assert.match(await whatIf(page), /^Set a tolerance/, typed);
+      assert.strictEqual(await marks(page), 0, typed);
+    }
+    await field.fill('2.4001');
     assert(await marks(page) > 0);
     await page.selectOption('#mode', 'tolerance');
     await field.fill('');
@@ -47,7 +59,7 @@ module.exports = {
 
   // A wall has the limits that were given.
   async wallLimits(page, lower, upper) {
-    const value = (id) => page.locator(`.slider:has(#${id}) input[type=number]`).inputValue();
+    const value = (id) => page.locator(`.slider:has(#${id}) .field input`).inputValue();
     assert.deepStrictEqual([await value('tolerance-lower'), await value('tolerance-upper')], [lower, upper]);
     assert.strictEqual(await page.locator('#histogram-chart .limit').count(), [lower, upper].filter(Boolean).length);
   },

@@ -23,7 +23,7 @@ const kReference = [128, 178, 237];
 
 async function cutAt(page, axis, position, side) {
   await page.selectOption('#section', String(axis));
-  const field = page.locator('.slider:has(#section-at) input[type=number]');
+  const field = page.locator('.slider:has(#section-at) .field input');
   await field.fill(String(position));
   await page.selectOption('#side', side);
   await settled(page);
