@@ -71,9 +71,9 @@ void add_align_options(CLI::App& app, AlignCommand& command) {
       "--align", command.on, "First move O1 onto O2, by a rotation and a translation that fit the surfaces");
   app.add_option(
          "--align-from", command.from,
-         "Where the alignment starts: none, O1 as it is placed; pca, where the principal axes agree; or a "
-         "file with a 4x4 matrix, such as alignment.json")
-      ->type_name("none|pca|FILE")
+         "Where the alignment starts: none, O1 as it is placed; pca, where the principal axes agree; auto, "
+         "as none and, if the fit is poor, also as pca; or a file with a 4x4 matrix, such as alignment.json")
+      ->type_name("auto|none|pca|FILE")
       ->needs(align)
       ->check(non_empty())
       ->capture_default_str();

@@ -12,7 +12,7 @@
 
 struct AlignCommand {
   bool on = false;
-  std::string from = "none";        ///< "none", "pca" or the name of a matrix file
+  std::string from = "auto";        ///< "auto", "none", "pca" or the name of a matrix file
   std::string points_321{};         ///< the file of --align-321; or empty
   sdm::AlignFreedoms freedoms{};    ///< of --align-free and --align-about
   std::vector<std::string> region;  ///< of --align-on

@@ -41,8 +41,9 @@ sdm::AlignOptions options_of(const AlignCommand& command, const Input& o2, const
     options.freedoms = {.translations = {}, .rotations = {}};
   } else if (command.from == "pca") {
     options.start = sdm::AlignStart::principal_axes;
-  } else if (command.from != "none") {
-    options.pose = sdm::read_matrix(command.from);
+  } else if (command.from != "auto") {
+    options.start = sdm::AlignStart::pose;
+    if (command.from != "none") options.pose = sdm::read_matrix(command.from);
   }
   return options;
 }
@@ -64,7 +65,7 @@ AlignOutcome timed(const Input& o2, const AlignCommand& command, const sdm::Prog
   } catch (const sdm::Cancelled&) {
     throw;
   } catch (const sdm::Error& error) {
-    if (command.from == "none" || command.from == "pca") throw;
+    if (command.from == "auto" || command.from == "none" || command.from == "pca") throw;
     throw sdm::Error(command.from + ": " + error.what());
   }
 }
@@ -260,7 +261,8 @@ std::vector<std::string> notes(const AlignOutcome& outcome) {
   if (!a.converged)
     notes.push_back(
         fmt::format("the alignment did not converge in {} steps; its matrix is approximate", a.iterations));
-  const bool placed = outcome.command.from == "pca" || !outcome.command.points_321.empty();
+  const bool placed =
+      outcome.command.from == "auto" || outcome.command.from == "pca" || !outcome.command.points_321.empty();
   const char* question =
       placed ? "is O1 the same part as O2?" : "is O1 the same part as O2, or does it need --align-from pca?";
   if (a.after.trimmed_rms > kLarge * outcome.size)

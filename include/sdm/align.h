@@ -21,6 +21,10 @@ namespace sdm {
 
 /// Where an alignment starts.
 enum class AlignStart {
+  /// At AlignOptions::pose and, if O1 fits poorly there and no freedom is locked, also where the principal
+  /// axes
+  /// agree: that which fits clearly better.
+  automatic,
   pose,  ///< at AlignOptions::pose
   /// Where the centres and principal axes of both surfaces agree: the best of the 4 rotations that match
   /// axes, or of 24 if some axes are nearly interchangeable. Needs most of the surface of O1.
@@ -57,7 +61,7 @@ struct AlignRegion {
 
 /// Options of align().
 struct AlignOptions {
-  AlignStart start = AlignStart::pose;
+  AlignStart start = AlignStart::automatic;
   Transform pose{};             ///< rotation and translation; the identity: O1 as it is
   std::size_t samples = 32768;  ///< at least 64; of the last and finest level
   int max_iterations = 100;     ///< greater than 0; per level
@@ -128,11 +132,12 @@ struct Alignment {
 /// 60°, if enough are left. On a copy of O2, or of a part of it, the steps converge quadratically to
 /// rounding.
 ///
-/// Finds a local optimum from some 20° and 10 % of the size, or keeps options.pose if that is closer. The
-/// result does not depend on the number of threads. Throws sdm::Error when the mesh is unusable (see
-/// validate), for options out of range or of another O2, if options.pose is not a rotation and a translation,
-/// if freedoms are locked and the start is not a pose, if no sample is near the region, or if there is not
-/// enough memory; Cancelled. Cost: linear in the faces of O1, and 10 to 30 closest points for each sample.
+/// Finds a local optimum from some 20° and 10 % of the size, or keeps options.pose if that is closer; with
+/// AlignStart::automatic, also one that the principal axes lead to. The result does not depend on the number
+/// of threads. Throws sdm::Error when the mesh is unusable (see validate), for options out of range or of
+/// another O2, if options.pose is not a rotation and a translation, if freedoms are locked and the start is
+/// not a pose, if no sample is near the region, or if there is not enough memory; Cancelled. Cost: linear in
+/// the faces of O1, and 10 to 30 closest points for each sample.
 [[nodiscard]] SDM_API Alignment align(const Mesh& o1, const Sites& o2, const AlignOptions& options = {});
 
 /// The same for points, of which a pseudorandom subset is used if there are more than options.samples.

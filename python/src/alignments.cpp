@@ -27,8 +27,10 @@ AlignOptions align_options(const char* start, nb::handle pose, std::size_t sampl
   const std::string_view name = start;
   if (name == "principal_axes")
     options.start = AlignStart::principal_axes;
-  else if (name != "pose")
-    throw Error("there is no start " + std::string(name) + "; use 'pose' or 'principal_axes'");
+  else if (name == "pose")
+    options.start = AlignStart::pose;
+  else if (name != "automatic")
+    throw Error("there is no start " + std::string(name) + "; use 'automatic', 'pose' or 'principal_axes'");
   if (!pose.is_none()) options.pose = transform(pose, "pose");
   return options;
 }
@@ -131,7 +133,7 @@ void bind_alignment(nb::module_& module) {
 void bind_align(nb::module_& module) {
   static const std::string align_signature =
       std::string(
-          "def align(o1: object, o2: object, *, start: str = 'pose', pose: object = None, "
+          "def align(o1: object, o2: object, *, start: str = 'automatic', pose: object = None, "
           "samples: int = 32768, max_iterations: int = 100, free: str | None = None, about: object = None, "
           "on_faces: object = None, on_boxes: object = None, ") +
       kProgress + "Alignment";
@@ -151,15 +153,15 @@ void bind_align(nb::module_& module) {
         });
         return result;
       },
-      nb::arg("o1").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("start") = "pose",
+      nb::arg("o1").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("start") = "automatic",
       nb::arg("pose") = nb::none(), nb::arg("samples") = 32768, nb::arg("max_iterations") = 100,
       nb::arg("free") = nb::none(), nb::arg("about") = nb::none(), nb::arg("on_faces") = nb::none(),
       nb::arg("on_boxes") = nb::none(), nb::arg("progress") = nb::none(), nb::sig(align_signature.c_str()),
       R"(Finds the rotation and the translation that move the surface of O1 onto O2.
 
 o1, o2: any form of a mesh (see Mesh); o2 also Sites.
-start: 'pose', at ``pose``; or 'principal_axes', where centres and principal axes of both agree, which needs
-most of the surface of O1.
+start: 'pose', at ``pose``; 'principal_axes', where centres and principal axes of both agree, which needs
+most of the surface of O1; or 'automatic', at ``pose`` and, if that leads to a poor fit, also at the axes.
 pose: of a rotation and a translation, as of ProximityQuery.set_pose(); None: O1 as it is.
 samples: of the surface of O1, at least 64. max_iterations: per level of refinement.
 free: the motions that may be used, such as 'xyz,rz': translations along x, y and z and a rotation about z, with
@@ -182,7 +184,8 @@ void bind_align_points(nb::module_& module) {
   static const std::string align_points_signature =
       std::string(
           "def align_points(points: object, o2: object, *, normals: object = None, start: str = "
-          "'pose', pose: object = None, samples: int = 32768, max_iterations: int = 100, free: str | None = "
+          "'automatic', pose: object = None, samples: int = 32768, max_iterations: int = 100, free: str | "
+          "None = "
           "None, about: object = None, on_faces: object = None, on_boxes: object = None, ") +
       kProgress + "Alignment";
   module.def(
@@ -204,7 +207,7 @@ void bind_align_points(nb::module_& module) {
         return result;
       },
       nb::arg("points").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("normals") = nb::none(),
-      nb::arg("start") = "pose", nb::arg("pose") = nb::none(), nb::arg("samples") = 32768,
+      nb::arg("start") = "automatic", nb::arg("pose") = nb::none(), nb::arg("samples") = 32768,
       nb::arg("max_iterations") = 100, nb::arg("free") = nb::none(), nb::arg("about") = nb::none(),
       nb::arg("on_faces") = nb::none(), nb::arg("on_boxes") = nb::none(), nb::arg("progress") = nb::none(),
       nb::sig(align_points_signature.c_str()),
@@ -269,9 +272,10 @@ void bind_doubts(nb::module_& module) {
         return result;
       },
       nb::arg("o1").none(), nb::arg("o2").none(), nb::arg("alignment"), nb::kw_only(),
-      nb::arg("start") = "pose", nb::arg("pose") = nb::none(),
-      nb::sig("def alignment_doubts(o1: object, o2: object, alignment: Alignment, *, start: str = 'pose', "
-              "pose: object = None) -> list[Doubt]"),
+      nb::arg("start") = "automatic", nb::arg("pose") = nb::none(),
+      nb::sig(
+          "def alignment_doubts(o1: object, o2: object, alignment: Alignment, *, start: str = 'automatic', "
+          "pose: object = None) -> list[Doubt]"),
       R"(Returns the doubts that an alignment leaves, for which the command withholds a PASS.
 
 o1: as it was given to align(), which returned the alignment with these ``start`` and ``pose``.

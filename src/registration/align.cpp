@@ -45,14 +45,38 @@ Affine rigid(const Transform& pose) {
   return similarity.map;
 }
 
-Fit from_principal_axes(const CentredSamples& o1, const Target& target, const AlignOptions& options) {
+template <class Progress>
+Fit from_principal_axes(const CentredSamples& o1, const Target& target, Progress&& progress) {
   constexpr std::size_t kSamples = 4096;
   constexpr int kSteps = 15;
   const AxisMatches candidates =
       axis_matches(o1.samples.points, surface_source(target.sites.mesh())(kSamples).points);
   return best_match_of_axes(o1, candidates, target, kSteps, [&](std::size_t i) {
-    check_progress(options, static_cast<double>(i) / static_cast<double>(candidates.poses.size()));
+    progress(static_cast<double>(i) / static_cast<double>(candidates.poses.size()));
   });
+}
+
+/// Whether samples are farther from O2 than noise explains: of a part that is placed right, few are much
+/// farther than the half of them.
+bool is_poor(const CentredSamples& o1, const Affine& pose, const Target& target) {
+  constexpr double kPoor = 0.01, kGood = 1e-4;  // of the radius
+  constexpr double kUneven = 2;                 // times the median; 1.2 for Gaussian noise
+  const double found = mismatch(o1, pose, target);
+  if (found > kPoor * o1.radius) return true;
+  if (found <= kGood * o1.radius) return false;
+  std::vector<double> distances = find_correspondences(o1.samples, pose, target).distances;
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::ranges::nth_element(distances, middle);
+  return found > kUneven * *middle;
+}
+
+/// The fit from the principal axes, if it is clearly better than a pose.
+std::optional<Fit> better_by_axes(const CentredSamples& o1, const Affine& pose, const Target& target,
+                                  const AlignOptions& options) {
+  constexpr double kBetter = 0.7;
+  const Fit fit = from_principal_axes(o1, target, [&](double) { check_progress(options, 0.5); });
+  return mismatch(o1, fit.pose, target) < kBetter * mismatch(o1, pose, target) ? std::optional(fit)
+                                                                               : std::nullopt;
 }
 
 AlignResiduals residuals(const Correspondences& pairs, double fraction_used) {
@@ -94,7 +118,7 @@ std::vector<GroupResiduals> group_residuals(const Correspondences& pairs,
 void check_options(const AlignOptions& options, const Mesh& o2) {
   if (options.samples < 64) throw Error("an alignment needs at least 64 samples");
   if (options.max_iterations < 1) throw Error("the number of iterations must be greater than 0");
-  if (options.start != AlignStart::pose && !options.freedoms.all())
+  if (options.start == AlignStart::principal_axes && !options.freedoms.all())
     throw Error("an alignment with locked freedoms starts at a pose, not at the principal axes");
   for (const double x : options.freedoms.about)
     if (!(std::abs(x) <= mesh::kMaxCoordinate))
@@ -177,12 +201,21 @@ Alignment align_samples(const SampleSource& source, const Sites& o2, const Align
   std::optional<LockedMotion> motion;
   if (!options.freedoms.all()) motion.emplace(options.freedoms, fit.pose);
   LockedMotion* locked = motion ? &*motion : nullptr;
-  if (options.start == AlignStart::principal_axes) fit = from_principal_axes(coarse, target, options);
+  if (options.start == AlignStart::principal_axes)
+    fit = from_principal_axes(coarse, target, [&](double done) { check_progress(options, done / 2); });
   fit = refine(coarse, fit, target, {options.max_iterations, kCoarseTolerance}, locked);
   check_progress(options, 0.5);
-  const bool may_keep = options.start == AlignStart::pose;
+  const bool may_keep = options.start != AlignStart::principal_axes;
   // Steps that lead away from O2 without an end, as of a part that is far too large, go on for long.
   bool kept = may_keep && !fit.converged && leads_away(coarse, begin, fit, target);
+  if (const Affine& found = kept ? begin : fit.pose;
+      options.start == AlignStart::automatic && !locked && is_poor(coarse, found, target))
+    if (const std::optional<Fit> better = better_by_axes(coarse, found, target, options)) {
+      const int before = fit.iterations;
+      fit = refine(coarse, *better, target, {options.max_iterations, kCoarseTolerance});
+      fit.iterations += before;
+      kept = false;
+    }
   if (!options.region.whole()) target.region = &options.region;
   if (!kept) {
     fit = refine(fine, fit, target, {options.max_iterations, kTolerance}, locked);

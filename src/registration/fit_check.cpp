@@ -103,7 +103,8 @@ std::optional<MirroredFit> mirrored_fit(const SampleSource& source, const Sites&
   if (!(mirrored <= most)) return std::nullopt;
   // A part that is symmetric to a plane fits both ways.
   mirror(few.o1.samples), mirror(some.o1.samples);
-  if (!(mirrored <= kMuchBetter * by_axes(kEverything))) return std::nullopt;
+  const double turned = by_axes(kEverything);
+  if (turned <= kFits * radius || !(mirrored <= kMuchBetter * turned)) return std::nullopt;
   return MirroredFit{mirrored / radius, as_given / radius};
 }
 

@@ -32,6 +32,7 @@ std::optional<OtherUnit> best_unit(const registration::Samples& samples, const S
   for (const Vec3& p : samples.points) extend(box, p);
   const double size = diagonal(box), most = kTooLarge * diagonal(bounds(o2.mesh()));
   options.samples = kUnitSamples;
+  if (options.start == AlignStart::automatic) options.start = AlignStart::pose;
   for (const double ratio : kUnitRatios)
     for (const double factor : {ratio, 1 / ratio}) {
       if (!(factor * size <= most)) continue;

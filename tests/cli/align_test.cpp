@@ -43,7 +43,7 @@ TEST_F(AlignOption, MovesO1AndWritesTheMatrix) {
   EXPECT_EQ(report["alignment"], alignment);
   EXPECT_LT(report["extremes"]["max"]["distance"], 1e-12);
   EXPECT_EQ(alignment["converged"], true);
-  EXPECT_EQ(alignment["from"], "none");
+  EXPECT_EQ(alignment["from"], "auto");
   EXPECT_EQ(alignment["degrees_of_freedom"].size(), 6u);
   EXPECT_EQ(alignment["degrees_of_freedom"][5]["free"], false);
   EXPECT_GT(alignment["before"]["rms"], 0.01);
@@ -98,12 +98,15 @@ TEST_F(AlignOption, BothPagesAreNamed) {
 
 TEST_F(AlignOption, FromPrincipalAxes) {
   o1 = write_obj(folder / "turned.obj", placed(mesh, "rotate:40:100:-70,translate:9:8:7"));
-  const Outcome far = map({"--align"});
+  const Outcome far = map({"--align", "--align-from", "none"});
   EXPECT_EQ(far.code, 0) << far.err;
   EXPECT_THAT(far.out, HasSubstr("--align-from pca?"));
   const Outcome run = map({"--align", "--align-from", "pca", "--json"});
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_LT(Json::parse(run.out)["extremes"]["max"]["distance"], 1e-12);
+  const Outcome tried = map({"--align", "--json"});
+  ASSERT_EQ(tried.code, 0) << tried.err;
+  EXPECT_LT(Json::parse(tried.out)["extremes"]["max"]["distance"], 1e-12);
 }
 
 TEST_F(AlignOption, NotesSayWhatIsNotDetermined) {

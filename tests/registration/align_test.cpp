@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <sdm/align.h>
 #include <sdm/error.h>
+#include <sdm/fit_check.h>
 #include <sdm/threads.h>
 
 #include <algorithm>
@@ -256,6 +257,25 @@ TEST(Align, PrincipalAxesNeedNoStart) {
     const Alignment found =
         align(image(mesh, motion), Sites(mesh), {.start = AlignStart::principal_axes, .samples = kSamples});
     EXPECT_LT(displacement(mesh, found.transform * motion), 1e-9 * size) << name;
+  }
+}
+
+// A nearly square part that is its own mirror image: it nearly fits where it is turned by 90°.
+TEST(Align, TriesThePrincipalAxesOfAPoorFit) {
+  Mesh plate = cube(1);
+  for (Vec3& p : plate.positions) p = {20 * p[0], 19.5 * p[1], 3 * p[2]};
+  plate = joined(plate, ring(24, 2, {14, 0, 3}));
+  const Sites sites(plate);
+  for (const Vec3 turn : {Vec3{0, 0, 33}, {0, 0, 90}, {0, 0, 180}, {40, 100, -70}}) {
+    SCOPED_TRACE(turn[0] + turn[2]);
+    const Transform motion = Transform::translation({1, 2, -3}) * Transform::rotation(turn);
+    const Mesh turned = image(plate, motion);
+    const Alignment found = align(turned, sites, {.samples = kSamples});
+    EXPECT_LT(displacement(plate, found.transform * motion), 1e-6);
+    EXPECT_FALSE(find_mirrored(turned, sites, found));
+    const Alignment pose = align(turned, sites, {.start = AlignStart::pose, .samples = kSamples});
+    EXPECT_EQ(displacement(plate, pose.transform * motion) > 1, norm(turn) > 45) << "from where it is";
+    EXPECT_FALSE(find_mirrored(turned, sites, pose)) << "it fits as it is, elsewhere";
   }
 }
 
