@@ -51,6 +51,13 @@ struct Pieces {
   int count = 0;
 };
 
+/// Cuts a part along a side of the face that is nearest to its highest point, moved outwards, if the part
+/// lies along the plane of the face: a piece above the face is then settled, however long and thin both are
+/// and however they cross. `enough`: a bound at which a part is settled. No pieces if no side cuts the part,
+/// or the face is so small beside it that halving is better. Sets the bounds of the pieces.
+[[nodiscard]] Pieces cut_along(const Part& part, const sites::SitesData& b, std::uint32_t near_face,
+                               double enough);
+
 /// Divides a part by segments from one of its points to its corners, where that helps faces of B to be the
 /// closest on a whole piece each: at a vertex that the mixed faces share, or at the place on a side where two
 /// faces are equally far. After a division that did not improve the bound, a side is cut in the middle, the

@@ -109,7 +109,8 @@ void PartSearch::evaluate(const Part& part, Found& found) const {
     better.upper = std::min(better.upper, before);
     if (better.upper - found.lower.value <= kProgress * gap) return put(better, found);
   }
-  Pieces pieces = divide(better, b_, tolerance);
+  Pieces pieces = cut_along(better, b_, nearest.face, found.lower.value + precision_);
+  if (pieces.count == 0) pieces = divide(better, b_, tolerance);
   for (int i = 0; i < pieces.count; ++i) {
     Part& piece = pieces.part[i];
     piece.upper = std::min(piece.upper, better.upper);

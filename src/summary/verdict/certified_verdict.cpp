@@ -41,8 +41,9 @@ Judgement judge(const Judgement& of_samples, const ToleranceProof& proof) {
       break;
     case Proof::undecided:
       result.verdict = Verdict::not_decided;
-      result.reason =
-          proof.depends_on_signs ? VerdictReason::estimated_signs : VerdictReason::within_rounding;
+      result.reason = proof.depends_on_signs ? VerdictReason::estimated_signs
+                      : proof.witness        ? VerdictReason::within_rounding
+                                             : VerdictReason::between_samples;
       break;
   }
   return result;

@@ -27,6 +27,7 @@ std::string open_text(const Summary& summary, const std::string& limits) {
       return "all " + std::string(summary.of_points ? "" : "measured ") + "points are within " + limits +
              ", but their signs are estimates, and with the other sign a point may be out of it";
     case VerdictReason::between_samples:
+      if (verdict.proof) break;
       return "all measured points are within " + limits + ", but points between them may not be";
     default:
       break;

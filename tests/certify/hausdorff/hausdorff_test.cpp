@@ -185,6 +185,31 @@ TEST(Hausdorff, SurfacesMayBeCutIntoOtherTriangles) {
     }
 }
 
+/// A flat disc of slivers, which all start at one vertex; turned by so many of its steps.
+Mesh sliver_disc(std::uint32_t n, std::uint32_t turned) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double angle = 2 * std::numbers::pi * (i + turned) / n;
+    // In single precision, as of a file.
+    mesh.positions.push_back(
+        {static_cast<float>(30 * std::cos(angle)), static_cast<float>(30 * std::sin(angle)), 0});
+  }
+  for (std::uint32_t i = 1; i + 1 < n; ++i) mesh.triangles.push_back({0, i, i + 1});
+  return mesh;
+}
+
+// Each sliver lies along many others.
+TEST(Hausdorff, LongSliversInAPlaneAreOnePlane) {
+  const Mesh a = sliver_disc(128, 0);
+  for (const std::uint32_t turned : {32u, 50u}) {
+    int steps = 0;
+    const HausdorffDistance found =
+        one_sided_hausdorff(a, Sites(sliver_disc(128, turned)),
+                            {.progress = [&](std::string_view, double) { return ++steps < 500; }});
+    EXPECT_LT(found.distance.upper, 1e-4);
+  }
+}
+
 TEST(Hausdorff, BoundsOfAllPrecisionsOverlap) {
   const Mesh a = load("cow.off", "fit,translate:0.05:0:0"), b = load("knot1.off", "fit");
   const Sites sites(b);
