@@ -21,6 +21,8 @@ class Body;
 struct StoredShape {
   std::span<std::byte> bytes;         ///< writable, at an address that is a multiple of 64
   std::shared_ptr<const void> owner;  ///< whatever keeps them; null if they outlive the shape anyway
+  /// Whether they certainly are what Shape::store() wrote: then only damage is looked for.
+  bool trusted = false;
 };
 
 /// The sites of a mesh and, if it is to have maps, its atlas, in the frame of the mesh. Copies share them: a
@@ -36,10 +38,11 @@ class SDM_API Shape {
   Shape(const Mesh& mesh, const AtlasOptions& atlas);
   /// Takes the bytes that store() wrote: nothing is built, and the shape reads them where they are. Nothing
   /// else may use them while the shape or copies of it exist. All results are those of the shape that was
-  /// stored, to the bit. Throws sdm::Error if they are of another version of sdm, incomplete or damaged. A
-  /// checksum finds all damage, and all indices are checked as well; but whoever changes coordinates and
-  /// bounds on purpose, with the checksum, can make queries wrong or fail: take shapes from those only whom
-  /// you would take a program from. Cost: linear, all cores, a small part of building.
+  /// stored, to the bit. Throws sdm::Error if they are of another version of sdm, incomplete or damaged,
+  /// which a checksum finds. Unless they are trusted, all indices, boxes and numbers are checked as well, so
+  /// that they may come from anyone: if somebody has changed regions and bounds on purpose, with the
+  /// checksum, results can be wrong, or queries throw sdm::Error, but all end and read nothing else. Cost:
+  /// linear, all cores, a small part of building.
   explicit Shape(StoredShape stored);
 
   /// Calls write(bytes) for all bytes of the shape, part after part: some twenty times those of its mesh, for

@@ -90,15 +90,17 @@ void bind_shape_files(nb::class_<PyShape>& shape) {
 none. Raises Error, naming the file and the fault.)")
       .def_static(
           "load",
-          [](nb::handle file) {
+          [](nb::handle file, bool trusted) {
             const std::filesystem::path name = path_of(file);
-            return run_sized(std::size_t{1} << 20, [&] { return PyShape(read_shape(name)); });
+            return run_sized(std::size_t{1} << 20, [&] { return PyShape(read_shape(name, {trusted})); });
           },
-          nb::arg("file").none(), nb::sig("def load(file: str | os.PathLike[str]) -> Shape"),
+          nb::arg("file").none(), nb::kw_only(), nb::arg("trusted") = false,
+          nb::sig("def load(file: str | os.PathLike[str], *, trusted: bool = False) -> Shape"),
           R"(The shape that save() wrote, in a small part of the time of making it, with the same results to
 the bit. Its arrays are those of the file, which processes share; it may be deleted or saved again, but not be
-changed in place. Raises Error, naming the file and the fault, if another version of sdm wrote it, or if it is
-incomplete or damaged: make the shape again from its mesh.)");
+changed in place. The file may come from anyone, as all of it is checked; trusted: only for damage. Raises
+Error, naming the file and the fault, if another version of sdm wrote it, or if it is incomplete or damaged:
+make the shape again from its mesh.)");
 }
 
 void bind_shape(nb::module_& module) {

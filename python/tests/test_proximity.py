@@ -143,6 +143,7 @@ def test_stored_shapes(tmp_path):
         file = tmp_path / "ball.shape"
         built.save(file)
         loaded = sdm.Shape.load(str(file))
+        assert repr(sdm.Shape.load(file, trusted=True)) == repr(loaded)
         file.unlink()
         assert loaded.faces.tolist() == built.faces.tolist() and repr(loaded) == repr(built)
         assert repr(pickle.loads(pickle.dumps(loaded))) == repr(built)

@@ -12,6 +12,7 @@
 
 #include "core/parallel.h"
 #include "geometry/lanes/vec-inl.h"
+#include "sites/check_numbers.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::sites::HWY_NAMESPACE {
@@ -272,6 +273,13 @@ bool CylinderTree::set_nodes(Array<BoundingCylinders> stored, const WideTree& wi
   leaves_.clear();
   if (!nodes.empty()) find_leaves(wide);
   return true;
+}
+
+bool CylinderTree::have_valid_numbers() const {
+  const std::span<const BoundingCylinders> all(nodes);
+  return std::ranges::all_of(all, [](const BoundingCylinders& cylinders) {
+    return are_within({&cylinders.centre[0][0], sizeof cylinders / sizeof(float)}, kUnitReach);
+  });
 }
 
 // Children follow their parents, and the leaves below a node each other.

@@ -43,6 +43,8 @@ class CylinderTree {
 
   /// Those of a tree with these nodes; false if there cannot be so many. Cost: linear.
   [[nodiscard]] bool set_nodes(Array<BoundingCylinders> stored, const tree::WideTree& wide);
+  /// Whether all numbers are finite, and no larger than those of any cylinders. Cost: linear.
+  [[nodiscard]] bool have_valid_numbers() const;
 
   Array<BoundingCylinders> nodes;  ///< as those of the wide tree, or none
 

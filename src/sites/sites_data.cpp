@@ -7,6 +7,7 @@
 #include "geometry/vec.h"
 #include "mesh/check_topology.h"
 #include "mesh/validate.h"
+#include "sites/check_numbers.h"
 #include "sites/check_regions.h"
 #include "tree/check_tree.h"
 
@@ -49,10 +50,15 @@ SitesData::SitesData(Mesh given) {
 }
 
 // The frame, the shells and whether the mesh is closed take less time to find than to load and check.
-SitesData::SitesData(ArrayReader& stored) {
+SitesData::SitesData(ArrayReader& stored, bool trusted) {
   stored(*this);
-  validate(mesh);
+  if (!trusted) validate(mesh);
   frame = UnitFrame::of(bounds(mesh));
+  if (!trusted && !is_valid()) stored.fail();
+  find_shells();
+}
+
+bool SitesData::is_valid() const {
   const auto one_or_none = [](std::uint8_t flag) { return flag <= 1; };
   bool valid_topology = false, valid_trees = false;
   parallel_invoke([&] { valid_topology = mesh::is_topology(topology, vertex_faces, mesh); },
@@ -60,10 +66,8 @@ SitesData::SitesData(ArrayReader& stored) {
                     valid_trees =
                         !tree.items.empty() && tree::is_tree(tree, kLeafFaces) && tree::is_tree(wide, tree);
                   });
-  if (!valid_topology || !valid_trees || !mesh::is_orientation(orientation, topology) ||
-      !sites::match(*this) || !std::ranges::all_of(inverted, one_or_none))
-    stored.fail();
-  find_shells();
+  return valid_topology && valid_trees && mesh::is_orientation(orientation, topology) &&
+         sites::match(*this) && std::ranges::all_of(inverted, one_or_none) && have_valid_numbers(*this);
 }
 
 void SitesData::find_orientation() {

@@ -28,9 +28,9 @@ class SitesData {
  public:
   /// As Sites::Sites.
   explicit SitesData(Mesh mesh);
-  /// Those that were stored. Throws sdm::Error if they are damaged in a way that would make a query read
-  /// beyond an array or never end. Cost: linear, all cores.
-  explicit SitesData(ArrayReader& stored);
+  /// Those that were stored. Unless they are `trusted`, throws sdm::Error if their indices or numbers are not
+  /// such that all queries end and read nothing else. Cost: linear, all cores.
+  SitesData(ArrayReader& stored, bool trusted);
   void refit(std::span<const Vec3> positions);
   void edit(const MeshEdit& edit);
   /// Throws sdm::Error if a refit failed half-way.
@@ -91,6 +91,8 @@ class SitesData {
   /// Those of an edited mesh. Takes the memory of last_refit_, and changes nothing else.
   SitesData(SitesData& before, const MeshEdit& edit);
 
+  /// Whether what was stored belongs together.
+  [[nodiscard]] bool is_valid() const;
   [[nodiscard]] std::vector<tree::FloatBox> face_boxes() const;
   void build_tree();
   [[nodiscard]] bool edit_tree(const SitesData& before);

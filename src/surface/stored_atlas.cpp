@@ -69,6 +69,12 @@ void for_each_array(Surface& s, const Header& header, const Take& take) {
   take(s.sample_faces, header.samples);
 }
 
+// Points of the surface are among its vertices, which are not larger; double precision has room for both.
+constexpr double kLargest = 1e38;
+bool within(const Vec3& p, double limit) {
+  return std::abs(p[0]) <= limit && std::abs(p[1]) <= limit && std::abs(p[2]) <= limit;
+}
+
 bool valid(const SurfaceData& s, std::uint64_t charts) {
   const std::uint64_t texels = std::uint64_t{s.resolution} * s.rows;
   for (std::size_t f = 0; f < s.face_charts.size(); ++f) {
@@ -79,7 +85,8 @@ bool valid(const SurfaceData& s, std::uint64_t charts) {
   }
   for (std::size_t i = 0; i < s.samples.size(); ++i)
     if (s.samples[i] >= texels || s.sample_faces[i] >= s.face_charts.size() ||
-        s.face_charts[s.sample_faces[i]] == kNone)
+        s.face_charts[s.sample_faces[i]] == kNone ||
+        !within(s.texel_point(s.sample_faces[i], s.samples[i]), kLargest))
       return false;
   return !s.samples.empty();
 }

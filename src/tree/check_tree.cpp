@@ -90,4 +90,33 @@ bool is_tree(const WideTree& wide, const AabbTree& tree) {
   return true;
 }
 
+// Written so that NaN is refused.
+bool have_valid_boxes(const AabbTree& tree, std::span<const FloatBox> leaves, float reach) {
+  const auto is_inside = [](const FloatBox& box, const FloatBox& outer) {
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) inside &= outer.lo[k] <= box.lo[k] && box.hi[k] <= outer.hi[k];
+    return inside;
+  };
+  const FloatBox most{{-reach, -reach, -reach}, {reach, reach, reach}};
+  std::size_t leaf = 0;
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    const AabbTree::Node& node = tree.nodes[i];
+    const bool valid = node.leaf() ? is_inside(leaves[leaf++], node.box)
+                                   : is_inside(tree.box(static_cast<std::uint32_t>(i + 1)), node.box) &&
+                                         is_inside(tree.box(node.right), node.box);
+    if (!valid || !is_inside(node.box, most)) return false;
+  }
+  return true;
+}
+
+bool have_same_boxes(const WideTree& wide, const AabbTree& tree) {
+  for (const WideTree::Node& node : wide.nodes)
+    for (std::uint32_t i = 0; i < WideTree::kWidth; ++i) {
+      const FloatBox box = i < node.count ? tree.box(node.source[i]) : FloatBox{};
+      for (int k = 0; k < 3; ++k)
+        if (node.lo[k][i] != box.lo[k] || node.hi[k][i] != box.hi[k]) return false;
+    }
+  return true;
+}
+
 }  // namespace sdm::tree

@@ -1,18 +1,28 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sdm/closest_points.h>
 #include <sdm/convex_hull.h>
 #include <sdm/error.h>
+#include <sdm/hausdorff.h>
+#include <sdm/map.h>
 #include <sdm/proximity_query.h>
 #include <sdm/rays.h>
+#include <sdm/self_intersections.h>
 #include <sdm/shape_files.h>
+#include <sdm/sign.h>
+#include <sdm/thickness.h>
 #include <sdm/time_of_contact.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
+#include <limits>
 #include <new>
+#include <optional>
 #include <random>
 #include <thread>
 #include <vector>
@@ -39,12 +49,12 @@ Block block_of(const Shape& shape) {
 }
 
 // A shape of a copy of the bytes.
-Shape shape_from(std::span<const std::byte> block) {
+Shape shape_from(std::span<const std::byte> block, bool trusted = false) {
   constexpr std::align_val_t kAlignment{64};
   auto* const data = static_cast<std::byte*>(::operator new(block.size() + 1, kAlignment));
   const std::shared_ptr<void> owner(data, [](void* memory) { ::operator delete(memory, kAlignment); });
   std::ranges::copy(block, data);
-  return Shape(StoredShape{{data, block.size()}, owner});
+  return Shape(StoredShape{.bytes = {data, block.size()}, .owner = owner, .trusted = trusted});
 }
 
 // The header and the table of sizes, as core/arrays/stored_arrays.h describes them.
@@ -317,6 +327,14 @@ TEST(StoredShape, ForgedSizesAreRefused) {
   }
 }
 
+// Asks a query of a shape whose numbers may be wrong: any answer will do, or an error.
+void attempt(const std::function<void()>& query) {
+  try {
+    query();
+  } catch (const Error&) {
+  }
+}
+
 // Any answer will do, if only there is one.
 void ask(const Shape& shape) {
   const Shape other(test::sphere(1));
@@ -393,6 +411,119 @@ TEST(StoredShape, ForgedIndicesAreRefusedOrHarmless) {
         } catch (const Error&) {
         }
       }
+}
+
+// Whether the elements of an array, by their order in SitesData and Body, are of double precision.
+bool is_double(std::size_t array) {
+  return array == 0 || array == 2 || array == 34 || array == 35;
+}
+
+// All queries of a shape, each by itself.
+void ask_all(const Shape& shape) {
+  static const Shape other(test::torus(7, 5));
+  for (const bool first : {true, false})
+    for (const double x : {0.3, 3.0}) {
+      ProximityQuery query(first ? shape : other, first ? other : shape, {.contact_margin = 0.05});
+      query.set_pose(1, Transform::translation({x, 0.1, 0.2}));
+      attempt([&] { (void)query.separation(); });
+      attempt([&] { (void)query.colliding(); });
+      attempt([&] { (void)query.penetration_depth(); });
+      attempt([&] { (void)query.contacts(); });
+      attempt([&] { (void)query.separating_translation(); });
+      attempt([&] { (void)query.separating_contacts(); });
+    }
+  attempt([&] {
+    ProximityQuery query(shape, other);
+    query.edit(0, {.removed_faces = {0}});
+    (void)query.separation();
+  });
+  const auto at = [&](double x) { return Transform::translation({x, 0, 0}); };
+  attempt([&] { (void)time_of_contact(shape, {at(-3), at(3)}, other, {at(0), at(0)}, 1e-3); });
+  std::vector<Vec3> points;
+  for (int i = 0; i < 200; ++i) points.push_back({std::sin(i), std::cos(3 * i), 2 * std::sin(7 * i)});
+  const Sites& sites = shape.sites();
+  attempt([&] { (void)closest_points(sites, points); });
+  attempt([&] { (void)closest_points(sites, std::span(points).first(3)); });
+  const std::vector<ClosestPoint> none(points.size());
+  for (const SignMethod method : {SignMethod::exact, SignMethod::winding})
+    attempt([&] { (void)inside_flags(sites, points, none, method); });
+  attempt([&] { (void)self_intersections(sites); });
+  attempt([&] { (void)one_sided_hausdorff(test::single_triangle(), sites); });
+  const std::vector<Ray> rays{{{-3, 0.1, 0.2}, {1, 0, 0}}, {{0.1, 0.2, 5}, {0.1, 0, -1}}};
+  attempt([&] { (void)first_hits(sites, rays); });
+  attempt([&] { (void)thickness_at_vertices(sites, ThicknessMethod::ball); });
+  if (shape.has_surface()) attempt([&] { (void)compute_map(shape.surface(), other.sites()); });
+}
+
+// Numbers that somebody has changed, with the right checksum: what is not finite, too large or not a box is
+// refused, and all other numbers are harmless.
+TEST(StoredShape, ForgedNumbersAreRefusedOrHarmless) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(),
+                   kInfinity = std::numeric_limits<double>::infinity();
+  constexpr std::size_t kFirstOfTrees = 16;  // in large shapes; cylinders are the last of these arrays
+  int taken = 0, refused = 0;
+  std::mt19937 random(4);
+  for (const Mesh& mesh : {test::cube(), test::torus(44, 40)}) {
+    const Block block = block_of(Shape(mesh, AtlasOptions{.resolution = 64}));
+    const std::vector<ArrayPlace> arrays = arrays_of(block);
+    const bool small = mesh.triangles.size() < 100;
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+      for (const double value : {3e38, kNaN, kInfinity, -1.0, 0.0, 0.25, 1e-30})
+        for (const bool all : {true, false}) {
+          Block forged = block;
+          const std::size_t size = is_double(i) ? 8 : 4, count = arrays[i].size / size;
+          const std::size_t only = count == 0 ? 0 : random() % count;
+          bool numbers = false;
+          for (std::size_t j = all ? 0 : only; j < (all ? count : std::min(count, only + 1)); ++j) {
+            if (is_index(i, size / 4 * j)) continue;
+            const std::size_t at = arrays[i].begin + size * j;
+            is_double(i) ? set_number(forged, at, value) : set_number(forged, at, static_cast<float>(value));
+            numbers = true;
+          }
+          if (!numbers) continue;
+          SCOPED_TRACE(testing::Message() << "array " << i << ", " << value << (all ? ", all" : ", one"));
+          reseal(forged);
+          std::optional<Shape> shape;
+          attempt([&] { shape.emplace(shape_from(forged)); });
+          if (!shape) {
+            ++refused;
+            continue;
+          }
+          EXPECT_FALSE(all && (std::isnan(value) || value == 3e38));
+          ++taken;
+          if (small || (all && i >= kFirstOfTrees)) ask_all(*shape);
+        }
+  }
+  EXPECT_GT(taken, 40);
+  EXPECT_GT(refused, 200);
+}
+
+// All words of an array that is no list of numbers, too: indices, counts, flags and the atlas.
+TEST(StoredShape, ForgedArraysAreRefusedOrHarmless) {
+  const Block block = block_of(Shape(test::torus(12, 9), AtlasOptions{.resolution = 64}));
+  const std::vector<ArrayPlace> arrays = arrays_of(block);
+  for (const ArrayPlace& array : arrays)
+    for (const std::uint32_t value : {0u, 1u, 0x01010101u, 0x7F61B1E6u, 0x7FC00000u, 0xBF800000u, ~0u}) {
+      Block forged = block;
+      for (std::size_t at = array.begin; at + 4 <= array.begin + array.size; at += 4)
+        set_number(forged, at, value);
+      reseal(forged);
+      attempt([&] { ask_all(shape_from(forged)); });
+    }
+}
+
+TEST(StoredShape, TrustedOnesAreCheckedForDamageOnly) {
+  const Mesh mesh = test::torus(12, 9);
+  Block block = block_of(Shape(mesh));
+  const auto trusted = [](const Block& bytes) { return shape_from(bytes, true); };
+  EXPECT_EQ(answers(trusted(block), Shape(test::cube())), answers(Shape(mesh), Shape(test::cube())));
+  Block forged = block;
+  set_number(forged, arrays_of(block)[34].begin, 3e38);  // the normal of a face
+  reseal(forged);
+  EXPECT_NO_THROW((void)trusted(forged));
+  EXPECT_THROW((void)shape_from(forged), Error);
+  forged[forged.size() / 2] ^= std::byte{1};
+  EXPECT_THROW((void)trusted(forged), Error);
 }
 
 TEST(StoredShape, FilesAppearWholeAndNameTheirFault) {

@@ -19,10 +19,10 @@ void write_shape(const std::filesystem::path& file, const Shape& shape) {
   to.commit();
 }
 
-Shape read_shape(const std::filesystem::path& file) {
+Shape read_shape(const std::filesystem::path& file, const ReadShapeOptions& options) {
   return io::with_error_prefix(file.string(), [&] {
     io::MappedFile mapped = io::map_file(file, "shape");
-    return Shape(StoredShape{mapped.bytes, std::move(mapped.owner)});
+    return Shape(StoredShape{mapped.bytes, std::move(mapped.owner), options.trusted});
   });
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "core/nothing_found.h"
 #include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
 #include "query/pairs/collision.h"
@@ -144,7 +145,10 @@ bool PairAnswers::find_closest(double bound) {
   }
   const pairs::Separation c =
       found ? *found : pairs::find_closest(pair, own_bound, workspace_, known_.closest_faces);
-  if (c.face1 == kNone) return false;
+  if (c.face1 == kNone) {
+    if (bound == kNoLimit) throw_nothing_found();
+    return false;
+  }
   known_.intersecting = c.intersecting;
   known_.closest_faces = {c.face1, c.face2};
   const double distance = pose.scale * c.distance;

@@ -7,7 +7,9 @@
 #include <hwy/highway.h>
 
 #include <bit>
+#include <limits>
 
+#include "core/nothing_found.h"
 #include "geometry/lanes/vec-inl.h"
 #include "geometry/vec.h"
 #include "query/closest/closest_points.h"
@@ -187,7 +189,10 @@ void finish_packet(const sites::SitesData& sites, const uint32_t* winners, const
     const uint32_t lanes = lanes_of(winners, site.packed) & pending;
     pending &= ~lanes;
     uint32_t open = lanes;
-    if (site.packed == kNone) continue;
+    if (site.packed == kNone) {
+      if (max_distance == std::numeric_limits<double>::infinity()) throw_nothing_found();
+      continue;
+    }
     if (site.packed != SiteId::kUnsettled) open &= ~on_site(sites, site, p, lanes);
     for (; open != 0; open &= open - 1) {
       const auto i = static_cast<size_t>(std::countr_zero(open));

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/nothing_found.h"
 #include "query/closest/candidates-inl.h"
 #include "query/closest/face_distances-inl.h"
 #include "query/closest/reference.h"
@@ -249,7 +250,10 @@ HWY_EXPORT(SearchEach);
 
 ClosestPoint closest_point(const sites::SitesData& sites, const Vec3& query, double max_distance) {
   thread_local SinglePointMemory memory;
-  return HWY_DYNAMIC_DISPATCH(SearchOne)(sites, query, max_distance, memory);
+  const ClosestPoint found = HWY_DYNAMIC_DISPATCH(SearchOne)(sites, query, max_distance, memory);
+  if (found.type == SiteType::none && max_distance == std::numeric_limits<double>::infinity())
+    throw_nothing_found();
+  return found;
 }
 
 PacketWork closest_of_each(const sites::SitesData& sites, std::span<const Vec3> queries,

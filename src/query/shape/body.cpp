@@ -58,9 +58,10 @@ Body::Body(const Mesh& mesh, const AtlasOptions* atlas) : sites_(mesh) {
   find_parts();
 }
 
-Body::Body(StoredBytes stored) : Body(ArrayReader(std::move(stored), kFormat)) {}
+Body::Body(StoredBytes stored, bool trusted) : Body(ArrayReader(std::move(stored), kFormat), trusted) {}
 
-Body::Body(ArrayReader stored) : sites_(with_data(std::make_unique<sites::SitesData>(stored))) {
+Body::Body(ArrayReader stored, bool trusted)
+    : sites_(with_data(std::make_unique<sites::SitesData>(stored, trusted))) {
   Array<sites::BoundingCylinders> cylinders;
   bool is_convex = false;
   std::vector<std::uint8_t> atlas;
@@ -68,8 +69,8 @@ Body::Body(ArrayReader stored) : sites_(with_data(std::make_unique<sites::SitesD
   stored.finish();
   follow_positions();
   const sites::SitesData& sites = internals(sites_);
-  if (!are_parts(contact_parts_, sites) || !cylinders_.set_nodes(std::move(cylinders), sites.wide))
-    stored.fail();
+  if (!cylinders_.set_nodes(std::move(cylinders), sites.wide)) stored.fail();
+  if (!trusted && (!are_parts(contact_parts_, sites) || !cylinders_.have_valid_numbers())) stored.fail();
   if (is_convex) convex_ = convex::recognise(sites);
   if (!atlas.empty()) surface_.emplace(sites.mesh, surface::stored_options(atlas), atlas);
 }

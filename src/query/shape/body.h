@@ -31,8 +31,9 @@ class Body {
  public:
   /// Throws sdm::Error as Surface and Sites do. `atlas`: none if null.
   Body(const Mesh& mesh, const AtlasOptions* atlas);
-  /// The body that was stored. Throws sdm::Error if the bytes are not one, or are damaged.
-  explicit Body(StoredBytes stored);
+  /// The body that was stored. Throws sdm::Error if the bytes are not one, are damaged or, unless they are
+  /// `trusted`, if what they contain does not belong together.
+  Body(StoredBytes stored, bool trusted);
   /// Calls write(bytes) for all bytes of the body in its present shape. What queries build when they need it
   /// is not among them.
   void store(const std::function<void(std::span<const std::byte>)>& write) const;
@@ -86,7 +87,7 @@ class Body {
   [[nodiscard]] std::span<const ContactPart> contact_parts() const { return contact_parts_; }
 
  private:
-  explicit Body(ArrayReader stored);
+  Body(ArrayReader stored, bool trusted);
   void follow_positions();
   void find_parts();
 

@@ -19,7 +19,8 @@ Shape::Shape(const Mesh& mesh, const AtlasOptions& atlas) try
 }
 
 Shape::Shape(StoredShape stored) try
-    : body_(std::make_shared<shape::Body>(StoredBytes{stored.bytes, std::move(stored.owner)})) {
+    : body_(
+          std::make_shared<shape::Body>(StoredBytes{stored.bytes, std::move(stored.owner)}, stored.trusted)) {
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a shape");
 }
