@@ -469,7 +469,7 @@ class Collisions {
 
 TEST(RandomCommandLines, LoseNoInput) {
   std::size_t succeeded = 0, conflicted = 0;
-  const std::size_t all = subset(50, 1000);
+  const std::size_t all = subset(25, 1000);
   for (unsigned seed = 0; seed < all; ++seed) {
     SCOPED_TRACE(seed);
     Collisions collisions(seed);
