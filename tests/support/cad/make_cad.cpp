@@ -84,6 +84,26 @@ void write_assembly(const std::string& file) {
   write_step(document, file, "INCH");
 }
 
+// Two instances of a part of 1 × 2 × 3, 5 apart, in a file of its own.
+void write_external(const std::string& file) {
+  const Handle(TDocStd_Document) document = new_document();
+  const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  const TDF_Label part = shapes->AddShape(BRepPrimAPI_MakeBox(1, 2, 3).Shape(), false);
+  TDataStd_Name::Set(part, "part");
+  const TDF_Label assembly = shapes->NewShape();
+  TDataStd_Name::Set(assembly, "assembly");
+  gp_Trsf far;
+  far.SetTranslation(gp_Vec(5, 0, 0));
+  shapes->AddComponent(assembly, part, TopLoc_Location());
+  shapes->AddComponent(assembly, part, TopLoc_Location(far));
+  shapes->UpdateAssemblies();
+  STEPCAFControl_Writer writer;
+  Interface_Static::SetCVal("write.step.unit", "MM");
+  require(writer.Transfer(document, STEPControl_AsIs, "external_") &&
+              writer.Write(file.c_str()) == IFSelect_RetDone,
+          file);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -100,4 +120,5 @@ int main(int count, char** arguments) {
   write_step(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 0, 0)).Shape(), "line", folder + "line.step");
   write_iges(tube, folder + "tube.igs");
   write_assembly(folder + "assembly.step");
+  write_external(folder + "external.step");
 }

@@ -5,9 +5,12 @@
 #include <IGESData_IGESModel.hxx>
 #include <Interface_Static.hxx>
 #include <Quantity_Color.hxx>
+#include <STEPCAFControl_ExternFile.hxx>
 #include <STEPCAFControl_Reader.hxx>
+#include <STEPConstruct_ExternRefs.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TCollection_AsciiString.hxx>
+#include <TCollection_HAsciiString.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDataStd_Name.hxx>
 #include <TopExp_Explorer.hxx>
@@ -17,10 +20,15 @@
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <XSControl_WorkSession.hxx>
+#include <algorithm>
+#include <filesystem>
 #include <istream>
 #include <map>
 #include <stdexcept>
 #include <streambuf>
+#include <string_view>
+#include <vector>
 
 namespace sdm::io::cad {
 namespace {
@@ -57,16 +65,72 @@ std::string unit_names(const TColStd_SequenceOfAsciiString& names) {
   return all;
 }
 
+/// Whether the name of a referenced file leads away from the folder of the file that refers to it.
+bool leads_elsewhere(const std::filesystem::path& name) {
+  return name.is_absolute() || std::ranges::find(name, "..") != name.end() ||
+         name.string().find('\\') != std::string::npos;
+}
+
+[[noreturn]] void throw_elsewhere(const std::string& name) {
+  throw std::runtime_error("refers to the part " + name +
+                           ", but parts are looked up beside the STEP file only");
+}
+
+/// The parts of an assembly that are files of their own, as the reader will look them up: by names relative
+/// to the folder of the file. Those of other formats than STEP are documents.
+std::vector<std::string> referenced_files(const STEPCAFControl_Reader& reader) {
+  STEPConstruct_ExternRefs references(reader.Reader().WS());
+  references.LoadExternRefs();
+  std::vector<std::string> names;
+  for (int i = 1; i <= references.NbExternRefs(); ++i) {
+    const char* const name = references.FileName(i);
+    const Handle(TCollection_HAsciiString) format = references.Format(i);
+    if (name == nullptr || *name == '\0') continue;
+    if (!format.IsNull() && std::string_view(format->ToCString()).substr(0, 4) != "STEP") continue;
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+/// What OpenCASCADE leaves out without a word.
+void require_references(const STEPCAFControl_Reader& reader, const std::vector<std::string>& names,
+                        const std::filesystem::path& folder) {
+  for (NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>::Iterator at(
+           reader.ExternFiles());
+       at.More(); at.Next()) {  // with those that parts refer to
+    const std::string name = at.Key().ToCString();
+    if (leads_elsewhere(name)) throw_elsewhere(name);
+    if (at.Value()->GetLoadStatus() != IFSelect_RetDone)
+      throw std::runtime_error("refers to the part " + name +
+                               ", which is not beside it, or cannot be read as STEP");
+    if (!at.Value()->GetTransferStatus())
+      throw std::runtime_error("refers to the part " + name + ", which has no shape");
+  }
+  for (const std::string& name : names)
+    if (!reader.ExternFiles().IsBound(name.c_str()))
+      throw std::runtime_error("refers to the part " + (folder / name).string() + ", which was not read");
+}
+
 std::string read_step(const CadRequest& request, Handle(TDocStd_Document) & document) {
   STEPCAFControl_Reader reader;
   Interface_Static::SetIVal("read.stepcaf.subshapes.name", 1);
   BytesBuffer buffer(request.bytes);
   std::istream stream(&buffer);
-  if (reader.ChangeReader().ReadStream("file", stream) != IFSelect_RetDone)
+  // Names of parts are relative to that of the stream; a relative one would be taken for the current folder.
+  const std::filesystem::path file = std::filesystem::absolute(request.file);
+  if (reader.ChangeReader().ReadStream(file.c_str(), stream) != IFSelect_RetDone)
     throw std::runtime_error(kDamaged);
+  const std::vector<std::string> parts = referenced_files(reader);
+  for (const std::string& name : parts) {
+    if (leads_elsewhere(name)) throw_elsewhere(name);
+    if (!std::filesystem::is_regular_file(file.parent_path() / name))
+      throw std::runtime_error("refers to the part " + name + ", which is not beside it");
+  }
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
-  if (!reader.Transfer(document)) throw std::runtime_error(kDamaged);
+  const bool transferred = reader.Transfer(document);
+  require_references(reader, parts, file.parent_path());
+  if (!transferred) throw std::runtime_error(kDamaged);
   return unit_names(lengths);
 }
 
