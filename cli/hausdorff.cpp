@@ -200,6 +200,11 @@ int run(const HausdorffCommand& command) {
   answer.size = smaller_size(pair);
   answer.notes = notes_on(pair.o1, pair.o2);
   if (auto note = note_on_unit(command.units)) answer.notes.push_back(std::move(*note));
+  if (command.options.facing)
+    for (const Input* input : {&pair.o1, &pair.o2})
+      if (input == &pair.o1 || command.both)
+        if (auto note = sdm::note_on_directions(input->mesh, *command.options.facing, command.units))
+          answer.notes.push_back(std::move(*note));
   if (command.tolerance && !command.options.facing)
     if (auto note = sdm::note_on_walls(sites.back(), *command.tolerance, command.units))
       answer.notes.push_back(std::move(*note));

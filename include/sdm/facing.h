@@ -1,6 +1,13 @@
 /// Closest points among the faces of O2 that face the same way as the query: they do not find the other skin
 /// of a thin wall, so that a dent deeper than half of the wall is not hidden by it.
 ///
+/// The direction of a sample of a surface is the outward normal of its face. A face so low that noise turns
+/// it over (its least height is below 1/1000 of the diagonal of the surface's box) has that of its
+/// surroundings instead, if these do not face as it does, within the angle: the sum of the normals of the
+/// other faces at its corners, weighted by their areas, of which no more than half cancel out, and which are
+/// at least twice that of the face. Maps, distances at vertices, proofs and the Hausdorff distance all have
+/// this rule.
+///
 /// Threads: the function may be called concurrently, also with the same Sites.
 #pragma once
 

@@ -223,6 +223,12 @@ class SDM_API CombinedSummary {
                                                                std::span<const GroupTolerance> table,
                                                                const std::string& units);
 
+/// Returns a sentence if faces of a surface are so small that their direction is noise: where distances go to
+/// faces that face the same way, within `facing` degrees, these are measured as their surroundings are (see
+/// sdm/facing.h). Throws sdm::Error for an angle out of range. Cost: linear.
+[[nodiscard]] SDM_API std::optional<std::string> note_on_directions(const Mesh& surface, double facing,
+                                                                    const std::string& units);
+
 /// Withholds a pass because of the doubts of the summary, unless they are accepted.
 SDM_API void withhold_pass(Summary& summary, bool accept_doubts);
 

@@ -12,8 +12,8 @@
 #include "core/parallel.h"
 #include "geometry/vec.h"
 #include "map/map_writer.h"
+#include "query/facing/facing_normals.h"
 #include "query/facing/facing_search.h"
-#include "query/facing/outward_normals.h"
 
 namespace sdm {
 namespace map {
@@ -44,7 +44,7 @@ class SampleCounts {
 void compute_facing_map(const Surface& surface, const Sites& sites, const MapOptions& options,
                         const Engine& engine, DistanceMap& map) {
   const facing::FacingSearch search(internals(sites), *options.facing);
-  const std::vector<Vec3> normals = facing::outward_normals(surface.mesh());
+  const std::vector<Vec3> normals = facing::facing_normals(surface.mesh(), *options.facing).normals;
   const std::span<const std::uint32_t> texels = surface.sample_texels(), faces = surface.texel_faces();
   map.sign = choose_sign(sites, options);
   map.measured = measured_distance(options);

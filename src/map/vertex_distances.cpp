@@ -9,8 +9,8 @@
 #include "core/arrays/rows.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "query/facing/facing_normals.h"
 #include "query/facing/facing_search.h"
-#include "query/facing/outward_normals.h"
 #include "query/inside/open_sides.h"
 #include "sites/sites_data.h"
 
@@ -34,9 +34,9 @@ Found find(const Mesh& mesh, const Sites& sites, const MapOptions& options) {
 std::vector<float> facing_distances(const Mesh& mesh, const Sites& sites, MapOptions options) {
   const facing::FacingSearch search(internals(sites), *options.facing);
   const bool is_signed = choose_sign(sites, options).method != SignMethod::none;
+  const std::vector<Vec3> normals = facing::facing_normals(mesh, *options.facing).normals;
   options.facing.reset();
   const std::vector<ClosestPoint> closest = closest_points(sites, mesh.positions, options);
-  const std::vector<Vec3> normals = facing::outward_normals(mesh);
   const auto faces_at = make_rows<std::uint32_t>(mesh.positions.size(), [&](const auto& put) {
     for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
       if (!is_removed(mesh.triangles[f]))

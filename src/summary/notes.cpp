@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "core/numbers/number_text.h"
+#include "geometry/triangle.h"
 #include "geometry/vec.h"
+#include "query/facing/facing_normals.h"
 
 namespace sdm {
 namespace {
@@ -84,6 +86,24 @@ std::optional<std::string> note_on_walls(const Sites& sites, const std::optional
   for (std::size_t row = 0; row < table.size(); ++row)
     if (!named[row].faces.empty()) add(table[row].tolerance);
   return largest < 0 ? std::nullopt : note_on_walls(sites, Tolerance(largest), units);
+}
+
+std::optional<std::string> note_on_directions(const Mesh& surface, double facing, const std::string& units) {
+  const facing::FacingNormals found = facing::facing_normals(surface, facing);
+  if (found.replaced.empty()) return std::nullopt;
+  const auto area_of = [&](std::size_t face) {
+    const auto [a, b, c] = corners_of(surface, face);
+    return norm(cross(b - a, c - a)) / 2;
+  };
+  double area = 0, all = 0;
+  for (const std::uint32_t face : found.replaced) area += area_of(face);
+  for (std::size_t face = 0; face < surface.triangles.size(); ++face)
+    if (!is_removed(surface.triangles[face])) all += area_of(face);
+  const bool one = found.replaced.size() == 1;
+  return "the direction of " + std::to_string(found.replaced.size()) + (one ? " face" : " faces") +
+         " lower than " + text_of(found.height, 2) + (units.empty() ? "" : " " + units) + ", with " +
+         text_of(100 * area / all, 2) + " % of the area, is ignored: so small, it is noise, and that of " +
+         (one ? "its" : "their") + " surroundings counts";
 }
 
 std::vector<std::string> notes_on(const Box& a, const Box& b) {

@@ -44,6 +44,9 @@ std::vector<std::string> notes_of(const Surface& surface, const Sites& sites, co
     notes.emplace_back("no face of O2 faces as the surface does; are both oriented outwards?");
   else if (summary.distance.texels == 0)
     notes.emplace_back("no texel is within the maximum distance; the map is empty");
+  if (summary.measured.facing && summary.measured.kind == DistanceKind::facing)
+    if (auto note = note_on_directions(surface.mesh(), *summary.measured.facing, options.units))
+      notes.push_back(std::move(*note));
   if (const std::size_t texels = surface.overlapping_texels(); texels > 0)
     notes.push_back(std::to_string(texels) +
                     " texels are covered by several faces, and have the value of one of them");

@@ -12,7 +12,7 @@
 #include "core/memory.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
-#include "query/facing/outward_normals.h"
+#include "query/facing/facing_normals.h"
 #include "sites/sites_data.h"
 
 namespace sdm {
@@ -47,7 +47,8 @@ HausdorffDistance bound_distance(const Mesh& a, const sites::SitesData& b, const
   const hausdorff::Scale scale = hausdorff::scale_of(a, bounds(b.mesh));
   const double asked = options.precision.value_or(HausdorffOptions::kPrecision * scale.size);
   std::optional<hausdorff::Matching> matching;
-  if (options.facing) matching.emplace(b, *options.facing, facing::outward_normals(a));
+  if (options.facing)
+    matching.emplace(b, *options.facing, facing::facing_normals(a, *options.facing).normals);
   const hausdorff::LargestDistance found = hausdorff::largest_distance(
       a, b, scale, {.precision = asked, .matching = matching ? &*matching : nullptr}, options.progress);
   const auto& [lower, upper, unmatched] = found;

@@ -21,7 +21,7 @@
 #include "geometry/vec.h"
 #include "mesh/validate.h"
 #include "query/closest/reference.h"
-#include "query/facing/outward_normals.h"
+#include "query/facing/facing_normals.h"
 #include "query/inside/inside.h"
 
 namespace sdm {
@@ -205,7 +205,7 @@ void check_question(const Tolerance& tolerance, const ToleranceProofOptions& opt
 }  // namespace
 
 hausdorff::Matching tolerance::matching_of(const Mesh& surface, const Sites& sites, double angle) {
-  return {internals(sites), angle, facing::outward_normals(surface)};
+  return {internals(sites), angle, facing::facing_normals(surface, angle).normals};
 }
 
 ToleranceProof tolerance::prove_valid(const Mesh& surface, const Sites& sites, const Tolerance& tolerance,

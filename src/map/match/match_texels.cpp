@@ -11,8 +11,8 @@
 #include "map/match/ray_matches.h"
 #include "map/match/texel_match.h"
 #include "map/transfer/closest_of_texels.h"
+#include "query/facing/facing_normals.h"
 #include "query/facing/facing_search.h"
-#include "query/facing/outward_normals.h"
 
 namespace sdm {
 namespace {
@@ -57,7 +57,9 @@ TexelMatches matches_of(const Surface& surface, const Sites& sites, const Distan
     throw Error("the map belongs to another surface: its number of texels differs");
   const MatchKind found = kind_of(map.measured);
   const std::vector<Vec3> normals =
-      found == MatchKind::facing ? facing::outward_normals(surface.mesh()) : std::vector<Vec3>();
+      found == MatchKind::facing
+          ? facing::facing_normals(surface.mesh(), map.measured.facing.value_or(90)).normals
+          : std::vector<Vec3>();
   const auto faces = surface.texel_faces();
   TexelMatches matches = map::no_matches(surface);
   constexpr std::size_t kRowsOfTask = 8;

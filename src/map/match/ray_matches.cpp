@@ -15,8 +15,8 @@
 #include "map/match/corner_normals.h"
 #include "map/match/texel_match.h"
 #include "map/transfer/closest_of_texels.h"
+#include "query/facing/facing_normals.h"
 #include "query/facing/facing_search.h"
-#include "query/facing/outward_normals.h"
 #include "query/rays/trace.h"
 #include "surface/tiles.h"
 
@@ -127,7 +127,7 @@ TexelMatches ray_matches(const Surface& surface, const Sites& sites, const Match
   if (options.normals == nullptr) smooth = smooth_normals(surface.mesh());
   const CornerNormals normals(surface.mesh(), smooth ? *smooth : *options.normals, "the surface");
   const facing::FacingSearch allowed(internals(sites), options.facing);
-  const std::vector<Vec3> face_normals = facing::outward_normals(surface.mesh());
+  const std::vector<Vec3> face_normals = facing::facing_normals(surface.mesh(), options.facing).normals;
   const RayMatching matching{surface,      internals(sites), allowed,
                              face_normals, normals,          std::min(options.cage, options.max_distance)};
   TexelMatches matches = no_matches(surface);

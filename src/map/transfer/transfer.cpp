@@ -15,7 +15,7 @@
 #include "core/parallel.h"
 #include "map/transfer/closest_of_texels.h"
 #include "map/transfer/fill_texels.h"
-#include "query/facing/outward_normals.h"
+#include "query/facing/facing_normals.h"
 
 namespace sdm {
 namespace {
@@ -175,9 +175,10 @@ std::vector<float> transfer(const Surface& surface, const Sites& sites, const Di
   require_fitting(array, sites.mesh());
   if (map.distance.size() != surface.texel_faces().size() || map.resolution != surface.resolution())
     throw Error("the map belongs to another surface: its number of texels differs");
-  const std::vector<Vec3> normals = map.measured.kind == DistanceKind::facing
-                                        ? facing::outward_normals(surface.mesh())
-                                        : std::vector<Vec3>();
+  const std::vector<Vec3> normals =
+      map.measured.kind == DistanceKind::facing
+          ? facing::facing_normals(surface.mesh(), map.measured.facing.value_or(90)).normals
+          : std::vector<Vec3>();
   const auto points_of = [&] {
     return [points = ClosestOfTexels(surface, sites, map, normals)](std::uint32_t texel) mutable {
       return points.at(texel);

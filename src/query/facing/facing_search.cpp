@@ -1,13 +1,9 @@
 #include "query/facing/facing_search.h"
 
-#include <sdm/error.h>
-
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
-#include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "query/closest/reference.h"
 #include "query/facing/normal_tree.h"
@@ -25,20 +21,9 @@ double angle_at(const Mesh& mesh, std::uint32_t face, std::uint32_t vertex) {
   return std::atan2(norm(cross(a, b)), dot(a, b));
 }
 
-double cosine_of(double angle) {
-  check_angle(angle);
-  return std::cos(angle * std::numbers::pi / 180) - kDoubleRounding;
-}
-
 }  // namespace
 
-void check_angle(double angle) {
-  if (!(angle > 0 && angle <= 180))
-    throw Error("the angle within which faces face the samples must be above 0 and at most 180 degrees");
-}
-
-FacingSearch::FacingSearch(const sites::SitesData& sites, double angle)
-    : sites_(sites), right_angle_(angle == 90), least_cosine_(cosine_of(angle)) {
+FacingSearch::FacingSearch(const sites::SitesData& sites, double angle) : sites_(sites), angle_(angle) {
   cones_ = normal_cones(sites);
 }
 
@@ -70,7 +55,7 @@ std::vector<std::uint32_t> FacingSearch::some_allowed(const Vec3& normal, std::s
       by_normal_.get([this] { return std::make_shared<tree::AabbTree>(normal_tree(sites_)); });
   std::vector<std::uint32_t> found;
   const auto enter = [&](const tree::Subtree& below) {
-    return found.size() < most && allows(largest_cosine(tree.box(below.root), normal));
+    return found.size() < most && angle_.allows(largest_cosine(tree.box(below.root), normal));
   };
   const auto leaf = [&](std::uint32_t node) {
     for (const std::uint32_t face : tree.items_of(node))

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/lazy/kept.h"
+#include "query/facing/facing_angle.h"
 #include "query/facing/normal_cones.h"
 #include "sites/sites_data.h"
 #include "tree/aabb_tree.h"
@@ -21,9 +22,6 @@ struct Match {
   bool unmatched = false;  ///< no face is allowed, at any distance
 };
 
-/// Throws sdm::Error unless an angle in degrees is above 0 and at most 180.
-void check_angle(double angle);
-
 class FacingSearch {
  public:
   /// `angle` as of check_angle(). Cost: linear in the faces.
@@ -31,12 +29,12 @@ class FacingSearch {
 
   /// Whether the normal of a face is within the angle of a unit vector; for 90° less than that.
   [[nodiscard]] bool allows(const Vec3& normal, std::uint32_t face) const {
-    return has_normal(sites_, face) && allows(dot(sites_.normals.face[face], normal));
+    return has_normal(sites_, face) && angle_.allows(dot(sites_.normals.face[face], normal));
   }
 
   /// Whether there may be an allowed face below a node of the tree.
   [[nodiscard]] bool may_allow(std::uint32_t node, const Vec3& normal) const {
-    return allows(largest_cosine(cones_[node], normal));
+    return angle_.allows(largest_cosine(cones_[node], normal));
   }
 
   /// Returns the faces that are allowed for a unit vector, if they are fewer than about the root of all
@@ -53,9 +51,6 @@ class FacingSearch {
                             const ClosestPoint& closest) const;
 
  private:
-  [[nodiscard]] bool allows(double cosine) const {
-    return right_angle_ ? cosine > 0 : cosine >= least_cosine_;
-  }
   /// Allowed faces, wherever they are, `most` at the most.
   [[nodiscard]] std::vector<std::uint32_t> some_allowed(const Vec3& normal, std::size_t most) const;
   [[nodiscard]] ClosestPoint closest_allowed(const Vec3& query, const Vec3& normal,
@@ -68,8 +63,7 @@ class FacingSearch {
   const sites::SitesData& sites_;
   std::vector<Cone> cones_;
   Kept<tree::AabbTree> by_normal_;  ///< a tree over the normals, which most searches do without
-  bool right_angle_;
-  double least_cosine_;
+  FacingAngle angle_;
 };
 
 }  // namespace sdm::facing

@@ -3,6 +3,7 @@
 #include <sdm/atlas.h>
 #include <sdm/certified_verdict.h>
 #include <sdm/group_verdicts.h>
+#include <sdm/hausdorff.h>
 #include <sdm/summary.h>
 #include <sdm/vertex_distances.h>
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -135,6 +137,75 @@ TEST(FacingVerdicts, FaceWithoutASampleFails) {
   const Summary summary = summarize(open.surface, open.sites, open.map, open.at_vertices,
                                     {.accuracy = kAccuracy, .tolerance = 0.5});
   EXPECT_EQ(verdict_text(summary), "no face of the reference faces as a point does");
+}
+
+/// A scan of a plate of 20 × 20 × 1, of which noise moved a vertex over the edge between two others, so that
+/// the sliver of the three faces down.
+Mesh turned_over(double noise) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0},
+                    {20, 0, 0},
+                    {20, 20, 0},
+                    {0, 20, 0},
+                    {0, 0, 1},
+                    {20, 0, 1},
+                    {20, 20, 1},
+                    {0, 20, 1},
+                    {5, 10, 1},
+                    {15, 10, 1},
+                    {10, 10 - noise, 1 + noise}};
+  mesh.triangles = {{4, 5, 9},  {4, 9, 8},  {4, 8, 7}, {5, 6, 9}, {7, 8, 10}, {7, 10, 6},
+                    {6, 10, 9}, {8, 9, 10}, {0, 2, 1}, {0, 3, 2}, {0, 1, 5},  {0, 5, 4},
+                    {1, 2, 6},  {1, 6, 5},  {2, 3, 7}, {2, 7, 6}, {3, 0, 4},  {3, 4, 7}};
+  return mesh;
+}
+
+Mesh plate(double thickness) {
+  Mesh mesh = cube(1);
+  for (Vec3& p : mesh.positions) p = {10 + 10 * p[0], 10 + 10 * p[1], thickness * (p[2] + 1) / 2};
+  return mesh;
+}
+
+TEST(FacingVerdicts, ASliverThatNoiseTurnedOverCountsAsItsSurroundings) {
+  const Judged scan(turned_over(0.01), plate(1));
+  const CertifiedVerdict passes = scan.verdict(0.0101), fails = scan.verdict(0.0099);
+  EXPECT_EQ(passes.verdict, Verdict::pass);
+  EXPECT_TRUE(passes.certified);
+  EXPECT_EQ(fails.verdict, Verdict::fail);
+  for (const std::uint32_t texel : scan.surface.sample_texels())
+    EXPECT_LE(std::abs(scan.map.distance[texel]), 0.0100001);
+  const HausdorffDistance largest = one_sided_hausdorff(scan.scan, scan.sites, {.facing = 90});
+  EXPECT_NEAR(largest.distance.lower, 0.01, 1e-6);
+  EXPECT_LE(largest.distance.upper, 0.0101);
+  const Summary summary = summarize(scan.surface, scan.sites, scan.map, scan.at_vertices,
+                                    {.units = "mm", .accuracy = kAccuracy, .tolerance = 0.0101});
+  EXPECT_EQ(summary.notes, std::vector<std::string>{
+                               "the direction of 1 face lower than 0.028 mm, with 0.008 % of the area, is "
+                               "ignored: so small, it is noise, and that of its surroundings counts"});
+  // A face that is larger than noise has the direction that it has.
+  const Judged large(turned_over(0.5), plate(1));
+  EXPECT_EQ(large.verdict(0.6).verdict, Verdict::fail);
+  EXPECT_FALSE(note_on_directions(large.scan, 90, ""));
+}
+
+// Rims, tips and bodies that are as small have no surroundings with another direction.
+TEST(FacingVerdicts, SmallFeaturesKeepTheirDirections) {
+  EXPECT_FALSE(note_on_directions(plate(0.01), 90, ""));
+  EXPECT_FALSE(note_on_directions(plate(0.01), 30, ""));
+  Mesh crumb = tetrahedron();
+  for (Vec3& p : crumb.positions) p = 0.001 * p;
+  EXPECT_FALSE(note_on_directions(joined(cube(10), crumb), 90, ""));
+  EXPECT_FALSE(note_on_directions(needles(1e-4), 90, ""));
+}
+
+// A search that ended without a point out of the limits is no matter of rounding.
+TEST(Verdicts, SayWhyAProofDecidedNothing) {
+  ToleranceProof proof{.proof = Proof::undecided, .undecided_by = 0.035};
+  EXPECT_EQ(judge(Judgement{}, proof).reason, VerdictReason::between_samples);
+  proof.witness.emplace();
+  EXPECT_EQ(judge(Judgement{}, proof).reason, VerdictReason::within_rounding);
+  proof.depends_on_signs = true;
+  EXPECT_EQ(judge(Judgement{}, proof).reason, VerdictReason::estimated_signs);
 }
 
 TEST(FacingVerdicts, GroupsAreProven) {

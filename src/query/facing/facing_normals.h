@@ -1,0 +1,30 @@
+// The normals by which the faces of O1 are matched.
+#pragma once
+
+#include <sdm/mesh.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace sdm::facing {
+
+/// outward_normals(), but for faces whose direction is noise.
+///
+/// A face is *low* if its least height is below 1/1000 of the diagonal of the mesh's box. Its surroundings
+/// are the other faces at its corners; their normal is the sum of their normals, weighted by area and by the
+/// number of corners that they share. A low face takes the normal of its surroundings if that is not within
+/// the angle of its own, if no more than half of their area cancels out in the sum, and if they have twice
+/// its area or more, weighted alike. So a sliver that noise has turned over is measured as what is around it,
+/// while thin rims, tips and small bodies keep their directions. All points of such a face are within its
+/// height of its surroundings.
+struct FacingNormals {
+  std::vector<Vec3> normals;  ///< of all faces, unit length or 0
+  std::vector<std::uint32_t>
+      replaced{};     ///< the faces that have the normal of their surroundings, in their order
+  double height = 0;  ///< below which faces are low
+};
+
+/// `angle` as of check_angle(). Cost: that of outward_normals() and linear in the faces.
+[[nodiscard]] FacingNormals facing_normals(const Mesh& mesh, double angle);
+
+}  // namespace sdm::facing
