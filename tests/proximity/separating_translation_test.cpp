@@ -7,7 +7,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -296,6 +298,76 @@ void expect_equal(ProximityQuery& query, ProximityQuery expected) {
   EXPECT_EQ(found.certainty, fresh.certainty);
   EXPECT_NEAR(found.lower, fresh.lower, 1e-9);
   EXPECT_NEAR(found.upper, fresh.upper, 1e-9);
+}
+
+using Cell = std::array<int, 3>;
+
+// The surface of unit cubes with common vertices, without the sides between them.
+Mesh of_cells(const std::set<Cell>& cells, const Cell& at) {
+  Mesh mesh;
+  std::map<Cell, std::uint32_t> numbers;
+  const auto vertex = [&](const Cell& p) {
+    const auto [number, added] = numbers.emplace(p, static_cast<std::uint32_t>(mesh.positions.size()));
+    if (added) mesh.positions.push_back({1.0 * p[0] + at[0], 1.0 * p[1] + at[1], 1.0 * p[2] + at[2]});
+    return number->second;
+  };
+  for (const Cell& cell : cells)
+    for (int k = 0; k < 3; ++k)
+      for (const int side : {0, 1}) {
+        Cell beside = cell;
+        beside[k] += 2 * side - 1;
+        if (cells.contains(beside)) continue;
+        std::array<std::uint32_t, 4> corner;
+        for (int i = 0; i < 4; ++i) {
+          Cell p = cell;
+          p[k] += side, p[(k + 1) % 3] += i == 1 || i == 2, p[(k + 2) % 3] += i / 2;
+          corner[side == 1 ? i : 3 - i] = vertex(p);
+        }
+        mesh.triangles.push_back({corner[0], corner[1], corner[2]});
+        mesh.triangles.push_back({corner[0], corner[2], corner[3]});
+      }
+  return mesh;
+}
+
+// Touching bodies have a deepest point whose distance is rounding, or 0, along no direction.
+TEST(SeparatingTranslation, OfBodiesThatTouchIsZeroAtAnyPlace) {
+  std::mt19937 random(2);
+  const auto any = [&](int least, int most) { return std::uniform_int_distribution(least, most)(random); };
+  const auto cells = [&] {
+    std::vector<Cell> grown{{}};
+    for (int i = any(0, 4); i > 0; --i) {
+      Cell next = grown[static_cast<std::size_t>(any(0, static_cast<int>(grown.size()) - 1))];
+      next[any(0, 2)] += 2 * any(0, 1) - 1;
+      grown.push_back(next);
+    }
+    return std::set(grown.begin(), grown.end());
+  };
+  int touching = 0;
+  for (int i = 0; i < 60; ++i) {
+    const std::set<Cell> a = cells(), b = cells();
+    const Cell at{any(-2, 2), any(-2, 2), any(-2, 2)};
+    const bool common = std::ranges::any_of(b, [&](const Cell& c) {
+      return a.contains({c[0] + at[0], c[1] + at[1], c[2] + at[2]});
+    });
+    // Sheared by integers, so that most faces are in no plane of coordinates.
+    std::array<Mesh, 2> meshes{of_cells(a, {}), of_cells(b, at)};
+    if (i % 2 == 1)
+      for (Mesh& mesh : meshes)
+        for (Vec3& p : mesh.positions) p = {3 * p[0] + p[1] - p[2], p[0] + 2 * p[1], p[2] - p[0] + p[1]};
+    for (const int place : {0, 10, 999'983, 1'000'000}) {
+      SCOPED_TRACE(::testing::Message() << "bodies " << i << " at " << place);
+      const Vec3 by{1.0 * place, 1.0 * place, 1.0 * place};
+      ProximityQuery query(moved(meshes[0], by), moved(meshes[1], by));
+      if (!query.colliding()) continue;
+      expect_valid(query);
+      EXPECT_FALSE(query.separating_contacts().empty());
+      if (common) continue;
+      ++touching;
+      EXPECT_EQ(query.separating_translation().lower, 0);
+      EXPECT_LE(query.separating_translation().upper, 1e-7);
+    }
+  }
+  EXPECT_GE(touching, 50);
 }
 
 TEST(SeparatingTranslation, DoesNotKeepAShapeFromDeforming) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "proximity/pair/pair_answers.h"
 #include "query/shape/posed_body.h"
@@ -32,6 +33,11 @@ class MovedPair {
   [[nodiscard]] const std::optional<BoundedLength>& depth(const Vec3& translation) {
     move(translation);
     return answers_.penetration_depth();
+  }
+  /// The contacts after a translation, valid until the next call.
+  [[nodiscard]] std::span<const Contact> contacts(const Vec3& translation) {
+    move(translation);
+    return answers_.contacts();
   }
   /// How many translations were tried.
   [[nodiscard]] std::size_t tries() const { return tries_; }

@@ -21,6 +21,9 @@ constexpr double kExact = 1e-6;      // of the size: bounds that are as close ar
 constexpr double kClose = 0.98;      // ratio of bounds at which a search ends
 constexpr double kEnough = 0.85;     // the same, of the search for a cover
 constexpr double kLeastGap = 1e-12;  // of the size, beyond a translation after which bodies touch
+// Bodies that only touch: how far they are moved at most, of the size, and steps to the direction.
+constexpr double kMostGap = 1e-3;
+constexpr int kTurns = 64;
 // What rounding of two points in space, and of their difference, may amount to, over the largest coordinate.
 constexpr double kSpaceRounding = 16 * std::numeric_limits<double>::epsilon();
 
@@ -133,14 +136,32 @@ class TranslationSearch {
   // way out from there is tried for the bodies.
   double use_depth(FreeTranslations& free, OverlapCover& cover) {
     const std::optional<BoundedLength>& depth = answers_.penetration_depth();
-    if (!depth || !depth->witness) return 0;
-    const auto& [p1, p2] = *depth->witness;
-    const Vec3 out = p2 - p1;
-    for (int body = 0; body < 2; ++body)
-      if ((body == 0 ? o2_ : o1_).body().solid()) cover.add_deep_point(body, (*depth->witness)[body]);
-    if (depth->value > 0)
-      for (const double sign : {1.0, -1.0}) free.try_direction((sign / norm(out)) * out, depth->lower);
+    if (!depth) return 0;
+    if (depth->witness) {
+      const auto& [p1, p2] = *depth->witness;
+      const Vec3 out = p2 - p1;
+      for (int body = 0; body < 2; ++body)
+        if ((body == 0 ? o2_ : o1_).body().solid()) cover.add_deep_point(body, (*depth->witness)[body]);
+      if (out != Vec3{})
+        for (const double sign : {1.0, -1.0}) free.try_direction(sign * normalized(out), depth->lower);
+    }
+    if (depth->lower == 0 && free.length() > kExact * size_) leave_touch(free);
     return depth->lower;
+  }
+
+  // Bodies that only touch have no deep point. They leave each other along a direction that the normals of
+  // all contacts allow: turned towards that which allows it least, until none forbids it.
+  void leave_touch(FreeTranslations& free) {
+    const std::span<const Contact> contacts = pair_.contacts({});
+    if (contacts.empty()) return;
+    Vec3 u{};
+    for (const Contact& c : contacts) u += c.normal;
+    for (int turn = 0; turn < kTurns; ++turn)
+      u += std::ranges::min_element(contacts, {}, [&](const Contact& c) { return dot(c.normal, u); })->normal;
+    if (u == Vec3{}) return;
+    u = normalized(u);
+    for (double gap = kLeastGap; gap < kMostGap; gap *= 10)
+      if (free.try_translation(gap * size_ * u)) return;
   }
 
   const shape::PosedBody &o1_, &o2_;
