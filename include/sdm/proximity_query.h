@@ -47,8 +47,9 @@ struct SeparatingTranslation : BoundedNumber {
 /// Options of a ProximityQuery.
 struct ProximityOptions {
   /// The bounds on the penetration depth are at most this far apart, by default kDepthPrecision of the
-  /// diagonal of the smaller body's box; > 0, in units of the meshes. Errors of computed distances are added,
-  /// and where faces of a solid that intersects itself nearly coincide, bounds on distances to its boundary.
+  /// diagonal of the smaller body's box, that of its mesh times the scale of the pose; > 0, in units of the
+  /// meshes. This includes errors of computed distances, unless they are half of it. Added are, where faces
+  /// of a solid that intersects itself nearly coincide, bounds on distances to its boundary.
   std::optional<double> depth_precision{};
   static constexpr double kDepthPrecision = 1e-3;
   /// Contacts are reported for points inside the other body or within this distance of it; ≥ 0, in units of

@@ -188,15 +188,52 @@ TEST(Proximity, OpenMeshesHaveNoInside) {
   ASSERT_TRUE(solid.penetration_depth());
 }
 
+Mesh box(const Vec3& lo, const Vec3& hi) {
+  Mesh mesh = cube(1);
+  for (Vec3& p : mesh.positions)
+    for (int k = 0; k < 3; ++k) p[k] = p[k] < 0 ? lo[k] : hi[k];
+  return mesh;
+}
+
+// The box around a turned body is larger than its own.
+TEST(Proximity, DepthOfTurnedBodiesIsAsPreciseAsPromised) {
+  const Mesh torus_like = torus(24, 12), ball = sphere(2);
+  for (int i = 0; i < 12; ++i) {
+    SCOPED_TRACE(i);
+    ProximityQuery query(torus_like, ball);
+    query.set_pose(0, Transform::rotation({20.0 * i, 33.0 * i, 50.0 * i}));
+    query.set_pose(1, Transform::translation({0.5, 0.3, 0.1 * i}) *
+                          Transform::rotation({40.0 * i, 15.0 * i, 5}) * Transform::scaling(0.8));
+    if (!query.colliding()) continue;
+    const BoundedLength& depth = *query.penetration_depth();
+    const double smaller = std::min(diagonal(bounds(torus_like)), 0.8 * diagonal(bounds(ball)));
+    EXPECT_LE(depth.upper - depth.lower, 1e-3 * smaller);
+    EXPECT_LE(query.contacts().front().depth, depth.upper);
+  }
+}
+
+void expect_depth(const Mesh& a, const Mesh& b, double truth) {
+  for (const bool swapped : {false, true}) {
+    ProximityQuery query(swapped ? b : a, swapped ? a : b);
+    const BoundedLength depth = *query.penetration_depth();
+    expect_holds(depth, truth, 0);
+    EXPECT_LE(depth.upper - depth.lower, 1e-3 * std::min(diagonal(bounds(a)), diagonal(bounds(b))));
+    for (const Contact& c : query.contacts()) EXPECT_LE(c.depth, depth.upper);
+  }
+}
+
+// No part of such a shell is boundary: neither a point, at the deepest point of an edge, nor a sheet.
+TEST(Proximity, ShellsWithoutAreaHaveNoBoundary) {
+  const Mesh at_centre = joined(box({0, 0, 0}, {4, 4, 4}), box({2, 2, 2}, {2, 2, 2}));
+  expect_depth(at_centre, box({-2, 0, 2}, {5, 2, 9}), 2);
+  const Mesh sheet =
+      joined(joined(box({0, 1, 2}, {3, 5, 4}), box({0, 1, 3}, {2, 3, 5})), box({2, 0, 3}, {2, 4, 4}));
+  expect_depth(sheet, joined(box({2, 2, 1}, {3, 3, 2}), box({1, 2, 1}, {2, 3, 3})), 1);
+}
+
 // Two cubes, [0, 1]³ and [0.5, 1.5] × [0.25, 0.75]², overlap; a small one lies inside the first. The walls of
 // the second one inside of the first are nearer to it than any part of the boundary.
 TEST(Proximity, OverlappingShellsAreOneSolid) {
-  const auto box = [](const Vec3& lo, const Vec3& hi) {
-    Mesh mesh = cube(1);
-    for (Vec3& p : mesh.positions)
-      for (int k = 0; k < 3; ++k) p[k] = p[k] < 0 ? lo[k] : hi[k];
-    return mesh;
-  };
   const Mesh two = joined(box({0, 0, 0}, {1, 1, 1}), box({0.5, 0.25, 0.25}, {1.5, 0.75, 0.75}));
   struct Case {
     Vec3 lo, hi;

@@ -16,6 +16,15 @@ std::optional<BoundaryPart> boundary_face(const shape::Body& solid, const Closes
                       .point = closest.point};
 }
 
+BoundaryDistance distance_to_boundary(const shape::Body& solid, const Vec3& p) {
+  solid.require_boundary();
+  const inside::SolidBoundary::Closest b = solid.boundary().closest(p);
+  BoundaryDistance result{
+      .lower = b.lower, .upper = b.upper, .value = b.point ? b.upper : b.lower, .point = b.point};
+  if (b.point) result.nearest = {.point = *b.point};
+  return result;
+}
+
 BoundaryDistance boundary_distance(const shape::Body& solid, const Vec3& p, const ClosestPoint& closest) {
   const double distance = closest.distance;
   BoundaryDistance result{distance, distance, distance, closest.point, boundary_face(solid, closest)};
@@ -24,11 +33,7 @@ BoundaryDistance boundary_distance(const shape::Body& solid, const Vec3& p, cons
     result.nearest = {.point = closest.point};
     return result;
   }
-  solid.require_boundary();
-  const inside::SolidBoundary::Closest b = solid.boundary().closest(p);
-  result = {.lower = b.lower, .upper = b.upper, .value = b.point ? b.upper : b.lower, .point = b.point};
-  if (b.point) result.nearest = {.point = *b.point};
-  return result;
+  return distance_to_boundary(solid, p);
 }
 
 double bound_beyond_faces(const sites::SitesData& solid, const Corners& triangle, const shape::Ball& ball,

@@ -20,6 +20,8 @@ struct BoundaryDistance {
 /// The distance to the boundary of a point inside, given its closest point on the surface of the solid.
 [[nodiscard]] BoundaryDistance boundary_distance(const shape::Body& solid, const Vec3& p,
                                                  const ClosestPoint& closest);
+/// The same by the division of the faces that others intersect, also for points that are not inside.
+[[nodiscard]] BoundaryDistance distance_to_boundary(const shape::Body& solid, const Vec3& p);
 /// A face with that closest point which is boundary on one side everywhere, if there is one.
 [[nodiscard]] std::optional<BoundaryPart> boundary_face(const shape::Body& solid,
                                                         const ClosestPoint& closest);

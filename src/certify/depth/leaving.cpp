@@ -92,13 +92,35 @@ void Leaving::evaluate(Part& part, Value& value, const ClosestPoint& closest, bo
     if (thin_ && part.upper > enough) bound_by_walls(part, closest, value.b, true, enough);
     return;
   }
-  part.limit(scale_ * (radius - closest.distance));
+  Vec3 step{};
+  // A point on the surface counts as outside, also where that is inside another shell. What holds of a point
+  // beside it holds of the part after the same step.
+  if (closest.distance == 0 && !boundary_face(*solid_, closest)) {
+    const auto [beside, in] = solid_->inside().beside(centre);
+    step = beside - centre;
+    if (in) return evaluate_beside(part, value, step);
+  }
+  part.limit(scale_ * (radius + norm(step) - closest.distance));
   if (part.upper <= enough) return;
-  if (thin_) bound_by_walls(part, closest, value.b, false, enough);
+  if (thin_ && step == Vec3{}) bound_by_walls(part, closest, value.b, false, enough);
   if (triangle == nullptr || part.upper <= enough) return;
   if (const std::optional<BoundaryPart> face = boundary_face(*solid_, closest)) keep(*face);
-  keep({.point = centre, .clear = closest.distance});
-  part.limit(scale_ * bound_outside(part, *triangle, value, closest.distance, enough));
+  keep({.point = centre + step, .clear = closest.distance});
+  part.limit(scale_ * bound_outside(part, *triangle, value, closest.distance, step, enough));
+}
+
+// With the centre on the surface, and inside after the step.
+void Leaving::evaluate_beside(Part& part, Value& value, const Vec3& step) const {
+  const auto& [centre, radius] = part.ball;
+  BoundaryDistance b = distance_to_boundary(*solid_, centre + step);
+  b.lower = std::max(0.0, b.lower - norm(step)), b.upper += norm(step);
+  b.value = b.point ? norm(*b.point - centre) : b.lower;
+  part.limit(scale_ * (b.upper + radius));
+  if (auto* triangle = std::get_if<TrianglePart>(&part.what)) {
+    triangle->gap = scale_ * (b.upper - b.lower);
+    if (b.nearest) value.near.add({*b.nearest, bounds_by(triangle->at, {*b.nearest, *b.nearest})[0]});
+  }
+  value.b = b;
 }
 
 // Whether no point p in a ball is deeper than `enough`, if its centre c is not. If one were, some point
@@ -142,9 +164,10 @@ void Leaving::bound_by_walls(Part& part, const ClosestPoint& closest, const Boun
   part.limit(scale_ * shape::bound_in_column(sites, solid_->inside(), column, winding, enough / scale_));
 }
 
-// The bound of a triangle whose centre is outside, by this distance, where that alone is not enough.
+// The bound of a triangle whose centre is outside, by this distance or after this step, where that alone is
+// not enough.
 double Leaving::bound_outside(const Part& part, const TrianglePart& triangle, const Value& value,
-                              double distance, double enough) const {
+                              double distance, const Vec3& step, double enough) const {
   std::array<CornerValues, 8> functions;
   std::size_t count = 0;
   for (const Near& n : triangle.near.all()) functions[count++] = n.distance;
@@ -152,8 +175,10 @@ double Leaving::bound_outside(const Part& part, const TrianglePart& triangle, co
   const double mixed = search::mixed_bound(std::span(functions).first(count), enough / scale_).value;
   if (mixed <= enough / scale_) return mixed;
   // The way to a point inside is at least as long outside as the surface is far from the centre.
-  return bound_beyond_faces(internals(solid_->sites()), triangle.at, part.ball,
-                            std::min(mixed, part.ball.radius - distance));
+  const auto& [a, b, c] = triangle.at;
+  return norm(step) + bound_beyond_faces(internals(solid_->sites()), {a + step, b + step, c + step},
+                                         {part.ball.centre + step, part.ball.radius},
+                                         std::min(mixed, part.ball.radius - distance));
 }
 
 void Leaving::divide(const Part& part, Parts& parts) const {

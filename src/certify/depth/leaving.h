@@ -55,8 +55,9 @@ class Leaving {
   /// Bounds on b at the corners of a triangle by two parts of the boundary, each convex in the triangle.
   [[nodiscard]] std::array<CornerValues, 2> bounds_by(const Corners& at,
                                                       const std::array<BoundaryPart, 2>& boundary) const;
+  void evaluate_beside(Part& part, Value& value, const Vec3& step) const;
   [[nodiscard]] double bound_outside(const Part& part, const TrianglePart& triangle, const Value& value,
-                                     double distance, double enough) const;
+                                     double distance, const Vec3& step, double enough) const;
   [[nodiscard]] bool walls_within(double enough, double times) const;
   [[nodiscard]] bool walls_are_thin(const shape::Ball& ball, double enough) const;
   void bound_by_walls(Part& part, const ClosestPoint& closest, const BoundaryDistance& b, bool inside,

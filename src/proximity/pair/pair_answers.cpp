@@ -171,9 +171,14 @@ bool PairAnswers::surfaces_intersect() {
 std::optional<BoundedLength> PairAnswers::depth() {
   if (!bodies_[0]->body().solid() && !bodies_[1]->body().solid()) return {};
   if (!colliding()) return BoundedLength{{.certainty = Certainty::exact}};
-  const double size = std::min(diagonal(bodies_[0]->box()), diagonal(bodies_[1]->box()));
-  const depth::Depth found = depth_search_.find(
-      bodies_, to_other(), depth_precision_.value_or(ProximityOptions::kDepthPrecision * size));
+  // Of their own boxes: those that contain a turned body are larger.
+  const auto size = [&](int body) {
+    return bodies_[body]->pose().scale * diagonal(bodies_[body]->body().box());
+  };
+  const double asked =
+      depth_precision_.value_or(ProximityOptions::kDepthPrecision * std::min(size(0), size(1)));
+  const depth::Depth found =
+      depth_search_.find(bodies_, to_other(), std::max(asked - 2 * precision(), 0.5 * asked));
   return BoundedLength{{.value = found.value,
                         .certainty = Certainty::bounded,
                         .lower = std::max(0.0, found.lower - precision()),

@@ -173,6 +173,18 @@ bool InsideTest::at_boundary(const Vec3& query, const ClosestPoint& closest) con
   }
 }
 
+InsideTest::Beside InsideTest::beside(const Vec3& p) const {
+  // In no plane that faces are likely to lie in.
+  constexpr Vec3 kAlong{0.7266, 0.5485, 0.4141};
+  Vec3 beside;
+  for (int corner = 0; corner < 8; ++corner) {
+    for (int k = 0; k < 3; ++k)
+      beside[k] = p[k] + ((corner >> k & 1) != 0 ? 0.25 : -0.25) * signs_->clearance * kAlong[k];
+    if (winding(sites_, beside) == 0) return {beside, false};
+  }
+  return {beside, true};
+}
+
 // Tries to decide a ball around the query. Larger ones meet the surface in places, and are rarely decided.
 WindingNumber::Side InsideTest::above_half(const Vec3& query, const ClosestPoint& closest, bool few,
                                            double clear) const {

@@ -46,6 +46,13 @@ class InsideTest {
   /// Whether the closest point of a query inside a solid lies on the boundary, to 1e-6 of the size of the
   /// solid. True for solids that do not intersect themselves. False also where this was not decided.
   [[nodiscard]] bool at_boundary(const Vec3& query, const ClosestPoint& closest) const;
+  /// A point within 1e-6 of the size of a solid of one on its surface, and whether it is inside: outside,
+  /// unless all that were tried are inside.
+  struct Beside {
+    Vec3 point{};
+    bool inside = false;
+  };
+  [[nodiscard]] Beside beside(const Vec3& p) const;
   /// The sides of the faces of a solid.
   [[nodiscard]] const FaceSides& sides() const { return *sides_; }
 

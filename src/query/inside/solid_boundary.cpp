@@ -97,6 +97,10 @@ struct SolidBoundary::Plane {
   Vec3 point, normal;
 
   [[nodiscard]] double height(const Vec3& p) const { return dot(normal, p - point); }
+  [[nodiscard]] bool cuts(const Corners& t) const {
+    return std::ranges::any_of(t, [&](const Vec3& p) { return height(p) < -kThinnest; }) &&
+           std::ranges::any_of(t, [&](const Vec3& p) { return height(p) > kThinnest; });
+  }
   [[nodiscard]] bool equals(const Plane& other) const {
     return std::abs(height(other.point)) < kFlat && squared_norm(cross(normal, other.normal)) < kFlat * kFlat;
   }
@@ -141,7 +145,9 @@ bool SolidBoundary::find_cuts(const Piece& piece, std::span<const std::uint32_t>
   bool covered = false;
   cuts.clear();
   const auto add = [&](const Plane& plane) {
-    if (std::ranges::none_of(cuts, [&](const Plane& known) { return known.equals(plane); }))
+    // Those beside the piece, as of the far sides of faces that coincide with it, do not divide it.
+    if (plane.cuts(piece.at) &&
+        std::ranges::none_of(cuts, [&](const Plane& known) { return known.equals(plane); }))
       cuts.push_back(plane);
   };
   for (const std::uint32_t other : faces) {

@@ -73,8 +73,8 @@ class SolidBoundary {
   /// Divides an unknown piece. `near`: the faces that may intersect it.
   void divide(const Piece& piece, std::span<const std::uint32_t> near, Division& division) const;
   [[nodiscard]] const Division& divide(const Piece& piece, MixedFace& face) const;  ///< unless known
-  /// The planes in which faces intersect or touch the piece, until there are more than `most`; whether one of
-  /// these faces lies in its own plane.
+  /// The planes of faces that intersect or touch the piece, as far as they divide it, until there are more
+  /// than `most`; whether one of these faces lies in its own plane.
   [[nodiscard]] bool find_cuts(const Piece& piece, std::span<const std::uint32_t> faces, std::size_t most,
                                std::vector<Plane>& cuts) const;
   [[nodiscard]] bool is_inside(const Vec3& point) const;  ///< the solid; in the unit frame
