@@ -62,6 +62,9 @@ FileBytes read_below(const std::filesystem::path& folder, std::string_view path,
   return with_error_prefix(fmt::format("{} '{}'", what, excerpt(path)), [&] { return read_bytes(file); });
 }
 
+bool reads_cad() {
+  return false;
+}
 PolygonMesh read_step(std::string_view, const std::filesystem::path&, const TessellationOptions&) {
   throw Error("STEP is read by the command and the Python package only");
 }

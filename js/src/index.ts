@@ -1,4 +1,5 @@
 // The package sdm: exact distances between triangle meshes.
+import { checkStart } from './calls.js';
 import { Sdm } from './library.js';
 import { type ReportPage, load, textOf } from './load.js';
 import { Module, type ModuleFile, type ModuleFiles, canShareMemory, mayWait } from './module.js';
@@ -51,7 +52,7 @@ const urls = {
 
 async function threadsOf(options: StartOptions): Promise<number> {
   if (!canShareMemory()) return 1;
-  if (options.threads !== undefined) return Math.max(1, Math.floor(options.threads));
+  if (options.threads !== undefined) return options.threads;
   const cores = typeof navigator === 'object' ? navigator.hardwareConcurrency : (await import('node:os')).availableParallelism();
   return Math.min(8, cores);
 }
@@ -73,6 +74,7 @@ function pageOf(options: StartOptions): ReportPage {
 
 /** Starts the library in this thread, which waits for its calls. On the main thread of a page, it does without other threads. */
 export async function start(options: StartOptions = {}): Promise<Sdm> {
+  checkStart('start', options);
   const { module, threads } = await compiled(options, mayWait() ? await threadsOf(options) : 1);
   const script = threads > 1 ? scriptOf(options) : '';
   return new Sdm(await Module.start({ module, threads, script }), () => textOf(pageOf(options)));
@@ -80,14 +82,16 @@ export async function start(options: StartOptions = {}): Promise<Sdm> {
 
 /** Starts the library in a worker. Throws SdmError if the worker cannot be started. */
 export async function createWorker(options: StartOptions = {}): Promise<SdmWorker> {
+  checkStart('createWorker', options);
   const { module, threads } = await compiled(options, await threadsOf(options));
   return SdmWorker.open({ module, threads, script: scriptOf(options), reportPage: pageOf(options) });
 }
 
 /** Starts the library in several workers of one thread each, by default as many as there are cores, at most 8. */
 export async function createPool(options: StartOptions & { workers?: number } = {}): Promise<SdmPool> {
+  checkStart('createPool', options);
   const cores = typeof navigator === 'object' ? navigator.hardwareConcurrency : (await import('node:os')).availableParallelism();
-  const count = Math.max(1, Math.floor(options.workers ?? Math.min(8, cores)));
+  const count = options.workers ?? Math.min(8, cores);
   const { module } = await compiled(options, 1);
   const script = scriptOf(options), reportPage = pageOf(options);
   const starts = Array.from({ length: count }, () => SdmWorker.open({ module, threads: 1, script, reportPage }));

@@ -1,5 +1,6 @@
 // The library in one module, for those who may wait.
 import { Animation, type ReadAnimationOptions } from './animation.js';
+import { checkMethods, constructorIn, kLibraryCalls } from './calls.js';
 import { Look } from './look.js';
 import { type MatchOptions, Matches } from './matches.js';
 import { type MeshFile, type ReadMeshOptions, readMesh } from './mesh_file.js';
@@ -22,9 +23,9 @@ export class Sdm {
     reportPage: () => Promise<string>,
   ) {
     module.reportPage = reportPage;
-    this.Surface = bound.Surface.bind(null, module) as unknown as Sdm['Surface'];
-    this.Sites = bound.Sites.bind(null, module) as unknown as Sdm['Sites'];
-    this.Pair = bound.Pair.bind(null, module) as unknown as Sdm['Pair'];
+    this.Surface = constructorIn(module, 'Surface', bound.Surface);
+    this.Sites = constructorIn(module, 'Sites', bound.Sites);
+    this.Pair = constructorIn(module, 'Pair', bound.Pair);
   }
 
   get threads(): number {
@@ -75,3 +76,4 @@ export class Sdm {
     return this.memoryBytes;
   }
 }
+checkMethods(Sdm, kLibraryCalls);

@@ -1,4 +1,5 @@
 // Maps by several workers that share no memory.
+import { anything, checkMethods, mesh, object, ofMap, ofSurface, take } from './calls.js';
 import { type CallOptions, type SdmWorker, type WorkerMap, type WorkerSites, type WorkerSurface, unlessAborted } from './remote.js';
 import { type Atlas, type MapOptions, type MapValues, type SurfaceOptions } from './surface.js';
 import { type Indices, type Points, SdmError, type SignMethod } from './types.js';
@@ -182,3 +183,12 @@ export class SdmPool {
     this.each.forEach((worker) => worker.terminate());
   }
 }
+
+// Before anything is sent: what the workers get is a copy, in which wrong values are others.
+const ofCalls = { signal: anything, transfer: anything };
+checkMethods(SdmPool, { surface: take(mesh, { ...ofSurface, ...ofCalls }), sites: take(mesh, ofCalls) }, ['surface', 'sites']);
+checkMethods(PoolSites, { refit: take({ positions: mesh.positions }) }, ['refit']);
+checkMethods(PoolSurface, {
+  refit: take({ positions: mesh.positions }),
+  map: take({ sites: object(PoolSites, 'PoolSites') }, { sign: ofMap.sign, maxDistance: ofMap.maxDistance, ...ofCalls }),
+}, ['refit', 'map']);

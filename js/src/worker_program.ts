@@ -4,6 +4,7 @@ import { Sdm } from './library.js';
 import { textOf } from './load.js';
 import { Module, canShareMemory } from './module.js';
 import { type Call, type FirstMessage, type Reply, type Request, type Started, type WorkerStart } from './protocol.js';
+import { wordNumber } from './bytes.js';
 import { DistanceMap, Owned } from './surface.js';
 import { runThread } from './threads.js';
 import { type Progress, SdmError } from './types.js';
@@ -124,7 +125,7 @@ class Server {
     const options = { ...call.options, progress: this.progressOf(call) };
     const target = call.object === 0 ? this.library : this.object(call.object);
     if (target instanceof DistanceMap) {
-      if (call.method === 'arrays') return Object.fromEntries((values as (keyof DistanceMap)[]).map((name) => [name, target[name]]));
+      if (call.method === 'arrays') return this.arrays(target, values as string[]);
       if (call.method === 'update') return this.update(target, call, options);
       if (call.method === 'computeSamples' || call.method === 'computeValues') {
         const [first, count] = values as [number, number];
@@ -136,6 +137,11 @@ class Server {
     const method = (target as unknown as Record<string, (...values: unknown[]) => unknown>)[call.method];
     if (typeof method !== 'function') throw new SdmError('input', `this module has no ${call.method}`);
     return method.apply(target, [...values, options]);
+  }
+
+  private arrays(map: DistanceMap, names: string[]): object {
+    const known = ['distances', 'vectors', 'sitesOfTexels', 'siteTypes'] as const;
+    return Object.fromEntries(names.map((name) => [name, map[known[wordNumber(known, name, 'an array')]!]]));
   }
 
   private async map(surface: InstanceType<Sdm['Surface']>, sites: InstanceType<Sdm['Sites']>, call: Call, options: object): Promise<DistanceMap> {

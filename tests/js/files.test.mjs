@@ -72,7 +72,7 @@ test('a damaged file is one sentence that names it', () => {
   fails(glb().slice(0, 400), 'cut.glb', /truncated|bytes/);
   fails(files['a.gltf'], 'a.gltf', /give it with the option `files`/);
   fails(text(JSON.stringify(gltf('../a.bin'))), 'b.gltf', /refused/);
-  fails(text('hello'), 'hello.txt', /unknown format/);
+  fails(text('hello'), 'hello.txt', /unknown format; glTF, GLB, STL, PLY, OFF, OBJ, 3DS are supported/);
   fails(text('ISO-10303-21;\nEND-ISO-10303-21;'), 'a.step', /command and the Python package/);
   fails(text('v 0 0 0\nf 1 2 3\n'), 'a.obj', /vertex/);
   // After faults, all others are read as before.

@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { ball } from './shapes.mjs';
 
-const { start, SdmError } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'index.js')));
+const { createPool, createWorker, start, SdmError } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'index.js')));
 const sdm = await start({ threads: 1 });
 const full = await start({ threads: 1, full: true });
 
@@ -52,6 +52,44 @@ test('bad input is an error that names the fault', () => {
   sites.dispose();
   sites.dispose();
   assert.throws(() => sites.closestPoints([0, 0, 0]), isInputError(/disposed/));
+});
+
+test('arguments of another kind are errors that name them, and leave the module as it was', async () => {
+  const triangle = [0, 0, 0, 1, 0, 0, 0, 1, 0];
+  const surface = new full.Surface(triangle, null, { resolution: 16 }), sites = new full.Sites(triangle), map = surface.map(sites);
+  const pair = new full.Pair({ positions: triangle }, { positions: triangle });
+  const refused = [
+    [() => surface.map(surface), 'map needs Sites, but was given a Surface'],
+    [() => surface.map(), 'map needs Sites, but was given undefined'],
+    [() => surface.emptyMap(map), 'map needs Sites, but was given a DistanceMap'],
+    [() => full.match(sites, surface), 'match needs a Surface, but was given Sites'],
+    [() => sites.hausdorff(surface), 'hausdorff needs Sites, but was given a Surface'],
+    [() => full.match(surface, sites).bake(map), 'bake needs a Look, but was given a DistanceMap'],
+    [() => sites.closestPoints('0 0 1'), 'points is "0 0 1": it must be an array of numbers'],
+    [() => sites.closestPoints(['0', '0', '1']), 'points[0] is "0": it must be a number'],
+    [() => sites.closestPoints(new BigInt64Array(3)), 'points is a BigInt64Array: it must be an array of numbers'],
+    [() => sites.closestPoints([0, 0, 1], { maxDistance: '5' }), 'maxDistance is "5": it must be a number'],
+    [() => sites.closestPoints([0, 0, 1], { maxDistance: NaN }), 'maxDistance is NaN: it must be a number'],
+    [() => sites.closestPoints([0, 0, 1], { maxdistance: 5 }), 'closestPoints has no option maxdistance; it has maxDistance'],
+    [() => sites.closestPoints([0, 0, 1], 5), 'the last argument of closestPoints is 5: it must be an object of options'],
+    [() => new full.Sites(triangle, { resolution: 16 }), 'indices is an object: it must be an array of numbers'],
+    [() => new full.Sites(triangle, ['0', '1', '2']), 'indices[0] is "0": it must be a number'],
+    [() => new full.Surface(triangle, null, { gutter: -1 }), 'gutter is -1: it must be an integer of at least 0'],
+    [() => new full.Surface(triangle, null, { resolution: '64' }), 'resolution is "64": it must be an integer of at least 0'],
+    [() => map.transfer([0, 1, 2], { components: 0 }), 'components is 0: it must be an integer of at least 1'],
+    [() => pair.setPose(2, []), 'body is 2: it must be an integer from 0 to 1'],
+    [() => new full.Pair(triangle, triangle), 'positions of the first body is undefined: it must be an array of numbers'],
+    [() => full.readMesh('solid', 'a.stl'), 'bytes is "solid": it must be a Uint8Array or an ArrayBuffer'],
+  ];
+  for (const [call, message] of refused) assert.throws(call, { name: 'SdmError', kind: 'input', message });
+  await assert.rejects(map.report({ unit: 'mm' }), { kind: 'input', message: /^report has no option unit; it has tolerance, units/ });
+  for (const threads of [1e6, 0, -1, 1.5, '2'])
+    for (const begin of [start, createWorker])
+      await assert.rejects(begin({ threads }), { kind: 'input', message: /^threads is .*: it must be an integer from 1 to 256$/ });
+  await assert.rejects(createPool({ workers: 1e6 }), { kind: 'input', message: /^workers is 1000000: / });
+  await assert.rejects(createWorker({ thread: 2 }), { kind: 'input', message: /^createWorker has no option thread; it has threads, / });
+  assert.equal(sites.closestPoints([0, 0, 1]).distances[0], 1);
+  assert.ok(surface instanceof full.Surface && !(sites instanceof full.Surface));
 });
 
 test('a callback sees progress, and cancels', () => {

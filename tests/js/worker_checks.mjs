@@ -144,6 +144,24 @@ export async function namesFaults(worker) {
   assert(error.name === 'SdmError' && error.kind === 'input' && /vertex 0 has a NaN/.test(error.message), `${error.kind}: ${error}`);
   const sites = await worker.sites([0, 0, 0, 1, 0, 0, 0, 1, 0]);
   assert(/sign is "exakt"/.test((await rejection(sites.signedDistance([0, 0, 0], { sign: 'exakt' }))).message), 'words are checked');
+  const triangle = [0, 0, 0, 1, 0, 0, 0, 1, 0], surface = await worker.surface(triangle, null, { resolution: 16 });
+  const { restarts } = worker, map = await surface.map(sites);
+  const refused = [
+    [surface.map(surface), /^map needs Sites, but was given a Surface$/],
+    [surface.map({}), /^map needs Sites, but was given an object$/],
+    [sites.hausdorff(surface), /^hausdorff needs Sites, but was given a Surface$/],
+    [sites.closestPoints(['0', '0', '1']), /^points\[0\] is "0": it must be a number$/],
+    [sites.closestPoints([0, 0, 1], { maxDistance: '5' }), /^maxDistance is "5": it must be a number$/],
+    [sites.closestPoints([0, 0, 1], { maxdistance: 5 }), /^closestPoints has no option maxdistance; it has maxDistance$/],
+    [worker.surface(triangle, null, { gutter: -1 }), /^gutter is -1: it must be an integer of at least 0$/],
+    [worker.sites(triangle, null, { resolution: 16 }), /^sites has no option resolution$/],
+    [map.arrays('distance'), /^an array is "distance": it must be one of distances, /],
+  ];
+  for (const [call, message] of refused) {
+    const refusal = await rejection(call);
+    assert(refusal.kind === 'input' && message.test(refusal.message), `${message}: ${refusal}`);
+  }
+  assert(worker.restarts === restarts && (await sites.closestPoints([0, 0, 1])).distances[0] === 1, 'objects stay');
   sites.dispose();
   assert(/disposed/.test((await rejection(sites.closestPoints([0, 0, 0]))).message), 'disposed objects are refused');
 }

@@ -53,6 +53,8 @@ namespace sdm::io {
                                     const TessellationOptions& options);
 [[nodiscard]] PolygonMesh read_iges(std::string_view bytes, const std::filesystem::path& file,
                                     const TessellationOptions& options);
+/// Returns false where these two only throw: messages do not name them among the formats.
+[[nodiscard]] bool reads_cad();
 /// Returns whether the data begin as STEP, or as IGES: its first line has the letter S in column 73.
 [[nodiscard]] bool is_step(std::string_view bytes);
 [[nodiscard]] bool is_iges(std::string_view bytes);

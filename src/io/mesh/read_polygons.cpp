@@ -161,7 +161,8 @@ namespace sdm {
 
 std::string mesh_format_names() {
   std::vector<std::string_view> names;
-  for (const io::Format& format : io::kFormats) names.push_back(format.names);
+  for (const io::Format& format : io::kFormats)
+    if (io::reads_cad() || (format.names != "STEP" && format.names != "IGES")) names.push_back(format.names);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 

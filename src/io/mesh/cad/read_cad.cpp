@@ -96,6 +96,10 @@ PolygonMesh read(std::string_view bytes, const std::filesystem::path& file, CadF
 
 }  // namespace
 
+bool reads_cad() {
+  return true;
+}
+
 PolygonMesh read_step(std::string_view bytes, const std::filesystem::path& file,
                       const TessellationOptions& options) {
   if (!is_step(bytes)) throw Error("does not begin with ISO-10303-21; it is not STEP");

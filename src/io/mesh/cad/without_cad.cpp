@@ -13,6 +13,9 @@ namespace {
 
 }  // namespace
 
+bool reads_cad() {
+  return false;
+}
 PolygonMesh read_step(std::string_view, const std::filesystem::path&, const TessellationOptions&) {
   refuse("STEP");
 }
