@@ -236,6 +236,10 @@ bool apart(const Corners& a, const Corners& b) {
     const double gap = std::max(a_least - b_most, b_least - a_most);
     return gap > 0 && gap * gap > kClearance * kClearance * squared_norm(axis);
   };
+  for (int k = 0; k < 3; ++k)  // mostly enough for parts of faces
+    if (std::min({a[0][k], a[1][k], a[2][k]}) - std::max({b[0][k], b[1][k], b[2][k]}) > kClearance ||
+        std::min({b[0][k], b[1][k], b[2][k]}) - std::max({a[0][k], a[1][k], a[2][k]}) > kClearance)
+      return true;
   std::array<Vec3, 3> a_edge, b_edge;
   for (int i = 0; i < 3; ++i) a_edge[i] = a[(i + 1) % 3] - a[i], b_edge[i] = b[(i + 1) % 3] - b[i];
   const Vec3 a_normal = cross(a_edge[0], a_edge[1]), b_normal = cross(b_edge[0], b_edge[1]);

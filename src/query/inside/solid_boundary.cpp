@@ -19,11 +19,14 @@ namespace {
 constexpr double kFlat = 1e-7, kBeside = 1e-6;
 // Pieces that are thinner are not divided, and those thinner than kThinnest are ignored.
 constexpr double kThin = 1e-5, kThinnest = 1e-9;
-// A piece that more planes cut is divided into quarters first, unless its sides are shorter than kFinest; one
-// that more than kMostCuts cut is not divided.
+// A piece that more planes cut is divided into smaller ones first, unless its sides are shorter than kFinest;
+// one that more than kMostCuts cut is not divided.
 constexpr std::size_t kFewCuts = 6, kMostCuts = 64;
 constexpr double kFinest = 2e-3;
 constexpr std::size_t kGrain = 256;
+// The work of dividing, in comparisons of two triangles, that a volume has for each face: far more than where
+// faces cross few others. A winding number takes as long as some of them, and one for each face nearby.
+constexpr std::size_t kWorkOfEachFace = 20'000, kWorkOfEachCell = 16;
 
 // Whether `piece` lies in triangle t: in its plane, and within its sides.
 bool covers(const Corners& t, const Corners& piece) {
@@ -106,11 +109,31 @@ struct SolidBoundary::Plane {
   }
 };
 
-std::array<SolidBoundary::Piece, 4> SolidBoundary::Piece::quarters() const {
+// Quarters of a long one would be as thin, and many of them cross whatever crosses one.
+void SolidBoundary::Piece::append_parts(std::vector<Piece>& parts) const {
+  constexpr double kLong = 4;  // its longest side by its height
   std::array<Vec3, 3> middle;  // of each side
-  for (int k = 0; k < 3; ++k) middle[k] = 0.5 * (at[k] + at[(k + 1) % 3]);
-  return {Piece{face, {at[0], middle[0], middle[2]}}, Piece{face, {middle[0], at[1], middle[1]}},
-          Piece{face, {middle[2], middle[1], at[2]}}, Piece{face, middle}};
+  std::array<double, 3> side;  // squared
+  for (int k = 0; k < 3; ++k)
+    middle[k] = 0.5 * (at[k] + at[(k + 1) % 3]), side[k] = squared_norm(at[(k + 1) % 3] - at[k]);
+  const auto k = static_cast<int>(std::ranges::max_element(side) - side.begin());
+  if (side[k] > kLong * norm(cross(at[1] - at[0], at[2] - at[0]))) {
+    const int next = (k + 1) % 3, last = (k + 2) % 3;
+    parts.push_back({face, {at[k], middle[k], at[last]}});
+    parts.push_back({face, {middle[k], at[next], at[last]}});
+    return;
+  }
+  for (int i = 0; i < 3; ++i) parts.push_back({face, {at[i], middle[i], middle[(i + 2) % 3]}});
+  parts.push_back({face, middle});
+}
+
+int SolidBoundary::Windings::of(const sites::SitesData& solid, const Vec3& point) {
+  constexpr double kNear = 0.1;  // in the unit frame: shorter than most ways out of the box
+  std::optional<int> turns;
+  if (known_ && norm(point - last_) * solid.frame.scale < kNear)
+    if ((turns = crossings(solid, rays::Segment{point, last_}))) *turns += number_;
+  known_ = true, last_ = point;
+  return number_ = turns ? *turns : winding(solid, point);
 }
 
 SolidBoundary::SolidBoundary(const sites::SitesData& solid, const FaceSides& sides)
@@ -167,18 +190,19 @@ bool SolidBoundary::find_cuts(const Piece& piece, std::span<const std::uint32_t>
 }
 
 // The cells between the planes have the same sides everywhere.
-void SolidBoundary::divide(const Piece& piece, std::span<const std::uint32_t> near,
+void SolidBoundary::divide(const Piece& piece, std::span<const std::uint32_t> near, Windings& windings,
                            Division& division) const {
   poll();
   division.known = true;
   division.pieces.clear(), division.near.clear();
   for (const std::uint32_t other : near)
     if (!apart(piece.at, unit_corners(solid_, other))) division.near.push_back(other);
+  division.work = near.size() + division.near.size();
   std::vector<Plane> cuts;
   const std::size_t most = finest(piece.at) ? kMostCuts : kFewCuts;
   const bool covered = find_cuts(piece, division.near, most, cuts), too_many = cuts.size() > most;
   if (too_many && !finest(piece.at)) {
-    for (const Piece& quarter : piece.quarters()) division.pieces.push_back(quarter);
+    piece.append_parts(division.pieces);
     return;
   }
   std::vector<Polygon> cells{{piece.at.begin(), piece.at.end()}};
@@ -186,11 +210,13 @@ void SolidBoundary::divide(const Piece& piece, std::span<const std::uint32_t> ne
     for (const Plane& plane : cuts)
       for (std::size_t i = 0, count = cells.size(); i < count; ++i)
         if (Polygon above = cut(cells[i], plane); !above.empty()) cells.push_back(std::move(above));
+  division.work += cells.size() * (cuts.size() + kWorkOfEachCell + division.near.size());
   for (const Polygon& cell : cells) {
     const double thickness = width(cell);
     if (thickness < kThinnest) continue;
     Sides sides = Sides::mixed;
-    if (!too_many && !(covered && thickness < kThin)) sides = sides_beside(mean(cell), piece.face, covered);
+    if (!too_many && !(covered && thickness < kThin))
+      sides = sides_beside(mean(cell), piece.face, covered, windings);
     if (sides == Sides::buried) continue;
     for (std::size_t i = 2; i < cell.size(); ++i)
       division.pieces.push_back({piece.face, {cell[0], cell[i - 1], cell[i]}, sides});
@@ -201,7 +227,7 @@ const SolidBoundary::Division& SolidBoundary::divide(const Piece& piece, MixedFa
   Division division = std::move(face.parts[piece.number].division);
   if (!division.known) {
     const std::uint32_t whole = face.parts[piece.number].whole;
-    divide(piece, whole == kNone ? face.near : face.parts[whole].division.near, division);
+    divide(piece, whole == kNone ? face.near : face.parts[whole].division.near, face.windings, division);
     for (Piece& part : division.pieces)
       if (part.sides == Sides::unknown) {
         part.number = static_cast<std::uint32_t>(face.parts.size());
@@ -212,21 +238,22 @@ const SolidBoundary::Division& SolidBoundary::divide(const Piece& piece, MixedFa
 }
 
 bool SolidBoundary::is_inside(const Vec3& point) const {
-  return winding(solid_, solid_.frame.origin + (1 / solid_.frame.scale) * point) != 0;
+  return winding(solid_, from_unit(point)) != 0;
 }
 
-Sides SolidBoundary::sides_beside(const Vec3& point, std::uint32_t face, bool covered) const {
+Sides SolidBoundary::sides_beside(const Vec3& point, std::uint32_t face, bool covered,
+                                  Windings& windings) const {
   const Vec3& outwards = solid_.normals.face[face];
   if (!covered && beside_ > 0)
-    return sides_by_winding(
-        winding(solid_, solid_.frame.origin + (1 / solid_.frame.scale) * point + beside_ * outwards));
+    return sides_by_winding(windings.of(solid_, from_unit(point) + beside_ * outwards));
   // So that several faces are crossed at once.
-  const bool outer = is_inside(point + kBeside * outwards), inner = is_inside(point - kBeside * outwards);
+  const bool outer = windings.of(solid_, from_unit(point + kBeside * outwards)) != 0,
+             inner = windings.of(solid_, from_unit(point - kBeside * outwards)) != 0;
   return outer == inner ? Sides::buried : inner ? Sides::boundary : Sides::reversed;
 }
 
-bool SolidBoundary::repeats_earlier_face(const Piece& piece) const {
-  return std::ranges::any_of(mixed(piece.face).near, [&](std::uint32_t other) {
+bool SolidBoundary::repeats_earlier_face(const Piece& piece, std::span<const std::uint32_t> near) const {
+  return std::ranges::any_of(near, [&](std::uint32_t other) {
     return other < piece.face && !apart(piece.at, unit_corners(solid_, other)) &&
            covers(unit_corners(solid_, other), piece.at);
   });
@@ -341,47 +368,88 @@ SolidBoundary::Closest SolidBoundary::closest(const Vec3& p) const {
   return {unit * found.lower, unit * found.upper, found.point, found.face};
 }
 
+// Of a run of faces, largest pieces first.
+class SolidBoundary::VolumeSum {
+ public:
+  // Six times the volume, and what the parts that may or may not be boundary contribute.
+  double sure = 0, unsure = 0;
+
+  VolumeSum(const SolidBoundary& boundary, std::span<const std::uint32_t> faces)
+      : boundary_(boundary), work_left_(kWorkOfEachFace * faces.size()), windings_(faces.size()) {
+    for (std::uint32_t i = 0; i < faces.size(); ++i) add(boundary.whole_face(faces[i]), i, kNone);
+  }
+
+  // Divides pieces within the budget of work, which does not depend on the number of threads.
+  void divide() {
+    Division division;
+    while (!open_.empty()) {
+      const Open next = open_.front();
+      std::ranges::pop_heap(open_, {}, &Open::size);
+      open_.pop_back();
+      if (work_left_ == 0) {
+        unsure += next.size;
+        continue;
+      }
+      const Piece& piece = next.piece;
+      boundary_.divide(piece, near_of(piece.face, next.within), windings_[next.number], division);
+      work_left_ -= std::min(work_left_, division.work);
+      const auto number = static_cast<std::uint32_t>(near_.size());
+      near_.push_back(division.near);
+      for (const Piece& part : division.pieces) add(part, next.number, number);
+    }
+  }
+
+ private:
+  struct Open {
+    double size = 0;  // its part of the sum, without its sign
+    Piece piece;
+    std::uint32_t number = 0;      // of its face, in this run
+    std::uint32_t within = kNone;  // the number in near_ of the piece that it is a part of
+  };
+
+  [[nodiscard]] std::span<const std::uint32_t> near_of(std::uint32_t face, std::uint32_t within) const {
+    return within == kNone ? boundary_.mixed(face).near : near_[within];
+  }
+  // `within`: kNone for a whole face.
+  void add(const Piece& piece, std::uint32_t number, std::uint32_t within) {
+    const auto& [a, b, c] = piece.at;
+    const double flux = dot(a, cross(b, c)) * (boundary_.solid_.inverted[piece.face] ? -1 : 1);
+    if (piece.sides == Sides::unknown && !boundary_.solid_.sliver[piece.face]) {
+      open_.push_back({std::abs(flux), piece, number, within});
+      std::ranges::push_heap(open_, {}, &Open::size);
+    } else if (piece.sides == Sides::boundary || piece.sides == Sides::reversed) {
+      if (boundary_.sides_[piece.face] == Sides::mixed) {
+        const std::span<const std::uint32_t> near = near_of(piece.face, within);
+        work_left_ -= std::min(work_left_, near.size());
+        if (boundary_.repeats_earlier_face(piece, near)) return;
+      }
+      sure += piece.sides == Sides::boundary ? flux : -flux;
+    } else if (piece.sides != Sides::buried) {
+      unsure += std::abs(flux);
+    }
+  }
+
+  const SolidBoundary& boundary_;
+  std::size_t work_left_;
+  std::vector<Windings> windings_;                // of each face
+  std::vector<Open> open_;                        // a heap
+  std::vector<std::vector<std::uint32_t>> near_;  // of each divided piece
+};
+
 SolidBoundary::Volume SolidBoundary::volume() const {
   const Array<std::uint32_t>& faces = solid_.tree.items;
-  // Six times the volume, and what the parts that may or may not be boundary contribute; in parts that do not
-  // depend on the number of threads.
+  // In parts that do not depend on the number of threads.
   struct Sum {
     double sure = 0, unsure = 0;
   };
   std::vector<Sum> sums((faces.size() + kGrain - 1) / kGrain);
   parallel_for(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
-    std::vector<Piece> open;             // each numbered by how often it has been divided,
-    std::vector<Division> divisions(1);  // by the last piece of each number
-    Poll due(64);
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t k = kGrain * i; k < std::min(kGrain * (i + 1), faces.size()); ++k) {
-        const bool may_repeat = sides_[faces[k]] == Sides::mixed;
-        open.assign(1, whole_face(faces[k]));
-        due();
-        while (!open.empty()) {
-          const Piece piece = open.back();
-          open.pop_back();
-          if (piece.sides == Sides::unknown && !solid_.sliver[piece.face]) {
-            if (piece.number + 2 > divisions.size()) divisions.resize(piece.number + 2);
-            Division& division = divisions[piece.number + 1];
-            divide(piece, piece.number == 0 ? mixed(piece.face).near : divisions[piece.number].near,
-                   division);
-            for (Piece& part : division.pieces) {
-              part.number = piece.number + 1;
-              open.push_back(part);
-            }
-            continue;
-          }
-          const auto& [a, b, c] = piece.at;
-          const double flux = dot(a, cross(b, c)) * (solid_.inverted[piece.face] ? -1 : 1);
-          if (piece.sides == Sides::boundary || piece.sides == Sides::reversed) {
-            if (may_repeat && repeats_earlier_face(piece)) continue;
-            sums[i].sure += piece.sides == Sides::boundary ? flux : -flux;
-          } else if (piece.sides != Sides::buried) {
-            sums[i].unsure += std::abs(flux);
-          }
-        }
-      }
+    for (std::size_t i = begin; i < end; ++i) {
+      VolumeSum sum(*this,
+                    std::span(faces).subspan(kGrain * i).first(std::min(kGrain, faces.size() - kGrain * i)));
+      sum.divide();
+      sums[i] = {sum.sure, sum.unsure};
+    }
   });
   Sum all;
   for (const Sum& sum : sums) all.sure += sum.sure, all.unsure += sum.unsure;

@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/solid.h>
+#include <sdm/threads.h>
+#include <sdm/vec.h>
 
+#include <ctime>
 #include <numbers>
+#include <random>
 
 #include "support/meshes.h"
 #include "support/shapes.h"
@@ -71,6 +75,44 @@ TEST(SolidVolume, OfAMeshThatPassesThroughItself) {
   EXPECT_GT(bounds.upper, 0.99 * volume);  // the sphere is a polyhedron
   EXPECT_LT(bounds.lower, volume);
   EXPECT_LT(bounds.upper - bounds.lower, 1e-6 * volume);
+}
+
+// Closed needles that all begin at one place, so that each crosses most of the others.
+Mesh needles(std::uint32_t count) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const auto direction = [&] { return normalized(Vec3{normal(random), normal(random), normal(random)}); };
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t a = 4 * i, b = a + 1, c = a + 2, d = a + 3;
+    for (int k = 0; k < 3; ++k) mesh.positions.push_back(0.002 * direction());
+    mesh.positions.push_back(direction());
+    for (const Triangle& t : {Triangle{a, b, c}, {a, d, b}, {b, d, c}, {a, c, d}})
+      mesh.triangles.push_back(t);
+  }
+  return mesh;
+}
+
+// By a budget of work, the same with any number of threads: without it, this takes more than a minute.
+TEST(SolidVolume, OfManyNeedlesThroughOnePlaceIsBoundedSoon) {
+  const Mesh mesh = needles(100);
+  double sum = 0;  // of all needles, as if none crossed another one
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    const auto p = [&](std::uint32_t k) { return mesh.positions[4 * i + k] - mesh.positions[4 * i]; };
+    sum += std::abs(dot(p(1), cross(p(2), p(3)))) / 6;
+  }
+  const Sites sites(mesh);
+  const std::clock_t start = std::clock();
+  const BoundedNumber bounds = solid_volume(sites);
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 10);
+  EXPECT_EQ(bounds.certainty, Certainty::bounded);
+  EXPECT_LE(bounds.lower, sum);
+  EXPECT_GE(bounds.upper, 0.5 * sum);
+  EXPECT_LE(bounds.upper, 4 * sum);
+  const ThreadLimit one(1);
+  const BoundedNumber again = solid_volume(sites);
+  EXPECT_EQ(again.lower, bounds.lower);
+  EXPECT_EQ(again.upper, bounds.upper);
 }
 
 TEST(SolidVolume, OpenMeshesHaveNone) {
