@@ -38,9 +38,9 @@ struct Info {
   sdm::MeshInfo mesh;
   std::optional<sdm::Tessellation> tessellation{};
   Notes notes{};
-  std::uint64_t budget = 0;                       ///< of the search for self-intersections, in pairs of faces
-  std::optional<FacePairs> self_intersections{};  ///< unless it takes more
-  std::optional<sdm::BoundedNumber> volume{};     ///< if closed and orientable, and these are known
+  std::uint64_t budget = 0;                     ///< of the search for self-intersections, in pairs of faces
+  sdm::SelfIntersections self_intersections{};  ///< within it
+  std::optional<sdm::BoundedNumber> volume{};   ///< if closed and orientable, and these are known
 
   [[nodiscard]] bool is_solid() const { return mesh.closed && mesh.orientable; }
 };
@@ -53,8 +53,8 @@ Info collect(const Options& options) {
   const sdm::Sites sites(std::move(input.mesh));
   info.budget = sdm::self_intersection_budget(sites);
   info.self_intersections = sdm::self_intersections(sites, info.budget);
-  if (info.is_solid() && info.self_intersections)
-    info.volume = sdm::solid_volume(sites, {.embedded = info.self_intersections->empty()});
+  if (info.is_solid() && info.self_intersections.all)
+    info.volume = sdm::solid_volume(sites, {.embedded = info.self_intersections.pairs.empty()});
   return info;
 }
 
@@ -66,36 +66,37 @@ std::string not_determined(const Info& info) {
 
 nlohmann::ordered_json info_json(const std::string& file, const Info& all) {
   const sdm::MeshInfo& info = all.mesh;
-  return {
-      {"file", file},
-      {"vertices", info.vertices},
-      {"edges", info.edges},
-      {"triangles", info.triangles},
-      {"bounds", {{"lo", info.bounds.lo}, {"hi", info.bounds.hi}}},
-      {"components", info.components},
-      {"closed", info.closed},
-      {"orientable", info.orientable},
-      {"oriented", info.oriented},
-      {"manifold", info.manifold},
-      {"boundary_edges", info.boundary_edges},
-      {"nonmanifold_edges", info.nonmanifold_edges},
-      {"nonmanifold_vertices", info.nonmanifold_vertices},
-      {"degenerate_faces", info.degenerate_faces},
-      {"duplicate_faces", info.duplicate_faces},
-      {"unused_vertices", info.unused_vertices},
-      {"self_intersections", all.self_intersections ? nlohmann::ordered_json(all.self_intersections->size())
-                                                    : nlohmann::ordered_json()},
-      {"not_determined",
-       all.self_intersections ? nlohmann::ordered_json() : nlohmann::ordered_json(not_determined(all))},
-      {"uvs", info.has_uvs},
-      {"area", info.area},
-      {"volume", all.volume
-                     ? nlohmann::ordered_json{{"lower", all.volume->lower}, {"upper", all.volume->upper}}
-                     : nlohmann::ordered_json()},
-      {"tessellation", all.tessellation
-                           ? nlohmann::ordered_json::parse(sdm::tessellation_json(*all.tessellation))
-                           : nlohmann::ordered_json()},
-      {"notes", all.notes}};
+  return {{"file", file},
+          {"vertices", info.vertices},
+          {"edges", info.edges},
+          {"triangles", info.triangles},
+          {"bounds", {{"lo", info.bounds.lo}, {"hi", info.bounds.hi}}},
+          {"components", info.components},
+          {"closed", info.closed},
+          {"orientable", info.orientable},
+          {"oriented", info.oriented},
+          {"manifold", info.manifold},
+          {"boundary_edges", info.boundary_edges},
+          {"nonmanifold_edges", info.nonmanifold_edges},
+          {"nonmanifold_vertices", info.nonmanifold_vertices},
+          {"degenerate_faces", info.degenerate_faces},
+          {"duplicate_faces", info.duplicate_faces},
+          {"unused_vertices", info.unused_vertices},
+          {"self_intersections", all.self_intersections.all
+                                     ? nlohmann::ordered_json(all.self_intersections.pairs.size())
+                                     : nlohmann::ordered_json()},
+          {"least_self_intersections", all.self_intersections.pairs.size()},
+          {"not_determined", all.self_intersections.all ? nlohmann::ordered_json()
+                                                        : nlohmann::ordered_json(not_determined(all))},
+          {"uvs", info.has_uvs},
+          {"area", info.area},
+          {"volume", all.volume
+                         ? nlohmann::ordered_json{{"lower", all.volume->lower}, {"upper", all.volume->upper}}
+                         : nlohmann::ordered_json()},
+          {"tessellation", all.tessellation
+                               ? nlohmann::ordered_json::parse(sdm::tessellation_json(*all.tessellation))
+                               : nlohmann::ordered_json()},
+          {"notes", all.notes}};
 }
 
 std::string text(bool value) {
@@ -117,6 +118,12 @@ std::string text(const FacePairs& pairs) {
   for (std::size_t i = 0; i < std::min(kShown, pairs.size()); ++i)
     result += fmt::format("{}{} and {}", i == 0 ? "" : ", ", pairs[i][0], pairs[i][1]);
   return result + (pairs.size() > kShown ? ", ..." : "");
+}
+std::string self_intersections_text(const Info& info) {
+  const sdm::SelfIntersections& found = info.self_intersections;
+  if (found.all) return text(found.pairs);
+  return found.pairs.empty() ? not_determined(info)
+                             : fmt::format("at least {}; {}", text(found.pairs), not_determined(info));
 }
 std::string volume_text(const Info& info) {
   if (!info.is_solid()) return "none: not closed and orientable";
@@ -150,7 +157,7 @@ void print_table(std::ostream& out, const std::string& file, const Info& all) {
                                               info.nonmanifold_edges, info.nonmanifold_vertices));
   row("degenerate faces", fmt::to_string(info.degenerate_faces));
   row("duplicate faces", fmt::to_string(info.duplicate_faces));
-  row("self-intersections", all.self_intersections ? text(*all.self_intersections) : not_determined(all));
+  row("self-intersections", self_intersections_text(all));
   row("uvs", text(info.has_uvs));
   row("area", text(info.area));
   row("volume", volume_text(all));
@@ -170,10 +177,10 @@ std::string to_csv(const FacePairs& pairs) {
 void run(const Options& options) {
   const Info info = collect(options);
   if (!options.self_intersections.empty()) {
-    if (!info.self_intersections)
+    if (!info.self_intersections.all)
       throw sdm::Error(fmt::format("{}: the self-intersections are {}; cut the mesh into parts", options.file,
                                    not_determined(info)));
-    write_whole(options.self_intersections, to_csv(*info.self_intersections));
+    write_whole(options.self_intersections, to_csv(info.self_intersections.pairs));
   }
   if (options.json)
     std::cout << info_json(options.file, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
@@ -196,7 +203,7 @@ void add_info_command(CLI::App& app) {
       ->add_option("--self-intersections", options->self_intersections,
                    "Write all pairs of faces that intersect, numbered from 0, to this CSV file; an error "
                    "where these are not determined, since more than 200 pairs for each face, and more than "
-                   "20 million, are near each other")
+                   "2 million, are near each other")
       ->type_name("FILE");
   command->footer("Example:\n  sdm info scan.ply");
   command->callback([options] { run(*options); });

@@ -9,7 +9,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace sdm {
@@ -27,13 +26,19 @@ struct SelfIntersectionOptions {
 [[nodiscard]] SDM_API std::vector<std::array<std::uint32_t, 2>> self_intersections(
     const Sites& sites, const SelfIntersectionOptions& options = {});
 
-/// The same, or nothing if more than `most` pairs of faces come so near each other that they must be tested,
-/// which does not depend on the number of threads: in the plane, or where needles cross, all pairs may.
-[[nodiscard]] SDM_API std::optional<std::vector<std::array<std::uint32_t, 2>>> self_intersections(
-    const Sites& sites, std::uint64_t most, const SelfIntersectionOptions& options = {});
+/// What was found within a budget.
+struct SelfIntersections {
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  bool all = true;  ///< otherwise, there may be others
+};
 
-/// A number of pairs that takes seconds, and far more than usual meshes have: 200 for each face, at least
-/// 20 million.
+/// The same, of `most` pairs of faces that come so near each other that they must be tested: in the plane, or
+/// where needles cross, all pairs may. Which ones does not depend on the number of threads.
+[[nodiscard]] SDM_API SelfIntersections self_intersections(const Sites& sites, std::uint64_t most,
+                                                           const SelfIntersectionOptions& options = {});
+
+/// A number of pairs that takes a second or, of large meshes, seconds, and far more than usual meshes have:
+/// 200 for each face, at least 2 million.
 [[nodiscard]] SDM_API std::uint64_t self_intersection_budget(const Sites& sites);
 
 /// Whether there are none. Stops at the first one.

@@ -84,6 +84,8 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
   const double magnitude = std::abs(plus) + std::abs(minus);
   if (std::abs(plus - minus) > kError2 * magnitude + kUnderflow) return sign(plus - minus);
   if (a == b || a == c || b == c) return 0;  // no area
+  for (int k = 0; k < 2; ++k)
+    if (a[k] == b[k] && a[k] == c[k]) return 0;  // as in a flat part of a drawing, seen from the side
   if (const int found = by_doubled(a, b, c, magnitude); found != 0) return found;
   return exact(a, b, c);
 }

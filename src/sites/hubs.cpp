@@ -22,7 +22,7 @@ namespace {
 using tree::AabbTree;
 using tree::FloatBox;
 using tree::NodePair;
-using Visit = std::function<bool(std::size_t, std::span<const FacePair>)>;
+using Visit = std::function<bool(std::span<const FacePair>)>;
 
 // A vertex or an edge of more faces is a hub. Fewer than that make at most so many pairs of each face.
 constexpr std::size_t kMany = 256;
@@ -59,6 +59,13 @@ std::vector<NodePair> divided(const AabbTree& tree, std::vector<NodePair> pairs)
   return pairs;
 }
 
+// What is left of the work of a search.
+struct Budget {
+  std::uint64_t left = kAllPairs;  ///< pairs of faces
+  std::atomic<bool> go_on{true};   ///< until visit() returns false
+  std::atomic<bool> all{true};     ///< whether no pair was left out
+};
+
 // The pairs of faces of two leaves.
 class LeafPairs {
  public:
@@ -92,24 +99,73 @@ class LeafPairs {
   std::vector<FacePair> pairs_;
 };
 
+// The number of pairs of faces of two leaves.
+std::uint64_t count_of(const AabbTree& tree, const NodePair& leaves) {
+  const std::uint64_t first = tree.items_of(leaves[0]).size(), second = tree.items_of(leaves[1]).size();
+  return leaves[0] == leaves[1] ? first * (first - 1) / 2 : first * second;
+}
+
+// Of each pair of nodes, how many pairs of faces may be looked at: all, or the first `left` ones together.
+std::vector<std::uint64_t> allowances(const AabbTree& tree, const std::vector<NodePair>& pairs,
+                                      std::uint64_t left) {
+  std::vector<std::uint64_t> allowed(pairs.size(), left);
+  if (left == kAllPairs) return allowed;
+  constexpr std::size_t kAtOnce = 64;  // so that counting ends soon after there are enough
+  for (std::size_t first = 0; first < pairs.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, pairs.size() - first);
+    if (left > 0)
+      parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+        Poll due(1024);
+        for (std::size_t i = first + begin; i < first + end; ++i) {
+          std::uint64_t counted = 0;
+          const auto enter = [&](const NodePair& pair) {
+            due();
+            return counted <= left && overlap(tree, pair);
+          };
+          const auto count_leaves = [&](const NodePair& leaves) { counted += count_of(tree, leaves); };
+          visit_pairs(tree, pairs[i], tree::InOrder{enter, count_leaves});
+          allowed[i] = counted;
+        }
+      });
+    for (std::size_t i = first; i < first + count; ++i) {
+      allowed[i] = std::min(allowed[i], left);
+      left -= allowed[i];
+    }
+  }
+  return allowed;
+}
+
+// Lowers `left` by the pairs that were looked at; `all` becomes false if these were not all.
 void visit_overlapping(const Mesh& mesh, const AabbTree& tree, const std::vector<NodePair>& roots,
-                       const Progress& progress, std::atomic<bool>& go_on, const Visit& visit) {
+                       const Progress& progress, Budget& budget, const Visit& visit) {
   const std::vector<NodePair> pairs = divided(tree, roots);
+  const std::vector<std::uint64_t> allowed = allowances(tree, pairs, budget.left);
   parallel_for(pairs.size(), 1, progress, "self-intersections", [&](std::size_t begin, std::size_t end) {
     Poll due(128);
-    const auto enter = [&](const NodePair& pair) {
-      due();
-      return go_on.load(std::memory_order_relaxed) && overlap(tree, pair);
-    };
     LeafPairs pairs_of_leaves(mesh);
-    const auto visit_leaves = [&](const NodePair& leaves) {
-      const auto first = tree.items_of(leaves[0]), second = tree.items_of(leaves[1]);
-      const bool same = leaves[0] == leaves[1];
-      const std::size_t count = same ? first.size() * (first.size() - 1) / 2 : first.size() * second.size();
-      if (!visit(count, pairs_of_leaves.near(first, second, same))) go_on = false;
-    };
-    for (std::size_t i = begin; i < end; ++i) visit_pairs(tree, pairs[i], tree::InOrder{enter, visit_leaves});
+    for (std::size_t i = begin; i < end; ++i) {
+      std::uint64_t left = allowed[i];
+      bool enough = true;
+      const auto enter = [&](const NodePair& pair) {
+        due();
+        return enough && budget.go_on.load(std::memory_order_relaxed) && overlap(tree, pair);
+      };
+      const auto visit_leaves = [&](const NodePair& leaves) {
+        const std::uint64_t count = count_of(tree, leaves);
+        if (budget.left != kAllPairs) {
+          enough = count <= left;
+          if (!enough) return budget.all.store(false, std::memory_order_relaxed);
+          left -= count;
+        }
+        if (!visit(pairs_of_leaves.near(tree.items_of(leaves[0]), tree.items_of(leaves[1]),
+                                        leaves[0] == leaves[1])))
+          budget.go_on = false;
+      };
+      visit_pairs(tree, pairs[i], tree::InOrder{enter, visit_leaves});
+    }
   });
+  if (budget.left == kAllPairs) return;
+  for (const std::uint64_t count : allowed) budget.left -= count;
 }
 
 // The trees of all sets of hubs, one after another in one.
@@ -168,23 +224,21 @@ class Hubs {
 
   [[nodiscard]] bool none() const { return vertices_.empty(); }
 
-  void visit(const Progress& progress, const Visit& visit) const {
-    std::atomic<bool> go_on{true};
+  void visit(Budget& budget, const Progress& progress, const Visit& visit) const {
     const auto among = [&](const std::vector<Item>& items, const Progress& reporting, const auto& handled) {
       const Forest forest(items);
-      visit_overlapping(s_.mesh, forest.tree, forest.root_pairs(), reporting, go_on,
-                        [&](std::size_t count, std::span<const FacePair> pairs) {
-                          std::vector<FacePair> left(pairs.begin(), pairs.end());
-                          std::erase_if(left,
-                                        [&](const FacePair& pair) { return !handled(pair[0], pair[1]); });
-                          return visit(count, left);
-                        });
+      visit_overlapping(
+          s_.mesh, forest.tree, forest.root_pairs(), reporting, budget, [&](std::span<const FacePair> pairs) {
+            std::vector<FacePair> left(pairs.begin(), pairs.end());
+            std::erase_if(left, [&](const FacePair& pair) { return !handled(pair[0], pair[1]); });
+            return visit(left);
+          });
     };
     std::vector<Item> items;
     for (const std::uint32_t face : s_.tree.items) items.push_back({hubs_of(face), face, box_of(face)});
     among(items, progress, [](auto, auto) { return true; });
     for (const std::uint32_t hub : vertices_) {
-      if (!go_on) return;
+      if (!budget.go_on) return;
       items.clear();
       for (const std::uint32_t face : s_.vertex_faces.of(hub))
         items.push_back({hub_edges_of(face, hub), face, arc_of(face, hub)});
@@ -192,7 +246,7 @@ class Hubs {
       among(items, {}, [&](std::uint32_t a, std::uint32_t b) { return first_in_common(a, b) == hub; });
     }
     for (const std::uint32_t edge : edges_) {
-      if (!go_on) return;
+      if (!budget.go_on) return;
       items.clear();
       for (const std::uint32_t face : s_.topology.edge_faces(edge))
         items.push_back({{kNone, kNone, kNone}, face, direction_of(face, edge)});
@@ -290,11 +344,15 @@ class Hubs {
 
 // Two faces that share a corner and another point share the segment between them, so that their arcs, as seen
 // from the corner, meet. Two that share an edge and another point lie in one plane, on the same side of it.
-void for_each_near_pair(const SitesData& sites, const Progress& progress, const Visit& visit) {
-  if (sites.tree.nodes.empty()) return;
-  if (const Hubs hubs(sites); !hubs.none()) return hubs.visit(progress, visit);
-  std::atomic<bool> go_on{true};
-  visit_overlapping(sites.mesh, sites.tree, {{0, 0}}, progress, go_on, visit);
+bool for_each_near_pair(const SitesData& sites, std::uint64_t most, const Progress& progress,
+                        const Visit& visit) {
+  if (sites.tree.nodes.empty()) return true;
+  Budget budget{.left = most};
+  if (const Hubs hubs(sites); !hubs.none())
+    hubs.visit(budget, progress, visit);
+  else
+    visit_overlapping(sites.mesh, sites.tree, {{0, 0}}, progress, budget, visit);
+  return budget.all;
 }
 
 }  // namespace sdm::sites

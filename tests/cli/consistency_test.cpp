@@ -77,6 +77,29 @@ TEST_F(Consistency, InfoWritesTheIntersectingFaces) {
   EXPECT_EQ(json({"info", small})["volume"]["lower"], json({"info", small})["volume"]["upper"]);
 }
 
+// Half of these needles cross the other half: more pairs than are tested, the same ones each time.
+TEST_F(Consistency, InfoCountsIntersectionsWithinABudget) {
+  Mesh needles;
+  constexpr int kNeedles = 3000;
+  for (int i = 0; i < kNeedles; ++i) {
+    const double at = static_cast<double>(i / 2) / kNeedles, width = 0.3 / kNeedles;
+    const auto first = static_cast<std::uint32_t>(needles.positions.size());
+    for (const Vec3& p : {Vec3{-1, at, -0.1}, Vec3{2, at, 0.1}, Vec3{2, at + width, 0.2}})
+      needles.positions.push_back(i % 2 == 0 ? p : Vec3{p[1], p[0], -p[2]});
+    needles.triangles.push_back({first, first + 1, first + 2});
+  }
+  const std::string file = write_obj(folder / "needles.obj", needles), csv = folder / "pairs.csv";
+  const Json info = json({"info", file});
+  EXPECT_EQ(info["self_intersections"], nullptr);
+  EXPECT_EQ(info["not_determined"], "not determined: more than 2000000 pairs of faces are near each other");
+  EXPECT_GT(info["least_self_intersections"], 100'000);
+  EXPECT_LT(info["least_self_intersections"], kNeedles * kNeedles / 4);
+  EXPECT_THAT(run_sdm({"info", file}).out,
+              HasSubstr("at least " + info["least_self_intersections"].dump() + " pairs of faces: "));
+  EXPECT_EQ(run_sdm({"info", file, "--self-intersections", csv}).code, 1);
+  EXPECT_FALSE(std::filesystem::exists(csv));
+}
+
 // Regression: a file name without a folder was refused.
 TEST_F(Consistency, InfoWritesIntoTheCurrentFolder) {
   const std::filesystem::path before = std::filesystem::current_path();

@@ -131,8 +131,8 @@ TEST(SmokeMeshes, SelfIntersectionsAreThePairsOfFacesThatCross) {
         if (!share && oracle::intersect(corners(f), corners(g))) expected.push_back({f, g});
       }
     EXPECT_THAT(self_intersections(sites), ::testing::ElementsAreArray(expected));
-    EXPECT_EQ(self_intersections(sites, self_intersection_budget(sites))->size(), expected.size());
-    EXPECT_FALSE(self_intersections(sites, 0));
+    EXPECT_EQ(self_intersections(sites, self_intersection_budget(sites)).pairs.size(), expected.size());
+    EXPECT_FALSE(self_intersections(sites, 0).all);
     EXPECT_EQ(is_embedded(sites), expected.empty());
   }
   EXPECT_TRUE(is_embedded(Sites(torus(9, 7))));
