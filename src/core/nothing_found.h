@@ -6,7 +6,8 @@
 namespace sdm::core {
 
 [[noreturn]] inline void throw_nothing_found() {
-  throw Error("a search found nothing: the shape was stored with wrong numbers; build it again from its mesh");
+  throw Error(
+      "a search found nothing: the shape was stored with wrong numbers; build it again from its mesh");
 }
 
 }  // namespace sdm::core
