@@ -514,6 +514,8 @@ TEST_F(CloudPage, BelongsToAFileOfPoints) {
   EXPECT_THROW(write_points_html(folder / "a.html", folder / "a.ply", other, "{}"), Error);
   EXPECT_THROW(write_points_html(folder / "a.html", o1, found, "{}"), Error);
   EXPECT_THROW(write_points_html(folder / "a.html", folder / "missing.ply", found, "{}"), Error);
+  EXPECT_THROW(write_points_html(folder / "a.ply", folder / "a.ply", found, "{}"), Error);
+  EXPECT_THROW(measure_points(cloud, sites, cloud), Error) << "over itself";
   EXPECT_FALSE(std::filesystem::exists(folder / "a.html"));
 }
 
