@@ -1,15 +1,18 @@
 #include "cad_options.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "format.h"
 #include "option_checks.h"
 
 void add_deflection_option(CLI::App& app, sdm::TessellationOptions& options) {
-  app.add_option("--deflection", options.deflection,
-                 "The distance in mm that triangles of STEP and IGES may have from the surface, as "
-                 "OpenCASCADE keeps it; by default 1/2000 of the diagonal. What was measured is reported, "
-                 "as an estimate. Verdicts hold for the triangles")
+  app.add_option(
+         "--deflection", options.deflection,
+         "The distance in mm that triangles of STEP and IGES may have from the surface, as "
+         "OpenCASCADE keeps it; by default 1/2000 of the diagonal, or a tenth of the tolerance if that "
+         "is less, with up to 2 million triangles. What was measured is reported, as an estimate, and "
+         "verdicts keep so far from the limits")
       ->check(positive_number())
       ->type_name("D");
 }
@@ -18,6 +21,24 @@ void check_deflection(const sdm::TessellationOptions& options, std::initializer_
   if (!options.deflection) return;
   if (std::ranges::none_of(inputs, [](const Input* input) { return input->tessellation.has_value(); }))
     throw CLI::ValidationError("--deflection", "applies to STEP and IGES, and no input is one of these");
+}
+
+std::optional<double> deflection_for(const sdm::Tolerance& tolerance) {
+  constexpr double kPart = 0.1;
+  const auto [lo, hi] = tolerance;
+  const double width = std::isfinite(lo) && std::isfinite(hi) ? (hi - lo) / 2 : sdm::largest_limit(tolerance);
+  return width > 0 ? std::optional(kPart * width) : std::nullopt;
+}
+
+std::optional<double> deflection_for(const std::optional<sdm::Tolerance>& tolerance,
+                                     std::span<const sdm::GroupTolerance> rows) {
+  std::optional<double> least;
+  const auto add = [&](const sdm::Tolerance& limits) {
+    if (const auto d = deflection_for(limits)) least = std::min(least.value_or(*d), *d);
+  };
+  if (tolerance) add(*tolerance);
+  for (const sdm::GroupTolerance& row : rows) add(row.tolerance);
+  return least;
 }
 
 std::vector<std::pair<const char*, std::string>> rows_of(const sdm::Tessellation& t) {

@@ -1,10 +1,14 @@
 // --deflection: how closely the triangles of CAD files follow their surfaces.
 #pragma once
 
+#include <sdm/group_verdicts.h>
 #include <sdm/tessellation.h>
+#include <sdm/tolerance.h>
 
 #include <CLI/CLI.hpp>
 #include <initializer_list>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +20,13 @@ void add_deflection_option(CLI::App& app, sdm::TessellationOptions& options);
 
 /// Throws CLI::ValidationError if a deflection was given but none of the inputs is CAD.
 void check_deflection(const sdm::TessellationOptions& options, std::initializer_list<const Input*> inputs);
+
+/// The deflection that a tolerance needs, in its unit: a tenth of half of the distance of the limits, or of
+/// the only limit. Nothing without a finite limit other than 0.
+[[nodiscard]] std::optional<double> deflection_for(const sdm::Tolerance& tolerance);
+/// The least that some tolerances need.
+[[nodiscard]] std::optional<double> deflection_for(const std::optional<sdm::Tolerance>& tolerance,
+                                                   std::span<const sdm::GroupTolerance> rows);
 
 /// What `sdm info` prints: names and values.
 [[nodiscard]] std::vector<std::pair<const char*, std::string>> rows_of(const sdm::Tessellation& tessellation);

@@ -54,7 +54,8 @@ std::vector<sdm::Doubt> doubts_from(const Json& json) {
   std::vector<sdm::Doubt> doubts;
   for (const Json& doubt : json) {
     doubts.push_back({.text = doubt.at("text"), .remedy = doubt.at("remedy")});
-    for (const sdm::DoubtReason reason : {other_unit, mirrored, poor_fit, undetermined, low_coverage})
+    for (const sdm::DoubtReason reason :
+         {other_unit, mirrored, poor_fit, undetermined, low_coverage, thin_walls})
       if (doubt.at("reason") == name_of(reason)) doubts.back().reason = reason;
   }
   return doubts;

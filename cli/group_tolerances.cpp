@@ -34,7 +34,9 @@ std::string group_text(const sdm::GroupVerdict& g, const std::string& units, boo
     text += fmt::format(", {} % of its {} out", number(100 * g.verdict.exceeded_area_fraction),
                         of_points ? "points are" : "area is");
   if (g.verdict.proof && g.verdict.proof->witness)
-    text += fmt::format(", {}{} between the texels", number(g.verdict.proof->witness->distance), unit);
+    text += fmt::format(
+        ", {}{} {}", number(g.verdict.proof->witness->distance), unit,
+        g.verdict.by_facing.value_or(false) ? "by the faces that face the same way" : "between the texels");
   if (g.verdict.proof && g.verdict.reason == sdm::VerdictReason::without_match)
     text += fmt::format(", of {} faces", g.verdict.proof->faces_without_match);
   if (g.verdict.proof && g.verdict.proof->undecided_by)
@@ -165,4 +167,9 @@ std::string group_lines(const sdm::GroupVerdicts& verdicts, const std::string& u
   for (const sdm::GroupVerdict& g : verdicts.groups)
     text += fmt::format("            {}\n", group_text(g, units, of_points));
   return text;
+}
+
+void add_group_doubts(const sdm::GroupVerdicts& groups, std::vector<sdm::Doubt>& doubts) {
+  for (const sdm::GroupVerdict& group : groups.groups)
+    if (auto doubt = sdm::doubt_of(group.verdict)) return doubts.push_back(std::move(*doubt));
 }

@@ -1,6 +1,7 @@
 // --tolerance-table: groups of the measured mesh with a tolerance each.
 #pragma once
 
+#include <sdm/doubts.h>
 #include <sdm/group_verdicts.h>
 
 #include <CLI/CLI.hpp>
@@ -38,3 +39,6 @@ void check_groups(const GroupTolerances& table, std::initializer_list<const Inpu
 /// One line for each group.
 [[nodiscard]] std::string group_lines(const sdm::GroupVerdicts& verdicts, const std::string& units,
                                       bool of_points = false);
+
+/// Adds the doubt that thin walls leave, if one of the groups has it.
+void add_group_doubts(const sdm::GroupVerdicts& groups, std::vector<sdm::Doubt>& doubts);

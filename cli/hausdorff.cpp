@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "bounds_text.h"
+#include "cad_options.h"
 #include "common_options.h"
 #include "doubts.h"
 #include "exit_codes.h"
@@ -43,7 +44,8 @@ struct HausdorffAnswer {
   std::vector<sdm::HausdorffDistance> directions{};
   double size = 0;  ///< of the smaller mesh, for the digits of places
   Notes notes{};
-  std::vector<sdm::Doubt> doubts{};  ///< that both meshes are in the same unit
+  std::vector<sdm::Doubt> doubts{};
+  double guard = 0;  ///< how far the meshes may be from the surfaces that are meant
 };
 
 HausdorffAnswer measure(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o1,
@@ -76,23 +78,30 @@ HausdorffVerdict verdict(const HausdorffAnswer& answer, const HausdorffCommand& 
   const bool unmatched =
       std::ranges::any_of(answer.directions, [](const auto& h) { return h.faces_without_match > 0; });
   if (unmatched) return {.within = false, .unmatched = true};
-  return {.within = d.lower <= tolerance,
-          .certified = d.lower > tolerance || d.upper <= tolerance,
+  return {.within = d.lower <= tolerance + answer.guard,
+          .certified = d.lower > tolerance + answer.guard || d.upper <= tolerance - answer.guard,
           .doubted = !answer.doubts.empty() && !command.accept_doubts};
 }
 
 /// Computes the distance, with closer bounds if the tolerance is between them.
 HausdorffAnswer decide(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o1,
-                       const HausdorffCommand& command, const sdm::Progress& progress) {
+                       const HausdorffCommand& command, double guard, const sdm::Progress& progress) {
   constexpr double kCloser = 1e-3;
   sdm::HausdorffOptions options = command.options;
   options.progress = progress;
-  HausdorffAnswer answer = measure(sites, o1, options);
+  const auto measured = [&] {
+    HausdorffAnswer answer = measure(sites, o1, options);
+    answer.guard = guard;
+    return answer;
+  };
+  HausdorffAnswer answer = measured();
   while (command.tolerance && !verdict(answer, command).certified) {
-    const double gap = answer.distance.distance.upper - answer.distance.distance.lower;
-    if (!(gap > 0)) break;
+    const sdm::BoundedLength& d = answer.distance.distance;
+    const double gap = d.upper - d.lower;
+    const bool in_guard_band = d.lower > *command.tolerance - guard && d.upper <= *command.tolerance + guard;
+    if (!(gap > 0) || in_guard_band) break;
     options.precision = kCloser * gap;
-    const HausdorffAnswer closer = measure(sites, o1, options);
+    const HausdorffAnswer closer = measured();
     if (!(closer.distance.distance.upper - closer.distance.distance.lower < 0.5 * gap)) break;  // rounding
     answer = closer;
   }
@@ -136,10 +145,14 @@ std::string unmatched_lines(const HausdorffAnswer& answer) {
   return text;
 }
 
-std::string tolerance_line(const HausdorffVerdict& v, double tolerance, const std::string& unit) {
+std::string tolerance_line(const HausdorffVerdict& v, double tolerance, double guard,
+                           const std::string& unit) {
   const std::string limit = number(tolerance) + unit;
   return fmt::format("  tolerance  {}: {}\n", sdm::name_of(v.word()),
-                     v.unmatched    ? "faces without a match have no distance"
+                     v.unmatched ? "faces without a match have no distance"
+                     : !v.certified && guard > 0
+                         ? fmt::format("the distance is closer to {} than the guard band, {}{}", limit,
+                                       number(guard, 2), unit)
                      : !v.certified ? fmt::format("the distance is {}, to the precision", limit)
                      : v.within     ? fmt::format("no point is farther than {}", limit)
                                     : fmt::format("a point is farther than {}", limit));
@@ -162,7 +175,8 @@ std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAn
     text += distance_line("O2 -> O1", answer.directions[1], unit);
   }
   text += unmatched_lines(answer);
-  if (command.tolerance) text += tolerance_line(verdict(answer, command), *command.tolerance, unit);
+  if (command.tolerance)
+    text += tolerance_line(verdict(answer, command), *command.tolerance, answer.guard, unit);
   return text + doubt_lines(answer.doubts, 13);
 }
 
@@ -178,7 +192,8 @@ Json report_of(const HausdorffCommand& command, const InputPair& pair, const Hau
     json["tolerance"] = {{"value", *command.tolerance},
                          {"verdict", sdm::name_of(v.word())},
                          {"within", v.within},
-                         {"certified", v.certified}};
+                         {"certified", v.certified},
+                         {"guard", answer.guard}};
   }
   json["doubts"] = to_json(answer.doubts);
   json["notes"] = answer.notes;
@@ -190,13 +205,16 @@ int run(const HausdorffCommand& command) {
   limit_threads(command.threads);
   ProgressLine progress(command.quiet);
   progress.step("import");
-  const InputPair pair = load_pair(command, {.inspects = command.json});
+  PairFiles files = command;
+  if (command.tolerance) files.tessellation.at_most = deflection_for(*command.tolerance);
+  const InputPair pair = load_pair(files, {.inspects = command.json});
   Stopwatch watch;
   std::vector<sdm::Sites> sites;  // of the meshes that distances are measured to: O2, or both
   if (command.both) sites.emplace_back(pair.o1.mesh);
   sites.emplace_back(pair.o2.mesh);
   const double build_ms = watch.lap();
-  HausdorffAnswer answer = decide(sites, pair.o1.mesh, command, progress.callback());
+  HausdorffAnswer answer =
+      decide(sites, pair.o1.mesh, command, pair.o1.deviation + pair.o2.deviation, progress.callback());
   answer.size = smaller_size(pair);
   answer.notes = notes_on(pair.o1, pair.o2);
   if (auto note = note_on_unit(command.units)) answer.notes.push_back(std::move(*note));

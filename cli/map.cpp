@@ -3,6 +3,7 @@
 #include <sdm/tolerance_table.h>
 
 #include "alignment.h"
+#include "cad_options.h"
 #include "common_options.h"
 #include "exit_codes.h"
 #include "format.h"
@@ -110,6 +111,7 @@ int run(MapCommand command) {
   progress.step("import");
   if (!command.groups.file.empty()) command.groups.rows = sdm::read_tolerance_table(command.groups.file);
   const bool vertices = command.output.files.any_vertices();
+  command.tessellation.at_most = deflection_for(command.picture.tolerance, command.groups.rows);
   InputPair pair = load_pair(command, {.vertices = {vertices, vertices && command.both}});
   if (command.islands) pair.o1.islands = ignore_islands(pair.o1, *command.islands);
   if (command.islands_o2) pair.o2.islands = ignore_islands(pair.o2, *command.islands_o2);

@@ -76,11 +76,17 @@ void leave_islands_out(const Input& on, std::vector<Value>& at_vertices, Value n
     if (on.island_vertices[v] != 0) at_vertices[v] = none;
 }
 
+/// How far both meshes may be from the surfaces that are meant.
+double guard_of(const MapTask& task) {
+  return task.on.deviation + task.to.deviation;
+}
+
 sdm::SummaryOptions summary_options(const MapTask& task, const AtlasPart& part, double accuracy) {
   const MapCommand& command = task.command;
   return {.units = command.picture.units,
           .max_distance = command.map.max_distance,
           .accuracy = accuracy,
+          .guard = guard_of(task),
           .tolerance = command.picture.tolerance,
           .table = command.groups.rows,
           .colormap = command.picture.colormap,
@@ -131,9 +137,13 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
       [&] { outcome.summary = sdm::summarize(surface, *task.sites, map, computed.at_vertices, options); },
   });
   if (!command.groups.rows.empty()) {
-    sdm::GroupVerdicts groups = sdm::certify_groups(
-        surface, *task.sites, map, computed.at_vertices, names, command.groups.rows,
-        {.accuracy = computed.accuracy, .doubted = !task.doubts.empty() && !command.doubts.accept});
+    sdm::GroupVerdicts groups =
+        sdm::certify_groups(surface, *task.sites, map, computed.at_vertices, names, command.groups.rows,
+                            {.accuracy = computed.accuracy,
+                             .doubted = !task.doubts.empty() && !command.doubts.accept,
+                             .accept_doubts = command.doubts.accept,
+                             .guard = guard_of(task)});
+    if (!outcome.summary.tolerance) add_group_doubts(groups, outcome.summary.doubts);
     if (!groups.groups.empty()) outcome.groups = std::move(groups);  // none is of this mesh or tile
   }
   if (!views) return;

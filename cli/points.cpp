@@ -108,11 +108,12 @@ std::vector<std::filesystem::path> planned_files(const PointsCommand& command) {
 
 // The mesh that is measured to, and the tolerances of its groups.
 Input load_reference(PointsCommand& command) {
+  if (!command.groups.file.empty()) command.groups.rows = sdm::read_tolerance_table(command.groups.file);
+  command.tessellation.at_most = deflection_for(command.picture.tolerance, command.groups.rows);
   Input o2 = load_input("o2", command.o2, command.transform_o2, {.tessellation = command.tessellation});
   check_deflection(command.tessellation, {&o2});
   if (command.weld) weld(o2, *command.weld);
   if (command.islands_o2) o2.islands = ignore_islands(o2, *command.islands_o2);
-  if (!command.groups.file.empty()) command.groups.rows = sdm::read_tolerance_table(command.groups.file);
   check_groups(command.groups, {&o2});
   return o2;
 }
@@ -124,7 +125,9 @@ sdm::PointDistancesOptions measuring_options(const PointsCommand& command, const
           .picture = command.picture,
           .text = command.text,
           .names = o2.names,
-          .table = command.groups.rows};
+          .table = command.groups.rows,
+          .guard = o2.deviation,
+          .accept_doubts = command.doubts.accept};
 }
 
 // Aligns the points, which changes their placement, and writes alignment.json.
@@ -138,6 +141,10 @@ void align_cloud(PointsCommand& command, const sdm::Sites& sites, const Input& o
   write_text(folder / "alignment.json", to_text(to_json(*outcome.aligned, command.picture.units)));
 }
 
+void add(std::vector<sdm::Doubt>& doubts, const std::vector<sdm::Doubt>& more) {
+  doubts.insert(doubts.end(), more.begin(), more.end());
+}
+
 // A cloud that is in place may be in another unit. It is read again only if its size is that of another unit.
 void doubt_unit(const PointsCommand& command, const sdm::PointDistancesOptions& options, const sdm::Mesh& o2,
                 PointsOutcome& outcome, ProgressLine& progress) {
@@ -147,13 +154,13 @@ void doubt_unit(const PointsCommand& command, const sdm::PointDistancesOptions& 
   sdm::PointSample sample =
       sdm::sample_points(command.cloud, kSample, {command.text, progress.callback(), options.islands});
   sdm::transform(sample.points, options.placement);
-  outcome.summary.doubts = doubts_in_place(sdm::find_other_unit_in_place(sample.points, o2));
+  add(outcome.summary.doubts, doubts_in_place(sdm::find_other_unit_in_place(sample.points, o2)));
 }
 
 // Withholds a PASS where there are doubts.
 void judge_doubts(const PointsCommand& command, const sdm::PointDistancesOptions& options, const Input& o2,
                   PointsOutcome& outcome, ProgressLine& progress) {
-  if (outcome.aligned && command.align.judged) outcome.summary.doubts = doubts_of(*outcome.aligned);
+  if (outcome.aligned && command.align.judged) add(outcome.summary.doubts, doubts_of(*outcome.aligned));
   if (!outcome.aligned) doubt_unit(command, options, o2.mesh, outcome, progress);
   if (command.doubts.min_coverage)
     measure_cloud_coverage(command, options.placement, options.islands, o2.mesh, outcome, progress);
@@ -191,6 +198,8 @@ int run(PointsCommand command) {
     const std::filesystem::path ply = out.staging() / "points.ply";
     outcome.found = sdm::measure_points(command.cloud, sites, ply, options);
     outcome.summary = sdm::summarize(outcome.found, options);
+    if (!outcome.summary.tolerance && outcome.found.groups)
+      add_group_doubts(*outcome.found.groups, outcome.summary.doubts);
     judge_doubts(command, options, o2, outcome, progress);
     add_notes(command, o2, sites, outcome);
     outcome.points_ms = watch.lap();

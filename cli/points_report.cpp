@@ -43,6 +43,14 @@ std::string tolerance_line(const PointsOutcome& outcome, const std::string& unit
   const sdm::CertifiedVerdict& verdict = *summary.tolerance;
   const std::string word = sdm::name_of(verdict.verdict);
   if (verdict.verdict != sdm::Verdict::fail) return word + ": " + sdm::verdict_text(summary);
+  if (verdict.by_facing.value_or(false)) {
+    const sdm::Evidence& facing = *outcome.found.by_facing;
+    const auto& most = verdict.nearest_is_lower ? facing.lowest : facing.highest;
+    return fmt::format("{}: {}{}", word, sdm::verdict_text(summary),
+                       verdict.reason == sdm::VerdictReason::exceeded
+                           ? fmt::format(": {}{}", number(*most), unit)
+                           : std::string());
+  }
   if (verdict.reason == sdm::VerdictReason::without_match ||
       verdict.reason == sdm::VerdictReason::beyond_max_distance)
     return fmt::format("{}: {} % of the points have no value, as {}", word,

@@ -64,9 +64,47 @@ Json to_json(const sdm::GlReport& r) {
             {"finish", rounded(t.finish)}}}};
 }
 
+namespace {
+
+using Steps = std::vector<sdm::scenes::PlacementStep>;
+
+/// The largest factor by which steps other than `fit` stretch lengths; exact for similarities.
+double stretch_of(const Steps& steps) {
+  const auto& rows = sdm::scenes::transform_of(steps).rows;
+  double largest = 0;  // of the sums of absolute values of the rows of AᵀA
+  for (int i = 0; i < 3; ++i) {
+    double sum = 0;
+    for (int j = 0; j < 3; ++j) {
+      double product = 0;
+      for (int k = 0; k < 3; ++k) product += rows[k][i] * rows[k][j];
+      sum += std::abs(product);
+    }
+    largest = std::max(largest, sum);
+  }
+  return std::sqrt(largest);
+}
+
+/// The options for a file whose coordinates the steps change: their limit on the deflection is one on the
+/// mesh as it is placed. What `fit` scales is not known before.
+sdm::MeshFileOptions before_placement(sdm::MeshFileOptions options, const Steps& steps) {
+  std::optional<double>& at_most = options.tessellation.at_most;
+  if (!at_most) return options;
+  const bool fits = std::ranges::any_of(
+      steps, [](const auto& step) { return step.kind == sdm::scenes::PlacementStep::Kind::fit; });
+  const double stretch = fits ? 0 : stretch_of(steps);
+  if (stretch > 0)
+    *at_most /= stretch;
+  else
+    at_most.reset();
+  return options;
+}
+
+}  // namespace
+
 Input load_input(const std::string& role, const std::string& file, const std::string& transform,
                  const sdm::MeshFileOptions& options) {
-  sdm::MeshFile read = sdm::read_mesh_file(file, options);
+  const Steps steps = sdm::scenes::parse_placement(transform);
+  sdm::MeshFile read = sdm::read_mesh_file(file, before_placement(options, steps));
   Input input{.role = role, .file = file, .transform = transform, .mesh = std::move(read.mesh)};
   input.xxh3 = std::move(read.xxh3);
   input.names = std::move(read.names);
@@ -78,7 +116,10 @@ Input load_input(const std::string& role, const std::string& file, const std::st
   for (const std::string& note : read.notes) input.notes.push_back(fmt::format("{}: {}", file, note));
   if (const auto note = note_on_precision(file, input.mesh.positions, size_of(sdm::bounds(input.mesh))))
     input.notes.push_back(*note);
-  sdm::scenes::place(input.mesh, sdm::scenes::parse_placement(transform));
+  if (input.tessellation)
+    input.deviation =
+        input.tessellation->largest_deviation * stretch_of(sdm::scenes::without_fit(input.mesh, steps));
+  sdm::scenes::place(input.mesh, steps);
   return input;
 }
 
@@ -137,7 +178,9 @@ std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
   const sdm::ToleranceShares& shares = verdict.shares;
   const std::string limits = sdm::limits_text(verdict.tolerance, outcome.summary.units);
   if (verdict.proof && verdict.proof->witness)
-    return fmt::format("{}: a point between the texels is out of {}: {}{} at {}", word, limits,
+    return fmt::format("{}: {}: {}{} at {}", word,
+                       verdict.by_facing.value_or(false) ? sdm::verdict_text(outcome.summary)
+                                                         : "a point between the texels is out of " + limits,
                        number(verdict.proof->witness->distance), unit,
                        place(verdict.proof->witness->point, outcome.size));
   if (verdict.proof && verdict.reason == sdm::VerdictReason::without_match)

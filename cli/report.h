@@ -32,6 +32,7 @@ struct Input {
   std::optional<sdm::IslandReport> islands{};       ///< that were left out
   std::vector<std::uint8_t> island_vertices{};      ///< 1: of these only; empty: none is
   std::optional<sdm::Tessellation> tessellation{};  ///< of CAD
+  double deviation = 0;  ///< of CAD: largest_deviation, in units of the mesh as it is placed
   std::vector<sdm::FaceNames> names{};
   std::vector<std::string> notes{};             ///< on the file
   std::optional<sdm::FileVertices> vertices{};  ///< of the file, without the transform, if requested

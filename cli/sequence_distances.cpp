@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& sites,
                                const sdm::DistanceMap& map, double error_bound,
-                               const std::optional<sdm::Tolerance>& tolerance) {
+                               const std::optional<sdm::Tolerance>& tolerance, bool accept_doubts) {
   const std::vector<float> at_vertices = sdm::distances_at_vertices(surface.mesh(), sites);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const std::optional<sdm::Extremes> found = sdm::extremes(surface, map, at_vertices);
@@ -22,7 +22,9 @@ FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& si
   if (!tolerance) return result;
   const double accuracy = sdm::engine_accuracy(sdm::engines().front(), surface.mesh(), sites.mesh());
   const sdm::CertifiedVerdict verdict = sdm::certify_tolerance(
-      surface, sites, map, at_vertices, *tolerance, {.error_bound = error_bound, .accuracy = accuracy});
+      surface, sites, map, at_vertices, *tolerance,
+      {.error_bound = error_bound, .accuracy = accuracy, .accept_doubts = accept_doubts});
+  result.doubt = sdm::doubt_of(verdict);
   result.verdict = verdict.verdict;
   result.certified = verdict.certified;
   result.exceeded_area_fraction = verdict.exceeded_area_fraction;

@@ -13,6 +13,7 @@ struct FrameDistances {
   std::optional<sdm::Verdict> verdict{};  ///< of the tolerance, if there is one
   double exceeded_area_fraction = 0;      ///< of it
   bool certified = false;                 ///< the verdict is proven
+  std::optional<sdm::Doubt> doubt{};      ///< that it leaves
 
   [[nodiscard]] sdm::Verdict judged() const { return verdict.value_or(sdm::Verdict::pass); }
 };
@@ -22,7 +23,8 @@ struct FrameDistances {
 /// the map does not decide.
 [[nodiscard]] FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& sites,
                                              const sdm::DistanceMap& map, double error_bound,
-                                             const std::optional<sdm::Tolerance>& tolerance);
+                                             const std::optional<sdm::Tolerance>& tolerance,
+                                             bool accept_doubts);
 
 [[nodiscard]] nlohmann::ordered_json to_json(const FrameDistances& distances);
 /// The inverse.

@@ -146,8 +146,9 @@ void FrameLoop::compute_maps(Frame& frame) {
   for (int b = 0; b < command_.measured_bodies(); ++b) {
     if (b == 1) maps_.compute(pair_, 1);
     naming_frame(frame.index, [&] {
-      frame.distances[b] = frame_distances(pair_.surface(b), pair_.sites(1 - b), maps_.of[b],
-                                           frame.error_bound[b], command_.picture.tolerance);
+      frame.distances[b] =
+          frame_distances(pair_.surface(b), pair_.sites(1 - b), maps_.of[b], frame.error_bound[b],
+                          command_.picture.tolerance, command_.accept_doubts);
     });
   }
   if (!command_.picture.tolerance) return;
@@ -155,6 +156,8 @@ void FrameLoop::compute_maps(Frame& frame) {
     frame.doubts =
         doubts_in_place(sdm::find_other_unit_in_place(pair_.sites(0).mesh(), pair_.sites(1).mesh()));
   });
+  for (const auto& d : frame.distances)
+    if (d && d->doubt) frame.doubts.push_back(*d->doubt);
   if (!command_.accept_doubts) frame.withhold_pass();
 }
 

@@ -91,7 +91,8 @@ std::string verdict_in_words(const ThicknessCommand& command, const sdm::Summary
                  : sdm::verdict_text(summary);
     default:
       return fmt::format("a measured point is as close to the limit, {}, as a thickness is accurate, {}{}",
-                         limits_in_words(command), number(summary.evidence.accuracy, 2),
+                         limits_in_words(command),
+                         number(summary.evidence.accuracy + summary.evidence.guard, 2),
                          unit_suffix(summary.units));
   }
 }
@@ -162,6 +163,7 @@ ThicknessResult measure(ThicknessCommand& command, const Input& input, double im
   const sdm::DistanceStatistics distance = sdm::statistics(surface, map);
   sdm::SummaryOptions options{.units = command.picture.units,
                               .accuracy = command.picture.accuracy,
+                              .guard = 2 * input.deviation,  // of both ends
                               .tolerance = command.picture.tolerance,
                               .colormap = command.picture.colormap,
                               .range = command.picture.range,

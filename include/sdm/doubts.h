@@ -22,6 +22,7 @@ enum class DoubtReason {
   poor_fit,      ///< after an alignment, most samples of O1 do not fit O2
   undetermined,  ///< the surfaces do not determine all freedoms of the alignment
   low_coverage,  ///< too little of O2 has a measured point near it
+  thin_walls,    ///< the closest point may be on the other skin of a wall, and nothing else decides
 };
 
 /// A reason not to trust that all distances are within a tolerance, although they are.
@@ -43,7 +44,7 @@ struct Doubt {
 /// Returns the doubt that a coverage below `least` leaves: by its value, not by its bounds.
 [[nodiscard]] SDM_API std::optional<Doubt> doubt_of(const Coverage& coverage, double least);
 
-/// "other unit", "mirrored", "poor fit", "undetermined" or "low coverage".
+/// "other unit", "mirrored", "poor fit", "undetermined", "low coverage" or "thin walls".
 [[nodiscard]] SDM_API const char* name_of(DoubtReason reason);
 
 }  // namespace sdm

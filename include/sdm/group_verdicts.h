@@ -74,12 +74,16 @@ struct GroupPoints {
   std::uint64_t below = 0, above = 0;  ///< out of the tolerance by more than the accuracy
   bool out_with_either_sign = true;    ///< a point is out whatever its sign, if it has none
   Evidence evidence{};                 ///< with error bound 0
+  std::optional<Evidence>
+      by_facing{};  ///< of the distances to faces that face the same way, if walls are thin
 };
 
 /// Options of certify_groups().
 struct CertifyGroupsOptions {
-  double accuracy = 0;   ///< of the distances: engine_accuracy(); infinite if unknown
-  bool doubted = false;  ///< there are doubts that withhold a pass
+  double accuracy = 0;         ///< of the distances: engine_accuracy(); infinite if unknown
+  bool doubted = false;        ///< there are doubts that withhold a pass
+  bool accept_doubts = false;  ///< doubt_of() a verdict leaves a pass one
+  double guard = 0;            ///< Evidence::guard
   Progress progress{};
 };
 
@@ -97,10 +101,11 @@ struct CertifyGroupsOptions {
                                                    const CertifyGroupsOptions& options);
 
 /// Judges groups of points, whose distances have this sign and kind, and all of them together with the
-/// points of no group. Fractions are of the points of the group. Cost: linear in groups.
+/// points of no group. Fractions are of the points of the group. Verdict::doubtful where thin walls leave a
+/// group open, unless these doubts are accepted. Cost: linear in groups.
 [[nodiscard]] SDM_API GroupVerdicts judge_groups(std::span<const GroupPoints> groups,
                                                  const PointsWithoutGroup& without_group, SignMethod sign,
-                                                 DistanceKind measured);
+                                                 DistanceKind measured, bool accept_doubts = false);
 
 /// Makes Verdict::doubtful of a pass on all groups, as there are doubts.
 SDM_API void withhold_pass(GroupVerdicts& verdicts);

@@ -172,6 +172,8 @@ struct PointDistancesOptions {
   TextDialect text{};                  ///< of a cloud in text, as of PointReader
   std::span<const FaceNames> names{};  ///< of the faces of O2
   std::span<const GroupTolerance> table{};  ///< tolerances of these names
+  double guard = 0;                         ///< Evidence::guard
+  bool accept_doubts = false;               ///< those of thin walls leave a pass one
   /// Islands of this cloud, whose points have no value and only add to a count.
   const CloudIslands* islands = nullptr;
 };
@@ -209,7 +211,11 @@ struct PointDistances {
   /// face; those without one are of no group, and fail. Doubts are not considered.
   std::optional<GroupVerdicts> groups;
   double accuracy = 0;  ///< of a distance: that of the engine for the box of O2 and the points
-  Box bounds;           ///< of the finite points
+  double thin_walls = std::numeric_limits<double>::infinity();  ///< Evidence::thin_walls, with a tolerance
+  /// The evidence of the distances to faces that face the same way, where walls are thin and there are
+  /// normals.
+  std::optional<Evidence> by_facing{};
+  Box bounds;  ///< of the finite points
 
   /// All points with coordinates but those of islands: what fractions of points are of.
   [[nodiscard]] std::uint64_t counted() const { return points - invalid - (islands ? islands->points : 0); }

@@ -146,6 +146,7 @@ struct SummaryOptions {
   std::string units{};
   double max_distance = std::numeric_limits<double>::infinity();  ///< that of the map
   double accuracy = 0;  ///< of the engine: engine_accuracy(); infinite if unknown
+  double guard = 0;     ///< Evidence::guard
   std::optional<Tolerance> tolerance{};
   std::span<const GroupTolerance> table{};  ///< of groups of `names`, for the places
   Colormap colormap = Colormap::automatic;

@@ -16,6 +16,10 @@ struct TessellationOptions {
   /// The distance from the triangles to the exact surface that is aimed at, in millimetres. Nothing: 1/2000
   /// of the diagonal of the part's box.
   std::optional<double> deflection{};
+  /// Without a deflection: it is at most this, in millimetres, unless the part would have more than
+  /// `most_triangles`.
+  std::optional<double> at_most{};
+  std::size_t most_triangles = 2'000'000;
   double angle =
       0.2;  ///< the angle in radians between the normals of neighbouring triangles that is aimed at
 };
@@ -27,14 +31,15 @@ struct Tessellation {
   std::size_t faces = 0;             ///< of all instances of all parts
   std::size_t omitted_faces = 0;     ///< of them, without a triangle, since they could not be tessellated
   double deflection = 0, angle = 0;  ///< that were aimed at
+  bool limited = false;              ///< the deflection is above TessellationOptions::at_most
   /// An estimate: the largest distance from a point of the exact surfaces and edges to the triangles, over
   /// points inside of each triangle and of each side on an edge. Other points may be farther.
   double largest_deviation = 0;
   std::size_t measured_points = 0;
 };
 
-/// Returns a sentence that distances and verdicts hold for the triangles, which may deviate from the surface
-/// of `file`, and by how much they were found to.
+/// Returns a sentence that distances are to the triangles, by how much these were found to deviate from the
+/// surface of `file`, and that verdicts keep so far from the limits.
 [[nodiscard]] SDM_API std::string note_on(const Tessellation& tessellation, const std::string& file);
 
 }  // namespace sdm

@@ -81,6 +81,11 @@ struct WallEstimate {
 [[nodiscard]] SDM_API std::optional<WallEstimate> estimate_walls(const Sites& sites, double thin,
                                                                  std::size_t samples = 4096);
 
+/// Returns the thickness that the walls of a solid are below on at least 1 % of its area, as of
+/// estimate_walls(): less may be edges that are sharper than a right angle. Infinite for a mesh that bounds
+/// no solid. Errors and cost as of estimate_walls().
+[[nodiscard]] SDM_API double thin_walls(const Sites& sites);
+
 /// Returns the texels of least value, the least first, each at least 6 % of the diagonal of the mesh from
 /// those before it; at most `count`. Throws sdm::Error if the map belongs to another surface. Cost:
 /// O(n log n) in texels.

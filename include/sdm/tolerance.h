@@ -62,9 +62,11 @@ enum class VerdictReason {
   without_match,        ///< fail: a sample, or a face, has no value, as O2 has no face that faces as it does
   between_samples,      ///< not decided: the error bound exceeds the margin
   within_rounding,      ///< not decided: a distance is closer to a limit than the accuracy
+  guard_band,           ///< not decided: a distance is closer to a limit than the guard band and the accuracy
   estimated_signs,      ///< not decided: with the other sign, which is an estimate, a distance might be out
   unknown_accuracy,     ///< not decided: the accuracy of the distances is unknown
   nothing_measured,     ///< not decided: there are no samples
+  thin_walls,           ///< not decided: the closest point may be on the other skin of a wall
   in_doubt,             ///< doubtful: see Doubt
 };
 
@@ -79,11 +81,21 @@ struct Evidence {
   /// maps whose DistanceKind is not `closest`. The error bound is infinite.
   bool samples_only = false;
   double accuracy = 0;  ///< the error of a distance, as of engine_accuracy(); infinite if it has no bound
+  /// How far the meshes may be from the surfaces that are meant, as triangles are from those of CAD: a
+  /// verdict keeps so far from the limits, on both sides of them, besides the accuracy.
+  double guard = 0;
   /// Upper bound on how much a distance at any point can differ from those of the samples, without that
   /// error, as of SamplingBound::value(); 0 where there is nothing between samples.
   double error_bound = 0;
   bool is_signed = true;  ///< false: no distance is negative, so that a lower limit of 0 or less holds
+  /// The thickness that walls of O2 are below on more than a small part of it, as of thin_walls(): samples
+  /// do not decide limits that are larger than half of it. Infinite if distances are not to the closest
+  /// point.
+  double thin_walls = std::numeric_limits<double>::infinity();
 };
+
+/// The larger one of the limits that are finite; 0 without any.
+[[nodiscard]] SDM_API double largest_limit(const Tolerance& tolerance);
 
 /// What some evidence proves about a tolerance.
 struct Judgement {
@@ -95,9 +107,9 @@ struct Judgement {
   /// The verdict holds for every point: not of Verdict::not_decided, nor of a failure that depends on the
   /// sign of an estimate, nor of a pass of samples only.
   bool certified = true;
-  /// How far `lowest` and `highest` stay from the limits, less the accuracy, whatever their signs if these
-  /// are estimates. Verdict::pass needs at least the error bound. Nothing if a sample has no value, if there
-  /// are no samples, or if the accuracy has no bound.
+  /// How far `lowest` and `highest` stay from the limits, less the accuracy and the guard band, whatever
+  /// their signs if these are estimates. Verdict::pass needs at least the error bound. Nothing if a sample
+  /// has no value, if there are no samples, or if the accuracy has no bound.
   std::optional<double> margin{};
   bool nearest_is_lower = false;  ///< the limit that is exceeded most, or approached most closely
   /// If not decided: an error bound that leads to Verdict::pass if no sample of a finer map comes closer to a
@@ -107,7 +119,8 @@ struct Judgement {
 
 /// Judges by the rule for all verdicts. The accuracy benefits the part: rounding exceeds no tolerance, and a
 /// distance within it has no certain sign. It also counts against a proof: Verdict::pass needs
-/// margin ≥ error_bound, or of samples only margin ≥ 0. Cost: O(1).
+/// margin ≥ error_bound, or of samples only margin ≥ 0. The guard band counts as the accuracy does. Cost:
+/// O(1).
 [[nodiscard]] SDM_API Judgement judge(const Evidence& evidence, const Tolerance& tolerance);
 
 /// Whether all distances of a surface are within a tolerance, in units of the mesh.

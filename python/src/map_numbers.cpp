@@ -175,12 +175,14 @@ void bind_verdict(nb::module_& module) {
           nb::sig("def verdict(self) -> " SDM_VERDICT),
           "'pass': every point of the surface is within the tolerance; 'fail': some point is not; 'not "
           "decided': "
-          "neither is proven, as a distance is within the accuracy of a limit, or signs are estimates.")
+          "neither is proven, as a distance is within the accuracy of a limit, or signs are estimates; "
+          "'doubtful': a 'pass', but walls are thinner than twice the tolerance, and the faces that face the "
+          "same way do not decide.")
       .def_prop_ro(
           "reason", [](const V& self) { return sdm::name_of(self.reason); },
           "Why, in words: 'all within', 'exceeded', 'beyond max distance', 'without match', 'within "
           "rounding', 'estimated "
-          "signs', 'unknown accuracy' or 'nothing measured'.")
+          "signs', 'unknown accuracy', 'nothing measured' or 'in doubt'.")
       .def_ro(
           "margin", &V::margin,
           "How far the distances of texels and vertices stay from the limits, less the accuracy; negative "

@@ -72,7 +72,8 @@ inline constexpr auto kMembers<CertifiedVerdict> =
                &CertifiedVerdict::margin,         &CertifiedVerdict::nearest_is_lower,
                &CertifiedVerdict::deciding_bound, &CertifiedVerdict::tolerance,
                &CertifiedVerdict::largest,        &CertifiedVerdict::exceeded_area_fraction,
-               &CertifiedVerdict::shares,         &CertifiedVerdict::proof};
+               &CertifiedVerdict::shares,         &CertifiedVerdict::proof,
+               &CertifiedVerdict::by_facing};
 template <>
 inline constexpr auto kMembers<GroupVerdict> =
     std::tuple{&GroupVerdict::kind, &GroupVerdict::group,  &GroupVerdict::faces,   &GroupVerdict::points,
@@ -148,7 +149,7 @@ inline constexpr auto kMembers<PointDistances> = std::tuple{&PointDistances::poi
 
 // Alignments.
 template <>
-inline constexpr auto kLast<DoubtReason> = DoubtReason::low_coverage;
+inline constexpr auto kLast<DoubtReason> = DoubtReason::thin_walls;
 template <>
 inline constexpr auto kMembers<Doubt> = std::tuple{&Doubt::reason, &Doubt::text, &Doubt::remedy};
 template <>

@@ -5,7 +5,7 @@
 #define SDM_SIGN "typing.Literal['automatic', 'none', 'exact', 'winding', 'side']"
 #define SDM_ENGINE "typing.Literal['cpu', 'gl', 'reference']"
 #define SDM_ATLAS "typing.Literal['charts', 'triangles', 'uv']"
-#define SDM_VERDICT "typing.Literal['pass', 'fail', 'not decided']"
+#define SDM_VERDICT "typing.Literal['pass', 'fail', 'not decided', 'doubtful']"
 #define SDM_CERTAINTY "typing.Literal['exact', 'bounded', 'estimate']"
 #define SDM_COLORMAP "typing.Literal['automatic', 'viridis', 'sequential', 'diverging', 'paper2006']"
 

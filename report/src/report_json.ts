@@ -18,6 +18,8 @@ export interface Evidence {
   unmatched?: boolean; ///< a sample has no match
   samples_only?: boolean; ///< nothing bounds the distances between samples
   signed?: boolean; ///< false: no distance is negative
+  guard?: number; ///< how far the meshes may be from the surfaces that are meant
+  thin_walls?: number | null; ///< the thickness that walls are below; null: none
 }
 /// A mesh, or a cloud, which has points.
 export interface Input {
@@ -72,6 +74,7 @@ export interface Report {
     reason?: string;
     nearest_limit?: 'lower' | 'upper';
     text?: string; ///< the verdict as a clause
+    by_facing?: boolean | null; ///< where walls are thin: faces that face the same way decide
     proof?: { witness: { distance: number; point: Vec } | null; faces_without_match?: number } | null;
     exceeded_area_fraction?: number;
     exceeded_point_fraction?: number;

@@ -72,7 +72,8 @@ export function judge(evidence: Evidence, limits: Limits): Judgement {
   const lower = evidence.signed === false && limits.lower <= 0 ? -Infinity : limits.lower;
   const lowest = evidence.lowest ?? Infinity;
   const highest = evidence.highest ?? -Infinity;
-  const accuracy = evidence.accuracy ?? Infinity;
+  const guard = evidence.guard ?? 0;
+  const accuracy = (evidence.accuracy ?? Infinity) + guard;
   const bound = evidence.error_bound ?? Infinity;
   const marginOf = (least: number, most: number) => Math.min(upper - most, least - lower) - accuracy;
   const farthest = Math.max(-lowest, highest);
@@ -87,6 +88,8 @@ export function judge(evidence: Evidence, limits: Limits): Judgement {
     return { ...result, verdict: 'FAIL', reason: evidence.unmatched ? 'without match' : 'beyond max distance' };
   if (below || above) return { ...result, verdict: 'FAIL', reason: 'exceeded' };
   if (!(lowest <= highest)) return { ...result, verdict: 'NOT DECIDED', reason: 'nothing measured' };
+  const largest = Math.max(...[lower, upper].filter(Number.isFinite).map(Math.abs), 0);
+  if (bound <= margin && 2 * largest > (evidence.thin_walls ?? Infinity)) return { ...result, verdict: 'NOT DECIDED', reason: 'thin walls' };
   if (bound <= margin || (evidence.samples_only && margin >= 0 && Number.isFinite(margin))) return { ...result, verdict: 'PASS', reason: 'all within' };
   const reason = !Number.isFinite(accuracy)
     ? 'unknown accuracy'
@@ -94,7 +97,9 @@ export function judge(evidence: Evidence, limits: Limits): Judgement {
       ? 'estimated signs'
       : margin > 0
         ? 'between samples'
-        : 'within rounding';
+        : guard > 0
+          ? 'guard band'
+          : 'within rounding';
   return { ...result, verdict: 'NOT DECIDED', reason };
 }
 
@@ -171,10 +176,12 @@ function failure(report: Report, limits: Limits): string {
       report.max_distance ? ` (${text(report.max_distance)}${unit})` : ''
     }${lacking}.`;
   const between = t.proof?.witness;
+  if (t.by_facing && !between) return sentence(t.text ?? '');
+  const found = t.by_facing ? ' by the faces that face the same way, as walls are thin' : between ? ' between the measured points' : '';
   const most = between ? between.distance : t.nearest_limit === 'lower' ? report.evidence!.lowest : report.evidence!.highest;
   const share =
     outside === null || between ? '' : `, and ${cloud ? '' : 'about '}${percent(outside)} of the ${whole} out of tolerance`;
-  return `A ${quantityOf(report)} of ${distanceText(most, report)}${unit} was found${between ? ' between the measured points' : ''}, which is out of the tolerance of ${limitsText(limits, report)}${share}.`;
+  return `A ${quantityOf(report)} of ${distanceText(most, report)}${unit} was found${found}, which is out of the tolerance of ${limitsText(limits, report)}${share}.`;
 }
 
 interface Stated {

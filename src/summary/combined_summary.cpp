@@ -44,6 +44,8 @@ void extend(Evidence& all, const Evidence& more) {
   all.estimated_signs = all.estimated_signs || more.estimated_signs;
   all.accuracy = std::max(all.accuracy, more.accuracy);
   all.error_bound = std::max(all.error_bound, more.error_bound);
+  all.guard = std::max(all.guard, more.guard);
+  all.thin_walls = std::min(all.thin_walls, more.thin_walls);
 }
 
 /// The margin of a map among others: a map without samples has no limit, one of which a sample has no value
@@ -112,6 +114,9 @@ void CombinedSummary::add(const Surface& surface, const DistanceMap& map, const 
   }
   extend(total_.extremes, summary.extremes);
   extend(total_.evidence, summary.evidence);
+  for (const Doubt& doubt : summary.doubts)
+    if (std::ranges::find(total_.doubts, doubt.reason, &Doubt::reason) == total_.doubts.end())
+      total_.doubts.push_back(doubt);
   total_.beyond_max_distance += summary.beyond_max_distance;
   total_.without_match += summary.without_match;
   total_.boundary_texels += summary.boundary_texels;

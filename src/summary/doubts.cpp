@@ -101,6 +101,8 @@ const char* name_of(DoubtReason reason) {
       return "undetermined";
     case DoubtReason::low_coverage:
       return "low coverage";
+    case DoubtReason::thin_walls:
+      return "thin walls";
   }
   return "";
 }

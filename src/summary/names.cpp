@@ -32,6 +32,10 @@ const char* name_of(VerdictReason reason) {
       return "within rounding";
     case VerdictReason::estimated_signs:
       return "estimated signs";
+    case VerdictReason::guard_band:
+      return "guard band";
+    case VerdictReason::thin_walls:
+      return "thin walls";
     case VerdictReason::unknown_accuracy:
       return "unknown accuracy";
     case VerdictReason::nothing_measured:

@@ -68,9 +68,8 @@ std::optional<std::string> note_on_walls(const Sites& sites, const Tolerance& to
   return "about " + std::to_string(std::lround(100 * walls->thin)) +
          " % of O2's walls are thinner than twice the tolerance, " + text_of(2 * limit, 5) + unit +
          " (an estimate: half of these are at most " + text_of(walls->median, 3) + unit +
-         " thick), so that the closest point may be on the other skin, and a defect does not show; measure "
-         "to "
-         "faces that face the same way (--facing)";
+         " thick), so that the closest point may be on the other skin, and a defect does not show; --facing "
+         "measures to the faces that face the same way";
 }
 
 std::optional<std::string> note_on_walls(const Sites& sites, const std::optional<Tolerance>& tolerance,

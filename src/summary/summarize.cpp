@@ -1,6 +1,7 @@
 #include <sdm/error.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/summary.h>
+#include <sdm/thickness.h>
 #include <sdm/threads.h>
 
 #include <algorithm>
@@ -75,7 +76,7 @@ Places places_of(const Surface& surface, const DistanceMap& map, std::span<const
   return find_places(surface, map, vertex_distances,
                      {.tolerance = options.tolerance,
                       .table = options.table,
-                      .accuracy = std::isfinite(options.accuracy) ? options.accuracy : 0,
+                      .accuracy = std::isfinite(options.accuracy) ? options.accuracy + options.guard : 0,
                       .p99_abs = distance.p99_abs,
                       .names = names});
 }
@@ -118,21 +119,31 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
                  .without_match = map.without_match,
                  .max_distance = options.max_distance};
   result.colors = colors_of(options, result.distance);
-  double error_bound = 0;
+  double error_bound = 0, walls = std::numeric_limits<double>::infinity();
   run_concurrently(
       {[&] { error_bound = covering_radius(surface); },
        [&] { result.boundary_texels = boundary_texels(sites, map, options.boundary); },
        [&] { result.places = places_of(surface, map, vertex_distances, result.distance, options); },
        [&] { result.beyond_fraction = beyond_fraction(surface, map); },
+       [&] {
+         if (map.measured.kind == DistanceKind::closest) walls = thin_walls(sites);
+       },
        [&] { result.distribution = summary::distribution_of(surface, map, result.distance, options); }});
   result.evidence = evidence_of(surface, map, vertex_distances, error_bound, options.accuracy);
+  result.evidence.guard = options.guard, result.evidence.thin_walls = walls;
   result.hausdorff = summary::largest_distance(result);
   if (options.tolerance)
-    result.tolerance = certify_tolerance(
-        surface, sites, map, vertex_distances, *options.tolerance,
-        {.error_bound = error_bound, .accuracy = options.accuracy, .progress = options.progress});
+    result.tolerance = certify_tolerance(surface, sites, map, vertex_distances, *options.tolerance,
+                                         {.error_bound = error_bound,
+                                          .accuracy = options.accuracy,
+                                          .guard = options.guard,
+                                          .thin_walls = walls,
+                                          .accept_doubts = options.accept_doubts,
+                                          .progress = options.progress});
   result.coverage = options.coverage;
   result.doubts = options.doubts;
+  if (result.tolerance)
+    if (auto doubt = doubt_of(*result.tolerance)) result.doubts.push_back(std::move(*doubt));
   withhold_pass(result, options.accept_doubts);
   result.notes = notes_of(surface, sites, result, options);
   return result;
@@ -148,6 +159,7 @@ Summary summarize_thickness(const Surface& surface, const DistanceMap& map, cons
   evidence = {.complete = map.beyond_max_distance == 0,
               .samples_only = true,
               .accuracy = options.accuracy,
+              .guard = options.guard,
               .error_bound = std::numeric_limits<double>::infinity(),
               .is_signed = false};
   if (result.extremes)
@@ -156,7 +168,7 @@ Summary summarize_thickness(const Surface& surface, const DistanceMap& map, cons
   CertifiedVerdict& verdict = result.tolerance.emplace();
   static_cast<Judgement&>(verdict) = judge(evidence, *options.tolerance);
   verdict.tolerance = *options.tolerance;
-  verdict.shares = tolerance_shares(surface, map, *options.tolerance, options.accuracy);
+  verdict.shares = tolerance_shares(surface, map, *options.tolerance, options.accuracy + options.guard);
   verdict.exceeded_area_fraction = verdict.shares.below + verdict.shares.above + verdict.shares.without_value;
   if (evidence.complete) verdict.largest = evidence.highest;
   return result;

@@ -7,7 +7,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
+#include "geometry/triangle.h"
+#include "geometry/vec.h"
 #include "support/run_sdm.h"
 #include "support/temporary_folder.h"
 
@@ -53,7 +56,7 @@ TEST(CadCommand, MapToAPartHasItsTessellationAndANote) {
   EXPECT_EQ(report["sign"]["method"], "exact");
   EXPECT_EQ(report["o2"]["tessellation"]["format"], "STEP");
   EXPECT_FALSE(report["o1"].contains("tessellation"));
-  EXPECT_THAT(report["notes"].dump(), HasSubstr("hold for its triangles"));
+  EXPECT_THAT(report["notes"].dump(), HasSubstr("distances are those of its triangles"));
 }
 
 // A scan in inches, of a part whose file is in inches too but read in millimetres.
@@ -139,6 +142,57 @@ TEST(CadCommand, ThicknessFollowsTheDeflection) {
   const nlohmann::json by_default = cad_json(command), finer = cad_json(fine);
   EXPECT_EQ(finer["mesh"]["tessellation"]["deflection"], 0.001);
   EXPECT_GT(finer["mesh"]["triangles"], by_default["mesh"]["triangles"]);
+}
+
+// A ball of radius 10, whose triangles are more than 0.03 inside of it by default.
+TEST(CadCommand, TolerancesHoldForTheSurface) {
+  const TemporaryFolder folder;
+  const std::string ball = cad_part("sphere.step");
+  const auto on_ball = [](const Vec3& p, double radius) { return (radius / norm(p)) * p; };
+  const Mesh coarse = read_mesh(ball);
+  std::vector<Vec3> points;  // where the triangles are farthest from the ball
+  for (std::uint32_t f = 0; f < coarse.triangles.size(); f += 9) {
+    const auto [a, b, c] = corners_of(coarse, f);
+    points.push_back(on_ball(a + b + c, 10));
+  }
+  const auto run = [&](const char* name, const std::vector<Vec3>& cloud, std::vector<std::string> more) {
+    std::ofstream file(folder / name);
+    file.precision(17);
+    for (const Vec3& p : cloud) file << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+    file.close();
+    more.insert(more.begin(),
+                {"points", folder / name, ball, "-o", folder / "out", "--write", "none", "--json"});
+    const Outcome outcome = run_sdm(more);
+    nlohmann::json report = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(report["tolerance"]["verdict"] == "PASS", outcome.code == 0);
+    return report;
+  };
+  const nlohmann::json perfect = run("perfect.xyz", points, {"--tolerance", "0.03"});
+  EXPECT_EQ(perfect["tolerance"]["verdict"], "PASS");
+  EXPECT_LE(perfect["o2"]["tessellation"]["deflection"], 0.003);
+  EXPECT_EQ(perfect["evidence"]["guard"], perfect["o2"]["tessellation"]["largest_deviation"]["value"]);
+  std::vector<Vec3> dented = points;
+  dented[points.size() / 2] = on_ball(points[points.size() / 2], 9.91);
+  const nlohmann::json dent = run("dented.xyz", dented, {"--tolerance", "0.06"});
+  EXPECT_EQ(dent["tolerance"]["verdict"], "FAIL");
+  EXPECT_NEAR(dent["distance"]["min"].get<double>(), -0.09, 0.015);
+  // The triangles that are asked for decide nothing closer than they are.
+  const nlohmann::json guarded = run("dented.xyz", dented, {"--tolerance", "0.06", "--deflection", "0.0173"});
+  EXPECT_EQ(guarded["tolerance"]["verdict"], "NOT DECIDED");
+  EXPECT_EQ(guarded["tolerance"]["reason"], "guard band");
+  EXPECT_EQ(
+      run("perfect.xyz", points, {"--tolerance", "0.1", "--deflection", "0.0173"})["tolerance"]["verdict"],
+      "PASS");
+  EXPECT_EQ(
+      run("perfect.xyz", points, {"--tolerance", "0.03", "--deflection", "0.0173"})["tolerance"]["verdict"],
+      "NOT DECIDED");
+  // In other units, as the tolerance is.
+  for (Vec3& p : dented) p = 0.001 * p;
+  const nlohmann::json metres =
+      run("metres.xyz", dented, {"--tolerance", "6e-5", "--transform-o2", "scale:0.001"});
+  EXPECT_EQ(metres["tolerance"]["verdict"], "FAIL");
+  EXPECT_NEAR(metres["evidence"]["guard"].get<double>(), 1e-3 * dent["evidence"]["guard"].get<double>(),
+              1e-9);
 }
 
 TEST(CadCommand, ACrashOfOpenCascadeIsOneSentence) {

@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "cli/samples.h"
 #include "support/meshes.h"
@@ -20,6 +22,34 @@ using Json = nlohmann::json;
 /// 20 × 20 × 0.5 units, of a cube of size 2.
 Mesh flat(Mesh mesh) {
   for (Vec3& p : mesh.positions) p = {10 * p[0], 10 * p[1], 0.25 * p[2]};
+  return mesh;
+}
+
+/// A sheet of 20 × 20 × 1 with a pit in its upper side, one cell wide.
+Mesh sheet(double depth) {
+  constexpr std::uint32_t n = 10;
+  Mesh mesh;
+  const auto vertex = [](bool top, std::uint32_t i, std::uint32_t j) {
+    return (top ? (n + 1) * (n + 1) : 0) + i * (n + 1) + j;
+  };
+  for (const double z : {-0.5, 0.5})
+    for (std::uint32_t i = 0; i <= n; ++i)
+      for (std::uint32_t j = 0; j <= n; ++j)
+        mesh.positions.push_back({2.0 * i - n, 2.0 * j - n, z - (z > 0 && i == 5 && j == 5 ? depth : 0)});
+  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.push_back({a, b, c}), mesh.triangles.push_back({a, c, d});
+  };
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j = 0; j < n; ++j) {
+      quad(vertex(true, i, j), vertex(true, i + 1, j), vertex(true, i + 1, j + 1), vertex(true, i, j + 1));
+      quad(vertex(false, i, j), vertex(false, i, j + 1), vertex(false, i + 1, j + 1),
+           vertex(false, i + 1, j));
+    }
+  const auto wall = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l) {
+    quad(vertex(false, i, j), vertex(false, k, l), vertex(true, k, l), vertex(true, i, j));
+  };
+  for (std::uint32_t k = 0; k < n; ++k)
+    wall(k, 0, k + 1, 0), wall(n, k, n, k + 1), wall(n - k, n, n - k - 1, n), wall(0, n - k, 0, n - k - 1);
   return mesh;
 }
 
@@ -45,9 +75,7 @@ struct FacingJobs : ::testing::Test {
 };
 
 TEST_F(FacingJobs, StateWhatIsMeasured) {
-  const Outcome plain = run("map", dent, {"--tolerance", "0.3"});
-  EXPECT_EQ(plain.code, 0) << plain.err;
-  EXPECT_THAT(plain.out, Not(HasSubstr("measured")));
+  EXPECT_THAT(run("map", dent, {}).out, Not(HasSubstr("measured")));
   const Outcome facing = run("map", dent, {"--tolerance", "0.3", "--facing"});
   EXPECT_EQ(facing.code, 3) << facing.err;
   EXPECT_THAT(facing.out,
@@ -147,6 +175,68 @@ TEST_F(FacingJobs, ThinWallsHaveANote) {
   EXPECT_THAT(run("map", dent, {"--tolerance", "0.6"}).out, Not(HasSubstr("thinner than")));
   plate = write_obj(folder / "open.obj", square(10, 0));
   EXPECT_THAT(run("map", dent, {"--tolerance", "0.6"}).out, Not(HasSubstr("thinner than")));
+}
+
+// A pit of 0.79 in a sheet of 1 is 0.21 from the other skin.
+TEST_F(FacingJobs, DecideWhereWallsAreThin) {
+  plate = write_obj(folder / "sheet.obj", sheet(0));
+  const std::string pitted = write_obj(folder / "pitted.obj", sheet(0.79));
+  const Outcome fails = run("map", pitted, {"--tolerance", "0.6"});
+  EXPECT_EQ(fails.code, 3) << fails.out << fails.err;
+  EXPECT_THAT(fails.out, HasSubstr("FAIL: a point is out of ±0.6 by the faces of the reference that face the "
+                                   "same way, as its walls are thin: -0."));
+  const Json report = Json::parse(run("map", pitted, {"--tolerance", "0.6", "--json"}).out);
+  EXPECT_EQ(report["measured"]["kind"], "closest");
+  EXPECT_EQ(report["tolerance"]["by_facing"], true);
+  EXPECT_EQ(report["tolerance"]["certified"], true);
+  EXPECT_EQ(report["tolerance"]["reason"], "exceeded");
+  EXPECT_LT(report["tolerance"]["proof"]["witness"]["distance"], -0.6);
+  EXPECT_DOUBLE_EQ(report["evidence"]["thin_walls"], 1);
+  EXPECT_EQ(run("map", pitted, {"--tolerance", "0.8"}).code, 0);
+  const std::string shallow = write_obj(folder / "shallow.obj", sheet(0.4));
+  const Json thick = Json::parse(run("map", shallow, {"--tolerance", "0.49", "--json"}).out);
+  EXPECT_EQ(thick["tolerance"]["verdict"], "PASS");
+  EXPECT_EQ(thick["tolerance"]["by_facing"], nullptr) << "no wall is as thin as twice that";
+  const Json good = Json::parse(run("map", plate, {"--tolerance", "0.6", "--json"}).out);
+  EXPECT_EQ(good["tolerance"]["verdict"], "PASS");
+  EXPECT_EQ(good["tolerance"]["certified"], true);
+  EXPECT_EQ(good["tolerance"]["by_facing"], true);
+  EXPECT_EQ(good["doubts"], Json::array());
+
+  const std::string named = folder / "named.obj", table = folder / "table.csv";
+  std::ofstream(named) << "o part\n" << contents(pitted);
+  std::ofstream(table) << "group,lower,upper\npart,-0.6,0.6\n";
+  EXPECT_EQ(run("map", named, {"--tolerance-table", table}).code, 3);
+  EXPECT_EQ(run_sdm({"sequence", pitted, plate, "--tolerance", "0.6", "-o", out, "--resolution", "32"}).code,
+            3);
+}
+
+TEST_F(FacingJobs, DoubtWhereWallsAreThinAndNothingDecides) {
+  plate = write_obj(folder / "sheet.obj", sheet(0));
+  // Limits that differ by sign, between which the pit is.
+  const std::string pitted = write_obj(folder / "pitted.obj", sheet(0.58));
+  const Outcome doubtful = run("map", pitted, {"--tolerance=-0.6:0.55"});
+  EXPECT_EQ(doubtful.code, 5) << doubtful.out;
+  EXPECT_THAT(doubtful.out,
+              HasSubstr("DOUBTFUL: every point of the surface is within -0.6 to 0.55, but walls of "
+                        "O2 are thinner than twice the tolerance"));
+  EXPECT_EQ(run("map", pitted, {"--tolerance=-0.6:0.55", "--accept-doubts"}).code, 0);
+  const Json report = Json::parse(run("map", pitted, {"--tolerance=-0.6:0.55", "--json"}).out);
+  EXPECT_EQ(report["doubts"][0]["reason"], "thin walls");
+  // A scan of the upper side that is inside out, and has no outside that would tell.
+  Mesh scan = sheet(0);
+  std::erase_if(scan.triangles, [](const Triangle& t) { return t[0] < 121 || t[1] < 121 || t[2] < 121; });
+  EXPECT_EQ(run("map", write_obj(folder / "scan.obj", scan), {"--tolerance", "0.6"}).code, 0);
+  for (Triangle& t : scan.triangles) std::swap(t[0], t[1]);
+  EXPECT_EQ(run("map", write_obj(folder / "scan.obj", scan), {"--tolerance", "0.6"}).code, 5);
+
+  plate = write_obj(folder / "plate.obj", flat(cube()));
+  EXPECT_EQ(run("points", cloud(false), {"--tolerance", "0.3"}).code, 5);
+  EXPECT_EQ(run("points", cloud(false), {"--tolerance", "0.3", "--accept-doubts"}).code, 0);
+  const Outcome with = run("points", cloud(true), {"--tolerance", "0.3"});
+  EXPECT_EQ(with.code, 3) << with.out;
+  EXPECT_THAT(with.out, HasSubstr("by the faces of the reference that face the same way"));
+  EXPECT_EQ(run("points", cloud(true), {"--tolerance", "0.5"}).code, 0);
 }
 
 TEST_F(FacingJobs, FailWithoutAMatch) {

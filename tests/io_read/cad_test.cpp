@@ -6,6 +6,7 @@
 #include <sdm/solid.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <numbers>
@@ -49,6 +50,68 @@ TEST(Cad, SolidsAreClosedAndOriented) {
     EXPECT_EQ(info.degenerate_faces, 0u) << name;
     EXPECT_GT(volume_of(file.mesh), 0) << name;
   }
+}
+
+TEST(Cad, TheDeflectionIsLimited) {
+  const auto ball = [](const TessellationOptions& options) {
+    return read_mesh_file(cad_file("sphere.step"), {.tessellation = options});
+  };
+  const MeshFile fine = ball({.at_most = 0.008});
+  EXPECT_EQ(fine.tessellation->deflection, 0.008);
+  EXPECT_LE(fine.tessellation->largest_deviation, 2.2 * 0.008) << "of a sphere, twice";
+  EXPECT_FALSE(fine.tessellation->limited);
+  const MeshFile few = ball({.at_most = 1e-4, .most_triangles = fine.mesh.triangles.size()});
+  EXPECT_LE(few.mesh.triangles.size(), fine.mesh.triangles.size());
+  EXPECT_GT(few.tessellation->deflection, 1e-4);
+  EXPECT_TRUE(few.tessellation->limited);
+  EXPECT_THAT(note_on(*few.tessellation, "ball.step"), HasSubstr("too many triangles"));
+  EXPECT_EQ(ball({.at_most = 1}).mesh.triangles.size(), ball({}).mesh.triangles.size()) << "no coarser";
+  EXPECT_EQ(ball({.deflection = 0.1, .at_most = 0.008}).tessellation->deflection, 0.1);
+  EXPECT_THROW((void)ball({.at_most = 0}), Error);
+}
+
+/// A folder that is the current one.
+struct CurrentFolder {
+  explicit CurrentFolder(const std::filesystem::path& folder) { std::filesystem::current_path(folder); }
+  ~CurrentFolder() { std::filesystem::current_path(before); }
+  CurrentFolder(const CurrentFolder&) = delete;
+  CurrentFolder& operator=(const CurrentFolder&) = delete;
+  std::filesystem::path before = std::filesystem::current_path();
+};
+
+// Two instances of a part of 1 × 2 × 3, which is a file of its own.
+TEST(Cad, PartsThatAreFilesAreBesideTheAssembly) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  const fs::path here = std::string(folder / "here"), there = std::string(folder / "there");
+  fs::create_directory(here), fs::create_directory(there);
+  fs::copy(cad_file("external.step"), there / "external.step");
+  fs::copy(cad_file("external_part.stp"), there / "external_part.stp");
+  const auto read = [](const fs::path& file) { return read_mesh_file(file); };
+  {
+    const CurrentFolder current(here);
+    fs::copy(cad_file("box.step"), "external_part.stp");  // another part of the name
+    for (const fs::path& file : {there / "external.step", fs::path("../there/external.step")}) {
+      const MeshFile found = read(file);
+      EXPECT_EQ(found.tessellation->faces, 12u) << file;
+      EXPECT_NEAR(volume_of(found.mesh), 12, 1e-9) << file;
+    }
+  }
+  fs::remove(there / "external_part.stp");
+  {
+    const CurrentFolder current(here);
+    EXPECT_THAT(error_of([&] { (void)read(there / "external.step"); }),
+                HasSubstr("external.step: refers to the part external_part.stp, which is not beside it"));
+  }
+  std::ofstream(there / "external_part.stp") << "ISO-10303-21;\nnothing\n";
+  EXPECT_THAT(error_of([&] { (void)read(there / "external.step"); }), HasSubstr("external_part.stp"));
+  // Not from elsewhere either.
+  std::string text = contents(there / "external.step");
+  for (std::size_t at = 0; (at = text.find("'external_part.stp'", at)) != std::string::npos; ++at)
+    text.replace(at, 19, "'../here/external_part.stp'");
+  std::ofstream(there / "external.step") << text;
+  EXPECT_THAT(error_of([&] { (void)read(there / "external.step"); }),
+              HasSubstr("parts are looked up beside the STEP file only"));
 }
 
 TEST(Cad, BoxIsExact) {

@@ -281,7 +281,7 @@ TEST_F(Page, JudgesAsTheLibrary) {
     return values.begin()[random() % values.size()];
   };
   Json cases = Json::array();
-  std::array<int, 9> reasons{};
+  std::array<int, static_cast<int>(VerdictReason::in_doubt)> reasons{};
   for (int i = 0; i < 4000; ++i) {
     Evidence evidence{.lowest = any_of({-2, -1, -0.5, -0.01, -0.001, 0, 0.5, kInfinity}),
                       .highest = any_of({-0.001, 0, 0.01, 0.5, 1, 2}),
@@ -290,8 +290,10 @@ TEST_F(Page, JudgesAsTheLibrary) {
                       .estimated_signs = random() % 3 == 0,
                       .samples_only = random() % 5 == 0,
                       .accuracy = any_of({0, 1e-6, 0.001, 0.02, kInfinity}),
+                      .guard = any_of({0, 0, 0.01, 0.4}),
                       .error_bound = any_of({0, 0.01, 0.1, 0.5}),
-                      .is_signed = random() % 4 != 0};
+                      .is_signed = random() % 4 != 0,
+                      .thin_walls = any_of({0.01, 1, 2, kInfinity, kInfinity})};
     if (evidence.lowest == kInfinity) evidence.lowest.reset(), evidence.highest.reset();
     evidence.unmatched = !evidence.complete && random() % 2 == 0;
     evidence.samples_only = random() % 4 == 0;
@@ -311,6 +313,8 @@ TEST_F(Page, JudgesAsTheLibrary) {
                        {"accuracy", evidence.accuracy},
                        {"error_bound", evidence.error_bound},
                        {"signed", evidence.is_signed},
+                       {"guard", evidence.guard},
+                       {"thin_walls", evidence.thin_walls},
                        {"unmatched", evidence.unmatched},
                        {"samples_only", evidence.samples_only}}},
                      {"lower", lower},

@@ -175,7 +175,7 @@ TEST(SmokeLimits, EnumeratorsHaveNames) {
     EXPECT_STRNE(name_of(static_cast<DistanceKind>(i)), "");
   for (int i = 0; i <= static_cast<int>(AtlasKind::uv); ++i)
     EXPECT_STRNE(name_of(static_cast<AtlasKind>(i)), "");
-  for (int i = 0; i <= static_cast<int>(DoubtReason::low_coverage); ++i)
+  for (int i = 0; i <= static_cast<int>(DoubtReason::thin_walls); ++i)
     EXPECT_STRNE(name_of(static_cast<DoubtReason>(i)), "");
   for (const GeometryChannel channel : kGeometryChannels) EXPECT_FALSE(name_of(channel).empty());
   for (const BakeChannel channel : kBakeChannels) EXPECT_FALSE(name_of(channel).empty());

@@ -108,11 +108,12 @@ Json extremes_json(const Summary& summary) {
 }
 
 Json to_json(const Evidence& evidence) {
-  return {{"lowest", optional(evidence.lowest)},  {"highest", optional(evidence.highest)},
-          {"complete", evidence.complete},        {"estimated_signs", evidence.estimated_signs},
-          {"accuracy", evidence.accuracy},        {"error_bound", evidence.error_bound},
-          {"signed", evidence.is_signed},         {"unmatched", evidence.unmatched},
-          {"samples_only", evidence.samples_only}};
+  return {{"lowest", optional(evidence.lowest)},   {"highest", optional(evidence.highest)},
+          {"complete", evidence.complete},         {"estimated_signs", evidence.estimated_signs},
+          {"accuracy", evidence.accuracy},         {"error_bound", evidence.error_bound},
+          {"signed", evidence.is_signed},          {"unmatched", evidence.unmatched},
+          {"samples_only", evidence.samples_only}, {"guard", evidence.guard},
+          {"thin_walls", evidence.thin_walls}};  // null: none
 }
 
 Json to_json(const ToleranceShares& shares) {
@@ -205,6 +206,7 @@ Json tolerance_json(const Summary& summary) {
   json["margin"] = optional(verdict.margin);
   json["nearest_limit"] = verdict.nearest_is_lower ? "lower" : "upper";
   json["proof"] = verdict.proof ? to_json(*verdict.proof) : Json();
+  json["by_facing"] = verdict.by_facing ? Json(*verdict.by_facing) : Json();
   return json;
 }
 

@@ -1,5 +1,7 @@
 #include "io/points/cloud_groups.h"
 
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "map/statistics/tolerance_limits.h"
@@ -35,6 +37,16 @@ void CloudGroups::add(std::uint32_t face, double d, bool has_sign) {
   });
 }
 
+void CloudGroups::add_facing(std::uint32_t face, double d) {
+  for_each_row(face, [&](std::size_t r) {
+    found_[r].any_facing = true;
+    if (std::isnan(d))
+      found_[r].unmatched = true;
+    else
+      found_[r].facing.add(d);
+  });
+}
+
 void CloudGroups::count(std::uint32_t face, double d, double accuracy) {
   for_each_row(face, [&](std::size_t r) {
     const map::ToleranceLimits limits(rows_.rows[r].group.tolerance, accuracy);
@@ -51,26 +63,40 @@ bool CloudGroups::any_out(double accuracy) const {
   return false;
 }
 
-GroupVerdicts CloudGroups::verdicts(const PointsWithoutGroup& without_group, double accuracy) const {
+GroupVerdicts CloudGroups::verdicts(const PointsWithoutGroup& without_group, const Evidence& like,
+                                    bool accept_doubts) const {
+  const double accuracy = like.accuracy + like.guard;
   std::vector<GroupPoints> groups;
   for (std::size_t r = 0; r < found_.size(); ++r) {
     const summary::GroupRows::Row& row = rows_.rows[r];
     const Found& found = found_[r];
-    groups.push_back(
-        {.kind = row.named.kind,
-         .row = row.group,
-         .faces = row.named.faces.size(),
-         .points = found.points,
-         .below = found.below,
-         .above = found.above,
-         .out_with_either_sign = found.signs.any_out(row.group.tolerance, accuracy),
-         .evidence = {.lowest = found.range.lowest,
-                      .highest = found.range.highest,
-                      .estimated_signs = measured_ == DistanceKind::closest && is_estimate(sign_),
-                      .accuracy = accuracy,
-                      .is_signed = sign_ != SignMethod::none}});
+    Evidence evidence = like;
+    evidence.lowest = found.range.lowest, evidence.highest = found.range.highest;
+    evidence.estimated_signs = measured_ == DistanceKind::closest && is_estimate(sign_);
+    std::optional<Evidence> by_facing;
+    if (found.any_facing) {
+      by_facing = facing_evidence(like, found.facing, found.unmatched);
+    }
+    groups.push_back({.kind = row.named.kind,
+                      .row = row.group,
+                      .faces = row.named.faces.size(),
+                      .points = found.points,
+                      .below = found.below,
+                      .above = found.above,
+                      .out_with_either_sign = found.signs.any_out(row.group.tolerance, accuracy),
+                      .evidence = evidence,
+                      .by_facing = by_facing});
   }
-  return judge_groups(groups, without_group, sign_, measured_);
+  return judge_groups(groups, without_group, sign_, measured_, accept_doubts);
+}
+
+Evidence facing_evidence(const Evidence& like, const summary::DistanceRange& range, bool unmatched) {
+  Evidence evidence = like;
+  evidence.lowest = range.lowest, evidence.highest = range.highest;
+  evidence.complete = !unmatched, evidence.unmatched = unmatched;
+  evidence.estimated_signs = false;
+  evidence.thin_walls = std::numeric_limits<double>::infinity();
+  return evidence;
 }
 
 }  // namespace sdm::io

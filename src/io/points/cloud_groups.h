@@ -22,11 +22,15 @@ class CloudGroups {
 
   /// First, each point with a value.
   void add(std::uint32_t face, double d, bool has_sign);
+  /// Also then, if walls are thin: its distance to the faces that face the same way, or NaN without one.
+  void add_facing(std::uint32_t face, double d);
   /// Then, each once more, when the accuracy is known.
   void count(std::uint32_t face, double d, double accuracy);
   /// Whether a point is out of the tolerance of its group.
   [[nodiscard]] bool any_out(double accuracy) const;
-  [[nodiscard]] GroupVerdicts verdicts(const PointsWithoutGroup& without_group, double accuracy) const;
+  /// `like`: evidence with the accuracy, the guard band and the walls that all groups have.
+  [[nodiscard]] GroupVerdicts verdicts(const PointsWithoutGroup& without_group, const Evidence& like,
+                                       bool accept_doubts) const;
 
  private:
   /// What is found of a row.
@@ -34,6 +38,8 @@ class CloudGroups {
     std::uint64_t points = 0, below = 0, above = 0;
     summary::DistanceRange range;
     summary::SignedSamples signs;
+    summary::DistanceRange facing;
+    bool any_facing = false, unmatched = false;
   };
 
   template <class Visit>
@@ -45,5 +51,9 @@ class CloudGroups {
   SignMethod sign_;
   DistanceKind measured_;
 };
+
+/// The evidence of distances to faces that face the same way, with the accuracy of `like`.
+[[nodiscard]] Evidence facing_evidence(const Evidence& like, const summary::DistanceRange& range,
+                                       bool unmatched);
 
 }  // namespace sdm::io

@@ -4,6 +4,7 @@
 #include <sdm/facing.h>
 #include <sdm/points.h>
 #include <sdm/sign.h>
+#include <sdm/thickness.h>
 #include <sdm/threads.h>
 
 #include <algorithm>
@@ -45,6 +46,7 @@ struct Chunk {
   std::vector<float> distances;
   std::vector<std::uint32_t> faces;
   std::vector<std::uint8_t> unmatched;
+  std::vector<float> facing;           // distances to the faces that face the same way; empty: not needed
   std::vector<std::uint8_t> island;    // empty: none is of one
   std::vector<std::uint8_t> has_sign;  // empty: all have one, or none has
 };
@@ -68,6 +70,7 @@ class Measurement {
     if (!options.table.empty())
       groups_.emplace(options.names, options.table, sites.mesh().triangles.size(), result_.sign,
                       result_.measured.kind);
+    find_thin_walls();
   }
 
   PointDistances write(const std::filesystem::path& ply) {
@@ -112,6 +115,25 @@ class Measurement {
       throw Error(cloud_ + ": the cloud has no normals to measure along; give a direction");
     result_.sign = {SignMethod::side, "the side of the face that the line hits"};
     result_.measured = measured_distance(*options_.along, "point");
+  }
+
+  // Whether walls of O2 are so thin that a point within the limits may be out of them on its own skin.
+  void find_thin_walls() {
+    if (result_.measured.kind != DistanceKind::closest) return;
+    double largest = options_.picture.tolerance ? largest_limit(*options_.picture.tolerance) : 0;
+    for (const GroupTolerance& row : options_.table)
+      largest = std::max(largest, largest_limit(row.tolerance));
+    if (largest == 0) return;
+    result_.thin_walls = thin_walls(sites_);
+    by_facing_ = 2 * largest > result_.thin_walls && result_.has_normals;
+  }
+
+  // The accuracy, the guard band, the walls and the sign of all samples.
+  [[nodiscard]] Evidence common_evidence() const {
+    return {.accuracy = result_.accuracy,
+            .guard = options_.guard,
+            .is_signed = result_.sign.method != SignMethod::none,
+            .thin_walls = result_.thin_walls};
   }
 
   // Text without a header has to be read for its number of points, which the header of the result needs.
@@ -179,6 +201,17 @@ class Measurement {
       if (!finite(chunk.points[i]) || closest[i].type == SiteType::none || is_island(chunk, i)) continue;
       chunk.distances[i] = static_cast<float>(inside[i] ? -closest[i].distance : closest[i].distance);
       chunk.faces[i] = closest[i].face;
+    }
+    chunk.facing.clear();
+    if (!by_facing_) return;
+    map.facing = 90, map.sign = SignMethod::automatic;
+    const FacingPoints facing = closest_facing_points(sites_, queries, chunk.normals, map);
+    const bool is_signed = result_.sign.method != SignMethod::none;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      const double d = facing.closest[i].distance;
+      chunk.facing.push_back(facing.closest[i].type == SiteType::none
+                                 ? static_cast<float>(kNan)
+                                 : static_cast<float>(is_signed && facing.behind[i] ? -d : d));
     }
   }
 
@@ -249,11 +282,20 @@ class Measurement {
     const bool has_sign = chunk.has_sign.empty() || chunk.has_sign[i] != 0;
     signs_.add(d, has_sign);
     if (groups_) groups_->add(chunk.faces[i], d, has_sign);
+    if (by_facing_) add_facing(chunk.faces[i], chunk.facing[i]);
     DistanceStatistics& s = result_.distance;
     ++s.texels, s.negative_texels += d < 0;
     sums_.distance += d, sums_.square += double{d} * d, sums_.magnitude += std::abs(d);
     if (!result_.min || d < result_.min->distance) result_.min = {d, point, index};
     if (!result_.max || d > result_.max->distance) result_.max = {d, point, index};
+  }
+
+  void add_facing(std::uint32_t face, float d) {
+    if (std::isnan(d))
+      without_facing_ = true;
+    else
+      facing_.add(d);
+    if (groups_) groups_->add_facing(face, d);
   }
 
   // Calls visit(row) for the rows from `begin` to `end` of the file.
@@ -321,15 +363,16 @@ class Measurement {
     PictureOptions picture = options_.picture;
     picture.accuracy = result_.accuracy;
     const ColorScale scale = color_scale(fixed_colors(picture, result_.distance));
-    const map::ToleranceLimits limits(picture.tolerance.value_or(Tolerance()), result_.accuracy);
+    const double accuracy = result_.accuracy + options_.guard;
+    const map::ToleranceLimits limits(picture.tolerance.value_or(Tolerance()), accuracy);
     if (picture.tolerance) result_.beyond_tolerance = result_.beyond_max_distance + result_.without_match;
-    CloudPlaces places(result_, options_, groups_ && groups_->any_out(result_.accuracy), usual_.box());
+    CloudPlaces places(result_, options_, groups_ && groups_->any_out(accuracy), usual_.box());
     std::uint64_t number = 0;
     std::fstream file(written, std::ios::binary | std::ios::in | std::ios::out);
     for_each_row(file, rows_begin, 0, result_.points, [&](char* row) {
       const auto d = load<float>(row + row_.distance_at());
       const auto face = load<std::int32_t>(row + row_.face_at());
-      if (groups_ && !std::isnan(d)) groups_->count(static_cast<std::uint32_t>(face), d, result_.accuracy);
+      if (groups_ && !std::isnan(d)) groups_->count(static_cast<std::uint32_t>(face), d, accuracy);
       if (row[row_.colour_at()] != kIsland)
         places.add({.point = {load<double>(row), load<double>(row + sizeof(double)),
                               load<double>(row + 2 * sizeof(double))},
@@ -344,11 +387,11 @@ class Measurement {
       row[row_.colour_at() + 2] = static_cast<char>(rgb.b);
     });
     file.close();
-    if (picture.tolerance)
-      result_.beyond_with_either_sign = signs_.any_out(*picture.tolerance, result_.accuracy);
+    if (picture.tolerance) result_.beyond_with_either_sign = signs_.any_out(*picture.tolerance, accuracy);
     if (groups_)
-      result_.groups =
-          groups_->verdicts({result_.beyond_max_distance, result_.without_match}, result_.accuracy);
+      result_.groups = groups_->verdicts({result_.beyond_max_distance, result_.without_match},
+                                         common_evidence(), options_.accept_doubts);
+    if (by_facing_) result_.by_facing = facing_evidence(common_evidence(), facing_, without_facing_);
     if (result_.min || places.by_tolerance()) result_.places = places.places(options_.names);
     if (!file) throw Error(cloud_ + ": the colours cannot be written; the disk may be full");
   }
@@ -361,6 +404,9 @@ class Measurement {
   PointDistances result_;
   UsualBox usual_;
   summary::SignedSamples signs_;
+  bool by_facing_ = false;  // distances to the faces that face the same way are needed
+  summary::DistanceRange facing_;
+  bool without_facing_ = false;
   std::optional<CloudGroups> groups_;
   std::uint64_t counted_ = 0;
   Sums sums_;

@@ -1,7 +1,9 @@
 #include <sdm/points.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "summary/verdict/certify.h"
 #include "summary/verdict/sample_evidence.h"
 
 namespace sdm {
@@ -24,7 +26,9 @@ Summary summarize(const PointDistances& found, const PointDistancesOptions& opti
                                .estimated_signs = found.measured.kind == DistanceKind::closest &&
                                                   is_estimate(found.sign.method),
                                .accuracy = found.accuracy,
-                               .is_signed = found.sign.method != SignMethod::none},
+                               .guard = options.guard,
+                               .is_signed = found.sign.method != SignMethod::none,
+                               .thin_walls = found.thin_walls},
                   .places = found.places,
                   .colors = color_range(color_choice(picture), found.distance)};
   if (found.min) {
@@ -38,6 +42,8 @@ Summary summarize(const PointDistances& found, const PointDistancesOptions& opti
       !found.beyond_with_either_sign)
     summary::withhold_failure(judgement);
   summary.tolerance = CertifiedVerdict{{judgement, *picture.tolerance, {}, 0, {}}};
+  summary::decide_thin_walls(*summary.tolerance, found.by_facing, options.accept_doubts);
+  if (auto doubt = doubt_of(*summary.tolerance)) summary.doubts.push_back(std::move(*doubt));
   if (found.min && summary.evidence.complete) summary.tolerance->largest = found.distance.max_abs;
   summary.exceeding_points = found.beyond_tolerance;
   summary.exceeding_point_fraction = static_cast<double>(found.beyond_tolerance) / counted;

@@ -38,17 +38,16 @@ Vec3 point_in(const Corners& corners, std::size_t i) {
   return corners[0] + s * (corners[1] - corners[0]) + t * (corners[2] - corners[0]);
 }
 
-}  // namespace
-
-std::optional<WallEstimate> estimate_walls(const Sites& sites, double thin, std::size_t samples) try {
-  const sites::SitesData& data = internals(sites);
-  if (samples == 0 || !data.closed || !data.orientation.orientable) return std::nullopt;
+/// The length of a ray into the solid from each sample, infinite where nothing is measured; empty if there is
+/// no solid.
+std::vector<double> wall_lengths(const sites::SitesData& data, std::size_t samples) {
+  if (samples == 0 || !data.closed || !data.orientation.orientable) return {};
   const thickness::Walls walls(data, ThicknessOptions().angle);
   const std::vector<double> sums = area_sums(data.mesh);
   const double step = sums.back() / static_cast<double>(samples);
   std::vector<double> lengths(samples, std::numeric_limits<double>::infinity());
-  constexpr std::size_t kGrain = 64;
-  parallel_for(samples, kGrain, [&](std::size_t begin, std::size_t end) {
+  constexpr std::size_t kSampleGrain = 64;
+  parallel_for(samples, kSampleGrain, [&](std::size_t begin, std::size_t end) {
     thickness::WallSearch search(walls);
     for (std::size_t i = begin; i < end; ++i) {
       const auto found = std::ranges::upper_bound(sums, (static_cast<double>(i) + 0.5) * step);
@@ -59,6 +58,24 @@ std::optional<WallEstimate> estimate_walls(const Sites& sites, double thin, std:
       lengths[i] = search.rays()[0].thickness;
     }
   });
+  return lengths;
+}
+
+}  // namespace
+
+double thin_walls(const Sites& sites) try {
+  constexpr std::size_t kSamples = 4096, kFewest = 41;  // 1 %
+  std::vector<double> lengths = wall_lengths(internals(sites), kSamples);
+  if (lengths.empty()) return std::numeric_limits<double>::infinity();
+  std::ranges::nth_element(lengths, lengths.begin() + (kFewest - 1));
+  return lengths[kFewest - 1];
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the walls of a solid");
+}
+
+std::optional<WallEstimate> estimate_walls(const Sites& sites, double thin, std::size_t samples) try {
+  std::vector<double> lengths = wall_lengths(internals(sites), samples);
+  if (lengths.empty()) return std::nullopt;
   const auto end = std::ranges::partition(lengths, [&](double length) { return length < thin; }).begin();
   WallEstimate result{.samples = samples};
   const auto count = static_cast<std::size_t>(end - lengths.begin());

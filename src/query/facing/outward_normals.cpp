@@ -43,6 +43,11 @@ Array<std::uint8_t> inward_faces(const Mesh& mesh) {
 
 }  // namespace
 
+bool has_outside(const Mesh& mesh) {
+  const mesh::Topology topology = mesh::build_topology(mesh.positions.size(), mesh.triangles);
+  return topology.closed() && mesh::orient(mesh.triangles, topology).orientable;
+}
+
 std::vector<Vec3> outward_normals(const Mesh& mesh) {
   constexpr std::size_t kFaces = 4096;
   const Array<std::uint8_t> inward = inward_faces(mesh);

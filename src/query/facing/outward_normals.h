@@ -17,6 +17,9 @@ namespace sdm::facing {
 /// Cost: O(n log n), all cores.
 [[nodiscard]] std::vector<Vec3> outward_normals(const Mesh& mesh);
 
+/// Whether a mesh is closed and orientable, so that its outward normals do not depend on how faces are wound.
+[[nodiscard]] bool has_outside(const Mesh& mesh);
+
 /// The normal of a face of O2, as Sites orients it. Other than its pseudonormal, it follows from the corners
 /// alone, also of slivers. Cost: O(1).
 [[nodiscard]] inline Vec3 outward_normal(const sites::SitesData& sites, std::uint32_t face) {

@@ -1,18 +1,30 @@
 #include <sdm/certified_verdict.h>
 #include <sdm/summary.h>
+#include <sdm/thickness.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include "certify/tolerance/prove_valid.h"
+#include "query/facing/outward_normals.h"
 #include "summary/verdict/certify.h"
+#include "summary/verdict/evidence.h"
 #include "summary/verdict/missing_signs.h"
 
 namespace sdm {
 namespace {
+
+/// The angle within which faces face the same way where nothing else is asked for.
+constexpr double kSameWay = 90;
 
 /// Whether a proof may decide what the samples leave open.
 bool is_open(const ToleranceVerdict& verdict) {
   switch (verdict.reason) {
     case VerdictReason::between_samples:
     case VerdictReason::within_rounding:
+    case VerdictReason::guard_band:
       return true;
     case VerdictReason::all_within:  // of samples only
       return !verdict.certified;
@@ -49,34 +61,121 @@ Judgement judge(const Judgement& of_samples, const ToleranceProof& proof) {
   return result;
 }
 
-CertifiedVerdict summary::Certifier::operator()(const ToleranceVerdict& verdict,
-                                                std::optional<std::span<const std::uint32_t>> faces) {
+Tolerance summary::Certifier::real_limits(const Tolerance& tolerance) const {
+  const bool is_signed = map_.sign.method != SignMethod::none;
+  return is_signed || tolerance.lo > 0 ? tolerance
+                                       : Tolerance(-std::numeric_limits<double>::infinity(), tolerance.hi);
+}
+
+bool summary::Certifier::are_walls_thin(const Tolerance& tolerance) {
+  if (!options_.thin_walls) options_.thin_walls = thin_walls(sites_);
+  return 2 * largest_limit(real_limits(tolerance)) > *options_.thin_walls;
+}
+
+const hausdorff::Matching& summary::Certifier::matching(double angle) {
+  if (!matching_) matching_.emplace(tolerance::matching_of(surface_, sites_, angle));
+  return *matching_;
+}
+
+const hausdorff::Matching& summary::Certifier::reversed_matching(double angle) {
+  if (!reversed_) {
+    std::vector<Vec3> normals = facing::outward_normals(surface_);
+    for (Vec3& normal : normals) normal = -1.0 * normal;
+    reversed_.emplace(internals(sites_), angle, std::move(normals));
+  }
+  return *reversed_;
+}
+
+/// Returns nothing if the guard band leaves nothing of the tolerance.
+std::optional<ToleranceProof> summary::Certifier::prove(const Tolerance& tolerance,
+                                                        std::optional<double> facing,
+                                                        const hausdorff::Matching* matching,
+                                                        const Faces& faces) {
+  const Tolerance limits = real_limits(tolerance);
+  const double guard = options_.guard;
+  const Tolerance inner(limits.lo + guard, limits.hi - guard);
+  if (!(inner.lo <= inner.hi)) return std::nullopt;
+  if (!box_) box_ = bounds(sites_.mesh());
+  const bool by_side = facing && map_.sign.method != SignMethod::none;
+  ToleranceProof proof = tolerance::prove_valid(surface_, sites_, guard > 0 ? inner : tolerance,
+                                                {.sign = by_side ? SignMethod::side : map_.sign.method,
+                                                 .accuracy = options_.accuracy + 2 * guard,
+                                                 .facing = facing,
+                                                 .faces = faces,
+                                                 .progress = options_.progress},
+                                                {*box_, matching});
+  if (proof.undecided_by) *proof.undecided_by = std::max(0.0, *proof.undecided_by - guard);
+  return proof;
+}
+
+/// A surface without an outside may be inside out: what is then out of the limits proves nothing if it is
+/// within them the other way round.
+void summary::Certifier::decide_by_facing(CertifiedVerdict& verdict, const Faces& faces) {
+  verdict.proof = prove(verdict.tolerance, kSameWay, &matching(kSameWay), faces);
+  if (verdict.proof && verdict.proof->proof == Proof::outside) {
+    if (!has_outside_) has_outside_ = facing::has_outside(surface_);
+    if (!*has_outside_ &&
+        prove(verdict.tolerance, kSameWay, &reversed_matching(kSameWay), faces)->proof == Proof::inside)
+      verdict.proof = ToleranceProof{.depends_on_signs = true};
+  }
+  verdict.by_facing = verdict.proof && verdict.proof->proof != Proof::undecided;
+  if (*verdict.by_facing)
+    static_cast<Judgement&>(verdict) = judge(verdict, *verdict.proof);
+  else if (!options_.accept_doubts)
+    verdict.verdict = Verdict::doubtful, verdict.reason = VerdictReason::in_doubt;
+}
+
+void summary::decide_thin_walls(CertifiedVerdict& verdict, const std::optional<Evidence>& by_facing,
+                                bool accept_doubts) {
+  if (verdict.reason != VerdictReason::thin_walls) return;
+  verdict.verdict = Verdict::pass, verdict.reason = VerdictReason::all_within;
+  verdict.certified = true;
+  Judgement other{.verdict = Verdict::not_decided};
+  if (by_facing) other = judge(*by_facing, verdict.tolerance);
+  verdict.by_facing = other.verdict != Verdict::not_decided;
+  if (*verdict.by_facing)
+    static_cast<Judgement&>(verdict) = other;
+  else if (!accept_doubts)
+    verdict.verdict = Verdict::doubtful, verdict.reason = VerdictReason::in_doubt;
+}
+
+CertifiedVerdict summary::Certifier::operator()(const ToleranceVerdict& verdict, const Faces& faces) {
   CertifiedVerdict result{verdict, {}};
   const MeasuredDistance& measured = map_.measured;
   const bool is_facing = measured.kind == DistanceKind::facing && measured.facing;
-  if (!is_open(result) || !(is_facing || measured.kind == DistanceKind::closest)) return result;
-  if (!box_) box_ = bounds(sites_.mesh());
-  if (is_facing && !matching_) matching_.emplace(tolerance::matching_of(surface_, sites_, *measured.facing));
-  result.proof = tolerance::prove_valid(surface_, sites_, verdict.tolerance,
-                                        {.sign = map_.sign.method,
-                                         .accuracy = accuracy_,
-                                         .facing = measured.facing,
-                                         .faces = faces,
-                                         .progress = progress_},
-                                        {*box_, matching_ ? &*matching_ : nullptr});
-  if (!(is_facing && result.proof->depends_on_signs))
-    static_cast<Judgement&>(result) = judge(result, *result.proof);
+  const bool is_closest = measured.kind == DistanceKind::closest;
+  if (is_open(result) && (is_facing || is_closest)) {
+    result.proof =
+        prove(verdict.tolerance, measured.facing, is_facing ? &matching(*measured.facing) : nullptr, faces);
+    if (result.proof && !(is_facing && result.proof->depends_on_signs)) {
+      static_cast<Judgement&>(result) = judge(result, *result.proof);
+      if (result.reason == VerdictReason::within_rounding && options_.guard > 0)
+        result.reason = VerdictReason::guard_band;
+    }
+  }
+  if (is_closest && result.verdict == Verdict::pass && are_walls_thin(verdict.tolerance))
+    decide_by_facing(result, faces);
   return result;
 }
 
 CertifiedVerdict certify_tolerance(const Surface& surface, const Sites& sites, const DistanceMap& map,
                                    std::span<const float> vertex_distances, const Tolerance& tolerance,
                                    const CertifyOptions& options) {
-  ToleranceVerdict sampled =
-      check_tolerance(surface, map, vertex_distances, options.error_bound, options.accuracy, tolerance);
+  Evidence evidence = evidence_of(surface, map, vertex_distances, options.error_bound, options.accuracy);
+  evidence.guard = options.guard;
+  ToleranceVerdict sampled = summary::check_evidence(surface, map, evidence, tolerance);
   summary::withhold_failures_by_missing_signs({&sampled, 1}, {}, surface, sites, map, vertex_distances,
-                                              options.accuracy);
-  return summary::Certifier(surface.mesh(), sites, map, options.accuracy, options.progress)(sampled);
+                                              options.accuracy + options.guard);
+  return summary::Certifier(surface.mesh(), sites, map, options)(sampled);
+}
+
+std::optional<Doubt> doubt_of(const CertifiedVerdict& verdict) {
+  if (verdict.by_facing.value_or(true)) return std::nullopt;
+  return Doubt{
+      DoubtReason::thin_walls,
+      "walls of O2 are thinner than twice the tolerance, where the closest point may be on the other "
+      "skin, and the faces that face the same way do not decide",
+      "measure to these (--facing, which needs normals and limits that are symmetric)"};
 }
 
 void withhold_pass(Summary& summary, bool accept_doubts) {

@@ -27,6 +27,10 @@ struct FaceGroups {
                                                        std::span<const float> vertex_distances,
                                                        const FaceGroups& groups, double accuracy);
 
+/// check_tolerance() of some evidence of a map.
+[[nodiscard]] ToleranceVerdict check_evidence(const Surface& surface, const DistanceMap& map,
+                                              const Evidence& evidence, const Tolerance& tolerance);
+
 /// The area of the texels of a group, and its shares.
 struct GroupArea {
   ToleranceShares shares;

@@ -57,7 +57,7 @@ inline void check_sign(const GroupTolerance& group, const SignUsed& sign) {
 
 /// The verdict on all groups.
 [[nodiscard]] inline Verdict worst_of(std::span<const GroupVerdict> groups, bool doubted) {
-  for (const Verdict verdict : {Verdict::fail, Verdict::not_decided})
+  for (const Verdict verdict : {Verdict::fail, Verdict::not_decided, Verdict::doubtful})
     if (std::ranges::any_of(groups, [&](const GroupVerdict& g) { return g.verdict.verdict == verdict; }))
       return verdict;
   return doubted ? Verdict::doubtful : Verdict::pass;

@@ -27,10 +27,12 @@ struct SampledGroup {
 std::vector<SampledGroup> judge_samples(const Surface& surface, const Sites& sites, const DistanceMap& map,
                                         std::span<const float> vertex_distances,
                                         const GroupRows::Layer& layer, std::span<const Tolerance> tolerances,
-                                        double accuracy) {
+                                        double accuracy, double guard) {
   const summary::FaceGroups groups{layer.of_face, layer.count};
-  const std::vector<Evidence> evidence =
+  std::vector<Evidence> evidence =
       summary::evidence_of_groups(surface, map, vertex_distances, groups, accuracy);
+  for (Evidence& e : evidence) e.guard = guard;
+  accuracy += guard;
   const std::vector<summary::GroupArea> areas =
       summary::areas_of_groups(surface, map, groups, tolerances, std::isfinite(accuracy) ? accuracy : 0);
   std::vector<ToleranceVerdict> verdicts;
@@ -60,11 +62,15 @@ GroupVerdicts certify_groups(const Surface& surface, const Sites& sites, const D
     std::vector<Tolerance> tolerances;
     for (const GroupRows::Row& row : groups.rows)
       if (row.layer == l) tolerances.push_back(row.group.tolerance);
-    sampled.push_back(
-        judge_samples(surface, sites, map, vertex_distances, groups.layers[l], tolerances, options.accuracy));
+    sampled.push_back(judge_samples(surface, sites, map, vertex_distances, groups.layers[l], tolerances,
+                                    options.accuracy, options.guard));
   }
   GroupVerdicts result;
-  summary::Certifier certify(surface.mesh(), sites, map, options.accuracy, options.progress);
+  summary::Certifier certify(surface.mesh(), sites, map,
+                             {.accuracy = options.accuracy,
+                              .guard = options.guard,
+                              .accept_doubts = options.accept_doubts,
+                              .progress = options.progress});
   for (const GroupRows::Row& row : groups.rows) {
     const auto& [evidence, verdict, area] = sampled[row.layer][row.number];
     result.groups.push_back({.kind = row.named.kind,
@@ -80,7 +86,7 @@ GroupVerdicts certify_groups(const Surface& surface, const Sites& sites, const D
 }
 
 GroupVerdicts judge_groups(std::span<const GroupPoints> groups, const PointsWithoutGroup& without_group,
-                           SignMethod sign, DistanceKind measured) {
+                           SignMethod sign, DistanceKind measured, bool accept_doubts) {
   GroupVerdicts result;
   result.without_group = without_group;
   for (const GroupPoints& g : groups) {
@@ -88,6 +94,7 @@ GroupVerdicts judge_groups(std::span<const GroupPoints> groups, const PointsWith
     if (summary::may_lack_signs(judgement, measured, sign) && !g.out_with_either_sign)
       summary::withhold_failure(judgement);
     CertifiedVerdict verdict{{judgement, g.row.tolerance, {}, 0, {}}, {}};
+    summary::decide_thin_walls(verdict, g.by_facing, accept_doubts);
     if (g.points > 0) {
       const auto all = static_cast<double>(g.points);
       verdict.shares.below = static_cast<double>(g.below) / all;

@@ -7,6 +7,7 @@
 
 #include "geometry/vec.h"
 #include "map/statistics/tolerance_limits.h"
+#include "summary/verdict/evidence.h"
 
 namespace sdm {
 
@@ -23,6 +24,11 @@ double margin_of(double lowest, double highest, const Tolerance& tolerance, doub
   return std::min(tolerance.hi - highest, lowest - tolerance.lo) - accuracy;
 }
 
+/// Whether walls hide what is out of the limits: no point of a wall is farther than its half from both skins.
+bool are_walls_thin(const Evidence& evidence, const Tolerance& limits) {
+  return 2 * largest_limit(limits) > evidence.thin_walls;
+}
+
 /// What is not decided of evidence that is within the tolerance: `measured` is its margin with the signs as
 /// they were found.
 VerdictReason open_question(const Evidence& evidence, double margin, double measured) {
@@ -30,7 +36,8 @@ VerdictReason open_question(const Evidence& evidence, double margin, double meas
   if (!std::isfinite(evidence.accuracy)) return VerdictReason::unknown_accuracy;
   if (evidence.error_bound <= measured || (margin <= 0 && measured > 0))
     return VerdictReason::estimated_signs;
-  return margin > 0 ? VerdictReason::between_samples : VerdictReason::within_rounding;
+  if (margin > 0) return VerdictReason::between_samples;
+  return evidence.guard > 0 ? VerdictReason::guard_band : VerdictReason::within_rounding;
 }
 
 }  // namespace
@@ -39,7 +46,7 @@ Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const double lowest = evidence.lowest.value_or(kInfinity), highest = evidence.highest.value_or(-kInfinity);
   const bool complete = evidence.complete, estimated_signs = evidence.estimated_signs;
-  const double accuracy = evidence.accuracy, error_bound = evidence.error_bound;
+  const double accuracy = evidence.accuracy + evidence.guard, error_bound = evidence.error_bound;
   const Tolerance limited = limits_of(tolerance, evidence.is_signed);
   const double farthest = std::max(-lowest, highest);
   const double measured = margin_of(lowest, highest, limited, accuracy);
@@ -58,6 +65,11 @@ Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
     return result;
   }
   result.certified = lowest <= highest && error_bound <= margin;
+  if (result.certified && are_walls_thin(evidence, limited)) {
+    result.verdict = Verdict::not_decided, result.reason = VerdictReason::thin_walls;
+    result.certified = false;
+    return result;
+  }
   if (result.certified || (evidence.samples_only && result.margin >= 0.0)) return result;
   result.verdict = Verdict::not_decided;
   result.reason = open_question(evidence, margin, measured);
@@ -65,20 +77,32 @@ Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
   return result;
 }
 
-ToleranceVerdict check_tolerance(const Surface& surface, const DistanceMap& map,
-                                 std::span<const float> vertex_distances, double error_bound, double accuracy,
-                                 const Tolerance& tolerance) {
+double largest_limit(const Tolerance& tolerance) {
+  double largest = 0;
+  for (const double limit : {tolerance.lo, tolerance.hi})
+    if (std::isfinite(limit)) largest = std::max(largest, std::abs(limit));
+  return largest;
+}
+
+ToleranceVerdict summary::check_evidence(const Surface& surface, const DistanceMap& map,
+                                         const Evidence& evidence, const Tolerance& tolerance) {
   if (tolerance.needs_sign() && map.sign.method == SignMethod::none)
     throw Error("a tolerance that differs by sign needs signed distances, but these are unsigned: " +
                     map.sign.reason + "; choose another sign method or a symmetric tolerance",
                 Remedy::sign_method);
-  const Evidence evidence = evidence_of(surface, map, vertex_distances, error_bound, accuracy);
   ToleranceVerdict verdict{judge(evidence, tolerance), tolerance, {}, 0, {}};
-  verdict.shares = tolerance_shares(surface, map, tolerance, accuracy);
+  verdict.shares = tolerance_shares(surface, map, tolerance, evidence.accuracy + evidence.guard);
   verdict.exceeded_area_fraction = verdict.shares.below + verdict.shares.above + verdict.shares.without_value;
   if (evidence.complete && evidence.lowest)
     verdict.largest = std::max({0.0, -*evidence.lowest, *evidence.highest});
   return verdict;
+}
+
+ToleranceVerdict check_tolerance(const Surface& surface, const DistanceMap& map,
+                                 std::span<const float> vertex_distances, double error_bound, double accuracy,
+                                 const Tolerance& tolerance) {
+  return summary::check_evidence(
+      surface, map, evidence_of(surface, map, vertex_distances, error_bound, accuracy), tolerance);
 }
 
 double engine_accuracy(const EngineInfo& engine, const Mesh& on, const Mesh& to) {

@@ -15,6 +15,10 @@ std::string with_unit(double length, const std::string& units, int digits = 5) {
   return short_text(length, digits) + (units.empty() ? "" : " " + units);
 }
 
+/// Of a proof that thin walls need.
+constexpr const char* kByFacing =
+    " by the faces of the reference that face the same way, as its walls are thin";
+
 /// Why a verdict is open: no point is proven to be out of the limits.
 std::string open_text(const Summary& summary, const std::string& limits) {
   const CertifiedVerdict& verdict = *summary.tolerance;
@@ -26,6 +30,12 @@ std::string open_text(const Summary& summary, const std::string& limits) {
     case VerdictReason::estimated_signs:
       return "all " + std::string(summary.of_points ? "" : "measured ") + "points are within " + limits +
              ", but their signs are estimates, and with the other sign a point may be out of it";
+    case VerdictReason::guard_band:
+      return "all " + std::string(summary.evidence.samples_only ? "measured " : "") + "points are within " +
+             limits + " or out of it by less than the guard band, " +
+             with_unit(summary.evidence.guard, summary.units, 2) +
+             ", which is how far the triangles of CAD were found to be from its surface; one is closer to a "
+             "limit than that";
     case VerdictReason::between_samples:
       if (verdict.proof) break;
       return "all measured points are within " + limits + ", but points between them may not be";
@@ -74,9 +84,9 @@ std::string verdict_text(const Summary& summary) {
         return summary.measured.kind == DistanceKind::along
                    ? "no face of the reference that faces the same way is on the line of a point"
                    : "no face of the reference faces as a point does";
-      return verdict.reason == VerdictReason::beyond_max_distance
-                 ? "a point is farther than the maximum distance"
-                 : "a point is out of " + limits;
+      if (verdict.reason == VerdictReason::beyond_max_distance)
+        return "a point is farther than the maximum distance";
+      return "a point is out of " + limits + (verdict.by_facing.value_or(false) ? kByFacing : "");
     case Verdict::not_decided:
       break;
   }

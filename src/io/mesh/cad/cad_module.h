@@ -21,6 +21,8 @@ struct CadRequest {
   const char* file;  ///< which holds the bytes
   CadFormat format;
   double deflection;  ///< 0: kDefaultDeflection of the diagonal
+  double at_most;     ///< then, unless there would be more than `most_triangles`; infinite: without a limit
+  std::size_t most_triangles;
   double angle;
 };
 

@@ -5,6 +5,7 @@
 #include <sdm/sites.h>
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <span>
@@ -70,24 +71,30 @@ bool has_iges_end(std::string_view bytes) {
 PolygonMesh read(std::string_view bytes, const std::filesystem::path& file, CadFormat format,
                  const TessellationOptions& options) {
   const char* const name = format == CadFormat::step ? "STEP" : "IGES";
-  if (!(options.deflection.value_or(1) > 0) || !(options.angle > 0) || !(options.angle < kMostAngle))
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  if (!(options.deflection.value_or(1) > 0) || !(options.at_most.value_or(1) > 0) || !(options.angle > 0) ||
+      !(options.angle < kMostAngle))
     throw Error("the deflection must be positive, and the angle too and below 90°");
   Client client;
   const CadShape shape = cad::read_in_child({.bytes = bytes,
                                              .file = file.c_str(),
                                              .format = format,
                                              .deflection = options.deflection.value_or(0),
+                                             .at_most = options.at_most.value_or(kAny),
+                                             .most_triangles = options.most_triangles,
                                              .angle = options.angle},
                                             name, client);
   PolygonMesh mesh = to_polygons(shape);
-  mesh.tessellation = Tessellation{.format = name,
-                                   .file_unit = shape.unit,
-                                   .faces = shape.faces.size(),
-                                   .omitted_faces = shape.omitted_faces,
-                                   .deflection = shape.deflection,
-                                   .angle = options.angle,
-                                   .largest_deviation = shape.largest_deviation,
-                                   .measured_points = shape.measured_points};
+  mesh.tessellation =
+      Tessellation{.format = name,
+                   .file_unit = shape.unit,
+                   .faces = shape.faces.size(),
+                   .omitted_faces = shape.omitted_faces,
+                   .deflection = shape.deflection,
+                   .angle = options.angle,
+                   .limited = !options.deflection && shape.deflection > options.at_most.value_or(kAny),
+                   .largest_deviation = shape.largest_deviation,
+                   .measured_points = shape.measured_points};
   if (shape.omitted_faces > 0)
     mesh.notes.push_back(fmt::format("{} of {} faces could not be tessellated and are missing",
                                      shape.omitted_faces, mesh.tessellation->faces));
