@@ -49,6 +49,36 @@ TEST_F(MetricsCommandTest, PrintsWhatTheLibraryComputes) {
   EXPECT_FALSE(json.contains("verdict"));
 }
 
+// More than a hundred thousand parts, of which only sums are kept.
+TEST_F(MetricsCommandTest, OfManyEqualFacesNeedsLittleMemory) {
+  Mesh faces{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {}};
+  for (int i = 0; i < 59; ++i) faces.triangles.push_back({0, 1, 2});
+  const std::string many = write_obj(folder / "many.obj", faces),
+                    ring = write_obj(folder / "ring.obj", torus(32, 16));
+  faces.triangles.resize(1);
+  const std::string one = write_obj(folder / "one.obj", faces);
+  const auto directed = [&](const std::string& mesh) {
+    const Outcome run = run_sdm(
+        {"metrics", mesh, ring, "--json", "--threads", "1", "--percentile", "50,95", "--tolerance", "0.3"},
+        {.memory = std::uint64_t{104} << 20});
+    EXPECT_EQ(run.code, 0) << run.err;
+    return Json::parse(run.out)["o1_to_o2"];
+  };
+  const Json of_many = directed(many), of_one = directed(one);
+  const auto agree = [](const Json& a, const Json& b, double width) {
+    EXPECT_LE(a["upper"].get<double>() - a["lower"].get<double>(), width);
+    EXPECT_LE(a["lower"], b["upper"]);
+    EXPECT_GE(a["upper"], b["lower"]);
+  };
+  for (const char* name : {"mean", "rms"})
+    agree(of_many[name], of_one[name], 0.0021 * of_one[name]["upper"].get<double>());
+  for (int i = 0; i < 2; ++i) {
+    const Json& expected = of_one["percentiles"][i];
+    agree(of_many["percentiles"][i], expected, 0.0025 * expected["upper"].get<double>());
+  }
+  agree(of_many["within"][0], of_one["within"][0], 0.0011);
+}
+
 TEST_F(MetricsCommandTest, PrintsUnitsAndBounds) {
   const std::string text = metrics({"--units", "mm", "--tolerance", "0.5"}).out;
   EXPECT_THAT(text, HasSubstr("  hd                  0.25 mm ("));

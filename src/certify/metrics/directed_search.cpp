@@ -8,7 +8,6 @@
 
 #include "certify/hausdorff/vertex_search.h"
 #include "core/cancellation.h"
-#include "core/numbers/compensated_sum.h"
 #include "core/parallel.h"
 #include "geometry/rounding.h"
 #include "geometry/spatial_order.h"
@@ -22,6 +21,11 @@ constexpr double kAreaRounding = 1e-15;
 constexpr double kLeastSize = 1e-9;  // of the diagonal: smaller parts are not divided
 // Parts that are smaller beside their distance, squared, have a close bound by their size.
 constexpr double kNear = 1e-4;
+// So many parts, or twice as many as faces, are in memory at once. Where more are needed, parts are bounded
+// in runs of kRun, one after another, and only sums of them are kept.
+constexpr std::size_t kAtOnce = std::size_t{1} << 16, kRun = 1024;
+// Steps in which the distribution of distances around a percentile is kept then.
+constexpr std::size_t kSteps = 1024;
 
 /// The vertices of A that have a face, measured.
 std::vector<MeasuredPoint> measure_vertices(const Mesh& a, const sites::SitesData& b, double accuracy,
@@ -68,13 +72,79 @@ DirectedSearch::DirectedSearch(const Mesh& a, const sites::SitesData& b, const M
 
 DirectedMetrics DirectedSearch::run() {
   make_parts();
-  do sum_up();
-  while (refine(choose()));
-  double consistency = 0;
-  for (const Part& part : parts_)
-    consistency += part.area * std::abs(dot(unit_normal(a_, part.face), unit_normal(b_.mesh, part.nearest)));
-  sums_.normal_consistency = std::min(1.0, consistency / sums_.area);
+  const std::size_t at_once = std::min(most_parts_, std::max(kAtOnce, 2 * a_.triangles.size()));
+  Refined refined = Refined::yes;
+  while (refined == Refined::yes) {
+    sum_up();
+    refined = refine(choose(), at_once);
+  }
+  if (refined == Refined::too_many && at_once < most_parts_) refine_in_runs();
+  sums_.normal_consistency = std::min(1.0, (settled_.consistency + consistency()) / sums_.area);
   return sums_;
+}
+
+double DirectedSearch::consistency() const {
+  double sum = 0;
+  for (const Part& part : parts_)
+    sum += part.area * std::abs(dot(unit_normal(a_, part.face), unit_normal(b_.mesh, part.nearest)));
+  return sum;
+}
+
+// A run may have the same share of what is asked for as it has of the area.
+void DirectedSearch::refine_in_runs() {
+  const std::vector<Part> all = std::move(parts_);
+  in_runs_ = true;
+  settled_.percentiles.clear();
+  for (const BoundedNumber& percentile : sums_.percentiles) settled_.percentiles.emplace_back(percentile);
+  settled_.within.resize(options_.tolerances.size());
+  for (std::size_t begin = 0; begin < all.size(); begin += kRun) {
+    const std::size_t end = std::min(all.size(), begin + kRun);
+    parts_.assign(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                  all.begin() + static_cast<std::ptrdiff_t>(end));
+    area_ = 0;
+    for (const Part& part : parts_) area_ += part.area;
+    const auto share = static_cast<double>(end - begin) / static_cast<double>(all.size());
+    const auto most = static_cast<std::size_t>(share * static_cast<double>(most_parts_));
+    while (refine(choose(), most) == Refined::yes) {
+    }
+    settle();
+  }
+  parts_.clear();
+  sum_up();
+}
+
+DirectedSearch::Steps::Steps(const BoundedNumber& found)
+    : bounds(found), below_low(kSteps + 1), below_high(kSteps + 1) {}
+
+double DirectedSearch::Steps::at(std::size_t i) const {
+  return i == kSteps ? bounds.upper
+                     : bounds.lower + (bounds.upper - bounds.lower) * static_cast<double>(i) / kSteps;
+}
+
+void DirectedSearch::Steps::add(const Part& part) {
+  const auto add_to = [&](std::vector<CompensatedSum>& below, const Linear& bound) {
+    const double width = bounds.upper - bounds.lower;
+    const double step = (bound.least() - bounds.lower) / width * kSteps;
+    // The first step that may have a part of it; where all of it is below, the next ones have it too.
+    auto i = static_cast<std::size_t>(std::clamp(step - 1, 0.0, static_cast<double>(kSteps)));
+    double counted = 0;
+    for (; i <= kSteps && counted < 1; ++i) {
+      const double fraction = bound.fraction_within(at(i));
+      below[i] += part.area * (fraction - counted);
+      counted = fraction;
+    }
+  };
+  add_to(below_low, part.lower()), add_to(below_high, part.upper());
+}
+
+void DirectedSearch::settle() {
+  add_means(parts_, settled_.means);
+  for (std::size_t i = 0; i < options_.tolerances.size(); ++i)
+    add_within(parts_, limit(options_.tolerances[i]), settled_.within[i]);
+  for (Steps& steps : settled_.percentiles)
+    if (steps.bounds.lower < steps.bounds.upper)
+      for (const Part& part : parts_) steps.add(part);
+  settled_.consistency += consistency();
 }
 
 void DirectedSearch::make_parts() {
@@ -92,35 +162,39 @@ void DirectedSearch::make_parts() {
     area_of_all += area;
   }
   if (parts_.empty()) throw Error("the faces of a mesh have no area: there are no average distances");
-  sums_.area = area_of_all.value();
+  sums_.area = area_ = area_of_all.value();
   rounding_ = kDoubleRounding + 2 * error.value() / sums_.area;
   std::vector<std::size_t> all(parts_.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   bound_by_middles(all);
 }
 
-// All sums are in the order of the parts, whatever the number of threads. With areas that are off by a
-// fraction of the whole, a mean is off by that fraction of the largest distance, at most.
+// All sums are in the order of the parts, whatever the number of threads.
+void DirectedSearch::add_means(const std::vector<Part>& parts, Means& means) {
+  for (const Part& part : parts) {
+    const Linear low = part.lower(), high = part.upper();
+    means.largest = std::max(means.largest, high.largest());
+    means.low += part.area * low.mean(), means.high += part.area * high.mean();
+    means.square_low += part.area * low.mean_square(), means.square_high += part.area * high.mean_square();
+  }
+}
+
+// With areas that are off by a fraction of the whole, a mean is off by that fraction of the largest distance,
+// at most.
 void DirectedSearch::sum_up() {
   poll();
-  CompensatedSum mean_low, mean_high, square_low, square_high;
-  largest_ = 0;
-  for (const Part& part : parts_) {
-    const Linear low = part.lower(), high = part.upper();
-    largest_ = std::max(largest_, high.largest());
-    mean_low += part.area * low.mean(), mean_high += part.area * high.mean();
-    square_low += part.area * low.mean_square(), square_high += part.area * high.mean_square();
-  }
+  Means means = settled_.means;
+  add_means(parts_, means);
   const auto rounded = [&](double low, double high) {
     return between(std::max(0.0, low - scale_.rounding), high > 0 ? high + scale_.rounding : 0);
   };
-  const double off = rounding_ * largest_;
-  sums_.mean = rounded(mean_low.value() / sums_.area - off, mean_high.value() / sums_.area + off);
-  sums_.rms = rounded(std::sqrt(std::max(0.0, square_low.value() / sums_.area - off * largest_)),
-                      std::sqrt(square_high.value() / sums_.area + off * largest_));
+  const double off = rounding_ * means.largest;
+  sums_.mean = rounded(means.low.value() / sums_.area - off, means.high.value() / sums_.area + off);
+  sums_.rms = rounded(std::sqrt(std::max(0.0, means.square_low.value() / sums_.area - off * means.largest)),
+                      std::sqrt(means.square_high.value() / sums_.area + off * means.largest));
   sums_.percentiles.clear(), sums_.within.clear();
-  for (const double percent : options_.percentiles) sums_.percentiles.push_back(percentile(percent));
-  for (const double t : options_.tolerances) sums_.within.push_back(within(t));
+  for (std::size_t i = 0; i < options_.percentiles.size(); ++i) sums_.percentiles.push_back(percentile(i));
+  for (std::size_t i = 0; i < options_.tolerances.size(); ++i) sums_.within.push_back(within(i));
 }
 
 // Distances that are equal to a tolerance, as those of voxels are, shall not depend on rounding.
@@ -128,18 +202,20 @@ double DirectedSearch::limit(double tolerance) const {
   return tolerance + scale_.accuracy;
 }
 
-BoundedNumber DirectedSearch::within(double tolerance) const {
-  const double t = limit(tolerance);
-  poll();
-  CompensatedSum low, high;
-  bool all = true, any = false;
-  for (const Part& part : parts_) {
-    const double surely = part.upper().fraction_within(t), maybe = part.lower().fraction_within(t);
-    low += part.area * surely, high += part.area * maybe;
-    all = all && surely == 1, any = any || maybe > 0;
+void DirectedSearch::add_within(const std::vector<Part>& parts, double limit, Within& sum) {
+  for (const Part& part : parts) {
+    const double surely = part.upper().fraction_within(limit), maybe = part.lower().fraction_within(limit);
+    sum.low += part.area * surely, sum.high += part.area * maybe;
+    sum.all = sum.all && surely == 1, sum.any = sum.any || maybe > 0;
   }
-  return between(all ? 1 : std::max(0.0, low.value() / sums_.area - rounding_),
-                 !any ? 0 : std::min(1.0, high.value() / sums_.area + rounding_));
+}
+
+BoundedNumber DirectedSearch::within(std::size_t tolerance) const {
+  poll();
+  Within sum = settled_.within.empty() ? Within{} : settled_.within[tolerance];
+  add_within(parts_, limit(options_.tolerances[tolerance]), sum);
+  return between(sum.all ? 1 : std::max(0.0, sum.low.value() / sums_.area - rounding_),
+                 !sum.any ? 0 : std::min(1.0, sum.high.value() / sums_.area + rounding_));
 }
 
 double DirectedSearch::width(const BoundedNumber& number) const {
@@ -147,11 +223,27 @@ double DirectedSearch::width(const BoundedNumber& number) const {
                   MetricsOptions::kLeast * scale_.size);
 }
 
-BoundedNumber DirectedSearch::percentile(double percent) const {
-  const double fraction = percent / 100;
-  const double low = quantile(std::max(0.0, fraction - rounding_), &Part::lower),
-               high = quantile(std::min(1.0, fraction + rounding_), &Part::upper);
+BoundedNumber DirectedSearch::percentile(std::size_t number) const {
+  const double fraction = options_.percentiles[number] / 100;
+  const double least = std::max(0.0, fraction - rounding_), most = std::min(1.0, fraction + rounding_);
+  if (!settled_.percentiles.empty()) return percentile(settled_.percentiles[number], least, most);
+  const double low = quantile(least, &Part::lower), high = quantile(most, &Part::upper);
   return between(std::max(0.0, low - scale_.rounding), high > 0 ? high + scale_.rounding : 0);
+}
+
+// Of parts that are all settled, within the bounds that were known before.
+BoundedNumber DirectedSearch::percentile(const Steps& steps, double least, double most) const {
+  double lower = steps.bounds.lower, upper = steps.bounds.upper;
+  CompensatedSum low, high;
+  bool below = true, found = false;
+  for (std::size_t i = 0; i <= kSteps; ++i) {
+    low += steps.below_low[i].value(), high += steps.below_high[i].value();
+    below = below && low.value() < least * sums_.area;
+    if (below) lower = std::max(lower, steps.at(i) - scale_.rounding);
+    if (!found && high.value() >= most * sums_.area)
+      found = true, upper = std::min(upper, steps.at(i) + scale_.rounding);
+  }
+  return between(lower, upper);
 }
 
 double DirectedSearch::quantile(double fraction, Linear (Part::*bound)() const) const {
@@ -200,7 +292,7 @@ void DirectedSearch::choose_by_share(const std::vector<double>& contributions, d
 void DirectedSearch::choose_around(const BoundedNumber& percentile, Chosen& chosen) const {
   const double found = percentile.upper - percentile.lower, asked = width(percentile);
   if (found <= asked) return;
-  const double enough = std::max(asked / 2, found / 4);
+  const double enough = std::max(asked / 2, in_runs_ ? 0 : found / 4);
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Part& part = parts_[i];
     if (part.gap() > enough && part.upper().largest() >= percentile.lower &&
@@ -216,21 +308,25 @@ DirectedSearch::Chosen DirectedSearch::choose() const {
   const auto choose = [&](double target, const auto& difference) {
     for (std::size_t i = 0; i < parts_.size(); ++i)
       contributions[i] = parts_[i].area * difference(parts_[i].lower(), parts_[i].upper());
-    choose_by_share(contributions, target * sums_.area, chosen);
+    choose_by_share(contributions, target * area_, chosen);
   };
-  choose(width(sums_.mean), [](const Linear& low, const Linear& high) { return high.mean() - low.mean(); });
+  if (const double found = sums_.mean.upper - sums_.mean.lower, asked = width(sums_.mean);
+      !in_runs_ || found > asked)
+    choose(asked, [](const Linear& low, const Linear& high) { return high.mean() - low.mean(); });
   if (const double found = sums_.rms.upper - sums_.rms.lower, asked = width(sums_.rms); found > asked)
     choose(asked * (sums_.rms.lower + sums_.rms.upper),
            [](const Linear& low, const Linear& high) { return high.mean_square() - low.mean_square(); });
-  for (const double t : options_.tolerances)
-    choose(options_.fraction_precision, [&](const Linear& low, const Linear& high) {
-      return low.fraction_within(limit(t)) - high.fraction_within(limit(t));
-    });
+  for (std::size_t i = 0; i < options_.tolerances.size(); ++i)
+    if (!in_runs_ || sums_.within[i].upper - sums_.within[i].lower > options_.fraction_precision)
+      choose(options_.fraction_precision,
+             [&, t = limit(options_.tolerances[i])](const Linear& low, const Linear& high) {
+               return low.fraction_within(t) - high.fraction_within(t);
+             });
   for (const BoundedNumber& percentile : sums_.percentiles) choose_around(percentile, chosen);
   return chosen;
 }
 
-bool DirectedSearch::refine(const Chosen& chosen) {
+DirectedSearch::Refined DirectedSearch::refine(const Chosen& chosen, std::size_t most) {
   const double least = kLeastSize * scale_.size;
   std::vector<std::size_t> thorough, divided;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -244,9 +340,11 @@ bool DirectedSearch::refine(const Chosen& chosen) {
   parallel_for(thorough.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) bound_thoroughly(b_, parts_[thorough[n]]);
   });
-  if (parts_.size() + divided.size() > most_parts_) divided.resize(most_parts_ - parts_.size());
+  const bool too_many = parts_.size() + divided.size() > most;
+  if (too_many) divided.resize(most - std::min(most, parts_.size()));
   divide(divided);
-  return !thorough.empty() || !divided.empty();
+  if (!thorough.empty() || !divided.empty()) return Refined::yes;
+  return too_many ? Refined::too_many : Refined::no;
 }
 
 void DirectedSearch::divide(const std::vector<std::size_t>& divided) {
@@ -255,6 +353,7 @@ void DirectedSearch::divide(const std::vector<std::size_t>& divided) {
   for (const std::size_t i : divided) points.push_back(parts_[i].middle_of_side());
   const std::vector<MeasuredPoint> middles = measure(b_, points, scale_.accuracy, options_.progress);
   std::vector<std::size_t> pieces;
+  parts_.reserve(parts_.size() + divided.size());
   for (std::size_t n = 0; n < divided.size(); ++n) {
     const auto [first, second] = halves(parts_[divided[n]], middles[n]);
     pieces.push_back(divided[n]), pieces.push_back(parts_.size());
