@@ -104,7 +104,13 @@ sdm::TexelMatches match(const BakeCommand& command, Input& high, Input& low, Det
   const std::span<const sdm::BakeChannel> channels =
       command.channels ? std::span<const sdm::BakeChannel>(command.channels->look) : sdm::kBakeChannels;
   const auto decode = [&] {
-    detailed.pictures = sdm::decode_textures(high.look.textures, look, channels, result.notes);
+    try {
+      detailed.pictures = sdm::decode_textures(high.look.textures, look, channels, result.notes);
+    } catch (const sdm::Cancelled&) {
+      throw;
+    } catch (const sdm::Error& error) {
+      throw sdm::Error(fmt::format("{}: {}", high.file, error.what()));
+    }
   };
   const auto lay_out = [&] {
     result.low = bake_surface(low, sample_layout(command));

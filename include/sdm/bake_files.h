@@ -23,8 +23,9 @@ namespace sdm {
 
 /// decode_image() of the textures that these channels need of a look, whose pictures do not matter, for
 /// MeshLook::pictures; others become empty images, and so do damaged ones, with a line in `notes`. Throws
-/// sdm::Error if a face or a material refers to what does not exist, and if there is not enough memory. Cost:
-/// linear, all cores, a core for each picture.
+/// sdm::Error if a face or a material refers to what does not exist, if these textures have more than 2^27
+/// pixels and 64 for each byte of their files, and if there is not enough memory. Cost: linear, all cores, a
+/// core for each picture.
 [[nodiscard]] SDM_API std::vector<Image> decode_textures(std::span<const TextureFile> textures,
                                                          const MeshLook& look,
                                                          std::span<const BakeChannel> channels,

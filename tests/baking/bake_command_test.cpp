@@ -354,20 +354,39 @@ std::uint32_t crc_of(std::string_view bytes) {
   return ~crc;
 }
 
-// Once, such a texture was left out with a note, as a damaged one is.
-TEST_F(BakeCommandTest, TexturesThatMemoryDoesNotSufficeForAreErrors) {
+/// A PNG file that says it has so many pixels a side.
+std::string png_of_side(std::uint32_t side) {
   const std::vector<char> png = encode_png(gradient());
   std::string file(png.begin(), png.end());
   const auto set = [&](std::size_t at, std::uint32_t value) {
     for (std::size_t k = 0; k < 4; ++k) file[at + k] = static_cast<char>(value >> (24 - 8 * k));
   };
-  set(16, 16'384), set(20, 16'384);  // of three bytes each: 805 MB
+  set(16, side), set(20, side);
   set(29, crc_of(std::string_view(file).substr(12, 17)));
-  write_text(folder / "picture.png", file);
-  const Outcome outcome = run_sdm({"bake", high, low, "-o", out}, {.memory = std::uint64_t{768} << 20});
+  return file;
+}
+
+// Once, such a texture was left out with a note, as a damaged one is.
+TEST_F(BakeCommandTest, TexturesThatMemoryDoesNotSufficeForAreErrors) {
+  write_text(folder / "picture.png", png_of_side(11'000));  // of three bytes each: 363 MB
+  const Outcome outcome = run_sdm({"bake", high, low, "-o", out}, {.memory = std::uint64_t{352} << 20});
   EXPECT_EQ(outcome.code, 1) << outcome.out;
-  EXPECT_THAT(outcome.err, HasSubstr("the texture picture.png: a picture needs 0.805 GB of memory"));
+  EXPECT_THAT(outcome.err, HasSubstr("the texture picture.png: a picture needs 0.363 GB of memory"));
   EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+// What the heads of pictures say is enough: none is decoded. More bytes may have more pixels.
+TEST_F(BakeCommandTest, TexturesOfTooManyPixelsForTheirFilesAreRefused) {
+  const std::string file = png_of_side(16'384);
+  write_text(folder / "picture.png", file);
+  const Outcome refused = run();
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err,
+              HasSubstr(high + ": the texture picture.png: its 268435456 pixels are too many in " +
+                        std::to_string(file.size()) + " bytes"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+  write_text(folder / "picture.png", file + std::string(std::size_t{1} << 22, ' '));
+  EXPECT_THAT(run().out, HasSubstr("the texture picture.png is left out"));  // the rest is not there
 }
 
 // Colours of vertices, as of scans: in PLY sRGB.

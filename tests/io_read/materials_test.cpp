@@ -275,6 +275,17 @@ TEST(GltfMaterials, PicturesOutOfTheFolderAreRefused) {
   std::filesystem::remove(folder / link);
 }
 
+TEST(GltfMaterials, ImagesOfOneBufferViewAreOneTexture) {
+  const GltfWithMaterials gltf;
+  const std::string image = R"({"bufferView":)" + gltf.picture + "}";
+  const MeshFile file =
+      gltf.read(R"("emissiveTexture":{"index":0},"normalTexture":{"index":1})",
+                R"(,"textures":[{"source":0},{"source":1}],"images":[)" + image + "," + image + "]");
+  ASSERT_EQ(file.textures.size(), 1u);
+  EXPECT_EQ(file.materials[0].emissive_texture.texture, 0u);
+  EXPECT_EQ(file.materials[0].normal_texture.texture, 0u);
+}
+
 TEST(GltfMaterials, PicturesMayBeEmbeddedAsText) {
   const GltfWithMaterials gltf;
   const MeshFile file = gltf.read(R"("emissiveTexture":{"index":0})",

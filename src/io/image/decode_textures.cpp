@@ -14,6 +14,26 @@
 #include "io/image/textures/decoders.h"
 
 namespace sdm {
+namespace {
+
+// A file of some kilobytes can have as many pixels as take gigabytes: all textures together may have those of
+// two pictures of 8192 x 8192, and more where their files are larger.
+void check_pixels(std::span<const TextureFile> textures, const std::set<std::uint32_t>& needed) {
+  constexpr std::size_t kMost = std::size_t{1} << 27, kOfEachByte = 64;
+  std::size_t most = kMost, pixels = 0;
+  for (const std::uint32_t i : needed) most += kOfEachByte * textures[i].bytes.size();
+  for (const std::uint32_t i : needed) {
+    const std::size_t more = io::pixels_of(textures[i].bytes);
+    pixels += more;
+    if (pixels > most)
+      throw Error(
+          fmt::format("the texture {}: its {} pixels are too many in {} bytes: textures may have 2^27 pixels "
+                      "together, and {} for each byte of their files",
+                      excerpt(textures[i].name), more, textures[i].bytes.size(), kOfEachByte));
+  }
+}
+
+}  // namespace
 
 std::vector<Image> decode_textures(std::span<const TextureFile> textures, const MeshLook& look,
                                    std::span<const BakeChannel> channels,
@@ -28,6 +48,7 @@ std::vector<Image> decode_textures(std::span<const TextureFile> textures, const 
         needed.insert(texture);
   if (!needed.empty() && *needed.rbegin() >= textures.size())
     throw Error(fmt::format("a material refers to texture {} of {}", *needed.rbegin(), textures.size()));
+  check_pixels(textures, needed);
   std::vector<Image> images(textures.size());
   std::vector<std::string> faults(textures.size());
   std::vector<std::function<void()>> tasks;

@@ -44,13 +44,14 @@ void PromisedMemory::release() {
   bytes_ = 0;
 }
 
-void check_size(std::size_t width, std::size_t height) {
+std::size_t check_size(std::size_t width, std::size_t height) {
   constexpr std::size_t kMostPixels = std::size_t{1} << 28, kMostOfASide = 100'000;
   if (width == 0 || height == 0) throw Error("the picture has no pixels");
   if (width > kMostOfASide || height > kMostOfASide)
     throw Error(fmt::format("the picture has {} × {} pixels, more than 100000 a side", width, height));
   if (width > kMostPixels / height)
     throw Error(fmt::format("the picture has {} × {} pixels, more than 2^28", width, height));
+  return width * height;
 }
 
 Image blank_image(std::size_t width, std::size_t height, std::uint32_t components, std::uint32_t bits) {
@@ -66,15 +67,29 @@ Image blank_image(std::size_t width, std::size_t height, std::uint32_t component
           .bytes = std::vector<std::uint8_t>(size)};
 }
 
+// Calls one of the functions of a format, or throws.
+template <class Png, class Jpeg, class Webp>
+auto by_format(std::span<const char> bytes, const Png& png, const Jpeg& jpeg, const Webp& webp) {
+  const std::string_view start(bytes.data(), std::min<std::size_t>(bytes.size(), 16));
+  if (start.starts_with("\x89PNG\r\n\x1A\n")) return png(bytes);
+  if (start.starts_with("\xFF\xD8\xFF")) return jpeg(bytes);
+  if (start.starts_with("RIFF") && start.substr(std::min<std::size_t>(start.size(), 8)).starts_with("WEBP"))
+    return webp(bytes);
+  throw Error("the picture is not PNG, JPEG or WebP");
+}
+
+std::size_t pixels_of(std::span<const char> bytes) {
+  try {
+    return by_format(bytes, pixels_of_png, pixels_of_jpeg, pixels_of_webp);
+  } catch (const Error&) {
+    return 0;
+  }
+}
+
 }  // namespace io
 
 Image decode_image(std::span<const char> bytes) try {
-  const std::string_view start(bytes.data(), std::min<std::size_t>(bytes.size(), 16));
-  if (start.starts_with("\x89PNG\r\n\x1A\n")) return io::decode_png(bytes);
-  if (start.starts_with("\xFF\xD8\xFF")) return io::decode_jpeg(bytes);
-  if (start.starts_with("RIFF") && start.substr(std::min<std::size_t>(start.size(), 8)).starts_with("WEBP"))
-    return io::decode_webp(bytes);
-  throw Error("the picture is not PNG, JPEG or WebP");
+  return io::by_format(bytes, io::decode_png, io::decode_jpeg, io::decode_webp);
 } catch (const std::bad_alloc&) {
   throw io::PictureTooLarge(out_of_memory("a picture").what());
 }

@@ -98,6 +98,11 @@ Image without_inks(const Image& cmyk, bool inverted) {
 
 }  // namespace
 
+std::size_t pixels_of_jpeg(std::span<const char> bytes) {
+  JpegReader reader;
+  return read_header(reader, bytes) ? check_size(reader.jpeg.output_width, reader.jpeg.output_height) : 0;
+}
+
 Image decode_jpeg(std::span<const char> bytes) {
   JpegReader reader;
   const auto check = [&](bool read) {

@@ -67,7 +67,17 @@ bool read_rows(PngReader& reader, Image& image, int passes) {
   return true;
 }
 
+std::size_t pixels_of(const PngReader& reader) {
+  return check_size(png_get_image_width(reader.png, reader.info),
+                    png_get_image_height(reader.png, reader.info));
+}
+
 }  // namespace
+
+std::size_t pixels_of_png(std::span<const char> bytes) {
+  PngReader reader(bytes);
+  return read_header(reader) ? pixels_of(reader) : 0;
+}
 
 Image decode_png(std::span<const char> bytes) {
   PngReader reader(bytes);
@@ -75,7 +85,7 @@ Image decode_png(std::span<const char> bytes) {
     if (!read) throw Error(fmt::format("the PNG picture cannot be read: {}", reader.message));
   };
   check(read_header(reader));
-  check_size(png_get_image_width(reader.png, reader.info), png_get_image_height(reader.png, reader.info));
+  (void)pixels_of(reader);
   int passes = 1;
   check(choose_format(reader, passes));
   Image image =

@@ -5,6 +5,14 @@
 
 namespace sdm::io {
 
+std::size_t pixels_of_webp(std::span<const char> bytes) {
+  WebPBitstreamFeatures features;
+  if (WebPGetFeatures(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), &features) !=
+      VP8_STATUS_OK)
+    return 0;
+  return check_size(static_cast<std::size_t>(features.width), static_cast<std::size_t>(features.height));
+}
+
 Image decode_webp(std::span<const char> bytes) {
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
   WebPBitstreamFeatures features;

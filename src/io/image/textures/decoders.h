@@ -32,12 +32,20 @@ class PromisedMemory {
   std::size_t bytes_;
 };
 
+/// The pixels that the start of a PNG, JPEG or WebP file says it has, at most those of check_size(); 0 where
+/// it cannot be read, as decode_image() then says.
+[[nodiscard]] std::size_t pixels_of(std::span<const char> bytes);
+[[nodiscard]] std::size_t pixels_of_png(std::span<const char> bytes);
+[[nodiscard]] std::size_t pixels_of_jpeg(std::span<const char> bytes);
+[[nodiscard]] std::size_t pixels_of_webp(std::span<const char> bytes);
+
 [[nodiscard]] Image decode_png(std::span<const char> bytes);
 [[nodiscard]] Image decode_jpeg(std::span<const char> bytes);
 [[nodiscard]] Image decode_webp(std::span<const char> bytes);
 
-/// Throws sdm::Error for a picture without pixels, with more than 100,000 a side, or more than 2^28.
-void check_size(std::size_t width, std::size_t height);
+/// Returns the number of pixels. Throws sdm::Error for a picture without pixels, with more than 100,000 a
+/// side, or more than 2^28.
+std::size_t check_size(std::size_t width, std::size_t height);
 
 /// A picture of this size, of which the bytes are to be set. Throws sdm::Error as check_size() does, and
 /// PictureTooLarge.

@@ -154,7 +154,11 @@ class MaterialReader {
     TextureFile file{.name = fmt::format("image {}", image), .bytes = {}};
     if (const auto name = item.find("name"); name != item.end() && name->is_string()) file.name = *name;
     if (const auto uri = item.find("uri"); uri == item.end()) {
-      const std::string_view bytes = document_.view(whole_number(item, "bufferView"));
+      const std::size_t view = whole_number(item, "bufferView");
+      if (const auto known = of_view_.find(view); known != of_view_.end())
+        return pictures_[image] = known->second;
+      of_view_[view] = static_cast<std::uint32_t>(materials_.textures.size());
+      const std::string_view bytes = document_.view(view);
       document_.charge(bytes.size(), "the pictures");
       file.bytes.assign(bytes.begin(), bytes.end());
     } else if (const std::string& text = text_of(*uri, "the URI of a picture"); is_data_uri(text)) {
@@ -173,6 +177,7 @@ class MaterialReader {
   PolygonMaterials& materials_;
   std::vector<std::string>& notes_;
   std::map<std::size_t, std::uint32_t> pictures_;  // the texture of each image
+  std::map<std::size_t, std::uint32_t> of_view_;   // of each bufferView that images name
 };
 
 }  // namespace
