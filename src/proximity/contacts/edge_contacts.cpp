@@ -140,14 +140,83 @@ void EdgeContacts::add_interval(const Edge& edge, const sites::SitesData& sites,
 }
 
 void EdgeContacts::find_intervals(const Edge& edge, const shape::Body& other, double margin) {
+  constexpr std::size_t kFewFaces = 64;
   const sites::SitesData& sites = internals(other.sites());
-  const double limit = margin + kUnitDistanceRounding / sites.frame.scale;
+  const double rounding = kUnitDistanceRounding / sites.frame.scale, limit = margin + rounding;
   intervals_.clear();
-  for (const std::uint32_t face : faces_.find(sites, {edge.a, edge.b}, limit)) {
-    poll();
-    add_interval(edge, sites, face, limit);
+  const std::span<const std::uint32_t> faces = faces_.find(sites, {edge.a, edge.b}, limit);
+  if (faces.size() > kFewFaces) {
+    find_intervals_of_many(edge, sites, faces, limit, rounding);
+  } else {
+    for (const std::uint32_t face : faces) {
+      poll();
+      add_interval(edge, sites, face, limit);
+    }
   }
   std::ranges::sort(intervals_, {}, [](const Interval& i) { return std::pair(i.from, i.face); });
+}
+
+// Where a part of the edge touches a face, others change nothing there: in stacks of coplanar faces, and
+// around an edge of many, most need no interval. Faces in whose plane the edge lies come first, as it may
+// touch them on all of it.
+void EdgeContacts::find_intervals_of_many(const Edge& edge, const sites::SitesData& sites,
+                                          std::span<const std::uint32_t> faces, double limit,
+                                          double rounding) {
+  touching_.clear();
+  const auto add = [&](std::uint32_t face) {
+    poll();
+    if (const Part part = beside_box(edge, sites, face, limit); part.from > part.to || touches(part)) return;
+    const std::size_t before = intervals_.size();
+    add_interval(edge, sites, face, limit);
+    if (intervals_.size() == before || intervals_.back().distance > rounding) return;
+    const Interval& i = intervals_.back();
+    const double least = i.distance + rounding;
+    add_touching(least >= limit ? Part{i.from, i.to} : within(edge, sites, face, least, i.closest));
+  };
+  const auto in_plane = [&](std::uint32_t face) {
+    const Vec3& corner = sites.mesh.positions[sites.mesh.triangles[face][0]];
+    const Vec3& normal = sites.normals.face[face];
+    return sites.sliver[face] == 0 && std::abs(dot(normal, edge.a - corner)) <= rounding &&
+           std::abs(dot(normal, edge.b - corner)) <= rounding;
+  };
+  for (const std::uint32_t face : faces)
+    if (in_plane(face)) add(face);
+  for (const std::uint32_t face : faces)
+    if (!in_plane(face)) add(face);
+}
+
+// Where the edge is within `limit` of the box of a face, and a little more.
+EdgeContacts::Part EdgeContacts::beside_box(const Edge& edge, const sites::SitesData& sites,
+                                            std::uint32_t face, double limit) {
+  const Corners corners = corners_of(sites.mesh, face);
+  Part part{0, 1};
+  for (int k = 0; k < 3; ++k) {
+    const double lo = std::min({corners[0][k], corners[1][k], corners[2][k]}) - 2 * limit - edge.a[k],
+                 hi = std::max({corners[0][k], corners[1][k], corners[2][k]}) + 2 * limit - edge.a[k],
+                 along = edge.b[k] - edge.a[k];
+    if (along == 0) {
+      if (lo > 0 || hi < 0) return {1, 0};
+      continue;
+    }
+    part.from = std::max(part.from, std::min(lo / along, hi / along));
+    part.to = std::min(part.to, std::max(lo / along, hi / along));
+  }
+  return part;
+}
+
+bool EdgeContacts::touches(const Part& part) const {
+  return std::ranges::any_of(touching_, [&](const Part& known) {
+    return known.from <= part.from + kSamePoint && part.to <= known.to + kSamePoint;
+  });
+}
+
+void EdgeContacts::add_touching(Part part) {
+  std::erase_if(touching_, [&](const Part& known) {
+    if (known.to < part.from || part.to < known.from) return false;
+    part = {std::min(part.from, known.from), std::max(part.to, known.to)};
+    return true;
+  });
+  touching_.push_back(part);
 }
 
 void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, double margin, double reach,

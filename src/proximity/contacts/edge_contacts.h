@@ -80,6 +80,12 @@ class EdgeContacts {
                                    double limit, double closest);
   void add_interval(const Edge& edge, const sites::SitesData& sites, std::uint32_t face, double limit);
   void find_intervals(const Edge& edge, const shape::Body& other, double margin);
+  void find_intervals_of_many(const Edge& edge, const sites::SitesData& sites,
+                              std::span<const std::uint32_t> faces, double limit, double rounding);
+  [[nodiscard]] static Part beside_box(const Edge& edge, const sites::SitesData& sites, std::uint32_t face,
+                                       double limit);
+  [[nodiscard]] bool touches(const Part& part) const;  ///< known faces on all of it
+  void add_touching(Part part);
   void find_supports(const Edge& edge, const shape::Body& other, double margin, double reach,
                      double tolerance);
   void add_support(const Edge& edge, const shape::Body& other, std::uint32_t face, double margin,
@@ -90,6 +96,7 @@ class EdgeContacts {
   FacesNearEdge faces_;
   WayOutFinder way_out_;
   std::vector<Interval> intervals_;
+  std::vector<Part> touching_;  ///< parts of the edge that touch known faces, disjoint
   std::vector<SupportedPart> supported_;
   std::vector<JoinedPart> parts_;
   std::vector<Found> found_;

@@ -66,7 +66,12 @@ struct SelfProximityQuery::Impl {
     std::mutex mutex;
     self::FacePair best;
     for_each_face([&](const self::SelfSearch& search, std::uint32_t) {
-      const self::FacePair pair = search.nearest(bound.load(std::memory_order_relaxed));
+      self::FacePair known;
+      if (const double limit = bound.load(std::memory_order_relaxed); limit == 0) {
+        const std::scoped_lock lock(mutex);
+        known = best;
+      }
+      const self::FacePair pair = search.nearest(bound.load(std::memory_order_relaxed), known);
       if (pair.face1 == kNone) return;
       const std::scoped_lock lock(mutex);
       if (pair.before(best)) best = pair;

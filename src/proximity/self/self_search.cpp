@@ -209,6 +209,7 @@ ClosestPoint SelfSearch::closest_to(const Vec3& q) const {
   double limit = max_distance_;
   const double from_centre = norm(q - centre_);
   for (const auto& [at_centre, face] : scratch_.candidates) {
+    if (best.distance == 0) break;               // as in a stack of coplanar faces
     if (at_centre - from_centre > limit) break;  // d(q, g) ≥ d(c, g) − |q − c|
     if (beyond(face, q, limit)) continue;
     const ClosestPoint c = sites::closest_on_face(sites_, face, q);
@@ -217,13 +218,18 @@ ClosestPoint SelfSearch::closest_to(const Vec3& q) const {
   return best;
 }
 
-FacePair SelfSearch::nearest(double max_distance) const {
+FacePair SelfSearch::nearest(double max_distance, const FacePair& known) const {
   FacePair best;
+  const auto too_late = [&](const FacePair& than, std::uint32_t other) {
+    return than.distance == 0 &&
+           std::pair(than.face1, than.face2) <= std::pair(std::min(face_, other), std::max(face_, other));
+  };
   double limit = max_distance;
   const Corners own = corners_of(sites_.mesh, face_);
   Box box;
   for (const Vec3& p : own) extend(box, p);
   visit_near(box, limit, [&](std::uint32_t other) {
+    if (too_late(best, other) || too_late(known, other)) return;
     const Corners others = corners_of(sites_.mesh, other);
     if (squared_box_distance(own, others) > kAbove * limit * limit) return;
     const bool first = face_ < other;  // the same order, and so the same rounding, from either face

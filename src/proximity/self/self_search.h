@@ -59,8 +59,9 @@ class SelfSearch {
   /// The closest point to a point of that ball, within the same distance.
   [[nodiscard]] ClosestPoint closest_to(const Vec3& q) const;
 
-  /// The nearest face to the face of start_from(), within max_distance.
-  [[nodiscard]] FacePair nearest(double max_distance) const;
+  /// The nearest face to the face of start_from(), within max_distance; of pairs that touch, the first one.
+  /// None where it is not before `known`, a pair that touches.
+  [[nodiscard]] FacePair nearest(double max_distance, const FacePair& known = {}) const;
 
  private:
   struct Scratch;
