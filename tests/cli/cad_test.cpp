@@ -195,6 +195,23 @@ TEST(CadCommand, TolerancesHoldForTheSurface) {
               1e-9);
 }
 
+// The files of an assembly are inputs, which are not replaced.
+TEST(CadCommand, PartsInFilesOfTheirOwnRemain) {
+  const TemporaryFolder folder;
+  std::filesystem::path part;
+  for (const auto& entry : std::filesystem::directory_iterator(SDM_CAD_FILES))
+    if (const std::string name = entry.path().filename(); name.starts_with("external")) {
+      std::filesystem::copy_file(entry.path(), folder / name);
+      if (name != "external.step") part = folder / name;
+    }
+  ASSERT_FALSE(part.empty());
+  const auto size = std::filesystem::file_size(part);
+  const Outcome run = run_sdm({"info", folder / "external.step", "--self-intersections", part});
+  EXPECT_EQ(run.code, 1) << run.out;
+  EXPECT_THAT(run.err, HasSubstr(part.filename().string() + ": it is the input " + part.string()));
+  EXPECT_EQ(std::filesystem::file_size(part), size);
+}
+
 TEST(CadCommand, ACrashOfOpenCascadeIsOneSentence) {
   const TemporaryFolder folder;
   const std::string file = folder / "bad.step";

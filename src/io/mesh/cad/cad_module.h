@@ -42,6 +42,7 @@ struct CadShape {
   std::vector<Face> faces;
   std::vector<std::string> objects;  ///< the instances of parts
   std::string unit;
+  std::vector<std::string> parts;  ///< the files that it refers to, which were read too
   double deflection = 0;
   std::size_t omitted_faces = 0;
   std::size_t measured_points = 0;

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <span>
 
+#include "io/file/input_files.h"
 #include "io/mesh/cad/read_in_child.h"
 #include "io/mesh/formats.h"
 
@@ -84,6 +85,7 @@ PolygonMesh read(std::string_view bytes, const std::filesystem::path& file, CadF
                                              .most_triangles = options.most_triangles,
                                              .angle = options.angle},
                                             name, client);
+  for (const std::string& part : shape.parts) note_input(part);
   PolygonMesh mesh = to_polygons(shape);
   mesh.tessellation =
       Tessellation{.format = name,

@@ -102,6 +102,8 @@ void send_shape(Channel& channel, const CadShape& shape) {
   channel.send(shape.objects.size());
   for (const std::string& name : shape.objects) channel.send_items(name);
   channel.send_items(shape.unit);
+  channel.send(shape.parts.size());
+  for (const std::string& file : shape.parts) channel.send_items(file);
   channel.send(shape.deflection);
   channel.send(shape.omitted_faces);
 }
@@ -134,6 +136,8 @@ void receive_shape(Channel& channel, CadShape& shape) {
   for (auto left = channel.receive<std::size_t>(); left > 0; --left)
     channel.receive_items(shape.objects.emplace_back());
   channel.receive_items(shape.unit);
+  for (auto left = channel.receive<std::size_t>(); left > 0; --left)
+    channel.receive_items(shape.parts.emplace_back());
   shape.deflection = channel.receive<double>();
   shape.omitted_faces = channel.receive<std::size_t>();
   if (!is_consistent(shape)) throw BrokenChannel();

@@ -111,7 +111,18 @@ void require_references(const STEPCAFControl_Reader& reader, const std::vector<s
       throw std::runtime_error("refers to the part " + (folder / name).string() + ", which was not read");
 }
 
-std::string read_step(const CadRequest& request, Handle(TDocStd_Document) & document) {
+/// The paths of the files that it has read, with those that parts refer to.
+std::vector<std::string> parts_read(const STEPCAFControl_Reader& reader) {
+  std::vector<std::string> files;
+  for (NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>::Iterator at(
+           reader.ExternFiles());
+       at.More(); at.Next())
+    files.emplace_back(at.Value()->GetWS()->LoadedFile());
+  return files;
+}
+
+std::string read_step(const CadRequest& request, Handle(TDocStd_Document) & document,
+                      std::vector<std::string>& parts_of_file) {
   STEPCAFControl_Reader reader;
   Interface_Static::SetIVal("read.stepcaf.subshapes.name", 1);
   BytesBuffer buffer(request.bytes);
@@ -131,6 +142,7 @@ std::string read_step(const CadRequest& request, Handle(TDocStd_Document) & docu
   const bool transferred = reader.Transfer(document);
   require_references(reader, parts, file.parent_path());
   if (!transferred) throw std::runtime_error(kDamaged);
+  parts_of_file = parts_read(reader);
   return unit_names(lengths);
 }
 
@@ -235,7 +247,7 @@ Document read_document(const CadRequest& request) {
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
   OpenDocument open;
   Document result;
-  result.unit = request.format == CadFormat::step ? read_step(request, open.document)
+  result.unit = request.format == CadFormat::step ? read_step(request, open.document, result.parts)
                                                   : read_iges(request, open.document);
   FaceCollector(open.document).collect(result);
   return result;

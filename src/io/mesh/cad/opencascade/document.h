@@ -24,6 +24,7 @@ struct Document {
   std::vector<std::string> objects;  ///< each name once
   TopoDS_Shape whole;
   std::string unit;
+  std::vector<std::string> parts;  ///< files that the file refers to
 };
 
 /// Throws std::runtime_error with a clause, or Standard_Failure.

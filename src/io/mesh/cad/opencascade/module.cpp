@@ -66,6 +66,7 @@ std::string read(const CadRequest& request, CadShape& shape, CadClient& client) 
   tessellate(document, deflection, request.angle, shape);
   if (request.deflection == 0 && request.at_most < deflection) refine(document, request, shape);
   if (shape.triangles.empty()) return "none of its faces could be tessellated";
+  shape.parts = document.parts;
   client.tessellated(shape);
   measure(document, shape, client);
   return {};
