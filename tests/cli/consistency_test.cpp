@@ -135,7 +135,7 @@ TEST_F(Consistency, CloudsAreJudgedByTheRuleOfTheLibrary) {
     text += fmt::format("{} {} {}\n", p[0], p[1], p[2]);
   std::ofstream(points) << text;
   for (const Tolerance tolerance : {Tolerance(10), Tolerance(4), Tolerance(4.55), Tolerance(1, 5)}) {
-    const Outcome run = run_sdm({"points", points, small, "-o", out, "--units", "mm",
+    const Outcome run = run_sdm({"points", points, small, "-o", out, "--units", "mm", "--accept-doubts",
                                  fmt::format("--tolerance={}:{}", tolerance.lo, tolerance.hi)});
     const Json cloud = Json::parse(contents(out + "/report.json"));
     const Json& found = cloud["evidence"];

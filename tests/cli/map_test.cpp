@@ -192,9 +192,13 @@ TEST_F(MapCommand, TotalsOfUdimTilesAreThoseOfAllTexels) {
   EXPECT_EQ(mixed.code, 3);
   std::vector<std::string> verdicts;
   const Json mixed_reports = Json::parse(mixed.out);
-  for (const auto& [tile, report] : mixed_reports.items()) verdicts.push_back(report["tolerance"]["verdict"]);
+  bool is_one_within = false;  // by its closest points
+  for (const auto& [tile, report] : mixed_reports.items()) {
+    verdicts.push_back(report["tolerance"]["verdict"]);
+    is_one_within = is_one_within || report["tolerance"]["exceeded_area_fraction"] == 0;
+  }
   EXPECT_EQ(verdicts.back(), "FAIL");
-  EXPECT_GT(std::ranges::count(verdicts, "PASS") + std::ranges::count(verdicts, "NOT DECIDED"), 0);
+  EXPECT_TRUE(is_one_within);
   const Outcome passed = run({"--resolution", "128", "--tolerance", "5"});
   EXPECT_EQ(passed.code, 0);
   EXPECT_EQ(Json::parse(passed.out)["total"]["tolerance"]["verdict"], "PASS");
@@ -493,7 +497,8 @@ TEST_F(MapCommand, KeptToleranceIsCertifiedByTheErrorBoundOrAProof) {
     EXPECT_EQ(verdict["within"], true);
     EXPECT_EQ(verdict["exceeded_area_fraction"], 0);
     EXPECT_EQ(verdict["certified"], true);
-    EXPECT_EQ(verdict["proof"].is_null(), certified) << "where the map decides, nothing else runs";
+    const bool thin = !verdict["by_facing"].is_null();
+    EXPECT_EQ(verdict["proof"].is_null(), certified && !thin) << "where the map decides, nothing else runs";
   }
   const Outcome run = run_sdm(map({"--json", "--tolerance", std::to_string(largest + 1e-6)}));
   EXPECT_EQ(Json::parse(run.out)["tolerance"]["certified"], run.code != 4) << "a proof decides, if anything";

@@ -188,7 +188,8 @@ TEST_F(PointsCommand, StatesWhatIsNotDecided) {
     const Outcome found = run(cloud, arguments);
     return std::pair(Json::parse(found.out)["tolerance"]["verdict"].get<std::string>(), found.code);
   };
-  EXPECT_EQ(verdict({"--tolerance", "1.1"}), std::pair(std::string("PASS"), 0));
+  EXPECT_EQ(verdict({"--tolerance", "1.1", "--accept-doubts"}), std::pair(std::string("PASS"), 0));
+  EXPECT_EQ(verdict({"--tolerance", "1.1"}), std::pair(std::string("DOUBTFUL"), 5)) << "of walls of 2";
   EXPECT_EQ(verdict({"--tolerance", "1"}), std::pair(std::string("NOT DECIDED"), 4));
   EXPECT_EQ(verdict({"--tolerance", "0.9"}), std::pair(std::string("FAIL"), 3));
   EXPECT_THAT(run(with("none.xyz", "nan 0 0\n"), {"--tolerance", "1"}).out,
@@ -389,7 +390,7 @@ TEST_F(PointsCommand, InvalidAndFarPoints) {
     EXPECT_EQ(rows[i].rgb, rows[1].rgb);
   }
   EXPECT_NE(rows[0].rgb, rows[2].rgb);
-  EXPECT_EQ(run(cloud, {"--max-distance", "100", "--tolerance", "60"}).code, 0);
+  EXPECT_EQ(run(cloud, {"--max-distance", "100", "--tolerance", "60", "--accept-doubts"}).code, 0);
   EXPECT_EQ(run(with("none.xyz", "nan 0 0\n"), {}).code, 0);
 }
 

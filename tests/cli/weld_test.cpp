@@ -93,8 +93,8 @@ TEST_F(WeldOption, AppliesToCloudsAndPairs) {
   const test::Outcome refused = run_sdm({"points", cloud, open, "-o", out, "--tolerance", "-1.1:1.2"});
   EXPECT_EQ(refused.code, 1);
   EXPECT_NE(refused.err.find("it closes with --weld auto"), std::string::npos) << refused.err;
-  const nlohmann::json points =
-      run({"points", cloud, open, "-o", out, "--tolerance", "-1.1:1.2", "--weld", "auto"}, 0);
+  const nlohmann::json points = run(
+      {"points", cloud, open, "-o", out, "--tolerance", "-1.1:1.2", "--weld", "auto", "--accept-doubts"}, 0);
   EXPECT_EQ(points["negative_points"], 2);
   const nlohmann::json pair = run({"proximity", part, open, "--weld", "auto"}, 0);
   EXPECT_EQ(pair["colliding"]["value"], true);  // one is inside the other
