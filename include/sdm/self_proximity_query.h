@@ -52,7 +52,8 @@ class SDM_API Exclusion {
   /// than 100 pairs of faces for each face, and more than 100 million, share a vertex, and if there is not
   /// enough memory; Cancelled. Memory: with a geodesic length, whatever it is, up to about 200 numbers per
   /// face of a surface with well-shaped faces, but always as many as faces share a vertex; with rings, the
-  /// sizes of all neighbourhoods. Cost: linear in that, most of it on all cores.
+  /// sizes of all neighbourhoods, equal ones of many faces once. Cost: linear in the sizes of all, most of it
+  /// on all cores.
   explicit Exclusion(const Mesh& rest, const ExclusionOptions& options = {});
 
   /// The number of faces of the mesh.
@@ -67,18 +68,23 @@ class SDM_API Exclusion {
   }
   /// The patches whose faces the faces of `patch` exclude, itself among them, in increasing order.
   [[nodiscard]] std::span<const std::uint32_t> excluded_by(std::uint32_t patch) const {
-    return {excluded_.data() + offsets_[patch], excluded_.data() + offsets_[patch + 1]};
+    const std::uint32_t row = row_of(patch);
+    return {excluded_.data() + offsets_[row], excluded_.data() + offsets_[row + 1]};
   }
   /// Whether two faces exclude each other. Cost: a binary search.
   [[nodiscard]] bool excludes(std::uint32_t face1, std::uint32_t face2) const;
 
  private:
   void keep_mutual();
+  [[nodiscard]] std::uint32_t row_of(std::uint32_t patch) const {
+    return rows_.empty() ? patch : rows_[patch];
+  }
 
   std::vector<std::uint32_t> patch_of_;                    ///< of each face
   std::vector<std::uint32_t> patch_faces_, face_offsets_;  ///< the faces of each patch, and where they start
-  std::vector<std::uint32_t> excluded_;                    ///< patches, by the patch that excludes them
-  std::vector<std::size_t> offsets_;                       ///< of each patch in excluded_, and an end
+  std::vector<std::uint32_t> rows_;      ///< of each patch: which of the rows below it has; empty: its own
+  std::vector<std::uint32_t> excluded_;  ///< patches, by the row
+  std::vector<std::size_t> offsets_;     ///< of each row in excluded_, and an end
 };
 
 /// Options of compute_self_map().

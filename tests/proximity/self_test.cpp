@@ -677,6 +677,27 @@ TEST(Self, MaximumDistanceHidesSeparations) {
       SelfProximityQuery(folded(0.2), {.exclusion = {.rings = 3}, .max_distance = 0.999 * gap}).separation());
 }
 
+// All faces of a fan exclude the same ones, and those beside it others.
+TEST(Self, FacesAroundAVertexOfManyExcludeEachOther) {
+  constexpr std::uint32_t kFaces = 600;
+  Mesh fan{{{0, 0, 0.1}}, {}, {}};
+  for (std::uint32_t i = 0; i < kFaces; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kFaces;
+    fan.positions.push_back({std::cos(angle), std::sin(angle), 0});
+    fan.triangles.push_back({0, i + 1, (i + 1) % kFaces + 1});
+  }
+  fan.positions.push_back({2, 0, 0}), fan.positions.push_back({2, 1, 0});
+  fan.triangles.push_back({1, kFaces + 1, kFaces + 2});  // beside the first and the last face
+  const Exclusion exclusion(fan);
+  for (std::uint32_t f = 0; f <= kFaces; ++f)
+    for (std::uint32_t g = 0; g <= kFaces; ++g) {
+      const bool beside = f == 0 || f == kFaces - 1 || g == 0 || g == kFaces - 1 || f == g;
+      ASSERT_EQ(exclusion.excludes(f, g), (f < kFaces && g < kFaces) || beside) << f << ' ' << g;
+    }
+  EXPECT_EQ(exclusion.excluded_by(1).data(), exclusion.excluded_by(300).data());
+  EXPECT_EQ(exclusion.excluded_by(0).size(), kFaces + 1);
+}
+
 TEST(Self, RejectsOptionsOutOfRange) {
   const Mesh mesh = folded(0.2);
   EXPECT_THROW(Exclusion(mesh, {.rule = {.rings = 0}}), Error);

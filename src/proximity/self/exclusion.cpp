@@ -5,7 +5,9 @@
 #include <atomic>
 #include <cmath>
 #include <new>
+#include <span>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
 #include "core/arrays/rows.h"
@@ -166,6 +168,33 @@ class Neighbours {
   std::vector<Sphere> spheres_;  // around patches
 };
 
+// Numbers of equal rows, if these are long: around a vertex of many faces, all faces may have the same one.
+class LongRows {
+ public:
+  static bool is_long(std::span<const std::uint32_t> row) {
+    constexpr std::size_t kLong = 256;
+    return row.size() >= kLong;
+  }
+  /// The number of a row that equals it; `number`, which it then has, if it is the first one.
+  template <class RowOf>
+  std::uint32_t find(std::span<const std::uint32_t> row, std::uint32_t number, const RowOf& row_of) {
+    const auto [begin, end] = numbers_.equal_range(hash(row));
+    for (auto known = begin; known != end; ++known)
+      if (std::ranges::equal(row, row_of(known->second))) return known->second;
+    numbers_.emplace(hash(row), number);
+    return number;
+  }
+
+ private:
+  static std::uint64_t hash(std::span<const std::uint32_t> row) {
+    std::uint64_t h = row.size();
+    for (const std::uint32_t x : row) h = (h ^ x) * 0x9E3779B97F4A7C15u;
+    return h;
+  }
+
+  std::unordered_multimap<std::uint64_t, std::uint32_t> numbers_;
+};
+
 // All faces at a vertex exclude each other.
 void check_pairs(const CompressedRows<std::uint32_t>& faces_of_vertex, std::size_t faces) {
   constexpr std::uint64_t kLeast = 100'000'000, kOfEachFace = 100;
@@ -198,6 +227,7 @@ Exclusion::Exclusion(const Mesh& rest, const ExclusionOptions& options) try {
   constexpr std::size_t kEntries = std::size_t{1} << 24, kLeast = 256, kMost = std::size_t{1} << 16,
                         kGrain = 64;
   std::vector<std::vector<std::uint32_t>> rows;
+  LongRows long_rows;
   for (std::size_t first = 0, block = kLeast; first < count;) {
     const std::size_t end = std::min(count, first + block);
     rows.resize(end - first);
@@ -210,14 +240,23 @@ Exclusion::Exclusion(const Mesh& rest, const ExclusionOptions& options) try {
           require_memory(kEntries * sizeof(std::uint32_t), kNeighbourhoods);
       }
     });
-    for (const std::vector<std::uint32_t>& row : rows) offsets_.push_back(offsets_.back() + row.size());
-    if (offsets_.back() > excluded_.capacity()) {
-      const std::size_t room = std::max(offsets_.back(), 2 * excluded_.capacity());
-      require_memory(room * sizeof(std::uint32_t), kNeighbourhoods);
-      excluded_.reserve(room);
-    }
-    for (const std::vector<std::uint32_t>& row : rows)
+    for (const std::vector<std::uint32_t>& row : rows) {
+      const auto number = static_cast<std::uint32_t>(offsets_.size() - 1);
+      const auto known = [&](std::uint32_t n) {
+        return std::span(excluded_).subspan(offsets_[n], offsets_[n + 1] - offsets_[n]);
+      };
+      if (!rule.geodesic) {
+        rows_.push_back(LongRows::is_long(row) ? long_rows.find(row, number, known) : number);
+        if (rows_.back() != number) continue;
+      }
+      if (excluded_.size() + row.size() > excluded_.capacity()) {
+        const std::size_t room = std::max(excluded_.size() + row.size(), 2 * excluded_.capacity());
+        require_memory(room * sizeof(std::uint32_t), kNeighbourhoods);
+        excluded_.reserve(room);
+      }
       excluded_.insert(excluded_.end(), row.begin(), row.end());
+      offsets_.push_back(excluded_.size());
+    }
     if (options.progress &&
         !options.progress("neighbourhoods", static_cast<double>(end) / static_cast<double>(count)))
       throw Cancelled();
@@ -225,6 +264,7 @@ Exclusion::Exclusion(const Mesh& rest, const ExclusionOptions& options) try {
     first = end;
   }
   if (rule.geodesic) keep_mutual();
+  if (offsets_.size() == count + 1) rows_ = {};
   patch_of_ = std::move(grouped.of);
   patch_faces_ = std::move(grouped.faces.items).to_vector();
   face_offsets_ = std::move(grouped.faces.offsets).to_vector();

@@ -105,6 +105,11 @@ void SelfSearch::start_from(std::uint32_t face) {
   face_ = face;
   const std::uint32_t patch = face == kNone ? kNone : exclusion_.patch_of(face);
   if (patch == patch_) return;
+  if (patch != kNone && patch_ != kNone &&
+      exclusion_.excluded_by(patch).data() == exclusion_.excluded_by(patch_).data()) {
+    patch_ = patch;  // around a vertex of many faces
+    return;
+  }
   if (patch_ != kNone) admit_patches();
   patch_ = patch;
   if (patch_ != kNone) exclude_patches();
