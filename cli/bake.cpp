@@ -40,8 +40,8 @@ void require_look(const Input& high) {
   if (high.look.materials.empty() && !colors)
     throw sdm::Error(fmt::format(
         "{} has neither materials nor colours of vertices, so there is nothing to bake but its shape, as "
-        "--channels normal or displacement does",
-        high.file));
+        "--channels normal or displacement does{}{}",
+        high.file, high.notes.empty() ? "" : "; ", fmt::join(high.notes, "; ")));
 }
 
 std::array<Input, 2> load(const BakeCommand& command) {

@@ -28,6 +28,7 @@ std::string text_of(const TextureFile& texture) {
 }
 
 struct ObjWithMaterials : ::testing::Test {
+  static constexpr const char* kUnknown = "no MTL file has the material unknown, so faces of it are white";
   TemporaryFolder folder;
 
   void write(const std::string& name, const std::string& contents) const {
@@ -72,13 +73,55 @@ TEST_F(ObjWithMaterials, AreThoseOfItsLibrary) {
   EXPECT_FLOAT_EQ(steel.metallic, 1);
   EXPECT_FLOAT_EQ(steel.roughness, 0.3f);
   EXPECT_THAT(file.face_materials, ElementsAre(kNone, 0, 0, kNone, 1));
-  EXPECT_THAT(file.notes, ElementsAre(HasSubstr("map_Bump of the material steel is left out")));
+  EXPECT_THAT(file.notes,
+              ElementsAre(HasSubstr("Kd of the material wood is left out: the picture of map_Kd"),
+                          HasSubstr("bump of the material steel is left out"), kUnknown,
+                          "textures of wood are left out on 2 faces without texture coordinates"));
+}
+
+// Regression: these left materials or faces without their colours, without a word.
+TEST_F(ObjWithMaterials, ALineMayNameSeveralLibraries) {
+  write("a.mtl", "newmtl m\nKd 0 1 0\n");
+  write("b.mtl", "newmtl n\nKd 1 0 0\n");
+  const auto read_line = [&](const std::string& line) {
+    write("g.obj", "mtllib " + line + "\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl m\nf 1 2 3\nusemtl n\nf 1 3 2\n");
+    return with_materials(folder.path() / "g.obj");
+  };
+  for (const char* line : {"a.mtl b.mtl", "a.mtl\tb.mtl", "b.mtl .\\a.mtl a.mtl"}) {
+    const MeshFile file = read_line(line);
+    ASSERT_EQ(file.materials.size(), 2u) << line;
+    const Material& green = file.materials[file.face_materials[0]];
+    EXPECT_THAT(green.base_color, ElementsAre(0, 1, 0, 1)) << line;
+    EXPECT_THAT(file.materials[file.face_materials[1]].base_color, ElementsAre(1, 0, 0, 1)) << line;
+    EXPECT_THAT(file.notes, IsEmpty());
+  }
+  EXPECT_THAT(read_line("a.mtl gone.mtl").notes,
+              ElementsAre(HasSubstr("the materials of gone.mtl are left out")));
+  EXPECT_THAT(read_line("a.mtl").notes,
+              ElementsAre("no MTL file has the material n, so faces of it are white"));
+}
+
+TEST_F(ObjWithMaterials, PicturesOfOpacityAndPicturesInPlaceOfColoursAreNoted) {
+  write("t.png", "picture");
+  const auto notes = [&](const std::string& library) {
+    write("h.mtl", "newmtl m\n" + library);
+    write("h.obj",
+          "mtllib h.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl m\nf 1/1 2/2 3/3\n");
+    return with_materials(folder.path() / "h.obj").notes;
+  };
+  const char* const kReplaced = "Kd of the material m is left out: the picture of map_Kd replaces it";
+  EXPECT_THAT(notes("Kd 1 0 0\nmap_d t.png\n"),
+              ElementsAre(HasSubstr("map_d of the material m is left out: opacity")));
+  EXPECT_THAT(notes("Kd 0.5 0.5 0.5\nmap_Kd t.png\n"), ElementsAre(kReplaced));
+  EXPECT_THAT(notes("map_Kd t.png\nKd 0.5 0.5 0.5\n"), ElementsAre(kReplaced));
+  EXPECT_THAT(notes("Kd 1 1 1\nmap_Kd t.png\n"), IsEmpty());
+  EXPECT_THAT(notes("map_Pr t.png\n"), ElementsAre(HasSubstr("map_Pr of the material m is left out")));
 }
 
 TEST_F(ObjWithMaterials, LibrariesAndPicturesAreReadOnceWhateverTheirNames) {
   write("p.png", "picture");
   write("c.mtl", "newmtl wood\nmap_Kd p.png\nmap_Ke ./p.png\n");
-  write("c.obj", "mtllib c.mtl\nmtllib ./c.mtl\nmtllib c.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  write("c.obj", "mtllib c.mtl\nmtllib ./c.mtl\nmtllib c.mtl ./c.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   const MeshFile file = with_materials(folder.path() / "c.obj");
   EXPECT_EQ(file.materials.size(), 1u);
   EXPECT_EQ(file.textures.size(), 1u);
@@ -112,8 +155,8 @@ TEST_F(ObjWithMaterials, WhatCannotBeHadIsLeftOutWithANote) {
   ASSERT_EQ(file.materials.size(), 2u);
   EXPECT_EQ(file.materials[0].base_color_texture.texture, kNone);
   EXPECT_THAT(file.materials[0].base_color, ElementsAre(0, 0, 0, 1));
-  EXPECT_THAT(file.notes,
-              ElementsAre(HasSubstr("none.png"), HasSubstr("the texture '../outside.png' is refused")));
+  EXPECT_THAT(file.notes, ElementsAre(HasSubstr("none.png"),
+                                      HasSubstr("the texture '../outside.png' is refused"), kUnknown));
   EXPECT_THAT(file.textures, IsEmpty());
   write("b.obj", "mtllib /etc/passwd\nmtllib missing.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   const MeshFile without = with_materials(folder.path() / "b.obj");
@@ -156,7 +199,8 @@ TEST_F(ObjWithMaterials, LinksOutOfTheFolderAreRefused) {
   EXPECT_EQ(file.materials[0].emissive_texture.texture, 0u);
   EXPECT_THAT(file.notes,
               ElementsAre(HasSubstr("'link.png' is refused"), HasSubstr("'maps/secret.png' is refused"),
-                          HasSubstr("%2e%2e/secret.png")));
+                          HasSubstr("%2e%2e/secret.png"), kUnknown,
+                          "textures of wood are left out on 2 faces without texture coordinates"));
 }
 
 TEST_F(ObjWithMaterials, TextureCoordinatesThatAreAllTheSameAreANote) {
@@ -199,7 +243,10 @@ TEST(GltfMaterials, AreTheirFactorsTexturesAndPlaces) {
       R"(,"textures":[{"source":0,"sampler":0},{"extensions":{"EXT_texture_webp":{"source":0}}}],)"
       R"("samplers":[{"wrapS":33071,"wrapT":33648}],"images":[{"mimeType":"image/png","bufferView":)" +
           gltf.picture + "}]");
-  EXPECT_THAT(file.notes, IsEmpty());
+  // The mesh has neither set.
+  EXPECT_THAT(file.notes,
+              ElementsAre("textures of glow are left out on 1 faces without texture coordinates of set 1",
+                          "textures of glow are left out on 1 faces without texture coordinates of set 2"));
   ASSERT_EQ(file.materials.size(), 1u);
   const Material& m = file.materials[0];
   EXPECT_EQ(m.name, "glow");
@@ -228,6 +275,33 @@ TEST(GltfMaterials, AreTheirFactorsTexturesAndPlaces) {
     EXPECT_NEAR(place(u, v)[0], 0.25 * (1 - v), 1e-12);
     EXPECT_NEAR(place(u, v)[1], 0.5 * u, 1e-12);
   }
+}
+
+// Regression: the material was white.
+TEST(GltfMaterials, SpecularAndGlossyOnesHaveTheirDiffuseColour) {
+  const GltfWithMaterials gltf;
+  const std::string images =
+      R"(,"textures":[{"source":0}],"images":[{"mimeType":"image/png","bufferView":)" + gltf.picture + "}]";
+  const std::string glossy =
+      R"("extensions":{"KHR_materials_pbrSpecularGlossiness":{"diffuseFactor":[0.5,1,1,0.5],"glossinessFactor":0.75)";
+  const MeshFile file = gltf.read(glossy + "}}", images);
+  const Material& m = file.materials.at(0);
+  EXPECT_THAT(m.base_color, ElementsAre(0.5f, 1, 1, 0.5f));
+  EXPECT_EQ(m.metallic, 0);
+  EXPECT_FLOAT_EQ(m.roughness, 0.25f);
+  EXPECT_THAT(file.notes, ElementsAre(HasSubstr("the specular colour of material 0 is left out")));
+  const MeshFile textured = gltf.read(
+      glossy + R"(,"diffuseTexture":{"index":0},"specularGlossinessTexture":{"index":0}}})", images);
+  EXPECT_EQ(textured.materials.at(0).base_color_texture.texture, 0u);
+  EXPECT_THAT(textured.notes,
+              ElementsAre(HasSubstr("and the glossiness of its picture, of material 0 are left out"),
+                          HasSubstr("1 faces without texture coordinates")));
+  // Beside the core model, which is the one to show.
+  const MeshFile both =
+      gltf.read(R"("pbrMetallicRoughness":{"metallicFactor":0.5},)" + glossy + "}}", images);
+  EXPECT_FLOAT_EQ(both.materials.at(0).metallic, 0.5f);
+  EXPECT_THAT(both.materials.at(0).base_color, ElementsAre(1, 1, 1, 1));
+  EXPECT_THAT(both.notes, IsEmpty());
 }
 
 TEST(GltfMaterials, TexturesThatCannotBeHadAreLeftOutWithANote) {

@@ -1,9 +1,14 @@
 #include "io/mesh/mesh_file.h"
 
+#include <fmt/format.h>
 #include <sdm/uv_tiles.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
 
+#include "core/excerpt.h"
 #include "io/mesh/mesh_attributes.h"
 
 namespace sdm::io {
@@ -26,6 +31,49 @@ void add_names(const char* kind, const PolygonNames& polygons,
       result.of_face[f] = runs[i].name;
   }
   all.push_back(std::move(result));
+}
+
+// The sets of coordinates that the textures of a material are placed by.
+std::set<std::uint32_t> uv_sets_of(const Material& m) {
+  std::set<std::uint32_t> sets;
+  for (const TextureUse* use : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+                                &m.occlusion_texture, &m.emissive_texture})
+    if (use->texture != kNone) sets.insert(use->uv_set);
+  return sets;
+}
+
+// A texture has no place on faces without coordinates: they have the colour of the material alone.
+void note_missing_coordinates(MeshFile& file) {
+  struct Need {
+    std::uint32_t set = 0;
+    const MeshAttribute* uvs = nullptr;  // null: none at all
+    std::size_t faces = 0;               // without coordinates
+  };
+  std::vector<std::vector<Need>> needs(file.materials.size());
+  for (std::size_t m = 0; m < needs.size(); ++m)
+    for (const std::uint32_t set : uv_sets_of(file.materials[m])) {
+      if (set == 0 && !file.mesh.corner_uvs.empty()) continue;
+      const auto uvs = std::ranges::find(file.attributes, fmt::format("uv{}", set), &MeshAttribute::name);
+      const bool usable = uvs != file.attributes.end() && uvs->rows && uvs->components == 2;
+      needs[m].push_back({.set = set, .uvs = usable ? &*uvs : nullptr});
+    }
+  for (std::size_t f = 0; f < file.face_materials.size(); ++f) {
+    if (file.face_materials[f] == kNone) continue;
+    for (Need& need : needs[file.face_materials[f]]) {
+      const auto has_coordinates = [&](std::uint32_t row) {
+        return row != kNone && std::isfinite(need.uvs->values[2 * std::size_t{row}]) &&
+               std::isfinite(need.uvs->values[2 * std::size_t{row} + 1]);
+      };
+      if (need.uvs == nullptr || !std::ranges::all_of((*need.uvs->rows)[f], has_coordinates)) ++need.faces;
+    }
+  }
+  for (std::size_t m = 0; m < needs.size(); ++m)
+    for (const Need& need : needs[m])
+      if (need.faces > 0)
+        file.notes.push_back(
+            fmt::format("textures of {} are left out on {} faces without texture coordinates{}",
+                        excerpt(file.materials[m].name), need.faces,
+                        need.set == 0 ? "" : fmt::format(" of set {}", need.set)));
 }
 
 }  // namespace
@@ -52,6 +100,7 @@ MeshFile to_mesh_file(PolygonMesh polygons, const MeshFileOptions& options) {
   result.textures = std::move(polygons.surfaces.textures);
   if (!result.textures.empty() && has_one_uv(result.mesh))
     result.notes.push_back("all texture coordinates are the same: each texture has one colour");
+  if (!result.textures.empty()) note_missing_coordinates(result);
   result.tessellation = std::move(polygons.tessellation);
   if (options.vertices)
     result.vertices = FileVertices{.positions = std::move(polygons.positions),

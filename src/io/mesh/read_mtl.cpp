@@ -31,6 +31,21 @@ constexpr Option kOptions[] = {{"-blendu", 1, false}, {"-blendv", 1, false},  {"
                                {"-mm", 2, true},      {"-o", 3, true},        {"-s", 3, true},
                                {"-t", 3, true}};
 
+// Pictures that are not read, and why.
+struct Unread {
+  std::string_view statement;
+  const char* why;
+};
+constexpr Unread kUnread[] = {{"map_d", "opacity is read as a number (d), or as the alpha of map_Kd"},
+                              {"map_Tr", "opacity is read as a number (Tr), or as the alpha of map_Kd"},
+                              {"map_Pr", "roughness is read as a number (Pr)"},
+                              {"map_Pm", "metal is read as a number (Pm)"},
+                              {"map_Bump", "heights are not read, only normals (norm)"},
+                              {"map_bump", "heights are not read, only normals (norm)"},
+                              {"bump", "heights are not read, only normals (norm)"},
+                              {"disp", "displacements are not read"},
+                              {"decal", "decals are not read"}};
+
 class MtlReader {
  public:
   MtlReader(std::string_view text, const std::filesystem::path& folder, PolygonMaterials& materials,
@@ -41,7 +56,7 @@ class MtlReader {
     for (; !in_.at_end(); in_.skip_line()) {
       if (!in_.more_on_line()) continue;
       if (in_.accept("newmtl"))
-        materials_.list.emplace_back().name = words_of_line();
+        begin();
       else if (!materials_.list.empty())
         try {
           read_statement(materials_.list.back());
@@ -54,13 +69,18 @@ class MtlReader {
   }
 
  private:
+  void begin() {
+    materials_.list.emplace_back().name = words_of_line();
+    diffuse_.reset(), emitted_.reset();
+  }
   void read_statement(Material& material) {
     if (in_.accept("Kd")) {
-      const auto color = light();
-      if (material.base_color_texture.texture == kNone) std::ranges::copy(color, material.base_color.begin());
+      diffuse_ = light();
+      if (!is_replaced("Kd", "map_Kd", diffuse_, material.base_color_texture))
+        std::ranges::copy(*diffuse_, material.base_color.begin());
     } else if (in_.accept("Ke")) {
-      const auto color = light();
-      if (material.emissive_texture.texture == kNone) material.emissive = color;
+      emitted_ = light();
+      if (!is_replaced("Ke", "map_Ke", emitted_, material.emissive_texture)) material.emissive = *emitted_;
     } else if (in_.accept("d")) {
       set_opacity(material, factor());
     } else if (in_.accept("Tr")) {
@@ -70,15 +90,30 @@ class MtlReader {
     } else if (in_.accept("Pr")) {
       material.roughness = factor();
     } else if (in_.accept("map_Kd")) {
-      if (read_texture("map_Kd", material.base_color_texture))
+      if (read_texture("map_Kd", material.base_color_texture)) {
         std::fill_n(material.base_color.begin(), 3, 1.f);
+        (void)is_replaced("Kd", "map_Kd", diffuse_, material.base_color_texture);
+      }
     } else if (in_.accept("map_Ke")) {
-      if (read_texture("map_Ke", material.emissive_texture)) material.emissive = {1, 1, 1};
+      if (read_texture("map_Ke", material.emissive_texture)) {
+        material.emissive = {1, 1, 1};
+        (void)is_replaced("Ke", "map_Ke", emitted_, material.emissive_texture);
+      }
     } else if (in_.accept("norm")) {
       read_texture("norm", material.normal_texture);
-    } else if (in_.accept("map_Bump") || in_.accept("map_bump") || in_.accept("bump")) {
-      leave_out("map_Bump", "heights are not read, only normals (norm)");
+    } else {
+      for (const Unread& unread : kUnread)
+        if (in_.accept(unread.statement)) return leave_out(unread.statement, unread.why);
     }
+  }
+
+  // Whether a picture stands for the colour, which is noted where it would darken the picture.
+  bool is_replaced(const char* statement, const char* picture,
+                   const std::optional<std::array<float, 3>>& color, const TextureUse& use) {
+    if (use.texture == kNone) return false;
+    if (color && *color != std::array<float, 3>{1, 1, 1})
+      leave_out(statement, fmt::format("the picture of {} replaces it", picture));
+    return true;
   }
 
   static void set_opacity(Material& material, float alpha) {
@@ -121,7 +156,7 @@ class MtlReader {
       return false;
     }
   }
-  void leave_out(const char* statement, std::string_view fault) {
+  void leave_out(std::string_view statement, std::string_view fault) {
     if (!materials_.is_new_fault(fault)) return;
     notes_.push_back(fmt::format("{} of the material {} is left out: {}", statement,
                                  excerpt(materials_.list.back().name), fault));
@@ -162,6 +197,7 @@ class MtlReader {
   const std::filesystem::path& folder_;
   PolygonMaterials& materials_;
   std::vector<std::string>& notes_;
+  std::optional<std::array<float, 3>> diffuse_, emitted_;  // Kd and Ke of the last material
 };
 
 }  // namespace

@@ -56,7 +56,7 @@ class ObjReader {
       else if (in_.accept("f"))
         read_face();
       else if (with_attributes_ && in_.accept("mtllib"))
-        read_library();
+        read_libraries();
       else if (in_.accept("usemtl"))
         read_name(mesh_.materials);
       else if (in_.accept("g"))
@@ -167,11 +167,20 @@ class ObjReader {
     if (has_colors_) mesh_.attributes.push_back(std::move(colors_));
     add_materials();
   }
-  // A library that cannot be had leaves its materials without colours.
-  void read_library() {
+  // A line names one file, whose name may have blanks, or several.
+  void read_libraries() {
     if (!in_.more_on_line()) return;
-    std::string name(in_.rest_of_line());
-    std::ranges::replace(name, '\\', '/');
+    std::string line(in_.rest_of_line());
+    std::ranges::replace(line, '\\', '/');
+    std::error_code ignored;
+    if (line.find_first_of(" \t") == std::string::npos || std::filesystem::exists(folder_ / line, ignored))
+      return read_library(line);
+    TextScanner names(line);
+    while (names.more_on_line()) read_library(std::string(names.word()));
+  }
+  // A library that cannot be had leaves its materials without colours.
+  void read_library(const std::string& name) {
+    has_libraries_ = true;
     try {
       if (!libraries_.insert(file_below(folder_, name, "library of materials")).second) return;
       read_mtl(read_below(folder_, name, "library of materials").view(), folder_, mesh_.surfaces,
@@ -179,6 +188,7 @@ class ObjReader {
     } catch (const Cancelled&) {
       throw;
     } catch (const Error& fault) {
+      lacks_libraries_ = true;
       mesh_.notes.push_back(fmt::format("the materials of {} are left out: {}", excerpt(name), fault.what()));
     }
   }
@@ -190,6 +200,20 @@ class ObjReader {
       const auto found = run.name == kNone ? numbers.end() : numbers.find(mesh_.materials.names()[run.name]);
       mesh_.surfaces.runs.push_back({run.first_polygon, found == numbers.end() ? kNone : found->second});
     }
+    if (has_libraries_ && !lacks_libraries_) note_unknown_materials(numbers);
+  }
+  void note_unknown_materials(const std::map<std::string_view, std::uint32_t>& numbers) {
+    constexpr std::size_t kMostNames = 3;
+    std::vector<std::string> unknown;
+    for (const std::string& name : mesh_.materials.names())
+      if (!numbers.contains(name)) unknown.push_back(excerpt(name));
+    if (unknown.empty()) return;
+    const std::size_t more = unknown.size() - std::min(unknown.size(), kMostNames);
+    unknown.resize(unknown.size() - more);
+    mesh_.notes.push_back(fmt::format("no MTL file has the material{} {}{}, so faces of {} are white",
+                                      unknown.size() == 1 ? "" : "s", fmt::join(unknown, ", "),
+                                      more == 0 ? "" : fmt::format(" and {} more", more),
+                                      unknown.size() == 1 ? "it" : "them"));
   }
   void check_other_statements() {
     if (mesh_.ends.empty()) {
@@ -215,7 +239,7 @@ class ObjReader {
   PolygonMesh mesh_;
   std::filesystem::path folder_;
   std::set<std::filesystem::path> libraries_;  // that were read
-  bool with_attributes_, has_colors_ = false;
+  bool with_attributes_, has_colors_ = false, has_libraries_ = false, lacks_libraries_ = false;
   PolygonAttribute normals_, colors_;
   HighestIndex highest_vertex_, highest_uv_;
   std::optional<std::pair<std::int64_t, const char*>> impossible_uv_;  // the first one and its position

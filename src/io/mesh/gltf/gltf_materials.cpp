@@ -97,10 +97,29 @@ class MaterialReader {
       material.normal_texture = use(item, "normalTexture", material.name);
       material.occlusion_texture = use(item, "occlusionTexture", material.name);
       material.emissive_texture = use(item, "emissiveTexture", material.name);
+      const json* const glossy = gltf_extension(item, "KHR_materials_pbrSpecularGlossiness");
+      if (glossy != nullptr && !item.contains("pbrMetallicRoughness")) read_glossy(*glossy, material);
     }
   }
 
  private:
+  // The model before metals: of its two colours, that of light which is scattered is the base colour.
+  void read_glossy(const json& surface, Material& material) {
+    if (!surface.is_object()) return;
+    material.base_color = numbers_of<4>(surface, "diffuseFactor", {1, 1, 1, 1});
+    material.base_color_texture = use(surface, "diffuseTexture", material.name);
+    material.metallic = 0;
+    material.roughness = 1 - std::clamp(number_of(surface, "glossinessFactor", 1), 0.f, 1.f);
+    const bool picture = surface.contains("specularGlossinessTexture");
+    const std::string_view unread =
+        picture ? "specular colour, and the glossiness of its picture," : "specular colour";
+    if (materials_.is_new_fault(fmt::format("glossy {}", picture)))
+      notes_.push_back(fmt::format(
+          "the {} of {} {} left out: of KHR_materials_pbrSpecularGlossiness, the diffuse colour and "
+          "the glossiness factor are read",
+          unread, excerpt(material.name), picture ? "are" : "is"));
+  }
+
   TextureUse use(const json& owner, const char* name, const std::string& material) {
     const auto info = owner.find(name);
     if (info == owner.end()) return {};
