@@ -11,9 +11,10 @@ BakeSurface bake_surface(const Input& low, const BakeLayout& layout) {
   BakeSurface result;
   if (!layout.kind) {
     sdm::BakeAtlas atlas = sdm::bake_atlas(low.mesh, layout.atlas);
+    const bool usable = !low.mesh.corner_uvs.empty() && !atlas.fault.starts_with("its UVs cannot be used");
     if (!atlas.fault.empty())
       result.notes.push_back(fmt::format("{}: {}, so it got an atlas of charts{}", low.file, atlas.fault,
-                                         low.mesh.corner_uvs.empty() ? "" : "; --atlas uv uses them"));
+                                         usable ? "; --atlas uv uses them" : ""));
     result.surface = std::make_unique<sdm::Surface>(std::move(atlas.surface));
     return result;
   }

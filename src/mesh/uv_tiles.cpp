@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <new>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +31,12 @@ std::array<std::int32_t, 2> tile_range(const std::array<Vec2, 3>& uv, int axis) 
   const auto first = static_cast<std::int32_t>(std::floor(lo + kOutside));
   const auto last = static_cast<std::int32_t>(std::ceil(hi - kOutside)) - 1;
   return {first, std::max(first, last)};
+}
+
+// Whether all corners are on the border between two tiles, to either of which the face may belong.
+bool is_on_border(const std::array<Vec2, 3>& uv, int axis) {
+  const auto [lo, hi] = std::minmax({uv[0][axis], uv[1][axis], uv[2][axis]});
+  return std::floor(lo + kOutside) > std::ceil(hi - kOutside) - 1;
 }
 
 // A corner of a piece: its texture coordinates, and its weights of the corners of the face.
@@ -179,14 +186,33 @@ UvTiles uv_tiles(const Mesh& mesh) try {
   check_coordinates(mesh);
   UvTiles result;
   std::map<std::array<std::int32_t, 2>, std::vector<std::uint32_t>> tiles;  // by v, u
+  std::vector<std::uint32_t> on_borders;
   for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
     if (is_removed(mesh.triangles[f])) continue;
     const auto u = tile_range(mesh.corner_uvs[f], 0), v = tile_range(mesh.corner_uvs[f], 1);
     if (u[0] < u[1] || v[0] < v[1])
       result.crossing.push_back(f);
+    else if (is_on_border(mesh.corner_uvs[f], 0) || is_on_border(mesh.corner_uvs[f], 1))
+      on_borders.push_back(f);
     else
       tiles[{v[0], u[0]}].push_back(f);
   }
+  // With the faces of either tile; without any there, as in the unit square or nearest to it.
+  std::set<std::array<std::int32_t, 2>> used;
+  for (const auto& [place, faces] : tiles) used.insert(place);
+  for (const std::uint32_t f : on_borders) {
+    const auto choices = [&](int axis) {
+      const std::int32_t after = tile_range(mesh.corner_uvs[f], axis)[0];
+      if (!is_on_border(mesh.corner_uvs[f], axis)) return std::array{after, after};
+      return after > 0 ? std::array{after - 1, after} : std::array{after, after - 1};
+    };
+    const auto u = choices(0), v = choices(1);
+    std::array<std::int32_t, 2> place{v[0], u[0]};
+    for (int i = 3; i >= 0; --i)
+      if (const std::array other{v[i / 2], u[i % 2]}; used.contains(other)) place = other;
+    tiles[place].push_back(f);
+  }
+  for (auto& [place, faces] : tiles) std::ranges::sort(faces);
   for (auto& [place, faces] : tiles) result.tiles.push_back({place[1], place[0], std::move(faces)});
   return result;
 } catch (const std::bad_alloc&) {

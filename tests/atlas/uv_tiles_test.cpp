@@ -132,6 +132,30 @@ TEST(UvTiles, RoundingCrossesNoBorder) {
   EXPECT_TRUE(uv_tiles(mesh).is_unit_square());
 }
 
+// Regression: a face with all corners at u = 1 was in the tile beside the unit square.
+TEST(UvTiles, FacesOnABorderAreWithTheOthers) {
+  const auto with_face = [](std::array<Vec2, 3> uvs, const Vec2& offset) {
+    Mesh mesh = with_uvs(test::height_field(4), 1, offset);
+    for (Vec2& uv : uvs) uv = uv + offset;
+    mesh.triangles.push_back(mesh.triangles[0]), mesh.corner_uvs.push_back(uvs);
+    return mesh;
+  };
+  constexpr std::array<std::array<Vec2, 3>, 5> kOnBorders{{{{{1, 0}, {1, 0}, {1, 1}}},
+                                                           {{{1, 1}, {1, 1}, {1, 1}}},
+                                                           {{{0, 0}, {0, 1}, {0, 0.5}}},
+                                                           {{{0.2, 1}, {0.8, 1}, {0.3, 1}}},
+                                                           {{{0, 1}, {0, 1}, {0, 1}}}}};
+  for (const auto& uvs : kOnBorders) {
+    EXPECT_TRUE(uv_tiles(with_face(uvs, {0, 0})).is_unit_square());
+    const Mesh mesh = with_face(uvs, {3, 2});
+    const UvTiles tiles = uv_tiles(mesh);
+    ASSERT_EQ(tiles.tiles.size(), 1u);
+    EXPECT_EQ(tiles.tiles[0].u, 3);
+    EXPECT_EQ(tiles.tiles[0].v, 2);
+    EXPECT_EQ(tiles.tiles[0].faces.size(), mesh.triangles.size());
+  }
+}
+
 TEST(UvTiles, ATextureMayRepeatOftenOnFewFaces) {
   Mesh two{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}};
   two.corner_uvs = {{{{0, 0}, {100, 0}, {100, 100}}}, {{{0, 0}, {100, 100}, {0, 100}}}};

@@ -25,6 +25,7 @@
 namespace sdm::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -299,6 +300,12 @@ TEST_F(BakeCommandTest, UvsAreUsedIfTheyAreUsable) {
   nowhere.corner_uvs.assign(nowhere.triangles.size(), {});
   write_text(low, obj_of(nowhere));
   EXPECT_THAT(kind(), HasSubstr("charts[\"" + low + ": its UVs are all the same, so it got an atlas"));
+  // Regression: on the border, it was said to leave the square.
+  Mesh border = with_uvs;
+  border.corner_uvs[0] = {{{1, 0}, {1, 0}, {1, 1}}};
+  write_text(low, obj_of(border));
+  EXPECT_THAT(kind(), AllOf(HasSubstr("face 0 has an area on the surface but none in the texture"),
+                            Not(HasSubstr("leave")), Not(HasSubstr("--atlas uv uses them"))));
   for (std::size_t f = twice.corner_uvs.size() / 2; f < twice.corner_uvs.size(); ++f)
     for (Vec2& uv : twice.corner_uvs[f]) uv[1] -= 0.5;
   write_text(low, obj_of(twice));
