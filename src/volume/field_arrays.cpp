@@ -6,7 +6,9 @@
 #include <atomic>
 #include <limits>
 #include <string>
+#include <vector>
 
+#include "core/cancellation.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "volume/grid.h"
@@ -25,15 +27,27 @@ double diagonal_of_scene(const Grid& grid, const Box& o2) {
   return diagonal(scene);
 }
 
+// As assign(), which for gigabytes takes seconds, with polls: pages are made when they are first written.
+template <class T>
+void fill(std::vector<T>& items, std::size_t count, T value) {
+  constexpr std::size_t kPart = std::size_t{1} << 22;
+  items.clear();
+  items.reserve(count);
+  while (items.size() < count) {
+    poll();
+    items.resize(std::min(items.size() + kPart, count), value);
+  }
+}
+
 void allocate(DistanceField& field, bool with_sites, std::size_t more_bytes_per_point) {
   const std::size_t count = field.grid.size();
   const std::size_t bytes = sizeof(float) + (with_sites ? sizeof(std::uint32_t) + sizeof(SiteType) : 0);
   static_assert(sizeof(float) + 2 * sizeof(std::uint32_t) + sizeof(SiteType) < 16);  // for up to 2^60 points
   require_memory(count * (bytes + more_bytes_per_point), name_of(field.grid));
-  field.distance.assign(count, std::numeric_limits<float>::quiet_NaN());
+  fill(field.distance, count, std::numeric_limits<float>::quiet_NaN());
   if (with_sites) {
-    field.site.assign(count, kNone);
-    field.site_type.assign(count, SiteType::none);
+    fill(field.site, count, kNone);
+    fill(field.site_type, count, SiteType::none);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/cancellation.h"
 #include "core/parallel.h"
 #include "geometry/spatial_order.h"
 #include "query/closest/blocks.h"
@@ -113,7 +114,9 @@ class NearBalls {
 std::vector<std::size_t> near_bricks(const Bricks& bricks, const Grid& grid, const NearBalls& near_balls) {
   std::vector<Ball> balls(bricks.total());
   std::vector<Vec3> centres(bricks.total());
+  Poll poll(1 << 12);
   for (std::size_t b = 0; b < balls.size(); ++b) {
+    poll();
     balls[b] = ball_of(grid, bricks.first_point(b), bricks.size);
     centres[b] = balls[b].centre;
   }

@@ -173,6 +173,18 @@ TEST_P(Cancellation, EndsTheCallSoon) {
   }
 }
 
+// Regression: filling the arrays of a large field took seconds without a poll.
+TEST(Cancellation, EndsAFieldSoonWhileItsMemoryIsMade) {
+  const Sites sites(test::cube());
+  std::atomic<bool> flag{false};
+  Timer timer(flag, 0.02);
+  const CancelScope scope(flag);
+  EXPECT_THROW((void)compute_field(sites, make_grid(bounds(sites.mesh()), {700, 700, 700})), Cancelled);
+  const double end = cpu_seconds();
+  timer.stop();
+  EXPECT_LT(end - timer.set_at, 0.2);
+}
+
 TEST(CancelScope, TheInnermostOneApplies) {
   const std::atomic<bool> set{true}, never{false};
   const auto work = [] { parallel_for(100, 1, [](std::size_t, std::size_t) {}); };
