@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "group_tolerances.h"
+#include "open_text.h"
 #include "option_checks.h"
-#include "src/io/file/input_files.h"
 
 namespace {
 
@@ -122,10 +122,7 @@ sdm::AlignRegion region_of(const AlignCommand& command, const Input& o2) {
 
 sdm::Transform read_321(const std::string& file) {
   constexpr std::size_t kRows = 6;
-  sdm::io::note_input(file);
-  std::ifstream in(file);
-  if (!in || std::filesystem::is_directory(file))
-    throw sdm::Error(file + ": there is no such file, or it cannot be read");
+  std::ifstream in = open_text(file);
   std::vector<sdm::Vec3> points, places;
   std::string line;
   for (int row = 1; std::getline(in, line) && points.size() <= kRows; ++row) {

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include "open_text.h"
 #include "option_checks.h"
-#include "src/io/file/input_files.h"
 
 namespace {
 
@@ -45,13 +45,7 @@ sdm::Transform pose_of(const std::vector<double>& numbers) {
 }  // namespace
 
 std::vector<sdm::Transform> read_poses(const std::filesystem::path& file, std::size_t count) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error))
-    throw sdm::Error(fmt::format("{}: there is no such file", file.string()));
-  sdm::io::note_input(file);
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file, error))
-    throw sdm::Error(fmt::format("{}: cannot be read", file.string()));
+  std::ifstream stream = open_text(file);
   std::vector<sdm::Transform> poses;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) try {

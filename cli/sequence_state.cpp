@@ -82,6 +82,7 @@ void SequenceState::write(const std::filesystem::path& file) const {
 }
 
 SequenceState SequenceState::read(const std::filesystem::path& file) try {
+  if (!std::filesystem::is_regular_file(file)) throw sdm::Error("it is not a regular file");
   std::ifstream in(file, std::ios::binary);
   std::string line;
   std::getline(in, line);

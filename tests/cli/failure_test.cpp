@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -53,6 +54,23 @@ TEST_F(Failure, BadInputIsNamed) {
   }
   expect_failure(run_sdm({"map", o1, folder / "missing.obj", "-o", out}), "missing.obj");
   expect_failure(run_sdm({"map", o1, folder.path(), "-o", out}), folder.path());
+}
+
+// Regression: reading a pipe waited for a writer, and /dev/zero was read until memory ended.
+TEST_F(Failure, PipesAndDevicesAreRefusedAtOnce) {
+  const std::string pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  before = names_in(folder.path());
+  for (const std::string& file : {pipe, std::string("/dev/zero")})
+    for (const std::vector<std::string>& command : {map({"--tolerance-table", file}),
+                                                    map({"--align-321", file}),
+                                                    map({"--transform-o1", "matrix:" + file}),
+                                                    {"points", file, o2, "-o", out},
+                                                    {"bodies", o1, o2, "--poses", file, "-o", out}}) {
+      const Outcome run = run_sdm(command, {.memory = std::uint64_t{1} << 30, .kill_after_ms = 60'000});
+      SCOPED_TRACE(command[0]);
+      expect_failure(run, file + ": this is not a regular file", run.code == 2 ? 2 : 1);
+    }
 }
 
 // Models of a few hundred bytes that declare, or name a hundred times, more than the memory that there is.

@@ -10,6 +10,9 @@
 #include <system_error>
 #include <vector>
 
+#include "io/file/error_prefix.h"
+#include "io/file/file_bytes.h"
+
 namespace sdm {
 
 void io::add_file(core::Checksum& checksum, const std::filesystem::path& file) {
@@ -17,6 +20,7 @@ void io::add_file(core::Checksum& checksum, const std::filesystem::path& file) {
     return Error(
         fmt::format("{}: cannot be {}: {}", file.string(), what, std::generic_category().message(errno)));
   };
+  with_error_prefix(file.string(), [&] { require_regular_file(file, "data"); });
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw failed("opened");

@@ -14,7 +14,7 @@
 #include "core/excerpt.h"
 #include "core/parse_number.h"
 #include "core/printable.h"
-#include "io/file/input_files.h"
+#include "io/file/file_bytes.h"
 
 namespace sdm {
 namespace {
@@ -29,6 +29,10 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t\r");
   return begin == std::string_view::npos ? ""
                                          : text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
+}
+
+char in_lower_case(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
 std::vector<std::string> fields_of(std::string_view line, char separator) {
@@ -80,8 +84,9 @@ std::vector<GroupTolerance> table_in_csv(std::string_view text) {
     if (row.empty()) continue;
     if (separator == 0) {
       separator = row.find(';') == std::string_view::npos ? ',' : ';';
-      if (fields_of(row, separator) != std::vector<std::string>{"group", "lower", "upper"})
-        throw Error(kTableNeeded);
+      std::vector<std::string> header = fields_of(row, separator);
+      for (std::string& field : header) std::ranges::transform(field, field.begin(), in_lower_case);
+      if (header != std::vector<std::string>{"group", "lower", "upper"}) throw Error(kTableNeeded);
       continue;
     }
     const std::vector<std::string> fields = fields_of(row, separator);
@@ -119,11 +124,10 @@ std::vector<GroupTolerance> table_in_json(std::string_view text) {
 }  // namespace
 
 std::vector<GroupTolerance> read_tolerance_table(const std::filesystem::path& file) try {
-  if (std::filesystem::is_directory(file)) throw Error("is a folder");
-  io::note_input(file);
+  io::require_regular_file(file, "table");
   std::ifstream in(file, std::ios::binary);
+  if (!in) throw Error("cannot be opened");
   std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (in.fail() && text.empty()) throw Error("cannot be read");
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the UTF-8 byte order mark
   if (text.find('\0') != std::string::npos) throw Error("is not text: it has a byte 0");
   const std::size_t first = text.find_first_not_of(" \t\r\n");

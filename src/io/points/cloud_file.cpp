@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "io/file/encodings.h"
-#include "io/file/input_files.h"
+#include "io/file/file_bytes.h"
 #include "io/mesh/read_polygons.h"
 #include "io/points/binary_rows.h"
 #include "io/points/cloud_layout.h"
@@ -24,13 +24,7 @@ namespace sdm::io {
 namespace {
 
 std::uint64_t open(std::ifstream& stream, const std::filesystem::path& file) {
-  std::error_code error;
-  const auto type = std::filesystem::status(file, error).type();
-  if (type == std::filesystem::file_type::not_found) throw Error("there is no such file");
-  if (type == std::filesystem::file_type::directory) throw Error("this is a folder, not a point cloud");
-  if (error) throw Error(fmt::format("cannot be read: {}", error.message()));
-  if (type != std::filesystem::file_type::regular) throw Error("this is not a regular file");
-  note_input(file);
+  require_regular_file(file, "point cloud");
   errno = 0;
   stream.open(file, std::ios::binary);
   if (!stream) throw Error(fmt::format("cannot be opened: {}", std::strerror(errno)));
