@@ -2,18 +2,13 @@
 
 #include <sdm/error.h>
 
-#include <string>
+#include "src/io/file/file_bytes.h"
 
-namespace fs = std::filesystem;
-
-std::ifstream open_text(const fs::path& file) {
-  const auto fail = [&](const char* fault) { throw sdm::Error(file.string() + ": " + fault); };
-  std::error_code error;
-  const fs::file_type type = fs::status(file, error).type();
-  if (type == fs::file_type::not_found) fail("there is no such file");
-  if (type == fs::file_type::directory) fail("this is a folder, not a text file");
-  if (type != fs::file_type::regular) fail("this is not a regular file");
+std::ifstream open_text(const std::filesystem::path& file) try {
+  sdm::io::require_regular_file(file, "text");
   std::ifstream stream(file);
-  if (!stream) fail("cannot be opened");
+  if (!stream) throw sdm::Error("cannot be opened");
   return stream;
+} catch (const sdm::Error& error) {
+  throw sdm::Error(file.string() + ": " + error.what());
 }
