@@ -295,6 +295,7 @@ export class WorkerSites extends Remote {
   refit(positions: Points, options?: CallOptions): Promise<void> {
     return this.call('refit', [positions], options);
   }
+  /** As of Sites, with the same errors. */
   closestPoints(points: Points, options?: { maxDistance?: number } & CallOptions): Promise<ClosestPoints> {
     return this.call('closestPoints', [points], options);
   }

@@ -124,7 +124,11 @@ export class Sites extends Owned {
     this.module.call('sdm_refit_sites', [this.handle, at, at.length / 3]);
   }
 
-  /** The closest point to each point, exactly. */
+  /**
+   * The closest point to each point. Of fewer than 8,192 points, to rounding in double precision, and each as if it were alone; of
+   * more, where they lie close together, the distance may be larger than the least one by at most 10⁻⁶ of the diagonal of the mesh
+   * and the points, and depends on the others by as much.
+   */
   closestPoints(points: Points, options: { maxDistance?: number; progress?: Progress } = {}): ClosestPoints {
     const at = coordinates(points, 'points');
     const [found, distances, faces, barycentric] = this.module.call(
@@ -132,7 +136,7 @@ export class Sites extends Owned {
     return { points: float64(found!), distances: float64(distances!), faces: uint32(faces!), barycentric: float64(barycentric!) };
   }
 
-  /** Distances that are negative inside. Of an open mesh, `automatic` gives none a sign. */
+  /** Distances that are negative inside, of closestPoints(). Of an open mesh, `automatic` gives none a sign. */
   signedDistance(points: Points, options: { sign?: SignMethod; progress?: Progress } = {}): SignedDistances {
     const at = coordinates(points, 'points');
     const method = wordNumber(kSignMethods, options.sign ?? 'automatic', 'sign');

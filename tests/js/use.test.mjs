@@ -92,6 +92,23 @@ test('arguments of another kind are errors that name them, and leave the module 
   assert.ok(surface instanceof full.Surface && !(sites instanceof full.Surface));
 });
 
+test('closest points of many points are as close as promised, and of few as if each were alone', () => {
+  const at = [-0.5, 0.5], vertices = at.flatMap((z) => at.flatMap((y) => at.map((x) => [x, y, z])));
+  const faces = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
+  const sites = new sdm.Sites(faces.flatMap((v) => vertices[v]));  // not welded
+  let seed = 18;
+  const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647 - 0.5;
+  const points = Array.from({ length: 60000 }, () => 35 * random());
+  const exact = (k) => Math.hypot(...[0, 1, 2].map((i) => Math.max(0, Math.abs(points[3 * k + i]) - 0.5)));
+  const { distances } = sites.closestPoints(points), few = sites.closestPoints(points.slice(0, 3 * 8191)).distances;
+  for (let k = 0; k < 20000; ++k) {
+    if (exact(k) === 0) continue;  // inside
+    assert.ok(distances[k] >= exact(k) - 1e-12 && distances[k] <= exact(k) + 1e-6 * 35 * Math.sqrt(3), `point ${k}: ${distances[k]}`);
+    if (k < 8191) assert.ok(Math.abs(few[k] - exact(k)) < 1e-12, `point ${k} of few: ${few[k]}`);
+  }
+  for (let k = 0; k < 8191; k += 97) assert.equal(sites.closestPoints(points.slice(3 * k, 3 * k + 3)).distances[0], few[k]);
+});
+
 test('a callback sees progress, and cancels', () => {
   const { positions, indices } = ball(30), sites = new sdm.Sites(positions, indices);
   const surface = new sdm.Surface(positions, indices, { resolution: 256 });
