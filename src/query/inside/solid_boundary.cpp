@@ -21,7 +21,7 @@ constexpr double kFlat = 1e-7, kBeside = 1e-6;
 constexpr double kThin = 1e-5, kThinnest = 1e-9;
 // A piece that more planes cut is divided into smaller ones first, unless its sides are shorter than kFinest;
 // one that more than kMostCuts cut is not divided.
-constexpr std::size_t kFewCuts = 6, kMostCuts = 64;
+constexpr std::size_t kFewCuts = 6, kMostCuts = 24;
 constexpr double kFinest = 2e-3;
 constexpr std::size_t kGrain = 256;
 // The work of dividing, in comparisons of two triangles, that a volume has for each face: far more than where
@@ -412,21 +412,24 @@ class SolidBoundary::VolumeSum {
   }
   // `within`: kNone for a whole face.
   void add(const Piece& piece, std::uint32_t number, std::uint32_t within) {
+    if (piece.sides == Sides::buried || repeats_earlier_face(piece, within)) return;
     const auto& [a, b, c] = piece.at;
     const double flux = dot(a, cross(b, c)) * (boundary_.solid_.inverted[piece.face] ? -1 : 1);
     if (piece.sides == Sides::unknown && !boundary_.solid_.sliver[piece.face]) {
       open_.push_back({std::abs(flux), piece, number, within});
       std::ranges::push_heap(open_, {}, &Open::size);
     } else if (piece.sides == Sides::boundary || piece.sides == Sides::reversed) {
-      if (boundary_.sides_[piece.face] == Sides::mixed) {
-        const std::span<const std::uint32_t> near = near_of(piece.face, within);
-        work_left_ -= std::min(work_left_, near.size());
-        if (boundary_.repeats_earlier_face(piece, near)) return;
-      }
       sure += piece.sides == Sides::boundary ? flux : -flux;
-    } else if (piece.sides != Sides::buried) {
+    } else {
       unsure += std::abs(flux);
     }
+  }
+  // What lies in an earlier face counts there, whatever its sides are.
+  bool repeats_earlier_face(const Piece& piece, std::uint32_t within) {
+    if (boundary_.sides_[piece.face] != Sides::mixed) return false;
+    const std::span<const std::uint32_t> near = near_of(piece.face, within);
+    work_left_ -= std::min(work_left_, near.size());
+    return boundary_.repeats_earlier_face(piece, near);
   }
 
   const SolidBoundary& boundary_;
