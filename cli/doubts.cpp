@@ -14,7 +14,7 @@ void add_accept_doubts(CLI::App& app, bool& accept, const char* what) {
 }
 
 void add_doubt_options(CLI::App& app, DoubtCommand& command) {
-  add_accept_doubts(app, command.accept, "units, the alignment or the coverage leave a doubt");
+  add_accept_doubts(app, command.accept, "units, the alignment, the coverage or thin walls leave a doubt");
   CLI::Option* least = app.add_option("--min-coverage", command.min_coverage,
                                       "Measure which fraction of O2's area has a measured point near it (by "
                                       "--reach D) and doubt a PASS if "

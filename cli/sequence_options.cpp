@@ -21,7 +21,7 @@ void add_output_options(CLI::App& app, SequenceCommand& c) {
   app.add_flag("--both", c.both,
                "Also measure O2: its distances to O1, maps NNNN_o2 with --maps, colours in the player");
   add_tolerance_option(app, c.picture.tolerance);
-  add_accept_doubts(app, c.accept_doubts, "O1 seems to be in another unit");
+  add_accept_doubts(app, c.accept_doubts, "the unit of O1 or thin walls leave a doubt");
   add_color_options(app, c.picture);
   add_up_option(app, c.picture.up, "player.html and animation.glb");
   app.add_option("--maps", c.outputs.maps_every, "Write the map of O1 of every K-th frame, as EXR and PNG")
