@@ -123,11 +123,16 @@ TEST_P(ThinWalls, ShowDentsOfTheirOwnSkin) {
   EXPECT_EQ(Json::parse(good.out)["tolerance"]["certified"], true) << "between the texels too";
 }
 
-// What --facing is for: below the middle of the wall, the closest point is of the other skin.
-TEST_F(Dents, AreHiddenWithoutFacing) {
+// Below the middle of the wall, the closest point is of the other skin: distances do not show the dent, but
+// the verdict is by the faces that face the same way.
+TEST_F(Dents, AreJudgedWithoutFacing) {
   const Outcome run = judge(1, 0.79, {});
-  EXPECT_EQ(run.code, 0) << run.err;
-  EXPECT_GE(Json::parse(run.out)["extremes"]["min"]["distance"], -0.5);
+  EXPECT_EQ(run.code, 3) << run.out << run.err;
+  const Json report = Json::parse(run.out);
+  EXPECT_GE(report["extremes"]["min"]["distance"], -0.5);
+  EXPECT_EQ(report["tolerance"]["by_facing"], true);
+  EXPECT_LT(report["tolerance"]["proof"]["witness"]["distance"], -0.6);
+  EXPECT_EQ(judge(1, 0.5, {}).code, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Thickness, ThinWalls, ::testing::Values(0.5, 1.0, 2.0, 3.0));
