@@ -54,7 +54,7 @@ Json measure(const SelfCommand& command, const Input& input, double import_ms,
                                               .max_distance = command.self.max_distance,
                                               .colormap = command.picture.colormap,
                                               .range = command.picture.range});
-  summary.notes = input.notes;
+  summary.notes.insert(summary.notes.begin(), input.notes.begin(), input.notes.end());
   if (auto note = note_on_unit(command.picture.units)) summary.notes.push_back(std::move(*note));
   const sdm::PictureOptions fixed = sdm::fixed_colors(command.picture, *summary.colors);
   sdm::run_concurrently({[&] {

@@ -85,15 +85,16 @@ std::array<sdm::AtlasOptions, 2> layouts(const SequenceCommand& command, const C
 }
 
 std::string sequence_summary(const SequenceCommand& command, const FrameLoop& loop,
-                             const SequenceFiles& files, const Notes& notes) {
+                             const SequenceFiles& files) {
   constexpr std::size_t kColumn = 13;
   const std::optional<sdm::Verdict> verdict = command.picture.tolerance && !loop.frames().empty()
                                                   ? std::optional(verdict_of(loop.frames()))
                                                   : std::nullopt;
   return fmt::format("{}{}{}  results    {}/: {}\n{}",
                      heading(fmt::format("{}, {}", command.pair.o1, command.pair.o2), verdict),
-                     summary(loop.frames(), loop.bad(), command.pair.units), note_lines(notes, kColumn),
-                     command.out.string(), files.listed(), note_lines(files.notes(), kColumn));
+                     summary(loop.frames(), loop.bad(), command.pair.units),
+                     note_lines(loop.notes(), kColumn), command.out.string(), files.listed(),
+                     note_lines(files.notes(), kColumn));
 }
 
 /// Throws Interrupted or sdm::Error, with what remains, unless all frames were computed.
@@ -129,15 +130,15 @@ int run(SequenceCommand command) {
   const std::size_t count = common_frames(bodies[0], bodies[1]);
   const auto engine = make_engine(command.engine, {}, command.atlas);
   const std::array<sdm::Mesh, 2> first{bodies[0].mesh(), bodies[1].mesh()};
-  const Notes notes = notes_on_bodies(command, bodies, first);
+  Notes notes = notes_on_bodies(command, bodies, first);
   checkpoint.begin({hash_of(first[0]), hash_of(first[1])}, {command.pair.o1, command.pair.o2}, count);
   choose_colors(command, count, progress);
   SequenceFiles files(command, out, first);
   if (command.outputs.player) files.set_checksums({bodies[0].xxh3(), bodies[1].xxh3()});
   const std::array<sdm::AtlasOptions, 2> atlases = layouts(command, checkpoint, count, progress);
   checkpoint.set_resolution(atlases[0].resolution);
-  FrameLoop loop(command, {std::move(bodies), count, atlases, {.engine = engine}, notes}, checkpoint, files,
-                 progress);
+  FrameLoop loop(command, {std::move(bodies), count, atlases, {.engine = engine}, std::move(notes)},
+                 checkpoint, files, progress);
 
   auto end = FrameLoop::End::complete;
   std::optional<Interrupts::Protected> keeping;  // the frames that an interrupt leaves finished
@@ -150,7 +151,7 @@ int run(SequenceCommand command) {
       [&] {
         if (loop.complete()) out.remove_earlier(SequenceState::kFile);
       });
-  if (!command.pair.json && !command.pair.quiet) std::cout << sequence_summary(command, loop, files, notes);
+  if (!command.pair.json && !command.pair.quiet) std::cout << sequence_summary(command, loop, files);
   check_end(end, loop, checkpoint.finished(), count, command.out.string());
   return exit_code(verdict_of(loop.frames()));
 }

@@ -42,11 +42,13 @@ class FrameLoop {
   void write(const std::filesystem::path& folder);
 
   [[nodiscard]] bool complete() const { return checkpoint_.finished() == count_; }
+  [[nodiscard]] const Notes& notes() const { return notes_; }
   [[nodiscard]] const std::vector<Frame>& frames() const { return frames_; }
   [[nodiscard]] const std::vector<BadFrame>& bad() const { return bad_; }
 
  private:
   void repeat(std::size_t index);
+  void note_surfaces();
   void adopt_finished();
   [[nodiscard]] bool use(std::size_t index);
   [[nodiscard]] bool skip(std::size_t index, const std::string& fault);

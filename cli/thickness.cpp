@@ -172,7 +172,7 @@ ThicknessResult measure(ThicknessCommand& command, const Input& input, double im
       sdm::summarize_thickness(surface, other, {.accuracy = command.picture.accuracy});
   options.distance = &distance;
   ThicknessResult result{sdm::summarize_thickness(surface, map, options), {}};
-  result.summary.notes = input.notes;
+  result.summary.notes.insert(result.summary.notes.begin(), input.notes.begin(), input.notes.end());
   if (auto note = note_on_unit(command.picture.units)) result.summary.notes.push_back(std::move(*note));
   sdm::PictureOptions picture = sdm::fixed_colors(command.picture, *result.summary.colors);
   if (const auto verdict = judged(result.summary, {})) picture.verdict.emplace(*verdict);

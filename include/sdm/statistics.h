@@ -55,6 +55,10 @@ struct Extremes {
 [[nodiscard]] SDM_API double area_fraction_beyond(const Surface& surface, const DistanceMap& map,
                                                   double limit);
 
+/// Returns the fraction of the area of the surface, in [0, 1], that lies in faces without a texel: statistics
+/// of its maps, and fractions of their areas, leave it out. Cost: linear in texels and faces.
+[[nodiscard]] SDM_API double area_fraction_without_texels(const Surface& surface);
+
 /// The distances between two numbers, and the fraction of the area that has them.
 struct DistanceBand {
   double lo = 0, hi = 0;  ///< −∞ for the first band of a table, ∞ for the last

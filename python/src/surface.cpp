@@ -186,6 +186,10 @@ centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")
           "utilisation", [](const PySurface& self) { return self.surface.utilisation(); },
           "The fraction of texels that a face owns.")
       .def_prop_ro(
+          "area_fraction_without_texels",
+          [](const PySurface& self) { return area_fraction_without_texels(self.surface); },
+          "The fraction of the area that lies in faces without a texel, which statistics leave out.")
+      .def_prop_ro(
           "max_stretch", [](const PySurface& self) { return self.surface.max_stretch(); },
           "The largest factor by which a length grows from atlas to surface, for the first shape.");
 }

@@ -1,3 +1,4 @@
+#include <sdm/statistics.h>
 #include <sdm/summary.h>
 #include <sdm/thickness.h>
 
@@ -85,6 +86,15 @@ std::optional<std::string> note_on_walls(const Sites& sites, const std::optional
   for (std::size_t row = 0; row < table.size(); ++row)
     if (!named[row].faces.empty()) add(table[row].tolerance);
   return largest < 0 ? std::nullopt : note_on_walls(sites, Tolerance(largest), units);
+}
+
+std::optional<std::string> note_on_texels(const Surface& surface) {
+  constexpr double kLeastShare = 1e-3;
+  const double share = area_fraction_without_texels(surface);
+  if (!(share > kLeastShare)) return std::nullopt;
+  return text_of(100 * share, 2) +
+         " % of the area lies in faces without a texel, which mean, rms, percentiles and shares of the area "
+         "leave out (a higher --resolution includes them)";
 }
 
 std::optional<std::string> note_on_directions(const Mesh& surface, double facing, const std::string& units) {

@@ -45,6 +45,7 @@ std::vector<std::string> notes_of(const Surface& surface, const Sites& sites, co
     notes.emplace_back("no face of O2 faces as the surface does; are both oriented outwards?");
   else if (summary.distance.texels == 0)
     notes.emplace_back("no texel is within the maximum distance; the map is empty");
+  if (auto note = note_on_texels(surface)) notes.push_back(std::move(*note));
   if (summary.measured.facing && summary.measured.kind == DistanceKind::facing)
     if (auto note = note_on_directions(surface.mesh(), *summary.measured.facing, options.units))
       notes.push_back(std::move(*note));
@@ -184,6 +185,7 @@ Summary summarize_self(const Surface& surface, const DistanceMap& map, const Sum
                  .max_distance = options.max_distance};
   result.colors = colors_of(options, result.distance);
   result.places = places_of(surface, map, {}, result.distance, options);
+  if (auto note = note_on_texels(surface)) result.notes.push_back(std::move(*note));
   return result;
 }
 

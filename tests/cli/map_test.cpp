@@ -150,6 +150,28 @@ TEST_F(MapCommand, UdimTilesHaveAMapEach) {
   EXPECT_EQ(names_in(out), kResults) << "the tiles of the earlier run are removed";
 }
 
+// Statistics leave faces without a texel out: all outputs say how much that is.
+TEST_F(MapCommand, NotesTheAreaWithoutTexels) {
+  o1 = write_obj(folder / "fine.obj", sphere(4));
+  const std::string note = " % of the area lies in faces without a texel";
+  const Outcome coarse = run_sdm(map({"--resolution", "32"}));
+  ASSERT_EQ(coarse.code, 0) << coarse.err;
+  EXPECT_THAT(coarse.out, HasSubstr(note));
+  const Json report = Json::parse(contents(out + "/report.json"));
+  EXPECT_THAT(report["notes"].dump(), HasSubstr(note));
+  if (can_write_html()) {
+    EXPECT_THAT(contents(out + "/report.html"), HasSubstr(note));
+  }
+  const double share = report["atlas"]["area_fraction_without_texels"];
+  EXPECT_EQ(share, area_fraction_without_texels(Surface(read_mesh(o1), {.resolution = 32})));
+  EXPECT_GT(share, 0.1);
+  EXPECT_THAT(run_sdm(map({"--resolution", "512"})).out, Not(HasSubstr(note)));
+  for (const std::string command : {"self", "thickness"}) {
+    const Outcome run = run_sdm({command, o1, "-o", folder / command, "--resolution", "32", "--json"});
+    EXPECT_THAT(Json::parse(run.out)["notes"].dump(), HasSubstr(note)) << command << run.err;
+  }
+}
+
 // The numbers of all tiles are those of one map of the whole mesh with the same texels.
 TEST_F(MapCommand, TotalsOfUdimTilesAreThoseOfAllTexels) {
   o2 = write_obj(folder / "cube.obj", moved(cube(0.4), {0.2, 0.3, 0.1}));

@@ -3,6 +3,7 @@
 #include <sdm/error.h>
 #include <sdm/part_statistics.h>
 #include <sdm/statistics.h>
+#include <sdm/summary.h>
 #include <sdm/tolerance.h>
 
 #include <algorithm>
@@ -81,6 +82,37 @@ void expect_as_naive(const DistanceStatistics& found, const Naive& expected) {
 
 void expect_as_naive(const Surface& surface, const DistanceMap& map) {
   expect_as_naive(statistics(surface, map), naive(surface, map));
+}
+
+// Faces smaller than a texel mostly have none.
+TEST(Statistics, KnowTheAreaWithoutTexels) {
+  const Mesh mesh = sphere(5);
+  for (const std::uint32_t resolution : {64u, 1024u}) {
+    const Surface surface(mesh, {.resolution = resolution});
+    std::vector<std::uint8_t> has_texel(mesh.triangles.size());
+    for (const std::uint32_t face : surface.texel_faces())
+      if (face != kNone) has_texel[face] = 1;
+    double without = 0, all = 0;
+    for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+      const auto [a, b, c] = surface.atlas_corners(f);
+      const double texels = std::abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+      const double area = texel_area(surface, f) * texels;
+      all += area, without += has_texel[f] == 0 ? area : 0;
+    }
+    const double share = area_fraction_without_texels(surface);
+    EXPECT_NEAR(share, without / all, 1e-9);
+    const std::optional<std::string> note = note_on_texels(surface);
+    EXPECT_EQ(note.has_value(), resolution == 64);
+    if (resolution == 64) {
+      EXPECT_GT(share, 0.2);
+      ASSERT_TRUE(note);
+      EXPECT_EQ(std::stod(*note), std::round(100 * share)) << *note;
+      EXPECT_EQ(summarize_self(surface, map_of(surface, [](const Vec3& p) { return p[0]; })).notes,
+                std::vector{*note});
+    } else {
+      EXPECT_EQ(share, 0);
+    }
+  }
 }
 
 // Faces of different stretch, so that weights matter.

@@ -62,7 +62,8 @@ Json to_json(const Surface& surface) {
           {"utilisation", surface.utilisation()},
           {"max_stretch", surface.max_stretch()},
           {"gutter", surface.gutter()},
-          {"overlapping_texels", surface.overlapping_texels()}};
+          {"overlapping_texels", surface.overlapping_texels()},
+          {"area_fraction_without_texels", area_fraction_without_texels(surface)}};
 }
 
 Json to_json(const DistanceStatistics& d) {

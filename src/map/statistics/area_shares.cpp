@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "geometry/triangle.h"
+#include "geometry/vec.h"
 #include "map/statistics/tolerance_limits.h"
 #include "map/statistics/weighted_texels.h"
 
@@ -50,6 +52,21 @@ void check_increasing(std::span<const double> edges) {
 
 double area_fraction_beyond(const Surface& surface, const DistanceMap& map, double limit) {
   return shares(surface, map, 2, [limit](float d) { return std::abs(d) <= limit ? 0u : 1u; })[1];
+}
+
+double area_fraction_without_texels(const Surface& surface) {
+  const std::span<const std::uint32_t> owners = surface.texel_faces();
+  std::vector<std::uint8_t> has_texel(surface.mesh().triangles.size());
+  for (const std::uint32_t texel : surface.sample_texels()) has_texel[owners[texel]] = 1;
+  double without = 0, all = 0;
+  for (std::size_t face = 0; face < has_texel.size(); ++face) {
+    if (is_removed(surface.mesh().triangles[face])) continue;
+    const auto [a, b, c] = corners_of(surface.mesh(), face);
+    const double area = norm(cross(b - a, c - a));
+    all += area;
+    if (has_texel[face] == 0) without += area;
+  }
+  return all > 0 ? without / all : 0;
 }
 
 ToleranceShares tolerance_shares(const Surface& surface, const DistanceMap& map, const Tolerance& tolerance,
