@@ -207,7 +207,8 @@ void add_metrics_command(CLI::App& app) {
   metrics
       ->add_option("--precision", c.options.precision,
                    "Bounds of distances at most EPS apart, in units of the meshes; by default 0.2 % of their "
-                   "value; 2e-5 of the diagonal of both at least")
+                   "value, or up to 3 % where that is less than 2e-5 of the diagonal of both; 1e-7 of it at "
+                   "least")
       ->check(positive_number())
       ->type_name("EPS");
   metrics

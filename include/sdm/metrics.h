@@ -22,10 +22,11 @@ namespace sdm {
 struct MetricsOptions {
   std::vector<double> percentiles{95};  ///< in per cent, above 0 and below 100
   std::vector<double> tolerances{};     ///< distances ≥ 0, in units of the meshes
-  /// Bounds of average distances and percentiles are at most this far apart, by default kRelative of their
-  /// value; > 0, in units of the meshes. At least kLeast of the diagonal of the box of both meshes is used,
-  /// as distances are found in single precision. Also that of the Hausdorff distance, for which
-  /// HausdorffOptions::kPrecision of the diagonal is used if that is less, and no least one.
+  /// Bounds of average distances and percentiles are at most this far apart; > 0, in units of the meshes. By
+  /// default kRelative of their value or, where surfaces are so close that this is less than kNear of the
+  /// diagonal of the box of both, that, but no more than kOfNear of the value. kLeast of the diagonal at
+  /// least. Also that of the Hausdorff distance, for which HausdorffOptions::kPrecision of the diagonal is
+  /// used if that is less, and no least one.
   std::optional<double> precision{};
   double fraction_precision = 1e-3;  ///< of fractions of the area; > 0
   /// Parts that a surface is divided into, at most, beside its faces: then the bounds stay farther apart.
@@ -33,7 +34,7 @@ struct MetricsOptions {
   std::size_t most_parts = 4'000'000;
   Progress progress{};
 
-  static constexpr double kRelative = 2e-3, kLeast = 2e-5, kRounding = 1e-6;
+  static constexpr double kRelative = 2e-3, kNear = 2e-5, kOfNear = 0.03, kLeast = 1e-7, kRounding = 1e-6;
 };
 
 /// Distances from a surface A to a surface B: from each point p of A to the closest point of B, d(p),

@@ -132,8 +132,9 @@ def surface_metrics(
     a, b: any form of a mesh (see Mesh), also without faces as a pair of arrays, or Sites. b is the truth for 'precision(T)' and 'recall(T)'.
     tolerances: distances T ≥ 0, for 'nsd(T)' (surface Dice), 'precision(T)', 'recall(T)' and 'f_score(T)'.
     percentiles: above 0 and below 100, for 'hdP'.
-    precision: bounds of distances are at most this far apart, in units of the meshes; None: 0.2 % of their value. 2e-5
-    of the diagonal of the box of both at least; for 'hd' as close as given, and 1e-6 of the diagonal at most.
+    precision: bounds of distances are at most this far apart, in units of the meshes; None: 0.2 % of their
+    value, or up to 3 % where that is less than 2e-5 of the diagonal of the box of both. 1e-7 of that diagonal at least;
+    for 'hd' as close as given, and 1e-6 of the diagonal at most.
     fraction_precision: the same for fractions of the area.
     progress: called as progress(step, fraction), on this thread; False cancels.
 

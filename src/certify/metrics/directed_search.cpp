@@ -122,7 +122,7 @@ double DirectedSearch::Steps::at(std::size_t i) const {
 }
 
 void DirectedSearch::Steps::add(const Part& part) {
-  const auto add_to = [&](std::vector<CompensatedSum>& below, const Linear& bound) {
+  const auto add_to = [&](std::vector<CompensatedSum>& below, const TwoSided& bound) {
     const double width = bounds.upper - bounds.lower;
     const double step = (bound.least() - bounds.lower) / width * kSteps;
     // The first step that may have a part of it; where all of it is below, the next ones have it too.
@@ -172,7 +172,7 @@ void DirectedSearch::make_parts() {
 // All sums are in the order of the parts, whatever the number of threads.
 void DirectedSearch::add_means(const std::vector<Part>& parts, Means& means) {
   for (const Part& part : parts) {
-    const Linear low = part.lower(), high = part.upper();
+    const TwoSided low = part.lower(), high = part.upper();
     means.largest = std::max(means.largest, high.largest());
     means.low += part.area * low.mean(), means.high += part.area * high.mean();
     means.square_low += part.area * low.mean_square(), means.square_high += part.area * high.mean_square();
@@ -219,8 +219,10 @@ BoundedNumber DirectedSearch::within(std::size_t tolerance) const {
 }
 
 double DirectedSearch::width(const BoundedNumber& number) const {
-  return std::max(options_.precision.value_or(MetricsOptions::kRelative * number.lower),
-                  MetricsOptions::kLeast * scale_.size);
+  using O = MetricsOptions;
+  const double usual =
+      std::max(O::kRelative * number.lower, std::min(O::kOfNear * number.lower, O::kNear * scale_.size));
+  return std::max(options_.precision.value_or(usual), O::kLeast * scale_.size);
 }
 
 BoundedNumber DirectedSearch::percentile(std::size_t number) const {
@@ -246,9 +248,9 @@ BoundedNumber DirectedSearch::percentile(const Steps& steps, double least, doubl
   return between(lower, upper);
 }
 
-double DirectedSearch::quantile(double fraction, Linear (Part::*bound)() const) const {
+double DirectedSearch::quantile(double fraction, TwoSided (Part::*bound)() const) const {
   struct Piece {
-    Linear bound;
+    TwoSided bound;
     double area;
   };
   std::vector<Piece> open;
@@ -312,14 +314,14 @@ DirectedSearch::Chosen DirectedSearch::choose() const {
   };
   if (const double found = sums_.mean.upper - sums_.mean.lower, asked = width(sums_.mean);
       !in_runs_ || found > asked)
-    choose(asked, [](const Linear& low, const Linear& high) { return high.mean() - low.mean(); });
+    choose(asked, [](const TwoSided& low, const TwoSided& high) { return high.mean() - low.mean(); });
   if (const double found = sums_.rms.upper - sums_.rms.lower, asked = width(sums_.rms); found > asked)
     choose(asked * (sums_.rms.lower + sums_.rms.upper),
-           [](const Linear& low, const Linear& high) { return high.mean_square() - low.mean_square(); });
+           [](const TwoSided& low, const TwoSided& high) { return high.mean_square() - low.mean_square(); });
   for (std::size_t i = 0; i < options_.tolerances.size(); ++i)
     if (!in_runs_ || sums_.within[i].upper - sums_.within[i].lower > options_.fraction_precision)
       choose(options_.fraction_precision,
-             [&, t = limit(options_.tolerances[i])](const Linear& low, const Linear& high) {
+             [&, t = limit(options_.tolerances[i])](const TwoSided& low, const TwoSided& high) {
                return low.fraction_within(t) - high.fraction_within(t);
              });
   for (const BoundedNumber& percentile : sums_.percentiles) choose_around(percentile, chosen);
@@ -331,7 +333,7 @@ DirectedSearch::Refined DirectedSearch::refine(const Chosen& chosen, std::size_t
   std::vector<std::size_t> thorough, divided;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Part& part = parts_[i];
-    if (!chosen[i] || part.gap() <= 2 * scale_.accuracy) continue;
+    if (!chosen[i] || part.gap() <= part.closest_bounds(scale_.accuracy)) continue;
     if (!part.thorough && part.squared_size() > kNear * part.upper().least() * part.upper().least())
       thorough.push_back(i);
     else if (part.squared_size() > least * least)
@@ -340,27 +342,31 @@ DirectedSearch::Refined DirectedSearch::refine(const Chosen& chosen, std::size_t
   parallel_for(thorough.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) bound_thoroughly(b_, parts_[thorough[n]]);
   });
-  const bool too_many = parts_.size() + divided.size() > most;
-  if (too_many) divided.resize(most - std::min(most, parts_.size()));
+  const bool too_many = parts_.size() + 2 * divided.size() > most;
+  if (too_many) divided.resize((most - std::min(most, parts_.size())) / 2);
   divide(divided);
   if (!thorough.empty() || !divided.empty()) return Refined::yes;
   return too_many ? Refined::too_many : Refined::no;
 }
 
 void DirectedSearch::divide(const std::vector<std::size_t>& divided) {
+  std::vector<Cut> cuts;
   std::vector<Vec3> points;
-  points.reserve(divided.size());
-  for (const std::size_t i : divided) points.push_back(parts_[i].middle_of_side());
-  const std::vector<MeasuredPoint> middles = measure(b_, points, scale_.accuracy, options_.progress);
-  std::vector<std::size_t> pieces;
-  parts_.reserve(parts_.size() + divided.size());
-  for (std::size_t n = 0; n < divided.size(); ++n) {
-    const auto [first, second] = halves(parts_[divided[n]], middles[n]);
-    pieces.push_back(divided[n]), pieces.push_back(parts_.size());
-    parts_[divided[n]] = first;
-    parts_.push_back(second);
+  for (const std::size_t i : divided) {
+    const Cut& cut = cuts.emplace_back(choose_cut(b_, parts_[i]));
+    const std::array<Vec3, 2> at = cut.of(parts_[i]);
+    points.insert(points.end(), at.begin(), at.begin() + cut.points);
   }
-  bound_by_middles(pieces);
+  const std::vector<MeasuredPoint> measured = measure(b_, points, scale_.accuracy, options_.progress);
+  std::vector<std::size_t> changed;
+  std::span<const MeasuredPoint> left = measured;
+  for (std::size_t n = 0; n < divided.size(); ++n) {
+    const std::vector<Part> all = pieces(parts_[divided[n]], cuts[n], left);
+    left = left.subspan(static_cast<std::size_t>(cuts[n].points));
+    parts_[divided[n]] = all.front(), changed.push_back(divided[n]);
+    for (std::size_t k = 1; k < all.size(); ++k) changed.push_back(parts_.size()), parts_.push_back(all[k]);
+  }
+  bound_by_middles(changed);
 }
 
 void DirectedSearch::bound_by_middles(const std::vector<std::size_t>& numbers) {

@@ -72,7 +72,7 @@ class DirectedSearch {
   [[nodiscard]] BoundedNumber percentile(std::size_t number) const;
   [[nodiscard]] BoundedNumber percentile(const Steps& steps, double least, double most) const;
   /// The least t such that `bound` is at most t on this fraction of the area.
-  [[nodiscard]] double quantile(double fraction, Linear (Part::*bound)() const) const;
+  [[nodiscard]] double quantile(double fraction, TwoSided (Part::*bound)() const) const;
   [[nodiscard]] double width(const BoundedNumber& number) const;
   [[nodiscard]] Chosen choose() const;
   void choose_by_share(const std::vector<double>& contributions, double target, Chosen& chosen) const;

@@ -47,4 +47,17 @@ double Linear::mean_square() const {
   return fraction_at(c_, 0, a_, b_) * mean_square_of(c_, 0, 0);
 }
 
+double TwoSided::fraction_within(double limit) const {
+  const double a = a_.fraction_within(limit), b = b_.fraction_within(limit);
+  return a == 1 ? b : b == 1 ? a : std::max(0.0, a + b - 1);
+}
+
+double TwoSided::least() const {
+  return std::max({0.0, a_.least(), b_.least()});
+}
+
+double TwoSided::largest() const {
+  return std::max({0.0, a_.largest(), b_.largest()});
+}
+
 }  // namespace sdm::metrics

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "certify/hausdorff/face_distance.h"
+#include "certify/hausdorff/nearest_face.h"
 #include "geometry/point_triangle.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
@@ -67,7 +69,7 @@ Vec3 lower_bound(const Part& part, const Corners& face) {
   const Vec3 middle = part.middle();
   const auto loss = [&](const Vec3& low) {
     double total = 0;
-    for (int i = 0; i < 3; ++i) total += std::max(0.0, part.high[i] - low[i]);
+    for (int i = 0; i < 3; ++i) total += std::max(0.0, part.corner[i].upper - low[i]);
     return total;
   };
   Vec3 best{};
@@ -84,9 +86,71 @@ Vec3 lower_bound(const Part& part, const Corners& face) {
   return best;
 }
 
+Vec3 unit_normal(const Corners& face) {
+  const Vec3 normal = cross(face[1] - face[0], face[2] - face[0]);
+  const double length = norm(normal);
+  return length > kLeastLength ? (1 / length) * normal : Vec3{};
+}
+
+/// The bounds |s| + p by the plane of a face, if the part crosses it. `distances`: of the corners to the
+/// face.
+std::optional<std::array<Vec3, 2>> upper_by_plane(const Part& part, const Corners& face,
+                                                  const Vec3& distances) {
+  const Vec3 normal = unit_normal(face);
+  std::array<Vec3, 2> high{};
+  bool above = false, below = false;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 r = part.corner[i].at - face[0];
+    const double s = dot(normal, r);
+    const double rounding = kProductRounding * (std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]));
+    const double least = std::max(0.0, std::abs(s) - rounding), d = distances[i];
+    const double p = (1 + kFewRoundings) * std::sqrt(std::max(0.0, (d - least) * (d + least)));
+    (s > 0 ? above : below) = true;
+    high[0][i] = s + p + rounding, high[1][i] = -s + p + rounding;
+  }
+  return above && below && normal != Vec3{} ? std::optional(high) : std::nullopt;
+}
+
 // Lowers `high` if the distance to this face is less.
 void offer(const sites::SitesData& b, std::uint32_t face, Part& part) {
-  if (const Vec3 high = upper_distances(b, part, face); sum(high) < sum(part.high)) part.high = high;
+  const Vec3 distances = upper_distances(b, part, face);
+  double mean = part.upper().mean();
+  const auto take = [&](const std::array<Vec3, 2>& high) {
+    if (const double m = TwoSided(high[0], high[1]).mean(); m < mean) mean = m, part.high = high;
+  };
+  take({distances, Vec3{}});
+  if (const auto high = upper_by_plane(part, corners_of(b.mesh, face), distances)) take(*high);
+}
+
+/// Lower bounds on the distance to each side of B, as `low`, from the faces that may be the closest.
+class SideBounds {
+ public:
+  /// `most`: no face that is not added is closer.
+  SideBounds(const Part& part, const Corners& nearest, double most)
+      : part_(part), normal_(unit_normal(nearest)), low_{Vec3{most, most, most}, Vec3{most, most, most}} {
+    add(nearest);  // so that both sides are not positive at once
+  }
+
+  void add(const Corners& face) {
+    Vec3 normal = unit_normal(face);
+    if (dot(normal, normal_) < 0) normal = -1.0 * normal;
+    for (const int side : {0, 1}) {
+      const double sign = side == 0 ? 1 : -1;
+      Vec3 bound = along(sign * normal_, part_, face);
+      if (const Vec3 other = along(sign * normal, part_, face); sum(other) > sum(bound)) bound = other;
+      for (int i = 0; i < 3; ++i) low_[side][i] = std::min(low_[side][i], bound[i]);
+    }
+  }
+  [[nodiscard]] const std::array<Vec3, 2>& low() const { return low_; }
+
+ private:
+  const Part& part_;
+  Vec3 normal_;
+  std::array<Vec3, 2> low_;
+};
+
+void raise(Part& part, const std::array<Vec3, 2>& low) {
+  if (TwoSided(low[0], low[1]).mean() > part.lower().mean()) part.low = low;
 }
 
 }  // namespace
@@ -102,7 +166,11 @@ std::vector<MeasuredPoint> measure(const sites::SitesData& b, std::span<const Ve
             const Vec3& p = points[begin + first + i];
             const std::uint32_t face = b.face_of(closest.type[i], closest.site[i]);
             const double upper = hausdorff::upper_face_distance(p, corners_of(b.mesh, face));
-            result[begin + first + i] = {p, face, std::max(0.0, closest.distance[i] - accuracy), upper};
+            MeasuredPoint& point = result[begin + first + i];
+            point = {p, face, std::max(0.0, closest.distance[i] - accuracy), upper};
+            if (upper >= kFar * accuracy) continue;
+            const hausdorff::NearestFace nearest = hausdorff::nearest_face(b, p, face);
+            point.nearest = nearest.face, point.lower = nearest.lower, point.upper = nearest.upper;
           }
         });
   });
@@ -110,7 +178,16 @@ std::vector<MeasuredPoint> measure(const sites::SitesData& b, std::span<const Ve
 }
 
 double Part::gap() const {
-  return largest(high - low);
+  double most = 0;
+  for (const Vec3& h : high)
+    most = std::max(most, std::min({largest(h), largest(h - low[0]), largest(h - low[1])}));
+  return most;
+}
+
+double Part::closest_bounds(double accuracy) const {
+  double most = 0;
+  for (const MeasuredPoint& point : corner) most = std::max(most, point.upper - point.lower);
+  return std::max(2 * most, kProductRounding * accuracy);
 }
 
 double Part::squared_size() const {
@@ -131,24 +208,20 @@ Vec3 Part::middle() const {
   return (1.0 / 3) * (corner[0].at + corner[1].at + corner[2].at);
 }
 
-Vec3 Part::middle_of_side() const {
-  const int i = longest_side();
-  return 0.5 * (corner[i].at + corner[(i + 1) % 3].at);
-}
-
 void bound(const sites::SitesData& b, Part& part) {
   offer(b, part.nearest, part);  // often less far from all corners than the faces that are closest to one
   for (int i = 0; i < 3; ++i) {
     const std::uint32_t face = part.corner[i].nearest;
     if (face != part.nearest && (i == 0 || face != part.corner[i - 1].nearest)) offer(b, face, part);
   }
-  if (const Vec3 low = lower_by_size(part); Linear(low).mean() > part.lower().mean()) part.low = low;
+  raise(part, {lower_by_size(part), Vec3{}});
 }
 
 void bound_thoroughly(const sites::SitesData& b, Part& part) {
   constexpr int kMostFaces = 48;  // more are nearly equally far, where lower_by_size() is close
   part.thorough = true;
-  if (part.high == Vec3{}) return;
+  const double most = part.upper().largest();
+  if (most == 0) return;
   Box box;
   double size = 1;
   for (const MeasuredPoint& corner : part.corner) {
@@ -157,31 +230,96 @@ void bound_thoroughly(const sites::SitesData& b, Part& part) {
     for (const double x : unit) size = std::max(size, std::abs(x));
   }
   const tree::FloatBox around = tree::FloatBox::around(box);
-  const double reach = (1 + kProductRounding) * largest(part.high) * b.frame.scale + kProductRounding * size;
+  const double reach = (1 + kProductRounding) * most * b.frame.scale + kProductRounding * size;
   // Faces farther than `reach` are closest nowhere, or as far as `high` is anyway.
-  Vec3 low = part.high;
+  Vec3 low{most, most, most};
+  SideBounds sides(part, corners_of(b.mesh, part.nearest), most);
   int faces = 0;
   const auto gap_to = [&](const tree::FloatBox& other) { return norm(tree::gap(around, other)); };
   const auto enter = [&](double distance) { return faces <= kMostFaces && distance <= reach; };
   const auto leaf = [&](std::uint32_t node) {
     for (const std::uint32_t face : b.tree.items_of(node)) {
       if (++faces > kMostFaces) return;
-      const Vec3 bound = lower_bound(part, corners_of(b.mesh, face));
+      const Corners corners = corners_of(b.mesh, face);
+      const Vec3 bound = lower_bound(part, corners);
+      sides.add(corners);
       for (int i = 0; i < 3; ++i) low[i] = std::min(low[i], bound[i]);
     }
   };
   tree::visit(b.tree, tree::NearestFirst{gap_to, enter, leaf});
-  if (faces <= kMostFaces && Linear(low).mean() > part.lower().mean()) part.low = low;
+  if (faces > kMostFaces) return;
+  raise(part, {low, Vec3{}});
+  raise(part, sides.low());
 }
 
-std::array<Part, 2> halves(const Part& part, const MeasuredPoint& middle_of_side) {
-  const int i = part.longest_side(), j = (i + 1) % 3;
-  std::array<Part, 2> halves{part, part};
-  halves[0].corner[j] = halves[1].corner[i] = middle_of_side;
-  halves[0].low[j] = halves[1].low[i] = 0.5 * (part.low[i] + part.low[j]);
-  halves[0].high[j] = halves[1].high[i] = 0.5 * (part.high[i] + part.high[j]);
-  for (Part& half : halves) half.area = part.area / 2, half.thorough = false;
-  return halves;
+std::array<Vec3, 2> Cut::of(const Part& part) const {
+  const auto between = [&](int i, int j, double t) {
+    return (1 - t) * part.corner[i].at + t * part.corner[j].at;
+  };
+  const int next = (corner + 1) % 3, last = (corner + 2) % 3;
+  if (points == 1) return {between(next, last, at[0]), Vec3{}};
+  return {between(corner, next, at[0]), between(corner, last, at[1])};
+}
+
+Cut choose_cut(const sites::SitesData& b, const Part& part) {
+  constexpr double kLeast = 1e-6, kSmaller = 0.5;  // of the part
+  const Cut halved{.corner = (part.longest_side() + 2) % 3};
+  const double size = std::sqrt(part.squared_size());
+  if (!(part.upper().largest() < size)) return halved;
+  const Corners face = corners_of(b.mesh, part.nearest);
+  const double largest_side =
+      std::max({norm(face[1] - face[0]), norm(face[2] - face[1]), norm(face[0] - face[2])});
+  const Vec3 normal = unit_normal(face);
+  if (largest_side < kSmaller * size || normal == Vec3{}) return halved;
+  Vec3 beyond{};  // of the corners, over the side that they reach beyond the most
+  double farthest = kLeast * size;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 outward = normalized(cross(face[(k + 1) % 3] - face[k], normal));
+    Vec3 distances;
+    for (int i = 0; i < 3; ++i) distances[i] = dot(outward, part.corner[i].at - face[k]);
+    const auto [least, most] = std::minmax({distances[0], distances[1], distances[2]});
+    if (most > farthest && least < -kLeast * size) farthest = most, beyond = distances;
+  }
+  if (beyond == Vec3{}) return halved;
+  int outside = 0;
+  for (const double x : beyond) outside += x > 0;
+  Cut cut{.points = 2};
+  for (int i = 0; i < 3; ++i)
+    if ((beyond[i] > 0) == (outside == 1)) cut.corner = i;
+  const double from = beyond[cut.corner];
+  for (const int side : {0, 1}) cut.at[side] = from / (from - beyond[(cut.corner + 1 + side) % 3]);
+  return cut;
+}
+
+std::vector<Part> pieces(const Part& part, const Cut& cut, std::span<const MeasuredPoint> points) {
+  std::vector<Part> result;
+  const auto add = [&](double share) -> Part& {
+    Part& piece = result.emplace_back(part);
+    piece.area = share * part.area, piece.thorough = false;
+    return piece;
+  };
+  // Corner `to` of a piece becomes the point of the side from `i` to `j`.
+  const auto set = [&](Part& piece, int to, const MeasuredPoint& point, int i, int j, double t) {
+    piece.corner[to] = point;
+    for (const int k : {0, 1}) {
+      piece.low[k][to] = (1 - t) * part.low[k][i] + t * part.low[k][j];
+      piece.high[k][to] = (1 - t) * part.high[k][i] + t * part.high[k][j];
+    }
+  };
+  const int i = cut.corner, j = (i + 1) % 3, k = (i + 2) % 3;
+  const auto [s, t] = cut.at;
+  if (cut.points == 1) {
+    set(add(s), k, points[0], j, k, s);
+    set(add(1 - s), j, points[0], j, k, s);
+    return result;
+  }
+  result.reserve(3);
+  Part& tip = add(s * t);
+  set(tip, j, points[0], i, j, s), set(tip, k, points[1], i, k, t);
+  set(add(1 - s), i, points[0], i, j, s);
+  Part& rest = add(s * (1 - t));
+  set(rest, i, points[1], i, k, t), set(rest, j, points[0], i, j, s);
+  return result;
 }
 
 }  // namespace sdm::metrics

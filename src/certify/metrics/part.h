@@ -23,21 +23,32 @@ struct MeasuredPoint {
   double lower = 0, upper = 0;
 };
 
+/// Points that are farther than so many times the accuracy of the cpu engine are measured by it alone.
+inline constexpr double kFar = 1000;
+
 /// Measures points, which should be near each other if they are in the order, by the cpu engine, whose
-/// distances are as accurate as `accuracy`. Cost: one search for each, all cores.
+/// distances are as accurate as `accuracy`, and near points to rounding. Cost: one or two searches for each,
+/// all cores.
 [[nodiscard]] std::vector<MeasuredPoint> measure(const sites::SitesData& b, std::span<const Vec3> points,
                                                  double accuracy, const Progress& progress);
 
-/// A triangle of A or a part of one. The linear functions that are `low` and `high` at the corners are bounds
-/// on the distance d(x) of its points x:
+/// A triangle of A or a part of one. The bounds on the distance d(x) of its points x are the larger of 0 and
+/// of two linear functions each, with the values `low` and `high` at the corners; one function is 0 if the
+/// other is enough.
 ///
-/// high  The distance to one face of B is convex, so nowhere above what is linear between the corners.
+/// high  The distance to one face of B is convex, so nowhere above what is linear between the corners. Where
+/// the
+///       part crosses the plane of the face, at a distance of s(x) with a sign, and the place of x in the
+///       plane is p(x) from the face, d ≤ |s| + p, of which p is convex too: the larger of s + p and −s + p.
 /// low   d²(x) − |x|², the minimum over q in B of |q|² − 2 x·q, is concave, so nowhere below what is linear
 ///       between the corners. With barycentric coordinates λ and sides e, |x|² is below that by Σ λᵢλⱼ eᵢⱼ²,
 ///       at most a third of the square of the longest side, G. So d² ≥ Σ λᵢ (dᵢ² − G), and as the root is
 ///       concave, d ≥ Σ λᵢ √(dᵢ² − G): close where the part is small beside its distance.
 ///       Elsewhere, `thorough`: for a face S of B and a unit vector g, d(x, S) ≥ g·x − max of g·y over S. The
-///       minimum of such functions, over all S that may be closest somewhere, is concave too.
+///       minimum of such functions, over all S that may be closest somewhere, is concave too. Where the part
+///       crosses B, there are two such minima, with unit vectors to either side of B: d is at least the
+///       larger one. Above a single face, with the others beyond its sides, both are the distance to its
+///       plane.
 ///
 /// Where B is smooth, both differ from d by the square of the size of the part.
 struct Part {
@@ -46,18 +57,19 @@ struct Part {
   std::uint32_t nearest = kNone;  ///< a face of B closest to the middle
   bool thorough = false;          ///< `low` considers the faces nearby
   double area = 0;
-  Vec3 low{}, high{kInfinity, kInfinity, kInfinity};
+  std::array<Vec3, 2> low{}, high{Vec3{kInfinity, kInfinity, kInfinity}, Vec3{}};
 
-  [[nodiscard]] Linear lower() const { return Linear(low); }
-  [[nodiscard]] Linear upper() const { return Linear(high); }
+  [[nodiscard]] TwoSided lower() const { return {low[0], low[1]}; }
+  [[nodiscard]] TwoSided upper() const { return {high[0], high[1]}; }
   /// The largest difference of the bounds.
   [[nodiscard]] double gap() const;
+  /// How close its bounds can be.
+  [[nodiscard]] double closest_bounds(double accuracy) const;
   /// The square of the longest side.
   [[nodiscard]] double squared_size() const;
   /// The corner that the longest side starts at.
   [[nodiscard]] int longest_side() const;
   [[nodiscard]] Vec3 middle() const;
-  [[nodiscard]] Vec3 middle_of_side() const;
 };
 
 /// Improves the bounds by the corners and the faces closest to them and to the middle, `nearest`.
@@ -66,7 +78,23 @@ void bound(const sites::SitesData& b, Part& part);
 /// Improves the bounds by the faces of B nearby, the lower one if these are few.
 void bound_thoroughly(const sites::SitesData& b, Part& part);
 
-/// Halves a part at the middle of its longest side. Its bounds are those of the halves; `nearest` is not set.
-[[nodiscard]] std::array<Part, 2> halves(const Part& part, const MeasuredPoint& middle_of_side);
+/// Where a part is cut: by a segment from `corner` to the side opposite, or between both sides at it.
+struct Cut {
+  int corner = 0;
+  int points = 1;                      ///< 1: of the side opposite; 2: of the sides to the next two corners
+  std::array<double, 2> at{0.5, 0.5};  ///< along each side
+
+  /// The points where sides of the part are cut.
+  [[nodiscard]] std::array<Vec3, 2> of(const Part& part) const;
+};
+
+/// Cuts a part that is near the surface along a side of the face that is nearest to its middle, so that one
+/// piece lies above that face; otherwise at the middle of its longest side.
+[[nodiscard]] Cut choose_cut(const sites::SitesData& b, const Part& part);
+
+/// The pieces of a part that is cut at these points: two, or three for two points. Its bounds are those of
+/// the pieces; `nearest` is not set.
+[[nodiscard]] std::vector<Part> pieces(const Part& part, const Cut& cut,
+                                       std::span<const MeasuredPoint> points);
 
 }  // namespace sdm::metrics

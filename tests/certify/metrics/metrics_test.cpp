@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <numbers>
 #include <random>
 #include <string>
@@ -89,8 +90,10 @@ void expect_agree(const DirectedMetrics& m, const Sampled& truth, const MetricsO
 // The bounds are as close as was asked for.
 void expect_close(const DirectedMetrics& m, const MetricsOptions& options, double size) {
   const auto check = [&](const BoundedNumber& number) {
-    const double asked = std::max(options.precision.value_or(MetricsOptions::kRelative * number.lower),
-                                  MetricsOptions::kLeast * size);
+    using O = MetricsOptions;
+    const double usual =
+        std::max(O::kRelative * number.lower, std::min(O::kOfNear * number.lower, O::kNear * size));
+    const double asked = std::max(options.precision.value_or(usual), O::kLeast * size);
     EXPECT_LE(number.upper - number.lower, asked + 1e-11 * size);
   };
   check(m.mean), check(m.rms);
@@ -156,19 +159,71 @@ TEST(MetricParts, BoundTheDistanceOfEachPoint) {
           if (s + t > 1) s = 1 - s, t = 1 - t;
           const Vec3 weights{1 - s - t, s, t};
           Vec3 p{};
-          double low = 0, high = 0;
-          for (int i = 0; i < 3; ++i)
-            p = p + weights[i] * part.corner[i].at, low += weights[i] * part.low[i],
-            high += weights[i] * part.high[i];
+          for (int i = 0; i < 3; ++i) p = p + weights[i] * part.corner[i].at;
+          const auto larger = [&](const std::array<Vec3, 2>& functions) {
+            return std::max({0.0, dot(weights, functions[0]), dot(weights, functions[1])});
+          };
+          const double low = larger(part.low), high = larger(part.high);
           const double d = oracle::brute_force(mesh, p);
           EXPECT_LE(low, d + 1e-13);
           EXPECT_GE(high, d - 1e-13);
         }
-        part = halves(part, measured(part.middle_of_side()))[n % 2];
+        const metrics::Cut cut = choose_cut(b, part);
+        std::vector<metrics::MeasuredPoint> points;
+        const std::array<Vec3, 2> at = cut.of(part);
+        for (int k = 0; k < cut.points; ++k) points.push_back(measured(at[k]));
+        const std::vector<metrics::Part> all = pieces(part, cut, points);
+        double area = 0;
+        for (const metrics::Part& piece : all) area += piece.area;
+        EXPECT_NEAR(area, part.area, 1e-15);
+        part = all[n % all.size()];
         part.nearest = measured(part.middle()).nearest;
         bound(b, part);
       }
     }
+  }
+}
+
+/// The surface of a block of 60 × 40 × 20, with n² squares a side, and noise on its vertices.
+Mesh measured_block(int n, double noise) {
+  Mesh mesh;
+  std::mt19937 random(7);
+  std::normal_distribution<double> error(0, noise);
+  std::map<std::array<int, 3>, std::uint32_t> numbers;
+  const auto vertex = [&](const std::array<int, 3>& at) {
+    const auto [found, is_new] = numbers.try_emplace(at, static_cast<std::uint32_t>(mesh.positions.size()));
+    if (is_new) {
+      const Vec3 p{60.0 * at[0] / n, 40.0 * at[1] / n, 20.0 * at[2] / n};
+      mesh.positions.push_back(p + Vec3{error(random), error(random), error(random)});
+    }
+    return found->second;
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {0, n})
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const auto corner = [&](int u, int v) {
+            std::array<int, 3> at{};
+            at[axis] = side, at[(axis + 1) % 3] = i + u, at[(axis + 2) % 3] = j + v;
+            return vertex(at);
+          };
+          const std::array<std::uint32_t, 4> quad{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+          for (const int k : {1, 2})
+            mesh.triangles.push_back(side == n ? Triangle{quad[0], quad[k], quad[k + 1]}
+                                               : Triangle{quad[0], quad[k + 1], quad[k]});
+        }
+  return mesh;
+}
+
+// A scan is closer to its part than its faces are large, and crosses it in most of them.
+TEST(SurfaceMetrics, OfANoisyScanAreClose) {
+  const Mesh scan = measured_block(6, 0.01);
+  for (const int n : {1, 6}) {
+    SCOPED_TRACE(n);
+    const Mesh part = measured_block(n, 0);
+    const SurfaceMetrics certified = surface_metrics(scan, part, {.most_parts = 60'000});
+    for (const BoundedNumber& number : {certified.percentiles[0], certified.assd, certified.rmsd})
+      EXPECT_LE(number.upper - number.lower, 0.03 * number.lower) << number.lower << " " << number.upper;
   }
 }
 
