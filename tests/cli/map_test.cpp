@@ -296,7 +296,7 @@ TEST_F(MapCommand, TextureCoordinatesAreWrapped) {
   write_obj_with_uvs(o1, 1.5, 0);
   const Json overlapping = Json::parse(run_sdm(map({"--atlas", "uv", "--json"})).out);
   EXPECT_GT(overlapping["atlas"]["overlapping_texels"], 128 * 128);
-  EXPECT_EQ(overlapping["notes"].size(), 2u);
+  EXPECT_EQ(overlapping["notes"].size(), 3u);
 }
 
 TEST_F(MapCommand, ALaterRunTakesTheAtlasFromItsCache) {
