@@ -45,7 +45,12 @@ void weld(Input& input, const sdm::WeldOptions& options) {
     for (std::uint32_t& vertex : input.vertices->mesh_vertex)
       if (vertex != sdm::kNone) vertex = welded.vertex[vertex];
   input.mesh = std::move(welded.mesh);
-  if (welded.joined_vertices == 0) return;
+  if (welded.joined_vertices == 0) {
+    if (welded.boundary_edges > 0)
+      input.notes.push_back(fmt::format("{}: --weld joined nothing: {} boundary edges are left", input.file,
+                                        welded.boundary_edges));
+    return;
+  }
   std::string text = fmt::format("{}: {} vertices were joined to others, by moves of at most {}", input.file,
                                  welded.joined_vertices, number(welded.largest_move));
   if (welded.boundary_edges > 0) text += fmt::format("; {} boundary edges are left", welded.boundary_edges);
