@@ -12,6 +12,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "bounds_text.h"
@@ -176,17 +177,22 @@ std::string to_csv(const FacePairs& pairs) {
 
 void run(const Options& options) {
   const Info info = collect(options);
+  std::ostringstream table;
+  table.exceptions(std::ios::badbit);  // for lack of memory
+  std::string text;  // before the file is written, after which nothing may fail
+  if (options.json) {
+    text = info_json(options.file, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+  } else {
+    print_table(table, options.file, info);
+    text = table.str();
+  }
   if (!options.self_intersections.empty()) {
     if (!info.self_intersections.all)
       throw sdm::Error(fmt::format("{}: the self-intersections are {}; cut the mesh into parts", options.file,
                                    not_determined(info)));
     write_whole(options.self_intersections, to_csv(info.self_intersections.pairs));
   }
-  if (options.json)
-    std::cout << info_json(options.file, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-              << '\n';
-  else
-    print_table(std::cout, options.file, info);
+  std::cout << text;
 }
 
 }  // namespace

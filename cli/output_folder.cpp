@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "interrupts.h"
+#include "patience.h"
 
 namespace fs = std::filesystem;
 
@@ -178,6 +179,15 @@ void require_writable(const fs::path& file) {
   if (const auto input = input_at(file)) refuse_to_write(file, *input);
 }
 
+/// Removes what must not stay, as well as memory allows.
+template <class Work>
+void persist(const Work& work) noexcept {
+  try {
+    patiently(work);
+  } catch (const std::exception&) {
+  }
+}
+
 fs::path without_trailing_slash(fs::path path) {
   path = fs::absolute(path).lexically_normal();
   return path.has_filename() ? path : path.parent_path();
@@ -204,13 +214,14 @@ OutputFolder::OutputFolder(const fs::path& folder, OutputFiles files)
     outer_ = current_;
     current_ = this;
   } catch (...) {
-    remove_traces(staging_);
+    persist([&] { remove_traces(staging_); });
     throw;
   }
 }
 
 void OutputFolder::discard_current() {
-  for (OutputFolder* folder = current_; folder != nullptr; folder = folder->outer_) folder->discard();
+  for (OutputFolder* folder = current_; folder != nullptr; folder = folder->outer_)
+    persist([&] { folder->discard(); });
 }
 
 // Other threads still write. Under another name of the staging folder they can add no more files, since only
@@ -232,8 +243,8 @@ void OutputFolder::discard() {
 
 OutputFolder::~OutputFolder() {
   const Interrupts::Protected whole;
+  persist([&] { remove_traces(staging_); });
   current_ = outer_;
-  remove_traces(staging_);
 }
 
 void OutputFolder::remove_traces(const fs::path& staging) {
@@ -373,11 +384,12 @@ void OutputFolder::commit(const std::vector<WrittenFile>& written) {
     if (identity_of(path) && !input_at(path)) fs::remove(path, ignored);
   }
   for (const auto& [from, to] : moves) move_into_place(from, to);
-  for (const WrittenFile& file : obsolete) {
-    if (!concludes(file.path)) remove_unchanged(file);
-    const fs::path parent = (folder_ / file.path).parent_path();
-    if (parent != folder_) fs::remove(parent, ignored);  // if it is empty
-  }
+  for (const WrittenFile& file : obsolete)
+    persist([&] {
+      if (!concludes(file.path)) remove_unchanged(file);
+      const fs::path parent = (folder_ / file.path).parent_path();
+      if (parent != folder_) fs::remove(parent, ignored);  // if it is empty
+    });
   shorten_manifest(written, replaced);
 }
 
@@ -388,8 +400,8 @@ void OutputFolder::shorten_manifest(const std::vector<WrittenFile>& written,
   const auto is_gone = [&](const WrittenFile& file) {
     return replaced.contains(file.path) || !fs::exists(folder_ / file.path, ignored);
   };
-  if (std::erase_if(earlier_, is_gone) == 0) return;
   try {
+    if (std::erase_if(earlier_, is_gone) == 0) return;
     const auto [from, to] = staged_manifest(written);
     move_into_place(from, to);
   } catch (const std::exception&) {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <iostream>
+#include <string>
 
 #include "common_options.h"
+#include "patience.h"
 #include "report.h"
 #include "terminal_text.h"
 
@@ -11,7 +13,7 @@
 template <class Report, class Text>
 void print(const RunOptions& run, const Report& report, const Text& text) {
   if (run.json)
-    std::cout << to_text(report());
+    std::cout << patiently([&] { return to_text(report()); });
   else if (!run.quiet)
-    print_for_people(text());
+    print_for_people(patiently([&]() -> std::string { return text(); }));
 }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "help_text.h"
+#include "patience.h"
 #include "src/core/printable.h"
 
 namespace {
@@ -85,7 +86,7 @@ class LineBuffer : public std::streambuf {
 
  protected:
   std::streamsize xsputn(const char* text, std::streamsize count) override {
-    line_.append(text, static_cast<std::size_t>(count));
+    patiently([&] { line_.append(text, static_cast<std::size_t>(count)); });
     const std::size_t end = line_.rfind('\n');
     return end == std::string::npos || pass_on(end + 1) ? count : 0;
   }
@@ -98,7 +99,8 @@ class LineBuffer : public std::streambuf {
 
  private:
   bool pass_on(std::size_t count) {
-    const std::string text = printable_lines(std::string_view(line_).substr(0, count));
+    const std::string text =
+        patiently([&] { return printable_lines(std::string_view(line_).substr(0, count)); });
     line_.erase(0, count);
     const auto size = static_cast<std::streamsize>(text.size());
     return target_.sputn(text.data(), size) == size;

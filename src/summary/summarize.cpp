@@ -111,11 +111,14 @@ LargestDistance largest_distance(const Summary& summary) {
 
 Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap& map,
                   std::span<const float> vertex_distances, const SummaryOptions& options) {
+  // What may throw comes first: GCC 12 destroys members twice if the initializer of a later one throws.
+  const DistanceStatistics distance = statistics_of(surface, map, options);
+  const std::optional<Extremes> extreme = extremes(surface, map, vertex_distances);
   Summary result{.units = options.units,
                  .sign = map.sign,
                  .measured = map.measured,
-                 .distance = statistics_of(surface, map, options),
-                 .extremes = extremes(surface, map, vertex_distances),
+                 .distance = distance,
+                 .extremes = extreme,
                  .beyond_max_distance = map.beyond_max_distance,
                  .without_match = map.without_match,
                  .max_distance = options.max_distance};
@@ -176,11 +179,12 @@ Summary summarize_thickness(const Surface& surface, const DistanceMap& map, cons
 }
 
 Summary summarize_self(const Surface& surface, const DistanceMap& map, const SummaryOptions& options) {
+  const DistanceStatistics distance = statistics_of(surface, map, options);  // first, as in summarize()
   Summary result{.units = options.units,
                  .of_itself = true,
                  .sign = map.sign,
                  .measured = map.measured,
-                 .distance = statistics_of(surface, map, options),
+                 .distance = distance,
                  .beyond_max_distance = map.beyond_max_distance,
                  .max_distance = options.max_distance};
   result.colors = colors_of(options, result.distance);

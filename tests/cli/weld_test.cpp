@@ -73,6 +73,10 @@ TEST_F(WeldOption, IsAdvisedWhereItHelps) {
       run_sdm({"map", part, sheet, "-o", out, "--resolution", "64", "--write", "none"});
   EXPECT_EQ(of_sheet.code, 0) << of_sheet.err;
   EXPECT_EQ(of_sheet.out.find("--weld"), std::string::npos) << of_sheet.out;
+  const test::Outcome left =
+      run_sdm({"map", part, sheet, "-o", out, "--resolution", "64", "--write", "none", "--weld", "auto"});
+  EXPECT_NE(left.out.find("sheet.ply: --weld joined nothing: 32 boundary edges are left"), std::string::npos)
+      << left.out;
 }
 
 TEST_F(WeldOption, ValuesAtVerticesOfTheFileFollow) {

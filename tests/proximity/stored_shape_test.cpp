@@ -491,7 +491,7 @@ TEST(StoredShape, ForgedNumbersAreRefusedOrHarmless) {
           }
           EXPECT_FALSE(all && (std::isnan(value) || value == 3e38));
           ++taken;
-          if (small || (all && i >= kFirstOfTrees)) ask_all(*shape);
+          if (small || (all && i >= kFirstOfTrees && std::abs(value) > 0.1)) ask_all(*shape);
         }
   }
   EXPECT_GT(taken, 40);
