@@ -48,6 +48,10 @@ std::filesystem::path file_below(const std::filesystem::path&, std::string_view 
   return std::filesystem::path(path).lexically_normal();
 }
 
+bool exists_below(const std::filesystem::path& folder, std::string_view path, std::string_view what) {
+  return js::given->all().contains(file_below(folder, path, what).string());
+}
+
 FileBytes read_bytes(const std::filesystem::path& file) {
   const auto found = js::given->all().find(file.string());
   if (found == js::given->all().end()) throw Error("there is no such file; give it with the option `files`");

@@ -33,6 +33,11 @@ fs::path file_below(const fs::path& folder, std::string_view path, std::string_v
   return file;
 }
 
+bool exists_below(const fs::path& folder, std::string_view path, std::string_view what) {
+  std::error_code error;
+  return fs::exists(file_below(folder, path, what), error);
+}
+
 FileBytes read_below(const fs::path& folder, std::string_view path, std::string_view what) {
   const fs::path file = file_below(folder, path, what);
   return with_error_prefix(fmt::format("{} '{}'", what, excerpt(path)), [&] { return read_bytes(file); });

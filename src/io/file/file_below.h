@@ -15,6 +15,10 @@ namespace sdm::io {
 [[nodiscard]] std::filesystem::path file_below(const std::filesystem::path& folder, std::string_view path,
                                                std::string_view what);
 
+/// Whether there is such a file. Throws as file_below() does.
+[[nodiscard]] bool exists_below(const std::filesystem::path& folder, std::string_view path,
+                                std::string_view what);
+
 /// Returns the bytes of such a file. Also throws sdm::Error, naming `what` it is and the path, if it cannot
 /// be read.
 [[nodiscard]] FileBytes read_below(const std::filesystem::path& folder, std::string_view path,

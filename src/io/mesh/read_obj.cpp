@@ -172,11 +172,16 @@ class ObjReader {
     if (!in_.more_on_line()) return;
     std::string line(in_.rest_of_line());
     std::ranges::replace(line, '\\', '/');
-    std::error_code ignored;
-    if (line.find_first_of(" \t") == std::string::npos || std::filesystem::exists(folder_ / line, ignored))
-      return read_library(line);
+    if (line.find_first_of(" \t") == std::string::npos || is_library(line)) return read_library(line);
     TextScanner names(line);
     while (names.more_on_line()) read_library(std::string(names.word()));
+  }
+  bool is_library(const std::string& name) const {
+    try {
+      return exists_below(folder_, name, "library of materials");
+    } catch (const Error&) {  // no path in the folder
+      return false;
+    }
   }
   // A library that cannot be had leaves its materials without colours.
   void read_library(const std::string& name) {
