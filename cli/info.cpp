@@ -179,7 +179,7 @@ void run(const Options& options) {
   const Info info = collect(options);
   std::ostringstream table;
   table.exceptions(std::ios::badbit);  // for lack of memory
-  std::string text;  // before the file is written, after which nothing may fail
+  std::string text;                    // before the file is written, after which nothing may fail
   if (options.json) {
     text = info_json(options.file, info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
   } else {
