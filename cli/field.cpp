@@ -16,6 +16,13 @@
 
 namespace {
 
+void extend(sdm::Box& box, const sdm::Box& other) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.lo[k] = std::min(box.lo[k], other.lo[k]);
+    box.hi[k] = std::max(box.hi[k], other.hi[k]);
+  }
+}
+
 struct Range {
   double min = std::numeric_limits<double>::quiet_NaN(), max = min;
 };
@@ -33,7 +40,7 @@ Range range_of(const sdm::DistanceField& field) {
 
 }  // namespace
 
-sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2) {
+sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2, const sdm::Box& more) {
   sdm::Box box;
   if (!command.bounds.empty()) {
     for (std::size_t k = 0; k < 3; ++k) box.lo[k] = command.bounds[k], box.hi[k] = command.bounds[k + 3];
@@ -43,6 +50,7 @@ sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2) {
     const double farthest = command.options.max_distance;
     const double margin = farthest < std::numeric_limits<double>::infinity() ? farthest : 0.1 * diagonal;
     for (std::size_t k = 0; k < 3; ++k) box.lo[k] -= margin, box.hi[k] += margin;
+    extend(box, more);
   }
   if (command.points.empty()) return sdm::make_grid(box, command.spacing);
   return sdm::make_grid(box, {command.points[0], command.points[1], command.points[2]});
@@ -97,7 +105,7 @@ void check_field_options(const FieldCommand& command) {
   }
 }
 
-void add_field_options(CLI::App& app, FieldCommand& command) {
+void add_field_options(CLI::App& app, FieldCommand& command, const std::string& box) {
   app.add_option("O2", command.o2,
                  fmt::format("The mesh that distances are measured to ({})", sdm::mesh_format_names()))
       ->required();
@@ -112,7 +120,8 @@ void add_field_options(CLI::App& app, FieldCommand& command) {
       ->type_name("H");
   app.add_option("--bounds", command.bounds,
                  "The lowest and the highest corner of the grid; by default the box of O2, extended by the "
-                 "maximum distance, or by a tenth of its diagonal")
+                 "maximum distance, or by a tenth of its diagonal" +
+                     box)
       ->expected(6)
       ->check(any_number())
       ->type_name("X0 Y0 Z0 X1 Y1 Z1");

@@ -21,14 +21,15 @@ struct FieldCommand : RunOptions {
   std::filesystem::path out;
 };
 
-/// Adds the options, whose parsing sets the command, which must outlive `app`.
-void add_field_options(CLI::App& app, FieldCommand& command);
+/// Adds the options, whose parsing sets the command, which must outlive `app`. `box` describes what else the
+/// grid extends around, in the help text.
+void add_field_options(CLI::App& app, FieldCommand& command, const std::string& box);
 /// Throws CLI::ValidationError for options that do not fit together, or a file of no known format.
 void check_field_options(const FieldCommand& command);
 
 /// The grid of the options. Without bounds, it extends around O2 by the maximum distance, or by a
-/// tenth of O2's diagonal.
-[[nodiscard]] sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2);
+/// tenth of O2's diagonal, and around `more`, which may be empty.
+[[nodiscard]] sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2, const sdm::Box& more);
 
 /// Keys that describe the field, without `work`.
 [[nodiscard]] nlohmann::ordered_json field_json(const sdm::DistanceField& field);

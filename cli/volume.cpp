@@ -55,7 +55,7 @@ VolumeOutcome compute(const FieldCommand& command, Input& o2, const sdm::Progres
   if (auto note = note_on_unit(command.units)) o2.notes.push_back(std::move(*note));
   if (command.json) inspect(o2);
   outcome.import_ms = watch.lap();
-  const sdm::Grid grid = grid_of(command, o2.mesh);
+  const sdm::Grid grid = grid_of(command, o2.mesh, {});
   const sdm::Sites sites(o2.mesh);
   outcome.sites_ms = watch.lap();
   sdm::FieldOptions options = command.options;
@@ -94,7 +94,7 @@ void add_volume_command(CLI::App& app) {
       "Example, a level set for other programs:\n"
       "  sdm volume part.stl --spacing 0.5 --max-distance 1.5 -o part.vdb");
   const auto command = std::make_shared<FieldCommand>();
-  add_field_options(*volume, *command);
+  add_field_options(*volume, *command, "");
   volume->get_option("--output")->required();
   volume->callback([command] {
     check_field_options(*command);
