@@ -14,6 +14,7 @@ namespace sdm {
 /// sdm::Error if it cannot be written. Cost: linear.
 SDM_API void write_shape(const std::filesystem::path& file, const Shape& shape);
 
+/// What is checked of a file.
 struct ReadShapeOptions {
   /// Whether write_shape() certainly wrote the file, so that only damage is looked for: see StoredShape.
   bool trusted = false;
