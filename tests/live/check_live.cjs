@@ -292,8 +292,8 @@ const checks = {
   // What takes long can be cancelled: what was there before is there again.
   async cancels(page) {
     const out = folder();
-    writeFileSync(join(out, 'a.stl'), stlOf(ball(120, 1)));
-    writeFileSync(join(out, 'b.stl'), stlOf(ball(120, 1.1)));
+    writeFileSync(join(out, 'a.stl'), stlOf(ball(240, 1)));
+    writeFileSync(join(out, 'b.stl'), stlOf(ball(240, 1.1)));
     const before = await numbers(page);
     await page.setInputFiles('#open-both', [join(out, 'a.stl'), join(out, 'b.stl')]);
     await page.waitForSelector('#cancel:not([hidden])', { timeout: kPatience });
