@@ -93,7 +93,8 @@ std::optional<std::string> note_on_texels(const Surface& surface) {
   const double share = area_fraction_without_texels(surface);
   if (!(share > kLeastShare)) return std::nullopt;
   return text_of(100 * share, 2) +
-         " % of the area lies in faces without a texel, which mean, rms, percentiles and shares of the area "
+         " % of the area lies in faces without a sample (texel), which mean, rms, percentiles and shares of "
+         "the area "
          "leave out (a higher --resolution includes them)";
 }
 

@@ -153,7 +153,7 @@ TEST_F(MapCommand, UdimTilesHaveAMapEach) {
 // Statistics leave faces without a texel out: all outputs say how much that is.
 TEST_F(MapCommand, NotesTheAreaWithoutTexels) {
   o1 = write_obj(folder / "fine.obj", sphere(4));
-  const std::string note = " % of the area lies in faces without a texel";
+  const std::string note = " % of the area lies in faces without a sample (texel)";
   const Outcome coarse = run_sdm(map({"--resolution", "32"}));
   ASSERT_EQ(coarse.code, 0) << coarse.err;
   EXPECT_THAT(coarse.out, HasSubstr(note));
