@@ -224,9 +224,10 @@ TEST_P(Sheets, ShowADentThatIsDeeperThanTheWall) {
   EXPECT_FALSE(summary.tolerance->proof);
   EXPECT_FALSE(summary.hausdorff.lower);
   EXPECT_TRUE(std::isinf(summary.evidence.error_bound));
-  // Without it, no distance exceeds half of the wall, unless the point is through the other skin.
+  // Without it, no distance exceeds half of the wall, unless the point is through the other skin: the proof
+  // by facing decides. All of an open surface may be within the tolerance of the other skin, and inside out.
   const Summary hidden = judged({});
-  EXPECT_EQ(hidden.tolerance->verdict, GetParam() < 2 ? Verdict::pass : Verdict::fail);
+  EXPECT_EQ(hidden.tolerance->verdict, GetParam() < 0.6 ? Verdict::doubtful : Verdict::fail);
 }
 
 TEST_P(Sheets, PassAsAnEstimateWhereItDependsOnSigns) {
