@@ -10,6 +10,10 @@
 
 using Json = nlohmann::ordered_json;
 
+void FrameDistances::withhold_pass() {
+  if (verdict == sdm::Verdict::pass) verdict = sdm::Verdict::doubtful;
+}
+
 FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& sites,
                                const sdm::DistanceMap& map, double error_bound,
                                const std::optional<sdm::Tolerance>& tolerance, bool accept_doubts) {

@@ -16,6 +16,8 @@ struct FrameDistances {
   std::optional<sdm::Doubt> doubt{};      ///< that it leaves
 
   [[nodiscard]] sdm::Verdict judged() const { return verdict.value_or(sdm::Verdict::pass); }
+  /// Makes a PASS doubtful.
+  void withhold_pass();
 };
 
 /// Summarises the map on `surface` to `sites`, which has this error bound. Throws sdm::Error if the tolerance

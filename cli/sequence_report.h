@@ -47,7 +47,7 @@ struct Frame {
   void withhold_pass() {
     if (doubts.empty()) return;
     for (auto& d : distances)
-      if (d && d->verdict == sdm::Verdict::pass) d->verdict = sdm::Verdict::doubtful;
+      if (d) d->withhold_pass();
   }
   /// The verdict on both bodies; a pass without a tolerance.
   [[nodiscard]] sdm::Verdict verdict() const {

@@ -250,10 +250,11 @@ def test_verdicts_are_those_of_the_command(tmp_path):
         command = [os.environ["SDM_COMMAND"], "map", o1, o2, "-o", tmp_path / "cli", "--resolution", "64",
                    f"--tolerance={text}", "--write", "none", "--quiet"]  # fmt: skip
         run = subprocess.run(command, capture_output=True, text=True)
-        assert run.returncode in (0, 3), run.stderr
+        assert run.returncode in (0, 3, 5), run.stderr
         report = json.loads((tmp_path / "cli" / "report.json").read_text())
         assert report["tolerance"]["verdict"] == verdict
-    assert set(found) == {"PASS", "FAIL"}
+    # The fourth pass is one by signs, within limits that are wider than the box.
+    assert set(found) == {"PASS", "FAIL", "DOUBTFUL"}
 
 
 def test_digests_follow_the_content(tmp_path):

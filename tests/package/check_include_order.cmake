@@ -140,17 +140,6 @@ foreach(file ${sources})
   endif()
 endforeach()
 
-# A folder stays small: at most 15 units, a source with its header, beside its subfolders.
-foreach(folder ${order})
-  file(GLOB units ${SOURCE_DIR}/src/${folder}/*.h ${SOURCE_DIR}/src/${folder}/*.cpp)
-  list(TRANSFORM units REPLACE "\\.[a-z]+$" "")
-  list(REMOVE_DUPLICATES units)
-  list(LENGTH units count)
-  if(count GREATER 15)
-    message(SEND_ERROR "src/${folder} has ${count} units, more than 15: divide it")
-  endif()
-endforeach()
-
 # Searches are policies of tree/visit.h and tree/visit_pairs.h. Only these files outside of tree/ read the nodes of
 # a tree by themselves.
 set(readers_of_nodes
