@@ -11,8 +11,10 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cassert>
 #include <cstdlib>
 #include <exception>
+#include <initializer_list>
 #include <iostream>
 #include <new>
 #include <string>
@@ -35,16 +37,20 @@ const char* advice(sdm::Remedy remedy) {
   return "";
 }
 
-/// Ends the process after an exception that cannot be caught: of oneTBB while it creates a thread, of a
-/// destructor that allocates, as that of JSON does, or before main(). Allocates nothing by itself.
-[[noreturn]] void end_by_uncaught_exception() {
+/// Ends the process where nothing can be caught, with a message of one line. Allocates nothing by itself.
+[[noreturn]] void end_at_once(std::initializer_list<std::string_view> message) {
   static std::atomic_flag ending;
   while (ending.test_and_set()) pause();  // another thread ends it
-  constexpr std::string_view kMessage =
-      "sdm: error: the system refused memory or a thread; allow more, or use --threads 1\n";
-  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
+  for (const std::string_view part : message)
+    if (write(STDERR_FILENO, part.data(), part.size()) < 0) break;
   OutputFolder::discard_current();
   std::_Exit(kFailure);
+}
+
+/// After an exception of oneTBB while it creates a thread, of a destructor that allocates, as that of JSON
+/// does, or before main().
+[[noreturn]] void end_by_uncaught_exception() {
+  end_at_once({"sdm: error: the system refused memory or a thread; allow more, or use --threads 1\n"});
 }
 
 #ifdef __linux__
@@ -81,6 +87,16 @@ void print_failure() {
 }
 
 }  // namespace
+
+#ifdef __GLIBC__
+/// In place of that of the system, so that nothing is left: the JSON of Debian's TinyGLTF asserts that it got
+/// memory.
+// NOLINTNEXTLINE(bugprone-reserved-identifier)
+extern "C" void __assert_fail(const char* assertion, const char*, unsigned, const char*) noexcept {
+  end_at_once(
+      {"sdm: error: a library found its state wrong, probably for lack of memory: ", assertion, "\n"});
+}
+#endif
 
 int main(int argc, char** argv) {
   keep_freed_memory();
