@@ -30,7 +30,7 @@ struct MetricsOptions {
   std::optional<double> precision{};
   double fraction_precision = 1e-3;  ///< of fractions of the area; > 0
   /// Parts that a surface is divided into, at most, beside its faces: then the bounds stay farther apart.
-  /// Not all are in memory at once: some ten thousand, or twice as many as there are faces.
+  /// In memory at once are 65,536, or 32 for each face up to a million, or twice as many as faces.
   std::size_t most_parts = 4'000'000;
   Progress progress{};
 

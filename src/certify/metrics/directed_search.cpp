@@ -21,9 +21,10 @@ constexpr double kAreaRounding = 1e-15;
 constexpr double kLeastSize = 1e-9;  // of the diagonal: smaller parts are not divided
 // Parts that are smaller beside their distance, squared, have a close bound by their size.
 constexpr double kNear = 1e-4;
-// So many parts, or twice as many as faces, are in memory at once. Where more are needed, parts are bounded
-// in runs of kRun, one after another, and only sums of them are kept.
-constexpr std::size_t kAtOnce = std::size_t{1} << 16, kRun = 1024;
+// At least kAtOnce parts or twice as many as faces, and up to kOfFace for each face or kMany, are in memory
+// at once. Where more are needed, parts are bounded in runs of kRun, one after another, which takes some
+// three times as long, and only sums of them are kept.
+constexpr std::size_t kAtOnce = std::size_t{1} << 16, kOfFace = 32, kMany = std::size_t{1} << 20, kRun = 1024;
 // Steps in which the distribution of distances around a percentile is kept then.
 constexpr std::size_t kSteps = 1024;
 
@@ -72,7 +73,9 @@ DirectedSearch::DirectedSearch(const Mesh& a, const sites::SitesData& b, const M
 
 DirectedMetrics DirectedSearch::run() {
   make_parts();
-  const std::size_t at_once = std::min(most_parts_, std::max(kAtOnce, 2 * a_.triangles.size()));
+  const std::size_t faces = a_.triangles.size();
+  const std::size_t at_once =
+      std::min(most_parts_, std::max({kAtOnce, 2 * faces, std::min(kMany, kOfFace * faces)}));
   Refined refined = Refined::yes;
   while (refined == Refined::yes) {
     sum_up();
