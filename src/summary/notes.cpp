@@ -94,8 +94,7 @@ std::optional<std::string> note_on_texels(const Surface& surface) {
   if (!(share > kLeastShare)) return std::nullopt;
   return text_of(100 * share, 2) +
          " % of the area lies in faces without a sample (texel), which mean, rms, percentiles and shares of "
-         "the area "
-         "leave out (a higher --resolution includes them)";
+         "the area leave out (a higher --resolution includes them)";
 }
 
 std::optional<std::string> note_on_directions(const Mesh& surface, double facing, const std::string& units) {

@@ -111,7 +111,8 @@ LargestDistance largest_distance(const Summary& summary) {
 
 Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap& map,
                   std::span<const float> vertex_distances, const SummaryOptions& options) {
-  // What may throw comes first: GCC 12 destroys members twice if the initializer of a later one throws.
+  // What may throw comes first: built by GCC 12, members were destroyed twice where a later initializer
+  // threw.
   const DistanceStatistics distance = statistics_of(surface, map, options);
   const std::optional<Extremes> extreme = extremes(surface, map, vertex_distances);
   Summary result{.units = options.units,

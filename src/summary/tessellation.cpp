@@ -11,8 +11,7 @@ std::string note_on(const Tessellation& t, const std::string& file) {
       text.data(), text.size(),
       "was tessellated with a deflection of %.4g mm%s: distances are those of its triangles, from which its "
       "surface was found to deviate by up to %.4g mm (an estimate, from %zu points); verdicts keep so far "
-      "from "
-      "the limits",
+      "from the limits",
       t.deflection, t.limited ? ", as a tenth of the tolerance would take too many triangles" : "",
       t.largest_deviation, t.measured_points);
   return file + " " + text.data();

@@ -255,7 +255,7 @@ TEST(SequenceNpy, FindsTheArrayBesideTheMesh) {
   write("beside/motion.npy", npy(frames_of(mesh, 3)));
   EXPECT_EQ(MeshSequence(file + "+motion.npy").frame_count(), 3u);
   expect_refused(file + "+other.npy", {(std::filesystem::path("beside") / "other.npy").string() +
-                                       ": cannot be opened: No such file"});
+                                       ": there is no such file"});
 }
 
 // The array is that of the vertices in the file, which may repeat some and not use others.
@@ -313,8 +313,8 @@ TEST(SequenceNpy, ErrorsNameTheFault) {
                                  {"(2, 4, 3)", "(2 4 3)"}})
     refuse(with(from, to), "the header is not as NumPy writes it");
   expect_refused(write("x.npy", good), {"x.npy: holds positions without triangles"});
-  expect_refused(file + "+/no/such.npy", {"/no/such.npy: cannot be opened: No such file"});
-  expect_refused(file + "+/dev.npy/x.npy", {"x.npy: cannot be opened"});
+  expect_refused(file + "+/no/such.npy", {"/no/such.npy: there is no such file"});
+  expect_refused(file + "+/dev.npy/x.npy", {"x.npy: there is no such file"});
   expect_refused("/no/such.obj+" + write("x.npy", good), {"/no/such.obj: there is no such file"});
 }
 

@@ -8,6 +8,7 @@
 
 #include "certify/hausdorff/face_distance.h"
 #include "certify/hausdorff/nearest_face.h"
+#include "certify/hausdorff/side_cut.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "search/mixed_bound.h"
@@ -169,38 +170,11 @@ CutPoint cut_point(const Part& part, const sites::SitesData& b, int i, int j, do
   return point;
 }
 
-/// How far the corners of a part are beyond a side of a face, along the face.
-struct SideDistances {
-  Vec3 of_corner{};
-  double farthest = -std::numeric_limits<double>::infinity();
-};
-
-/// The side that a part reaches beyond the most; nothing if it is no more than `least`, and for a face
-/// without area.
-std::optional<Vec3> beyond_a_side(const Part& part, const Corners& face, const Vec3& normal, double least) {
-  constexpr double kMore = 1.005;  // less is no cut
-  SideDistances best{{}, kMore * least};
-  for (int k = 0; k < 3; ++k) {
-    const Vec3& from = face[k];
-    const Vec3 outward = normalized(cross(face[(k + 1) % 3] - from, normal));
-    SideDistances side;
-    for (int i = 0; i < 3; ++i)
-      side.farthest = std::max(side.farthest, side.of_corner[i] = dot(outward, part.at[i] - from));
-    if (side.farthest > best.farthest && hausdorff::least(side.of_corner) < least / kMore) best = side;
-  }
-  return best.farthest > kMore * least ? std::optional(best.of_corner) : std::nullopt;
-}
-
-double longest_side(const Corners& t) {
-  return std::sqrt(
-      std::max({squared_norm(t[1] - t[0]), squared_norm(t[2] - t[1]), squared_norm(t[0] - t[2])}));
-}
-
 }  // namespace
 
 Pieces cut_along(const Part& part, const sites::SitesData& b, std::uint32_t near_face, double enough) {
   constexpr double kOffset = 0.7;  // of `enough`, along the plane; so far from it, the sum of squares is less
-  constexpr double kSmall = 1.0 / 8;
+  constexpr double kSmall = 1.0 / 8, kMargin = 0.005;  // less is no cut
   Pieces pieces;
   const Corners face = corners_of(b.mesh, near_face);
   if (longest_side(face) < kSmall * longest_side(part.at)) return pieces;
@@ -209,19 +183,12 @@ Pieces cut_along(const Part& part, const sites::SitesData& b, std::uint32_t near
   const double offset = kOffset * enough;
   for (const Vec3& corner : part.at)
     if (!(std::abs(dot(normal, corner - face[0])) <= offset)) return pieces;
-  const std::optional<Vec3> beyond = beyond_a_side(part, face, normal, offset);
-  if (!beyond) return pieces;
-  // The corner that is alone on its side of the cut.
-  int alone = 0, outside = 0;
-  for (int i = 0; i < 3; ++i) outside += (*beyond)[i] > offset;
-  for (int i = 0; i < 3; ++i)
-    if (((*beyond)[i] > offset) == (outside == 1)) alone = i;
-  std::array<CutPoint, 2> cut;
+  const std::optional<SideCut> along = cut_along_side(part.at, face, normal, offset, kMargin * offset);
+  if (!along) return pieces;
+  const int alone = along->alone;
   const std::array<int, 2> others{(alone + 1) % 3, (alone + 2) % 3};
-  for (int side = 0; side < 2; ++side) {
-    const double from = (*beyond)[alone] - offset, to = (*beyond)[others[side]] - offset;
-    cut[side] = cut_point(part, b, alone, others[side], std::clamp(from / (from - to), 0.0, 1.0));
-  }
+  std::array<CutPoint, 2> cut;
+  for (int side = 0; side < 2; ++side) cut[side] = cut_point(part, b, alone, others[side], along->at[side]);
   const auto add = [&](const std::array<const CutPoint*, 3>& corners) {
     Part& piece = pieces.part[pieces.count++] = part;
     ++piece.depth;

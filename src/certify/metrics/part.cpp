@@ -7,6 +7,7 @@
 
 #include "certify/hausdorff/face_distance.h"
 #include "certify/hausdorff/nearest_face.h"
+#include "certify/hausdorff/side_cut.h"
 #include "geometry/point_triangle.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
@@ -267,28 +268,11 @@ Cut choose_cut(const sites::SitesData& b, const Part& part) {
   const double size = std::sqrt(part.squared_size());
   if (!(part.upper().largest() < size)) return halved;
   const Corners face = corners_of(b.mesh, part.nearest);
-  const double largest_side =
-      std::max({norm(face[1] - face[0]), norm(face[2] - face[1]), norm(face[0] - face[2])});
   const Vec3 normal = unit_normal(face);
-  if (largest_side < kSmaller * size || normal == Vec3{}) return halved;
-  Vec3 beyond{};  // of the corners, over the side that they reach beyond the most
-  double farthest = kLeast * size;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 outward = normalized(cross(face[(k + 1) % 3] - face[k], normal));
-    Vec3 distances;
-    for (int i = 0; i < 3; ++i) distances[i] = dot(outward, part.corner[i].at - face[k]);
-    const auto [least, most] = std::minmax({distances[0], distances[1], distances[2]});
-    if (most > farthest && least < -kLeast * size) farthest = most, beyond = distances;
-  }
-  if (beyond == Vec3{}) return halved;
-  int outside = 0;
-  for (const double x : beyond) outside += x > 0;
-  Cut cut{.points = 2};
-  for (int i = 0; i < 3; ++i)
-    if ((beyond[i] > 0) == (outside == 1)) cut.corner = i;
-  const double from = beyond[cut.corner];
-  for (const int side : {0, 1}) cut.at[side] = from / (from - beyond[(cut.corner + 1 + side) % 3]);
-  return cut;
+  if (hausdorff::longest_side(face) < kSmaller * size || normal == Vec3{}) return halved;
+  const Corners at{part.corner[0].at, part.corner[1].at, part.corner[2].at};
+  const auto cut = hausdorff::cut_along_side(at, face, normal, 0, kLeast * size);
+  return cut ? Cut{.corner = cut->alone, .points = 2, .at = cut->at} : halved;
 }
 
 std::vector<Part> pieces(const Part& part, const Cut& cut, std::span<const MeasuredPoint> points) {

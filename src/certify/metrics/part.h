@@ -36,10 +36,10 @@ inline constexpr double kFar = 1000;
 /// of two linear functions each, with the values `low` and `high` at the corners; one function is 0 if the
 /// other is enough.
 ///
-/// high  The distance to one face of B is convex, so nowhere above what is linear between the corners. Where
-/// the
-///       part crosses the plane of the face, at a distance of s(x) with a sign, and the place of x in the
-///       plane is p(x) from the face, d ≤ |s| + p, of which p is convex too: the larger of s + p and −s + p.
+/// high  The distance to one face of B is convex, so nowhere above what is linear between the corners.
+///       Where the part crosses the plane of the face, at a distance of s(x) with a sign, and the place of x
+///       in the plane is p(x) from the face, d ≤ |s| + p, of which p is convex too: the larger of s + p and
+///       −s + p.
 /// low   d²(x) − |x|², the minimum over q in B of |q|² − 2 x·q, is concave, so nowhere below what is linear
 ///       between the corners. With barycentric coordinates λ and sides e, |x|² is below that by Σ λᵢλⱼ eᵢⱼ²,
 ///       at most a third of the square of the longest side, G. So d² ≥ Σ λᵢ (dᵢ² − G), and as the root is

@@ -3,6 +3,7 @@
 #include <sdm/tolerance_table.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -15,6 +16,7 @@
 #include "core/parse_number.h"
 #include "core/printable.h"
 #include "io/file/file_bytes.h"
+#include "io/file/text_scanner.h"
 
 namespace sdm {
 namespace {
@@ -29,10 +31,6 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t\r");
   return begin == std::string_view::npos ? ""
                                          : text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
-
-char in_lower_case(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
 std::vector<std::string> fields_of(std::string_view line, char separator) {
@@ -84,9 +82,8 @@ std::vector<GroupTolerance> table_in_csv(std::string_view text) {
     if (row.empty()) continue;
     if (separator == 0) {
       separator = row.find(';') == std::string_view::npos ? ',' : ';';
-      std::vector<std::string> header = fields_of(row, separator);
-      for (std::string& field : header) std::ranges::transform(field, field.begin(), in_lower_case);
-      if (header != std::vector<std::string>{"group", "lower", "upper"}) throw Error(kTableNeeded);
+      constexpr std::array<std::string_view, 3> kHeader{"group", "lower", "upper"};
+      if (!std::ranges::equal(fields_of(row, separator), kHeader, io::same_word)) throw Error(kTableNeeded);
       continue;
     }
     const std::vector<std::string> fields = fields_of(row, separator);

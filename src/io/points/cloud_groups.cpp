@@ -74,9 +74,7 @@ GroupVerdicts CloudGroups::verdicts(const PointsWithoutGroup& without_group, con
     evidence.lowest = found.range.lowest, evidence.highest = found.range.highest;
     evidence.estimated_signs = measured_ == DistanceKind::closest && is_estimate(sign_);
     std::optional<Evidence> by_facing;
-    if (found.any_facing) {
-      by_facing = facing_evidence(like, found.facing, found.unmatched);
-    }
+    if (found.any_facing) by_facing = facing_evidence(like, found.facing, found.unmatched);
     groups.push_back({.kind = row.named.kind,
                       .row = row.group,
                       .faces = row.named.faces.size(),

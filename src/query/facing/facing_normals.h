@@ -15,12 +15,13 @@ namespace sdm::facing {
 /// number of corners that they share. A low face takes the normal of its surroundings if that is not within
 /// the angle of its own, if no more than half of their area cancels out in the sum, and if they have twice
 /// its area or more, weighted alike. So a sliver that noise has turned over is measured as what is around it,
-/// while thin rims, tips and small bodies keep their directions. All points of such a face are within its
-/// height of its surroundings.
+/// while rims of one row of faces, tips and small bodies keep their directions. Of a thin rim of several low
+/// rows, those next to a large face take its normal. All points of such a face are within its height of its
+/// surroundings, so that distances change by no more.
 struct FacingNormals {
   std::vector<Vec3> normals;  ///< of all faces, unit length or 0
-  std::vector<std::uint32_t>
-      replaced{};     ///< the faces that have the normal of their surroundings, in their order
+  /// The faces that have the normal of their surroundings, in their order.
+  std::vector<std::uint32_t> replaced{};
   double height = 0;  ///< below which faces are low
 };
 

@@ -16,7 +16,6 @@
 #include "io/file/byte_scanner.h"
 #include "io/file/error_prefix.h"
 #include "io/file/file_bytes.h"
-#include "io/file/input_files.h"
 #include "io/file/npy_header.h"
 #include "io/mesh/frames/frame_source.h"
 #include "io/mesh/read_polygons.h"
@@ -30,11 +29,7 @@ namespace fs = std::filesystem;
 class RandomAccessFile {
  public:
   explicit RandomAccessFile(const fs::path& file) {
-    std::error_code error;
-    const fs::file_type type = fs::status(file, error).type();
-    if (error) throw Error(fmt::format("cannot be opened: {}", error.message()));
-    if (type != fs::file_type::regular) throw Error("this is not a regular file");
-    note_input(file);
+    require_regular_file(file, "NPY");
     stream_.rdbuf()->pubsetbuf(nullptr, 0);
     errno = 0;
     stream_.open(file, std::ios::binary);
