@@ -254,8 +254,8 @@ TEST(SequenceNpy, FindsTheArrayBesideTheMesh) {
   const std::string file = write("beside/four.off", off(mesh));
   write("beside/motion.npy", npy(frames_of(mesh, 3)));
   EXPECT_EQ(MeshSequence(file + "+motion.npy").frame_count(), 3u);
-  expect_refused(file + "+other.npy", {(std::filesystem::path("beside") / "other.npy").string() +
-                                       ": there is no such file"});
+  expect_refused(file + "+other.npy",
+                 {(std::filesystem::path("beside") / "other.npy").string() + ": there is no such file"});
 }
 
 // The array is that of the vertices in the file, which may repeat some and not use others.
