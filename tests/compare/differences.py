@@ -96,10 +96,13 @@ def of_cases(part: str, before: dict, after: dict) -> list:
 
 
 def of_records(before: dict, after: dict) -> list:
-    """The inputs first: where these differ, so does all else."""
+    """The inputs first: where these differ, so does all else. A part that one record lacks is one difference."""
     found = of_values("inputs", "", before["inputs"], after["inputs"])
     for part in sorted((before.keys() | after.keys()) - {"inputs"}):
-        found += of_cases(part, before.get(part, {}), after.get(part, {}))
+        if part in before and part in after:
+            found += of_cases(part, before[part], after[part])
+        else:
+            found.append(Difference(part, "not recorded", "before" if part in after else "after"))
     return found
 
 
