@@ -36,6 +36,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// In place of operator/ while files are moved: that of libstdc++ 12 frees what it has not made where memory
+// is refused to it.
+fs::path joined(const fs::path& folder, const fs::path& file) {
+  return folder.native() + fs::path::preferred_separator + file.native();
+}
+
 [[noreturn]] void fail(const fs::path& path, const std::string& fault) {
   throw sdm::Error(
       fmt::format("cannot write to {}: {}; choose another folder with -o", path.string(), fault));
@@ -344,19 +350,19 @@ void OutputFolder::require_no_inputs(const std::vector<WrittenFile>& written,
                                      const std::vector<WrittenFile>& obsolete) const {
   find_inputs_again();
   for (const WrittenFile& file : obsolete)
-    if (const auto input = input_at(folder_ / file.path); input && is_unchanged(folder_, file))
-      refuse_to_remove(folder_ / file.path, *input);
-  for (const WrittenFile& file : written) require_writable(folder_ / file.path);
-  if (has_manifest()) require_writable(folder_ / kManifestFile);
+    if (const auto input = input_at(joined(folder_, file.path)); input && is_unchanged(folder_, file))
+      refuse_to_remove(joined(folder_, file.path), *input);
+  for (const WrittenFile& file : written) require_writable(joined(folder_, file.path));
+  if (has_manifest()) require_writable(joined(folder_, kManifestFile));
 }
 
 // Lists the files of earlier runs and of this one.
 std::pair<fs::path, fs::path> OutputFolder::staged_manifest(const std::vector<WrittenFile>& written) {
   std::vector<WrittenFile> listed = earlier_;
   listed.insert(listed.end(), written.begin(), written.end());
-  fs::path file = staging() / kManifestFile;
+  fs::path file = joined(staging(), kManifestFile);
   write_text(file, manifest_text(listed));
-  return {std::move(file), folder_ / kManifestFile};
+  return {std::move(file), joined(folder_, kManifestFile)};
 }
 
 // The results of earlier runs that conclude are absent while files are moved: where there is one, the results
@@ -372,7 +378,8 @@ void OutputFolder::commit(const std::vector<WrittenFile>& written) {
   std::vector<std::pair<fs::path, fs::path>> moves;
   if (has_manifest()) moves.push_back(staged_manifest(written));
   const fs::path staged = staging();
-  for (const WrittenFile& file : written) moves.emplace_back(staged / file.path, folder_ / file.path);
+  for (const WrittenFile& file : written)
+    moves.emplace_back(joined(staged, file.path), joined(folder_, file.path));
   for (const auto& [from, to] : moves) create_folder(to.parent_path());
 
   std::error_code ignored;
@@ -380,14 +387,14 @@ void OutputFolder::commit(const std::vector<WrittenFile>& written) {
     if (concludes(file.path)) remove_unchanged(file);
   for (const WrittenFile& file : written) {
     if (!has_manifest() || !concludes(file.path) || is_kept(file.path)) continue;
-    const fs::path path = folder_ / file.path;
+    const fs::path path = joined(folder_, file.path);
     if (identity_of(path) && !input_at(path)) fs::remove(path, ignored);
   }
   for (const auto& [from, to] : moves) move_into_place(from, to);
   for (const WrittenFile& file : obsolete)
     persist([&] {
       if (!concludes(file.path)) remove_unchanged(file);
-      const fs::path parent = (folder_ / file.path).parent_path();
+      const fs::path parent = joined(folder_, file.path).parent_path();
       if (parent != folder_) fs::remove(parent, ignored);  // if it is empty
     });
   shorten_manifest(written, replaced);
@@ -398,7 +405,7 @@ void OutputFolder::shorten_manifest(const std::vector<WrittenFile>& written,
                                     const std::set<std::string>& replaced) {
   std::error_code ignored;
   const auto is_gone = [&](const WrittenFile& file) {
-    return replaced.contains(file.path) || !fs::exists(folder_ / file.path, ignored);
+    return replaced.contains(file.path) || !fs::exists(joined(folder_, file.path), ignored);
   };
   try {
     if (std::erase_if(earlier_, is_gone) == 0) return;
@@ -439,7 +446,7 @@ void OutputFolder::move_into_place(const fs::path& from, const fs::path& to) con
 
 // Files that were changed are the user's.
 void OutputFolder::remove_unchanged(const WrittenFile& file) const {
-  const fs::path path = folder_ / file.path;
+  const fs::path path = joined(folder_, file.path);
   if (input_at(path) || !is_unchanged(folder_, file)) return;
   std::error_code ignored;
   fs::remove(path, ignored);
