@@ -194,8 +194,7 @@ export class Module {
         if (typeof value === 'number') return value;
         const block = this.allocate(value.byteLength);
         blocks.push(block);
-        new (value.constructor as new (buffer: ArrayBufferLike, offset: number, length: number) => NumberArray)(
-          this.memory.buffer, block, value.length).set(value);
+        new Uint8Array(this.memory.buffer, block, value.byteLength).set(new Uint8Array(value.buffer, value.byteOffset, value.byteLength));
         return block;
       });
       return this.read(this.run(name, numbers));

@@ -51,7 +51,18 @@ const files = {
 };
 
 for (const [name, bytes] of Object.entries(files))
-  test(`reads ${name}`, () => {
+  // Regression: Node warned of `new Buffer()`.
+test('a Buffer of Node is read as its bytes', async () => {
+  const warnings = [];
+  const note = (warning) => warnings.push(warning.message);
+  process.on('warning', note);
+  const { positions } = sdm.readMesh(Buffer.from(binaryStl()), 'cube.stl');
+  await new Promise((resolve) => setImmediate(resolve));
+  process.off('warning', note);
+  assert.deepEqual([positions.length, warnings], [24, []]);
+});
+
+test(`reads ${name}`, () => {
     const mesh = sdm.readMesh(bytes, name, name === 'a.gltf' ? { files: { 'parts/a.bin': buffer() } } : {});
     assert.deepEqual([mesh.positions.length, mesh.indices.length], [24, 36]);
     const sites = new sdm.Sites(mesh.positions, mesh.indices);
