@@ -81,11 +81,10 @@ void add_channels(CLI::App& app, BakeCommand& c) {
                  "Of ambient_occlusion: what is farther away occludes nothing")
       ->check(positive_number())
       ->type_name("D");
-  add_choice<sdm::ThicknessMethod>(
+  add_choice(
       app, "--thickness-method", c.thickness,
       "Of thickness: the diameter of the largest ball in HIGH that touches the point, or the length of the "
-      "ray along the inward normal",
-      {{"ball", sdm::ThicknessMethod::ball}, {"ray", sdm::ThicknessMethod::ray}});
+      "ray along the inward normal");
 }
 
 void add_samples(CLI::App& app, BakeCommand& c) {
@@ -132,18 +131,6 @@ sdm::MatchOptions match_options(const BakeCommand& command) {
   if (map.facing) options.facing = *map.facing;
   if (command.cage) options.cage = *command.cage;
   return options;
-}
-
-std::string name_of(sdm::MatchMethod method) {
-  switch (method) {
-    case sdm::MatchMethod::closest:
-      break;
-    case sdm::MatchMethod::facing:
-      return "facing";
-    case sdm::MatchMethod::ray:
-      return "ray";
-  }
-  return "closest";
 }
 
 BakeLayout sample_layout(const BakeCommand& command) {

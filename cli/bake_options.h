@@ -56,6 +56,3 @@ void add_options(CLI::App& app, BakeCommand& command);
 
 /// Throws CLI::ValidationError for more samples than a surface can have.
 void check_samples(const BakeCommand& command);
-
-/// The word of a method.
-[[nodiscard]] std::string name_of(sdm::MatchMethod method);

@@ -19,14 +19,15 @@ std::string words(const sdm::BoundedLength& length) {
   if (length.certainty == sdm::Certainty::bounded)
     return fmt::format("{} ({} to {})", number(length.value), lower_number(length.lower),
                        upper_number(length.upper));
-  return fmt::format("{} ({})", number(length.value), name(length.certainty));
+  return fmt::format("{} ({})", number(length.value), sdm::name_of(length.certainty));
 }
 
 Row row(const PairResults& pair) {
-  return {fmt::to_string(pair.separation.first), fmt::to_string(pair.separation.second),
-          fmt::format("{} ({})", pair.separation.colliding ? "yes" : "no", name(sdm::Certainty::exact)),
-          words(pair.separation.separation),
-          pair.penetration_depth ? words(*pair.penetration_depth) : "none: no solid"};
+  return {
+      fmt::to_string(pair.separation.first), fmt::to_string(pair.separation.second),
+      fmt::format("{} ({})", pair.separation.colliding ? "yes" : "no", sdm::name_of(sdm::Certainty::exact)),
+      words(pair.separation.separation),
+      pair.penetration_depth ? words(*pair.penetration_depth) : "none: no solid"};
 }
 
 bool solid(const sdm::Sites& sites) {

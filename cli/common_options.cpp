@@ -59,12 +59,9 @@ void check_layout(const sdm::AtlasOptions& atlas) {
 }
 
 void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh) {
-  add_choice<sdm::AtlasKind>(
+  add_choice(
       app, "--atlas", atlas.kind,
-      "How " + mesh + " is parametrised: few charts, pairs of triangles without distortion, or its own UVs",
-      {{"charts", sdm::AtlasKind::charts},
-       {"triangles", sdm::AtlasKind::triangles},
-       {"uv", sdm::AtlasKind::uv}});
+      "How " + mesh + " is parametrised: few charts, pairs of triangles without distortion, or its own UVs");
   app.add_option("--gutter", atlas.gutter,
                  "Free texels around each chart, and how far values extend beyond charts, if more than 4")
       ->transform(whole_number(0, 8192))
@@ -100,27 +97,17 @@ std::shared_ptr<const sdm::Engine> make_engine(const sdm::EngineInfo& engine, co
 }
 
 void add_sign_option(CLI::App& app, sdm::SignMethod& sign) {
-  add_choice<sdm::SignMethod>(app, "--sign", sign,
-                              "How the inside of O2 (negative) is determined; auto: exact if O2 is "
-                              "closed and orientable, otherwise none; side: of an open O2 the side to which "
-                              "its normals do not point is negative, an estimate",
-                              {{"auto", sdm::SignMethod::automatic},
-                               {"none", sdm::SignMethod::none},
-                               {"exact", sdm::SignMethod::exact},
-                               {"winding", sdm::SignMethod::winding},
-                               {"side", sdm::SignMethod::side}});
+  add_choice(app, "--sign", sign,
+             "How the inside of O2 (negative) is determined; auto: exact if O2 is "
+             "closed and orientable, otherwise none; side: of an open O2 the side to which "
+             "its normals do not point is negative, an estimate");
 }
 
 void add_color_options(CLI::App& app, sdm::PictureOptions& picture) {
-  add_choice<sdm::Colormap>(app, "--colormap", picture.colormap,
-                            "Colormap; sequential: viridis from 0 to one side, and reds to the other one; "
-                            "auto: viridis if no distance is negative, sequential if little is on one "
-                            "side of 0, otherwise diverging",
-                            {{"auto", sdm::Colormap::automatic},
-                             {"viridis", sdm::Colormap::viridis},
-                             {"sequential", sdm::Colormap::sequential},
-                             {"diverging", sdm::Colormap::diverging},
-                             {"paper2006", sdm::Colormap::paper2006}});
+  add_choice(app, "--colormap", picture.colormap,
+             "Colormap; sequential: viridis from 0 to one side, and reds to the other one; "
+             "auto: viridis if no distance is negative, sequential if little is on one "
+             "side of 0, otherwise diverging");
   app.add_option_function<std::vector<double>>(
          "--range",
          [&picture](const std::vector<double>& range) {
@@ -151,8 +138,7 @@ void add_picture_options(CLI::App& app, sdm::PictureOptions& picture) {
 }
 
 void add_up_option(CLI::App& app, sdm::UpAxis& up, const std::string& files) {
-  add_choice<sdm::UpAxis>(app, "--up", up, "The axis of the meshes that points up, in " + files,
-                          {{"y", sdm::UpAxis::y}, {"z", sdm::UpAxis::z}});
+  add_choice(app, "--up", up, "The axis of the meshes that points up, in " + files);
 }
 
 void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& tolerance) {

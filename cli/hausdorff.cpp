@@ -129,7 +129,7 @@ std::string distance_line(const std::string& what, const sdm::HausdorffDistance&
   const std::string bounds =
       d.certainty == sdm::Certainty::bounded ? "   " + bounds_text(d.lower, d.upper, kDigits) : std::string();
   return fmt::format("  {:<11}{}{}{} ({})\n", what, number(d.value, kDigits), unit, bounds,
-                     name(d.certainty));
+                     sdm::name_of(d.certainty));
 }
 
 /// States the faces that are left out.

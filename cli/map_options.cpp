@@ -61,10 +61,9 @@ void add_options(CLI::App& app, MapCommand& c) {
   app.add_option("--gl-device", c.gl.device,
                  "gl: the device, by its number in `sdm devices` or part of its name")
       ->type_name("NAME");
-  add_choice<sdm::GlClip>(
+  add_choice(
       app, "--clip", c.gl.clip,
-      "gl: how polygons are clipped to faces of O1: by planes or, as in the paper, by a stencil cache",
-      {{"planes", sdm::GlClip::planes}, {"stencil", sdm::GlClip::stencil}});
+      "gl: how polygons are clipped to faces of O1: by planes or, as in the paper, by a stencil cache");
   app.add_option("--stencil-values", c.gl.stencil_values, "gl, --clip stencil: the number of stencil values")
       ->transform(whole_number(1, 255))
       ->type_name("K")

@@ -138,7 +138,7 @@ std::string metrics_summary(const MetricsCommand& command, const MetricsAnswer& 
                                    ? "   " + bounds_text(n.lower, n.upper, kDigits)
                                    : std::string();
     text += fmt::format("  {:<{}}  {}{}{} ({})\n", m.name, width, number(n.value, kDigits),
-                        unit_of(m, command.units), bounds, name(n.certainty));
+                        unit_of(m, command.units), bounds, sdm::name_of(n.certainty));
   }
   return text;
 }

@@ -64,3 +64,12 @@ void add_choice(CLI::App& app, const std::string& name, Enum& target, const std:
       ->type_name(names)
       ->default_str(choices[0].first);
 }
+
+/// An option with the words of an enumeration, of which the command abbreviates "automatic".
+template <sdm::Worded Enum>
+void add_choice(CLI::App& app, const std::string& name, Enum& target, const std::string& description) {
+  std::vector<std::pair<std::string, Enum>> choices;
+  for (const std::string word : sdm::kWords<Enum>)
+    choices.emplace_back(word == "automatic" ? "auto" : word, *sdm::value_of<Enum>(word));
+  add_choice<Enum>(app, name, target, description, choices);
+}

@@ -246,16 +246,8 @@ void add_text_options(CLI::App& app, sdm::TextDialect& text) {
          "such as _, where a column is ignored; by default as the file names them, or the first three are x, "
          "y, z")
       ->type_name("NAME,...");
-  add_choice<sdm::TextSeparator>(app, "--separator", text.separator, "What separates these columns",
-                                 {{"auto", sdm::TextSeparator::automatic},
-                                  {"blank", sdm::TextSeparator::blank},
-                                  {"tab", sdm::TextSeparator::tab},
-                                  {"comma", sdm::TextSeparator::comma},
-                                  {"semicolon", sdm::TextSeparator::semicolon}});
-  add_choice<sdm::DecimalMark>(app, "--decimal", text.decimal, "The decimal mark of their numbers",
-                               {{"auto", sdm::DecimalMark::automatic},
-                                {"point", sdm::DecimalMark::point},
-                                {"comma", sdm::DecimalMark::comma}});
+  add_choice(app, "--separator", text.separator, "What separates these columns");
+  add_choice(app, "--decimal", text.decimal, "The decimal mark of their numbers");
 }
 
 /// What options do not allow together.

@@ -5,13 +5,9 @@
 
 using Json = nlohmann::ordered_json;
 
-const char* name(sdm::Certainty kind) {
-  return kind == sdm::Certainty::exact ? "exact" : kind == sdm::Certainty::bounded ? "bounded" : "estimate";
-}
-
 Json to_json(const sdm::BoundedNumber& number) {
   return {{"value", number.value},
-          {"kind", name(number.certainty)},
+          {"kind", sdm::name_of(number.certainty)},
           {"lower", number.lower},
           {"upper", number.upper}};
 }
@@ -35,14 +31,14 @@ Json to_json(const sdm::Contact& contact) {
 
 Json to_json(const sdm::SeparatingTranslation& found) {
   return {{"value", found.value},
-          {"kind", name(found.certainty)},
+          {"kind", sdm::name_of(found.certainty)},
           {"lower", found.lower},
           {"upper", found.upper},
           {"translation", found.translation}};
 }
 
 Json collision_json(bool colliding) {
-  return {{"value", colliding}, {"kind", name(sdm::Certainty::exact)}};
+  return {{"value", colliding}, {"kind", sdm::name_of(sdm::Certainty::exact)}};
 }
 
 namespace {
@@ -69,7 +65,7 @@ std::string words(const sdm::BoundedNumber& length, const std::string& unit) {
   const std::string bounds = length.certainty == sdm::Certainty::bounded
                                  ? "   " + bounds_text(length.lower, length.upper)
                                  : std::string();
-  return fmt::format("{}{}{} ({})\n", number(length.value), unit, bounds, name(length.certainty));
+  return fmt::format("{}{}{} ({})\n", number(length.value), unit, bounds, sdm::name_of(length.certainty));
 }
 
 std::string between(const sdm::BoundedLength& length, double size) {
@@ -99,8 +95,8 @@ Json to_json(sdm::ProximityQuery& query) {
 
 std::string summary(sdm::ProximityQuery& query, const std::string& units, double size) {
   const std::string unit = unit_suffix(units);
-  std::string text =
-      fmt::format("  colliding  {} ({})\n", query.colliding() ? "yes" : "no", name(sdm::Certainty::exact));
+  std::string text = fmt::format("  colliding  {} ({})\n", query.colliding() ? "yes" : "no",
+                                 sdm::name_of(sdm::Certainty::exact));
   text += "  separation " + words(query.separation(), unit) + between(query.separation(), size);
   if (const auto& depth = query.penetration_depth())
     text += "  depth      " + words(*depth, unit) + between(*depth, size);

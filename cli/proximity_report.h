@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-[[nodiscard]] const char* name(sdm::Certainty kind);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedNumber& number);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedLength& length);
 [[nodiscard]] nlohmann::ordered_json to_json(const sdm::SeparatingTranslation& found);

@@ -49,9 +49,7 @@ double number_from(const Json& json) {
 }
 
 sdm::Certainty certainty(const std::string& text) {
-  for (const sdm::Certainty kind : {sdm::Certainty::exact, sdm::Certainty::bounded})
-    if (text == name(kind)) return kind;
-  return sdm::Certainty::estimate;
+  return sdm::value_of<sdm::Certainty>(text).value_or(sdm::Certainty::estimate);
 }
 
 // Leaves out the witness, which only lines of JSON have.
@@ -194,7 +192,7 @@ std::string to_csv(const std::vector<Frame>& frames) {
     };
     add({f.separation.value, f.separation.lower, f.separation.upper});
     cells.push_back(f.colliding ? "1" : "0");
-    cells.push_back(name(sdm::Certainty::exact));
+    cells.push_back(sdm::name_of(sdm::Certainty::exact));
     if (f.depth)
       add({f.depth->value, f.depth->lower, f.depth->upper});
     else
@@ -267,14 +265,14 @@ std::string summary(const std::vector<Frame>& frames, const std::vector<BadFrame
   if (frames.empty()) return text;
   const auto least = std::ranges::min_element(frames, {}, [](const Frame& f) { return f.separation.value; });
   text += fmt::format("  separation at least {}{}, in frame {} ({})\n", number(least->separation.value), unit,
-                      least->index, name(least->separation.certainty));
+                      least->index, sdm::name_of(least->separation.certainty));
   const auto colliding = std::ranges::count_if(frames, [](const Frame& f) { return f.colliding; });
   text += fmt::format("  colliding  in {} frames\n", colliding);
   const auto deepest =
       std::ranges::max_element(frames, {}, [](const Frame& f) { return f.depth ? f.depth->value : -1; });
   if (deepest->depth && deepest->depth->value > 0)
     text += fmt::format("  depth      at most {}{}, in frame {} ({})\n", number(deepest->depth->value), unit,
-                        deepest->index, name(deepest->depth->certainty));
+                        deepest->index, sdm::name_of(deepest->depth->certainty));
   const auto relative = [](const Frame& f) { return std::max(f.relative_error[0], f.relative_error[1]); };
   text += fmt::format("  error      up to {} times that of the first frame\n",
                       number(relative(*std::ranges::max_element(frames, {}, relative))));

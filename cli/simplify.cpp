@@ -187,7 +187,8 @@ std::string summary(const SimplifyCommand& command, const SimplifyOutcome& outco
                         number(100 * static_cast<double>(count) / static_cast<double>(outcome.triangles), 3));
     const std::string between =
         d.certainty == sdm::Certainty::exact ? std::string() : "  " + bounds_text(d.lower, d.upper);
-    text += fmt::format("  deviation  {}{}{} ({})\n", number(d.value), unit, between, name(d.certainty));
+    text +=
+        fmt::format("  deviation  {}{}{} ({})\n", number(d.value), unit, between, sdm::name_of(d.certainty));
     text += fmt::format("  estimate   {}{}, of meshoptimizer, no bound\n", number(level.estimate), unit);
   }
   return text + note_lines(outcome.notes, 13);

@@ -3,8 +3,10 @@
 /// Threads: plain data, without state.
 #pragma once
 
+#include <sdm/names.h>
 #include <sdm/progress.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -16,6 +18,9 @@ enum class AtlasKind {
   triangles,  ///< pairs of adjacent triangles, each unfolded across the common edge: without distortion
   uv,         ///< the mesh's own texture coordinates
 };
+
+template <>
+inline constexpr std::array kWords<AtlasKind>{"charts", "triangles", "uv"};
 
 /// Options of a Surface.
 struct AtlasOptions {

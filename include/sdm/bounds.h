@@ -3,6 +3,7 @@
 /// Threads: plain values.
 #pragma once
 
+#include <sdm/names.h>
 #include <sdm/types.h>
 
 #include <array>
@@ -16,6 +17,9 @@ enum class Certainty {
   bounded,  ///< the true value lies between the given bounds
   estimate  ///< no guarantee; no query of proximity returns it
 };
+
+template <>
+inline constexpr std::array kWords<Certainty>{"exact", "bounded", "estimate"};
 
 /// A number with its bounds.
 struct BoundedNumber {

@@ -3,6 +3,9 @@
 /// Threads: plain values.
 #pragma once
 
+#include <sdm/names.h>
+
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -19,6 +22,9 @@ enum class DistanceKind : std::uint8_t {
   thickness,  ///< of the wall below the sample, which is of the part itself
   self,       ///< the closest point of the faces that the sample's face does not exclude, of the same mesh
 };
+
+template <>
+inline constexpr std::array kWords<DistanceKind>{"closest", "facing", "along", "thickness", "self"};
 
 /// What was measured, for reports.
 struct MeasuredDistance {

@@ -5,7 +5,9 @@
 
 #include <sdm/api.h>
 #include <sdm/engine.h>
+#include <sdm/names.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -30,6 +32,9 @@ enum class GlClip {
   planes,   ///< clipped to the face's edges before drawing; fragments look up their texel's owner
   stencil,  ///< the paper's method (4.1): a stencil value per face, assigned by a cache
 };
+
+template <>
+inline constexpr std::array kWords<GlClip>{"planes", "stencil"};
 
 /// Options of make_gl_engine().
 struct GlOptions {

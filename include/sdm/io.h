@@ -11,6 +11,7 @@
 #include <sdm/material.h>
 #include <sdm/mesh.h>
 #include <sdm/mesh_attributes.h>
+#include <sdm/names.h>
 #include <sdm/part_statistics.h>
 #include <sdm/statistics.h>
 #include <sdm/summary.h>
@@ -20,6 +21,7 @@
 #include <sdm/tolerance.h>
 #include <sdm/transform.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -104,6 +106,9 @@ SDM_API void write_mesh(const std::filesystem::path& file, const Mesh& mesh);
 
 /// The axis of the mesh that points up in model.glb, whose own vertical axis is y.
 enum class UpAxis { y, z };
+
+template <>
+inline constexpr std::array kWords<UpAxis>{"y", "z"};
 
 /// Options of pictures and coloured models.
 struct PictureOptions {

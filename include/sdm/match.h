@@ -8,6 +8,7 @@
 #include <sdm/engine.h>
 #include <sdm/map.h>
 #include <sdm/mesh_attributes.h>
+#include <sdm/names.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
@@ -63,6 +64,9 @@ enum class MatchMethod : std::uint8_t {
   facing,   ///< the closest one of the faces that face as the sample does
   ray       ///< the nearest hit along the normal of O1, of those faces; where there is none, as `facing`
 };
+
+template <>
+inline constexpr std::array kWords<MatchMethod>{"closest", "facing", "ray"};
 
 /// Options of match_texels().
 struct MatchOptions {

@@ -9,6 +9,7 @@
 #include <sdm/group_verdicts.h>
 #include <sdm/io.h>
 #include <sdm/map.h>
+#include <sdm/names.h>
 #include <sdm/part_statistics.h>
 #include <sdm/places.h>
 #include <sdm/progress.h>
@@ -17,6 +18,7 @@
 #include <sdm/summary.h>
 #include <sdm/transform.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -36,8 +38,14 @@ enum class TextSeparator {
   semicolon,  ///< each semicolon
 };
 
+template <>
+inline constexpr std::array kWords<TextSeparator>{"automatic", "blank", "tab", "comma", "semicolon"};
+
 /// What stands between the whole and the fractional part of the numbers of a text.
 enum class DecimalMark { automatic, point, comma };
+
+template <>
+inline constexpr std::array kWords<DecimalMark>{"automatic", "point", "comma"};
 
 /// How the rows of a text without a format of its own ("XYZ", CSV, PTS) are read. Fields that are automatic
 /// or empty follow from the file: from its header, if it has one, and from its first rows, of which 1000 in
@@ -52,11 +60,6 @@ struct TextDialect {
   /// The line of the header in a file that was opened, from 1; nothing if it has none.
   std::optional<std::uint64_t> header_line{};
 };
-
-/// "automatic", "blank", "tab", "comma" or "semicolon".
-[[nodiscard]] SDM_API std::string name_of(TextSeparator separator);
-/// "automatic", "point" or "comma".
-[[nodiscard]] SDM_API std::string name_of(DecimalMark mark);
 
 /// Throws sdm::Error if no file can be read in this way, as its columns are not as TextDialect requires.
 SDM_API void validate(const TextDialect& dialect);

@@ -35,6 +35,7 @@
 #include <sdm/mesh_edit.h>
 #include <sdm/metrics.h>
 #include <sdm/multi_body_query.h>
+#include <sdm/names.h>
 #include <sdm/part_statistics.h>
 #include <sdm/places.h>
 #include <sdm/pose_query.h>

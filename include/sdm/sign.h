@@ -4,8 +4,10 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/names.h>
 #include <sdm/sites.h>
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -33,6 +35,9 @@ enum class SignMethod {
   /// boundary.
   side,
 };
+
+template <>
+inline constexpr std::array kWords<SignMethod>{"automatic", "none", "exact", "winding", "side"};
 
 /// Whether a method estimates signs: between samples a distance may have the other sign.
 [[nodiscard]] constexpr bool is_estimate(SignMethod method) {

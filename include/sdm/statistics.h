@@ -5,6 +5,7 @@
 
 #include <sdm/api.h>
 #include <sdm/map.h>
+#include <sdm/names.h>
 #include <sdm/surface.h>
 
 #include <cstddef>
@@ -17,16 +18,38 @@ namespace sdm {
 /// Statistics of the texels that hold a finite value, each weighted by its area on the surface. The distances
 /// are NaN if there are none.
 struct DistanceStatistics {
-  std::size_t texels = 0;  ///< with a value
+  std::size_t texels = 0;
   std::size_t negative_texels = 0;
-  double negative_area_fraction = 0;  ///< of the area of texels with a value, in [0, 1]
-  double min = 0, max = 0, mean = 0, rms = 0;
-  double stddev = 0;                                   ///< about the mean
-  double p01 = 0, p05 = 0, p50 = 0, p95 = 0, p99 = 0;  ///< area-weighted percentiles
-  // Statistics of |distance|.
+  double min = 0, max = 0, mean = 0, rms = 0, stddev = 0;
+  double p01 = 0, p05 = 0, p50 = 0, p95 = 0, p99 = 0;
   double mean_abs = 0, max_abs = 0;
   double p50_abs = 0, p95_abs = 0, p99_abs = 0;
+  double negative_area_fraction = 0;
 };
+
+template <>
+inline constexpr std::tuple kFields<DistanceStatistics>{
+    Field{"texels", &DistanceStatistics::texels, "The number of texels that have a value."},
+    Field{"negative_texels", &DistanceStatistics::negative_texels, "The number of those that are negative."},
+    Field{"min", &DistanceStatistics::min, "The smallest distance."},
+    Field{"max", &DistanceStatistics::max, "The largest distance."},
+    Field{"mean", &DistanceStatistics::mean, "The mean."},
+    Field{"rms", &DistanceStatistics::rms, "The root of the mean of the squares."},
+    Field{"stddev", &DistanceStatistics::stddev, "The standard deviation, about the mean."},
+    Field{"p01", &DistanceStatistics::p01, "The distance that 1 % of the area is at or below."},
+    Field{"p05", &DistanceStatistics::p05, "The distance that 5 % of the area is at or below."},
+    Field{"p50", &DistanceStatistics::p50, "The median: half of the area is at or below."},
+    Field{"p95", &DistanceStatistics::p95, "The distance that 95 % of the area is at or below."},
+    Field{"p99", &DistanceStatistics::p99, "The distance that 99 % of the area is at or below."},
+    Field{"mean_abs", &DistanceStatistics::mean_abs, "The mean of the absolute distances."},
+    Field{"max_abs", &DistanceStatistics::max_abs, "The largest absolute distance."},
+    Field{"p50_abs", &DistanceStatistics::p50_abs, "The median of the absolute distances."},
+    Field{"p95_abs", &DistanceStatistics::p95_abs,
+          "The absolute distance that 95 % of the area is at or below."},
+    Field{"p99_abs", &DistanceStatistics::p99_abs,
+          "The absolute distance that 99 % of the area is at or below."},
+    Field{"negative_area_fraction", &DistanceStatistics::negative_area_fraction,
+          "The fraction of the area with a value, in [0, 1], where it is negative."}};
 
 /// Computes statistics of `map.distance` as it is, signed or not. Throws sdm::Error if the map does not
 /// belong to this surface. Cost: linear in texels, all cores.

@@ -15,6 +15,7 @@
 #include <sdm/group_verdicts.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
 #include <sdm/part_statistics.h>
 #include <sdm/places.h>
 #include <sdm/progress.h>
@@ -45,6 +46,9 @@ enum class Colormap {
   diverging,   ///< blue (negative) – white – red (positive), centred on zero
   paper2006,   ///< red (near) to green (far), as in the paper's figures
 };
+
+template <>
+inline constexpr std::array kWords<Colormap>{"automatic", "viridis", "sequential", "diverging", "paper2006"};
 
 /// What a user chose of the colours, and what they depend on.
 struct ColorChoice {
@@ -247,13 +251,5 @@ SDM_API void withhold_pass(Summary& summary, bool accept_doubts);
 [[nodiscard]] SDM_API const char* name_of(Verdict verdict);
 /// The enumerator in words, such as "all within" or "between samples".
 [[nodiscard]] SDM_API const char* name_of(VerdictReason reason);
-/// "automatic", "viridis", "diverging" or "paper2006".
-[[nodiscard]] SDM_API const char* name_of(Colormap colormap);
-/// "none", "exact", "winding" or "side"; "automatic" before the choice.
-[[nodiscard]] SDM_API const char* name_of(SignMethod method);
-/// "closest", "facing", "along", "thickness" or "self".
-[[nodiscard]] SDM_API const char* name_of(DistanceKind kind);
-/// "charts", "triangles" or "uv".
-[[nodiscard]] SDM_API const char* name_of(AtlasKind kind);
 
 }  // namespace sdm

@@ -5,10 +5,12 @@
 
 #include <sdm/api.h>
 #include <sdm/map.h>
+#include <sdm/names.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -21,6 +23,9 @@ enum class ThicknessMethod : std::uint8_t {
   ball,  ///< the diameter of the largest ball in the part that touches there, with its centre along n
   ray,   ///< the length of the ray along n until it leaves the part
 };
+
+template <>
+inline constexpr std::array kWords<ThicknessMethod>{"ball", "ray"};
 
 /// Options of thickness_maps() and thickness_at_vertices().
 struct ThicknessOptions {

@@ -7,10 +7,12 @@
 #include <sdm/api.h>
 #include <sdm/map.h>
 #include <sdm/match.h>
+#include <sdm/names.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -24,6 +26,9 @@ enum class AttributeDomain : std::uint8_t {
   face,    ///< each face; constant within it
   corner,  ///< each corner of each face, number 3 · face + corner; linear within faces
 };
+
+template <>
+inline constexpr std::array kWords<AttributeDomain>{"vertex", "face", "corner"};
 
 /// An array over the vertices, faces or corners of a mesh.
 struct AttributeArray {

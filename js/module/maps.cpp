@@ -1,6 +1,7 @@
 // Surfaces, sites, and the maps of a surface to sites.
 #include <sdm/error.h>
 #include <sdm/hausdorff.h>
+#include <sdm/io.h>
 #include <sdm/map.h>
 #include <sdm/map_samples.h>
 #include <sdm/sites.h>
@@ -8,6 +9,7 @@
 #include <sdm/surface.h>
 
 #include <cmath>
+#include <string>
 #include <type_traits>
 
 #include "module/arguments.h"
@@ -16,6 +18,33 @@
 #include "module/transferred.h"
 
 namespace sdm::js {
+
+namespace {
+
+template <Worded Enum>
+void add_words(std::string& lines, const char* option) {
+  lines += option;
+  for (const char* const word : kWords<Enum>) lines.append(" ").append(word);
+  lines += "\n";
+}
+
+}  // namespace
+
+/// The words that options and results may have, in the order of their numbers: a line for each, after its
+/// name.
+SDM_EXPORT(sdm_words) Result* words() {
+  return guarded([](Result& result) {
+    std::string lines;
+    add_words<SignMethod>(lines, "sign");
+    add_words<AtlasKind>(lines, "atlas");
+    add_words<Certainty>(lines, "certainty");
+    add_words<AttributeDomain>(lines, "domain");
+    add_words<MatchMethod>(lines, "method");
+    add_words<Colormap>(lines, "colormap");
+    add_words<UpAxis>(lines, "up");
+    result.add_text(lines);
+  });
+}
 
 SDM_EXPORT(sdm_new_surface)
 Result* new_surface(const double* positions, std::uint32_t vertices, const std::uint32_t* indices,
@@ -191,12 +220,7 @@ SDM_EXPORT(sdm_map_array) const void* map_array(const DistanceMap* map, std::uin
 }
 
 SDM_EXPORT(sdm_map_statistics) Result* map_statistics(const Surface* surface, const DistanceMap* map) {
-  return guarded([&](Result& result) {
-    const DistanceStatistics s = statistics(*surface, *map);
-    result.add_numbers(s.texels, s.negative_texels, s.negative_area_fraction, s.min, s.max, s.mean, s.rms,
-                       s.stddev, s.p01, s.p05, s.p50, s.p95, s.p99, s.mean_abs, s.max_abs, s.p50_abs,
-                       s.p95_abs, s.p99_abs);
-  });
+  return guarded([&](Result& result) { result.add_fields(statistics(*surface, *map)); });
 }
 
 SDM_EXPORT(sdm_transfer)

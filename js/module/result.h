@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sdm/cancellation.h>
+#include <sdm/names.h>
 
 #include <atomic>
 #include <cstddef>
@@ -46,6 +47,19 @@ class Result {
   template <class... Numbers>
   void add_numbers(Numbers... numbers) {
     add(std::vector<double>{static_cast<double>(numbers)...});
+  }
+  /// The names of the fields of a struct, divided by spaces, and their numbers.
+  template <class Struct>
+  void add_fields(const Struct& of) {
+    std::string names;
+    std::vector<double> numbers;
+    for_each_field<Struct>([&](const auto& field) {
+      names += names.empty() ? "" : " ";
+      names += field.name;
+      numbers.push_back(static_cast<double>(of.*field.member));
+    });
+    add_text(names);
+    add(std::move(numbers));
   }
   void add_text(std::string_view text) { add(std::vector<char>(text.begin(), text.end())); }
   /// An object that JavaScript keeps by its address, until it calls the function that frees it. Of this

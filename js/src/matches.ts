@@ -1,5 +1,5 @@
 // The points of O2 that belong to the texels of O1, and what O2 has there.
-import { type Bytes, float32, float64, uint32, wordNumber } from './bytes.js';
+import { type Bytes, float32, float64, uint32 } from './bytes.js';
 import { type Look } from './look.js';
 import { type Module } from './module.js';
 import { Owned, type Sites, type Surface } from './surface.js';
@@ -8,7 +8,6 @@ import { type Progress, SdmError } from './types.js';
 
 /** `closest`: the closest point; `facing`: the closest one of the faces that face as the texel does; `ray`: the nearest hit along the normal. */
 export type MatchMethod = 'closest' | 'facing' | 'ray';
-const kMethods: readonly MatchMethod[] = ['closest', 'facing', 'ray'];
 
 export interface MatchOptions {
   /** `facing` by default: unlike `closest`, it does not find the other skin of a thin wall. */
@@ -101,7 +100,7 @@ export class Matches extends Owned {
 
   constructor(module: Module, private readonly surface: Surface, private readonly sites: Sites, options: MatchOptions = {}) {
     if (!module.has('sdm_match')) throw new SdmError('input', 'matches need the module of start({ full: true })');
-    const method = wordNumber(kMethods, options.method ?? 'facing', 'method');
+    const method = module.number('method', options.method ?? 'facing');
     const [address, numbers] = module.call('sdm_match', [
       surface.handleIn(module), sites.handleIn(module), method, options.facing ?? 90, options.cage ?? Infinity, options.maxDistance ?? Infinity,
     ], options.progress);

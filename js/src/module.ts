@@ -1,4 +1,5 @@
 // A WebAssembly module of the library: its memory, its calls and their results.
+import { text, wordNumber } from './bytes.js';
 import { type NumberArray, SdmError, type Progress } from './types.js';
 import { type Threads, startThreads } from './threads.js';
 
@@ -96,6 +97,7 @@ export class Module {
   private progress: Progress | undefined;
   private lastWords = '';
   private fault: SdmError | undefined;
+  private wordsOf: Map<string, readonly string[]> | undefined;
   /** The page that reports are written into. */
   reportPage: (() => Promise<string>) | undefined;
   private readonly freed = new FinalizationRegistry<() => void>((free) => free());
@@ -216,6 +218,19 @@ export class Module {
   free(name: string, address: Address): void {
     if (this.progress) throw new SdmError('input', 'the library was called by a callback of progress');
     if (!this.broken) this.run(name, [address]);
+  }
+
+  /** The words of an option or a result, in the order of their numbers. */
+  words(option: string): readonly string[] {
+    this.wordsOf ??= new Map(text(this.call('sdm_words', [])[0]!).trimEnd().split('\n').map((line) => {
+      const [name, ...words] = line.split(' ');
+      return [name!, words];
+    }));
+    return this.wordsOf.get(option)!;
+  }
+  /** The number of a word that an option has. */
+  number(option: string, word: string): number {
+    return wordNumber(this.words(option), word, option);
   }
 
   /** A copy of bytes of the module. */

@@ -1,10 +1,9 @@
 // Summaries and reports of maps, of the module `full`.
-import { type Bytes, float64, text, uint32, wordNumber } from './bytes.js';
+import { type Bytes, float64, text, uint32 } from './bytes.js';
 import { type Module } from './module.js';
 import { type Progress, SdmError } from './types.js';
 
 export type Colormap = 'automatic' | 'viridis' | 'sequential' | 'diverging' | 'paper2006';
-const kColormaps: readonly Colormap[] = ['automatic', 'viridis', 'sequential', 'diverging', 'paper2006'];
 
 export interface SummaryOptions {
   /** The least and the largest distance allowed: the verdict PASS or FAIL is proven between the samples, too. */
@@ -42,13 +41,13 @@ function two<Value>(given: readonly Value[] | undefined, none: readonly [Value, 
 }
 
 /** The numbers and words of the options, as the module takes them. */
-function argumentsOf(options: ReportOptions) {
+function argumentsOf(module: Module, options: ReportOptions) {
   const none = [NaN, NaN] as const;
   const limits = [...two(options.tolerance, none, 'number', 'tolerance'), ...two(options.range, none, 'number', 'range')];
   const words = new TextEncoder().encode(JSON.stringify({
     units: options.units ?? '', names: two(options.names, ['O1', 'O2'], 'string', 'names'), xxh3: two(options.xxh3, ['', ''], 'string', 'xxh3') }));
-  const colormap = wordNumber(kColormaps, options.colormap ?? 'automatic', 'colormap');
-  return [...limits, options.maxDistance ?? Infinity, colormap, wordNumber(['y', 'z'], options.up ?? 'y', 'up'), words, words.length];
+  const colormap = module.number('colormap', options.colormap ?? 'automatic');
+  return [...limits, options.maxDistance ?? Infinity, colormap, module.number('up', options.up ?? 'y'), words, words.length];
 }
 
 function demandFull(module: Module, name: string): void {
@@ -57,7 +56,7 @@ function demandFull(module: Module, name: string): void {
 
 export function summaryOf(module: Module, map: Addresses, options: SummaryOptions): MapSummary {
   demandFull(module, 'summary');
-  const [json] = module.call('sdm_map_summary', [...map, ...argumentsOf(options)], options.progress);
+  const [json] = module.call('sdm_map_summary', [...map, ...argumentsOf(module, options)], options.progress);
   return JSON.parse(text(json!)) as MapSummary;
 }
 
@@ -75,7 +74,7 @@ export async function reportOf(module: Module, map: () => Addresses, options: Re
   const html = await module.reportPage!();
   if (!html.includes(kDataPlace)) throw new SdmError('input', `the reportPage has no ${kDataPlace}: it must be the text of report_page.html`);
   const page = new TextEncoder().encode(html);
-  const [address, lengths, planes] = module.call('sdm_new_report', [...map(), ...argumentsOf(options)], options.progress);
+  const [address, lengths, planes] = module.call('sdm_new_report', [...map(), ...argumentsOf(module, options)], options.progress);
   const draft = float64(address!)[0]!;
   try {
     let at = 0;

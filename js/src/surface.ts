@@ -1,16 +1,15 @@
 // Surfaces (O1), sites (O2), and what is computed of them.
-import { type Bytes, float32, float64, text, uint32, wordNumber } from './bytes.js';
+import { type Bytes, fields, float32, float64, text, uint32 } from './bytes.js';
 import { type Module } from './module.js';
 import { type MapSummary, type ReportOptions, type SummaryOptions, reportOf, summaryOf } from './report.js';
 import { type TransferOptions, transferred } from './transfer.js';
 import {
   type AtlasKind, type BoundedLength, type Certainty, type Indices, type Point, type Points, type Progress,
-  type SignMethod, type SiteType, SdmError, kAtlasKinds, kSignMethods,
+  type SignMethod, type SiteType, SdmError,
 } from './types.js';
 
 const kNone = 0xffffffff;
 const kSiteTypes: Record<number, SiteType> = { 0: 'vertex', 1: 'edge', 2: 'face' };
-const kCertainties: readonly Certainty[] = ['exact', 'bounded', 'estimate'];
 
 /** Coordinates as doubles, three for each point. */
 export function coordinates(points: Points, name: string): Float64Array {
@@ -30,10 +29,10 @@ export function corners(indices: Indices, vertices: number): Uint32Array {
   return indices instanceof Uint32Array ? indices : Uint32Array.from(indices);
 }
 
-function boundedLength(bytes: Bytes): BoundedLength {
+function boundedLength(module: Module, bytes: Bytes): BoundedLength {
   const [value, lower, upper, certainty, ...witness] = Array.from(float64(bytes)) as [number, number, number, number, ...number[]];
   const points: [Point, Point] = [witness.slice(0, 3) as Point, witness.slice(3, 6) as Point];
-  return { value, lower, upper, certainty: kCertainties[certainty]!, witness: Number.isNaN(witness[0]!) ? null : points };
+  return { value, lower, upper, certainty: module.words('certainty')[certainty] as Certainty, witness: Number.isNaN(witness[0]!) ? null : points };
 }
 
 /** An object in the memory of a module. It is freed when it is collected, by dispose(), or at the end of the block of `using`. */
@@ -139,9 +138,9 @@ export class Sites extends Owned {
   /** Distances that are negative inside, of closestPoints(). Of an open mesh, `automatic` gives none a sign. */
   signedDistance(points: Points, options: { sign?: SignMethod; progress?: Progress } = {}): SignedDistances {
     const at = coordinates(points, 'points');
-    const method = wordNumber(kSignMethods, options.sign ?? 'automatic', 'sign');
+    const method = this.module.number('sign', options.sign ?? 'automatic');
     const [distances, used, reason] = this.module.call('sdm_signed_distance', [this.handle, at, at.length / 3, method], options.progress);
-    return { distances: float64(distances!), sign: kSignMethods[float64(used!)[0]!]!, reason: text(reason!) };
+    return { distances: float64(distances!), sign: this.module.words('sign')[float64(used!)[0]!] as SignMethod, reason: text(reason!) };
   }
 
   /** The first point on each ray from an origin along a direction, at origin + t · direction. */
@@ -160,7 +159,7 @@ export class Sites extends Owned {
    */
   hausdorff(other: Sites, options: { precision?: number; progress?: Progress } = {}): Hausdorff {
     const result = this.module.call('sdm_hausdorff', [this.handle, other.handleIn(this.module), options.precision ?? 0], options.progress);
-    return { from: [boundedLength(result[0]!), boundedLength(result[2]!)], larger: boundedLength(result[4]!) };
+    return { from: [boundedLength(this.module, result[0]!), boundedLength(this.module, result[2]!)], larger: boundedLength(this.module, result[4]!) };
   }
 }
 
@@ -217,7 +216,7 @@ export class Surface extends Owned {
       if (of.length * 3 !== at.length * 2) throw new SdmError('input', `uvs has ${of.length} numbers, but two are needed for each of ${at.length / 3} vertices`);
       uvs = Float64Array.from({ length: triangles.length * 2 }, (_, i) => of[triangles[i >> 1]! * 2 + (i & 1)]!);
     }
-    const kind = wordNumber(kAtlasKinds, options.atlas ?? 'charts', 'atlas');
+    const kind = module.number('atlas', options.atlas ?? 'charts');
     const [address] = module.call(
       'sdm_new_surface',
       [at, at.length / 3, triangles, triangles.length / 3, uvs, kind, options.resolution ?? 1024, options.gutter ?? 1,
@@ -270,10 +269,10 @@ export class Surface extends Owned {
   }
 }
 
+/** Statistics of the texels that have a value, each weighted by its area; NaN if there are none. */
 export interface MapStatistics {
   texels: number;
   negativeTexels: number;
-  negativeAreaFraction: number;
   min: number;
   max: number;
   mean: number;
@@ -289,6 +288,7 @@ export interface MapStatistics {
   p50Abs: number;
   p95Abs: number;
   p99Abs: number;
+  negativeAreaFraction: number;
 }
 
 /** Values of texels, or of samples. */
@@ -348,11 +348,11 @@ export class DistanceMap extends Owned {
   }
 
   private arguments(options: MapOptions): [number, number, number, number, number] {
-    const method = wordNumber(kSignMethods, options.sign ?? 'automatic', 'sign');
+    const method = this.module.number('sign', options.sign ?? 'automatic');
     return [...this.addresses(), method, options.maxDistance ?? Infinity];
   }
   private take([used, reason]: Bytes[]): void {
-    this.sign = kSignMethods[float64(used!)[0]!]!;
+    this.sign = this.module.words('sign')[float64(used!)[0]!] as SignMethod;
     this.signReason = text(reason!);
   }
 
@@ -375,10 +375,8 @@ export class DistanceMap extends Owned {
 
   /** Statistics of the distances, weighted by area. */
   statistics(): MapStatistics {
-    const [numbers] = this.module.call('sdm_map_statistics', [this.surface.handleIn(this.module), this.handle]);
-    const names = ['texels', 'negativeTexels', 'negativeAreaFraction', 'min', 'max', 'mean', 'rms', 'stddev', 'p01', 'p05', 'p50', 'p95', 'p99',
-      'meanAbs', 'maxAbs', 'p50Abs', 'p95Abs', 'p99Abs'];
-    return Object.fromEntries(Array.from(float64(numbers!), (value, i) => [names[i]!, value])) as unknown as MapStatistics;
+    const [names, numbers] = this.module.call('sdm_map_statistics', [this.surface.handleIn(this.module), this.handle]);
+    return fields(names!, numbers!) as unknown as MapStatistics;
   }
 
   /** Values of the sites' mesh at the closest point of each texel. */
@@ -446,7 +444,7 @@ export class Pair extends Owned {
   }
   /** The smallest distance between both surfaces; 0 if they intersect. */
   separation(): BoundedLength {
-    return boundedLength(this.module.call('sdm_separation', [this.handle])[0]!);
+    return boundedLength(this.module, this.module.call('sdm_separation', [this.handle])[0]!);
   }
   /** Whether the surfaces intersect, or a solid contains part of the other body. */
   colliding(): boolean {
@@ -455,7 +453,7 @@ export class Pair extends Owned {
   /** How deep a point of one body is inside the other; null if neither is a solid. */
   penetrationDepth(): BoundedLength | null {
     const [depth] = this.module.call('sdm_penetration_depth', [this.handle]);
-    return depth ? boundedLength(depth) : null;
+    return depth ? boundedLength(this.module, depth) : null;
   }
   contacts(): Contacts {
     const [points1, points2, normals, depths, patches, ids] = this.module.call('sdm_contacts', [this.handle]) as Bytes[];

@@ -1,5 +1,5 @@
 // Values of the sites' mesh at the points that belong to texels.
-import { type Bytes, float32, wordNumber } from './bytes.js';
+import { type Bytes, float32 } from './bytes.js';
 import { type Module } from './module.js';
 import { type NumberArray, type Progress } from './types.js';
 
@@ -18,7 +18,7 @@ export function transferred(
   module: Module, name: 'sdm_transfer' | 'sdm_transfer_matches', objects: readonly number[], values: ArrayLike<number>, options: TransferOptions,
 ): Float32Array {
   const rows: NumberArray = values instanceof Float32Array ? values : Float32Array.from(values);
-  const domain = wordNumber(['vertex', 'face', 'corner'], options.domain ?? 'vertex', 'domain');
+  const domain = module.number('domain', options.domain ?? 'vertex');
   const [result] = module.call(name, [...objects, rows, rows.length, options.components ?? 1, domain, options.fill === false ? 0 : 1], options.progress);
   return float32(result as Bytes);
 }

@@ -27,9 +27,7 @@ export class SdmError extends Error {
 }
 
 export type SignMethod = 'automatic' | 'none' | 'exact' | 'winding' | 'side';
-export const kSignMethods: readonly SignMethod[] = ['automatic', 'none', 'exact', 'winding', 'side'];
 export type AtlasKind = 'charts' | 'triangles' | 'uv';
-export const kAtlasKinds: readonly AtlasKind[] = ['charts', 'triangles', 'uv'];
 export type SiteType = 'vertex' | 'edge' | 'face';
 export type Certainty = 'exact' | 'bounded' | 'estimate';
 

@@ -11,7 +11,7 @@ Atlas = Literal["charts", "triangles", "uv"]
 #: Which point belongs to a texel.
 MatchMethod = Literal["closest", "facing", "ray"]
 #: Whether a tolerance is met.
-Verdict = Literal["pass", "fail", "not decided"]
+Verdict = Literal["pass", "fail", "not decided", "doubtful"]
 #: How sure a number is.
 Certainty = Literal["exact", "bounded", "estimate"]
 #: The colours of distances.

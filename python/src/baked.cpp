@@ -35,8 +35,6 @@ struct StoredBaked {
 }  // namespace
 
 template <>
-inline constexpr auto kLast<AtlasKind> = AtlasKind::uv;
-template <>
 inline constexpr auto kMembers<AtlasOptions> =
     std::tuple{&AtlasOptions::kind,        &AtlasOptions::resolution, &AtlasOptions::rows,
                &AtlasOptions::max_stretch, &AtlasOptions::gutter,     &AtlasOptions::strict_uv};
@@ -199,10 +197,9 @@ std::vector<BakedTexture> textures_of(const PyBaked& self) {
 
 void save_baked(const PyBaked& self, nb::handle file, const std::string& units, const std::string& up) {
   const std::filesystem::path path = path_of(file);
-  if (up != "y" && up != "z") throw Error("up must be 'y' or 'z', not '" + up + "'");
+  const UpAxis axis = enum_of<UpAxis>("up", up);
   run(nb::none(), [&](const Progress&) {
-    BakedModelOptions options{
-        .material = self.material, .units = units, .up = up == "z" ? UpAxis::z : UpAxis::y};
+    BakedModelOptions options{.material = self.material, .units = units, .up = axis};
     std::vector<char> normal_map;
     if (self.frames) {
       normal_map = encode_png(self.image(std::string(name_of(GeometryChannel::normal))), false);

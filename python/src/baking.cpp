@@ -29,7 +29,7 @@ namespace {
 
 std::optional<AtlasKind> atlas_kind_of(const std::optional<std::string>& atlas) {
   if (!atlas) return std::nullopt;
-  return atlas_of(atlas->c_str());
+  return enum_of<AtlasKind>("atlas", *atlas);
 }
 
 /// What is asked for.
@@ -84,7 +84,7 @@ BakeAtlas laid_out(const Mesh& mesh, AtlasOptions options, std::optional<AtlasKi
 /// `match`: None for the closest point, or that of facing if it is given.
 MatchOptions match_options(const std::optional<std::string>& match, std::optional<double> facing,
                            std::optional<double> cage, double max_distance) {
-  MatchOptions options{.method = match    ? match_method_of(*match)
+  MatchOptions options{.method = match    ? enum_of<MatchMethod>("match", *match)
                                  : facing ? MatchMethod::facing
                                           : MatchMethod::closest,
                        .max_distance = max_distance};

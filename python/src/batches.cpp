@@ -196,7 +196,8 @@ void bind_batches(nb::module_& module) {
       "closest_points_batch",
       [](const std::vector<nb::object>& meshes, nb::handle faces, const std::vector<nb::object>& points,
          double max_distance, const char* sign, bool gradients, nb::handle progress) {
-        const BatchQuery query{{.sign = sign_of(sign), .max_distance = max_distance}, gradients};
+        const BatchQuery query{{.sign = enum_of<SignMethod>("sign", sign), .max_distance = max_distance},
+                               gradients};
         return faces.is_none() ? closest_of_meshes(meshes, points, query, progress)
                                : closest_of_stack(meshes, faces, points, query, progress);
       },

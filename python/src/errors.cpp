@@ -4,33 +4,11 @@
 #include "objects.h"
 #include "stored.h"
 
-#include <algorithm>
-#include <array>
 #include <string>
 #include <utility>
 
 namespace sdm::python {
 namespace {
-
-template <class Value, std::size_t n>
-using Names = std::array<std::pair<const char*, Value>, n>;
-
-constexpr Names<SignMethod, 5> kSigns{{{"automatic", SignMethod::automatic},
-                                       {"none", SignMethod::none},
-                                       {"exact", SignMethod::exact},
-                                       {"winding", SignMethod::winding},
-                                       {"side", SignMethod::side}}};
-constexpr Names<AtlasKind, 3> kAtlases{
-    {{"charts", AtlasKind::charts}, {"triangles", AtlasKind::triangles}, {"uv", AtlasKind::uv}}};
-
-template <class Value, std::size_t n>
-Value value_of(const Names<Value, n>& names, const std::string& argument, const std::string& name) {
-  const auto found = std::ranges::find_if(names, [&](const auto& entry) { return name == entry.first; });
-  if (found != names.end()) return found->second;
-  std::string all;
-  for (const auto& entry : names) all += (all.empty() ? "" : ", ") + std::string(entry.first);
-  throw Error(argument + " must be one of " + all + ", not '" + name + "'");
-}
 
 // with thread_limit(4): ...
 struct PyThreadLimit {
@@ -43,13 +21,6 @@ struct PyThreadLimit {
 std::shared_ptr<const Engine> engine_of(const char* name) {
   return make_engine(name);
 }
-SignMethod sign_of(const char* name) {
-  return value_of(kSigns, "sign", name);
-}
-AtlasKind atlas_of(const char* name) {
-  return value_of(kAtlases, "atlas", name);
-}
-
 void bind_errors(nb::module_& module) {
   // Translators are tried from the last one on.
   static nb::exception<Error> error(module, "Error", PyExc_ValueError);

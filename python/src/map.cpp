@@ -37,7 +37,7 @@ std::unique_ptr<PyMap> compute(nb::handle surface, nb::handle sites, const char*
   const auto sites_lock = nb::cast<const PySites&>(sites).access.use();
   auto result = map_between(surface, sites);
   result->options = {.engine = engine_of(engine),
-                     .sign = sign_of(sign),
+                     .sign = enum_of<SignMethod>("sign", sign),
                      .max_distance = max_distance,
                      .facing = facing_of(facing)};
   result->engine = engine;

@@ -100,7 +100,6 @@ struct PyMap {
 [[nodiscard]] AlongOptions along_of(nb::handle value);
 /// The word for a verdict: that of the command, in small letters.
 [[nodiscard]] std::string word_of(Verdict verdict);
-[[nodiscard]] Colormap colormap_of(const std::string& name);
 [[nodiscard]] std::optional<std::array<double, 2>> range_of(
     const std::optional<std::pair<double, double>>& range);
 

@@ -34,8 +34,9 @@ struct Colours {
 
 PictureOptions picture_of(const PyMap& self, const Colours& colours, std::uint32_t largest = 2048) {
   if (largest < 16) throw Error("size must be at least 16 pixels");
-  PictureOptions picture{
-      .colormap = colormap_of(colours.colormap), .units = colours.units, .largest = largest};
+  PictureOptions picture{.colormap = enum_of<Colormap>("colormap", colours.colormap),
+                         .units = colours.units,
+                         .largest = largest};
   if (!colours.tolerance.is_none()) picture.tolerance = tolerance_of(colours.tolerance, self.map.sign.method);
   picture.range = range_of(colours.range);
   // Self maps are exact but for rounding to float.
@@ -97,11 +98,6 @@ Vec3 direction_of(nb::handle towards) {
   return {real_of(towards[0]), real_of(towards[1]), real_of(towards[2])};
 }
 
-UpAxis up_axis_of(const std::string& up) {
-  if (up != "y" && up != "z") throw Error("up must be 'y' or 'z', not '" + up + "'");
-  return up == "z" ? UpAxis::z : UpAxis::y;
-}
-
 void write_view(const PyMap& self, nb::handle file, const VertexDistances& at_vertices, nb::handle towards,
                 const std::optional<VertexDistances>& other, const std::string& colormap,
                 std::optional<std::pair<double, double>> range, nb::handle tolerance,
@@ -109,7 +105,7 @@ void write_view(const PyMap& self, nb::handle file, const VertexDistances& at_ve
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
   PictureOptions picture = picture_of(self, {colormap, range, tolerance, units});
-  picture.up = up_axis_of(up);
+  picture.up = enum_of<UpAxis>("up", up);
   const std::filesystem::path path = path_of(file);
   const auto width = static_cast<std::uint32_t>(integer_of(size, "size", 86, 8192));
   ViewOptions view{
@@ -177,7 +173,7 @@ void write_page(const PyMap& self, nb::handle file, const VertexDistances& at_ve
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
   HtmlOptions options{.other = self.of_itself() ? nullptr : &self.to->sites.mesh(),
-                      .up = up_axis_of(up),
+                      .up = enum_of<UpAxis>("up", up),
                       .thinnest = self.thickness.has_value() || self.of_itself(),
                       .largest = largest,
                       .triangles = triangles};
@@ -188,14 +184,6 @@ void write_page(const PyMap& self, nb::handle file, const VertexDistances& at_ve
 }
 
 }  // namespace
-
-Colormap colormap_of(const std::string& name) {
-  for (const Colormap colormap : {Colormap::automatic, Colormap::viridis, Colormap::sequential,
-                                  Colormap::diverging, Colormap::paper2006})
-    if (name == sdm::name_of(colormap)) return colormap;
-  throw Error("colormap must be one of automatic, viridis, sequential, diverging, paper2006, not '" + name +
-              "'");
-}
 
 std::optional<std::array<double, 2>> range_of(const std::optional<std::pair<double, double>>& range) {
   if (!range) return {};

@@ -130,32 +130,20 @@ CertifiedVerdict check_tolerance(const PyMap& self, nb::handle tolerance, nb::ha
 
 void bind_statistics(nb::module_& module) {
   using S = DistanceStatistics;
-  nb::class_<S>(
+  nb::class_<S> statistics(
       module, "DistanceStatistics", nb::is_weak_referenceable(),
       "Statistics of the texels of a map that have a value, each weighted by its area on the surface. "
-      "Distances are NaN if there are none. Estimates for the surface: DistanceMap.bounds holds everywhere.")
-      .def_ro("texels", &S::texels, "The number of texels that have a value.")
-      .def_ro("negative_texels", &S::negative_texels, "The number of those inside.")
-      .def_ro("negative_area_fraction", &S::negative_area_fraction, "Their fraction of the area, in [0, 1].")
-      .def_ro("min", &S::min)
-      .def_ro("max", &S::max)
-      .def_ro("mean", &S::mean)
-      .def_ro("rms", &S::rms)
-      .def_ro("stddev", &S::stddev, "About the mean.")
-      .def_ro("p01", &S::p01, "A percentile, weighted by area.")
-      .def_ro("p05", &S::p05)
-      .def_ro("p50", &S::p50, "The median, weighted by area.")
-      .def_ro("p95", &S::p95)
-      .def_ro("p99", &S::p99)
-      .def_ro("mean_abs", &S::mean_abs, "Of the absolute distances.")
-      .def_ro("max_abs", &S::max_abs)
-      .def_ro("p50_abs", &S::p50_abs)
-      .def_ro("p95_abs", &S::p95_abs)
-      .def_ro("p99_abs", &S::p99_abs)
-      .def("__repr__", [](const S& s) {
-        return nb::str("sdm.DistanceStatistics(min={:.6g}, max={:.6g}, mean={:.6g}, rms={:.6g}, texels={})")
-            .format(s.min, s.max, s.mean, s.rms, s.texels);
-      });
+      "Distances are NaN if there are none. Estimates for the surface: DistanceMap.bounds holds everywhere.");
+  nb::list names;
+  for_each_field<S>([&](const auto& field) {
+    statistics.def_ro(field.name, field.member, field.text);
+    names.append(field.name);
+  });
+  statistics.attr("_fields") = nb::tuple(names);
+  statistics.def("__repr__", [](const S& s) {
+    return nb::str("sdm.DistanceStatistics(min={:.6g}, max={:.6g}, mean={:.6g}, rms={:.6g}, texels={})")
+        .format(s.min, s.max, s.mean, s.rms, s.texels);
+  });
 }
 
 // (distance, point), or None.

@@ -74,18 +74,12 @@ MeshAttribute corner_normals(nb::handle normals, const Mesh& mesh) {
   return result;
 }
 
-ThicknessMethod thickness_method_of(std::string_view name) {
-  if (name == "ball") return ThicknessMethod::ball;
-  if (name == "ray") return ThicknessMethod::ray;
-  throw Error("method must be 'ball' or 'ray', not '" + std::string(name) + "'");
-}
-
 PyMatches* found_matches(nb::handle surface, nb::handle sites, const char* method, double facing, double cage,
                          double max_distance, nb::handle normals, const char* engine, nb::handle progress) {
   auto result = std::make_unique<PyMatches>(nb::borrow(surface), nb::borrow(sites));
   const auto locks = result->use();
   const MeshAttribute of_corners = corner_normals(normals, result->on->surface.mesh());
-  MatchOptions options{.method = match_method_of(method),
+  MatchOptions options{.method = enum_of<MatchMethod>("method", method),
                        .facing = facing,
                        .cage = cage,
                        .max_distance = max_distance,
@@ -202,7 +196,7 @@ void bind_matched_geometry(nb::class_<PyMatches>& type) {
       .def(
           "thickness",
           [](const PyMatches& self, const char* method, double angle, bool fill, nb::handle progress) {
-            const ThicknessMethod chosen = thickness_method_of(method);
+            const ThicknessMethod chosen = enum_of<ThicknessMethod>("method", method);
             return self.values(1, fill, progress, [&](const Progress& report) {
               return matched_thickness(self.on->surface, self.to->sites, self.matches, chosen,
                                        {.angle = angle, .progress = report});
@@ -239,13 +233,6 @@ void bind_match_state() {
 }
 
 }  // namespace
-
-MatchMethod match_method_of(std::string_view name) {
-  if (name == "closest") return MatchMethod::closest;
-  if (name == "facing") return MatchMethod::facing;
-  if (name == "ray") return MatchMethod::ray;
-  throw Error("matches are 'closest', 'facing' or 'ray', not '" + std::string(name) + "'");
-}
 
 void bind_matches(nb::module_& module) {
   nb::class_<PyMatches> type(module, "TexelMatches", "The compiled part of Matches.");

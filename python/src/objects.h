@@ -82,9 +82,13 @@ struct PySurface {
 
 // Options by their names in Python. All throw sdm::Error for an unknown one.
 [[nodiscard]] std::shared_ptr<const Engine> engine_of(const char* name);
-[[nodiscard]] SignMethod sign_of(const char* name);
-[[nodiscard]] AtlasKind atlas_of(const char* name);
-[[nodiscard]] MatchMethod match_method_of(std::string_view name);
+template <Worded Enum>
+[[nodiscard]] Enum enum_of(const std::string& argument, std::string_view word) {
+  if (const auto value = value_of<Enum>(word)) return *value;
+  std::string all;
+  for (const char* known : kWords<Enum>) all += (all.empty() ? "" : ", ") + std::string(known);
+  throw Error(argument + " must be one of " + all + ", not '" + std::string(word) + "'");
+}
 
 /// Adds the method edit().
 void bind_edit(nb::class_<PySites>& sites);

@@ -41,7 +41,7 @@ nb::tuple state_of(const AtlasOptions& options) {
 
 AtlasOptions atlas_from(nb::handle packed) {
   const nb::tuple state = items(packed, 5);
-  return {.kind = atlas_of(nb::cast<std::string>(state[0]).c_str()),
+  return {.kind = enum_of<AtlasKind>("atlas", nb::cast<std::string>(state[0])),
           .resolution = nb::cast<std::uint32_t>(state[1]),
           .rows = nb::cast<std::optional<std::uint32_t>>(state[2]),
           .max_stretch = nb::cast<double>(state[3]),
@@ -103,7 +103,7 @@ DistanceMap map_from(nb::handle packed, std::size_t texels) {
   map.resolution = nb::cast<std::uint32_t>(state[0]);
   map.distance = unpacked<float>(state[1]), map.vector = unpacked<Vec3f>(state[2]);
   map.site = unpacked<std::uint32_t>(state[3]), map.site_type = unpacked<SiteType>(state[4]);
-  map.sign = {sign_of(nb::cast<std::string>(sign[0]).c_str()), nb::cast<std::string>(sign[1])};
+  map.sign = {enum_of<SignMethod>("sign", nb::cast<std::string>(sign[0])), nb::cast<std::string>(sign[1])};
   map.measured = {enumerator<DistanceKind>(measured[0], DistanceKind::self),
                   nb::cast<std::string>(measured[1]), nb::cast<std::optional<double>>(measured[2])};
   map.beyond_max_distance = nb::cast<std::size_t>(state[7]);
@@ -145,7 +145,7 @@ nb::tuple rule_of(const PyMap& self) {
 void take_rule(PyMap& self, nb::handle packed) {
   const nb::tuple rule = items(packed, 6);
   self.engine = nb::cast<std::string>(rule[0]);
-  self.options.sign = sign_of(nb::cast<std::string>(rule[1]).c_str());
+  self.options.sign = enum_of<SignMethod>("sign", nb::cast<std::string>(rule[1]));
   self.options.max_distance = nb::cast<double>(rule[2]);
   self.options.facing = nb::cast<std::optional<double>>(rule[3]);
   const nb::object thickness = rule[4], along = rule[5];

@@ -24,22 +24,10 @@
 namespace sdm::python {
 namespace {
 
-TextSeparator separator_of(const std::string& name) {
-  for (const TextSeparator s : {TextSeparator::automatic, TextSeparator::blank, TextSeparator::tab,
-                                TextSeparator::comma, TextSeparator::semicolon})
-    if (name == sdm::name_of(s)) return s;
-  throw Error("separator must be 'automatic', 'blank', 'tab', 'comma' or 'semicolon', not '" + name + "'");
-}
-
-DecimalMark decimal_of(const std::string& name) {
-  for (const DecimalMark d : {DecimalMark::automatic, DecimalMark::point, DecimalMark::comma})
-    if (name == sdm::name_of(d)) return d;
-  throw Error("decimal must be 'automatic', 'point' or 'comma', not '" + name + "'");
-}
-
 TextDialect dialect_of(const std::optional<std::vector<std::string>>& columns, const std::string& separator,
                        const std::string& decimal) {
-  TextDialect dialect{.separator = separator_of(separator), .decimal = decimal_of(decimal)};
+  TextDialect dialect{.separator = enum_of<TextSeparator>("separator", separator),
+                      .decimal = enum_of<DecimalMark>("decimal", decimal)};
   if (columns) dialect.columns = *columns;
   validate(dialect);
   return dialect;
@@ -185,7 +173,7 @@ PointDistances measure(nb::handle cloud, nb::handle o2, nb::handle output, nb::h
   for (const nb::handle input : {cloud, o2, tolerance_table}) require_other(ply, input);
   SitesInUse to(o2);
   PointDistancesOptions options{.map = {.engine = engine_of(engine),
-                                        .sign = sign_of(sign),
+                                        .sign = enum_of<SignMethod>("sign", sign),
                                         .max_distance = max_distance,
                                         .facing = facing_of(facing)}};
   if (!along.is_none()) {
@@ -196,7 +184,7 @@ PointDistances measure(nb::handle cloud, nb::handle o2, nb::handle output, nb::h
   }
   options.text = dialect_of(columns, separator, decimal);
   if (!motion.is_none()) options.placement = transform(motion, "transform");
-  options.picture.colormap = colormap_of(colormap);
+  options.picture.colormap = enum_of<Colormap>("colormap", colormap);
   options.picture.range = range_of(range);
   PointDistances result;
   run(nb::none(), [&](const Progress&) { (void)to.get(); });

@@ -156,10 +156,6 @@ std::size_t faces_of(const ProximityQuery& query) {
 
 }  // namespace
 
-const char* name_of(Certainty certainty) {
-  return certainty == Certainty::exact ? "exact" : certainty == Certainty::bounded ? "bounded" : "estimate";
-}
-
 PyShape::PyShape(const Mesh& mesh, std::optional<std::uint32_t> side, const Progress& progress)
     : resolution(side),
       shape(side ? Shape(mesh, {.resolution = *side, .progress = progress}) : Shape(mesh)) {}

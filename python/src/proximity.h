@@ -14,8 +14,6 @@
 
 namespace sdm::python {
 
-[[nodiscard]] const char* name_of(Certainty certainty);
-
 /// Contacts, with the bodies that they belong to if there are many; arrays are made by the first access.
 struct PyContacts {
   std::vector<Contact> contacts;

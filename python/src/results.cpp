@@ -14,25 +14,6 @@
 namespace sdm::python {
 
 template <>
-inline constexpr auto kMembers<DistanceStatistics> = std::tuple{&DistanceStatistics::texels,
-                                                                &DistanceStatistics::negative_texels,
-                                                                &DistanceStatistics::negative_area_fraction,
-                                                                &DistanceStatistics::min,
-                                                                &DistanceStatistics::max,
-                                                                &DistanceStatistics::mean,
-                                                                &DistanceStatistics::rms,
-                                                                &DistanceStatistics::stddev,
-                                                                &DistanceStatistics::p01,
-                                                                &DistanceStatistics::p05,
-                                                                &DistanceStatistics::p50,
-                                                                &DistanceStatistics::p95,
-                                                                &DistanceStatistics::p99,
-                                                                &DistanceStatistics::mean_abs,
-                                                                &DistanceStatistics::max_abs,
-                                                                &DistanceStatistics::p50_abs,
-                                                                &DistanceStatistics::p95_abs,
-                                                                &DistanceStatistics::p99_abs};
-template <>
 inline constexpr auto kMembers<SeparatingTranslation> = std::tuple{
     &SeparatingTranslation::value, &SeparatingTranslation::certainty, &SeparatingTranslation::lower,
     &SeparatingTranslation::upper, &SeparatingTranslation::translation};
@@ -102,14 +83,6 @@ inline constexpr auto kMembers<Places> =
                &Places::large,  &Places::small,        &Places::largest};
 
 // Point clouds.
-template <>
-inline constexpr auto kLast<TextSeparator> = TextSeparator::semicolon;
-template <>
-inline constexpr auto kLast<DecimalMark> = DecimalMark::comma;
-template <>
-inline constexpr auto kLast<SignMethod> = SignMethod::side;
-template <>
-inline constexpr auto kLast<DistanceKind> = DistanceKind::self;
 template <>
 inline constexpr auto kMembers<TextDialect> = std::tuple{&TextDialect::separator, &TextDialect::decimal,
                                                          &TextDialect::columns, &TextDialect::header_line};

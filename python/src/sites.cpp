@@ -30,7 +30,7 @@ std::unique_ptr<PyClosestPoints> closest(nb::handle self, nb::handle points, con
   const auto& sites = nb::cast<const PySites&>(self);
   const Points p(points, "points");
   const auto lock = sites.access.use();
-  MapOptions options{.sign = sign_of(query.sign), .max_distance = query.max_distance};
+  MapOptions options{.sign = enum_of<SignMethod>("sign", query.sign), .max_distance = query.max_distance};
   const bool cpu = query.engine == std::string_view("cpu");
   if (!cpu) options.engine = engine_of(query.engine);
 

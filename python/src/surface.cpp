@@ -26,7 +26,7 @@ Layout layout(nb::handle resolution, nb::handle precision, const char* atlas, do
   if (!resolution.is_none() && !precision.is_none())
     throw Error("resolution and precision exclude each other; give one of them");
   Layout result;
-  result.options.kind = atlas_of(atlas);
+  result.options.kind = enum_of<AtlasKind>("atlas", atlas);
   const auto unsigned_of = [](nb::handle value, const char* name) {
     return static_cast<std::uint32_t>(integer_of(value, name, 0));
   };

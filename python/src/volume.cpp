@@ -229,7 +229,7 @@ DistanceField field_from(const nb::tuple& state) {
       .max_distance = nb::cast<double>(state[4]),
       .accuracy = nb::cast<double>(state[5]),
       .o2_bounds = bounds.front(),
-      .sign = {sign_of(nb::cast<std::string>(sign[0]).c_str()), nb::cast<std::string>(sign[1])},
+      .sign = {enum_of<SignMethod>("sign", nb::cast<std::string>(sign[0])), nb::cast<std::string>(sign[1])},
       .beyond_max_distance = nb::cast<std::size_t>(state[8])};
   const std::size_t n = field.distance.size();
   const bool bad_dims =
@@ -271,7 +271,8 @@ void bind_volume(nb::module_& module) {
          nb::handle progress) {
         SitesInUse to(mesh);
         validate(to.mesh());
-        FieldOptions options{.sign = sign_of(sign), .max_distance = max_distance, .sites = sites};
+        FieldOptions options{
+            .sign = enum_of<SignMethod>("sign", sign), .max_distance = max_distance, .sites = sites};
         const Grid grid = grid_of(to.mesh(), spacing, shape, bounds, margin, max_distance);
         auto result = std::make_unique<PyField>();
         run(progress, [&](const Progress& report) {

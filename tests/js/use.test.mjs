@@ -1,5 +1,6 @@
 // The package as users call it: errors, progress, memory.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
@@ -34,6 +35,10 @@ test('signs, rays and maps of a ball', () => {
   const map = new sdm.Surface(inner.positions, inner.indices, { resolution: 128 }).map(sites);
   const statistics = map.statistics();
   assert.ok(statistics.max < -0.49 && statistics.min >= -0.5 - 1e-6, JSON.stringify(statistics));
+  assert.ok(statistics.p50 <= statistics.p95 && statistics.p95Abs === -statistics.p05 && statistics.negativeAreaFraction === 1);
+  // Names come from the library, types from surface.ts.
+  const [, type] = /interface MapStatistics \{([^}]*)\}/.exec(readFileSync(join(process.env.SDM_PACKAGE, 'surface.d.ts'), 'utf8'));
+  assert.deepEqual(Object.keys(statistics), [...type.matchAll(/(\w+): number/g)].map(([, name]) => name));
   const heights = map.transfer(positions.filter((_, i) => i % 3 === 2));
   assert.equal(heights.length, 128 * 128);
   assert.ok(heights.every(Number.isFinite));

@@ -17,8 +17,7 @@ from sdm import _arrays
 
 from . import _files, _meshes
 
-_NUMBERS = ("min", "max", "mean", "rms", "stddev", "p01", "p05", "p50", "p95", "p99", "mean_abs", "max_abs",
-            "p50_abs", "p95_abs", "p99_abs", "negative_area_fraction")  # fmt: skip
+_NUMBERS = tuple(name for name in sdm.DistanceStatistics._fields if not name.endswith("texels"))
 _BOUNDS = ("lower", "upper", "covering_radius", "accuracy")
 _FORMATS = (".exr", ".png", ".glb", ".ply", ".csv", ".npy", ".vtp")
 _ATTEMPTS = 3  # as many as Dask's setting distributed.scheduler.allowed-failures

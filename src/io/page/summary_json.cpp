@@ -66,24 +66,14 @@ Json to_json(const Surface& surface) {
           {"area_fraction_without_texels", area_fraction_without_texels(surface)}};
 }
 
-Json to_json(const DistanceStatistics& d) {
-  return {{"kind", "estimate"},
-          {"min", d.min},
-          {"max", d.max},
-          {"mean", d.mean},
-          {"rms", d.rms},
-          {"stddev", d.stddev},
-          {"p01", d.p01},
-          {"p05", d.p05},
-          {"p50", d.p50},
-          {"p95", d.p95},
-          {"p99", d.p99},
-          {"mean_abs", d.mean_abs},
-          {"max_abs", d.max_abs},
-          {"p50_abs", d.p50_abs},
-          {"p95_abs", d.p95_abs},
-          {"p99_abs", d.p99_abs},
-          {"negative_area_fraction", d.negative_area_fraction}};
+Json to_json(const DistanceStatistics& statistics) {
+  Json json{{"kind", "estimate"}};
+  for_each_field<DistanceStatistics>([&](const auto& field) {
+    const auto value = statistics.*field.member;
+    // The numbers of texels are in the report itself.
+    if constexpr (std::is_floating_point_v<decltype(value)>) json[field.name] = value;
+  });
+  return json;
 }
 
 Json to_json(const ColorRange& colors) {

@@ -90,16 +90,6 @@ TextTable io::find_dialect(std::string_view begin, bool whole, const TextDialect
   return best->table();
 }
 
-std::string name_of(TextSeparator separator) {
-  constexpr std::array names{"automatic", "blank", "tab", "comma", "semicolon"};
-  return names.at(static_cast<std::size_t>(separator));
-}
-
-std::string name_of(DecimalMark mark) {
-  constexpr std::array names{"automatic", "point", "comma"};
-  return names.at(static_cast<std::size_t>(mark));
-}
-
 void validate(const TextDialect& dialect) {
   if (dialect.columns.empty()) return;
   const auto named = named_columns({dialect.columns.begin(), dialect.columns.end()});
