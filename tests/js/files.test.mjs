@@ -50,8 +50,7 @@ const files = {
   'a.gltf': text(JSON.stringify(gltf('parts/a.bin'))),
 };
 
-for (const [name, bytes] of Object.entries(files))
-  // Regression: Node warned of `new Buffer()`.
+// Regression: Node warned of `new Buffer()`.
 test('a Buffer of Node is read as its bytes', async () => {
   const warnings = [];
   const note = (warning) => warnings.push(warning.message);
@@ -62,7 +61,8 @@ test('a Buffer of Node is read as its bytes', async () => {
   assert.deepEqual([positions.length, warnings], [24, []]);
 });
 
-test(`reads ${name}`, () => {
+for (const [name, bytes] of Object.entries(files))
+  test(`reads ${name}`, () => {
     const mesh = sdm.readMesh(bytes, name, name === 'a.gltf' ? { files: { 'parts/a.bin': buffer() } } : {});
     assert.deepEqual([mesh.positions.length, mesh.indices.length], [24, 36]);
     const sites = new sdm.Sites(mesh.positions, mesh.indices);
