@@ -46,9 +46,9 @@ struct CertifyOptions {
 
 /// check_tolerance() and, where that does not decide because distances between the samples or the rounding of
 /// a sample leave it open, prove_tolerance(). Verdict::not_decided remains for an extreme distance within the
-/// accuracy of a limit, for what depends on signs that are estimates, where nothing was measured, and for an
-/// unknown accuracy. Of DistanceKind::facing, where samples bound nothing, each pass of the samples is
-/// proven: a proof of prove_tolerance() with the angle of the map, and Verdict::fail with
+/// accuracy of a limit, for what depends on signs that are estimates (see prove_tolerance()), where nothing
+/// was measured, and for an unknown accuracy. Of DistanceKind::facing, where samples bound nothing, each pass
+/// of the samples is proven: a proof of prove_tolerance() with the angle of the map, and Verdict::fail with
 /// VerdictReason::without_match for a face that no face of O2 matches. Where asymmetric limits depend on
 /// signs, their pass stays an estimate. Of other kinds, samples decide alone. Where distances are to the
 /// closest point and walls of O2 are thinner than twice the tolerance (thin_walls()), a pass needs the proof

@@ -208,6 +208,8 @@ struct PointDistances {
   /// SignMethod::side: some point is out of picture.tolerance whatever its sign. Points that are closest to
   /// the boundary of an open O2 have no side, and |d|.
   bool beyond_with_either_sign = true;
+  /// SignMethod::side: some of these is not within it with either sign.
+  bool missing_signs_matter = true;
   std::optional<PointIslands> islands;  ///< if they were looked for
   std::optional<Places> places;         ///< nothing if no point has a value, or has to have one
   /// The verdicts on the groups of options.table: each point with a value is of the groups of its closest

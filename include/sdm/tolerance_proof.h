@@ -44,7 +44,8 @@ struct ToleranceProof {
   /// search ended at ToleranceProofOptions::most_parts. Nothing if signs are the reason.
   std::optional<double> undecided_by{};
   /// Undecided because it depends on signs that are estimates (is_estimate()): some point
-  /// is within the tolerance with one sign and out of it with the other.
+  /// is within the tolerance with one sign and out of it with the other, and of SignMethod::side, that it has
+  /// the right one is not proven.
   bool depends_on_signs = false;
   /// Set with ToleranceProofOptions::facing: the number of faces of the surface with an area, but without an
   /// allowed face of O2. They have no distance, so that nothing is proven to be inside.
@@ -71,8 +72,12 @@ struct ToleranceProofOptions {
 /// Decides whether all points of a surface have distances to O2 within a tolerance, by branch and bound as of
 /// one_sided_hausdorff(), which ends as soon as the answer is known. Unsigned distances are never negative,
 /// so that a lower limit of 0 or less holds. Each side of O2 has its own limits: signs are decided exactly
-/// where the distance exceeds a limit. With estimated signs, what |d| alone decides is proven, and the rest
-/// is undecided with `depends_on_signs`.
+/// where the distance exceeds a limit. With estimated signs, what |d| alone decides is proven: points that
+/// are within the tolerance with either sign, such as those on O2, are within it. Of SignMethod::side, those
+/// that are within it with one sign only are, if that is their side for each site of O2 that may be the
+/// closest one. The rest is undecided with `depends_on_signs`: points out of the tolerance on their side,
+/// points whose closest site may be on the boundary of O2, and where sites that are equally close disagree;
+/// any such point of SignMethod::winding, and with `facing`.
 ///
 /// A proof holds to 1e-12 of the diagonal of both meshes and of their largest coordinate. It is undecided
 /// only if the most extreme distance is that close to a limit, or beyond it by no more than the accuracy; if

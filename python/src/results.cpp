@@ -114,6 +114,7 @@ inline constexpr auto kMembers<PointDistances> = std::tuple{&PointDistances::poi
                                                             &PointDistances::max,
                                                             &PointDistances::beyond_tolerance,
                                                             &PointDistances::beyond_with_either_sign,
+                                                            &PointDistances::missing_signs_matter,
                                                             &PointDistances::islands,
                                                             &PointDistances::places,
                                                             &PointDistances::groups,

@@ -84,6 +84,24 @@ def test_places_of_a_map():
                 call(wrong)
 
 
+def test_points_of_clouds_have_the_side_that_they_have(tmp_path):
+    plane = [[-5, -5, 0], [5, -5, 0], [5, 5, 0], [-5, 5, 0]], [[0, 1, 2], [0, 2, 3]]
+    names = sdm.FaceNames("group", ["all"], np.zeros(2, np.uint32))
+    on, behind, front, beside = [0, 0, 0], [1, 0, -0.05], [1, 0, 0.05], [5, 0, -0.05]
+
+    def verdict(points, limits):
+        np.savetxt(tmp_path / "cloud.xyz", points, fmt="%.17g")
+        options = dict(sign="side", tolerance=limits, tolerance_table={"all": limits}, names=names)
+        return sdm.measure_points(tmp_path / "cloud.xyz", plane, tmp_path / "out.ply", **options).groups.verdict
+
+    assert verdict([on, on], (-0.1, 0.02)) == "pass"
+    assert verdict([on, behind], (-0.1, 0.02)) == "pass"
+    assert verdict([on, behind], (-0.04, 0.02)) == "fail"
+    assert verdict([on, front], (-0.1, 0.02)) == "fail"
+    assert verdict([on, behind, beside], (-0.1, 0.02)) == "not decided"  # at the boundary, where there is no side
+    assert verdict([on, behind, beside], (-0.1, 0.06)) == "pass"
+
+
 def test_clouds(tmp_path):
     names = sdm.read_face_names(plate(tmp_path))
     o2 = sdm.read(plate(tmp_path))

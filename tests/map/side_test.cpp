@@ -1,12 +1,17 @@
 // Signs by the side of an open mesh.
 #include <gtest/gtest.h>
 #include <sdm/certified_verdict.h>
+#include <sdm/closest_points.h>
 #include <sdm/map.h>
+#include <sdm/tolerance_proof.h>
 #include <sdm/vertex_distances.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <random>
+#include <utility>
 #include <vector>
 
 #include "geometry/vec.h"
@@ -102,6 +107,113 @@ TEST(SideOfAnOpenMesh, SamplesAtTheBoundaryFailOnlyByBothSigns) {
   const std::vector<std::uint8_t> boundary = boundary_vertices(surface.mesh(), sites);
   EXPECT_EQ(std::ranges::count(boundary, 1), 4);
   EXPECT_EQ(std::ranges::count(boundary_vertices(square(0.5, 1), sites), 1), 0);
+}
+
+/// A square sheet of 2 · count² faces with heights by a function, facing up.
+template <class Height>
+Mesh sheet(double half, int count, const Height& height) {
+  Mesh mesh;
+  const auto at = [&](int i) { return half * (2.0 * i / count - 1); };
+  for (int j = 0; j <= count; ++j)
+    for (int i = 0; i <= count; ++i) mesh.positions.push_back({at(i), at(j), height(at(i), at(j))});
+  const auto vertex = [&](int i, int j) { return static_cast<std::uint32_t>(j * (count + 1) + i); };
+  for (int j = 0; j < count; ++j)
+    for (int i = 0; i < count; ++i) {
+      mesh.triangles.push_back({vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)});
+      mesh.triangles.push_back({vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
+    }
+  return mesh;
+}
+
+double flat(double, double) {
+  return 0;
+}
+double dent(double x, double y) {
+  return std::max(std::abs(x), std::abs(y)) <= 2 ? -0.05 : 0;
+}
+
+ToleranceProof prove_by_side(const Mesh& mesh, const Mesh& o2, const Tolerance& tolerance) {
+  return prove_tolerance(mesh, Sites(o2), tolerance, {.sign = SignMethod::side});
+}
+
+// A dent behind a plane: most of the surface is on the plane, where no sign is certain, and within the limits
+// with either one.
+TEST(SideOfAnOpenMesh, PointsWithinTheLimitsByEitherSignAreInside) {
+  const Mesh dented = sheet(4, 8, dent);
+  for (const Mesh& plane : {sheet(5, 1, flat), sheet(5, 20, flat)})
+    for (const Tolerance& tolerance : {Tolerance(-0.1, 0.02), Tolerance(-0.1, 0)})
+      EXPECT_EQ(prove_by_side(dented, plane, tolerance).proof, Proof::inside);
+  const Mesh plane = sheet(5, 1, flat);
+  EXPECT_EQ(prove_by_side(sheet(4, 4, [](double, double) { return -0.05; }), plane, {-0.1, -0.01}).proof,
+            Proof::inside);
+  EXPECT_EQ(prove_by_side(dented, plane, {-0.04, 0.02}).proof, Proof::outside) << "with either sign";
+  // On the side that the limits do not allow; and beside the plane, at its boundary.
+  EXPECT_TRUE(prove_by_side(dented, plane, {-0.02, 0.1}).depends_on_signs);
+  EXPECT_TRUE(prove_by_side(sheet(5.05, 8, flat), plane, {-0.1, 0.02}).depends_on_signs);
+  EXPECT_EQ(prove_by_side(sheet(5.01, 8, flat), plane, {-0.1, 0.02}).proof, Proof::inside);
+  // The verdict of a map, which had no proof where samples have only one sign within the limits.
+  const Sites sites(plane);
+  const Surface surface(dented, {.resolution = 64});
+  const MapOptions options{.sign = SignMethod::side};
+  const CertifiedVerdict verdict = certify_tolerance(surface, sites, compute_map(surface, sites, options),
+                                                     distances_at_vertices(surface.mesh(), sites, options),
+                                                     {-0.1, 0.02}, {.error_bound = 0.2, .accuracy = 1e-6});
+  EXPECT_EQ(verdict.verdict, Verdict::pass);
+  EXPECT_TRUE(verdict.certified);
+}
+
+// Of a sharp ridge each face is behind the plane of the other one; of two sheets the nearer one changes.
+TEST(SideOfAnOpenMesh, SidesOfRidgesAndStacksAreProvenWhereTheyAreOne) {
+  const auto roof = [](double x, double) { return -3 * std::abs(x); };
+  for (const double offset : {0.09, -0.09}) {  // at most 0.09 away, and at least 0.028
+    const Mesh moved_roof = sheet(4, 20, [&](double x, double y) { return roof(x, y) + offset; });
+    const Tolerance allows = offset > 0 ? Tolerance(-0.02, 0.1) : Tolerance(-0.1, 0.02);
+    EXPECT_EQ(prove_by_side(moved_roof, sheet(5, 20, roof), allows).proof, Proof::inside);
+    EXPECT_TRUE(prove_by_side(moved_roof, sheet(5, 20, roof), {-allows.hi, -allows.lo}).depends_on_signs);
+  }
+  Mesh lid = sheet(5, 1, [](double, double) { return 0.2; });
+  const Mesh between = sheet(4, 8, [](double x, double) { return 0.1 + 0.02 * x; });
+  EXPECT_TRUE(prove_by_side(between, joined(sheet(5, 1, flat), lid), {-0.01, 0.2}).depends_on_signs);
+  for (Triangle& t : lid.triangles) std::swap(t[1], t[2]);
+  EXPECT_EQ(prove_by_side(between, joined(sheet(5, 1, flat), lid), {-0.01, 0.2}).proof, Proof::inside);
+}
+
+// What is proven holds at samples.
+TEST(SideOfAnOpenMesh, ProofsHoldAtSamples) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(0, 1);
+  std::size_t proven = 0;
+  for (int run = 0; run < 60; ++run) {
+    const double rough = any(random), shift = 0.1 * any(random) - 0.05, noise = 0.04 * any(random);
+    const Mesh o2 =
+        sheet(5, 12, [&](double x, double) { return std::sin(3 * x) * rough + 0.3 * any(random); });
+    const Sites sites(o2);
+    Mesh mesh = o2;  // without its rim, moved
+    std::erase_if(mesh.triangles, [&](const Triangle& t) {
+      return std::ranges::any_of(t, [&](std::uint32_t v) {
+        return std::max(std::abs(o2.positions[v][0]), std::abs(o2.positions[v][1])) > 4.9;
+      });
+    });
+    for (Vec3& p : mesh.positions) p[2] += shift + noise * (any(random) - 0.5);
+    const Tolerance tolerance(-0.1 - 0.4 * any(random), 0.1 * any(random));
+    const ToleranceProof proof = prove_tolerance(mesh, sites, tolerance, {.sign = SignMethod::side});
+    if (proof.proof != Proof::inside) continue;
+    ++proven;
+    std::vector<Vec3> points;
+    for (const Triangle& t : mesh.triangles)
+      for (int i = 0; i < 20; ++i) {
+        const double s = any(random), r = any(random) * (1 - s);
+        const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+        points.push_back(a + s * (b - a) + r * (c - a));
+      }
+    const std::vector<ClosestPoint> closest = closest_points(sites, points);
+    const std::vector<std::uint8_t> behind = inside_flags(sites, points, closest, SignMethod::side);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double d = behind[i] != 0 ? -closest[i].distance : closest[i].distance;
+      EXPECT_TRUE(d >= tolerance.lo - 1e-9 && d <= tolerance.hi + 1e-9) << run << ": " << d;
+    }
+  }
+  EXPECT_GT(proven, 10U);
 }
 
 }  // namespace

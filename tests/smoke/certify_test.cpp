@@ -146,11 +146,14 @@ TEST(SmokeTolerance, ProofsDecideOnEitherSideOfTheTruth) {
             Proof::inside);
   EXPECT_NE(prove_tolerance(cube(), Sites(cube()), Tolerance(-1, 1e-9), {.most_parts = 3}).proof,
             Proof::outside);
-  // Signs by normals of an open mesh are estimates: |d| alone decides.
+  // Signs by normals of an open mesh: |d| decides, or that all points have the sign that is within the
+  // limits.
   const Sites open(grid_square(4, 0.5, 5));
   const Mesh below = grid_square(1, 0, 3);
   EXPECT_EQ(prove_tolerance(below, open, 0.6, {.sign = SignMethod::side}).proof, Proof::inside);
-  EXPECT_TRUE(prove_tolerance(below, open, Tolerance(-1, 0.1), {.sign = SignMethod::side}).depends_on_signs);
+  EXPECT_EQ(prove_tolerance(below, open, Tolerance(-1, 0.1), {.sign = SignMethod::side}).proof,
+            Proof::inside);
+  EXPECT_TRUE(prove_tolerance(below, open, Tolerance(-0.1, 1), {.sign = SignMethod::side}).depends_on_signs);
   // The other skin of a thin plate does not count.
   const Mesh plate = weld(grid_block({-2, -2, 0}, {2, 2, 0.1}, 3)).mesh,
              dented = weld(grid_block({-2, -2, 0}, {2, 2, 0.02}, 3)).mesh;

@@ -22,7 +22,7 @@ struct LowerBound {
   /// `point` is a point of a face of A, at most `rounding` from it.
   void raise(const Vec3& p, double rounding, std::uint32_t face, const NearestFace& nearest) {
     const double distance = std::max(0.0, nearest.lower - rounding);
-    if (distance > value && (side == nullptr || side->has(p)))
+    if (distance > value && (side == nullptr || side->has(p, nearest.upper)))
       *this = {distance, p, nearest.point, {face, nearest.face}, side};
   }
 };

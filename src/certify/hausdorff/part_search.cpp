@@ -16,8 +16,6 @@ constexpr int kMostDivisions = 200;
 constexpr double kProgress = 0.5;
 // Distances that differ by less than this fraction of the precision count as equal.
 constexpr double kEqual = 1.0 / 16;
-// How far a part may be on the wrong side of a plane that keeps it out of B, in precisions.
-constexpr double kSlack = 1.0 / 16;
 
 }  // namespace
 
@@ -82,14 +80,9 @@ void PartSearch::evaluate(const Part& part, Found& found) const {
   double reach = 0;  // of the part, from the point
   for (const Vec3& corner : part.at) reach = std::max(reach, norm(corner - highest));
   better.upper = std::min(part.upper, (1 + kFewRoundings) * (nearest.upper + reach));  // as d is 1-Lipschitz
-  if (const Side* side = found.lower.side; side != nullptr && nearest.lower > 0 && !side->has(highest)) {
-    // The way from the point to one on the side that counts leads through B.
-    const double beyond = (1 + kFewRoundings) * reach - nearest.lower;
-    const double slack = kSlack * precision_;
-    better.upper = side->is_one_sided(part.at) ? 0
-                   : nearest.lower > precision_ && side->only_touches(part.at, slack)
-                       ? std::min(better.upper, 2 * slack)
-                       : std::clamp(beyond, 0.0, better.upper);
+  if (const Side* side = found.lower.side;
+      side != nullptr && nearest.lower > 0 && !side->has(highest, nearest.upper)) {
+    better.upper = side->bound(part.at, {better.upper, nearest.lower, reach, precision_});
     better.stalled = true;
     if (better.upper + rounding(part) <= found.lower.value + precision_) {
       found.settled = std::max(found.settled, better.upper + rounding(part));

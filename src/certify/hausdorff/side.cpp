@@ -12,11 +12,27 @@
 
 namespace sdm::hausdorff {
 
-bool Side::has(const Vec3& p) const {
+namespace {
+
+// How far a part may be on the wrong side of a plane that keeps it out of B, in precisions.
+constexpr double kSlack = 1.0 / 16;
+
+}  // namespace
+
+bool SolidSide::has(const Vec3& p) const {
   return inside::contains(solid_, p) == inside_;
 }
 
-bool Side::is_one_sided(const Corners& triangle) const {
+// The way from the point to one on this side leads through B.
+double SolidSide::bound(const Corners& triangle, const Known& known) const {
+  if (is_one_sided(triangle)) return 0;
+  const double slack = kSlack * known.precision;
+  if (known.distance > known.precision && only_touches(triangle, slack))
+    return std::min(known.upper, 2 * slack);
+  return std::clamp((1 + kFewRoundings) * known.reach - known.distance, 0.0, known.upper);
+}
+
+bool SolidSide::is_one_sided(const Corners& triangle) const {
   // Mapping corners into the frame rounds.
   Box box;
   for (const Vec3& corner : triangle) {
@@ -39,7 +55,7 @@ bool Side::is_one_sided(const Corners& triangle) const {
 // Where the triangle T meets the surface of B, all faces there are on one side of the plane and T on the
 // other. Close to such a place, what is strictly above the plane meets no face and so is all inside of B or
 // all outside; the points of T that are not on B are as these are, as T is connected.
-bool Side::only_touches(const Corners& triangle, double slack) const {
+bool SolidSide::only_touches(const Corners& triangle, double slack) const {
   constexpr std::size_t kMost = 64;
   constexpr double kFlattest =
       1.0 / 16;  // height of a face, in sizes of the triangle, for its plane to be exact

@@ -13,6 +13,7 @@
 #include "certify/hausdorff/largest_distance.h"
 #include "certify/hausdorff/matching.h"
 #include "certify/hausdorff/nearest_face.h"
+#include "certify/hausdorff/sheet_side.h"
 #include "certify/hausdorff/vertex_search.h"
 #include "certify/tolerance/least_distance.h"
 #include "certify/tolerance/prove_valid.h"
@@ -29,7 +30,8 @@ namespace {
 
 using hausdorff::LowerBound;
 using hausdorff::NearestFace;
-using hausdorff::Side;
+using hausdorff::SheetSide;
+using hausdorff::SolidSide;
 
 /// The faces of a mesh that matter, with their vertices in the order that they have. Cost: by these faces,
 /// and not by the mesh, of which there may be many parts.
@@ -80,7 +82,7 @@ class Prover {
     const double least = std::max({lo, -hi, 0.0}), most = std::max(-lo, hi), tight = std::min(-lo, hi);
     if (sign_ == SignMethod::none) return at_least(least, true) & at_most(hi);
     const bool has_estimate = matching_ != nullptr || is_estimate(sign_);  // of the sign
-    if (has_estimate && lo != -hi) return by_either_sign(tight, most);
+    if (has_estimate && lo != -hi) return by_either_sign(lo, hi);
     if (tight < 0) {
       const ToleranceProof apart = at_least(least, lo > 0);
       return apart.proof == Proof::inside ? on_side(hi < 0) & at_most(most) : apart;
@@ -95,7 +97,7 @@ class Prover {
   /// Whether no distance is larger, of the points on one side of O2 or of all.
   ToleranceProof at_most(double limit, std::optional<bool> inside = {}) const {
     if (limit == kFarthest && matching_ == nullptr) return {.proof = Proof::inside};
-    std::optional<Side> side;
+    std::optional<SolidSide> side;
     if (inside) side.emplace(b_, *inside);
     const hausdorff::Decision decision{.limit = limit, .forgiven = limit + options_.accuracy};
     const hausdorff::LargestDistance found = hausdorff::largest_distance(a_, b_, scale_,
@@ -139,7 +141,7 @@ class Prover {
 
   /// Whether all faces of a surface that does not meet O2 are on a side of it: by one corner each.
   ToleranceProof on_side(bool inside) const {
-    const Side side(b_, inside);
+    const SolidSide side(b_, inside);
     std::vector<std::uint8_t> wrong(a_.triangles.size());
     parallel_for(wrong.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
@@ -156,18 +158,39 @@ class Prover {
     return {.proof = Proof::outside, .witness = witness(at), .at_lower = !inside};
   }
 
-  /// What |d| decides alone: within the tolerance with either sign, or with neither.
-  ToleranceProof by_either_sign(double tight, double most) const {
+  /// What |d| decides alone: within the tolerance with either sign, or with neither. And of SignMethod::side,
+  /// whether the points that are within it with one sign only are on that side of O2.
+  ToleranceProof by_either_sign(double lo, double hi) const {
+    const double tight = std::min(-lo, hi);
     if (tight >= 0) {
       const ToleranceProof within = at_most(tight);
       if (within.proof == Proof::inside) return within;
     }
-    ToleranceProof result = at_most(most);
+    ToleranceProof result = at_most(std::max(-lo, hi));
     if (result.proof == Proof::outside) return result;
+    if (result.proof == Proof::inside && sign_ == SignMethod::side && matching_ == nullptr &&
+        (tight >= 0 || at_least(-tight, lo > 0).proof == Proof::inside) &&
+        none_beyond(std::max(tight, 0.0), -lo < hi))
+      return result;
     result.proof = Proof::undecided;
     result.undecided_by.reset();
     result.depends_on_signs = true;
     return result;
+  }
+
+  /// Whether all points with a larger distance are certain not to be on this side of an open O2.
+  bool none_beyond(double limit, bool behind) const {
+    // Where the side changes, no number of parts is enough.
+    constexpr std::size_t kLeastParts = std::size_t{1} << 16, kPartsOfFace = 8;
+    const std::size_t most_parts = std::max(kLeastParts, kPartsOfFace * a_.triangles.size());
+    const SheetSide side(b_, behind, scale_.precision);
+    const hausdorff::LargestDistance found =
+        hausdorff::largest_distance(a_, b_, scale_,
+                                    {.decision = hausdorff::Decision{.limit = limit, .forgiven = limit},
+                                     .side = &side,
+                                     .most_parts = std::min(options_.most_parts, most_parts)},
+                                    options_.progress);
+    return found.lower.faces[0] == kNone && found.upper <= limit + scale_.precision;
   }
 
   ToleranceWitness witness(const LowerBound& at) const {

@@ -73,6 +73,10 @@ GroupVerdicts CloudGroups::verdicts(const PointsWithoutGroup& without_group, con
     Evidence evidence = like;
     evidence.lowest = found.range.lowest, evidence.highest = found.range.highest;
     evidence.estimated_signs = measured_ == DistanceKind::closest && is_estimate(sign_);
+    if (sign_ == SignMethod::side &&
+        summary::passes_by_side(evidence, row.group.tolerance,
+                                found.signs.missing_signs_matter(row.group.tolerance, accuracy)))
+      evidence.estimated_signs = false;
     std::optional<Evidence> by_facing;
     if (found.any_facing) by_facing = facing_evidence(like, found.facing, found.unmatched);
     groups.push_back({.kind = row.named.kind,

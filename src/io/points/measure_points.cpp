@@ -387,7 +387,10 @@ class Measurement {
       row[row_.colour_at() + 2] = static_cast<char>(rgb.b);
     });
     file.close();
-    if (picture.tolerance) result_.beyond_with_either_sign = signs_.any_out(*picture.tolerance, accuracy);
+    if (picture.tolerance) {
+      result_.beyond_with_either_sign = signs_.any_out(*picture.tolerance, accuracy);
+      result_.missing_signs_matter = signs_.missing_signs_matter(*picture.tolerance, accuracy);
+    }
     if (groups_)
       result_.groups = groups_->verdicts({result_.beyond_max_distance, result_.without_match},
                                          common_evidence(), options_.accept_doubts);

@@ -37,7 +37,10 @@ Summary summarize(const PointDistances& found, const PointDistancesOptions& opti
     summary.evidence.lowest = found.min->distance, summary.evidence.highest = found.max->distance;
   }
   if (!picture.tolerance) return summary;
-  Judgement judgement = judge(summary.evidence, *picture.tolerance);
+  Judgement judgement =
+      found.sign.method == SignMethod::side
+          ? summary::judge_by_side(summary.evidence, *picture.tolerance, found.missing_signs_matter)
+          : judge(summary.evidence, *picture.tolerance);
   if (summary::may_lack_signs(judgement, found.measured.kind, found.sign.method) &&
       !found.beyond_with_either_sign)
     summary::withhold_failure(judgement);

@@ -20,7 +20,7 @@ namespace {
 constexpr double kSameWay = 90;
 
 /// Whether a proof may decide what the samples leave open.
-bool is_open(const ToleranceVerdict& verdict) {
+bool is_open(const ToleranceVerdict& verdict, SignMethod sign) {
   switch (verdict.reason) {
     case VerdictReason::between_samples:
     case VerdictReason::within_rounding:
@@ -29,7 +29,7 @@ bool is_open(const ToleranceVerdict& verdict) {
     case VerdictReason::all_within:  // of samples only
       return !verdict.certified;
     case VerdictReason::estimated_signs:  // unless with the other sign a sample is out of the tolerance
-      return verdict.margin > 0;
+      return verdict.margin > 0 || sign == SignMethod::side;
     default:
       return false;
   }
@@ -144,7 +144,7 @@ CertifiedVerdict summary::Certifier::operator()(const ToleranceVerdict& verdict,
   const MeasuredDistance& measured = map_.measured;
   const bool is_facing = measured.kind == DistanceKind::facing && measured.facing;
   const bool is_closest = measured.kind == DistanceKind::closest;
-  if (is_open(result) && (is_facing || is_closest)) {
+  if (is_open(result, map_.sign.method) && (is_facing || is_closest)) {
     result.proof =
         prove(verdict.tolerance, measured.facing, is_facing ? &matching(*measured.facing) : nullptr, faces);
     if (result.proof && !(is_facing && result.proof->depends_on_signs)) {

@@ -40,6 +40,11 @@ class SignedSamples {
     return unsigned_.lowest && (with_either(*unsigned_.lowest) || with_either(*unsigned_.highest));
   }
 
+  /// Whether a sample without a sign is not within the tolerance with either one.
+  [[nodiscard]] bool missing_signs_matter(const Tolerance& tolerance, double accuracy) const {
+    return unsigned_.highest && !(*unsigned_.highest + accuracy <= std::min(-tolerance.lo, tolerance.hi));
+  }
+
  private:
   DistanceRange signed_, unsigned_;
 };
@@ -48,6 +53,23 @@ class SignedSamples {
 [[nodiscard]] inline bool may_lack_signs(const Judgement& judgement, DistanceKind measured, SignMethod sign) {
   return judgement.reason == VerdictReason::exceeded && !judgement.certified &&
          measured == DistanceKind::closest && sign == SignMethod::side;
+}
+
+/// judge() of a cloud by SignMethod::side, whose points have the sign that they have, unless those without
+/// one matter: between points there is nothing.
+[[nodiscard]] inline Judgement judge_by_side(const Evidence& evidence, const Tolerance& tolerance,
+                                             bool missing_signs_matter) {
+  const Judgement judgement = judge(evidence, tolerance);
+  if (judgement.reason != VerdictReason::estimated_signs || missing_signs_matter) return judgement;
+  Evidence with_signs = evidence;
+  with_signs.estimated_signs = false;
+  return judge(with_signs, tolerance);
+}
+
+/// Whether that is a pass.
+[[nodiscard]] inline bool passes_by_side(const Evidence& evidence, const Tolerance& tolerance,
+                                         bool missing_signs_matter) {
+  return judge_by_side(evidence, tolerance, missing_signs_matter).verdict == Verdict::pass;
 }
 
 /// A failure by samples without a sign is none.
