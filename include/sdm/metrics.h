@@ -26,7 +26,8 @@ struct MetricsOptions {
   /// default kRelative of their value or, where surfaces are so close that this is less than kNear of the
   /// diagonal of the box of both, that, but no more than kOfNear of the value. kLeast of the diagonal at
   /// least. Also that of the Hausdorff distance, for which HausdorffOptions::kPrecision of the diagonal is
-  /// used if that is less, and no least one.
+  /// used if that is less, and no least one. Of chamfer_l2, which is of squares, the share of the value is
+  /// twice that, and of f_score the width up to twice that of fractions.
   std::optional<double> precision{};
   double fraction_precision = 1e-3;  ///< of fractions of the area; > 0
   /// Parts that a surface is divided into, at most, beside its faces: then the bounds stay farther apart.
