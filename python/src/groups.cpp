@@ -190,7 +190,7 @@ GroupVerdicts check_groups(const PyMap& self, nb::handle table, nb::handle names
   GroupVerdicts result;
   run(progress, [&](const Progress& report) {
     result = certify_groups(surface, self.to->sites, self.map, self.vertex_distances(report), kinds, rows,
-                            {.accuracy = self.accuracy(), .progress = report});
+                            {.accuracy = self.accuracy(), .guard = self.guard(), .progress = report});
   });
   return result;
 }
@@ -210,11 +210,11 @@ Places places(const PyMap& self, nb::handle tolerance, nb::handle names, nb::han
   run(progress, [&](const Progress& report) {
     std::vector<float> at_vertices;
     if (!self.thickness && !self.exclusion) at_vertices = self.vertex_distances(report);
-    const double accuracy = self.accuracy();
+    const double accuracy = self.accuracy(), guard = self.exclusion ? 0 : self.guard();
     result = find_places(surface, self.map, at_vertices,
                          {.tolerance = accepted,
                           .table = rows,
-                          .accuracy = std::isfinite(accuracy) ? accuracy : 0,
+                          .accuracy = std::isfinite(accuracy) ? accuracy + guard : 0,
                           .p99_abs = statistics(surface, self.map).p99_abs,
                           .names = kinds});
   });

@@ -89,6 +89,8 @@ struct PyMap {
     const EngineInfo& info = options.engine ? engine_info(*options.engine) : engines().front();
     return engine_accuracy(info, on->surface.mesh(), to->sites.mesh());
   }
+  /// How far both meshes may be from the surfaces that are meant; of a thickness, both ends.
+  [[nodiscard]] double guard() const { return on->deviation + (thickness ? on->deviation : to->deviation); }
   /// The distance at each vertex of the surface.
   [[nodiscard]] std::vector<float> vertex_distances(const Progress& progress) const;
 };

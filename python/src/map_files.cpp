@@ -129,6 +129,7 @@ std::string report(const PyMap& self, const VertexDistances& at_vertices, const 
   const SummaryOptions options{.units = units,
                                .max_distance = self.options.max_distance,
                                .accuracy = self.exclusion ? picture.accuracy : self.accuracy(),
+                               .guard = self.exclusion ? 0 : self.guard(),
                                .tolerance = picture.tolerance,
                                .colormap = picture.colormap,
                                .range = picture.range};

@@ -117,13 +117,17 @@ CertifiedVerdict check_tolerance(const PyMap& self, nb::handle tolerance, nb::ha
   run(progress, [&](const Progress& report) {
     const Surface& surface = self.on->surface;
     if (self.thickness) {
-      result = *summarize_thickness(surface, self.map, {.accuracy = self.accuracy(), .tolerance = accepted})
-                    .tolerance;
+      result =
+          *summarize_thickness(surface, self.map,
+                               {.accuracy = self.accuracy(), .guard = self.guard(), .tolerance = accepted})
+               .tolerance;
       return;
     }
-    result = certify_tolerance(
-        surface, self.to->sites, self.map, self.vertex_distances(report), accepted,
-        {.error_bound = covering_radius(surface), .accuracy = self.accuracy(), .progress = report});
+    result = certify_tolerance(surface, self.to->sites, self.map, self.vertex_distances(report), accepted,
+                               {.error_bound = covering_radius(surface),
+                                .accuracy = self.accuracy(),
+                                .guard = self.guard(),
+                                .progress = report});
   });
   return result;
 }
@@ -163,18 +167,20 @@ void bind_verdict(nb::module_& module) {
           nb::sig("def verdict(self) -> " SDM_VERDICT),
           "'pass': every point of the surface is within the tolerance; 'fail': some point is not; 'not "
           "decided': "
-          "neither is proven, as a distance is within the accuracy of a limit, or signs are estimates; "
+          "neither is proven, as a distance is within the accuracy, or Mesh.deviation, of a limit, or signs "
+          "are "
+          "estimates; "
           "'doubtful': a 'pass', but walls are thinner than twice the tolerance, and the faces that face the "
           "same way do not decide.")
       .def_prop_ro(
           "reason", [](const V& self) { return sdm::name_of(self.reason); },
           "Why, in words: 'all within', 'exceeded', 'beyond max distance', 'without match', 'within "
-          "rounding', 'estimated "
+          "rounding', 'guard band', 'estimated "
           "signs', 'unknown accuracy', 'nothing measured' or 'in doubt'.")
-      .def_ro(
-          "margin", &V::margin,
-          "How far the distances of texels and vertices stay from the limits, less the accuracy; negative "
-          "if they do not. None if one of them has no value, or none has.")
+      .def_ro("margin", &V::margin,
+              "How far the distances of texels and vertices stay from the limits, less the accuracy and the "
+              "deviations of both meshes; negative "
+              "if they do not. None if one of them has no value, or none has.")
       .def_prop_ro(
           "tolerance", [](const V& self) { return nb::make_tuple(self.tolerance.lo, self.tolerance.hi); },
           nb::sig("def tolerance(self) -> tuple[float, float]"), "The least and the most accepted distance.")

@@ -11,6 +11,7 @@
 
 #include "arrays.h"
 #include "objects.h"
+#include "src/geometry/stretch.h"
 
 namespace sdm::python {
 
@@ -23,37 +24,46 @@ nb::object faces_view(const Mesh& mesh, nb::handle owner) {
   return view_of<std::uint32_t>(mesh.triangles, {mesh.triangles.size(), 3}, owner);
 }
 
-Mesh mesh_of(nb::handle mesh, nb::handle faces) {
+PyMesh given_mesh(nb::handle mesh, nb::handle faces) {
   if (faces.is_none()) {
-    if (nb::isinstance<PyMesh>(mesh)) return nb::cast<const PyMesh&>(mesh).mesh;
+    if (nb::isinstance<PyMesh>(mesh)) return nb::cast<const PyMesh&>(mesh);
     if (nb::isinstance<PySites>(mesh)) {
       const auto& sites = nb::cast<const PySites&>(mesh);
       const auto lock = sites.access.use();
-      return sites.sites.mesh();
+      return {sites.sites.mesh(), sites.deviation};
     }
     if (nb::isinstance<PySurface>(mesh)) {
       const auto& surface = nb::cast<const PySurface&>(mesh);
       const auto lock = surface.access.use();
-      return surface.surface.mesh();
+      return {surface.surface.mesh(), surface.deviation};
     }
   }
   const nb::object parts = nb::module_::import_("sdm._meshes").attr("parts")(mesh, faces);
-  if (nb::isinstance<PyMesh>(parts)) return nb::cast<const PyMesh&>(parts).mesh;
+  if (nb::isinstance<PyMesh>(parts)) return nb::cast<const PyMesh&>(parts);
   const Points positions(parts[0], "the vertices");
   Mesh result{.positions = {positions.get().begin(), positions.get().end()},
               .triangles = triangles(parts[1], "the faces"),
               .corner_uvs = {}};
   if (!parts[2].is_none()) result.corner_uvs = corner_uvs(parts[2]);
-  return result;
+  return {std::move(result)};
+}
+
+Mesh mesh_of(nb::handle mesh, nb::handle faces) {
+  return given_mesh(mesh, faces).mesh;
+}
+
+void move(PyMesh& mesh, const Transform& map) {
+  transform(mesh.mesh, map);
+  mesh.deviation *= largest_stretch(map);
 }
 
 void bind_arrays(nb::class_<PyMesh>& type) {
   type.def(
           "__init__",
           [](PyMesh* self, nb::handle mesh, nb::handle faces) {
-            Mesh value = mesh_of(mesh, faces);
-            validate(value);
-            new (self) PyMesh{std::move(value)};
+            PyMesh value = given_mesh(mesh, faces);
+            validate(value.mesh);
+            new (self) PyMesh(std::move(value));
           },
           nb::arg("mesh").none(), nb::arg("faces") = nb::none(),
           nb::sig("def __init__(self, mesh: object, faces: object = None) -> None"))
@@ -79,6 +89,12 @@ void bind_arrays(nb::class_<PyMesh>& type) {
           nb::sig("def corner_uvs(self) -> numpy.typing.NDArray[numpy.float64] | None"),
           "Texture coordinates of the corners of each face, (m, 3, 2) float64, read-only; None if there are "
           "none.")
+      .def_ro(
+          "deviation", &PyMesh::deviation,
+          "How far the triangles were found to be from the surface of a STEP or IGES file, an estimate, in "
+          "units of the mesh; 0 for other meshes. Verdicts on a tolerance keep so far from its limits. "
+          "weld() "
+          "and remove_islands() keep it; transformed() scales it.")
       .def(
           "__iter__",
           [](nb::handle self) { return nb::iter(nb::make_tuple(self.attr("vertices"), self.attr("faces"))); },
@@ -87,7 +103,7 @@ void bind_arrays(nb::class_<PyMesh>& type) {
           "transformed",
           [](const PyMesh& self, nb::handle matrix) {
             auto moved = std::make_unique<PyMesh>(self);
-            sdm::transform(moved->mesh, python::transform(matrix, "the transform"));
+            move(*moved, python::transform(matrix, "the transform"));
             return moved.release();
           },
           nb::rv_policy::take_ownership, nb::arg("matrix").none(),
@@ -188,14 +204,15 @@ void bind_weld(nb::module_& module) {
   module.def(
       "weld",
       [](nb::handle mesh, std::optional<double> tolerance) {
-        const Mesh given = mesh_of(mesh, nb::none());
+        const PyMesh given = given_mesh(mesh, nb::none());
         Welded welded;
         run(nb::none(), [&](const Progress& progress) {
-          welded = weld(given, {.tolerance = tolerance, .progress = progress});
+          welded = weld(given.mesh, {.tolerance = tolerance, .progress = progress});
         });
         const WeldReport report = welded;
-        return nb::make_tuple(nb::cast(new PyMesh{std::move(welded.mesh)}, nb::rv_policy::take_ownership),
-                              report);
+        return nb::make_tuple(
+            nb::cast(new PyMesh{std::move(welded.mesh), given.deviation}, nb::rv_policy::take_ownership),
+            report);
       },
       nb::arg("mesh").none(), nb::arg("tolerance") = nb::none(),
       nb::sig("def weld(mesh: object, tolerance: float | None = None) -> tuple[Mesh, WeldReport]"),
@@ -248,14 +265,15 @@ void bind_islands(nb::module_& module) {
   module.def(
       "remove_islands",
       [](nb::handle mesh, std::size_t faces, double area, double area_fraction) {
-        const Mesh given = mesh_of(mesh, nb::none());
+        const PyMesh given = given_mesh(mesh, nb::none());
         WithoutIslands rest;
         run(nb::none(), [&](const Progress&) {
-          rest = remove_islands(given, {.faces = faces, .area = area, .area_fraction = area_fraction});
+          rest = remove_islands(given.mesh, {.faces = faces, .area = area, .area_fraction = area_fraction});
         });
         const IslandReport report = rest;
-        return nb::make_tuple(nb::cast(new PyMesh{std::move(rest.mesh)}, nb::rv_policy::take_ownership),
-                              report);
+        return nb::make_tuple(
+            nb::cast(new PyMesh{std::move(rest.mesh), given.deviation}, nb::rv_policy::take_ownership),
+            report);
       },
       nb::arg("mesh").none(), nb::kw_only(), nb::arg("faces") = 0, nb::arg("area") = 0.0,
       nb::arg("area_fraction") = 0.0,
@@ -287,11 +305,11 @@ array([ 0.5,  0. ,  0. , -0.5]))");
       "read",
       [](nb::handle file, std::optional<double> deflection) {
         const std::filesystem::path name = path_of(file);
-        Mesh mesh;
+        MeshFile read;
         run(nb::none(), [&](const Progress&) {
-          mesh = read_mesh_file(name, {.tessellation = {.deflection = deflection}}).mesh;
+          read = read_mesh_file(name, {.tessellation = {.deflection = deflection}});
         });
-        return new PyMesh{std::move(mesh)};
+        return new PyMesh{std::move(read.mesh), read.tessellation ? read.tessellation->largest_deviation : 0};
       },
       nb::rv_policy::take_ownership, nb::arg("file").none(), nb::arg("deflection") = nb::none(),
       nb::sig("def read(file: str | os.PathLike[str], deflection: float | None = None) -> Mesh"),
@@ -304,7 +322,8 @@ order; bit-identical positions become one vertex. Raises Error, naming the file 
 
 deflection: of STEP and IGES, whose coordinates are in millimetres: the distance that triangles may have
 from the exact surface, as OpenCASCADE keeps it; by default 1/2000 of the diagonal. Other files consist of
-polygons, and do not use it. Raises Error unless it is positive.
+polygons, and do not use it. Raises Error unless it is positive. Mesh.deviation is what was measured of it: verdicts on
+a tolerance keep so far from the limits, so that a tenth of the tolerance is a good choice.
 
 >>> sdm.read('no such file.ply')
 Traceback (most recent call last):

@@ -21,6 +21,7 @@ using Positions = std::shared_ptr<const std::vector<Vec3>>;
 /// A mesh, which does not change: arrays may refer to its memory.
 struct PyMesh {
   Mesh mesh;
+  double deviation = 0;  ///< how far it may be from the surface that is meant: of CAD
 };
 
 /// Sites until they are edited. Results and arrays that refer to their faces and edges share this, and an
@@ -33,12 +34,14 @@ struct SitesVersion {
 };
 
 struct PySites {
-  explicit PySites(Mesh mesh)
-      : positions(std::make_shared<std::vector<Vec3>>(mesh.positions)),
+  explicit PySites(PyMesh given)
+      : deviation(given.deviation),
+        positions(std::make_shared<std::vector<Vec3>>(given.mesh.positions)),
         first(positions),
-        sites(std::move(mesh)),
+        sites(std::move(given.mesh)),
         version(std::make_shared<SitesVersion>(SitesVersion{&sites, {}})) {}
 
+  double deviation;     ///< as of PyMesh; a refit and an edit leave it
   Positions positions;  ///< of the present shape; results and arrays keep it
   Positions first;      ///< of the shape that the tree was built for; null once edited
   Sites sites;
@@ -52,14 +55,16 @@ struct PySites {
 };
 
 struct PySurface {
-  PySurface(Mesh mesh, const AtlasOptions& layout)
-      : positions(std::make_shared<std::vector<Vec3>>(mesh.positions)),
+  PySurface(PyMesh given, const AtlasOptions& layout)
+      : deviation(given.deviation),
+        positions(std::make_shared<std::vector<Vec3>>(given.mesh.positions)),
         first(positions),
         options(layout),
-        surface(std::move(mesh), layout) {
+        surface(std::move(given.mesh), layout) {
     options.progress = {};
   }
 
+  double deviation;            ///< as of PySites
   Positions positions, first;  ///< of the present shape, and of the one that was laid out
   AtlasOptions options;
   Surface surface;
@@ -74,6 +79,8 @@ struct PySurface {
 };
 
 /// Accepts whatever python/sdm/_meshes.py does. `faces`: None, or the second array of a mesh given as two.
+[[nodiscard]] PyMesh given_mesh(nb::handle mesh, nb::handle faces);
+/// The same without its deviation.
 [[nodiscard]] Mesh mesh_of(nb::handle mesh, nb::handle faces);
 
 /// (faces, 3, components) float32, or (faces, 3): a row for each corner of each face, NaN where there is
@@ -89,6 +96,9 @@ template <Worded Enum>
   for (const char* known : kWords<Enum>) all += (all.empty() ? "" : ", ") + std::string(known);
   throw Error(argument + " must be one of " + all + ", not '" + std::string(word) + "'");
 }
+
+/// Moves a mesh by an affine map.
+void move(PyMesh& mesh, const Transform& map);
 
 /// Adds the method edit().
 void bind_edit(nb::class_<PySites>& sites);

@@ -20,17 +20,17 @@
 namespace sdm::python {
 namespace {
 
-nb::tuple state_of(const Mesh& mesh) {
-  return nb::make_tuple(packed(mesh.positions), packed(mesh.triangles), packed(mesh.corner_uvs));
+nb::tuple state_of(const Mesh& mesh, double deviation) {
+  return nb::make_tuple(packed(mesh.positions), packed(mesh.triangles), packed(mesh.corner_uvs), deviation);
 }
 
-Mesh mesh_from(nb::handle packed) {
-  const nb::tuple state = items(packed, 3);
+PyMesh mesh_from(nb::handle packed) {
+  const nb::tuple state = items(packed, 4);
   Mesh mesh{.positions = unpacked<Vec3>(state[0]),
             .triangles = unpacked<Triangle>(state[1]),
             .corner_uvs = unpacked<std::array<Vec2, 3>>(state[2])};
   validate(mesh);
-  return mesh;
+  return {std::move(mesh), nb::cast<double>(state[3])};
 }
 
 /// The options of an atlas that its layout depends on.
@@ -73,14 +73,15 @@ void bind_surface_state() {
           throw Error("a surface that was edited cannot be pickled or copied; make another one of its mesh");
         Mesh first = self.surface.mesh();
         first.positions = *self.first;
-        return nb::make_tuple(state_of(first), state_of(self.options), moved(self.first, self.positions));
+        return nb::make_tuple(state_of(first, self.deviation), state_of(self.options),
+                              moved(self.first, self.positions));
       },
       [](PySurface* self, const nb::tuple& from) {
-        Mesh mesh = mesh_from(from[0]);
+        PyMesh mesh = mesh_from(from[0]);
         const AtlasOptions options = atlas_from(from[1]);
         const Positions positions = moved_from(from[2]);
         InPlace<PySurface> made(self);
-        run_sized(mesh.triangles.size(), [&] {
+        run_sized(mesh.mesh.triangles.size(), [&] {
           PySurface& surface = made.make([&] { return PySurface(std::move(mesh), options); });
           if (positions) refit_to(surface, surface.surface, positions);
         });
@@ -230,8 +231,8 @@ void bind_closest_points_state() {
 
 void bind_pickle() {
   bind_state<PyMesh>(
-      3, [](const PyMesh& self) { return state_of(self.mesh); },
-      [](PyMesh* self, const nb::tuple& from) { new (self) PyMesh{mesh_from(from)}; });
+      4, [](const PyMesh& self) { return state_of(self.mesh, self.deviation); },
+      [](PyMesh* self, const nb::tuple& from) { new (self) PyMesh(mesh_from(from)); });
   bind_state<PySites>(
       2,
       [](const PySites& self) {
@@ -239,13 +240,13 @@ void bind_pickle() {
         // Those of an edited mesh are made for its present shape: distances then agree but for rounding.
         Mesh first = self.sites.mesh();
         if (self.first) first.positions = *self.first;
-        return nb::make_tuple(state_of(first), moved(self.first, self.positions));
+        return nb::make_tuple(state_of(first, self.deviation), moved(self.first, self.positions));
       },
       [](PySites* self, const nb::tuple& from) {
-        Mesh mesh = mesh_from(from[0]);
+        PyMesh mesh = mesh_from(from[0]);
         const Positions positions = moved_from(from[1]);
         InPlace<PySites> made(self);
-        run_sized(mesh.triangles.size(), [&] {
+        run_sized(mesh.mesh.triangles.size(), [&] {
           PySites& sites = made.make([&] { return PySites(std::move(mesh)); });
           if (positions) refit_to(sites, sites.sites, positions);
         });
@@ -257,10 +258,10 @@ void bind_pickle() {
   bind_state<PyShape>(
       2,
       [](const PyShape& self) {
-        return nb::make_tuple(state_of(self.shape.sites().mesh()), self.resolution);
+        return nb::make_tuple(state_of(self.shape.sites().mesh(), 0), self.resolution);
       },
       [](PyShape* self, const nb::tuple& from) {
-        const Mesh mesh = mesh_from(from[0]);
+        const Mesh mesh = mesh_from(from[0]).mesh;
         const auto resolution = nb::cast<std::optional<std::uint32_t>>(from[1]);
         InPlace<PyShape> made(self);
         run_sized(mesh.triangles.size(), [&] { made.make([&] { return PyShape(mesh, resolution, {}); }); });

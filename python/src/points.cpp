@@ -187,6 +187,7 @@ PointDistances measure(nb::handle cloud, nb::handle o2, nb::handle output, nb::h
   options.picture.colormap = enum_of<Colormap>("colormap", colormap);
   options.picture.range = range_of(range);
   PointDistances result;
+  options.guard = to.deviation();
   run(nb::none(), [&](const Progress&) { (void)to.get(); });
   const SignMethod signs = options.along ? SignMethod::side : choose_sign(to.get(), options.map).method;
   if (!tolerance.is_none()) options.picture.tolerance = tolerance_of(tolerance, signs);

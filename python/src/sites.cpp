@@ -121,8 +121,8 @@ void bind_construction(nb::class_<PySites>& sites) {
   sites.def(
       "__init__",
       [](PySites* self, nb::handle mesh, nb::handle faces) {
-        Mesh value = mesh_of(mesh, faces);
-        const std::size_t size = value.triangles.size();
+        PyMesh value = given_mesh(mesh, faces);
+        const std::size_t size = value.mesh.triangles.size();
         InPlace<PySites> made(self);
         run_sized(size, [&] { made.make([&] { return PySites(std::move(value)); }); });
         made.release();

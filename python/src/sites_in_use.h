@@ -18,12 +18,15 @@ class SitesInUse {
     if (nb::isinstance<PySites>(mesh)) {
       const auto& given = nb::cast<const PySites&>(mesh);
       lock_ = given.access.use();
-      sites_ = &given.sites;
+      sites_ = &given.sites, deviation_ = given.deviation;
     } else {
-      mesh_ = mesh_of(mesh, nb::none());
+      PyMesh given = given_mesh(mesh, nb::none());
+      mesh_ = std::move(given.mesh), deviation_ = given.deviation;
     }
   }
   [[nodiscard]] const Mesh& mesh() const { return sites_ ? sites_->mesh() : mesh_; }
+  /// As of PyMesh.
+  [[nodiscard]] double deviation() const { return deviation_; }
   /// Builds them, if they are not there. Needs no GIL.
   const Sites& get() {
     if (!sites_) sites_ = &own_.emplace(std::move(mesh_));
@@ -34,6 +37,7 @@ class SitesInUse {
   Use lock_;
   const Sites* sites_ = nullptr;
   Mesh mesh_;
+  double deviation_ = 0;
   std::optional<Sites> own_;
 };
 

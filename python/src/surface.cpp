@@ -45,9 +45,10 @@ Layout layout(nb::handle resolution, nb::handle precision, const char* atlas, do
   return result;
 }
 
-std::unique_ptr<PySurface> built(Mesh mesh, Layout layout, const Progress& progress) {
+std::unique_ptr<PySurface> built(PyMesh mesh, Layout layout, const Progress& progress) {
   layout.options.progress = progress;
-  if (layout.precision) layout.options.resolution = resolution_for(mesh, *layout.precision, layout.options);
+  if (layout.precision)
+    layout.options.resolution = resolution_for(mesh.mesh, *layout.precision, layout.options);
   return std::make_unique<PySurface>(std::move(mesh), layout.options);
 }
 
@@ -76,8 +77,8 @@ nb::tuple prepare(nb::handle a, nb::handle b, nb::handle motion, nb::handle reso
   if (has_surface && !motion.is_none())
     throw Error("a Surface cannot be transformed; refit() it, or give another form of the mesh");
   const Layout options = layout(resolution, precision, atlas, max_stretch, gutter);
-  Mesh on = has_surface ? Mesh{} : mesh_of(a, nb::none());
-  Mesh to = has_sites ? Mesh{} : mesh_of(b, nb::none());
+  PyMesh on = has_surface ? PyMesh{} : given_mesh(a, nb::none());
+  PyMesh to = has_sites ? PyMesh{} : given_mesh(b, nb::none());
   std::optional<Transform> matrix;
   if (!motion.is_none()) matrix = python::transform(motion, "transform");
   std::unique_ptr<PySurface> surface;
@@ -86,8 +87,8 @@ nb::tuple prepare(nb::handle a, nb::handle b, nb::handle motion, nb::handle reso
     std::vector<std::function<void()>> tasks;
     if (!has_surface) {
       tasks.emplace_back([&] {
-        validate(on);
-        if (matrix) transform(on, *matrix);
+        validate(on.mesh);
+        if (matrix) move(on, *matrix);
         surface = built(std::move(on), options, report);
       });
     }
@@ -119,13 +120,13 @@ void bind_construction(nb::class_<PySurface>& surface) {
       [](PySurface* self, nb::handle mesh, nb::handle faces, nb::handle resolution, nb::handle precision,
          const char* atlas, double max_stretch, nb::handle gutter, nb::handle progress) {
         const Layout options = layout(resolution, precision, atlas, max_stretch, gutter);
-        Mesh value = mesh_of(mesh, faces);
+        PyMesh value = given_mesh(mesh, faces);
         InPlace<PySurface> made(self);
         run(progress, [&](const Progress& report) {
           AtlasOptions atlas_options = options.options;
           atlas_options.progress = report;
           if (options.precision)
-            atlas_options.resolution = resolution_for(value, *options.precision, atlas_options);
+            atlas_options.resolution = resolution_for(value.mesh, *options.precision, atlas_options);
           made.make([&] { return PySurface(std::move(value), atlas_options); });
         });
         made.release();
