@@ -9,7 +9,9 @@
 #include "core/numbers/number_text.h"
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
+#include "proximity/thickness/wall_lengths.h"
 #include "query/facing/facing_normals.h"
+#include "summary/wall_note.h"
 
 namespace sdm {
 namespace {
@@ -32,6 +34,34 @@ struct Unit {
   double times;
   const char* question;
 };
+
+std::optional<std::string> note_of_lengths(std::span<const double> lengths, double limit,
+                                           const std::string& units) {
+  constexpr double kLeastShare = 0.01;  // less may be edges that are sharper than a right angle
+  const std::optional<WallEstimate> walls = thickness::estimate_walls(lengths, 2 * limit);
+  if (!walls || walls->thin < kLeastShare) return std::nullopt;
+  const std::string unit = units.empty() ? "" : " " + units;
+  return "about " + std::to_string(std::lround(100 * walls->thin)) +
+         " % of O2's walls are thinner than twice the tolerance, " + text_of(2 * limit, 5) + unit +
+         " (an estimate: half of these are at most " + text_of(walls->median, 3) + unit +
+         " thick), so that the closest point may be on the other skin, and a defect does not show; --facing "
+         "measures to the faces that face the same way";
+}
+
+/// The largest limit of all tolerances; nothing without any.
+std::optional<double> largest_of(const std::optional<Tolerance>& tolerance, std::span<const FaceNames> names,
+                                 std::span<const GroupTolerance> table) {
+  std::optional<double> largest;
+  const auto add = [&](const Tolerance& limits) {
+    for (const double limit : {limits.lo, limits.hi})
+      if (std::isfinite(limit)) largest = std::max(largest.value_or(0), std::abs(limit));
+  };
+  if (tolerance) add(*tolerance);
+  const std::vector<NamedFaces> named = faces_of_groups(names, table);
+  for (std::size_t row = 0; row < table.size(); ++row)
+    if (!named[row].faces.empty()) add(table[row].tolerance);
+  return largest;
+}
 
 }  // namespace
 
@@ -61,31 +91,24 @@ std::optional<std::string> note_on_places(const Box& a, const Box& b) {
 
 std::optional<std::string> note_on_walls(const Sites& sites, const Tolerance& tolerance,
                                          const std::string& units) {
-  constexpr double kLeastShare = 0.01;  // less may be edges that are sharper than a right angle
   const double limit = std::max(std::abs(tolerance.lo), std::abs(tolerance.hi));
-  const std::optional<WallEstimate> walls = estimate_walls(sites, 2 * limit);
-  if (!walls || walls->thin < kLeastShare) return std::nullopt;
-  const std::string unit = units.empty() ? "" : " " + units;
-  return "about " + std::to_string(std::lround(100 * walls->thin)) +
-         " % of O2's walls are thinner than twice the tolerance, " + text_of(2 * limit, 5) + unit +
-         " (an estimate: half of these are at most " + text_of(walls->median, 3) + unit +
-         " thick), so that the closest point may be on the other skin, and a defect does not show; --facing "
-         "measures to the faces that face the same way";
+  return note_of_lengths(thickness::wall_lengths(sites), limit, units);
+}
+
+std::optional<std::string> summary::note_on_walls(std::span<const double> lengths,
+                                                  const std::optional<Tolerance>& tolerance,
+                                                  std::span<const FaceNames> names,
+                                                  std::span<const GroupTolerance> table,
+                                                  const std::string& units) {
+  const std::optional<double> largest = largest_of(tolerance, names, table);
+  return largest ? note_of_lengths(lengths, *largest, units) : std::nullopt;
 }
 
 std::optional<std::string> note_on_walls(const Sites& sites, const std::optional<Tolerance>& tolerance,
                                          std::span<const FaceNames> names,
                                          std::span<const GroupTolerance> table, const std::string& units) {
-  double largest = -1;
-  const auto add = [&](const Tolerance& limits) {
-    for (const double limit : {limits.lo, limits.hi})
-      if (std::isfinite(limit)) largest = std::max(largest, std::abs(limit));
-  };
-  if (tolerance) add(*tolerance);
-  const std::vector<NamedFaces> named = faces_of_groups(names, table);
-  for (std::size_t row = 0; row < table.size(); ++row)
-    if (!named[row].faces.empty()) add(table[row].tolerance);
-  return largest < 0 ? std::nullopt : note_on_walls(sites, Tolerance(largest), units);
+  const std::optional<double> largest = largest_of(tolerance, names, table);
+  return largest ? note_of_lengths(thickness::wall_lengths(sites), *largest, units) : std::nullopt;
 }
 
 std::optional<std::string> note_on_texels(const Surface& surface) {

@@ -1,7 +1,6 @@
 #include <sdm/error.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/summary.h>
-#include <sdm/thickness.h>
 #include <sdm/threads.h>
 
 #include <algorithm>
@@ -9,8 +8,10 @@
 #include <limits>
 #include <utility>
 
+#include "proximity/thickness/wall_lengths.h"
 #include "summary/distribution.h"
 #include "summary/largest_distance.h"
+#include "summary/wall_note.h"
 
 namespace sdm {
 namespace {
@@ -37,8 +38,9 @@ std::size_t boundary_texels(const Sites& sites, const DistanceMap& map, std::spa
   return known.empty() ? count(boundary_mask(sites, map)) : count(known);
 }
 
+/// `walls`: of thickness::wall_lengths().
 std::vector<std::string> notes_of(const Surface& surface, const Sites& sites, const Summary& summary,
-                                  const SummaryOptions& options) {
+                                  std::span<const double> walls, const SummaryOptions& options) {
   const Mesh& whole = options.whole ? *options.whole : surface.mesh();
   std::vector<std::string> notes = notes_on(bounds(whole), bounds(sites.mesh()));
   if (summary.distance.texels == 0 && summary.without_match > 0)
@@ -53,8 +55,9 @@ std::vector<std::string> notes_of(const Surface& surface, const Sites& sites, co
     notes.push_back(std::to_string(texels) +
                     " texels are covered by several faces, and have the value of one of them");
   if (summary.measured.kind == DistanceKind::closest)
-    if (auto note = note_on_walls(sites, options.tolerance, names_of_part(options.names, options.whole_face),
-                                  options.table, options.units))
+    if (auto note =
+            summary::note_on_walls(walls, options.tolerance, names_of_part(options.names, options.whole_face),
+                                   options.table, options.units))
       notes.push_back(std::move(*note));
   return notes;
 }
@@ -124,16 +127,18 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
                  .without_match = map.without_match,
                  .max_distance = options.max_distance};
   result.colors = colors_of(options, result.distance);
-  double error_bound = 0, walls = std::numeric_limits<double>::infinity();
+  double error_bound = 0;
+  std::vector<double> wall_lengths;
   run_concurrently(
       {[&] { error_bound = covering_radius(surface); },
        [&] { result.boundary_texels = boundary_texels(sites, map, options.boundary); },
        [&] { result.places = places_of(surface, map, vertex_distances, result.distance, options); },
        [&] { result.beyond_fraction = beyond_fraction(surface, map); },
        [&] {
-         if (map.measured.kind == DistanceKind::closest) walls = thin_walls(sites);
+         if (map.measured.kind == DistanceKind::closest) wall_lengths = thickness::wall_lengths(sites);
        },
        [&] { result.distribution = summary::distribution_of(surface, map, result.distance, options); }});
+  const double walls = thickness::thin_walls(wall_lengths);
   result.evidence = evidence_of(surface, map, vertex_distances, error_bound, options.accuracy);
   result.evidence.guard = options.guard, result.evidence.thin_walls = walls;
   result.hausdorff = summary::largest_distance(result);
@@ -150,7 +155,7 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
   if (result.tolerance)
     if (auto doubt = doubt_of(*result.tolerance)) result.doubts.push_back(std::move(*doubt));
   withhold_pass(result, options.accept_doubts);
-  result.notes = notes_of(surface, sites, result, options);
+  result.notes = notes_of(surface, sites, result, wall_lengths, options);
   return result;
 }
 

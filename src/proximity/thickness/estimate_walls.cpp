@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "geometry/vec.h"
 #include "proximity/thickness/thickness_search.h"
+#include "proximity/thickness/wall_lengths.h"
 
 namespace sdm {
 namespace {
@@ -38,9 +39,10 @@ Vec3 point_in(const Corners& corners, std::size_t i) {
   return corners[0] + s * (corners[1] - corners[0]) + t * (corners[2] - corners[0]);
 }
 
-/// The length of a ray into the solid from each sample, infinite where nothing is measured; empty if there is
-/// no solid.
-std::vector<double> wall_lengths(const sites::SitesData& data, std::size_t samples) {
+}  // namespace
+
+std::vector<double> thickness::wall_lengths(const Sites& sites, std::size_t samples) try {
+  const sites::SitesData& data = internals(sites);
   if (samples == 0 || !data.closed || !data.orientation.orientable) return {};
   const thickness::Walls walls(data, ThicknessOptions().angle);
   const std::vector<double> sums = area_sums(data.mesh);
@@ -58,35 +60,31 @@ std::vector<double> wall_lengths(const sites::SitesData& data, std::size_t sampl
       lengths[i] = search.rays()[0].thickness;
     }
   });
+  std::ranges::sort(lengths);
   return lengths;
-}
-
-}  // namespace
-
-double thin_walls(const Sites& sites) try {
-  constexpr std::size_t kSamples = 4096, kFewest = 41;  // 1 %
-  std::vector<double> lengths = wall_lengths(internals(sites), kSamples);
-  if (lengths.empty()) return std::numeric_limits<double>::infinity();
-  std::ranges::nth_element(lengths, lengths.begin() + (kFewest - 1));
-  return lengths[kFewest - 1];
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the walls of a solid");
 }
 
-std::optional<WallEstimate> estimate_walls(const Sites& sites, double thin, std::size_t samples) try {
-  std::vector<double> lengths = wall_lengths(internals(sites), samples);
+double thickness::thin_walls(std::span<const double> lengths) {
+  const std::size_t fewest = lengths.size() / 100 + 1;  // 1 %
+  return lengths.empty() ? std::numeric_limits<double>::infinity() : lengths[fewest - 1];
+}
+
+std::optional<WallEstimate> thickness::estimate_walls(std::span<const double> lengths, double thin) {
   if (lengths.empty()) return std::nullopt;
-  const auto end = std::ranges::partition(lengths, [&](double length) { return length < thin; }).begin();
-  WallEstimate result{.samples = samples};
-  const auto count = static_cast<std::size_t>(end - lengths.begin());
-  result.thin = static_cast<double>(count) / static_cast<double>(samples);
-  if (count == 0) return result;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  std::nth_element(lengths.begin(), middle, end);
-  result.median = *middle;
-  return result;
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("the walls of a solid");
+  const auto count = static_cast<std::size_t>(std::ranges::lower_bound(lengths, thin) - lengths.begin());
+  return WallEstimate{.thin = static_cast<double>(count) / static_cast<double>(lengths.size()),
+                      .median = count == 0 ? 0 : lengths[count / 2],
+                      .samples = lengths.size()};
+}
+
+double thin_walls(const Sites& sites) {
+  return thickness::thin_walls(thickness::wall_lengths(sites));
+}
+
+std::optional<WallEstimate> estimate_walls(const Sites& sites, double thin, std::size_t samples) {
+  return thickness::estimate_walls(thickness::wall_lengths(sites, samples), thin);
 }
 
 }  // namespace sdm
