@@ -5,6 +5,7 @@
 
 #include "format.h"
 #include "option_checks.h"
+#include "src/geometry/stretch.h"
 
 void add_deflection_option(CLI::App& app, sdm::TessellationOptions& options) {
   app.add_option(
@@ -39,6 +40,25 @@ std::optional<double> deflection_for(const std::optional<sdm::Tolerance>& tolera
   if (tolerance) add(*tolerance);
   for (const sdm::GroupTolerance& row : rows) add(row.tolerance);
   return least;
+}
+
+sdm::TessellationOptions before_placement(sdm::TessellationOptions options,
+                                          const std::vector<sdm::scenes::PlacementStep>& steps) {
+  if (!options.at_most) return options;
+  const bool fits = std::ranges::any_of(
+      steps, [](const auto& step) { return step.kind == sdm::scenes::PlacementStep::Kind::fit; });
+  const double stretch = fits ? 0 : sdm::largest_stretch(sdm::scenes::transform_of(steps));
+  if (stretch > 0)
+    *options.at_most /= stretch;
+  else
+    options.at_most.reset();
+  return options;
+}
+
+double placed_deviation(const std::optional<sdm::Tessellation>& tessellation,
+                        const std::vector<sdm::scenes::PlacementStep>& steps) {
+  if (!tessellation) return 0;
+  return tessellation->largest_deviation * sdm::largest_stretch(sdm::scenes::transform_of(steps));
 }
 
 std::vector<std::pair<const char*, std::string>> rows_of(const sdm::Tessellation& t) {

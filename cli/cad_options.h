@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "report.h"
+#include "scenes/placement.h"
 
 /// Adds --deflection.
 void add_deflection_option(CLI::App& app, sdm::TessellationOptions& options);
@@ -27,6 +28,14 @@ void check_deflection(const sdm::TessellationOptions& options, std::initializer_
 /// The least that some tolerances need.
 [[nodiscard]] std::optional<double> deflection_for(const std::optional<sdm::Tolerance>& tolerance,
                                                    std::span<const sdm::GroupTolerance> rows);
+
+/// The options for a file that is placed by these steps: their limit on the deflection is one on the mesh as
+/// it is placed. What `fit` scales is not known before.
+[[nodiscard]] sdm::TessellationOptions before_placement(sdm::TessellationOptions options,
+                                                        const std::vector<sdm::scenes::PlacementStep>& steps);
+/// How far a mesh that is placed by these steps, without `fit`, may be from its surface: 0 unless it is CAD.
+[[nodiscard]] double placed_deviation(const std::optional<sdm::Tessellation>& tessellation,
+                                      const std::vector<sdm::scenes::PlacementStep>& steps);
 
 /// What `sdm info` prints: names and values.
 [[nodiscard]] std::vector<std::pair<const char*, std::string>> rows_of(const sdm::Tessellation& tessellation);

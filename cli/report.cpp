@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bounds_text.h"
+#include "cad_options.h"
 #include "exit_codes.h"
 #include "format.h"
 #include "group_tolerances.h"
@@ -64,47 +65,12 @@ Json to_json(const sdm::GlReport& r) {
             {"finish", rounded(t.finish)}}}};
 }
 
-namespace {
-
-using Steps = std::vector<sdm::scenes::PlacementStep>;
-
-/// The largest factor by which steps other than `fit` stretch lengths; exact for similarities.
-double stretch_of(const Steps& steps) {
-  const auto& rows = sdm::scenes::transform_of(steps).rows;
-  double largest = 0;  // of the sums of absolute values of the rows of AᵀA
-  for (int i = 0; i < 3; ++i) {
-    double sum = 0;
-    for (int j = 0; j < 3; ++j) {
-      double product = 0;
-      for (int k = 0; k < 3; ++k) product += rows[k][i] * rows[k][j];
-      sum += std::abs(product);
-    }
-    largest = std::max(largest, sum);
-  }
-  return std::sqrt(largest);
-}
-
-/// The options for a file whose coordinates the steps change: their limit on the deflection is one on the
-/// mesh as it is placed. What `fit` scales is not known before.
-sdm::MeshFileOptions before_placement(sdm::MeshFileOptions options, const Steps& steps) {
-  std::optional<double>& at_most = options.tessellation.at_most;
-  if (!at_most) return options;
-  const bool fits = std::ranges::any_of(
-      steps, [](const auto& step) { return step.kind == sdm::scenes::PlacementStep::Kind::fit; });
-  const double stretch = fits ? 0 : stretch_of(steps);
-  if (stretch > 0)
-    *at_most /= stretch;
-  else
-    at_most.reset();
-  return options;
-}
-
-}  // namespace
-
 Input load_input(const std::string& role, const std::string& file, const std::string& transform,
                  const sdm::MeshFileOptions& options) {
-  const Steps steps = sdm::scenes::parse_placement(transform);
-  sdm::MeshFile read = sdm::read_mesh_file(file, before_placement(options, steps));
+  const std::vector<sdm::scenes::PlacementStep> steps = sdm::scenes::parse_placement(transform);
+  sdm::MeshFileOptions reading = options;
+  reading.tessellation = before_placement(options.tessellation, steps);
+  sdm::MeshFile read = sdm::read_mesh_file(file, reading);
   Input input{.role = role, .file = file, .transform = transform, .mesh = std::move(read.mesh)};
   input.xxh3 = std::move(read.xxh3);
   input.names = std::move(read.names);
@@ -117,8 +83,7 @@ Input load_input(const std::string& role, const std::string& file, const std::st
   if (const auto note = note_on_precision(file, input.mesh.positions, size_of(sdm::bounds(input.mesh))))
     input.notes.push_back(*note);
   if (input.tessellation)
-    input.deviation =
-        input.tessellation->largest_deviation * stretch_of(sdm::scenes::without_fit(input.mesh, steps));
+    input.deviation = placed_deviation(input.tessellation, sdm::scenes::without_fit(input.mesh, steps));
   sdm::scenes::place(input.mesh, steps);
   return input;
 }

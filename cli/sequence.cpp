@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "cad_options.h"
 #include "common_options.h"
 #include "exit_codes.h"
 #include "format.h"
@@ -52,10 +53,13 @@ std::array<Body, 2> open_bodies(const SequenceCommand& command) {
 Notes notes_on_bodies(const SequenceCommand& command, const std::array<Body, 2>& bodies,
                       const std::array<sdm::Mesh, 2>& first) {
   Notes notes;
-  for (int b = 0; b < 2; ++b)
+  for (int b = 0; b < 2; ++b) {
+    if (const auto& tessellation = bodies[b].tessellation())
+      notes.push_back(sdm::note_on(*tessellation, bodies[b].input()));
     if (const auto note =
             note_on_precision(bodies[b].input(), first[b].positions, size_of(sdm::bounds(first[b]))))
       notes.push_back(*note);
+  }
   std::ranges::copy(sdm::notes_on(sdm::bounds(first[0]), sdm::bounds(first[1])), std::back_inserter(notes));
   if (auto note = note_on_unit(command.pair.units)) notes.push_back(std::move(*note));
   return notes;
@@ -125,6 +129,8 @@ int run(SequenceCommand command) {
                                  .check = [&] { checkpoint.check_unchanged(); }});
   ProgressLine progress(command.pair.quiet);
   command.atlas.progress = progress.callback();
+  if (command.picture.tolerance)
+    command.reading.tessellation.at_most = deflection_for(*command.picture.tolerance);
 
   std::array<Body, 2> bodies = open_bodies(command);
   const std::size_t count = common_frames(bodies[0], bodies[1]);

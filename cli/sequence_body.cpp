@@ -3,12 +3,23 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
 
+#include "cad_options.h"
 #include "sequence_state.h"
+
+namespace {
+
+sdm::SequenceOptions before_placement(sdm::SequenceOptions options,
+                                      const std::vector<sdm::scenes::PlacementStep>& steps) {
+  options.tessellation = ::before_placement(options.tessellation, steps);
+  return options;
+}
+
+}  // namespace
 
 Body::Body(const std::string& input, const std::string& steps, const sdm::SequenceOptions& options)
     : input_(input),
       changes_(options.allow_topology),
-      sequence_(input, options),
+      sequence_(input, before_placement(options, sdm::scenes::parse_placement(steps))),
       steps_(sdm::scenes::without_fit(sequence_.mesh(), sdm::scenes::parse_placement(steps))) {}
 
 void Body::read(std::size_t frame) {
@@ -33,6 +44,10 @@ sdm::TopologyChange Body::change() const {
   for (std::size_t i = 0; i < change.edit.added_vertices.size(); ++i)
     change.edit.added_vertices[i] = placed_[first + i];
   return change;
+}
+
+double Body::deviation() const {
+  return placed_deviation(tessellation(), steps_);
 }
 
 std::uint64_t Body::hash() const {

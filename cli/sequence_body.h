@@ -31,6 +31,12 @@ class Body {
   /// placed positions.
   [[nodiscard]] sdm::TopologyChange change() const;
   void followed() { behind_ = false; }
+  /// How the surfaces of the CAD file that was read last became triangles; nothing for other files.
+  [[nodiscard]] const std::optional<sdm::Tessellation>& tessellation() const {
+    return sequence_.tessellation();
+  }
+  /// How far the body may be from its surface, as it is placed: 0 unless it is CAD.
+  [[nodiscard]] double deviation() const;
   /// Identifies the positions of the frame.
   [[nodiscard]] std::uint64_t hash() const;
 

@@ -16,7 +16,8 @@ void FrameDistances::withhold_pass() {
 
 FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& sites,
                                const sdm::DistanceMap& map, double error_bound,
-                               const std::optional<sdm::Tolerance>& tolerance, bool accept_doubts) {
+                               const std::optional<sdm::Tolerance>& tolerance, double guard,
+                               bool accept_doubts) {
   const std::vector<float> at_vertices = sdm::distances_at_vertices(surface.mesh(), sites);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const std::optional<sdm::Extremes> found = sdm::extremes(surface, map, at_vertices);
@@ -27,10 +28,11 @@ FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& si
   const double accuracy = sdm::engine_accuracy(sdm::engines().front(), surface.mesh(), sites.mesh());
   const sdm::CertifiedVerdict verdict = sdm::certify_tolerance(
       surface, sites, map, at_vertices, *tolerance,
-      {.error_bound = error_bound, .accuracy = accuracy, .accept_doubts = accept_doubts});
+      {.error_bound = error_bound, .accuracy = accuracy, .guard = guard, .accept_doubts = accept_doubts});
   result.doubt = sdm::doubt_of(verdict);
   result.verdict = verdict.verdict;
   result.certified = verdict.certified;
+  result.guard = guard;
   result.exceeded_area_fraction = verdict.exceeded_area_fraction;
   return result;
 }
@@ -41,6 +43,7 @@ Json to_json(const FrameDistances& d) {
     json["verdict"] = sdm::name_of(*d.verdict);
     json["exceeded_area_fraction"] = d.exceeded_area_fraction;
     json["certified"] = d.certified;
+    json["guard"] = d.guard;
   }
   return json;
 }
@@ -56,6 +59,7 @@ FrameDistances distances_from(const Json& json) {
     if (json.at("verdict") == sdm::name_of(verdict)) d.verdict = verdict;
   d.exceeded_area_fraction = json.at("exceeded_area_fraction");
   d.certified = json.value("certified", false);
+  d.guard = json.value("guard", 0.0);
   return d;
 }
 

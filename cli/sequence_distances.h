@@ -13,6 +13,7 @@ struct FrameDistances {
   std::optional<sdm::Verdict> verdict{};  ///< of the tolerance, if there is one
   double exceeded_area_fraction = 0;      ///< of it
   bool certified = false;                 ///< the verdict is proven
+  double guard = 0;                       ///< Evidence::guard of the verdict
   std::optional<sdm::Doubt> doubt{};      ///< that it leaves
 
   [[nodiscard]] sdm::Verdict judged() const { return verdict.value_or(sdm::Verdict::pass); }
@@ -22,10 +23,10 @@ struct FrameDistances {
 
 /// Summarises the map on `surface` to `sites`, which has this error bound. Throws sdm::Error if the tolerance
 /// needs signs and there are none. Cost: closest points of the vertices, linear, and that of a proof where
-/// the map does not decide.
+/// the map does not decide. `guard`: how far both meshes may be from the surfaces that are meant.
 [[nodiscard]] FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& sites,
                                              const sdm::DistanceMap& map, double error_bound,
-                                             const std::optional<sdm::Tolerance>& tolerance,
+                                             const std::optional<sdm::Tolerance>& tolerance, double guard,
                                              bool accept_doubts);
 
 [[nodiscard]] nlohmann::ordered_json to_json(const FrameDistances& distances);

@@ -156,7 +156,7 @@ void FrameLoop::compute_maps(Frame& frame) {
     naming_frame(frame.index, [&] {
       frame.distances[b] =
           frame_distances(pair_.surface(b), pair_.sites(1 - b), maps_.of[b], frame.error_bound[b],
-                          command_.picture.tolerance, command_.accept_doubts);
+                          command_.picture.tolerance, pair_.guard(), command_.accept_doubts);
     });
   }
   if (!command_.picture.tolerance) return;

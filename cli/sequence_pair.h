@@ -37,6 +37,8 @@ class MovingPair {
   [[nodiscard]] const sdm::Surface& surface(int body) const { return query_.surface(body); }
   [[nodiscard]] const sdm::Sites& sites(int body) const { return query_.sites(body); }
   [[nodiscard]] const FrameHash& hash() const { return hash_; }
+  /// How far both bodies may be from the surfaces that are meant.
+  [[nodiscard]] double guard() const { return bodies_[0].deviation() + bodies_[1].deviation(); }
 
  private:
   void follow(int body, const sdm::TopologyChange& change, Frame& frame);

@@ -7,6 +7,7 @@
 #include <sdm/api.h>
 #include <sdm/mesh.h>
 #include <sdm/mesh_edit.h>
+#include <sdm/tessellation.h>
 
 #include <filesystem>
 #include <memory>
@@ -22,6 +23,7 @@ struct SequenceOptions {
   std::optional<double> rate{};
   /// Vertices and faces may be added and removed between numbered files; see MeshSequence::change.
   bool allow_topology = false;
+  TessellationOptions tessellation{};  ///< of CAD
 };
 
 /// How a frame differs from the one that was read before.
@@ -64,6 +66,9 @@ class SDM_API MeshSequence {
   /// The first frame, whose triangles are those of all frames. With SequenceOptions::allow_topology: the
   /// frame that was read last, initially the first one.
   [[nodiscard]] const Mesh& mesh() const;
+  /// How the surfaces of the CAD file that was read last became triangles: that of a frame, or the one that
+  /// all frames have their triangles from. Nothing for other files.
+  [[nodiscard]] const std::optional<Tessellation>& tessellation() const;
   /// The number of frames.
   [[nodiscard]] std::size_t frame_count() const;
   /// The name of a frame in [0, frame_count()), for messages: "walk_0007.ply", "frame 7 of motion.npy", ...

@@ -3,6 +3,7 @@
 #include <sdm/io.h>
 #include <sdm/transform.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -193,6 +194,44 @@ TEST(CadCommand, TolerancesHoldForTheSurface) {
   EXPECT_EQ(metres["tolerance"]["verdict"], "FAIL");
   EXPECT_NEAR(metres["evidence"]["guard"].get<double>(), 1e-3 * dent["evidence"]["guard"].get<double>(),
               1e-9);
+}
+
+// The same of frames: a piece of the ball, with and without a dent of 0.09.
+TEST(CadCommand, FramesKeepTheirDistanceFromTheLimits) {
+  const TemporaryFolder folder;
+  const std::string ball = cad_part("sphere.step");
+  Mesh scan = read_mesh_file(ball, {.tessellation = {.deflection = 0.006}}).mesh;
+  const Mesh coarse = read_mesh(ball);
+  Vec3 place{1, 0, 0};  // where triangles of the default deflection are farthest inside of the ball
+  for (std::size_t f = 0; f < coarse.triangles.size(); ++f) {
+    const auto [a, b, c] = corners_of(coarse, f);
+    if (const Vec3 middle = (1.0 / 3) * (a + b + c); f == 0 || norm(middle) < norm(place)) place = middle;
+  }
+  Vec3& dented =
+      *std::ranges::max_element(scan.positions, {}, [&](const Vec3& p) { return -norm(p - place); });
+  std::erase_if(scan.triangles, [&](const Triangle& t) { return norm(scan.positions[t[0]] - dented) > 1; });
+  write_ply(folder / "perfect.ply", scan);
+  dented = (9.91 / norm(place)) * place;
+  write_ply(folder / "dented.ply", scan);
+  const auto run = [&](const char* name, const char* tolerance, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {"sequence", folder / name, ball, "-o", folder / "out", "--resolution", "64",
+                               "--no-temporal", "--tolerance", tolerance});
+    const Outcome outcome = run_sdm(more);
+    std::ifstream lines(folder / "out/frames.jsonl");
+    nlohmann::json frame = nlohmann::json::parse(lines, nullptr, false);
+    EXPECT_THAT(frame["notes"].dump(), HasSubstr("verdicts keep so far from the limits"));
+    return frame["distance"]["o1"];
+  };
+  const nlohmann::json perfect = run("perfect.ply", "0.04");
+  EXPECT_EQ(perfect["verdict"], "PASS");
+  EXPECT_GT(perfect["guard"], 0);
+  EXPECT_LT(perfect["guard"], 0.01);
+  const nlohmann::json dent = run("dented.ply", "0.07");
+  EXPECT_EQ(dent["verdict"], "FAIL");
+  const nlohmann::json metres =
+      run("dented.ply", "7e-5", {"--transform-o1", "scale:0.001", "--transform-o2", "scale:0.001"});
+  EXPECT_EQ(metres["verdict"], "FAIL");
+  EXPECT_NEAR(metres["guard"].get<double>(), 1e-3 * dent["guard"].get<double>(), 1e-9);
 }
 
 // The files of an assembly are inputs, which are not replaced.

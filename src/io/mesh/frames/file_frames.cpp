@@ -9,20 +9,16 @@
 #include "io/file/file_bytes.h"
 #include "io/mesh/frames/frame_source.h"
 #include "io/mesh/frames/numbered_files.h"
-#include "io/mesh/read_polygons.h"
 
 namespace sdm::io {
 namespace {
 
 namespace fs = std::filesystem;
 
-PolygonMesh read_file(const fs::path& file) {
-  return read_polygons(read_bytes(file).view(), file);
-}
-
 class SingleFile : public FrameSource {
  public:
-  explicit SingleFile(fs::path file) : file_(std::move(file)) {}
+  SingleFile(fs::path file, const TessellationOptions& tessellation)
+      : FrameSource(tessellation), file_(std::move(file)) {}
 
   PolygonMesh take_polygons() override {
     PolygonMesh polygons = read_file(file_);
@@ -41,7 +37,8 @@ class SingleFile : public FrameSource {
 
 class FileFrames : public FrameSource {
  public:
-  explicit FileFrames(NumberedFiles files) : files_(std::move(files)) {}
+  FileFrames(NumberedFiles files, const TessellationOptions& tessellation)
+      : FrameSource(tessellation), files_(std::move(files)) {}
 
   PolygonMesh take_polygons() override {
     PolygonMesh polygons = with_error_prefix(polygons_name(), [&] { return read_file(files_.file(0)); });
@@ -105,16 +102,24 @@ class FileFrames : public FrameSource {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> numbered_files_in(const fs::path& folder) {
-  return std::make_unique<FileFrames>(NumberedFiles::in(folder));
+PolygonMesh FrameSource::read_file(const fs::path& file) {
+  PolygonMesh polygons = read_polygons(read_bytes(file).view(), file, options_);
+  tessellation_ = polygons.tessellation;
+  return polygons;
 }
 
-std::unique_ptr<FrameSource> numbered_files_like(const fs::path& pattern) {
-  return std::make_unique<FileFrames>(NumberedFiles::like(pattern));
+std::unique_ptr<FrameSource> numbered_files_in(const fs::path& folder,
+                                               const TessellationOptions& tessellation) {
+  return std::make_unique<FileFrames>(NumberedFiles::in(folder), tessellation);
 }
 
-std::unique_ptr<FrameSource> single_file(const fs::path& file) {
-  return std::make_unique<SingleFile>(file);
+std::unique_ptr<FrameSource> numbered_files_like(const fs::path& pattern,
+                                                 const TessellationOptions& tessellation) {
+  return std::make_unique<FileFrames>(NumberedFiles::like(pattern), tessellation);
+}
+
+std::unique_ptr<FrameSource> single_file(const fs::path& file, const TessellationOptions& tessellation) {
+  return std::make_unique<SingleFile>(file, tessellation);
 }
 
 }  // namespace sdm::io

@@ -8,13 +8,15 @@
 #include <string_view>
 #include <vector>
 
-#include "io/mesh/polygons/polygon_mesh.h"
+#include "io/mesh/read_polygons.h"
 
 namespace sdm::io {
 
 /// All functions throw sdm::Error; the message does not name the frame.
 class FrameSource {
  public:
+  explicit FrameSource(const TessellationOptions& tessellation = {})
+      : options_{.tessellation = tessellation} {}
   virtual ~FrameSource() = default;
 
   /// Returns the polygons, which all frames share, with the positions of the first frame: vertices that
@@ -32,16 +34,30 @@ class FrameSource {
   [[nodiscard]] virtual bool has_polygons() const { return false; }
   /// Reads the polygons of a frame. Only if has_polygons().
   [[nodiscard]] virtual PolygonMesh polygons_of(std::size_t) { return {}; }
+  /// Of the CAD file that was read last; nothing for other files.
+  [[nodiscard]] const std::optional<Tessellation>& tessellation() const { return tessellation_; }
+
+ protected:
+  /// Reads a mesh file.
+  [[nodiscard]] PolygonMesh read_file(const std::filesystem::path& file);
+
+ private:
+  PolygonOptions options_;
+  std::optional<Tessellation> tessellation_;
 };
 
 /// Mesh files in a folder, mesh files whose names match a pattern, or one mesh file.
-[[nodiscard]] std::unique_ptr<FrameSource> numbered_files_in(const std::filesystem::path& folder);
-[[nodiscard]] std::unique_ptr<FrameSource> numbered_files_like(const std::filesystem::path& pattern);
-[[nodiscard]] std::unique_ptr<FrameSource> single_file(const std::filesystem::path& file);
+[[nodiscard]] std::unique_ptr<FrameSource> numbered_files_in(const std::filesystem::path& folder,
+                                                             const TessellationOptions& tessellation);
+[[nodiscard]] std::unique_ptr<FrameSource> numbered_files_like(const std::filesystem::path& pattern,
+                                                               const TessellationOptions& tessellation);
+[[nodiscard]] std::unique_ptr<FrameSource> single_file(const std::filesystem::path& file,
+                                                       const TessellationOptions& tessellation);
 
 /// The vertices of a mesh file, moved to the positions in an NPY file.
 [[nodiscard]] std::unique_ptr<FrameSource> npy_frames(const std::filesystem::path& mesh,
-                                                      const std::filesystem::path& npy);
+                                                      const std::filesystem::path& npy,
+                                                      const TessellationOptions& tessellation);
 
 /// The first animation of a glTF file that changes nodes or weights of morph targets; null if the file has no
 /// animation.

@@ -33,27 +33,28 @@ fs::path npy_file(const fs::path& mesh, const fs::path& npy) {
   return fs::exists(npy, ignored) ? npy : mesh.parent_path() / npy;
 }
 
-std::unique_ptr<FrameSource> open_file(const fs::path& file, std::optional<double> rate) {
+std::unique_ptr<FrameSource> open_file(const fs::path& file, const SequenceOptions& options) {
   const FileBytes contents = read_bytes(file);
   if (contents.view().starts_with("\x93NUMPY"))
     throw Error(
         fmt::format("holds positions without triangles; add the mesh that they belong to, as in mesh.obj+{}",
                     file.filename().string()));
   if (is_gltf(contents.view(), file))
-    if (auto frames = gltf_frames(contents.view(), file, rate)) return frames;
-  return single_file(file);
+    if (auto frames = gltf_frames(contents.view(), file, options.rate)) return frames;
+  return single_file(file, options.tessellation);
 }
 
 // Existing files and folders take precedence over patterns, whatever characters their names contain.
-std::unique_ptr<FrameSource> open_source(const std::string& input, std::optional<double> rate) {
+std::unique_ptr<FrameSource> open_source(const std::string& input, const SequenceOptions& options) {
   std::error_code ignored;
-  if (fs::is_directory(input, ignored)) return numbered_files_in(input);
-  if (fs::exists(input, ignored)) return open_file(input, rate);
+  if (fs::is_directory(input, ignored)) return numbered_files_in(input, options.tessellation);
+  if (fs::exists(input, ignored)) return open_file(input, options);
   if (const std::size_t plus = place_of_plus(input); plus != std::string::npos)
-    return npy_frames(input.substr(0, plus), npy_file(input.substr(0, plus), input.substr(plus + 1)));
+    return npy_frames(input.substr(0, plus), npy_file(input.substr(0, plus), input.substr(plus + 1)),
+                      options.tessellation);
   if (fs::path(input).filename().string().find_first_of("%*") != std::string::npos)
-    return numbered_files_like(input);
-  return open_file(input, rate);
+    return numbered_files_like(input, options.tessellation);
+  return open_file(input, options);
 }
 
 }  // namespace
@@ -71,7 +72,7 @@ struct MeshSequence::Impl {
 };
 
 void MeshSequence::Impl::open(const SequenceOptions& options) {
-  source = io::open_source(input, options.rate);
+  source = io::open_source(input, options);
   io::PolygonMesh polygons = source->take_polygons();
   if (options.allow_topology && source->has_polygons()) {
     io::with_error_prefix(source->polygons_name(), [&] { changing.emplace(std::move(polygons)); });
@@ -96,6 +97,10 @@ MeshSequence& MeshSequence::operator=(MeshSequence&&) noexcept = default;
 
 const Mesh& MeshSequence::mesh() const {
   return impl_->changing ? impl_->changing->mesh() : impl_->welded->mesh();
+}
+
+const std::optional<Tessellation>& MeshSequence::tessellation() const {
+  return impl_->source->tessellation();
 }
 
 const TopologyChange& MeshSequence::change() const {

@@ -15,10 +15,8 @@
 #include "core/memory.h"
 #include "io/file/byte_scanner.h"
 #include "io/file/error_prefix.h"
-#include "io/file/file_bytes.h"
 #include "io/file/npy_header.h"
 #include "io/mesh/frames/frame_source.h"
-#include "io/mesh/read_polygons.h"
 
 namespace sdm::io {
 namespace {
@@ -58,12 +56,15 @@ class RandomAccessFile {
 
 class NpyFrames : public FrameSource {
  public:
-  NpyFrames(fs::path mesh, fs::path npy)
-      : mesh_name_(std::move(mesh)), npy_name_(std::move(npy)), file_(npy_name_), header_(read_header()) {}
+  NpyFrames(fs::path mesh, fs::path npy, const TessellationOptions& tessellation)
+      : FrameSource(tessellation),
+        mesh_name_(std::move(mesh)),
+        npy_name_(std::move(npy)),
+        file_(npy_name_),
+        header_(read_header()) {}
 
   PolygonMesh take_polygons() override {
-    PolygonMesh polygons = with_error_prefix(
-        polygons_name(), [&] { return read_polygons(read_bytes(mesh_name_).view(), mesh_name_); });
+    PolygonMesh polygons = with_error_prefix(polygons_name(), [&] { return read_file(mesh_name_); });
     with_error_prefix(npy_name_.string(), [&] { check_shape(polygons.positions.size()); });
     frame_bytes_ = header_.shape[1] * 3 * header_.number_bytes;
     most_frames_ = header_.fortran_order ? frames_of_block() : 1;
@@ -167,8 +168,10 @@ class NpyFrames : public FrameSource {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> npy_frames(const fs::path& mesh, const fs::path& npy) {
-  return with_error_prefix(npy.string(), [&] { return std::make_unique<NpyFrames>(mesh, npy); });
+std::unique_ptr<FrameSource> npy_frames(const fs::path& mesh, const fs::path& npy,
+                                        const TessellationOptions& tessellation) {
+  return with_error_prefix(npy.string(),
+                           [&] { return std::make_unique<NpyFrames>(mesh, npy, tessellation); });
 }
 
 }  // namespace sdm::io
