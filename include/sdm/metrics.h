@@ -1,5 +1,5 @@
 /// Measures that compare two surfaces by the distances of all their points: averages, percentiles, fractions
-/// within tolerances, with certified bounds.
+/// within tolerances, with certified bounds, or estimated.
 ///
 /// Threads: the functions may be called concurrently.
 #pragma once
@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,8 +34,15 @@ struct MetricsOptions {
   /// Parts that a surface is divided into, at most, beside its faces: then the bounds stay farther apart.
   /// In memory at once are 65,536, or 32 for each face up to a million, or twice as many as faces.
   std::size_t most_parts = 4'000'000;
+  /// Whether the measures are estimated from random points, in seconds, in place of bounds that hold.
+  bool estimate = false;
+  /// Random points of each surface, at most, and 256 at least: then the intervals stay wider. Eight bytes
+  /// each.
+  std::size_t most_points = 4'000'000;
+  std::uint64_t seed = 0;  ///< of the random points
   Progress progress{};
 
+  static constexpr double kConfidence = 0.99;
   static constexpr double kRelative = 2e-3, kNear = 2e-5, kOfNear = 0.03, kLeast = 1e-7, kRounding = 1e-6;
 };
 
@@ -42,6 +50,7 @@ struct MetricsOptions {
 /// weighted by the area of A.
 struct DirectedMetrics {
   double area = 0;                           ///< of A
+  std::size_t points = 0;                    ///< random ones of A, of an estimate
   BoundedNumber hausdorff{};                 ///< the largest d
   BoundedNumber mean{};                      ///< of d
   BoundedNumber rms{};                       ///< the root of the mean of d²
@@ -67,12 +76,22 @@ struct SurfaceMetrics {
   std::vector<BoundedNumber> surface_dice{};  ///< for each tolerance, the fraction of both areas within it
   std::vector<BoundedNumber> f_score{};  ///< for each tolerance, the harmonic mean of both fractions within
   double normal_consistency = 0;         ///< the mean of both directions: an estimate
+  /// The probability, at least, with which each number that is an estimate lies between its bounds; not that
+  /// with which all do.
+  double confidence = 1;
 };
 
-/// Computes the measures. Nothing is sampled: on each part of a surface the distance lies between two linear
-/// functions, whose integrals and distributions are known, and parts are divided until the bounds are as
-/// close as the options ask. All bounds hold in spite of rounding. Points on faces without area count for the
-/// Hausdorff distance only. The result does not depend on the number of threads.
+/// Computes the measures. By default nothing is sampled: on each part of a surface the distance lies between
+/// two linear functions, whose integrals and distributions are known, and parts are divided until the bounds
+/// are as close as the options ask. All bounds hold in spite of rounding. Points on faces without area count
+/// for the Hausdorff distance only. The result does not depend on the number of threads.
+///
+/// With `estimate`, numbers are estimates from independent random points, uniform by area, with the exact
+/// distance of each. In their bounds they are with a probability of at least kConfidence, whatever the
+/// distances are: nothing is assumed about their distribution. The bounds are kRelative of a distance from it
+/// at most, or `precision`, and `fraction_precision` from a fraction, unless that needs more than
+/// `most_points`. Hausdorff distances are not estimated: these have bounds that hold, but are far apart.
+/// Cost: a search for each point, and one for each face.
 ///
 /// A mesh without faces is an empty surface: if both are empty, distances are 0 and fractions 1; if one is,
 /// distances are infinite and fractions 0; these are exact.
@@ -94,6 +113,7 @@ struct NamedMetric {
                      ///< f_score(T), normal_consistency; T as short as it reads back
   BoundedNumber number{};
   MetricUnit unit = MetricUnit::length;
+  std::optional<double> confidence{};  ///< SurfaceMetrics::confidence, of an estimate with bounds
 };
 
 /// Returns "hd95" for 95: the number as short as it reads back.

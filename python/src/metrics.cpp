@@ -14,15 +14,16 @@
 namespace sdm::python {
 namespace {
 
-/// (value, lower, upper, certainty)
-nb::tuple tuple_of(const BoundedNumber& number) {
-  return nb::make_tuple(number.value, number.lower, number.upper, name_of(number.certainty));
+/// (value, lower, upper, certainty, confidence of an estimate with bounds)
+nb::tuple tuple_of(const BoundedNumber& number, std::optional<double> confidence) {
+  return nb::make_tuple(number.value, number.lower, number.upper, name_of(number.certainty), confidence);
 }
 
-nb::dict dict_of(const DirectedMetrics& m, const MetricsOptions& options) {
+nb::dict dict_of(const DirectedMetrics& m, const MetricsOptions& options, double confidence) {
   nb::dict result;
   const auto add = [&](const std::string& name, const BoundedNumber& number) {
-    result[name.c_str()] = tuple_of(number);
+    result[name.c_str()] =
+        tuple_of(number, number.certainty == Certainty::estimate ? std::optional(confidence) : std::nullopt);
   };
   add("hd", m.hausdorff);
   for (std::size_t i = 0; i < m.percentiles.size(); ++i)
@@ -47,24 +48,28 @@ class MeshOrNone {
   Mesh none_;
 };
 
-/// Dictionaries of both together, from a to b, and from b to a, and both areas.
+/// Dictionaries of both together, from a to b, and from b to a, both areas, and the numbers of random points.
 nb::tuple surface_metrics_of(nb::handle a, nb::handle b, std::vector<double> percentiles,
                              std::vector<double> tolerances, std::optional<double> precision,
-                             double fraction_precision, nb::handle progress) {
+                             double fraction_precision, bool estimate, nb::handle progress) {
   const MeshOrNone on(a), to(b);
   MetricsOptions options{.percentiles = std::move(percentiles),
                          .tolerances = std::move(tolerances),
                          .precision = precision,
-                         .fraction_precision = fraction_precision};
+                         .fraction_precision = fraction_precision,
+                         .estimate = estimate};
   SurfaceMetrics metrics;
   run(progress, [&](const Progress& report) {
     options.progress = report;
     metrics = surface_metrics(on.get(), to.get(), options);
   });
   nb::dict both;
-  for (const NamedMetric& m : named_metrics(metrics, options)) both[m.name.c_str()] = tuple_of(m.number);
-  return nb::make_tuple(both, dict_of(metrics.from[0], options), dict_of(metrics.from[1], options),
-                        nb::make_tuple(metrics.from[0].area, metrics.from[1].area));
+  for (const NamedMetric& m : named_metrics(metrics, options))
+    both[m.name.c_str()] = tuple_of(m.number, m.confidence);
+  const auto& [forth, back] = metrics.from;
+  return nb::make_tuple(both, dict_of(forth, options, metrics.confidence),
+                        dict_of(back, options, metrics.confidence), nb::make_tuple(forth.area, back.area),
+                        nb::make_tuple(forth.points, back.points));
 }
 
 }  // namespace
@@ -73,10 +78,10 @@ void bind_metrics(nb::module_& module) {
   module.def(
       "surface_metrics", &surface_metrics_of, nb::arg("a").none(), nb::arg("b").none(),
       nb::arg("percentiles"), nb::arg("tolerances"), nb::arg("precision").none(),
-      nb::arg("fraction_precision"), nb::arg("progress").none(),
+      nb::arg("fraction_precision"), nb::arg("estimate"), nb::arg("progress").none(),
       nb::sig("def surface_metrics(a: object, b: object, percentiles: collections.abc.Sequence[float], "
               "tolerances: collections.abc.Sequence[float], precision: float | None, "
-              "fraction_precision: float, progress: object) -> tuple[typing.Any, ...]"));
+              "fraction_precision: float, estimate: bool, progress: object) -> tuple[typing.Any, ...]"));
 }
 
 }  // namespace sdm::python

@@ -28,6 +28,22 @@ def test_names_and_bounds():
     assert pickle.loads(pickle.dumps(metrics)) == metrics
 
 
+def test_estimates():
+    options = {"tolerances": [0.1], "precision": 0.003}
+    metrics = sdm.surface_metrics(meshes.box(), meshes.sphere(), estimate=True, **options)
+    certified = sdm.surface_metrics(meshes.box(), meshes.sphere(), **options)
+    assert certified["hd95"].confidence is None and certified.points == (0, 0)
+    for name in ("hd95", "assd", "rmsd", "chamfer_l2", "nsd(0.1)", "f_score(0.1)"):
+        number = metrics[name]
+        assert number.certainty == "estimate" and number.confidence == 0.99
+        assert number.lower <= certified[name].upper and certified[name].lower <= number.upper
+        assert number.lower <= number.value <= number.upper
+    assert metrics["hd"].certainty != "estimate" and metrics["hd"].confidence is None
+    assert metrics["normal_consistency"].confidence is None
+    assert metrics.a_to_b["mean"].confidence == 0.99 and min(metrics.points) >= 65536
+    assert "estimate, 99 %" in repr(metrics["hd95"])
+
+
 # The mean of distances to a plane, which sampling only estimates.
 def test_parallel_squares():
     square = numpy.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]], dtype=float)

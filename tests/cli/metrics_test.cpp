@@ -49,6 +49,37 @@ TEST_F(MetricsCommandTest, PrintsWhatTheLibraryComputes) {
   EXPECT_FALSE(json.contains("verdict"));
 }
 
+TEST_F(MetricsCommandTest, PrintsEstimatesWithTheirConfidence) {
+  const std::string ball = write_obj(folder / "ball.obj", sphere(2));
+  const std::vector<std::string> command{"metrics", ball,          o2,      "--estimate", "--tolerance",
+                                         "0.5",     "--precision", "0.005", "--quiet"};
+  std::vector<std::string> as_json = command;
+  as_json.emplace_back("--json");
+  const Outcome run = run_sdm(as_json);
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json json = Json::parse(run.out);
+  for (const char* name : {"hd95", "assd", "rmsd", "chamfer_l2", "nsd(0.5)", "f_score(0.5)"}) {
+    const Json& number = json["metrics"][name];
+    EXPECT_EQ(number["kind"], "estimate") << name;
+    EXPECT_EQ(number["confidence"], 0.99) << name;
+    EXPECT_LT(number["lower"], number["upper"]) << name;
+  }
+  EXPECT_EQ(json["metrics"]["hd"]["kind"], "bounded");
+  EXPECT_FALSE(json["metrics"]["hd"].contains("confidence"));
+  EXPECT_FALSE(json["metrics"]["normal_consistency"].contains("confidence"));
+  EXPECT_EQ(json["o1_to_o2"]["mean"]["confidence"], 0.99);
+  EXPECT_GE(json["o2_to_o1"]["points"], 65536);
+  const SurfaceMetrics expected = surface_metrics(read_mesh(ball), read_mesh(o2), {.precision = 0.005});
+  EXPECT_LE(json["metrics"]["hd95"]["lower"], expected.percentiles[0].upper);
+  EXPECT_GE(json["metrics"]["hd95"]["upper"], expected.percentiles[0].lower);
+  const std::string text = run_sdm({command.begin(), command.end() - 1}).out;
+  EXPECT_THAT(text, testing::ContainsRegex("hd95 .* between .*, 99 % \\(estimate\\)"));
+  EXPECT_THAT(text, HasSubstr("99 % hold for each number, not for all at once"));
+  const Outcome gate = metrics({"--estimate", "--fail-if", "hd95>0.1"});
+  EXPECT_EQ(gate.code, 2) << "verdicts are those of bounds";
+  EXPECT_THAT(gate.err, HasSubstr("--estimate"));
+}
+
 // More than a hundred thousand parts, of which only sums are kept.
 TEST_F(MetricsCommandTest, OfManyEqualFacesNeedsLittleMemory) {
   Mesh faces{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {}};

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "certify/hausdorff/vertex_search.h"
+#include "certify/metrics/faces.h"
 #include "core/cancellation.h"
 #include "core/parallel.h"
 #include "geometry/rounding.h"
@@ -17,7 +18,6 @@ namespace sdm::metrics {
 namespace {
 
 constexpr std::size_t kGrain = 256;
-constexpr double kAreaRounding = 1e-15;
 constexpr double kLeastSize = 1e-9;  // of the diagonal: smaller parts are not divided
 // Parts that are smaller beside their distance, squared, have a close bound by their size.
 constexpr double kNear = 1e-4;
@@ -56,13 +56,6 @@ BoundedNumber between(double lower, double upper) {
 std::size_t most_parts(const Mesh& a, const MetricsOptions& options) {
   constexpr std::size_t kMost = std::size_t{1} << 31;
   return a.triangles.size() + std::min(options.most_parts, kMost);
-}
-
-Vec3 unit_normal(const Mesh& mesh, std::uint32_t face) {
-  const auto [a, b, c] = corners_of(mesh, face);
-  const Vec3 normal = cross(b - a, c - a);
-  const double length = norm(normal);
-  return length > 0 ? (1 / length) * normal : Vec3{};
 }
 
 }  // namespace
@@ -157,10 +150,9 @@ void DirectedSearch::make_parts() {
   for (std::uint32_t f = 0; f < a_.triangles.size(); ++f) {
     const Triangle& t = a_.triangles[f];
     if (hausdorff::repeats_corner(t)) continue;
-    const auto [p, q, r] = corners_of(a_, f);
-    const double area = norm(cross(q - p, r - p)) / 2;
+    const auto [area, rounding] = area_of(corners_of(a_, f));
     if (!(area > 0)) continue;
-    error += kAreaRounding * norm(q - p) * norm(r - p);  // more than the area of a needle
+    error += rounding;
     parts_.push_back({.corner = {vertices[t[0]], vertices[t[1]], vertices[t[2]]}, .face = f, .area = area});
     area_of_all += area;
   }

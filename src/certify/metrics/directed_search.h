@@ -6,16 +6,10 @@
 #include <vector>
 
 #include "certify/metrics/part.h"
+#include "certify/metrics/scale.h"
 #include "core/numbers/compensated_sum.h"
 
 namespace sdm::metrics {
-
-/// Lengths of both meshes together.
-struct Scale {
-  double size = 0;      ///< the diagonal of their box
-  double rounding = 0;  ///< of distances and coordinates, in double precision
-  double accuracy = 0;  ///< of the cpu engine
-};
 
 /// A surface A divided into parts, until the sums over them are as close as the options ask.
 class DirectedSearch {

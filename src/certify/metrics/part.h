@@ -5,16 +5,14 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "certify/metrics/linear.h"
+#include "certify/metrics/scale.h"
 #include "sites/sites_data.h"
 
 namespace sdm::metrics {
-
-inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A point of A, with bounds on its distance.
 struct MeasuredPoint {

@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "certify/metrics/directed_search.h"
+#include "certify/metrics/estimate.h"
+#include "certify/metrics/faces.h"
 #include "certify/metrics/staged_progress.h"
 #include "core/memory.h"
 #include "core/numbers/compensated_sum.h"
@@ -34,7 +36,7 @@ BoundedNumber combined(const BoundedNumber& a, const BoundedNumber& b, const Fun
   BoundedNumber result{.lower = (1 - kFewRoundings) * f(a.lower, b.lower),
                        .upper = (1 + kFewRoundings) * f(a.upper, b.upper)};
   result.value = std::clamp(f(a.value, b.value), result.lower, result.upper);
-  if (a.certainty == Certainty::exact && b.certainty == Certainty::exact) result.certainty = Certainty::exact;
+  result.certainty = std::max(a.certainty, b.certainty);
   return result;
 }
 
@@ -52,6 +54,8 @@ BoundedNumber larger(const BoundedNumber& a, const BoundedNumber& b) {
   BoundedNumber result = a.lower < b.lower || (a.lower == b.lower && a.upper < b.upper) ? b : a;
   if (const double upper = std::max(a.upper, b.upper); upper > result.upper)
     result.upper = upper, result.certainty = Certainty::bounded;
+  if (std::max(a.certainty, b.certainty) == Certainty::estimate) result.certainty = Certainty::estimate;
+  result.value = std::max(a.value, b.value);
   return result;
 }
 
@@ -92,8 +96,7 @@ double area_of(const Mesh& mesh) {
   CompensatedSum area;
   for (const Triangle& t : mesh.triangles) {
     if (is_removed(t)) continue;
-    const auto [p, q, r] = corners_of(mesh.positions, t);
-    area += norm(cross(q - p, r - p)) / 2;
+    area += metrics::area_of(corners_of(mesh.positions, t)).area;
   }
   return area.value();
 }
@@ -136,6 +139,15 @@ std::array<DirectedMetrics, 2> both_directions(const Mesh& a, const Mesh& b, Met
   const double size = diagonal(box);
   const metrics::Scale scale{size, kDoubleRounding * std::max(size, coordinate),
                              MetricsOptions::kRounding * size};
+  if (options.estimate) {
+    std::array<DirectedMetrics, 2> from;
+    for (int i = 0; i < 2; ++i) {
+      options.progress = progress.stage(i == 0 ? 0.5 : 1);
+      from[i] = metrics::DirectedEstimate(sites[i].mesh(), internals(sites[1 - i]), options, scale, i).run();
+    }
+    progress.finish();
+    return from;
+  }
   const double precision =
       std::min(HausdorffOptions::kPrecision * size, options.precision.value_or(metrics::kInfinity));
   const SymmetricHausdorff hausdorff =
@@ -185,7 +197,9 @@ SurfaceMetrics surface_metrics(const Mesh& a, const Mesh& b, const MetricsOption
       if (!mesh->triangles.empty()) validate(*mesh), m->area = area_of(*mesh);
     return metrics_of(from);
   }
-  return metrics_of(both_directions(a, b, options));
+  SurfaceMetrics result = metrics_of(both_directions(a, b, options));
+  if (options.estimate) result.confidence = MetricsOptions::kConfidence;
+  return result;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the metrics");
 }
@@ -216,6 +230,8 @@ std::vector<NamedMetric> named_metrics(const SurfaceMetrics& metrics, const Metr
     add("recall", metrics.from[1].within[i]);
     add("f_score", metrics.f_score[i]);
   }
+  for (NamedMetric& m : result)
+    if (m.number.certainty == Certainty::estimate) m.confidence = metrics.confidence;
   const double normals = metrics.normal_consistency;
   result.push_back({"normal_consistency",
                     {.value = normals, .certainty = Certainty::estimate, .lower = normals, .upper = normals},
