@@ -116,6 +116,11 @@ TEST_F(ObjWithMaterials, PicturesOfOpacityAndPicturesInPlaceOfColoursAreNoted) {
   EXPECT_THAT(notes("map_Kd t.png\nKd 0.5 0.5 0.5\n"), ElementsAre(kReplaced));
   EXPECT_THAT(notes("Kd 1 1 1\nmap_Kd t.png\n"), IsEmpty());
   EXPECT_THAT(notes("map_Pr t.png\n"), ElementsAre(HasSubstr("map_Pr of the material m is left out")));
+  // Regression: one note named the first material only.
+  EXPECT_THAT(notes("Kd 1 0 0\nmap_Kd t.png\nnewmtl n\nmap_Kd t.png\nKd 0 0 0\n"),
+              ElementsAre("Kd of the materials m, n is left out: the picture of map_Kd replaces it"));
+  EXPECT_THAT(notes("bump t.png\nnewmtl n\nbump t.png\nnewmtl o\nbump t.png\nnewmtl p\nbump t.png\n"),
+              ElementsAre(HasSubstr("bump of the materials m, n, o and 1 more is left out")));
 }
 
 TEST_F(ObjWithMaterials, LibrariesAndPicturesAreReadOnceWhateverTheirNames) {
@@ -289,13 +294,14 @@ TEST(GltfMaterials, SpecularAndGlossyOnesHaveTheirDiffuseColour) {
   EXPECT_THAT(m.base_color, ElementsAre(0.5f, 1, 1, 0.5f));
   EXPECT_EQ(m.metallic, 0);
   EXPECT_FLOAT_EQ(m.roughness, 0.25f);
-  EXPECT_THAT(file.notes, ElementsAre(HasSubstr("the specular colour of material 0 is left out")));
+  EXPECT_THAT(file.notes, ElementsAre(HasSubstr("the specular colour of the material 0 is left out")));
   const MeshFile textured = gltf.read(
       glossy + R"(,"diffuseTexture":{"index":0},"specularGlossinessTexture":{"index":0}}})", images);
   EXPECT_EQ(textured.materials.at(0).base_color_texture.texture, 0u);
-  EXPECT_THAT(textured.notes,
-              ElementsAre(HasSubstr("and the glossiness of its picture, of material 0 are left out"),
-                          HasSubstr("1 faces without texture coordinates")));
+  EXPECT_THAT(
+      textured.notes,
+      ElementsAre(HasSubstr("the picture of specular colour and glossiness of the material 0 is left out"),
+                  HasSubstr("1 faces without texture coordinates")));
   // Beside the core model, which is the one to show.
   const MeshFile both =
       gltf.read(R"("pbrMetallicRoughness":{"metallicFactor":0.5},)" + glossy + "}}", images);
@@ -314,7 +320,7 @@ TEST(GltfMaterials, TexturesThatCannotBeHadAreLeftOutWithANote) {
   };
   EXPECT_THAT(notes(""), ElementsAre(HasSubstr("item 0 of textures is referred to but does not exist")));
   EXPECT_THAT(notes(R"(,"textures":[{}])"),
-              ElementsAre("the emissiveTexture of material 0 is left out: it has no picture"));
+              ElementsAre("the emissiveTexture of the material 0 is left out: it has no picture"));
   EXPECT_THAT(notes(R"(,"textures":[{"extensions":{"KHR_texture_basisu":{"source":0}}}])"),
               ElementsAre(HasSubstr("KHR_texture_basisu, which is not supported")));
   EXPECT_THAT(notes(R"(,"textures":[{"source":0}],"images":[{"uri":"../a.png"}])"),

@@ -10,7 +10,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/excerpt.h"
 #include "core/parse_number.h"
 #include "io/file/file_below.h"
 #include "io/file/text_scanner.h"
@@ -48,9 +47,8 @@ constexpr Unread kUnread[] = {{"map_d", "opacity is read as a number (d), or as 
 
 class MtlReader {
  public:
-  MtlReader(std::string_view text, const std::filesystem::path& folder, PolygonMaterials& materials,
-            std::vector<std::string>& notes)
-      : in_(text), folder_(folder), materials_(materials), notes_(notes) {}
+  MtlReader(std::string_view text, const std::filesystem::path& folder, PolygonMaterials& materials)
+      : in_(text), folder_(folder), materials_(materials) {}
 
   void read() {
     for (; !in_.at_end(); in_.skip_line()) {
@@ -157,9 +155,7 @@ class MtlReader {
     }
   }
   void leave_out(std::string_view statement, std::string_view fault) {
-    if (!materials_.is_new_fault(fault)) return;
-    notes_.push_back(fmt::format("{} of the material {} is left out: {}", statement,
-                                 excerpt(materials_.list.back().name), fault));
+    materials_.leave_out(statement, materials_.list.back().name, fault);
   }
 
   std::string options_and_name(TextureUse& use) {
@@ -196,15 +192,13 @@ class MtlReader {
   TextScanner in_;
   const std::filesystem::path& folder_;
   PolygonMaterials& materials_;
-  std::vector<std::string>& notes_;
   std::optional<std::array<float, 3>> diffuse_, emitted_;  // Kd and Ke of the last material
 };
 
 }  // namespace
 
-void read_mtl(std::string_view text, const std::filesystem::path& folder, PolygonMaterials& materials,
-              std::vector<std::string>& notes) {
-  MtlReader(text, folder, materials, notes).read();
+void read_mtl(std::string_view text, const std::filesystem::path& folder, PolygonMaterials& materials) {
+  MtlReader(text, folder, materials).read();
 }
 
 }  // namespace sdm::io

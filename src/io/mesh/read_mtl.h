@@ -2,9 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "io/mesh/polygons/polygon_materials.h"
 
@@ -12,9 +10,7 @@ namespace sdm::io {
 
 /// Adds the materials of an MTL file: Kd and map_Kd, Ke and map_Ke, d and Tr, Pm, Pr, and norm. Colours are
 /// in sRGB, and a picture replaces its colour, as programs have it that write such files. Pictures are looked
-/// up in `folder`. One that cannot be had is left out, with a note that names it. Throws sdm::Error for
-/// numbers that are none.
-void read_mtl(std::string_view text, const std::filesystem::path& folder, PolygonMaterials& materials,
-              std::vector<std::string>& notes);
+/// up in `folder`. What cannot be had is left out, which the materials have notes of.
+void read_mtl(std::string_view text, const std::filesystem::path& folder, PolygonMaterials& materials);
 
 }  // namespace sdm::io

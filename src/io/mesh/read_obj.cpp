@@ -188,8 +188,7 @@ class ObjReader {
     has_libraries_ = true;
     try {
       if (!libraries_.insert(file_below(folder_, name, "library of materials")).second) return;
-      read_mtl(read_below(folder_, name, "library of materials").view(), folder_, mesh_.surfaces,
-               mesh_.notes);
+      read_mtl(read_below(folder_, name, "library of materials").view(), folder_, mesh_.surfaces);
     } catch (const Cancelled&) {
       throw;
     } catch (const Error& fault) {
@@ -205,19 +204,16 @@ class ObjReader {
       const auto found = run.name == kNone ? numbers.end() : numbers.find(mesh_.materials.names()[run.name]);
       mesh_.surfaces.runs.push_back({run.first_polygon, found == numbers.end() ? kNone : found->second});
     }
+    mesh_.surfaces.move_notes(mesh_.notes);
     if (has_libraries_ && !lacks_libraries_) note_unknown_materials(numbers);
   }
   void note_unknown_materials(const std::map<std::string_view, std::uint32_t>& numbers) {
-    constexpr std::size_t kMostNames = 3;
     std::vector<std::string> unknown;
     for (const std::string& name : mesh_.materials.names())
-      if (!numbers.contains(name)) unknown.push_back(excerpt(name));
+      if (!numbers.contains(name)) unknown.push_back(name);
     if (unknown.empty()) return;
-    const std::size_t more = unknown.size() - std::min(unknown.size(), kMostNames);
-    unknown.resize(unknown.size() - more);
-    mesh_.notes.push_back(fmt::format("no MTL file has the material{} {}{}, so faces of {} are white",
-                                      unknown.size() == 1 ? "" : "s", fmt::join(unknown, ", "),
-                                      more == 0 ? "" : fmt::format(" and {} more", more),
+    mesh_.notes.push_back(fmt::format("no MTL file has the material{} {}, so faces of {} are white",
+                                      unknown.size() == 1 ? "" : "s", first_of(unknown),
                                       unknown.size() == 1 ? "it" : "them"));
   }
   void check_other_statements() {

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/excerpt.h"
 #include "io/file/file_below.h"
 #include "io/mesh/gltf/document/gltf_extensions.h"
 #include "io/mesh/gltf/document/gltf_uri.h"
@@ -75,14 +74,16 @@ std::array<std::array<double, 3>, 2> place_of(const json& transform) {
 class MaterialReader {
  public:
   MaterialReader(const GltfDocument& document, const std::filesystem::path& folder,
-                 PolygonMaterials& materials, std::vector<std::string>& notes)
-      : document_(document), folder_(folder), materials_(materials), notes_(notes) {}
+                 PolygonMaterials& materials)
+      : document_(document), folder_(folder), materials_(materials) {}
 
   void read() {
     for (const json& item : list_of(document_.root(), "materials")) {
       Material& material = materials_.list.emplace_back();
-      material.name = fmt::format("material {}", materials_.list.size() - 1);
-      if (const auto name = item.find("name"); name != item.end() && name->is_string()) material.name = *name;
+      name_ = std::to_string(materials_.list.size() - 1);
+      material.name = "material " + name_;
+      if (const auto name = item.find("name"); name != item.end() && name->is_string())
+        name_ = material.name = *name;
       const json& surface = member(item, "pbrMetallicRoughness");
       material.base_color = numbers_of<4>(surface, "baseColorFactor", {1, 1, 1, 1});
       material.metallic = number_of(surface, "metallicFactor", 1);
@@ -92,11 +93,11 @@ class MaterialReader {
       material.alpha_cutoff = number_of(item, "alphaCutoff", 0.5f);
       material.normal_scale = number_of(member(item, "normalTexture"), "scale", 1);
       material.occlusion_strength = number_of(member(item, "occlusionTexture"), "strength", 1);
-      material.base_color_texture = use(surface, "baseColorTexture", material.name);
-      material.metallic_roughness_texture = use(surface, "metallicRoughnessTexture", material.name);
-      material.normal_texture = use(item, "normalTexture", material.name);
-      material.occlusion_texture = use(item, "occlusionTexture", material.name);
-      material.emissive_texture = use(item, "emissiveTexture", material.name);
+      material.base_color_texture = use(surface, "baseColorTexture");
+      material.metallic_roughness_texture = use(surface, "metallicRoughnessTexture");
+      material.normal_texture = use(item, "normalTexture");
+      material.occlusion_texture = use(item, "occlusionTexture");
+      material.emissive_texture = use(item, "emissiveTexture");
       const json* const glossy = gltf_extension(item, "KHR_materials_pbrSpecularGlossiness");
       if (glossy != nullptr && !item.contains("pbrMetallicRoughness")) read_glossy(*glossy, material);
     }
@@ -107,20 +108,17 @@ class MaterialReader {
   void read_glossy(const json& surface, Material& material) {
     if (!surface.is_object()) return;
     material.base_color = numbers_of<4>(surface, "diffuseFactor", {1, 1, 1, 1});
-    material.base_color_texture = use(surface, "diffuseTexture", material.name);
+    material.base_color_texture = use(surface, "diffuseTexture");
     material.metallic = 0;
     material.roughness = 1 - std::clamp(number_of(surface, "glossinessFactor", 1), 0.f, 1.f);
     const bool picture = surface.contains("specularGlossinessTexture");
-    const std::string_view unread =
-        picture ? "specular colour, and the glossiness of its picture," : "specular colour";
-    if (materials_.is_new_fault(fmt::format("glossy {}", picture)))
-      notes_.push_back(fmt::format(
-          "the {} of {} {} left out: of KHR_materials_pbrSpecularGlossiness, the diffuse colour and "
-          "the glossiness factor are read",
-          unread, excerpt(material.name), picture ? "are" : "is"));
+    materials_.leave_out(
+        picture ? "the picture of specular colour and glossiness" : "the specular colour", name_,
+        "of KHR_materials_pbrSpecularGlossiness, the diffuse colour and the glossiness factor "
+        "are read");
   }
 
-  TextureUse use(const json& owner, const char* name, const std::string& material) {
+  TextureUse use(const json& owner, const char* name) {
     const auto info = owner.find(name);
     if (info == owner.end()) return {};
     try {
@@ -128,15 +126,14 @@ class MaterialReader {
     } catch (const Cancelled&) {
       throw;
     } catch (const Error& fault) {
-      leave_out(name, material, fault.what());
+      leave_out(name, fault.what());
     } catch (const json::exception&) {
-      leave_out(name, material, "what the file says of it is not valid glTF");
+      leave_out(name, "what the file says of it is not valid glTF");
     }
     return {};
   }
-  void leave_out(const char* name, const std::string& material, const std::string& fault) {
-    if (!materials_.is_new_fault(fault)) return;
-    notes_.push_back(fmt::format("the {} of {} is left out: {}", name, excerpt(material), fault));
+  void leave_out(const char* name, const std::string& fault) {
+    materials_.leave_out(fmt::format("the {}", name), name_, fault);
   }
 
   TextureUse use_of(const json& info) {
@@ -194,7 +191,7 @@ class MaterialReader {
   const GltfDocument& document_;
   const std::filesystem::path& folder_;
   PolygonMaterials& materials_;
-  std::vector<std::string>& notes_;
+  std::string name_;                               // of the material that is read, or its number
   std::map<std::size_t, std::uint32_t> pictures_;  // the texture of each image
   std::map<std::size_t, std::uint32_t> of_view_;   // of each bufferView that images name
 };
@@ -203,7 +200,8 @@ class MaterialReader {
 
 void read_gltf_materials(const GltfDocument& document, const std::filesystem::path& folder,
                          PolygonMaterials& materials, std::vector<std::string>& notes) {
-  MaterialReader(document, folder, materials, notes).read();
+  MaterialReader(document, folder, materials).read();
+  materials.move_notes(notes);
 }
 
 }  // namespace sdm::io
