@@ -5,6 +5,7 @@
 #include <sdm/error.h>
 #include <sdm/io.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <fstream>
@@ -105,6 +106,63 @@ TEST(CadDamage, ACrashIsAnError) {
   const std::string error = error_of([&] { (void)read_mesh(file); });
   EXPECT_THAT(error, HasSubstr("bad.step: OpenCASCADE cannot read it; it is damaged"));
   EXPECT_FALSE(read_mesh(std::string(SDM_CAD_FILES) + "/box.step").triangles.empty());
+}
+
+const std::vector<std::string>& names_of(const MeshFile& file, const std::string& kind) {
+  return std::ranges::find(file.names, kind, &FaceNames::kind)->names;
+}
+
+/// A file with the entities that are added to a part.
+void write_with(const std::string& file, std::string text, const std::string& entities) {
+  text.insert(text.rfind("ENDSEC;"), entities);
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+// OpenCASCADE's reader of the names of faces goes round representations that refer to each other until its
+// stack ends, and follows a null pointer where one has no items.
+TEST(CadDamage, NamesOfFacesAreReadWhateverRepresentationsReferTo) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "related.step";
+  std::string text = whole_part("assembly.step");
+  const std::size_t at = text.find("ADVANCED_BREP_SHAPE_REPRESENTATION"), number = text.rfind('#', at) + 1;
+  ASSERT_LT(at, text.size());
+  const std::string part = "#" + number_at(text, number),
+                    placement = "#" + number_at(text, text.find("(#", at) + 2),
+                    context = "#" + number_at(text, text.find("),#", at) + 3);
+  const std::string other = "#9001 = SHAPE_REPRESENTATION('',(" + placement + ")," + context + ");\n";
+  const auto relation = [](const char* id, const std::string& a, const std::string& b) {
+    return std::string(id) + " = SHAPE_REPRESENTATION_RELATIONSHIP('',''," + a + "," + b + ");\n";
+  };
+  const std::string there = relation("#9002", part, "#9001"), back = relation("#9003", "#9001", part);
+  const std::string empty = "#9001 = SHAPE_REPRESENTATION('',()," + context + ");\n";
+  const MeshFile plain = read_mesh_file(std::string(SDM_CAD_FILES) + "/assembly.step");
+  EXPECT_THAT(names_of(plain, "face"), Contains("datum A"));
+  for (const std::string& entities : {other + there + back, empty + there}) {
+    write_with(file, text, entities);
+    const MeshFile read = read_mesh_file(file);
+    EXPECT_EQ(read.mesh.triangles.size(), plain.mesh.triangles.size());
+    for (const char* kind : {"object", "face", "color"})
+      EXPECT_EQ(names_of(read, kind), names_of(plain, kind)) << kind;
+    EXPECT_EQ(read.notes, plain.notes) << entities;
+  }
+}
+
+// OpenCASCADE follows the reference to the style, which is optional.
+TEST(CadDamage, ShapesAreReadWithoutNamesAndColoursThatMakeItCrash) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "styles.step";
+  std::string text = whole_part("assembly.step");
+  const std::size_t at = text.find("SURFACE_STYLE_USAGE(.BOTH.,#"), style = text.find('#', at),
+                    end = text.find(')', at);
+  ASSERT_LT(at, text.size());
+  std::ofstream(file, std::ios::binary) << text.replace(style, end - style, "$");
+  const MeshFile read = read_mesh_file(file),
+                 plain = read_mesh_file(std::string(SDM_CAD_FILES) + "/assembly.step");
+  EXPECT_EQ(read.mesh.triangles, plain.mesh.triangles);
+  EXPECT_EQ(read.mesh.positions, plain.mesh.positions);
+  EXPECT_THAT(read.notes,
+              Contains("OpenCASCADE fails on the names of its parts, or on its colours: both are left out"));
+  EXPECT_THAT(names_of(read, "face"), Contains("datum A"));
 }
 
 // The plane of a face has a point in place of its normal.

@@ -12,6 +12,8 @@
 #include <numbers>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "support/error_of.h"
 #include "support/temporary_folder.h"
@@ -112,6 +114,85 @@ TEST(Cad, PartsThatAreFilesAreBesideTheAssembly) {
   std::ofstream(there / "external.step") << text;
   EXPECT_THAT(error_of([&] { (void)read(there / "external.step"); }),
               HasSubstr("parts are looked up beside the STEP file only"));
+}
+
+/// A file of the tests with other words in it.
+std::string replaced(std::string text, const std::vector<std::pair<std::string, std::string>>& words) {
+  for (const auto& [from, to] : words) {
+    EXPECT_NE(text.find(from), std::string::npos) << from;
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+      text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+// Parts whose shapes are in files that are not STEP would be left out.
+TEST(Cad, PartsInOtherFormatsAreRefused) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "assembly.step", text = contents(cad_file("external.step"));
+  const auto error = [&](const std::vector<std::pair<std::string, std::string>>& words) {
+    std::ofstream(file) << replaced(text, words);
+    return error_of([&] { (void)read_mesh_file(file); });
+  };
+  const std::pair<std::string, std::string> name{"external_part.stp", "part.prt"}, format{"STEP AP214", "NX"},
+      representation{" REPRESENTATION('document format'", " SHAPE_REPRESENTATION('document format'"};
+  EXPECT_THAT(error({name}), HasSubstr("refers to the part part.prt, which is not beside it"));
+  EXPECT_THAT(error({name, format, representation}),
+              HasSubstr("refers to the part part.prt, which is not STEP"));
+  std::ofstream(folder / "part.prt") << "binary";
+  EXPECT_THAT(error({name}), HasSubstr("refers to the part part.prt, which cannot be read as STEP"));
+  EXPECT_THAT(error({name, format, representation}),
+              HasSubstr("refers to the part part.prt, which is not STEP"));
+  std::filesystem::copy(cad_file("two.step"), folder / "external_part.stp");
+  EXPECT_THAT(error({}), HasSubstr("a part that has several shapes, of which only the first has a place"));
+}
+
+// A part with a shape of its own loses nothing without the files that document it.
+TEST(Cad, DocumentsAreNoParts) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "part.step", text = contents(cad_file("box.step"));
+  const std::string document =
+      "#9010=DOCUMENT_FILE('drawing.pdf','',$,#9011,'',$);\n#9011=DOCUMENT_TYPE('');\n"
+      "#9012=APPLIED_DOCUMENT_REFERENCE(#9010,'',(#5));\n";
+  const std::string format =
+      "#9013=PROPERTY_DEFINITION('document property','',#9010);\n"
+      "#9014=PROPERTY_DEFINITION_REPRESENTATION(#9013,#9015);\n"
+      "#9015=SHAPE_REPRESENTATION('document format',(#9016),#9017);\n"
+      "#9016=DESCRIPTIVE_REPRESENTATION_ITEM('data format','PDF');\n"
+      "#9017=REPRESENTATION_CONTEXT('','document parameters');\n";
+  const auto read = [&](const std::string& entities) {
+    std::ofstream(file) << std::string(text).insert(text.rfind("ENDSEC;"), entities);
+    const MeshFile found = read_mesh_file(file);
+    EXPECT_EQ(found.tessellation->faces, 6u);
+    return found.notes;
+  };
+  const auto is_noted = [](const std::string& name) {
+    return ElementsAre("it refers to files that are not read, as no shape is missing without them: " + name);
+  };
+  EXPECT_THAT(read(document), is_noted("drawing.pdf"));
+  EXPECT_THAT(read(document + format), is_noted("drawing.pdf"));
+  std::ofstream(folder / "drawing.pdf") << "binary";
+  EXPECT_THAT(read(document), is_noted("drawing.pdf"));
+  // The same part as another file, which OpenCASCADE puts beside it.
+  std::filesystem::copy(cad_file("box.step"), folder / "copy.stp");
+  EXPECT_THAT(read(replaced(document, {{"drawing.pdf", "copy.stp"}})), is_noted("copy.stp"));
+}
+
+TEST(Cad, PartsMayReferToPartsBesideThem) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  const fs::path file = folder / "assembly.step", sub = folder / "sub";
+  fs::create_directory(sub);
+  const std::string text = contents(cad_file("external.step"));
+  std::ofstream(file) << replaced(text, {{"'external_part.stp'", "'sub/inner.stp'"}});
+  std::ofstream(sub / "inner.stp") << text;
+  fs::copy(cad_file("external_part.stp"), folder / "external_part.stp");  // not that of the inner assembly
+  EXPECT_THAT(error_of([&] { (void)read_mesh_file(file); }),
+              HasSubstr("refers to the part external_part.stp, which is not beside it"));
+  fs::rename(folder / "external_part.stp", sub / "external_part.stp");
+  const MeshFile found = read_mesh_file(file);
+  EXPECT_EQ(found.tessellation->faces, 24u);
+  EXPECT_NEAR(volume_of(found.mesh), 18, 1e-9) << "two of the four parts coincide";
 }
 
 TEST(Cad, BoxIsExact) {

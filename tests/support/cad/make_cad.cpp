@@ -84,6 +84,14 @@ void write_assembly(const std::string& file) {
   write_step(document, file, "INCH");
 }
 
+// Two parts that nothing joins.
+void write_two(const std::string& file) {
+  const Handle(TDocStd_Document) document = new_document();
+  const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  for (const double size : {1.0, 2.0}) shapes->AddShape(BRepPrimAPI_MakeBox(size, size, size).Shape(), false);
+  write_step(document, file, "MM");
+}
+
 // Two instances of a part of 1 × 2 × 3, 5 apart, in a file of its own.
 void write_external(const std::string& file) {
   const Handle(TDocStd_Document) document = new_document();
@@ -119,6 +127,7 @@ int main(int count, char** arguments) {
   write_step(BRepPrimAPI_MakeSphere(10).Shape(), "sphere", folder + "sphere.step");
   write_step(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 0, 0)).Shape(), "line", folder + "line.step");
   write_iges(tube, folder + "tube.igs");
+  write_two(folder + "two.step");
   write_assembly(folder + "assembly.step");
   write_external(folder + "external.step");
 }

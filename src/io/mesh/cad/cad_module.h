@@ -24,6 +24,7 @@ struct CadRequest {
   double at_most;     ///< then, unless there would be more than `most_triangles`; infinite: without a limit
   std::size_t most_triangles;
   double angle;
+  bool labels = true;  ///< whether names of parts, and colours, are read
 };
 
 inline constexpr double kDefaultDeflection = 1.0 / 2000;
@@ -36,13 +37,16 @@ struct CadShape {
     std::size_t first_triangle = 0;  ///< up to that of the next face
   };
 
-  std::string fault;  ///< a clause; empty unless the file could not be read
+  std::string fault;          ///< a clause; empty unless the file could not be read
+  bool is_exception = false;  ///< the fault is one of OpenCASCADE's own
   std::vector<Vec3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<Face> faces;
   std::vector<std::string> objects;  ///< the instances of parts
   std::string unit;
-  std::vector<std::string> parts;  ///< the files that it refers to, which were read too
+  std::vector<std::string> parts;      ///< the files that it refers to, which were read too
+  std::vector<std::string> documents;  ///< those that were not, and that no shape is missing without
+  bool has_labels = true;              ///< else they could not be read
   double deflection = 0;
   std::size_t omitted_faces = 0;
   std::size_t measured_points = 0;

@@ -100,6 +100,12 @@ PolygonMesh read(std::string_view bytes, const std::filesystem::path& file, CadF
   if (shape.omitted_faces > 0)
     mesh.notes.push_back(fmt::format("{} of {} faces could not be tessellated and are missing",
                                      shape.omitted_faces, mesh.tessellation->faces));
+  if (!shape.has_labels)
+    mesh.notes.emplace_back(
+        "OpenCASCADE fails on the names of its parts, or on its colours: both are left out");
+  if (!shape.documents.empty())
+    mesh.notes.push_back("it refers to files that are not read, as no shape is missing without them: " +
+                         first_of(shape.documents));
   return mesh;
 }
 

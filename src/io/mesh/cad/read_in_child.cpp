@@ -89,6 +89,16 @@ class Channel {
   int socket_;
 };
 
+void send_strings(Channel& channel, const std::vector<std::string>& strings) {
+  channel.send(strings.size());
+  for (const std::string& string : strings) channel.send_items(string);
+}
+
+void receive_strings(Channel& channel, std::vector<std::string>& strings) {
+  for (auto left = channel.receive<std::size_t>(); left > 0; --left)
+    channel.receive_items(strings.emplace_back());
+}
+
 void send_shape(Channel& channel, const CadShape& shape) {
   channel.send_items(shape.positions);
   channel.send_items(shape.triangles);
@@ -99,11 +109,10 @@ void send_shape(Channel& channel, const CadShape& shape) {
     channel.send(face.object);
     channel.send(face.first_triangle);
   }
-  channel.send(shape.objects.size());
-  for (const std::string& name : shape.objects) channel.send_items(name);
+  send_strings(channel, shape.objects);
   channel.send_items(shape.unit);
-  channel.send(shape.parts.size());
-  for (const std::string& file : shape.parts) channel.send_items(file);
+  send_strings(channel, shape.parts);
+  send_strings(channel, shape.documents);
   channel.send(shape.deflection);
   channel.send(shape.omitted_faces);
 }
@@ -133,11 +142,10 @@ void receive_shape(Channel& channel, CadShape& shape) {
     face.object = channel.receive<std::uint32_t>();
     face.first_triangle = channel.receive<std::size_t>();
   }
-  for (auto left = channel.receive<std::size_t>(); left > 0; --left)
-    channel.receive_items(shape.objects.emplace_back());
+  receive_strings(channel, shape.objects);
   channel.receive_items(shape.unit);
-  for (auto left = channel.receive<std::size_t>(); left > 0; --left)
-    channel.receive_items(shape.parts.emplace_back());
+  receive_strings(channel, shape.parts);
+  receive_strings(channel, shape.documents);
   shape.deflection = channel.receive<double>();
   shape.omitted_faces = channel.receive<std::size_t>();
   if (!is_consistent(shape)) throw BrokenChannel();
@@ -196,6 +204,7 @@ void isolate(pid_t parent) {
     }
     channel.send(CadMessage::end);
     channel.send_items(shape.fault);
+    channel.send(static_cast<std::uint8_t>(shape.is_exception));
     channel.send(shape.measured_points);
     channel.send(shape.largest_deviation);
   } catch (...) {  // the parent has gone, and sees that this process has too
@@ -236,12 +245,13 @@ class ChildProcess {
 
   [[nodiscard]] int socket() const { return socket_; }
 
-  /// Why it ended, or sent what cannot be true; waits for the former.
-  [[nodiscard]] Error death() {
+  /// Sets the fault by how it ended, or sent what cannot be true; waits for the former.
+  void explain_death(CadShape& shape) {
     const int status = (shutdown(socket_, SHUT_RDWR), reap());
-    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
-      return Error("OpenCASCADE, which reads it, was killed, perhaps for lack of memory");
-    return Error("OpenCASCADE cannot read it; it is damaged");
+    const bool killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+    shape.is_exception = !killed;
+    shape.fault = killed ? "OpenCASCADE, which reads it, was killed, perhaps for lack of memory"
+                         : "OpenCASCADE cannot read it; it is damaged";
   }
 
  private:
@@ -262,8 +272,7 @@ class ChildProcess {
   bool reaped_ = false;
 };
 
-CadShape receive_results(Channel& channel, CadClient& client) {
-  CadShape shape;
+void receive_results(Channel& channel, CadClient& client, CadShape& shape) {
   for (bool has_shape = false;;) {
     const auto message = channel.receive<CadMessage>();
     if (message == CadMessage::shape && !has_shape) {
@@ -274,30 +283,46 @@ CadShape receive_results(Channel& channel, CadClient& client) {
       channel.send(client.distance(channel.receive<Vec3>()));
     } else if (message == CadMessage::end) {
       channel.receive_items(shape.fault);
+      shape.is_exception = channel.receive<std::uint8_t>() != 0;
       shape.measured_points = channel.receive<std::size_t>();
       shape.largest_deviation = channel.receive<double>();
       if (shape.fault.empty() && !has_shape) throw BrokenChannel();
-      return shape;
+      return;
     } else {
       throw BrokenChannel();
     }
   }
 }
 
-}  // namespace
-
-CadShape read_in_child(const CadRequest& request, const char* format, CadClient& client) {
+/// Leaves in `shape` what was received, also where it throws.
+void read_once(const CadRequest& request, const char* format, CadClient& client, CadShape& shape) {
   poll();
   ChildProcess child(request, format);
   try {
     Channel channel(child.socket());
-    CadShape shape = receive_results(channel, client);
-    if (!shape.fault.empty()) throw Error(shape.fault);
-    return shape;
+    receive_results(channel, client, shape);
   } catch (const BrokenChannel&) {
     poll();
-    throw child.death();
+    child.explain_death(shape);
   }
+}
+
+}  // namespace
+
+CadShape read_in_child(const CadRequest& request, const char* format, CadClient& client) {
+  CadShape shape;
+  read_once(request, format, client, shape);
+  // OpenCASCADE fails, or crashes, on some names and colours of files whose shapes it reads.
+  if (shape.is_exception && shape.triangles.empty()) {
+    CadRequest plain = request;
+    plain.labels = false;
+    CadShape unlabelled;
+    read_once(plain, format, client, unlabelled);
+    unlabelled.has_labels = false;
+    if (unlabelled.fault.empty()) return unlabelled;
+  }
+  if (!shape.fault.empty()) throw Error(shape.fault);
+  return shape;
 }
 
 }  // namespace sdm::io::cad

@@ -3,28 +3,40 @@
 #include <BRep_Builder.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_IGESModel.hxx>
+#include <Interface_InterfaceModel.hxx>
 #include <Interface_Static.hxx>
+#include <NCollection_DataMap.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_ExternFile.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <STEPConstruct_ExternRefs.hxx>
+#include <StepBasic_ProductDefinition.hxx>
+#include <StepShape_Face.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TCollection_AsciiString.hxx>
 #include <TCollection_HAsciiString.hxx>
+#include <TDF_LabelMap.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDataStd_Name.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_ShapeMapHasher.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Iterator.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_Binder.hxx>
+#include <Transfer_TransientProcess.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <algorithm>
 #include <filesystem>
 #include <istream>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <streambuf>
 #include <string_view>
@@ -71,83 +83,157 @@ bool leads_elsewhere(const std::filesystem::path& name) {
          name.string().find('\\') != std::string::npos;
 }
 
-[[noreturn]] void throw_elsewhere(const std::string& name) {
-  throw std::runtime_error("refers to the part " + name +
-                           ", but parts are looked up beside the STEP file only");
-}
+/// A file that a file refers to.
+struct Reference {
+  std::string name, format;                     ///< the name relative to the folder of the file
+  Handle(StepBasic_ProductDefinition) product;  ///< whose shape it has, or which it documents; may be null
+};
 
-/// The parts of an assembly that are files of their own, as the reader will look them up: by names relative
-/// to the folder of the file. Those of other formats than STEP are documents.
-std::vector<std::string> referenced_files(const STEPCAFControl_Reader& reader) {
-  STEPConstruct_ExternRefs references(reader.Reader().WS());
+std::vector<Reference> references_of(const Handle(XSControl_WorkSession) & session) {
+  STEPConstruct_ExternRefs references(session);
   references.LoadExternRefs();
-  std::vector<std::string> names;
+  std::vector<Reference> all;
   for (int i = 1; i <= references.NbExternRefs(); ++i) {
     const char* const name = references.FileName(i);
-    const Handle(TCollection_HAsciiString) format = references.Format(i);
     if (name == nullptr || *name == '\0') continue;
-    if (!format.IsNull() && std::string_view(format->ToCString()).substr(0, 4) != "STEP") continue;
-    names.emplace_back(name);
+    const Handle(TCollection_HAsciiString) format = references.Format(i);
+    all.push_back({.name = name,
+                   .format = format.IsNull() ? "" : format->ToCString(),
+                   .product = references.ProdDef(i)});
   }
-  return names;
+  return all;
 }
 
-/// What OpenCASCADE leaves out without a word.
-void require_references(const STEPCAFControl_Reader& reader, const std::vector<std::string>& names,
-                        const std::filesystem::path& folder) {
-  for (NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>::Iterator at(
-           reader.ExternFiles());
-       at.More(); at.Next()) {  // with those that parts refer to
-    const std::string name = at.Key().ToCString();
-    if (leads_elsewhere(name)) throw_elsewhere(name);
-    if (at.Value()->GetLoadStatus() != IFSelect_RetDone)
-      throw std::runtime_error("refers to the part " + name +
-                               ", which is not beside it, or cannot be read as STEP");
-    if (!at.Value()->GetTransferStatus())
-      throw std::runtime_error("refers to the part " + name + ", which has no shape");
-  }
-  for (const std::string& name : names)
-    if (!reader.ExternFiles().IsBound(name.c_str()))
-      throw std::runtime_error("refers to the part " + (folder / name).string() + ", which was not read");
+/// The shape that a session has made of an entity; it may be null.
+TopoDS_Shape shape_of(const Handle(XSControl_WorkSession) & session,
+                      const Handle(Standard_Transient) & entity) {
+  if (entity.IsNull()) return {};
+  const Handle(Transfer_TransientProcess) process = session->TransferReader()->TransientProcess();
+  const Handle(Transfer_Binder) binder = process.IsNull() ? nullptr : process->Find(entity);
+  return binder.IsNull() ? TopoDS_Shape() : TransferBRep::ShapeResult(binder);
 }
 
-/// The paths of the files that it has read, with those that parts refer to.
-std::vector<std::string> parts_read(const STEPCAFControl_Reader& reader) {
-  std::vector<std::string> files;
-  for (NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>::Iterator at(
-           reader.ExternFiles());
-       at.More(); at.Next())
-    files.emplace_back(at.Value()->GetWS()->LoadedFile());
-  return files;
+bool has_content(const TopoDS_Shape& shape) {
+  return shape.ShapeType() != TopAbs_COMPOUND || TopoDS_Iterator(shape).More();
 }
 
-std::string read_step(const CadRequest& request, Handle(TDocStd_Document) & document,
-                      std::vector<std::string>& parts_of_file) {
-  STEPCAFControl_Reader reader;
-  Interface_Static::SetIVal("read.stepcaf.subshapes.name", 1);
-  BytesBuffer buffer(request.bytes);
-  std::istream stream(&buffer);
-  // Names of parts are relative to that of the stream; a relative one would be taken for the current folder.
-  const std::filesystem::path file = std::filesystem::absolute(request.file);
-  if (reader.ChangeReader().ReadStream(file.c_str(), stream) != IFSelect_RetDone)
-    throw std::runtime_error(kDamaged);
-  const std::vector<std::string> parts = referenced_files(reader);
-  for (const std::string& name : parts) {
-    if (leads_elsewhere(name)) throw_elsewhere(name);
-    if (!std::filesystem::is_regular_file(file.parent_path() / name))
-      throw std::runtime_error("refers to the part " + name + ", which is not beside it");
+/// The reader, with what OpenCASCADE leaves out without a word where a file refers to others.
+class StepReader : public STEPCAFControl_Reader {
+ public:
+  /// Reads the shapes, and sets what a document has of files. Throws where a shape would be missing.
+  void read(const CadRequest& request, Handle(TDocStd_Document) & document, Document& result) {
+    // What else there is, is not used.
+    SetLayerMode(false), SetPropsMode(false), SetGDTMode(false), SetMatMode(false), SetViewMode(false);
+    SetNameMode(request.labels), SetColorMode(request.labels);
+    // Those of faces are read by name_faces(): OpenCASCADE crashes where shape representations are empty or
+    // refer to each other.
+    Interface_Static::SetIVal("read.stepcaf.subshapes.name", 0);
+    BytesBuffer buffer(request.bytes);
+    std::istream stream(&buffer);
+    // Names of parts are relative to that of the stream; a relative one would be taken for the current
+    // folder.
+    const std::filesystem::path file = std::filesystem::absolute(request.file);
+    if (ChangeReader().ReadStream(file.c_str(), stream) != IFSelect_RetDone)
+      throw std::runtime_error(kDamaged);
+    for (const Reference& reference : references_of(ChangeReader().WS()))
+      require_beside(reference.name, file.parent_path());
+    TDF_LabelSequence roots;
+    const bool transferred = Transfer(ChangeReader(), 0, document, roots);
+    for (const TDF_Label& root : roots) roots_.Add(root);
+    require_references(ChangeReader().WS(), file.parent_path());
+    for_each_part([&](const Handle(XSControl_WorkSession) & session) {
+      const std::filesystem::path part = session->LoadedFile();
+      require_references(session, part.parent_path());
+      result.parts.push_back(part);
+    });
+    if (!transferred) throw std::runtime_error(kDamaged);
+    result.documents.assign(documents_.begin(), documents_.end());
   }
-  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
-  reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
-  const bool transferred = reader.Transfer(document);
-  require_references(reader, parts, file.parent_path());
-  if (!transferred) throw std::runtime_error(kDamaged);
-  parts_of_file = parts_read(reader);
-  return unit_names(lengths);
-}
+
+  /// Calls visit(entity, session) for all entities of the file and its parts.
+  template <class Visit>
+  void for_each_entity(const Visit& visit) {
+    const auto all_of = [&](const Handle(XSControl_WorkSession) & session) {
+      const Handle(Interface_InterfaceModel) model = session->Model();
+      for (int i = 1; i <= model->NbEntities(); ++i) visit(model->Value(i), session);
+    };
+    all_of(ChangeReader().WS());
+    for_each_part(all_of);
+  }
+
+  /// Whether a shape that nothing contains is one of the file. Others come from parts that are not used, as
+  /// the product has a shape of its own. Throws for one that is lost.
+  bool is_root(const TDF_Label& label) const {
+    if (roots_.Contains(label)) return true;
+    for (Files at(ExternFiles()); at.More(); at.Next())
+      if (at.Value()->GetLabel() == label && documents_.contains(at.Key().ToCString())) return false;
+    throw std::runtime_error("refers to a part that has several shapes, of which only the first has a place");
+  }
+
+  /// Documents may have the shape of a part that has none.
+  void require_shapes(bool all_have) const {
+    if (!all_have && !unattached_.empty())
+      throw std::runtime_error("refers to the file " + unattached_ +
+                               ", which is not read, and has a part without a shape");
+  }
+
+ private:
+  using Files = NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>::Iterator;
+
+  [[noreturn]] static void refuse(const std::string& name, const char* why) {
+    throw std::runtime_error("refers to the part " + name + why);
+  }
+
+  static void require_beside(const std::string& name, const std::filesystem::path& folder) {
+    if (leads_elsewhere(name)) refuse(name, ", but parts are looked up beside the STEP file only");
+    if (const auto path = folder / name; exists(path) && !is_regular_file(path))
+      refuse(name, ", which is no regular file");
+  }
+
+  /// With those that parts refer to.
+  template <class Visit>
+  void for_each_part(const Visit& visit) const {
+    for (Files at(ExternFiles()); at.More(); at.Next())
+      if (at.Value()->GetLoadStatus() == IFSelect_RetDone) visit(at.Value()->GetWS());
+  }
+
+  void require_references(const Handle(XSControl_WorkSession) & session,
+                          const std::filesystem::path& folder) {
+    for (const Reference& reference : references_of(session)) {
+      require_beside(reference.name, folder);
+      const TopoDS_Shape shape = shape_of(session, reference.product);
+      const bool is_step = reference.format.empty() || reference.format.starts_with("STEP");
+      if (!shape.IsNull() && has_content(shape)) {
+        documents_.insert(reference.name);
+      } else if (!shape.IsNull() && !is_step) {
+        refuse(reference.name, ", which is not STEP");
+      } else if (is_step) {
+        require_part(reference.name, folder);
+      } else {
+        documents_.insert(reference.name);
+        unattached_ = reference.name;
+      }
+    }
+  }
+
+  void require_part(const std::string& name, const std::filesystem::path& folder) {
+    Handle(STEPCAFControl_ExternFile) file;
+    if (!std::filesystem::exists(folder / name)) refuse(name, ", which is not beside it");
+    if (!ExternFile(name.c_str(), file)) refuse(name, ", which was not read");
+    if (file->GetLoadStatus() != IFSelect_RetDone) refuse(name, ", which cannot be read as STEP");
+    if (!std::filesystem::equivalent(folder / name, file->GetWS()->LoadedFile()))
+      refuse(name, ", as one of its parts does, from another folder: such parts are not told apart");
+    if (!file->GetTransferStatus() || file->GetLabel().IsNull()) refuse(name, ", which has no shape");
+  }
+
+  TDF_LabelMap roots_;
+  std::set<std::string> documents_;  ///< files that are not read, or not used
+  std::string unattached_;
+};
 
 std::string read_iges(const CadRequest& request, Handle(TDocStd_Document) & document) {
   IGESCAFControl_Reader reader;
+  reader.SetLayerMode(false), reader.SetNameMode(request.labels), reader.SetColorMode(request.labels);
   if (reader.ReadFile(request.file) != IFSelect_RetDone) throw std::runtime_error(kDamaged);
   std::string unit;
   if (const auto name = reader.IGESModel()->GlobalSection().UnitName(); !name.IsNull())
@@ -162,14 +248,32 @@ std::string name_of(const TDF_Label& label) {
   return TCollection_AsciiString(name->Get()).ToCString();
 }
 
+using FaceNames = NCollection_DataMap<TopoDS_Shape, std::string, TopTools_ShapeMapHasher>;
+
+/// The names that STEP has of faces, by their shapes without a place.
+FaceNames name_faces(StepReader& reader) {
+  FaceNames names;
+  reader.for_each_entity(
+      [&](const Handle(Standard_Transient) & entity, const Handle(XSControl_WorkSession) & session) {
+        const Handle(StepShape_Face) face = Handle(StepShape_Face)::DownCast(entity);
+        if (face.IsNull() || face->Name().IsNull() || face->Name()->IsEmpty()) return;
+        if (const TopoDS_Shape shape = shape_of(session, face); !shape.IsNull())
+          names.Bind(shape.Located(TopLoc_Location()), face->Name()->ToCString());
+      });
+  return names;
+}
+
 /// Collects the faces of all instances, from the assemblies down.
 class FaceCollector {
  public:
-  explicit FaceCollector(const Handle(TDocStd_Document) & document)
+  FaceCollector(const Handle(TDocStd_Document) & document, const FaceNames& names)
       : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
-        colors_(XCAFDoc_DocumentTool::ColorTool(document->Main())) {}
+        colors_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
+        names_(names) {}
 
-  void collect(Document& result) {
+  /// is_root() tells which shapes that nothing contains count. Returns whether all parts have shapes.
+  template <class IsRoot>
+  bool collect(Document& result, const IsRoot& is_root) {
     result_ = &result;
     BRep_Builder builder;
     TopoDS_Compound whole;
@@ -177,10 +281,12 @@ class FaceCollector {
     TDF_LabelSequence roots;
     shapes_->GetFreeShapes(roots);
     for (const TDF_Label& root : roots) {
+      if (!is_root(root)) continue;
       builder.Add(whole, XCAFDoc_ShapeTool::GetShape(root));
       visit(root, TopLoc_Location(), {}, {});
     }
     result.whole = whole;
+    return all_have_shapes_;
   }
 
  private:
@@ -204,15 +310,22 @@ class FaceCollector {
     const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
     const std::string part = name_of(label);
     const std::uint32_t object = add_object(part.empty() ? instance : part);
+    all_have_shapes_ = all_have_shapes_ && has_content(shape);
     for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
       TDF_Label own;
       const bool has_own = shapes_->FindSubShape(label, face.Current(), own);
       std::string own_color = has_own ? color_of(own) : std::string();
       result_->faces.push_back({.face = TopoDS::Face(face.Current().Moved(place)),
-                                .name = has_own ? name_of(own) : std::string(),
+                                .name = name_of_face(face.Current(), own),
                                 .color = own_color.empty() ? color : std::move(own_color),
                                 .object = object});
     }
+  }
+
+  // `own` may be null; those of IGES have names.
+  std::string name_of_face(const TopoDS_Shape& face, const TDF_Label& own) const {
+    const std::string* const known = names_.Seek(face.Located(TopLoc_Location()));
+    return known != nullptr ? *known : name_of(own);
   }
 
   // Instances of one part are numbered from the second on.
@@ -237,7 +350,9 @@ class FaceCollector {
 
   Handle(XCAFDoc_ShapeTool) shapes_;
   Handle(XCAFDoc_ColorTool) colors_;
+  const FaceNames& names_;
   Document* result_ = nullptr;
+  bool all_have_shapes_ = true;
   std::map<std::string, std::size_t> instances_;
 };
 
@@ -247,9 +362,20 @@ Document read_document(const CadRequest& request) {
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
   OpenDocument open;
   Document result;
-  result.unit = request.format == CadFormat::step ? read_step(request, open.document, result.parts)
-                                                  : read_iges(request, open.document);
-  FaceCollector(open.document).collect(result);
+  if (request.format == CadFormat::iges) {
+    result.unit = read_iges(request, open.document);
+    (void)FaceCollector(open.document, {}).collect(result, [](const TDF_Label&) { return true; });
+    return result;
+  }
+  StepReader reader;
+  reader.read(request, open.document, result);
+  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
+  reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
+  result.unit = unit_names(lengths);
+  const FaceNames names = name_faces(reader);
+  reader.require_shapes(FaceCollector(open.document, names).collect(result, [&](const TDF_Label& label) {
+    return reader.is_root(label);
+  }));
   return result;
 }
 

@@ -24,7 +24,8 @@ struct Document {
   std::vector<std::string> objects;  ///< each name once
   TopoDS_Shape whole;
   std::string unit;
-  std::vector<std::string> parts;  ///< files that the file refers to
+  std::vector<std::string> parts;      ///< files that the file refers to
+  std::vector<std::string> documents;  ///< those that are not read, and that no shape is missing without
 };
 
 /// Throws std::runtime_error with a clause, or Standard_Failure.

@@ -67,6 +67,7 @@ std::string read(const CadRequest& request, CadShape& shape, CadClient& client) 
   if (request.deflection == 0 && request.at_most < deflection) refine(document, request, shape);
   if (shape.triangles.empty()) return "none of its faces could be tessellated";
   shape.parts = document.parts;
+  shape.documents = document.documents;
   client.tessellated(shape);
   measure(document, shape, client);
   return {};
@@ -87,6 +88,7 @@ SDM_CAD_EXPORT void sdm_cad_read(const sdm::io::cad::CadRequest& request, sdm::i
     shape.fault = sdm::io::cad::read(request, shape, client);
   } catch (const Standard_Failure& failure) {
     shape.fault = std::string("OpenCASCADE cannot read it: ") + failure.DynamicType()->Name();
+    shape.is_exception = true;
   } catch (const std::bad_alloc&) {
     shape.fault = "there is not enough memory to read it";
   } catch (const std::exception& failure) {
