@@ -104,6 +104,7 @@ class Case:
         self.folder, self.dice = folder, dice
         self.squares = dice.randrange(2, 7)
         self.light: list = []  # of each square, in linear light
+        self.opacity: list = []  # likewise
         self.notes: list = []  # a set of texts that one note has, each
         self.refused = None  # a text of the error
         self.file = folder
@@ -138,7 +139,7 @@ class Obj(Case):
 
     def material(self, name: str) -> str:
         dice, statements = self.dice, []
-        m = {"color": (1.0, 1.0, 1.0), "use": None}
+        m = {"color": (1.0, 1.0, 1.0), "use": None, "opacity": 1.0}
         color = tuple(dice.choice([0, 1, round(dice.random(), 3)]) for _ in range(3))
         if (has_color := dice.random() < 0.7):
             statements.append("Kd " + " ".join(map(str, color)))
@@ -161,7 +162,10 @@ class Obj(Case):
             if dice.random() < 0.1:
                 statements.append(f"{unread} t.png")
                 self.unread.setdefault(unread, []).append((name, unread))
-        statements += [line for line in ("d 1", "Ns 10", "illum 2", "Pr 0.5", "Ks 1 1 1") if dice.random() < 0.3]
+        if dice.random() < 0.2:
+            m["opacity"] = round(dice.random(), 2)
+            statements.append(dice.choice([f"d {m['opacity']}", f"Tr {1 - m['opacity']:.2f}"]))
+        statements += [line for line in ("Ns 10", "illum 2", "Pr 0.5", "Ks 1 1 1") if dice.random() < 0.3]
         dice.shuffle(statements)
         self.materials[name] = m
         return f"newmtl {name}\n" + "".join(f"{dice.choice(['', chr(9)])}{line}\n" for line in statements)
@@ -177,7 +181,7 @@ class Obj(Case):
             elif name is not None:
                 text.append(f"usemtl {name}\n")
             self.names = [*getattr(self, "names", []), name]
-            m = self.materials.get(name, {"color": (1.0, 1.0, 1.0), "use": None})
+            m = self.materials.get(name, {"color": (1.0, 1.0, 1.0), "use": None, "opacity": 1.0})
             if name == "nobody":
                 unknown.append(name)
             u = coordinate(dice) if dice.random() < 0.75 else None
@@ -195,6 +199,7 @@ class Obj(Case):
             elif m["use"] is not None:
                 bare[name] = bare.get(name, 0) + 2
             self.light.append(light)
+            self.opacity.append(m["opacity"])
             text.append(f"f {' '.join(corners)}\n")
         self.file.write_text("".join(text))
         for name, count in bare.items():
@@ -275,9 +280,11 @@ class Gltf(Case):
 
     def material(self, name: str) -> dict:
         dice, item = self.dice, {"name": name}
-        factor = [round(dice.random(), 3) for _ in range(3)] + [1]
+        factor = [round(dice.random(), 3) for _ in range(3)] + [dice.choice([1, 1, round(dice.random(), 2)])]
+        if (is_blended := dice.random() < 0.3):
+            item["alphaMode"] = "BLEND"
         core, glossy = dice.choice([(True, False), (True, False), (False, True), (True, True), (False, False)])
-        m = {"name": name, "factor": (1.0, 1.0, 1.0), "use": None}
+        m = {"name": name, "factor": (1.0, 1.0, 1.0), "use": None, "opacity": 1.0}
 
         def surface(color: str, texture: str, read: bool) -> dict:
             surface = {}
@@ -285,6 +292,7 @@ class Gltf(Case):
                 surface[color] = factor
                 if read:
                     m["factor"] = tuple(factor[:3])
+                    m["opacity"] = factor[3] if is_blended else 1.0
             if dice.random() < 0.6:
                 if read:
                     surface[texture], m["use"] = self.use(texture, name)
@@ -322,7 +330,7 @@ class Gltf(Case):
             corners = [(i, 0), (i + 1, 0), (i + 1, 1), (i, 0), (i + 1, 1), (i, 1)]
             primitive: dict = {"attributes": {"POSITION": self.accessor([(x, y, 0.0) for x, y in corners])}}
             number = dice.randrange(-1, len(self.materials))
-            m = {"factor": (1.0, 1.0, 1.0), "use": None, "name": ""}
+            m = {"factor": (1.0, 1.0, 1.0), "use": None, "name": "", "opacity": 1.0}
             if number >= 0:
                 primitive["material"], m = number, self.materials[number]
             used = m["use"][2] if m["use"] else 0
@@ -341,6 +349,7 @@ class Gltf(Case):
             if m["use"] and f"TEXCOORD_{used}" not in primitive["attributes"]:
                 bare[m["name"], used] = bare.get((m["name"], used), 0) + 2
             self.light.append(light)
+            self.opacity.append(m["opacity"])
             all_of.append(primitive)
         for (name, uv_set), count in bare.items():
             self.expect(f"textures of {name} are left out on {count} faces without texture coordinates"
@@ -381,11 +390,11 @@ def check(sdm: Path, seed: int) -> str:
             if not any(all(text in note for text in texts) for note in notes):
                 return f"lacks a note of {texts}: {notes}"
         image = pixels(folder / "out" / "base_color.png")
-        for i, light in enumerate(case.light):
+        for i, (light, opacity) in enumerate(zip(case.light, case.opacity)):
             found = image[SIDE // 2][SIDE * i + SIDE // 2]
-            expected = tuple(255 * srgb(c) for c in light)
-            if any(abs(a - b) > 1 for a, b in zip(found, expected)):
-                return f"square {i} is {found[:3]}, not {tuple(round(c) for c in expected)}"
+            expected = [*(255 * srgb(c) for c in light), 255 * opacity]
+            if any(abs(a - b) > 1 for a, b in zip([*found, 255][:4], expected)):
+                return f"square {i} is {found}, not {[round(c) for c in expected]}"
     return ""
 
 
