@@ -21,10 +21,10 @@ Json optional_json(const std::optional<double>& value) {
 }
 
 // The measured range, and by what a group passes or fails.
-std::string group_text(const sdm::GroupVerdict& g, const std::string& units, bool of_points) {
+std::string group_text(const sdm::GroupVerdict& g, const std::string& units, bool is_signed, bool of_points) {
   const std::string unit = unit_suffix(units);
   std::string text = fmt::format("{} ({}): {}, {}", g.group, g.kind, sdm::name_of(g.verdict.verdict),
-                                 sdm::limits_text(g.verdict.tolerance, units));
+                                 sdm::limits_text(g.verdict.tolerance, units, is_signed));
   if (g.lowest) text += fmt::format(", measured {} to {}{}", number(*g.lowest), number(*g.highest), unit);
   if (g.verdict.reason == sdm::VerdictReason::without_match ||
       g.verdict.reason == sdm::VerdictReason::beyond_max_distance ||
@@ -160,12 +160,13 @@ Json to_json(const sdm::GroupVerdicts& verdicts, bool of_points) {
   return all;
 }
 
-std::string group_lines(const sdm::GroupVerdicts& verdicts, const std::string& units, bool of_points) {
+std::string group_lines(const sdm::GroupVerdicts& verdicts, const std::string& units, bool is_signed,
+                        bool of_points) {
   std::string text = fmt::format("  groups    {}", sdm::name_of(verdicts.verdict));
   if (verdicts.without_group.any()) text += ": " + without_group_text(verdicts.without_group);
   text += '\n';
   for (const sdm::GroupVerdict& g : verdicts.groups)
-    text += fmt::format("            {}\n", group_text(g, units, of_points));
+    text += fmt::format("            {}\n", group_text(g, units, is_signed, of_points));
   return text;
 }
 

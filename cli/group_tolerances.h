@@ -38,7 +38,7 @@ void check_groups(const GroupTolerances& table, std::initializer_list<const Inpu
 
 /// One line for each group.
 [[nodiscard]] std::string group_lines(const sdm::GroupVerdicts& verdicts, const std::string& units,
-                                      bool of_points = false);
+                                      bool is_signed, bool of_points = false);
 
 /// Adds the doubt that thin walls leave, if one of the groups has it.
 void add_group_doubts(const sdm::GroupVerdicts& groups, std::vector<sdm::Doubt>& doubts);

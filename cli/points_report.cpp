@@ -122,6 +122,6 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
     text += "            signs are estimates; points closest to the boundary of O2 have none: |d|\n";
   if (s.tolerance) text += fmt::format("  tolerance {}\n", tolerance_line(outcome, unit));
   text += place_lines(s, size_of(found.bounds));
-  if (found.groups) text += group_lines(*found.groups, s.units, true);
+  if (found.groups) text += group_lines(*found.groups, s.units, s.evidence.is_signed, true);
   return text + coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
 }

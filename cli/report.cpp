@@ -141,7 +141,8 @@ std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
   if (verdict.verdict != sdm::Verdict::fail)
     return fmt::format("{}: {}", word, sdm::verdict_text(outcome.summary));
   const sdm::ToleranceShares& shares = verdict.shares;
-  const std::string limits = sdm::limits_text(verdict.tolerance, outcome.summary.units);
+  const std::string limits =
+      sdm::limits_text(verdict.tolerance, outcome.summary.units, outcome.summary.evidence.is_signed);
   if (verdict.proof && verdict.proof->witness)
     return fmt::format("{}: {}: {}{} at {}", word,
                        verdict.by_facing.value_or(false) ? sdm::verdict_text(outcome.summary)
@@ -253,7 +254,7 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
         number(s.evidence.error_bound), unit);
   if (s.tolerance) add("  tolerance {}\n", tolerance_line(outcome, unit));
   text += place_lines(s, outcome.size);
-  if (outcome.groups) text += group_lines(*outcome.groups, s.units);
+  if (outcome.groups) text += group_lines(*outcome.groups, s.units, s.evidence.is_signed);
   text += coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
   if (outcome.raster)
     add("  raster    {}, {} polygons, overdraw {}\n", outcome.raster->device.name, outcome.raster->polygons,

@@ -72,12 +72,8 @@ std::optional<sdm::Tolerance> limits_of(const ThicknessCommand& command) {
   return sdm::Tolerance(command.least.value_or(-kNone), command.most.value_or(kNone));
 }
 
-/// The limits in words, without one that was not given.
 std::string limits_in_words(const ThicknessCommand& command) {
-  const std::string unit = unit_suffix(command.picture.units);
-  if (!command.most) return fmt::format("at least {}{}", number(*command.least), unit);
-  if (!command.least) return fmt::format("at most {}{}", number(*command.most), unit);
-  return fmt::format("{} to {}{}", number(*command.least), number(*command.most), unit);
+  return sdm::limits_text(*limits_of(command), command.picture.units, false);
 }
 
 /// The verdict as a clause: that of sdm::verdict_text(), but of the limits that were given.

@@ -22,6 +22,7 @@ if(NOT NPM)
   endif()
 endif()
 set(SDM_REPORT_FOLDER ${PROJECT_BINARY_DIR}/report)
+set(SDM_RULES ${PROJECT_SOURCE_DIR}/src/core/rules.h ${PROJECT_SOURCE_DIR}/report/rules.cjs)
 
 # sdm_npm_ci(<folder> <argument>...): installs the packages of report/package-lock.json into the folder, again only when
 # that file changes.
@@ -42,7 +43,12 @@ endfunction()
 set(SDM_DEV_PACKAGES ${PROJECT_BINARY_DIR}/dev_packages)
 if(SDM_BUILD_TESTS OR SDM_BUILD_DOCS)
   sdm_npm_ci(${SDM_DEV_PACKAGES})
-  add_custom_target(sdm_dev_packages DEPENDS ${SDM_DEV_PACKAGES}/packages)
+  add_custom_command(OUTPUT ${SDM_DEV_PACKAGES}/rules.d.ts
+    COMMAND ${NODE} ${PROJECT_SOURCE_DIR}/report/rules.cjs ${SDM_DEV_PACKAGES}
+    DEPENDS ${SDM_RULES} ${SDM_DEV_PACKAGES}/packages
+    COMMENT "Translating src/core/rules.h"
+    VERBATIM)
+  add_custom_target(sdm_dev_packages DEPENDS ${SDM_DEV_PACKAGES}/packages ${SDM_DEV_PACKAGES}/rules.d.ts)
 endif()
 
 # sdm_embed_report(<target> <header>): builds the pages and embeds them (see sdm_embed_files).
@@ -53,7 +59,7 @@ function(sdm_embed_report target header)
   add_custom_command(OUTPUT ${pages}
     COMMAND ${CMAKE_COMMAND} -E env NODE_PATH=${SDM_REPORT_FOLDER}/node_modules
       ${NODE} ${PROJECT_SOURCE_DIR}/report/build.cjs ${SDM_REPORT_FOLDER}
-    DEPENDS ${sources} ${PROJECT_SOURCE_DIR}/report/build.cjs ${SDM_REPORT_FOLDER}/packages
+    DEPENDS ${sources} ${PROJECT_SOURCE_DIR}/report/build.cjs ${SDM_RULES} ${SDM_REPORT_FOLDER}/packages
     COMMENT "Bundling report/"
     VERBATIM)
   sdm_embed_files(${target}_objects HEADER ${header} NAMESPACE sdm::io FILES ${pages})

@@ -2,11 +2,13 @@
 const { buildSync } = require('esbuild');
 const { readFileSync, writeFileSync } = require('fs');
 const { delimiter, join } = require('path');
+const { alias } = require('./rules.cjs');
 
 function bundle(file, options = {}) {
   const { outputFiles } = buildSync({
     entryPoints: [join(__dirname, 'src', file)],
     bundle: true,
+    alias,
     nodePaths: (process.env.NODE_PATH || '').split(delimiter),
     minify: true,
     write: false,

@@ -4,6 +4,7 @@ const { readFileSync, writeFileSync } = require('fs');
 const { join } = require('path');
 const { deflateRawSync } = require('zlib');
 const { bundle, pageOf } = require('./build.cjs');
+const { alias } = require('./rules.cjs');
 
 /// The digits of base85() of src/io/page/report/packed_arrays.h: '#' to 'x', without '<'.
 function base85(bytes) {
@@ -22,29 +23,12 @@ function packed(id, file) {
   return `<script type="text/plain" id="${id}" data-bytes="${bytes.length}">${base85(bytes)}</script>`;
 }
 
-/// The colours of src/io/image/pictures/color_scale, which reports have in their data.
-function colors() {
-  const scale = ['h', 'cpp'].map((type) => readFileSync(join(__dirname, `../src/io/image/pictures/color_scale.${type}`), 'utf8')).join('');
-  const names = {
-    viridis: 'Viridis', diverging: 'Diverging', paper2006: 'Paper2006', opposite: 'Opposite', within: 'Within', above: 'Above', below: 'Below',
-    no_value: 'NoValue', unjudged: 'Unjudged',
-  };
-  return Object.fromEntries(
-    Object.entries(names).map(([key, name]) => {
-      const found = scale.match(new RegExp(`\\bk${name}\\s*(?:=\\s*)?\\{[\\s\\d,{}]*\\}`));
-      const list = [...(found?.[0].matchAll(/(\d+),\s*(\d+),\s*(\d+)/g) ?? [])].map((rgb) => rgb.slice(1).map(Number));
-      if (list.length === 0) throw new Error(`color_scale.h and color_scale.cpp have no colours k${name}`);
-      return [key, list];
-    }),
-  );
-}
-
 const [library, file] = process.argv.slice(2);
 const { version } = JSON.parse(readFileSync(join(library, 'package.json'), 'utf8'));
 const program = bundle('../live/main.ts', {
-  alias: { sdm: join(library, 'index.js') },
+  alias: { ...alias, sdm: join(library, 'index.js') },
   loader: { '.ply': 'binary' },
-  define: { SDM_COLORS: JSON.stringify(colors()), SDM_VERSION: JSON.stringify(version) },
+  define: { SDM_VERSION: JSON.stringify(version) },
   external: ['node:*'],
   logOverride: { 'empty-import-meta': 'silent' }, // of files that the page has in it
 });

@@ -10,7 +10,7 @@
 
 namespace sdm {
 
-/// The length in metres of "m", "cm", "mm", "um", "in" or "ft"; nothing for any other name.
+/// The length in metres of "m", "cm", "mm", "um" or "µm", "in" or "ft"; nothing for any other name.
 [[nodiscard]] SDM_API std::optional<double> metres_per(std::string_view unit);
 
 }  // namespace sdm

@@ -1,9 +1,10 @@
 // Summaries and reports of maps, of the module `full`.
 import { type Bytes, float64, text, uint32 } from './bytes.js';
 import { type Module } from './module.js';
+import { type kColormapNames } from './rules.js';
 import { type Progress, SdmError } from './types.js';
 
-export type Colormap = 'automatic' | 'viridis' | 'sequential' | 'diverging' | 'paper2006';
+export type Colormap = (typeof kColormapNames)[number];
 
 export interface SummaryOptions {
   /** The least and the largest distance allowed: the verdict PASS or FAIL is proven between the samples, too. */

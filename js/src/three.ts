@@ -3,7 +3,9 @@ import {
   BufferAttribute, BufferGeometry, DataTexture, FloatType, LinearFilter, MeshStandardMaterial, type MeshStandardMaterialParameters,
   NearestFilter, RedFormat, SRGBColorSpace, type WebGLProgramParametersWithUniforms,
 } from 'three';
-import { type Rgb, kAbove, kBelow, kColormaps, kNoValue, kWithin } from './colors.js';
+import {
+  kAbove, kBands, kBelow, kCentred, kColorRule, kDiverging, kEndToEnd, kNoValue, kOpposite, kPaper2006, kSequential, kUnjudged, kViridis, kWithin,
+} from './rules.js';
 import { type Atlas } from './surface.js';
 import { SdmError } from './types.js';
 
@@ -45,29 +47,35 @@ export function withAtlas(geometry: BufferGeometry, atlas: Atlas): BufferGeometr
 export interface DistanceMaterialOptions extends MeshStandardMaterialParameters {
   /** The distances at the ends of the colours; by default the 99th percentile, symmetric if some are negative. */
   range?: [number, number];
-  /** Distances allowed: green within, warm above, blue below. */
+  /** Distances allowed: green within, warm above, blue below. One of them may be infinite: no limit. */
   tolerance?: [least: number, largest: number];
-  colormap?: keyof typeof kColormaps;
+  /** The error of the distances: those that exceed the tolerance, or 0, by less are within it. */
+  accuracy?: number;
+  /** By default `diverging` if the range has negative distances; `sequential`: viridis from 0 to the longer side, reds for the other one. */
+  colormap?: 'viridis' | 'sequential' | 'diverging' | 'paper2006';
 }
 
 const kLut = 256;
-const kNone = 1e38;  // stands for NaN, which drivers treat in different ways
+const kNone = 1e38;  // stands for NaN and for no limit: drivers treat NaN and infinity in different ways
+const kModes = { viridis: kEndToEnd, sequential: kSequential, diverging: kCentred, paper2006: kEndToEnd };
 
 /** Shows the distances of a map on a geometry of withAtlas(). */
 export class DistanceMaterial extends MeshStandardMaterial {
   private readonly texture: DataTexture;
   private readonly texelFaces: Uint32Array;
-  private readonly colormap: keyof typeof kColormaps;
+  private readonly colormap: keyof typeof kModes;
+  private limits: [number, number] | null = null;
   private readonly uniformsOfDistances = {
     sdmDistances: { value: null as DataTexture | null },
     sdmColors: { value: null as DataTexture | null },
+    sdmMode: { value: kEndToEnd },
     sdmRange: { value: [0, 1] as [number, number] },
-    sdmTolerance: { value: [-kNone, kNone] as [number, number] },
-    sdmHasTolerance: { value: false },
+    sdmLimits: { value: [-kNone, kNone] as [number, number] },
+    sdmAccuracy: { value: 0 },
   };
 
   constructor(map: { distances: Float32Array }, atlas: Pick<Atlas, 'resolution' | 'rows' | 'texelFaces'>, options: DistanceMaterialOptions = {}) {
-    const { range, tolerance, colormap, ...parameters } = options;
+    const { range, tolerance, accuracy, colormap, ...parameters } = options;
     super({ roughness: 0.7, metalness: 0, ...parameters });
     this.texelFaces = atlas.texelFaces;
     this.texture = new DataTexture(new Float32Array(atlas.resolution * atlas.rows), atlas.resolution, atlas.rows, RedFormat, FloatType);
@@ -76,9 +84,10 @@ export class DistanceMaterial extends MeshStandardMaterial {
     this.setDistances(map.distances);
     const shown = range ?? defaultRange(map.distances);
     this.range = shown;
-    if (tolerance) this.tolerance = tolerance;
     this.colormap = colormap ?? (shown[0] < 0 ? 'diverging' : 'viridis');
-    this.uniformsOfDistances.sdmColors.value = colorTexture(kColormaps[this.colormap]);
+    this.tolerance = tolerance ?? null;
+    this.accuracy = accuracy ?? 0;
+    this.uniformsOfDistances.sdmColors.value = colorTexture(this.colormap);
     this.defines = { ...this.defines, USE_UV: '' };
   }
 
@@ -90,12 +99,21 @@ export class DistanceMaterial extends MeshStandardMaterial {
     this.uniformsOfDistances.sdmRange.value = range;
   }
   get tolerance(): [number, number] | null {
-    return this.uniformsOfDistances.sdmHasTolerance.value ? this.uniformsOfDistances.sdmTolerance.value : null;
+    return this.limits;
   }
   set tolerance(limits: [number, number] | null) {
-    if (limits && !(limits[0] < limits[1])) throw new SdmError('input', `the tolerance ${limits.join(' to ')} is not increasing`);
-    this.uniformsOfDistances.sdmHasTolerance.value = limits !== null;
-    if (limits) this.uniformsOfDistances.sdmTolerance.value = limits;
+    if (limits && !(limits[0] <= limits[1] && limits.some(Number.isFinite)))
+      throw new SdmError('input', `the tolerance is ${limits.join(' to ')}: it must be two numbers, the smaller one first, one of them finite`);
+    this.limits = limits;
+    this.uniformsOfDistances.sdmMode.value = limits ? kBands : kModes[this.colormap];
+    if (limits) this.uniformsOfDistances.sdmLimits.value = limits.map((limit) => Math.min(kNone, Math.max(-kNone, limit))) as [number, number];
+  }
+  get accuracy(): number {
+    return this.uniformsOfDistances.sdmAccuracy.value;
+  }
+  set accuracy(accuracy: number) {
+    if (!(accuracy >= 0)) throw new SdmError('input', `the accuracy is ${accuracy}: it must be at least 0`);
+    this.uniformsOfDistances.sdmAccuracy.value = Math.min(kNone, accuracy);
   }
 
   /** Shows other distances, of the same atlas: of the next frame. */
@@ -116,7 +134,7 @@ export class DistanceMaterial extends MeshStandardMaterial {
   override clone(): this {
     const { data, width, height } = this.texture.image as { data: Float32Array; width: number; height: number };
     const atlas = { resolution: width, rows: height, texelFaces: this.texelFaces };
-    const options = { range: [...this.range] as [number, number], colormap: this.colormap };
+    const options = { range: [...this.range] as [number, number], colormap: this.colormap, accuracy: this.accuracy };
     const copy = new DistanceMaterial({ distances: data }, atlas, options).copy(this);
     copy.tolerance = this.tolerance && [...this.tolerance];
     copy.defines = { ...this.defines };  // copy() of three.js resets these
@@ -132,48 +150,38 @@ export class DistanceMaterial extends MeshStandardMaterial {
   }
 }
 
-// Rows of the texture of colours: the colormap; within, above and below the tolerance.
+// The texture of colours has a row for each kind of place that the rule tells apart, in their order, and one for no value.
+const kRows = 7;
 const kDeclarations = `
 uniform sampler2D sdmDistances;
 uniform sampler2D sdmColors;
+uniform float sdmMode;
 uniform vec2 sdmRange;
-uniform vec2 sdmTolerance;
-uniform bool sdmHasTolerance;
-vec3 sdmRow(float t, float row) {
-  return texture2D(sdmColors, vec2((clamp(t, 0.0, 1.0) * ${kLut - 1}.0 + 0.5) / ${kLut}.0, (row + 0.5) / 5.0)).rgb;
-}
+uniform vec2 sdmLimits;
+uniform float sdmAccuracy;
+${kColorRule}
 vec3 sdmColor(float d) {
-  if (d > 1e37) return sdmRow(0.0, 4.0);
-  if (!sdmHasTolerance) return sdmRow((d - sdmRange.x) / (sdmRange.y - sdmRange.x), 0.0);
-  if (d > sdmTolerance.y) return sdmRow((d - sdmTolerance.y) / max(sdmRange.y - sdmTolerance.y, 1e-30), 2.0);
-  if (d < sdmTolerance.x) return sdmRow((sdmTolerance.x - d) / max(sdmTolerance.x - sdmRange.x, 1e-30), 3.0);
-  bool zero = sdmTolerance.x <= 0.0 && sdmTolerance.y >= 0.0;
-  float middle = zero ? 0.0 : 0.5 * (sdmTolerance.x + sdmTolerance.y);
-  float room = d > middle ? sdmTolerance.y - middle : middle - sdmTolerance.x;
-  return sdmRow(abs(d - middle) / max(room, 1e-30), 1.0);
+  float place = d > 1e37 ? ${2 * (kRows - 1)}.0 : colorPlace(d, sdmMode, sdmRange.x, sdmRange.y, sdmLimits.x, sdmLimits.y, sdmAccuracy);
+  float row = floor(place / 2.0);
+  return texture2D(sdmColors, vec2(((place - 2.0 * row) * ${kLut - 1}.0 + 0.5) / ${kLut}.0, (row + 0.5) / ${kRows}.0)).rgb;
 }`;
 
-function colorTexture(colormap: readonly Rgb[]): DataTexture {
-  const data = new Uint8Array(4 * kLut * 5);
-  const put = (row: number, i: number, [r, g, b]: Rgb) => data.set([r, g, b, 255], 4 * (row * kLut + i));
-  for (let i = 0; i < kLut; ++i) {
-    const t = i / (kLut - 1);
-    put(0, i, gradient(colormap, t));
-    put(1, i, kWithin[Math.min(kWithin.length - 1, Math.floor(t * kWithin.length))]!);
-    put(2, i, gradient(kAbove, t));
-    put(3, i, gradient(kBelow, t));
-    put(4, i, kNoValue);
-  }
-  const texture = new DataTexture(data, kLut, 5);
+type Rgb = [number, number, number];
+
+function colorTexture(colormap: keyof typeof kModes): DataTexture {
+  const colors = { viridis: kViridis, sequential: kViridis, diverging: kDiverging, paper2006: kPaper2006 }[colormap];
+  const rows = [colors, kOpposite, kWithin, kAbove, kBelow, [kUnjudged, kUnjudged], [kNoValue, kNoValue]];
+  const data = Uint8Array.from(rows.flatMap((row) => Array.from({ length: kLut }, (_, i) => [...gradient(row, i / (kLut - 1)), 255]).flat()));
+  const texture = new DataTexture(data, kLut, kRows);
   [texture.minFilter, texture.magFilter] = [LinearFilter, LinearFilter];
   texture.colorSpace = SRGBColorSpace;
   texture.needsUpdate = true;
   return texture;
 }
 
-function gradient(colors: readonly Rgb[], t: number): Rgb {
+function gradient(colors: Rgb[], t: number): Rgb {
   const at = Math.min(colors.length - 2, Math.floor(t * (colors.length - 1))), f = t * (colors.length - 1) - at;
-  return [0, 1, 2].map((k) => Math.round(colors[at]![k]! * (1 - f) + colors[at + 1]![k]! * f)) as unknown as Rgb;
+  return colors[at]!.map((x, k) => Math.round(x * (1 - f) + colors[at + 1]![k]! * f)) as Rgb;
 }
 
 /** Texels beside those of faces get a value of these: a face reaches into texels whose centres are outside of it. */

@@ -103,7 +103,7 @@ def told(request, tmp_path_factory):
     return Told(folder, (-0.1, round(float(found.at_vertices().max()) - 1e-7, 9)), VERDICTS["open"])
 
 
-def limits_text(lower, upper, digits=4):
+def limits_text(lower, upper, digits=5):
     if lower == -upper:
         return f"±{rounded(upper, digits):g} mm"
     return f"{rounded(lower, digits):g} to {rounded(upper, digits):g} mm"

@@ -1,6 +1,5 @@
 // How a pair is shown: the form, the legend, the histogram, and the verdict with the limits of the sliders.
 import { cutOpen } from '../src/cut';
-import type { Colors } from '../src/color_scale';
 import { makeControls, startOf, State } from '../src/controls';
 import { byId, make } from '../src/dom';
 import { drawHistogram } from '../src/histogram';
@@ -16,7 +15,6 @@ import { showLimits, showReport } from './results';
 import { addSaveButtons, glbOf } from './save';
 import type { Session } from './session';
 
-declare const SDM_COLORS: Colors; // by the build
 
 const colorsOf = ({ scale: { mode, lo, hi } }: State) => [mode, lo, hi].join();
 
@@ -94,7 +92,7 @@ export class Display {
           return view.canvas.toDataURL('image/png');
         },
         csv: () => csvOf(session.report!, session.pair!.callouts.all),
-        model: () => glbOf(session.pair!.subject.surface.layout, this.state!.scale, SDM_COLORS, kUp, session.units),
+        model: () => glbOf(session.pair!.subject.surface.layout, this.state!.scale, kUp, session.units),
         report: () => session.inOrder(() => session.engine.html(session.tolerance, session.units, kUp)),
       },
       (error) => session.fault(error),
@@ -104,7 +102,7 @@ export class Display {
   private apply(state: State): void {
     this.state = state;
     const { view, subject, section } = this.session.pair!;
-    view.setScale(state.scale, SDM_COLORS);
+    view.setScale(state.scale);
     view.setGhost(state.ghost);
     this.cutAxis = cutOpen(view, subject, section, state.section, this.cutAxis);
     if (this.session.moving) section.show(null);
@@ -115,7 +113,7 @@ export class Display {
 
   private drawLegend(): void {
     const { report } = this.session;
-    if (this.state && report) drawLegend(this.state.scale, SDM_COLORS, quantityOf(report), report.units ?? '', false);
+    if (this.state && report) drawLegend(this.state.scale, quantityOf(report), report.units ?? '', false);
   }
 
   drawHistogram(): void {
@@ -123,7 +121,7 @@ export class Display {
     if (!this.state || !area || !report) return;
     // The extremes of the report are those of the last rest.
     const extremes = { min: { ...report.extremes?.min, distance: area.lo }, max: { ...report.extremes?.max, distance: area.hi } } as Report['extremes'];
-    drawHistogram(moving ? { ...report, extremes } : report, area, this.state.scale, SDM_COLORS, this.state.logarithmic ?? false);
+    drawHistogram(moving ? { ...report, extremes } : report, area, this.state.scale, this.state.logarithmic ?? false);
   }
 
   /// Judges limits that are new: by the rule at once, and a little later by what the library can prove. While something moves

@@ -1,6 +1,5 @@
 // What is shown of a pair: the view, its surfaces, its section and its callouts.
 import { Matrix4 } from 'three';
-import type { Colors } from '../src/color_scale';
 import { Callouts } from '../src/callouts';
 import { byId } from '../src/dom';
 import type { Vec } from '../src/page_data';
@@ -12,7 +11,6 @@ import { inScene, Layout } from './layout';
 import { ChangingSurface, LiveSubject } from './subject';
 import { Handles, LiveView } from './view';
 
-declare const SDM_COLORS: Colors; // by the build
 
 export const kUp = 'z';
 
@@ -37,7 +35,7 @@ export class Pair {
     onMove: () => void,
   ) {
     this.part = part;
-    this.subject = new LiveSubject(new ChangingSurface(coarse, SDM_COLORS, isClosed), isClosed);
+    this.subject = new LiveSubject(new ChangingSurface(coarse, isClosed), isClosed);
     this.ghost = inScene(positions, this.subject);
     this.reference = { position: this.ghost.slice(), triangle: indices, isClosed: referenceIsClosed };
     this.section = new SectionView(this.subject.cuttable, this.reference, this.subject.size);
@@ -52,7 +50,7 @@ export class Pair {
   /// Lays the fine surface over the coarse one, or takes it away.
   setFine(layout: Layout | null): void {
     const old = this.fine;
-    this.fine = layout && new ChangingSurface(layout, SDM_COLORS, this.isClosed);
+    this.fine = layout && new ChangingSurface(layout, this.isClosed);
     this.subject.show(this.subject.coarse);
     old?.dispose();
   }

@@ -1,7 +1,8 @@
 // What the page saves: picture, numbers, model and report.
 import { BufferAttribute, BufferGeometry, Mesh, MeshBasicMaterial, SRGBColorSpace, Color } from 'three';
+import { kUnits } from 'sdm-rules';
 import { GLTFExporter } from 'three/addons/exporters/GLTFExporter.js';
-import { colorOf, type Colors, type Scale } from '../src/color_scale';
+import { colorOf, type Scale } from '../src/color_scale';
 import { byId, make } from '../src/dom';
 import { download } from '../src/saved';
 import type { Layout } from './layout';
@@ -14,10 +15,10 @@ interface Savable {
 }
 
 /// Metres in a unit; 1 for other names.
-export const metresOf = (units: string): number => ({ m: 1, cm: 1e-2, mm: 1e-3, um: 1e-6, 'µm': 1e-6, in: 0.0254, ft: 0.3048 })[units] ?? 1;
+export const metresOf = (units: string): number => kUnits.find(([name]) => name === units)?.[1] ?? 1;
 
 /// The part, coloured at its vertices, as a GLB. glTF has y up, and metres.
-export async function glbOf({ model }: Layout, scale: Scale, colors: Colors, up: 'y' | 'z', units: string): Promise<ArrayBuffer> {
+export async function glbOf({ model }: Layout, scale: Scale, up: 'y' | 'z', units: string): Promise<ArrayBuffer> {
   const { position, normal, distance, triangle, centre, size } = model;
   const toUp = (v: ArrayLike<number>, i: number) => (up === 'z' ? [v[i], v[i + 2], -v[i + 1]] : [v[i], v[i + 1], v[i + 2]]);
   const points = new Float32Array(position.length);
@@ -29,7 +30,7 @@ export async function glbOf({ model }: Layout, scale: Scale, colors: Colors, up:
     const n = toUp(normal, i);
     const length = Math.hypot(...n) || 1;
     normals.set(n.map((x) => x / length), i);
-    const [r, g, b] = colorOf(scale, colors, distance[i / 3]);
+    const [r, g, b] = colorOf(scale, distance[i / 3]);
     color.setRGB(r / 255, g / 255, b / 255, SRGBColorSpace).toArray(rgb, i);
   }
   const geometry = new BufferGeometry();

@@ -1,6 +1,6 @@
 // A part whose map is computed again and again: coarsely while something moves, and finely at rest.
 import { DataTexture, Group, LinearFilter, RGBAFormat, UnsignedByteType } from 'three';
-import type { Colors, Scale } from '../src/color_scale';
+import type { Scale } from '../src/color_scale';
 import type { Uniforms } from '../src/color_uniforms';
 import type { Vec } from '../src/page_data';
 import { valueAt } from '../src/pick';
@@ -39,8 +39,8 @@ export class ChangingSurface extends Surface {
   painted: Paint | null = null; // in place of the distances
   private readonly sources: Int32Array;
 
-  constructor(readonly layout: Layout, colors: Colors, isClosed: boolean) {
-    super(layout.model, layout.map, colors, isClosed, '', null);
+  constructor(readonly layout: Layout, isClosed: boolean) {
+    super(layout.model, layout.map, isClosed, '', null);
     this.sources = sourcesOf(layout.map, layout.model.place);
   }
 
@@ -100,7 +100,7 @@ export class LiveSubject implements Subject {
   readonly centre: Vec;
   readonly size: number;
   private shown: ChangingSurface;
-  private scale: [Scale, Colors] | null = null;
+  private scale: Scale | null = null;
 
   constructor(
     readonly coarse: ChangingSurface, // of the map while something moves
@@ -122,7 +122,7 @@ export class LiveSubject implements Subject {
     this.object.remove(this.shown.object);
     this.object.add(surface.object);
     this.shown = surface;
-    if (this.scale) surface.setScale(...this.scale);
+    if (this.scale) surface.setScale(this.scale);
   }
 
   /// What a section is made of: always of what is shown.
@@ -137,9 +137,9 @@ export class LiveSubject implements Subject {
     };
   }
 
-  setScale(scale: Scale, colors: Colors): void {
-    this.scale = [scale, colors];
-    this.shown.setScale(scale, colors);
+  setScale(scale: Scale): void {
+    this.scale = scale;
+    this.shown.setScale(scale);
   }
   prepare(): void {}
   setCoarse(coarse: boolean): void {

@@ -1,6 +1,6 @@
 // A measured cloud: points as discs, of which the page has some.
 import { BufferAttribute, BufferGeometry, Points, ShaderMaterial } from 'three';
-import { Colors, kColorShader, Scale } from './color_scale';
+import { kColorShader, Scale } from './color_scale';
 import { colorUniforms, setScale, Uniforms } from './color_uniforms';
 import { count } from './numbers';
 import type { CloudData, Vec } from './page_data';
@@ -84,11 +84,11 @@ export class Cloud implements Subject {
   private readonly few: BufferAttribute | null;
   private factor = 1;
 
-  constructor(private readonly data: CloudData, colors: Colors) {
+  constructor(private readonly data: CloudData) {
     ({ centre: this.centre, size: this.size, lo: this.lo, hi: this.hi } = data);
     this.spacing = spacing(data.position);
     this.uniforms = {
-      ...colorUniforms(colors),
+      ...colorUniforms(),
       cut: { value: [0, 0, 0, 1] },
       width: { value: 0 },
       pixelsPerUnit: { value: 1 },
@@ -109,8 +109,8 @@ export class Cloud implements Subject {
     this.few = this.stride === 1 ? null : new BufferAttribute(Uint32Array.from({ length: Math.floor(points / this.stride) }, (_, i) => i * this.stride), 1);
   }
 
-  setScale(scale: Scale, colors: Colors): void {
-    setScale(this.uniforms, scale, colors);
+  setScale(scale: Scale): void {
+    setScale(this.uniforms, scale);
   }
 
   /// Some of the points, with larger discs that overlap less.

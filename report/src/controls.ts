@@ -1,5 +1,5 @@
 // Sliders and choices, and the state that they set.
-import { kViridis, Mode, Scale } from './color_scale';
+import { kViridisInWords, Mode, Scale } from './color_scale';
 import { byId, make } from './dom';
 import { check, select } from './fields';
 import { text, typedNumber } from './numbers';
@@ -224,7 +224,7 @@ export function makeControls(
     ['tolerance', byGroup ? 'Tolerance bands of each group' : 'Tolerance bands'],
     ['diverging', 'Blue – white – red, about zero'],
     ['sequential', 'From zero, the other side in red'],
-    ['viridis', kViridis],
+    ['viridis', kViridisInWords],
   ];
   if (startMode === 'paper2006') modes.push(['paper2006', 'Red – yellow – green']);
   const [modeRow, modeSelect] = select('mode', 'Colours', modes, startMode, (value) => {

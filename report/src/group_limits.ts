@@ -1,4 +1,5 @@
 // The limits of each triangle by a table of tolerances, and the scales of their bands.
+import { bandedHi, bandedLo } from 'sdm-rules';
 import type { Scale } from './color_scale';
 import type { Model, Report } from './page_data';
 import type { GroupName } from './group_table';
@@ -17,16 +18,9 @@ function common(a: Limits, b: Limits): Limits {
   return { lower: Math.max(a.lower, b.lower), upper: Math.min(a.upper, b.upper) };
 }
 
-/// The scale with these limits. Its ends are as far beyond them as they are from the middle between them: ±2 of ±1.
+/// The scale with these limits.
 function banded(scale: Scale, { lower, upper }: Limits): Scale {
-  const both = upper - lower < Infinity;
-  const away = both ? Math.abs(upper - lower) / 2 : Math.min(Math.abs(lower), Math.abs(upper));
-  const room = away > 0 && away < Infinity ? away : Math.max(Math.abs(scale.lo), Math.abs(scale.hi));
-  return {
-    ...scale, lower, upper,
-    lo: lower > -Infinity ? lower - room : Math.min(0, upper - room),
-    hi: upper < Infinity ? upper + room : Math.max(0, lower + room),
-  };
+  return { ...scale, lower, upper, lo: bandedLo(lower, upper, scale.lo, scale.hi), hi: bandedHi(lower, upper, scale.lo, scale.hi) };
 }
 
 /// Sets of limits, of which each triangle has one: what all the rows of the table that name it accept.

@@ -1,5 +1,5 @@
 // How the area of the part, or its points, are distributed over the distances.
-import { Colors, colorOf, css, Scale } from './color_scale';
+import { colorOf, css, Scale } from './color_scale';
 import { byId, make, makeSvg } from './dom';
 import { ends } from './legend';
 import { percent, text, ticks, tickText } from './numbers';
@@ -65,7 +65,7 @@ function limitMarks({ lower, upper }: Limits, [lo, hi]: [number, number], x: (d:
 }
 
 /// Fills the chart, as wide as its place is.
-export function drawHistogram(report: Report, area: AreaByValue, scale: Scale, colors: Colors, logarithmic: boolean): void {
+export function drawHistogram(report: Report, area: AreaByValue, scale: Scale, logarithmic: boolean): void {
   const [whole, quantity, unit, limits] = [wholeOf(report), quantityOf(report), report.units ?? '', realLimits(scale, report)];
   const plotWidth = Math.max(280, byId('histogram-chart').clientWidth || 640);
   const [lo, hi] = rangeOf(area, scale, limits);
@@ -87,7 +87,7 @@ export function drawHistogram(report: Report, area: AreaByValue, scale: Scale, c
     const height = share > 0 ? Math.max(kLeastBar, kFloor - y(share)) : 0;
     const bar = makeSvg('rect', {
       class: 'bin', x: x(from) + 0.5, y: kFloor - height, width: x(from + width) - x(from) - 1, height,
-      fill: css(colorOf(scale, colors, from + width / 2)),
+      fill: css(colorOf(scale, from + width / 2)),
     });
     bar.append(makeSvg('title', {}, `${text(from)} to ${text(from + width)}${unit ? ` ${unit}` : ''}: ${percent(share)} of the ${whole}`));
     svg.append(bar);

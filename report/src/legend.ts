@@ -1,13 +1,12 @@
 // The colour scale beside the part.
-import { Colors, colorOf, css, Scale } from './color_scale';
+import { kApart, kNoValue, kScaleSteps, kUnjudged } from 'sdm-rules';
+import { colorOf, css, Scale } from './color_scale';
 import { byId, make } from './dom';
 import type { GroupLimits } from './group_limits';
 import { text, ticks, tickText, valueLabel } from './numbers';
 import type { Vec } from './page_data';
 
 const kColors = 192; // of the bar
-const kScaleSteps = 10;
-const kApart = 0.06; // numbers, of the length of the bar
 const kLine = 17; // pixels that a number takes
 
 /// The distances at the ends of the bar: those of the scale, symmetric where its colours are.
@@ -43,10 +42,10 @@ export function scaleLabels(scale: Scale, apart = kApart): ScaleLabel[] {
 }
 
 /// The bar with its labels, below a title; `keys`: other colours, below it.
-function draw(scale: Scale, colors: Colors, title: string, labelsOf: (apart: number) => ScaleLabel[], keys: [color: Vec, words: string][]): void {
+function draw(scale: Scale, title: string, labelsOf: (apart: number) => ScaleLabel[], keys: [color: Vec, words: string][]): void {
   const [lo, hi] = ends(scale);
   const stops = Array.from({ length: kColors }, (_, i) => {
-    const color = css(colorOf(scale, colors, lo + ((i + 0.5) / kColors) * (hi - lo)));
+    const color = css(colorOf(scale, lo + ((i + 0.5) / kColors) * (hi - lo)));
     return `${color} ${(100 * i) / kColors}% ${(100 * (i + 1)) / kColors}%`;
   });
   const bar = make('div', { class: 'bar', style: `background: linear-gradient(to top, ${stops.join(', ')})` });
@@ -59,24 +58,24 @@ function draw(scale: Scale, colors: Colors, title: string, labelsOf: (apart: num
   }
 }
 
-const noValueKey = (colors: Colors, noValue: boolean): [Vec, string][] => (noValue ? [[colors.no_value[0], 'no value']] : []);
+const noValueKey = (noValue: boolean): [Vec, string][] => (noValue ? [[kNoValue, 'no value']] : []);
 
 const titleOf = (quantity: string, unit: string) => (unit ? `${quantity} in ${unit}` : quantity);
 const nameOf = (scale: Scale, unit: string) => `Colour scale from ${text(ends(scale)[0])} to ${text(ends(scale)[1])} ${unit}`;
 
-export function drawLegend(scale: Scale, colors: Colors, quantity: string, unit: string, noValue: boolean): void {
-  draw(scale, colors, titleOf(quantity, unit), (apart) => scaleLabels(scale, apart), noValueKey(colors, noValue));
+export function drawLegend(scale: Scale, quantity: string, unit: string, noValue: boolean): void {
+  draw(scale, titleOf(quantity, unit), (apart) => scaleLabels(scale, apart), noValueKey(noValue));
   byId('legend').setAttribute('aria-label', nameOf(scale, unit));
 }
 
 /// The legend of bands of these sets of limits: with their numbers if all have the same, otherwise in units of their limits.
-export function drawGroupLegend(scale: Scale, limits: GroupLimits, sets: number[], colors: Colors, quantity: string, unit: string, noValue: boolean): void {
+export function drawGroupLegend(scale: Scale, limits: GroupLimits, sets: number[], quantity: string, unit: string, noValue: boolean): void {
   const { scale: joined, isRelative, lower, upper, someHaveNone } = limits.joined(sets, scale);
   const labels: ScaleLabel[] = [];
   if (lower) labels.push({ value: -1, text: 'lower', isLimit: true });
   if (upper) labels.push({ value: 1, text: 'upper', isLimit: true });
-  const keys = noValueKey(colors, noValue);
-  if (someHaveNone) keys.unshift([colors.unjudged[0], 'no limits']);
-  draw(joined, colors, isRelative ? `${quantity}, by the limits of each group` : titleOf(quantity, unit), (apart) => (isRelative ? labels : scaleLabels(joined, apart)), keys);
+  const keys = noValueKey(noValue);
+  if (someHaveNone) keys.unshift([kUnjudged, 'no limits']);
+  draw(joined, isRelative ? `${quantity}, by the limits of each group` : titleOf(quantity, unit), (apart) => (isRelative ? labels : scaleLabels(joined, apart)), keys);
   byId('legend').setAttribute('aria-label', isRelative ? `Colour scale of each group from ${lower ? 'below its lower limit' : 'its least value'} to ${upper ? 'above its upper limit' : 'its largest value'}` : nameOf(joined, unit));
 }

@@ -55,10 +55,10 @@ class Page {
     const { page, surface, cloud, ghost } = data;
     this.first = verdictOf(report).verdict === 'MEASURED' ? undefined : listedPlaces(report, page)[0];
     const { measured } = inputsOf(report);
-    this.cloud = cloud && new Cloud(cloud, page.colors);
+    this.cloud = cloud && new Cloud(cloud);
     const limits = surface && new GroupLimits(report, surface.model);
     this.limits = limits && limits.count > 1 ? limits : null;
-    this.subject = this.cloud ?? new Surface(surface!.model, surface!.map, page.colors, measured?.closed ?? false, this.unit, this.limits);
+    this.subject = this.cloud ?? new Surface(surface!.model, surface!.map, measured?.closed ?? false, this.unit, this.limits);
     if (this.limits) showSure(report, this.limits.unjudged(surface!.model));
     this.section = this.makeSection();
     this.view = new View(byId('view'), this.subject, ghost, this.section, page.up, () => this.callouts?.update());
@@ -153,8 +153,7 @@ class Page {
   private apply(state: State): void {
     this.state = state;
     const { scale, section, ghost } = state;
-    const { colors } = this.data.page;
-    this.view.setScale(scale, colors);
+    this.view.setScale(scale);
     this.view.setGhost(ghost);
     this.view.setCoverage(state.coverage);
     this.showGroup(state);
@@ -168,12 +167,11 @@ class Page {
   private drawLegend(): void {
     const { report, limits } = this;
     const { scale, group, coverage } = this.state;
-    const { colors } = this.data.page;
     if (coverage) return drawCoverageLegend(report);
     const hasGaps = [report.beyond_max_distance, report.without_match, report.texels_without_value].some((n) => Number(n ?? 0) > 0);
     const unit = report.units ?? '';
-    if (limits !== null && scale.mode === 'tolerance') drawGroupLegend(scale, limits, limits.setsOf(this.data.surface!.model, group ?? null), colors, quantityOf(report), unit, hasGaps);
-    else drawLegend(scale, colors, quantityOf(report), unit, hasGaps);
+    if (limits !== null && scale.mode === 'tolerance') drawGroupLegend(scale, limits, limits.setsOf(this.data.surface!.model, group ?? null), quantityOf(report), unit, hasGaps);
+    else drawLegend(scale, quantityOf(report), unit, hasGaps);
   }
 
   private showGroup(state: State): void {
@@ -194,7 +192,7 @@ class Page {
   private drawHistogram(): void {
     const { scale, logarithmic = false } = this.state;
     (byId('logarithmic') as HTMLInputElement).checked = logarithmic;
-    drawHistogram(this.report, this.data.area, scale, this.data.page.colors, logarithmic);
+    drawHistogram(this.report, this.data.area, scale, logarithmic);
   }
 
   private showWhatIf({ scale }: State): void {

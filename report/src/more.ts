@@ -2,7 +2,7 @@
 import { make, table } from './dom';
 import { count, percent, place, text } from './numbers';
 import type { Report, Vec } from './page_data';
-import { isSigned, limitsOf, unitOf, wholeOf } from './verdict';
+import { isSigned, limitsIn, limitsOf, unitOf, wholeOf } from './verdict';
 import { isThickness, named, quantityOf } from './words';
 
 /// The keys of the report that are shown in words.
@@ -170,7 +170,7 @@ function bandsBar(report: Report): Node[] {
     const label =
       lower === null ? `below ${text(upper)}${unit}`
       : upper === null ? `above ${text(lower)}${unit}`
-      : lower === -upper ? `±${text(upper)}${unit}` : `${text(lower)} to ${text(upper)}${unit}`;
+      : limitsIn({ lower, upper }, unit, isSigned(report));
     return { share: band.area_fraction, label, mark: `${sideOf(band, limits)}${(i - middle) % 2 ? ' odd' : ''}` };
   });
   const whole = wholeOf(report);

@@ -1,4 +1,5 @@
 // Numbers as text.
+import { stepDigit, stepExponent, stepMultiple } from 'sdm-rules';
 import type { Vec } from './page_data';
 
 export const kMinus = '\u2212';
@@ -64,18 +65,10 @@ export function count(value: number): string {
   return value.toLocaleString('en-US').replace(/,/g, '\u202f');
 }
 
-/// The least of 1, 2, 5 and 10 times a power of ten that is not smaller than a number; and multiples of it, the
-/// nearest to decimal numbers, as those of src/summary/round_step.h.
-function roundStep(least: number): (n: number) => number {
-  const exponent = Math.floor(Math.log10(least));
-  const power = 10 ** Math.abs(exponent);
-  const multiple = (digit: number) => (n: number) => (exponent < 0 ? (n * digit) / power : n * digit * power);
-  return multiple([1, 2, 5].find((digit) => least <= multiple(digit)(1) * (1 + 1e-12)) ?? 10);
-}
-
 /// Round numbers between lo and hi, at most one more than `steps`.
 export function ticks(lo: number, hi: number, steps: number): number[] {
-  const multiple = roundStep((hi - lo) / steps);
+  const [digit, exponent] = [stepDigit((hi - lo) / steps), stepExponent((hi - lo) / steps)];
+  const multiple = (n: number) => stepMultiple(n, digit, exponent);
   const step = multiple(1);
   const first = Math.ceil(lo / step - 1e-9);
   const result: number[] = [];

@@ -1,7 +1,6 @@
 // What the page contains beside the text of report.json: the part with its values.
 import type { AreaByValue } from './area_by_value';
 import type { ArrayIndex } from './arrays';
-import type { Colors } from './color_scale';
 import type { Place, Vec } from './report_json';
 
 export * from './report_json';
@@ -22,7 +21,6 @@ interface ChannelJson {
 export interface PageJson {
   version: string;
   up: 'y' | 'z';
-  colors: Colors;
   map?: { width: number; height: number; step: number; channels?: ChannelJson[] };
   model?: Placement & { triangles_of_mesh: number; names?: { kind: string; names: string[] }[] };
   cloud?: Placement & { points: number; picked: number; normals: boolean }; ///< in place of map and model

@@ -1,5 +1,5 @@
 // Puts the pieces of player.html together.
-import { kViridis, Mode, Scale } from './color_scale';
+import { kViridisInWords, Mode, Scale } from './color_scale';
 import { byId, make } from './dom';
 import { drawLegend } from './legend';
 import { showMade } from './made';
@@ -137,9 +137,9 @@ class Player {
 
   private recolour(): void {
     const { page, bodies } = this.data;
-    this.view.setScale(this.scale, page.colors);
+    this.view.setScale(this.scale);
     const missing = bodies.some(({ distances }) => distances?.includes(65535));
-    drawLegend(this.scale, page.colors, 'distance', page.units, missing);
+    drawLegend(this.scale, 'distance', page.units, missing);
   }
 
   private makeForm(): void {
@@ -150,7 +150,7 @@ class Player {
       return make('div', { class: 'choice' }, make('label', { for: id }, label), select);
     };
     const modes: [Mode, string][] = [
-      ['viridis', kViridis],
+      ['viridis', kViridisInWords],
       ['sequential', 'From zero, the other side in red'],
       ['diverging', 'Blue, white, red'],
       ['paper2006', 'Red to green'],

@@ -1,6 +1,6 @@
 // The data of player.html: that of src/io/page/player/player_page.cpp.
 import { ArrayIndex, Arrays, summed, unpacked } from './arrays';
-import type { Colors, Scale } from './color_scale';
+import type { Scale } from './color_scale';
 import type { Vec } from './page_data';
 import type { Verdict } from './verdict';
 
@@ -29,7 +29,6 @@ interface PlayerJson {
   shown: number[]; ///< of the frames in the page: places in `added`
   bodies: { vertices: number; moves: boolean; coloured: boolean }[];
   panels: Panel[];
-  colors: Colors;
   scale: Scale;
   verdict?: Verdict; ///< on all frames, if there is a tolerance
   certified?: boolean; ///< the verdict is proven

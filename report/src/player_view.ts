@@ -1,6 +1,6 @@
 // The bodies of a sequence in 3D, one frame at a time.
 import { BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Mesh, ShaderMaterial, Vector3 } from 'three';
-import { Colors, kColorShader, Scale } from './color_scale';
+import { kColorShader, Scale } from './color_scale';
 import { colorUniforms, setScale } from './color_uniforms';
 import type { Vec } from './page_data';
 import { firstHit } from './pick';
@@ -74,7 +74,6 @@ export class PlayerView extends Viewer {
 
   private makeBody(which: number): Drawn {
     const { vertices, triangles, distances } = this.data.bodies[which];
-    const { colors } = this.data.page;
     const material = new ShaderMaterial({
       glslVersion: '300 es',
       vertexShader: kVertexShader,
@@ -84,7 +83,7 @@ export class PlayerView extends Viewer {
         coloured: { value: distances !== null },
         alpha: { value: 1 },
         plain: { value: new Vector3(0.72, 0.74, 0.77) },
-        ...colorUniforms(colors),
+        ...colorUniforms(),
       },
     });
     const position = new BufferAttribute(new Float32Array(3 * vertices), 3).setUsage(DynamicDrawUsage);
@@ -148,8 +147,8 @@ export class PlayerView extends Viewer {
     });
   }
 
-  setScale(scale: Scale, colors: Colors): void {
-    for (const { mesh } of this.bodies) setScale((mesh.material as ShaderMaterial).uniforms, scale, colors);
+  setScale(scale: Scale): void {
+    for (const { mesh } of this.bodies) setScale((mesh.material as ShaderMaterial).uniforms, scale);
     this.draw();
   }
 

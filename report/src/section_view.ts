@@ -6,7 +6,7 @@ import {
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
-import { Colors, colorOf, Scale } from './color_scale';
+import { colorOf, Scale } from './color_scale';
 import type { Vec } from './page_data';
 import { fanOf, gapFactor, gapLines, Profile, profileOf, ProfilePoint, sampledProfile, Triangles } from './section';
 import type { HalfSpace } from './subject';
@@ -142,8 +142,8 @@ export class SectionView {
     this.recolour();
   }
 
-  setScale(scale: Scale, colors: Colors): void {
-    this.color = ({ distance, triangle }) => colorOf(this.part?.scaleAt(triangle, scale) ?? scale, colors, distance);
+  setScale(scale: Scale): void {
+    this.color = ({ distance, triangle }) => colorOf(this.part?.scaleAt(triangle, scale) ?? scale, distance);
     this.largest = Math.max(Math.abs(scale.lo), Math.abs(scale.hi));
     if (this.cut) this.recolour();
   }

@@ -1,6 +1,6 @@
 // What is measured, as the page draws it and finds it under the cursor: a surface (surface.ts) or a cloud (cloud.ts).
 import type { Object3D } from 'three';
-import type { Colors, Scale } from './color_scale';
+import type { Scale } from './color_scale';
 import type { Uniforms } from './color_uniforms';
 import type { Vec } from './page_data';
 import type { Viewer } from './viewer';
@@ -29,7 +29,7 @@ export interface Subject {
   readonly object: Object3D;
   readonly isClosed: boolean; ///< has an inside, which a cut opens
 
-  setScale(scale: Scale, colors: Colors): void;
+  setScale(scale: Scale): void;
   /// Called before each picture.
   prepare(viewer: Viewer): void;
   /// Whether less is drawn, while something moves and pictures take long. What is found stays.

@@ -3,7 +3,7 @@ import { BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, Me
 import { CoarseWhileMoving } from './coarse_copy';
 import { kColorShader } from './color_scale';
 import { colorUniforms, setScale, Uniforms } from './color_uniforms';
-import type { Colors, Scale } from './color_scale';
+import type { Scale } from './color_scale';
 import type { GroupLimits } from './group_limits';
 import { exactText } from './numbers';
 import type { Channel, Model, TexelMap, Vec } from './page_data';
@@ -113,7 +113,6 @@ export class Surface implements Subject {
   constructor(
     protected readonly model: Model,
     protected readonly map: TexelMap,
-    colors: Colors,
     readonly isClosed: boolean,
     private readonly unit: string,
     readonly limits: GroupLimits | null, // of the triangles, which have a tolerance of their own
@@ -125,7 +124,7 @@ export class Surface implements Subject {
     // The folds of a coarser copy are not the inside of the part.
     this.showBacks = !isClosed || model.place === null;
     this.uniforms = {
-      ...colorUniforms(colors),
+      ...colorUniforms(),
       values: { value: this.texture },
       byVertex: { value: model.place === null },
       showBacks: { value: this.showBacks },
@@ -189,9 +188,9 @@ export class Surface implements Subject {
     return { position: model.position, triangle: model.triangle, isClosed, scaleAt, valueAt: (triangle, weights) => valueAt(model, map, { triangle, weights }).distance };
   }
 
-  setScale(scale: Scale, colors: Colors): void {
-    setScale(this.uniforms, scale, colors);
-    if (this.limits) this.ofSet.forEach((uniforms, set) => setScale(uniforms, this.limits!.scaleOf(set, scale), colors));
+  setScale(scale: Scale): void {
+    setScale(this.uniforms, scale);
+    if (this.limits) this.ofSet.forEach((uniforms, set) => setScale(uniforms, this.limits!.scaleOf(set, scale)));
   }
 
   /// The triangles of a geometry, by their sets of limits, which have a material each; by default all.

@@ -1,12 +1,15 @@
 // Whether a part is within a tolerance: as the report says, where a proof may have decided, and for other limits by
 // the rule of judge() in include/sdm/tolerance.h, on the evidence of the samples.
+import {
+  kAtLeast, kBetween, kLimitDigits, kLimitWords, kReasonNames, kVerdictNames, limitsForm, lowerOf, reasonOf, verdictOf as ruledVerdict,
+} from 'sdm-rules';
 import type { Evidence, Report } from './page_data';
 import { percent, text } from './numbers';
 import { distanceText } from './precision';
 import type { AreaByValue } from './area_by_value';
 import { capital, isThickness, quantityOf } from './words';
 
-export type Verdict = 'PASS' | 'FAIL' | 'NOT DECIDED' | 'DOUBTFUL' | 'MEASURED';
+export type Verdict = (typeof kVerdictNames)[number] | 'MEASURED';
 
 export interface Limits {
   lower: number; ///< -infinite without one
@@ -54,53 +57,26 @@ export function limitsText(limits: Limits, report: Report): string {
 
 /// `unit`: with the space before it.
 export function limitsIn({ lower, upper }: Limits, unit: string, signed: boolean): string {
-  if (lower === -Infinity) return `at most ${text(upper)}${unit}`;
-  if (upper === Infinity) return `at least ${text(lower)}${unit}`;
-  if (lower === -upper) return signed ? `±${text(upper)}${unit}` : `${text(upper)}${unit}`;
-  return `${text(lower)} to ${text(upper)}${unit}`;
+  const form = limitsForm(lower, upper, signed);
+  const number = (limit: number) => text(limit, kLimitDigits);
+  if (form === kBetween) return `${number(lower)} to ${number(upper)}${unit}`;
+  return `${kLimitWords[form]}${number(form === kAtLeast ? lower : upper)}${unit}`;
 }
 
 /// The limits that a distance can exceed, infinite for none: not a negative one of what is never negative.
 export function realLimits({ lower, upper }: Limits, report: Report): Limits {
-  return { lower: lower <= 0 && (!isSigned(report) || report.thickness !== undefined) ? -Infinity : lower, upper };
+  return { lower: lowerOf(lower, isSigned(report) && report.thickness === undefined), upper };
 }
 
 /// The judgement of judge(), number by number.
-export function judge(evidence: Evidence, limits: Limits): Judgement {
-  const { complete, estimated_signs: estimated } = evidence;
-  const { upper } = limits;
-  const lower = evidence.signed === false && limits.lower <= 0 ? -Infinity : limits.lower;
-  const lowest = evidence.lowest ?? Infinity;
-  const highest = evidence.highest ?? -Infinity;
-  const guard = evidence.guard ?? 0;
-  const accuracy = (evidence.accuracy ?? Infinity) + guard;
-  const bound = evidence.error_bound ?? Infinity;
-  const marginOf = (least: number, most: number) => Math.min(upper - most, least - lower) - accuracy;
-  const farthest = Math.max(-lowest, highest);
-  const measured = marginOf(lowest, highest);
-  const margin = estimated ? marginOf(-farthest, farthest) : measured;
-  const result = { nearestIsLower: lower - lowest > highest - upper };
-  // The sign of a distance that rounding does not tell from zero is not certain.
-  const isZero = (d: number) => Math.abs(d) <= accuracy;
-  const below = (isZero(lowest) ? Math.abs(lowest) : lowest) < lower - accuracy;
-  const above = (isZero(highest) ? -Math.abs(highest) : highest) > upper + accuracy;
-  if (!complete)
-    return { ...result, verdict: 'FAIL', reason: evidence.unmatched ? 'without match' : 'beyond max distance' };
-  if (below || above) return { ...result, verdict: 'FAIL', reason: 'exceeded' };
-  if (!(lowest <= highest)) return { ...result, verdict: 'NOT DECIDED', reason: 'nothing measured' };
-  const largest = Math.max(...[lower, upper].filter(Number.isFinite).map(Math.abs), 0);
-  if (bound <= margin && 2 * largest > (evidence.thin_walls ?? Infinity)) return { ...result, verdict: 'NOT DECIDED', reason: 'thin walls' };
-  if (bound <= margin || (evidence.samples_only && margin >= 0 && Number.isFinite(margin))) return { ...result, verdict: 'PASS', reason: 'all within' };
-  const reason = !Number.isFinite(accuracy)
-    ? 'unknown accuracy'
-    : bound <= measured || (margin <= 0 && measured > 0)
-      ? 'estimated signs'
-      : margin > 0
-        ? 'between samples'
-        : guard > 0
-          ? 'guard band'
-          : 'within rounding';
-  return { ...result, verdict: 'NOT DECIDED', reason };
+export function judge(evidence: Evidence, { lower: least, upper }: Limits): Judgement {
+  const lower = lowerOf(least, evidence.signed ?? true);
+  const [lowest, highest] = [evidence.lowest ?? Infinity, evidence.highest ?? -Infinity];
+  const reason = reasonOf(
+    lowest, highest, lower, upper, evidence.accuracy ?? Infinity, evidence.guard ?? 0, evidence.error_bound ?? Infinity,
+    evidence.thin_walls ?? Infinity, evidence.complete, evidence.unmatched ?? false, evidence.estimated_signs, evidence.samples_only ?? false,
+  );
+  return { verdict: kVerdictNames[ruledVerdict(reason)], reason: kReasonNames[reason], nearestIsLower: lower - lowest > highest - upper };
 }
 
 /// Whether limits can be judged.
@@ -159,29 +135,24 @@ function unjudged(report: Report): string {
   return 'No tolerance was given (--tolerance), so nothing was judged.';
 }
 
-/// Why the verdict is FAIL.
-function failure(report: Report, limits: Limits): string {
+/// Why the verdict is FAIL: what the report says, with numbers.
+function failure(report: Report): string {
   const unit = unitOf(report);
-  const cloud = isCloud(report);
   const t = report.tolerance!;
   const outside = t.exceeded_area_fraction ?? t.exceeded_point_fraction ?? null;
-  const whole = cloud ? 'points are' : 'area is';
+  const whole = isCloud(report) ? 'points are' : 'area is';
   const faces = t.proof?.faces_without_match ?? 0;
   if (t.reason === 'without match' && faces > 0)
-    return sentence(`${t.text ?? ''}: ${faces === 1 ? 'a face' : `${faces} faces`} between the measured points ${faces === 1 ? 'has' : 'have'} no value`);
-  const lacking = outside === null ? '' : `: ${percent(outside)} of the ${whole} out of tolerance or without a value`;
-  if (t.reason === 'without match') return sentence(`${t.text ?? ''}${lacking}`);
-  if (t.reason === 'beyond max distance')
-    return `${cloud ? 'Points of the cloud' : 'Parts of the surface'} are farther than the largest distance that was measured${
-      report.max_distance ? ` (${text(report.max_distance)}${unit})` : ''
-    }${lacking}.`;
+    return `${t.text}: ${faces === 1 ? 'a face' : `${faces} faces`} between the measured points ${faces === 1 ? 'has' : 'have'} no value`;
+  if (t.reason === 'without match' || t.reason === 'beyond max distance') {
+    const most = t.reason === 'beyond max distance' && report.max_distance ? ` (${text(report.max_distance)}${unit})` : '';
+    return `${t.text}${most}${outside === null ? '' : `: ${percent(outside)} of the ${whole} out of tolerance or without a value`}`;
+  }
   const between = t.proof?.witness;
-  if (t.by_facing && !between) return sentence(t.text ?? '');
-  const found = t.by_facing ? ' by the faces that face the same way, as walls are thin' : between ? ' between the measured points' : '';
+  if (t.by_facing && !between) return t.text ?? '';
   const most = between ? between.distance : t.nearest_limit === 'lower' ? report.evidence!.lowest : report.evidence!.highest;
-  const share =
-    outside === null || between ? '' : `, and ${cloud ? '' : 'about '}${percent(outside)} of the ${whole} out of tolerance`;
-  return `A ${quantityOf(report)} of ${distanceText(most, report)}${unit} was found${found}, which is out of the tolerance of ${limitsText(limits, report)}${share}.`;
+  const share = outside === null || between ? '' : `, and ${isCloud(report) ? '' : 'about '}${percent(outside)} of the ${whole} out of tolerance`;
+  return `${t.text}: a ${quantityOf(report)} of ${distanceText(most, report)}${unit} was found${between ? ' between the measured points' : ''}${share}`;
 }
 
 interface Stated {
@@ -189,16 +160,12 @@ interface Stated {
   sentence: string;
 }
 
-/// The verdict by the tolerance for the whole part, in words.
+/// The verdict by the tolerance for the whole part, in the words of the report.
 function ofPart(report: Report): Stated | null {
-  const limits = limitsOf(report);
   const t = report.tolerance;
-  if (!limits || !t?.verdict || !report.evidence) return null;
+  if (!t?.verdict || !report.evidence) return null;
   const verdict = t.verdict as Verdict;
-  if (verdict === 'FAIL') return { verdict, sentence: failure(report, limits) };
-  if (verdict === 'PASS' && (t.certified || !report.evidence.samples_only))
-    return { verdict, sentence: `Every point of the ${isCloud(report) ? 'cloud' : 'surface'} is within the tolerance of ${limitsText(limits, report)}.` };
-  return { verdict, sentence: sentence(t.text ?? '') };
+  return { verdict, sentence: sentence(verdict === 'FAIL' ? failure(report) : t.text ?? '') };
 }
 
 /// The points of a cloud that have no value, and so no group, as sentences.

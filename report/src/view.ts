@@ -1,7 +1,7 @@
 // The part in 3D, with the reference as a ghost.
 import { BufferAttribute, BufferGeometry, DoubleSide, Mesh, ShaderMaterial, Vector3 } from 'three';
 import { CoarseWhileMoving } from './coarse_copy';
-import type { Colors, Scale } from './color_scale';
+import type { Scale } from './color_scale';
 import { coverageOf, kReferenceVertexShader } from './coverage';
 import type { Ghost, Vec } from './page_data';
 import type { Camera } from './saved';
@@ -81,9 +81,9 @@ export class View extends Viewer {
     this.section?.prepare(this.camera.position.toArray() as Vec);
   }
 
-  setScale(scale: Scale, colors: Colors): void {
-    this.subject.setScale(scale, colors);
-    this.section.setScale(scale, colors);
+  setScale(scale: Scale): void {
+    this.subject.setScale(scale);
+    this.section.setScale(scale);
     this.draw();
   }
 

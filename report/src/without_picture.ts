@@ -9,7 +9,7 @@ import { showOmissions } from './tables';
 export function showWithoutPicture(report: Report, data: PageData): void {
   const logarithmic = byId('logarithmic') as HTMLInputElement;
   const { scale } = startOf(report, data.area, false);
-  const draw = () => drawHistogram(report, data.area, scale, data.page.colors, logarithmic.checked);
+  const draw = () => drawHistogram(report, data.area, scale, logarithmic.checked);
   logarithmic.addEventListener('change', draw);
   new ResizeObserver(draw).observe(byId('histogram-chart'));
   showPlaces(report, data.page, (data.surface?.model ?? data.cloud!).size);

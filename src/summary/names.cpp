@@ -1,49 +1,27 @@
 #include <sdm/summary.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+
+#include "core/rules.h"
+
 namespace sdm {
 
+static_assert(rules::kPass == static_cast<int>(Verdict::pass) &&
+              rules::kDoubtful == static_cast<int>(Verdict::doubtful) &&
+              rules::kThinWalls == static_cast<int>(VerdictReason::thin_walls) &&
+              rules::kInDoubt == static_cast<int>(VerdictReason::in_doubt));
+static_assert(std::ranges::equal(
+    kWords<Colormap>, rules::kColormapNames, {}, [](std::string_view word) { return word; },
+    [](std::string_view word) { return word; }));
+
 const char* name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::pass:
-      return "PASS";
-    case Verdict::fail:
-      return "FAIL";
-    case Verdict::not_decided:
-      return "NOT DECIDED";
-    case Verdict::doubtful:
-      return "DOUBTFUL";
-  }
-  return "";
+  return rules::kVerdictNames[static_cast<std::size_t>(verdict)];
 }
 
 const char* name_of(VerdictReason reason) {
-  switch (reason) {
-    case VerdictReason::all_within:
-      return "all within";
-    case VerdictReason::exceeded:
-      return "exceeded";
-    case VerdictReason::beyond_max_distance:
-      return "beyond max distance";
-    case VerdictReason::without_match:
-      return "without match";
-    case VerdictReason::between_samples:
-      return "between samples";
-    case VerdictReason::within_rounding:
-      return "within rounding";
-    case VerdictReason::estimated_signs:
-      return "estimated signs";
-    case VerdictReason::guard_band:
-      return "guard band";
-    case VerdictReason::thin_walls:
-      return "thin walls";
-    case VerdictReason::unknown_accuracy:
-      return "unknown accuracy";
-    case VerdictReason::nothing_measured:
-      return "nothing measured";
-    case VerdictReason::in_doubt:
-      return "in doubt";
-  }
-  return "";
+  return rules::kReasonNames[static_cast<std::size_t>(reason)];
 }
 
 }  // namespace sdm

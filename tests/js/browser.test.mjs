@@ -127,5 +127,17 @@ test('a map on a mesh of three.js', { timeout: 120000 }, async () => {
   // Half of the ball is 0.1 from the other one: warm above the tolerance, green within, and grey of no value nowhere.
   assert.ok(seen.above > 0.3 && seen.within > 0.3 && seen.above + seen.within > 0.97, JSON.stringify(seen));
   if (process.env.SDM_PICTURES) await page.screenshot({ path: join(process.env.SDM_PICTURES, 'three.png') });
+  // The bands of one limit; what exceeds it by less than the accuracy is within it.
+  const none = null;  // infinity is no JSON
+  for (const [tolerance, range, accuracy, expected] of [
+    [[none, 0.1], [-1, 1], 0.01, { '-5': [225, 243, 233], 0.09: [66, 158, 122], 0.105: [66, 158, 122], 0.2: [252, 193, 82], 1: [165, 15, 21] }],
+    [[0.5, none], [0, 1], 0.01, { 0.9: [225, 243, 233], 0.6: [66, 158, 122], 0.495: [66, 158, 122], 0.4: [114, 172, 221], 0: [8, 48, 107] }],
+    [[-0.1, 0.2], [-1, 1], 0, { 0.1: [122, 196, 161], '-0.1001': [150, 200, 235], NaN: [128, 130, 134] }],
+  ]) {
+    const colors = await page.evaluate(([distances, [least, most], options]) =>
+      window.colorsOf(distances.map(Number), { ...options, tolerance: [least ?? -Infinity, most ?? Infinity] }), [Object.keys(expected), tolerance, { range, accuracy }]);
+    Object.entries(expected).forEach(([d, color], i) =>
+      color.forEach((x, k) => assert.ok(Math.abs(x - colors[i][k]) <= 3, `${d} is ${colors[i]}, not ${color}`)));
+  }
   assert.deepEqual(faults, []);
 });

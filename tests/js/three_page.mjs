@@ -41,3 +41,20 @@ window.seen = async () => {
   }
   return { above: above / all, within: within / all };
 };
+
+// The colours of distances, seen in front of a light that leaves them as they are.
+window.colorsOf = (distances, options) => {
+  const atlas = { resolution: distances.length, rows: 1, texelFaces: Uint32Array.from(distances, (_, i) => i) };
+  const material = new DistanceMaterial({ distances: Float32Array.from(distances) }, atlas, options);
+  const scene = new THREE.Scene();
+  scene.add(new THREE.Mesh(new THREE.PlaneGeometry(2, 2), material.clone()), new THREE.AmbientLight(0xffffff, Math.PI));
+  const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
+  renderer.setSize(20 * distances.length, 20);
+  renderer.render(scene, new THREE.OrthographicCamera(-1, 1, 1, -1, -1, 1));
+  const canvas = document.createElement('canvas');
+  [canvas.width, canvas.height] = [20 * distances.length, 20];
+  const context = canvas.getContext('2d');
+  context.drawImage(renderer.domElement, 0, 0);
+  renderer.dispose();
+  return distances.map((_, i) => Array.from(context.getImageData(20 * i + 10, 10, 1, 1).data.slice(0, 3)));
+};

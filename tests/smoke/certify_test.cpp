@@ -337,7 +337,12 @@ TEST(SmokeSummary, HasVerdictNotesAndNumbers) {
   EXPECT_GE(*summary.hausdorff.upper, 0.1 - 1e-9);
   EXPECT_EQ(summary.distribution->parts.size(), 2u);
   EXPECT_FALSE(verdict_text(summary).empty());
-  EXPECT_EQ(limits_text(0.2, "mm"), "±0.2 mm");
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(limits_text(0.2, "mm", true), "±0.2 mm");
+  EXPECT_EQ(limits_text(0.2, "mm", false), "0.2 mm");
+  EXPECT_EQ(limits_text({-kNone, 0.2}, "", true), "at most 0.2");
+  EXPECT_EQ(limits_text({0.123456, kNone}, "", true), "at least 0.12346");
+  EXPECT_EQ(limits_text({-0.1, 0.2}, "mm", true), "-0.1 to 0.2 mm");
   Summary accepted = summary;
   withhold_pass(accepted, true);
   EXPECT_STREQ(name_of(summary.tolerance->verdict), "DOUBTFUL");
@@ -376,6 +381,8 @@ TEST(SmokeSummary, HasVerdictNotesAndNumbers) {
   const std::vector<GroupTolerance> wide{{.group = "all", .tolerance = 0.2}};
   EXPECT_TRUE(note_on_walls(Sites(block({-3, -3, 0}, {3, 3, 0.1})), std::nullopt, of_block, wide, "mm"));
   EXPECT_EQ(*metres_per("in"), 0.0254);
+  EXPECT_EQ(metres_per("\u00b5m"), metres_per("um"));
+  EXPECT_EQ(metres_per("\u03bcm"), metres_per("um"));
 }
 
 // Of the faces of the input near a cut, and points of the result that are far from it: by the Hausdorff

@@ -3,24 +3,20 @@
 
 #include <sdm/tolerance.h>
 
-#include <cmath>
+#include "core/rules.h"
 
 namespace sdm::map {
 
-/// A computed distance d stands for those from d − accuracy to d + accuracy; if |d| ≤ accuracy, its sign is
-/// not certain either.
 class ToleranceLimits {
  public:
-  ToleranceLimits(const Tolerance& tolerance, double accuracy)
-      : lo_(tolerance.lo - accuracy), hi_(tolerance.hi + accuracy), accuracy_(accuracy) {}
+  ToleranceLimits(const Tolerance& tolerance, double accuracy) : limits_(tolerance), accuracy_(accuracy) {}
 
-  [[nodiscard]] bool below(double d) const { return (is_zero(d) ? std::abs(d) : d) < lo_; }
-  [[nodiscard]] bool above(double d) const { return (is_zero(d) ? -std::abs(d) : d) > hi_; }
+  [[nodiscard]] bool below(double d) const { return rules::is_below(d, limits_.lo, accuracy_); }
+  [[nodiscard]] bool above(double d) const { return rules::is_above(d, limits_.hi, accuracy_); }
 
  private:
-  [[nodiscard]] bool is_zero(double d) const { return std::abs(d) <= accuracy_; }
-
-  double lo_, hi_, accuracy_;
+  Tolerance limits_;
+  double accuracy_;
 };
 
 }  // namespace sdm::map

@@ -3,85 +3,42 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "core/rules.h"
 #include "geometry/vec.h"
-#include "map/statistics/tolerance_limits.h"
 #include "summary/verdict/evidence.h"
 
 namespace sdm {
 
-namespace {
-
-/// The limits, less a lower one that unsigned distances cannot exceed.
-Tolerance limits_of(const Tolerance& tolerance, bool is_signed) {
-  return is_signed || tolerance.lo > 0 ? tolerance
-                                       : Tolerance(-std::numeric_limits<double>::infinity(), tolerance.hi);
-}
-
-/// How far the distances stay from the limits.
-double margin_of(double lowest, double highest, const Tolerance& tolerance, double accuracy) {
-  return std::min(tolerance.hi - highest, lowest - tolerance.lo) - accuracy;
-}
-
-/// Whether walls hide what is out of the limits: no point of a wall is farther than its half from both skins.
-bool are_walls_thin(const Evidence& evidence, const Tolerance& limits) {
-  return 2 * largest_limit(limits) > evidence.thin_walls;
-}
-
-/// What is not decided of evidence that is within the tolerance: `measured` is its margin with the signs as
-/// they were found.
-VerdictReason open_question(const Evidence& evidence, double margin, double measured) {
-  if (!evidence.lowest) return VerdictReason::nothing_measured;
-  if (!std::isfinite(evidence.accuracy)) return VerdictReason::unknown_accuracy;
-  if (evidence.error_bound <= measured || (margin <= 0 && measured > 0))
-    return VerdictReason::estimated_signs;
-  if (margin > 0) return VerdictReason::between_samples;
-  return evidence.guard > 0 ? VerdictReason::guard_band : VerdictReason::within_rounding;
-}
-
-}  // namespace
-
 Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const double lowest = evidence.lowest.value_or(kInfinity), highest = evidence.highest.value_or(-kInfinity);
-  const bool complete = evidence.complete, estimated_signs = evidence.estimated_signs;
-  const double accuracy = evidence.accuracy + evidence.guard, error_bound = evidence.error_bound;
-  const Tolerance limited = limits_of(tolerance, evidence.is_signed);
-  const double farthest = std::max(-lowest, highest);
-  const double measured = margin_of(lowest, highest, limited, accuracy);
-  const double margin = estimated_signs ? margin_of(-farthest, farthest, limited, accuracy) : measured;
-  Judgement result{.nearest_is_lower = limited.lo - lowest > highest - limited.hi};
-  if (complete && std::isfinite(margin)) result.margin = margin;
-  const map::ToleranceLimits limits(limited, accuracy);
-  result.within = complete && !limits.below(lowest) && !limits.above(highest);
-  if (!result.within) {
-    result.verdict = Verdict::fail;
-    result.reason = complete             ? VerdictReason::exceeded
-                    : evidence.unmatched ? VerdictReason::without_match
-                                         : VerdictReason::beyond_max_distance;
-    result.certified =
-        !estimated_signs || !complete || farthest - accuracy > std::max(-tolerance.lo, tolerance.hi);
-    return result;
-  }
-  result.certified = lowest <= highest && error_bound <= margin;
-  if (result.certified && are_walls_thin(evidence, limited)) {
-    result.verdict = Verdict::not_decided, result.reason = VerdictReason::thin_walls;
-    result.certified = false;
-    return result;
-  }
-  if (result.certified || (evidence.samples_only && result.margin >= 0.0)) return result;
-  result.verdict = Verdict::not_decided;
-  result.reason = open_question(evidence, margin, measured);
-  if (result.margin > 0.0) result.deciding_bound = *result.margin / 2;
+  const double lowest = evidence.lowest.value_or(rules::kInfinity),
+               highest = evidence.highest.value_or(-rules::kInfinity);
+  const double accuracy = evidence.accuracy + evidence.guard, farthest = std::max(-lowest, highest);
+  const double lower = rules::lower_of(tolerance.lo, evidence.is_signed), upper = tolerance.hi;
+  const double margin = evidence.estimated_signs
+                            ? rules::margin_of(-farthest, farthest, lower, upper, accuracy)
+                            : rules::margin_of(lowest, highest, lower, upper, accuracy);
+  const double reason = rules::reason_of(lowest, highest, lower, upper, evidence.accuracy, evidence.guard,
+                                         evidence.error_bound, evidence.thin_walls, evidence.complete,
+                                         evidence.unmatched, evidence.estimated_signs, evidence.samples_only);
+  Judgement result{.verdict = static_cast<Verdict>(static_cast<int>(rules::verdict_of(reason))),
+                   .reason = static_cast<VerdictReason>(static_cast<int>(reason)),
+                   .nearest_is_lower = lower - lowest > highest - upper};
+  result.within = result.verdict != Verdict::fail;
+  if (evidence.complete && std::isfinite(margin)) result.margin = margin;
+  if (!result.within)
+    result.certified = !evidence.estimated_signs || !evidence.complete ||
+                       farthest - accuracy > std::max(-tolerance.lo, tolerance.hi);
+  else
+    result.certified = result.verdict == Verdict::pass && evidence.error_bound <= margin;
+  if (result.verdict == Verdict::not_decided && result.reason != VerdictReason::thin_walls &&
+      result.margin > 0.0)
+    result.deciding_bound = *result.margin / 2;
   return result;
 }
 
 double largest_limit(const Tolerance& tolerance) {
-  double largest = 0;
-  for (const double limit : {tolerance.lo, tolerance.hi})
-    if (std::isfinite(limit)) largest = std::max(largest, std::abs(limit));
-  return largest;
+  return rules::largest_limit(tolerance.lo, tolerance.hi);
 }
 
 ToleranceVerdict summary::check_evidence(const Surface& surface, const DistanceMap& map,

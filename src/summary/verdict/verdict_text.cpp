@@ -1,13 +1,12 @@
 #include <sdm/summary.h>
 
-#include <cmath>
-
 #include "core/numbers/number_text.h"
+#include "summary/verdict/limits_words.h"
 
 namespace sdm {
 namespace {
 
-std::string short_text(double number, int digits = 5) {
+std::string short_text(double number, int digits = static_cast<int>(rules::kLimitDigits)) {
   return number_text(number, digits);
 }
 
@@ -56,17 +55,15 @@ std::string open_text(const Summary& summary, const std::string& limits) {
 
 }  // namespace
 
-std::string limits_text(const Tolerance& tolerance, const std::string& units) {
-  const auto [lo, hi] = tolerance;
-  if (std::isinf(lo)) return "at most " + with_unit(hi, units);
-  if (std::isinf(hi)) return "at least " + with_unit(lo, units);
-  return lo == -hi ? "±" + with_unit(hi, units) : short_text(lo) + " to " + with_unit(hi, units);
+std::string limits_text(const Tolerance& tolerance, const std::string& units, bool is_signed) {
+  const auto text = [](double limit) { return short_text(limit); };
+  return summary::limits_words(tolerance, is_signed, text) + (units.empty() ? "" : " " + units);
 }
 
 std::string verdict_text(const Summary& summary) {
   if (!summary.tolerance) return {};
   const CertifiedVerdict& verdict = *summary.tolerance;
-  const std::string limits = limits_text(verdict.tolerance, summary.units);
+  const std::string limits = limits_text(verdict.tolerance, summary.units, summary.evidence.is_signed);
   const bool samples_only = summary.evidence.samples_only && !verdict.certified;
   const std::string all = std::string(summary.of_points ? "every point of the cloud"
                                       : samples_only    ? "every measured point of the surface"

@@ -5,6 +5,7 @@ const { createRequire } = require('module');
 const { join } = require('path');
 const { pathToFileURL } = require('url');
 const { pictureOf, plain, settled, shareOfPixels } = require('./support.cjs');
+const { alias } = require('../../../report/rules.cjs');
 
 module.exports = {
   async recolours(page) {
@@ -61,7 +62,7 @@ module.exports = {
   async tells(page, out) {
     const { buildSync } = createRequire(process.cwd() + '/')('esbuild');
     const entry = join(__dirname, '../../../report/src/color_scale.ts');
-    const { outputFiles } = buildSync({ entryPoints: [entry], bundle: true, write: false, format: 'iife', globalName: 'colorScale' });
+    const { outputFiles } = buildSync({ entryPoints: [entry], bundle: true, alias, write: false, format: 'iife', globalName: 'colorScale' });
     await page.evaluate(outputFiles[0].text.replace('var colorScale', 'window.colorScale'));
     const told = await page.evaluate(() => {
       const rows = (id) =>
@@ -69,7 +70,7 @@ module.exports = {
       const { data, state } = window.sdmPage;
       const { width, height, chart, distance } = data.surface.map;
       const colors = Array.from(distance, (d, i) =>
-        chart[i] === 0 ? null : window.colorScale.colorOf(state.scale, data.page.colors, d).map(Math.round),
+        chart[i] === 0 ? null : window.colorScale.colorOf(state.scale, d).map(Math.round),
       );
       const words = ['verdict', 'sentence', 'what-if', 'inputs-table', 'legend'].map((id) => [id, document.getElementById(id).innerText]);
       return {

@@ -4,6 +4,7 @@ const { createRequire } = require('module');
 const { join } = require('path');
 const { pathToFileURL } = require('url');
 const { hitsFrom, plain, settled } = require('./support.cjs');
+const { alias } = require('../../../report/rules.cjs');
 
 const marks = (page) => page.locator('#histogram-chart .limit, #histogram-chart .out').count();
 const whatIf = async (page) => plain(await page.textContent('#what-if'));
@@ -24,9 +25,9 @@ module.exports = {
     for (const [limit, words] of [
       ['2', /^Would be FAIL with ±2\. About [\d.]+ % of the area is out of it\.$/],
       ['100', /^Would be PASS with ±100\. No sample is out of it\.$/],
-      ['2,4001', /^Would be NOT DECIDED with ±2\.4\./],
+      ['2,4001', /^Would be NOT DECIDED with ±2\.4001\./],
       ['0,05', /^Would be FAIL with ±0\.05\./],
-      ['2.4001', /^Would be NOT DECIDED with ±2\.4\. No sample is out of it\. .* the command does, with this tolerance\.$/],
+      ['2.4001', /^Would be NOT DECIDED with ±2\.4001\. No sample is out of it\. .* the command does, with this tolerance\.$/],
     ]) {
       await field.fill(limit);
       assert.match((await whatIf(page)).replace(/with 2/, 'with ±2').replace('with 100', 'with ±100').replace('with 0.05', 'with ±0.05'), words);
@@ -69,7 +70,7 @@ module.exports = {
     const { buildSync } = createRequire(process.cwd() + '/')('esbuild');
     const entry = join(__dirname, '../../../report/src/precision.ts');
     const built = { exports: {} };
-    new Function('module', 'exports', buildSync({ entryPoints: [entry], bundle: true, write: false, format: 'cjs' }).outputFiles[0].text)(built, built.exports);
+    new Function('module', 'exports', buildSync({ entryPoints: [entry], bundle: true, alias, write: false, format: 'cjs' }).outputFiles[0].text)(built, built.exports);
     const report = { extremes: { max: { distance: 0.5 } }, accuracy: 1e-4 };
     const text = (x, sign) => plain(built.exports.distanceText(x, report, sign));
     assert.deepStrictEqual([text(7.123e-7), text(-7.123e-7, true), text(4e-8, true), text(0), text(0.25)], ['7.12e-7', '-7.12e-7', '+4e-8', '0.00000', '0.25000']);

@@ -4,12 +4,13 @@ const { readFileSync } = require('fs');
 const { createRequire } = require('module');
 const { join } = require('path');
 const { hitsFrom, plain, settled } = require('./support.cjs');
+const { alias } = require('../../../report/rules.cjs');
 
 /// A source of the page as a module.
 function built(source) {
   const { buildSync } = createRequire(process.cwd() + '/')('esbuild');
   const entry = join(__dirname, '../../../report/src', source);
-  const { outputFiles } = buildSync({ entryPoints: [entry], bundle: true, write: false, format: 'cjs' });
+  const { outputFiles } = buildSync({ entryPoints: [entry], bundle: true, alias, write: false, format: 'cjs' });
   const found = { exports: {} };
   new Function('module', 'exports', outputFiles[0].text)(found, found.exports);
   return found.exports;
@@ -37,11 +38,12 @@ module.exports = {
   // The legend names the ends of the range and the limits; its words can be read, do not touch, and no colour of a scale
   // vanishes before the view; in both schemes and in narrow windows.
   async legend(page, lo, hi, ...limits) {
+    const rules = await import(alias['sdm-rules']);
     for (const [scheme, width] of [['light', 1440], ['dark', 1280], ['light', 420], ['dark', 420]]) {
       await page.emulateMedia({ colorScheme: scheme });
       await page.setViewportSize({ width, height: 800 });
       await settled(page);
-      const { labels, ink, behind, boxes, colors } = await page.evaluate(() => {
+      const { labels, ink, behind, boxes } = await page.evaluate(() => {
         const ticks = [...document.querySelectorAll('#legend .tick')];
         const style = getComputedStyle(document.documentElement);
         const probe = document.createElement('i');
@@ -51,13 +53,11 @@ module.exports = {
           return getComputedStyle(probe).color;
         });
         probe.remove();
-        const { data } = window.sdmPage ?? window.sdmPlayer;
         return {
           labels: ticks.map((t) => [t.textContent, t.classList.contains('of-limit')]),
           ink: ticks.map((t) => getComputedStyle(t).color),
           boxes: ticks.map((t) => t.getBoundingClientRect().toJSON()),
           behind,
-          colors: data.page.colors,
         };
       });
       const values = labels.map(([text]) => Number(plain(text)));
@@ -67,8 +67,8 @@ module.exports = {
       for (const color of ink) for (const view of behind) assert(contrast(rgb(color), rgb(view)) >= 4.5, `${color} on ${view}, ${scheme}`);
       const tops = boxes.map((box) => [box.top, box.bottom]).sort((a, b) => a[0] - b[0]);
       tops.forEach(([top], i) => assert(i === 0 || top >= tops[i - 1][1] - 4, `labels touch at ${width}`));
-      for (const map of ['viridis', 'diverging', 'opposite', 'within', 'above', 'below'])
-        for (const stop of colors[map])
+      for (const map of ['kViridis', 'kDiverging', 'kOpposite', 'kWithin', 'kAbove', 'kBelow'])
+        for (const stop of rules[map])
           for (const view of behind.map(rgb)) {
             const away = Math.hypot(...stop.map((x, k) => x - view[k]));
             assert(away > 30, `${map} ${stop} vanishes before ${view}, ${scheme}`);
@@ -80,7 +80,6 @@ module.exports = {
   async scales(page, cases) {
     const { scaleLabels } = built('legend.ts');
     const { colorOf } = built('color_scale.ts');
-    const colors = await page.evaluate(() => window.sdmPage.data.page.colors);
     for (const { scale, labels, distances, colours } of JSON.parse(readFileSync(cases, 'utf8'))) {
       scale.lower ??= -Infinity; // JSON has null for them
       scale.upper ??= Infinity;
@@ -88,7 +87,7 @@ module.exports = {
       assert.deepStrictEqual(found.map((l) => l.value), labels.map((l) => l.value), JSON.stringify(scale));
       assert.deepStrictEqual(found.map((l) => [plain(l.text), l.isLimit]), labels.map((l) => [plain(l.text), l.limit]), JSON.stringify(scale));
       distances.forEach((d, i) =>
-        colorOf(scale, colors, d).forEach((x, k) => assert(Math.abs(x - colours[i][k]) <= 1, `${d} in ${JSON.stringify(scale)}`)),
+        colorOf(scale, d).forEach((x, k) => assert(Math.abs(x - colours[i][k]) <= 1, `${d} in ${JSON.stringify(scale)}`)),
       );
     }
   },

@@ -4,6 +4,7 @@ const { readFileSync } = require('fs');
 const { createRequire } = require('module');
 const { join } = require('path');
 const { plain } = require('./support.cjs');
+const { alias } = require('../../../report/rules.cjs');
 
 module.exports = {
   // The fraction out of tolerance is one number, in the banner and below the sliders, and by the bins nearly the same.
@@ -22,7 +23,7 @@ module.exports = {
   async judges(page, cases) {
     const { buildSync } = createRequire(process.cwd() + '/')('esbuild');
     const entry = join(__dirname, '../../../report/src/verdict.ts');
-    const { outputFiles } = buildSync({ entryPoints: [entry], bundle: true, write: false, format: 'cjs' });
+    const { outputFiles } = buildSync({ entryPoints: [entry], bundle: true, alias, write: false, format: 'cjs' });
     const built = { exports: {} };
     new Function('module', 'exports', outputFiles[0].text)(built, built.exports);
     for (const { evidence, lower, upper, ...expected } of JSON.parse(readFileSync(cases, 'utf8'))) {

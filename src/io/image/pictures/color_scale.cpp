@@ -1,46 +1,23 @@
 #include "io/image/pictures/color_scale.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
+#include <tuple>
+#include <utility>
 
 namespace sdm::io {
 namespace {
-
-// Ten equal steps of Matplotlib's viridis, and ColorBrewer's RdBu reversed with a pure white middle.
-constexpr std::array<Rgb, 11> kViridis{{{68, 1, 84},
-                                        {72, 36, 117},
-                                        {65, 68, 135},
-                                        {53, 95, 141},
-                                        {42, 120, 142},
-                                        {33, 145, 140},
-                                        {34, 168, 132},
-                                        {68, 191, 112},
-                                        {122, 209, 81},
-                                        {189, 223, 38},
-                                        {253, 231, 37}}};
-constexpr std::array<Rgb, 11> kDiverging{{{5, 48, 97},
-                                          {33, 102, 172},
-                                          {67, 147, 195},
-                                          {146, 197, 222},
-                                          {209, 229, 240},
-                                          {255, 255, 255},
-                                          {253, 219, 199},
-                                          {244, 165, 130},
-                                          {214, 96, 77},
-                                          {178, 24, 43},
-                                          {103, 0, 31}}};
-constexpr std::array<Rgb, 3> kPaper2006{{{255, 0, 0}, {255, 255, 0}, {0, 255, 0}}};
 
 // The nearest integer to `x` in [0, 255]. Not std::lround, which is a call for every channel of every texel.
 std::uint8_t to_byte(float x) {
   return static_cast<std::uint8_t>(x + 0.5f);  // NOLINT(bugprone-incorrect-roundings): x is not negative
 }
 
-// Piecewise linear through equally spaced colours; t is clamped to [0, 1].
+// Piecewise linear through equally spaced colours; t in [0, 1].
 Rgb gradient(std::span<const Rgb> colors, double t) {
-  const float s = static_cast<float>(std::clamp(t, 0.0, 1.0)) * static_cast<float>(colors.size() - 1);
+  const float s = static_cast<float>(t) * static_cast<float>(colors.size() - 1);
   const int i = std::min(static_cast<int>(s), static_cast<int>(colors.size()) - 2);
   // Integers with 16 bits of fraction are faster than three conversions each way.
   const int f = static_cast<int>(65536 * (s - static_cast<float>(i)));
@@ -51,25 +28,18 @@ Rgb gradient(std::span<const Rgb> colors, double t) {
   return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
 }
 
-// The position of `x` between `from` (0) and `to` (1).
-double fraction(double x, double from, double to) {
-  return to > from ? (x - from) / (to - from) : 1;
+// The mode of rules::color_place().
+double mode_of(const ColorScale& scale) {
+  if (scale.tolerance) return rules::kBands;
+  if (scale.map == Colormap::sequential) return rules::kSequential;
+  return scale.map == Colormap::diverging ? rules::kCentred : rules::kEndToEnd;
 }
 
-// How far a distance within the tolerance is on its way to the nearest limit, from 0 (at distance 0, or in
-// the middle of a tolerance without it, or at the end of the scale where there is no limit) to 1.
-double closeness(const ColorScale& scale, double d) {
-  const auto [lower, upper] = *scale.tolerance;
-  if (lower <= 0 && upper >= 0) return d == 0 ? 0 : d > 0 ? fraction(d, 0, upper) : fraction(-d, 0, -lower);
-  const double room = std::isinf(upper)   ? scale.hi - lower
-                      : std::isinf(lower) ? upper - scale.lo
-                                          : (std::min(upper, scale.hi) - std::max(lower, scale.lo)) / 2;
-  return room > 0 ? 1 - std::min(d - lower, upper - d) / room : 1;
-}
-
-Rgb within(const ColorScale& scale, double d) {
-  const double step = std::floor(kWithin.size() * closeness(scale, d));
-  return kWithin[static_cast<std::size_t>(std::clamp(step, 0.0, kWithin.size() - 1.0))];
+// The colours of a colormap at equal steps, between which it is linear.
+std::span<const Rgb> colors_of(Colormap map) {
+  if (map == Colormap::diverging) return rules::kDiverging;
+  if (map == Colormap::paper2006) return rules::kPaper2006;
+  return rules::kViridis;
 }
 
 // `hue` in [0, 1).
@@ -91,30 +61,16 @@ std::uint32_t scramble(std::uint32_t x) {
 
 }  // namespace
 
-std::span<const Rgb> colors_of(Colormap map) {
-  if (map == Colormap::diverging) return kDiverging;
-  if (map == Colormap::paper2006) return kPaper2006;
-  return kViridis;
-}
-
 Rgb ColorScale::operator()(double distance) const {
   if (!std::isfinite(distance)) return kNoValue;
-  if (tolerance) {
-    if (distance > tolerance->hi + accuracy) return gradient(kAbove, fraction(distance, tolerance->hi, hi));
-    if (distance < tolerance->lo - accuracy)
-      return gradient(kBelow, fraction(-distance, -tolerance->lo, -lo));
-    return within(*this, distance);
-  }
-  if (map == Colormap::sequential) {
-    const bool up = hi >= -lo;  // the longer side
-    const double d = up ? distance : -distance;
-    if (d < -accuracy) return gradient(kOpposite, fraction(-d, 0, up ? -lo : hi));
-    return gradient(kViridis, fraction(d, std::max(0.0, up ? lo : -hi), up ? hi : -lo));
-  }
-  if (map == Colormap::diverging)
-    return gradient(kDiverging, 0.5 + 0.5 * distance / std::max(std::abs(lo), std::abs(hi)));
-  if (map == Colormap::paper2006) return gradient(kPaper2006, fraction(distance, lo, hi));
-  return gradient(kViridis, fraction(distance, lo, hi));
+  const Tolerance limits = tolerance.value_or(Tolerance());
+  const double place = rules::color_place(distance, mode_of(*this), lo, hi, limits.lo, limits.hi, accuracy);
+  if (place >= rules::kInUnjudged) return kUnjudged;
+  if (place >= rules::kInBelow) return gradient(kBelow, place - rules::kInBelow);
+  if (place >= rules::kInAbove) return gradient(kAbove, place - rules::kInAbove);
+  if (place >= rules::kInWithin) return gradient(kWithin, place - rules::kInWithin);
+  if (place >= rules::kInOpposite) return gradient(rules::kOpposite, place - rules::kInOpposite);
+  return gradient(colors_of(map), place);
 }
 
 ColorScale color_scale(const PictureOptions& fixed) {

@@ -2,18 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sdm::io {
 namespace {
 
-/// The scale with these limits. Its ends are as far beyond them as they are from the middle between them: ±2
-/// of ±1. The pages have the same rule.
+/// The scale with these limits.
 ColorScale banded(ColorScale scale, const Tolerance& t) {
-  const bool both = std::isfinite(t.hi - t.lo);
-  double away = both ? std::abs(t.hi - t.lo) / 2 : std::min(std::abs(t.lo), std::abs(t.hi));
-  if (!(away > 0 && std::isfinite(away))) away = std::max(std::abs(scale.lo), std::abs(scale.hi));
-  scale.lo = std::isfinite(t.lo) ? t.lo - away : std::min(0.0, t.hi - away);
-  scale.hi = std::isfinite(t.hi) ? t.hi + away : std::max(0.0, t.lo + away);
+  const auto [lo, hi] = std::pair(scale.lo, scale.hi);
+  scale.lo = rules::banded_lo(t.lo, t.hi, lo, hi), scale.hi = rules::banded_hi(t.lo, t.hi, lo, hi);
   scale.tolerance = t;
   return scale;
 }
@@ -30,8 +27,7 @@ FaceScales::FaceScales(const ColorScale& scale, const PictureOptions& options) :
 
 Rgb FaceScales::operator()(std::uint32_t face, double distance) const {
   if (!tolerances_ || !std::isfinite(distance)) return scale_(distance);
-  const Tolerance& tolerance = tolerances_->of(face);
-  return tolerance == map::any_distance() ? kUnjudged : banded(scale_, tolerance)(distance);
+  return banded(scale_, tolerances_->of(face))(distance);
 }
 
 ColorScale FaceScales::of_legend() const {

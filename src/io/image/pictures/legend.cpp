@@ -3,6 +3,7 @@
 #include "io/image/pictures/canvas.h"
 #include "io/image/pictures/ticks.h"
 #include "summary/round_step.h"
+#include "summary/verdict/limits_words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,6 @@ namespace {
 // Lengths for a resolution of 1024; the drawing is scaled as a whole.
 constexpr double kWidth = 232, kMargin = 24, kBarWidth = 30, kBarTop = 84, kMaxHeight = 1024;
 constexpr double kMinHeight = 460;
-constexpr double kApart = 0.06;  // numbers beside the bar, of its length
 constexpr double kTitleSize = 19, kTextSize = 15, kLine = 23;
 
 // Shrinks long text to fit the picture.
@@ -61,13 +61,6 @@ void draw_bar(Canvas& canvas, const ColorScale& scale, const std::vector<ScaleLa
   }
 }
 
-std::string limits_note(const Tolerance& t) {
-  if (std::isinf(t.hi)) return "green: at least " + value_label(t.lo);
-  if (std::isinf(t.lo)) return "green: at most " + value_label(t.hi);
-  return t.lo == -t.hi ? "green: within \u00b1" + value_label(t.hi)
-                       : "green: " + value_label(t.lo) + " to " + value_label(t.hi);
-}
-
 }  // namespace
 
 std::vector<ScaleLabel> scale_labels(const ColorScale& scale) {
@@ -78,7 +71,7 @@ std::vector<ScaleLabel> scale_labels(const ColorScale& scale) {
   // What is named first keeps its neighbours away; a limit is at least a line.
   const auto add = [&](double value, bool is_limit) {
     const bool close = std::ranges::any_of(
-        labels, [&](const ScaleLabel& l) { return std::abs(l.value - value) < kApart * (hi - lo); });
+        labels, [&](const ScaleLabel& l) { return std::abs(l.value - value) < rules::kApart * (hi - lo); });
     if (close && !is_limit) return;
     const double steps = value / step;
     const bool is_round = std::abs(steps - std::round(steps)) < 1e-6;
@@ -96,11 +89,13 @@ std::vector<ScaleLabel> scale_labels(const ColorScale& scale) {
 LegendText legend_text(const DistanceMap& map, double least, double most, const ColorScale& scale,
                        const std::string& units) {
   const bool thickness = map.measured.kind == DistanceKind::thickness;
+  const bool is_signed = !thickness && map.sign.method != SignMethod::none;
   LegendText text{
       thickness ? "Thickness" : "Distance", units, {}, map.beyond_max_distance + map.without_match > 0};
   if (least <= most) text.notes = {"min  " + value_label(least), "max  " + value_label(most)};
   if (const auto& t = scale.tolerance) {
-    text.notes.push_back(limits_note(*t));
+    text.notes.push_back((t->lo == -t->hi ? "green: within " : "green: ") +
+                         summary::limits_words(*t, is_signed, value_label));
     text.notes.emplace_back(std::isinf(t->lo) || std::isinf(t->hi) ? "darker: nearer the limit"
                                                                    : "darker: nearer a limit");
   }

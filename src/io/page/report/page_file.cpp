@@ -11,8 +11,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "io/page/report/page_colors.h"
-
 namespace sdm::io {
 namespace {
 
@@ -36,6 +34,18 @@ std::string date() {
   return fmt::format("{:%Y-%m-%dT%H:%MZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(time)));
 }
 
+// JSON as the content of a <script> element, which ends at "</script" and may not contain "<!--".
+std::string as_script(const std::string& json) {
+  std::string text;
+  text.reserve(json.size());
+  for (const char c : json)
+    if (c == '<')
+      text += "\\u003c";
+    else
+      text += c;
+  return text;
+}
+
 }  // namespace
 
 Json add_area(PackedArrays& arrays, const AreaByValue& area) {
@@ -46,10 +56,7 @@ Json add_area(PackedArrays& arrays, const AreaByValue& area) {
 }
 
 Json common_json(UpAxis up) {
-  return {{"version", kVersion},
-          {"date", date()},
-          {"up", up == UpAxis::z ? "z" : "y"},
-          {"colors", colors_json()}};
+  return {{"version", kVersion}, {"date", date()}, {"up", up == UpAxis::z ? "z" : "y"}};
 }
 
 void put_page(std::ostream& out, std::string_view html, Json& page, const std::string* report,
