@@ -27,6 +27,37 @@ const contrast = (a, b) => {
   return (light + 0.05) / (dark + 0.05);
 };
 
+/// In a page: the colours of the distances of each scale by a shader, as a row of pixels.
+function inShader([shader, scales, tables]) {
+  const canvas = Object.assign(document.createElement('canvas'), { width: scales[0].distances.length, height: 1 });
+  const gl = canvas.getContext('webgl2');
+  const program = gl.createProgram();
+  const add = (type, source) => {
+    const part = gl.createShader(type);
+    gl.shaderSource(part, `#version 300 es\nprecision highp float;\n${source}`);
+    gl.compileShader(part);
+    gl.attachShader(program, part);
+  };
+  add(gl.VERTEX_SHADER, 'void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }');
+  add(gl.FRAGMENT_SHADER, `uniform float d[${canvas.width}];\nout vec4 color;\n${shader}\nvoid main() { color = vec4(colorOf(d[int(gl_FragCoord.x)]), 1.0); }`);
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
+  gl.useProgram(program);
+  const at = (name) => gl.getUniformLocation(program, name);
+  const colors = (name, list) => gl.uniform3fv(at(name), list.flat().map((x) => x / 255));
+  for (const [name, list] of Object.entries(tables)) colors(name, list);
+  return scales.map(({ distances, stops, mode, ends }) => {
+    colors('stops', stops);
+    gl.uniform1i(at('stopCount'), stops.length);
+    [mode, ...ends].forEach((x, i) => gl.uniform1f(at(['mode', 'lo', 'hi', 'lower', 'upper', 'accuracy'][i]), x));
+    gl.uniform1fv(at('d'), distances);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    const pixels = new Uint8Array(4 * canvas.width);
+    gl.readPixels(0, 0, canvas.width, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    return Array.from(pixels);
+  });
+}
+
 /// The horizontal place of a distance in the chart, by the labels of its axis.
 async function axisOf(page) {
   const marks = await page.$$eval('#histogram-chart .tick-text', (list) => list.map((t) => [t.textContent, Number(t.getAttribute('x'))]));
@@ -76,10 +107,12 @@ module.exports = {
     }
   },
 
-  // Labels and colours are those of pictures, for the scales in `cases`.
+  // Labels and colours are those of pictures, also in shaders, for the scales in `cases`.
   async scales(page, cases) {
     const { scaleLabels } = built('legend.ts');
-    const { colorOf } = built('color_scale.ts');
+    const { colorOf, colormapOf, modeOf, kColorShader } = built('color_scale.ts');
+    const { kAbove: above, kBelow: below, kOpposite: opposite, kWithin: within } = await import(alias['sdm-rules']);
+    const shown = [];
     for (const { scale, labels, distances, colours } of JSON.parse(readFileSync(cases, 'utf8'))) {
       scale.lower ??= -Infinity; // JSON has null for them
       scale.upper ??= Infinity;
@@ -89,7 +122,15 @@ module.exports = {
       distances.forEach((d, i) =>
         colorOf(scale, d).forEach((x, k) => assert(Math.abs(x - colours[i][k]) <= 1, `${d} in ${JSON.stringify(scale)}`)),
       );
+      const finite = (x) => Math.min(1e38, Math.max(-1e38, x));
+      shown.push({ distances, colours, stops: colormapOf(scale), mode: modeOf(scale), ends: ['lo', 'hi', 'lower', 'upper', 'accuracy'].map((key) => finite(scale[key])) });
     }
+    const seen = await page.evaluate(inShader, [kColorShader, shown, { above, below, opposite, within }]);
+    seen.forEach((pixels, n) => {
+      const { distances, colours, ends, mode } = shown[n];
+      distances.forEach((d, i) =>
+        colours[i].forEach((x, k) => assert(Math.abs(x - pixels[4 * i + k]) <= 2, `${d} in mode ${mode} of ${ends} is ${pixels.slice(4 * i, 4 * i + 3)} in shaders`)));
+    });
   },
 
   // Both limits are in the chart, where they are on its axis, and what is beyond them is tinted; the logarithm shows a
