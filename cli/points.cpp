@@ -87,7 +87,7 @@ void add_notes(const PointsCommand& command, const Input& o2, const sdm::Sites& 
   if (outcome.aligned) std::ranges::copy(notes(*outcome.aligned), std::back_inserter(all));
   if (!command.picture.tolerance)
     if (auto note = note_on_unjudged(command.groups, o2)) all.push_back(std::move(*note));
-  if (outcome.found.measured.kind == sdm::DistanceKind::closest)
+  if (sdm::may_cross_walls(outcome.found.measured.kind))
     if (auto note = sdm::note_on_walls(sites, command.picture.tolerance, o2.names, command.groups.rows,
                                        command.picture.units))
       all.push_back(std::move(*note));

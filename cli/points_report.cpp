@@ -118,7 +118,7 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
     text += fmt::format("            {} points have no face {}\n", s.without_match,
                         s.measured.kind == sdm::DistanceKind::along ? "on their line that faces the same way"
                                                                     : "that faces them");
-  if (s.sign.method == sdm::SignMethod::side && s.measured.kind == sdm::DistanceKind::closest)
+  if (sdm::lacks_boundary_signs(s.measured.kind, s.sign.method))
     text += "            signs are estimates; points closest to the boundary of O2 have none: |d|\n";
   if (s.tolerance) text += fmt::format("  tolerance {}\n", tolerance_line(outcome, unit));
   text += place_lines(s, size_of(found.bounds));

@@ -243,7 +243,7 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
   if (s.without_match > 0)
     add("            {} texels have no {}\n", s.without_match,
         is_along(s) ? "such face on their line" : "face that faces them");
-  if (s.sign.method == sdm::SignMethod::side && s.measured.kind == sdm::DistanceKind::closest)
+  if (sdm::lacks_boundary_signs(s.measured.kind, s.sign.method))
     add("            signs are estimates ({} texels and {} vertices at the boundary of O2 have none: |d|)\n",
         s.boundary_texels, outcome.boundary_vertices);
   if (s.evidence.samples_only)

@@ -73,6 +73,17 @@ SDM_API void compute_map(const Surface& surface, const Sites& sites, const MapOp
 /// sign method that options.facing excludes.
 [[nodiscard]] SDM_API SignUsed choose_sign(const Sites& sites, const MapOptions& options);
 
+/// Whether the signs of distances are estimates. Of facing faces and along lines, the sign is the side of the
+/// face that is hit, by definition.
+[[nodiscard]] constexpr bool has_estimated_signs(DistanceKind kind, SignMethod sign) {
+  return kind == DistanceKind::closest && is_estimate(sign);
+}
+
+/// Whether distances at the boundary of an open O2 have no sign: SignMethod::side of the closest point.
+[[nodiscard]] constexpr bool lacks_boundary_signs(DistanceKind kind, SignMethod sign) {
+  return kind == DistanceKind::closest && sign == SignMethod::side;
+}
+
 /// Returns what distances with these options are to. Throws sdm::Error if options.facing is out of range.
 [[nodiscard]] SDM_API MeasuredDistance measured_distance(const MapOptions& options);
 

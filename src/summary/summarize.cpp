@@ -48,13 +48,13 @@ std::vector<std::string> notes_of(const Surface& surface, const Sites& sites, co
   else if (summary.distance.texels == 0)
     notes.emplace_back("no texel is within the maximum distance; the map is empty");
   if (auto note = note_on_texels(surface)) notes.push_back(std::move(*note));
-  if (summary.measured.facing && summary.measured.kind == DistanceKind::facing)
+  if (summary.measured.facing)
     if (auto note = note_on_directions(surface.mesh(), *summary.measured.facing, options.units))
       notes.push_back(std::move(*note));
   if (const std::size_t texels = surface.overlapping_texels(); texels > 0)
     notes.push_back(std::to_string(texels) +
                     " texels are covered by several faces, and have the value of one of them");
-  if (summary.measured.kind == DistanceKind::closest)
+  if (may_cross_walls(summary.measured.kind))
     if (auto note =
             summary::note_on_walls(walls, options.tolerance, names_of_part(options.names, options.whole_face),
                                    options.table, options.units))
@@ -135,7 +135,7 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
        [&] { result.places = places_of(surface, map, vertex_distances, result.distance, options); },
        [&] { result.beyond_fraction = beyond_fraction(surface, map); },
        [&] {
-         if (map.measured.kind == DistanceKind::closest) wall_lengths = thickness::wall_lengths(sites);
+         if (may_cross_walls(map.measured.kind)) wall_lengths = thickness::wall_lengths(sites);
        },
        [&] { result.distribution = summary::distribution_of(surface, map, result.distance, options); }});
   const double walls = thickness::thin_walls(wall_lengths);

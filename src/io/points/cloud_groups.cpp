@@ -72,7 +72,7 @@ GroupVerdicts CloudGroups::verdicts(const PointsWithoutGroup& without_group, con
     const Found& found = found_[r];
     Evidence evidence = like;
     evidence.lowest = found.range.lowest, evidence.highest = found.range.highest;
-    evidence.estimated_signs = measured_ == DistanceKind::closest && is_estimate(sign_);
+    evidence.estimated_signs = has_estimated_signs(measured_, sign_);
     if (sign_ == SignMethod::side &&
         summary::passes_by_side(evidence, row.group.tolerance,
                                 found.signs.missing_signs_matter(row.group.tolerance, accuracy)))

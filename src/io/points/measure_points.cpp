@@ -119,7 +119,7 @@ class Measurement {
 
   // Whether walls of O2 are so thin that a point within the limits may be out of them on its own skin.
   void find_thin_walls() {
-    if (result_.measured.kind != DistanceKind::closest) return;
+    if (!may_cross_walls(result_.measured.kind)) return;
     double largest = options_.picture.tolerance ? largest_limit(*options_.picture.tolerance) : 0;
     for (const GroupTolerance& row : options_.table)
       largest = std::max(largest, largest_limit(row.tolerance));
@@ -221,7 +221,7 @@ class Measurement {
 
   // Whether the points have a sign, which those that are closest to the boundary of O2 lack.
   [[nodiscard]] std::vector<std::uint8_t> signs_of(std::span<const ClosestPoint> closest) const {
-    if (result_.sign.method != SignMethod::side || result_.measured.kind != DistanceKind::closest) return {};
+    if (!lacks_boundary_signs(result_.measured.kind, result_.sign.method)) return {};
     DistanceMap map;
     map.site.resize(closest.size()), map.site_type.resize(closest.size());
     for (std::size_t i = 0; i < closest.size(); ++i)

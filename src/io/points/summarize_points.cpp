@@ -23,8 +23,7 @@ Summary summarize(const PointDistances& found, const PointDistancesOptions& opti
                   .max_distance = options.map.max_distance,
                   .evidence = {.complete = found.beyond_max_distance + found.without_match == 0,
                                .unmatched = found.without_match > 0,
-                               .estimated_signs = found.measured.kind == DistanceKind::closest &&
-                                                  is_estimate(found.sign.method),
+                               .estimated_signs = has_estimated_signs(found.measured.kind, found.sign.method),
                                .accuracy = found.accuracy,
                                .guard = options.guard,
                                .is_signed = found.sign.method != SignMethod::none,

@@ -45,8 +45,7 @@ ClosestOfTexels::ClosestOfTexels(const Surface& surface, const Sites& sites, con
       data_(internals(sites)),
       map_(map),
       normals_(map.measured.kind == DistanceKind::facing ? normals : std::span<const Vec3>()),
-      ends_elsewhere_(map.measured.kind == DistanceKind::along ||
-                      map.measured.kind == DistanceKind::thickness) {}
+      ends_elsewhere_(ends_anywhere(map.measured.kind)) {}
 
 SurfacePoint ClosestOfTexels::at(std::uint32_t texel) {
   const SiteType type = map_.site_type[texel];

@@ -27,7 +27,7 @@ double largest_error(const Surface& surface, const Sites& sites) {
 void check_resolution(const Surface& surface, const DistanceMap& map, const char* function) {
   if (map.distance.size() != surface.texel_faces().size())
     throw Error(std::string(function) + "() needs a map of the surface: their resolutions differ");
-  if (map.measured.kind != DistanceKind::closest)
+  if (!is_lipschitz(map.measured.kind))
     throw Error(std::string(function) + "() needs a map of distances to the closest point");
 }
 

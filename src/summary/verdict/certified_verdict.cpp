@@ -142,9 +142,8 @@ void summary::decide_thin_walls(CertifiedVerdict& verdict, const std::optional<E
 CertifiedVerdict summary::Certifier::operator()(const ToleranceVerdict& verdict, const Faces& faces) {
   CertifiedVerdict result{verdict, {}};
   const MeasuredDistance& measured = map_.measured;
-  const bool is_facing = measured.kind == DistanceKind::facing && measured.facing;
-  const bool is_closest = measured.kind == DistanceKind::closest;
-  if (is_open(result, map_.sign.method) && (is_facing || is_closest)) {
+  const bool is_facing = measured.facing.has_value();
+  if (is_open(result, map_.sign.method) && is_provable(measured)) {
     result.proof =
         prove(verdict.tolerance, measured.facing, is_facing ? &matching(*measured.facing) : nullptr, faces);
     if (result.proof && !(is_facing && result.proof->depends_on_signs)) {
@@ -153,7 +152,7 @@ CertifiedVerdict summary::Certifier::operator()(const ToleranceVerdict& verdict,
         result.reason = VerdictReason::guard_band;
     }
   }
-  if (is_closest && result.verdict == Verdict::pass && are_walls_thin(verdict.tolerance))
+  if (may_cross_walls(measured.kind) && result.verdict == Verdict::pass && are_walls_thin(verdict.tolerance))
     decide_by_facing(result, faces);
   return result;
 }

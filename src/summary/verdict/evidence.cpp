@@ -25,9 +25,7 @@ struct WithoutValue {
   /// Vertices do not say what they lack: they count as the texels of the group or, if these have values, of
   /// the map.
   [[nodiscard]] bool is_unmatched(const DistanceMap& map) const {
-    const bool always_matches =
-        map.measured.kind == DistanceKind::closest || map.measured.kind == DistanceKind::self;
-    if (unmatched || beyond || !vertex || always_matches) return unmatched;
+    if (unmatched || beyond || !vertex || !may_lack_match(map.measured.kind)) return unmatched;
     return map.without_match > 0 || map.beyond_max_distance == 0;
   }
 };
@@ -60,15 +58,14 @@ std::vector<Evidence> evidence_of_groups(const Surface& surface, const DistanceM
       else
         without[group].vertex = true;
   }
-  const bool is_closest = map.measured.kind == DistanceKind::closest;
   std::vector<Evidence> result;
   for (std::size_t g = 0; g < groups.count; ++g)
     result.push_back({.lowest = ranges[g].lowest,
                       .highest = ranges[g].highest,
                       .complete = !without[g].any(),
                       .unmatched = without[g].is_unmatched(map),
-                      .estimated_signs = is_closest && is_estimate(map.sign.method),
-                      .samples_only = !is_closest,
+                      .estimated_signs = has_estimated_signs(map.measured.kind, map.sign.method),
+                      .samples_only = !is_lipschitz(map.measured.kind),
                       .accuracy = accuracy,
                       .error_bound = std::numeric_limits<double>::infinity(),
                       .is_signed = map.sign.method != SignMethod::none});
@@ -107,7 +104,7 @@ std::vector<GroupArea> areas_of_groups(const Surface& surface, const DistanceMap
 Evidence evidence_of(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
                      double error_bound, double accuracy) {
   Evidence evidence = summary::evidence_of_groups(surface, map, vertex_distances, {}, accuracy).front();
-  if (map.measured.kind == DistanceKind::closest) evidence.error_bound = error_bound;
+  if (is_lipschitz(map.measured.kind)) evidence.error_bound = error_bound;
   return evidence;
 }
 

@@ -52,7 +52,7 @@ class SignedSamples {
 /// Whether a failure may be due to the signs of samples which have none.
 [[nodiscard]] inline bool may_lack_signs(const Judgement& judgement, DistanceKind measured, SignMethod sign) {
   return judgement.reason == VerdictReason::exceeded && !judgement.certified &&
-         measured == DistanceKind::closest && sign == SignMethod::side;
+         lacks_boundary_signs(measured, sign);
 }
 
 /// judge() of a cloud by SignMethod::side, whose points have the sign that they have, unless those without
