@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "output_folder.h"
+
 namespace {
 
 struct Kind {
@@ -142,6 +144,13 @@ void write_map_files(const std::filesystem::path& folder, const MapFiles& files,
       sdm::write_texture_range(folder / "distance_texture.json", name, range, picture.units);
     });
   sdm::run_concurrently(work);
+}
+
+void write_report(const std::filesystem::path& folder, const MapFiles& files, const sdm::Surface& surface,
+                  const sdm::DistanceMap& map, std::span<const float> at_vertices, const std::string& report,
+                  const sdm::HtmlOptions& page) {
+  if (files.html) sdm::write_html(folder / "report.html", surface, map, at_vertices, report, page);
+  write_text(folder / "report.json", report);
 }
 
 void write_vertex_files(const std::filesystem::path& folder, const MapFiles& files,

@@ -52,6 +52,11 @@ void write_map_files(const std::filesystem::path& folder, const MapFiles& files,
                      const sdm::PictureOptions& picture, const sdm::PictureOptions& fixed,
                      const sdm::ExrOptions& exr = {});
 
+/// Writes report.json and, if it is chosen, report.html with it.
+void write_report(const std::filesystem::path& folder, const MapFiles& files, const sdm::Surface& surface,
+                  const sdm::DistanceMap& map, std::span<const float> at_vertices, const std::string& report,
+                  const sdm::HtmlOptions& page);
+
 /// Writes the files of the input's vertices.
 void write_vertex_files(const std::filesystem::path& folder, const MapFiles& files,
                         const sdm::FileVertices& vertices, std::span<const float> at_vertices);

@@ -16,7 +16,6 @@
 #include "islands.h"
 #include "map_files.h"
 #include "notes.h"
-#include "output_folder.h"
 #include "stopwatch.h"
 #include "weld.h"
 
@@ -48,24 +47,14 @@ std::vector<std::pair<std::string, std::string>> exr_attributes(const MapTask& t
   return attributes;
 }
 
-/// The options of distances along lines, of a command that has them.
-sdm::AlongOptions along_options(const MapCommand& command) {
-  sdm::AlongOptions options = *command.along;
-  options.max_distance = command.map.max_distance;
-  options.progress = command.map.progress;
-  return options;
-}
-
-/// The distance at each vertex. Progress is that of the atlas, which is made meanwhile.
-std::vector<float> at_vertices_of(const MapCommand& command, const sdm::Mesh& mesh, const sdm::Sites& sites) {
-  if (command.along) {
-    sdm::AlongOptions options = along_options(command);
-    options.progress = nullptr;
-    return sdm::distances_along_at_vertices(mesh, sites, options);
-  }
+sdm::Measure measure_of(const MapCommand& command, const sdm::Progress& progress) {
+  if (command.along)
+    return sdm::AlongOptions{.direction = command.along->direction,
+                             .max_distance = command.map.max_distance,
+                             .progress = progress};
   sdm::MapOptions options = command.map;
-  options.progress = nullptr;
-  return sdm::distances_at_vertices(mesh, sites, options);
+  options.progress = progress;
+  return options;
 }
 
 /// Takes the values of the vertices of islands away, which stay in files of vertices.
@@ -226,7 +215,8 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
         // The atlas leaves a core idle meanwhile. Without an inside, the answer decides nothing.
         if (sdm::choose_sign(*task.sites, command.map).method == sdm::SignMethod::exact)
           outcome.embedded = sdm::is_embedded(*task.sites);
-        computed.at_vertices = at_vertices_of(command, mesh, *task.sites);
+        // Progress is that of the atlas, which is made meanwhile.
+        computed.at_vertices = sdm::distances_at_vertices(mesh, *task.sites, measure_of(command, {}));
         leave_islands_out(task.on, computed.at_vertices, std::numeric_limits<float>::quiet_NaN());
       },
       [&] { inspect(task.on), inspect(task.to); },
@@ -235,13 +225,12 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
     check_sign(task.command.picture.tolerance, sdm::choose_sign(*task.sites, task.command.map), task.to);
 
   Stopwatch watch;
-  computed.map = command.along ? sdm::along_map(*surface, *task.sites, along_options(command))
-                               : sdm::compute_map(*surface, *task.sites, command.map);
+  computed.map = sdm::compute_map(*surface, *task.sites, measure_of(command, command.map.progress));
   const sdm::DistanceMap& map = computed.map;
   outcome.time.map = watch.lap();
   outcome.resolution = map.resolution, outcome.rows = map.rows();
   computed.accuracy = sdm::engine_accuracy(sdm::engine_info(*command.map.engine), task.on.mesh, task.to.mesh);
-  if (map.sign.method == sdm::SignMethod::side && map.measured.kind == sdm::DistanceKind::closest) {
+  if (sdm::lacks_boundary_signs(map.measured.kind, map.sign.method)) {
     std::vector<std::uint8_t> at_boundary =
         sdm::boundary_vertices(mesh, *task.sites, {.max_distance = command.map.max_distance});
     leave_islands_out(task.on, at_boundary, std::uint8_t{0});
@@ -265,14 +254,12 @@ MapResult write_part(const MapTask& task, const AtlasPart& part, const ComputedM
   outcome.time.total = task.import_ms + computed.ms + *outcome.time.output;
 
   result.report = report_of(task, part, computed, outcome);
-  const std::string text = to_text(result.report);
   const std::vector<sdm::FaceNames> judged = judged_names(task, part, outcome);
-  if (command.output.files.html)
-    sdm::write_html(folder / "report.html", *computed.surface, computed.map, computed.at_vertices, text,
-                    {.other = &task.to.mesh,
-                     .up = command.picture.up,
-                     .coverage = task.coverage ? &*task.coverage : nullptr,
-                     .names = judged});
-  write_text(folder / "report.json", text);
+  write_report(folder, command.output.files, *computed.surface, computed.map, computed.at_vertices,
+               to_text(result.report),
+               {.other = &task.to.mesh,
+                .up = command.picture.up,
+                .coverage = task.coverage ? &*task.coverage : nullptr,
+                .names = judged});
   return result;
 }

@@ -2,19 +2,17 @@
 
 #include <fmt/format.h>
 #include <sdm/io.h>
+#include <sdm/measure.h>
 
 #include "common_options.h"
 #include "format.h"
-#include "map_files.h"
 #include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
-#include "part_file.h"
+#include "part_map.h"
 #include "print.h"
 #include "progress_line.h"
 #include "proximity_report.h"
-#include "report.h"
-#include "stopwatch.h"
 #include "unit_options.h"
 
 #include <memory>
@@ -23,68 +21,39 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct SelfCommand : RunOptions {
-  PartFile part;
-  std::filesystem::path out;
-  sdm::AtlasOptions atlas;
+struct SelfCommand : PartMapCommand {
   sdm::SelfProximityOptions self;
-  sdm::PictureOptions picture;
-  MapFiles files;
 };
 
 /// Writes all files into `folder`, and returns the report.
-Json measure(const SelfCommand& command, const Input& input, double import_ms,
-             const std::filesystem::path& folder, ProgressLine& progress) {
-  Stopwatch total, watch;
-  const sdm::Surface surface(input.mesh, command.atlas);
-  const double atlas_ms = watch.lap();
+Json measure(const SelfCommand& command, const LoadedPart& loaded, const std::filesystem::path& folder,
+             ProgressLine& progress) {
+  PartMap part(loaded.input, loaded.import_ms, command.atlas);
   progress.step("sites");
-  sdm::SelfProximityQuery query(input.mesh, command.self);
-  const double sites_ms = watch.lap();
-
-  const sdm::SelfMapOptions options{command.self.max_distance, command.atlas.progress};
-  const sdm::DistanceMap map = sdm::compute_self_map(surface, query.sites(), query.exclusion(), options);
-  const auto at_vertices = sdm::self_distances_at_vertices(query.sites(), query.exclusion(), options);
+  sdm::SelfProximityQuery query(part.input.mesh, command.self);
+  part.times.sites = part.watch.lap();
+  const sdm::SelfOptions options{.exclusion = query.exclusion(),
+                                 .max_distance = command.self.max_distance,
+                                 .progress = command.atlas.progress};
+  part.map = sdm::compute_map(part.surface, query.sites(), options);
+  part.at_vertices = sdm::distances_at_vertices(part.input.mesh, query.sites(), options);
   const std::optional<sdm::BoundedLength> separation = query.separation();
-  const double map_ms = watch.lap();
+  part.times.map = part.watch.lap();
 
   progress.step("export");
-  sdm::Summary summary = sdm::summarize_self(surface, map,
+  sdm::Summary summary = sdm::summarize_self(part.surface, part.map,
                                              {.units = command.picture.units,
                                               .max_distance = command.self.max_distance,
                                               .colormap = command.picture.colormap,
                                               .range = command.picture.range});
-  summary.notes.insert(summary.notes.begin(), input.notes.begin(), input.notes.end());
-  if (auto note = note_on_unit(command.picture.units)) summary.notes.push_back(std::move(*note));
-  const sdm::PictureOptions fixed = sdm::fixed_colors(command.picture, *summary.colors);
-  sdm::run_concurrently({[&] {
-                           write_map_files(folder, command.files, surface, map, at_vertices, nullptr,
-                                           command.picture, fixed);
-                         },
-                         [&] {
-                           if (input.vertices)
-                             write_vertex_files(folder, command.files, *input.vertices, at_vertices);
-                         }});
-  const double export_ms = watch.lap();
-
-  const sdm::ReportTimes times{.import = import_ms,
-                               .atlas = atlas_ms,
-                               .sites = sites_ms,
-                               .map = map_ms,
-                               .output = export_ms,
-                               .total = import_ms + total.lap()};
-  Json report = Json::parse(
-      sdm::report_json({.on = reported(input), .engine = "cpu", .time_ms = times}, surface, summary));
-  const sdm::ExclusionRule& rule = command.self.exclusion;
-  report["exclusion"] = {{"rings", rule.geodesic ? Json(nullptr) : Json(rule.rings)},
-                         {"geodesic", rule.geodesic ? Json(*rule.geodesic) : Json(nullptr)}};
-  report["separation"] = separation ? to_json(*separation) : Json(nullptr);
-  const std::string text = to_text(report);
-  if (command.files.html)
-    sdm::write_html(folder / "report.html", surface, map, at_vertices, text,
-                    {.up = command.picture.up, .thinnest = true});
-  write_text(folder / "report.json", text);
-  return report;
+  const auto extend = [&](Json& report) {
+    const sdm::ExclusionRule& rule = command.self.exclusion;
+    report["exclusion"] = {{"rings", rule.geodesic ? Json(nullptr) : Json(rule.rings)},
+                           {"geodesic", rule.geodesic ? Json(*rule.geodesic) : Json(nullptr)}};
+    report["separation"] = separation ? to_json(*separation) : Json(nullptr);
+  };
+  return write_part_map(command, part, summary, folder,
+                        {.extend = extend, .page = {.up = command.picture.up, .thinnest = true}});
 }
 
 std::string self_summary(const SelfCommand& command, const Json& report) {
@@ -117,7 +86,7 @@ void run(SelfCommand command) {
   progress.step("import");
   const LoadedPart part = load_part(command.part, command.files.any_vertices());
   Json report;
-  out.fill([&] { report = measure(command, part.input, part.import_ms, out.staging(), progress); });
+  out.fill([&] { report = measure(command, part, out.staging(), progress); });
 
   print(
       command, [&] { return report; },
@@ -157,14 +126,9 @@ void add_self_command(CLI::App& app) {
   self->add_option("--max-distance", c.self.max_distance, "Texels without a surface within D have no value")
       ->check(positive_number())
       ->type_name("D");
-  add_resolution_option(*self, c.atlas);
-  add_layout_options(*self, c.atlas, "the mesh");
-  add_write_option(*self, c.files, true);
-  add_picture_options(*self, c.picture);
-  add_run_options(*self, c, "the report (report.json) instead of a summary");
+  add_part_map_options(*self, c, "the mesh");
   self->callback([command] {
-    check_layout(command->atlas);
-    check_units(command->picture.units, command->part.file, command->part.transform);
+    check_part_map(*command);
     run(*command);
   });
 }

@@ -2,21 +2,18 @@
 
 #include <fmt/format.h>
 #include <sdm/io.h>
-#include <sdm/thickness.h>
+#include <sdm/measure.h>
 
 #include "cad_options.h"
 #include "common_options.h"
 #include "exit_codes.h"
 #include "format.h"
-#include "map_files.h"
 #include "notes.h"
 #include "option_checks.h"
 #include "output_folder.h"
-#include "part_file.h"
+#include "part_map.h"
 #include "print.h"
 #include "progress_line.h"
-#include "report.h"
-#include "stopwatch.h"
 #include "unit_options.h"
 #include "weld.h"
 
@@ -29,15 +26,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 using sdm::ThicknessMethod;
 
-struct ThicknessCommand : RunOptions {
-  PartFile part;
-  std::filesystem::path out;
-  sdm::AtlasOptions atlas;
-  sdm::ThicknessOptions thickness;
-  ThicknessMethod method = ThicknessMethod::ball;
+struct ThicknessCommand : PartMapCommand {
+  sdm::ThicknessOptions thickness;  ///< by the method that is drawn and judged
   std::optional<double> least{}, most{};
-  sdm::PictureOptions picture;
-  MapFiles files;
 };
 
 struct ThicknessResult {
@@ -52,12 +43,12 @@ std::string name_of_method(ThicknessMethod method) {
   return method == ThicknessMethod::ball ? "ball" : "ray";
 }
 
-ThicknessMethod other_method(ThicknessMethod method) {
-  return method == ThicknessMethod::ball ? ThicknessMethod::ray : ThicknessMethod::ball;
+ThicknessMethod other_method(const ThicknessCommand& command) {
+  return command.thickness.method == ThicknessMethod::ball ? ThicknessMethod::ray : ThicknessMethod::ball;
 }
 
 std::string text_of_method(const ThicknessCommand& command) {
-  if (command.method == ThicknessMethod::ray)
+  if (command.thickness.method == ThicknessMethod::ray)
     return "the length of the ray into the part along the normal, until it leaves the part";
   return fmt::format(
       "the diameter of the largest ball in the part that touches there, stopped only by faces that turn by "
@@ -101,8 +92,8 @@ bool only_most(const ThicknessCommand& command) {
 Json thickness_json(const ThicknessCommand& command, const sdm::Surface& surface, const sdm::DistanceMap& map,
                     const sdm::Summary& other) {
   const auto given = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
-  const std::string name = name_of_method(other_method(command.method));
-  Json json{{"method", name_of_method(command.method)},
+  const std::string name = name_of_method(other_method(command));
+  Json json{{"method", name_of_method(command.thickness.method)},
             {"text", text_of_method(command)},
             {"angle", command.thickness.angle},
             {"min", given(command.least)},
@@ -121,78 +112,45 @@ Json thickness_json(const ThicknessCommand& command, const sdm::Surface& surface
   return json;
 }
 
-/// Writes all files but the page into `folder`.
-void write_files(const ThicknessCommand& command, const Input& input, const sdm::Surface& surface,
-                 const sdm::ThicknessMaps& maps, std::span<const float> at_vertices,
-                 const sdm::PictureOptions& fixed, const std::filesystem::path& folder) {
-  const bool ball = command.method == ThicknessMethod::ball;
-  const sdm::DistanceMap &map = ball ? maps.ball : maps.ray, &other = ball ? maps.ray : maps.ball;
-  sdm::run_concurrently(
-      {[&] {
-         write_map_files(folder, command.files, surface, map, at_vertices, nullptr, command.picture, fixed);
-       },
-       [&] {
-         if (command.files.exr)
-           sdm::write_exr(folder / (name_of_method(other_method(command.method)) + ".exr"), surface, other);
-       },
-       [&] {
-         if (input.vertices) write_vertex_files(folder, command.files, *input.vertices, at_vertices);
-       }});
-}
-
 /// Writes all files into `folder`.
-ThicknessResult measure(ThicknessCommand& command, const Input& input, double import_ms,
+ThicknessResult measure(const ThicknessCommand& command, const LoadedPart& loaded,
                         const std::filesystem::path& folder, ProgressLine& progress) {
-  Stopwatch total, watch;
-  const sdm::Surface surface(input.mesh, command.atlas);
-  const double atlas_ms = watch.lap();
+  PartMap part(loaded.input, loaded.import_ms, command.atlas);
   progress.step("sites");
-  const sdm::Sites sites(input.mesh);
-  const double sites_ms = watch.lap();
-  const sdm::ThicknessMaps maps = sdm::thickness_maps(surface, sites, command.thickness);
-  const auto at_vertices = sdm::thickness_at_vertices(sites, command.method, command.thickness);
-  const double map_ms = watch.lap();
+  const sdm::Sites sites(part.input.mesh);
+  part.times.sites = part.watch.lap();
+  sdm::ThicknessMaps maps = sdm::thickness_maps(part.surface, sites, command.thickness);
+  const bool ball = command.thickness.method == ThicknessMethod::ball;
+  part.map = std::move(ball ? maps.ball : maps.ray);
+  const sdm::DistanceMap& other = ball ? maps.ray : maps.ball;
+  part.at_vertices = sdm::distances_at_vertices(part.input.mesh, sites, command.thickness);
+  part.times.map = part.watch.lap();
 
   progress.step("export");
-  const bool ball = command.method == ThicknessMethod::ball;
-  const sdm::DistanceMap &map = ball ? maps.ball : maps.ray, &other = ball ? maps.ray : maps.ball;
-  const sdm::DistanceStatistics distance = sdm::statistics(surface, map);
-  sdm::SummaryOptions options{.units = command.picture.units,
-                              .accuracy = command.picture.accuracy,
-                              .guard = 2 * input.deviation,  // of both ends
-                              .tolerance = command.picture.tolerance,
-                              .colormap = command.picture.colormap,
-                              .range = command.picture.range,
-                              .names = input.names};
   const sdm::Summary of_other =
-      sdm::summarize_thickness(surface, other, {.accuracy = command.picture.accuracy});
-  options.distance = &distance;
-  ThicknessResult result{sdm::summarize_thickness(surface, map, options), {}};
-  result.summary.notes.insert(result.summary.notes.begin(), input.notes.begin(), input.notes.end());
-  if (auto note = note_on_unit(command.picture.units)) result.summary.notes.push_back(std::move(*note));
-  sdm::PictureOptions picture = sdm::fixed_colors(command.picture, *result.summary.colors);
-  if (const auto verdict = judged(result.summary, {})) picture.verdict.emplace(*verdict);
-  write_files(command, input, surface, maps, at_vertices, picture, folder);
-  const double export_ms = watch.lap();
-  const sdm::ReportTimes times{.import = import_ms,
-                               .atlas = atlas_ms,
-                               .sites = sites_ms,
-                               .map = map_ms,
-                               .output = export_ms,
-                               .total = import_ms + total.lap()};
-  result.report = Json::parse(
-      sdm::report_json({.on = reported(input), .engine = "cpu", .time_ms = times}, surface, result.summary));
-  result.report["thickness"] = thickness_json(command, surface, map, of_other);
-  if (result.summary.tolerance) {
-    Json& tolerance = result.report["tolerance"];
-    tolerance["text"] = verdict_in_words(command, result.summary);
-  }
-  const std::string text = to_text(result.report);
-  if (command.files.html)
-    sdm::write_html(
-        folder / "report.html", surface, map, at_vertices, text,
-        {.up = command.picture.up, .thinnest = !only_most(command), .thickest = only_most(command)});
-  write_text(folder / "report.json", text);
+      sdm::summarize_thickness(part.surface, other, {.accuracy = command.picture.accuracy});
+  ThicknessResult result{sdm::summarize_thickness(part.surface, part.map,
+                                                  {.units = command.picture.units,
+                                                   .accuracy = command.picture.accuracy,
+                                                   .guard = 2 * part.input.deviation,  // of both ends
+                                                   .tolerance = command.picture.tolerance,
+                                                   .colormap = command.picture.colormap,
+                                                   .range = command.picture.range,
+                                                   .names = part.input.names}),
+                         {}};
+  const auto write = [&] {
+    if (command.files.exr)
+      sdm::write_exr(folder / (name_of_method(other_method(command)) + ".exr"), part.surface, other);
+  };
+  const auto extend = [&](Json& report) {
+    report["thickness"] = thickness_json(command, part.surface, part.map, of_other);
+    if (result.summary.tolerance) report["tolerance"]["text"] = verdict_in_words(command, result.summary);
+  };
+  result.report = write_part_map(
+      command, part, result.summary, folder,
+      {.write = write,
+       .extend = extend,
+       .page = {.up = command.picture.up, .thinnest = !only_most(command), .thickest = only_most(command)}});
   return result;
 }
 
@@ -213,7 +171,7 @@ std::string tolerance_text(const ThicknessCommand& command, const sdm::Summary& 
 
 std::string thickness_summary(const ThicknessCommand& command, const ThicknessResult& result, double size) {
   const sdm::Summary& s = result.summary;
-  const std::string unit = unit_suffix(s.units), name = name_of_method(command.method);
+  const std::string unit = unit_suffix(s.units), name = name_of_method(command.thickness.method);
   std::string text = heading(fmt::format("{}: wall thickness", command.part.file), judged(s, {}));
   if (!s.extremes) {
     text += "  thickness   no texel has a value\n";
@@ -250,13 +208,13 @@ int run(ThicknessCommand command) {
   command.picture.accuracy = sdm::thickness_accuracy(input.mesh);
   command.picture.tolerance = limits_of(command);
   ThicknessResult result;
-  out.fill([&] { result = measure(command, input, part.import_ms, out.staging(), progress); });
+  out.fill([&] { result = measure(command, part, out.staging(), progress); });
 
   print(
       command, [&] { return result.report; },
       [&] {
         std::string files = listed(command.files);
-        if (command.files.exr) files = name_of_method(other_method(command.method)) + ".exr " + files;
+        if (command.files.exr) files = name_of_method(other_method(command)) + ".exr " + files;
         return thickness_summary(command, result, size) +
                result_lines(14, total.lap(), command.out.string(), files);
       });
@@ -265,7 +223,7 @@ int run(ThicknessCommand command) {
 
 void add_limits(CLI::App& app, ThicknessCommand& c) {
   app.add_option(
-         "--method", c.method,
+         "--method", c.thickness.method,
          "The thickness that is drawn and judged: ball, the diameter of the largest ball that touches "
          "at a texel, or ray, the length of the ray from it along the inward normal. The other one is "
          "in the report and in a file of its own")
@@ -310,14 +268,9 @@ void add_thickness_command(CLI::App& app) {
   add_weld_option(*thickness, c.part.weld, "the part");
   add_deflection_option(*thickness, c.part.tessellation);
   add_limits(*thickness, c);
-  add_resolution_option(*thickness, c.atlas);
-  add_layout_options(*thickness, c.atlas, "the part");
-  add_write_option(*thickness, c.files, true);
-  add_picture_options(*thickness, c.picture);
-  add_run_options(*thickness, c, "the report (report.json) instead of a summary");
+  add_part_map_options(*thickness, c, "the part");
   thickness->callback([command] {
-    check_layout(command->atlas);
-    check_units(command->picture.units, command->part.file, command->part.transform);
+    check_part_map(*command);
     if (command->least && command->most && *command->least > *command->most)
       throw CLI::ValidationError("--min", "must not exceed --max");
     if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);

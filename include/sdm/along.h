@@ -6,10 +6,8 @@
 #include <sdm/api.h>
 #include <sdm/facing.h>
 #include <sdm/map.h>
-#include <sdm/mesh.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
-#include <sdm/surface.h>
 #include <sdm/types.h>
 
 #include <limits>
@@ -20,18 +18,9 @@
 
 namespace sdm {
 
-/// Options of along_map(), distances_along_at_vertices() and closest_points_along().
-struct AlongOptions {
-  /// The direction of all lines, of any length. Nothing: the normal of each sample's face, or of each point.
-  std::optional<Vec3> direction{};
-  /// Greater than 0, in units of the meshes. Texels farther than this have no value (NaN).
-  double max_distance = std::numeric_limits<double>::infinity();
-  Progress progress{};
-};
-
-/// Computes, at every texel, the distance to the nearest point of O2 on the line through the texel's surface
-/// point, to both sides, among the faces that face the same way as the sample. With m, the normal of the
-/// sample's face, and u, the unit vector along the line, these are the faces whose normal n has
+/// A measure (sdm/measure.h): the distance to the nearest point of O2 on the line through the sample, to both
+/// sides, among the faces that face the same way as the sample. With m, the normal of the sample's face, and
+/// u, the unit vector along the line, these are the faces whose normal n has
 ///   n·m > 0                   along normals (u = m)
 ///   (n·u) (m·u) > 0           along a direction: seen along it, both show the same side
 /// by more than 1e-12. Along the vertical, the distance of terrain is its change of height; both surfaces
@@ -48,12 +37,17 @@ struct AlongOptions {
 /// without_match, or as beyond_max_distance if there is a hit that is farther. Throws sdm::Error for a
 /// direction that is 0 or not finite, for a max_distance that is not positive, or if there is not enough
 /// memory; Cancelled. Cost: two rays for each texel, all cores.
-[[nodiscard]] SDM_API DistanceMap along_map(const Surface& surface, const Sites& sites,
-                                            const AlongOptions& options = {});
+struct AlongOptions {
+  /// The direction of all lines, of any length. Nothing: the normal of each sample's face, or of each point.
+  std::optional<Vec3> direction{};
+  /// Greater than 0, in units of the meshes. Texels farther than this have no value (NaN).
+  double max_distance = std::numeric_limits<double>::infinity();
+  Progress progress{};
+};
 
-/// The same from points with normals, of any length: `closest` are the hits, of SiteType::face, with the
-/// distance without its sign, which is − where `behind`. `unmatched` are the points without a hit at any
-/// distance. Without normals, along a direction, all faces count. A point with a normal of 0, or one at a
+/// Measures along lines from points with normals, of any length: `closest` are the hits, of SiteType::face,
+/// with the distance without its sign, which is − where `behind`. `unmatched` are the points without a hit at
+/// any distance. Without normals, along a direction, all faces count. A point with a normal of 0, or one at a
 /// right angle to the direction, has no hit. Also throws for points that are not finite, and unless there is
 /// a normal for each point, or none along a direction. Cost: two rays for each point, all cores.
 [[nodiscard]] SDM_API FacingPoints closest_points_along(const Sites& sites, std::span<const Vec3> points,
@@ -63,11 +57,5 @@ struct AlongOptions {
 /// What the distances are, in words; `sample` is what they are measured from, such as "sample's face".
 [[nodiscard]] SDM_API MeasuredDistance measured_distance(const AlongOptions& options,
                                                          const std::string& sample = "sample's face");
-
-/// The same at the vertices of a mesh: of the distances by its faces, each with its own normal, the one of
-/// least absolute value. NaN for a vertex without a value. Errors and cost as of along_map(), for each corner
-/// of a face.
-[[nodiscard]] SDM_API std::vector<float> distances_along_at_vertices(const Mesh& mesh, const Sites& sites,
-                                                                     const AlongOptions& options = {});
 
 }  // namespace sdm

@@ -30,6 +30,7 @@
 #include <sdm/map_samples.h>
 #include <sdm/match.h>
 #include <sdm/material.h>
+#include <sdm/measure.h>
 #include <sdm/mesh.h>
 #include <sdm/mesh_attributes.h>
 #include <sdm/mesh_edit.h>

@@ -1,7 +1,6 @@
 /// Proximity of a mesh to itself: maps, separation and contacts of a surface that folds.
 ///
-/// Threads: an object is used by one thread at a time; different objects, and compute_self_map, may be used
-/// concurrently.
+/// Threads: an object is used by one thread at a time; different objects may be used concurrently.
 #pragma once
 
 #include <sdm/api.h>
@@ -87,32 +86,23 @@ class SDM_API Exclusion {
   std::vector<std::size_t> offsets_;     ///< of each row in excluded_, and an end
 };
 
-/// Options of compute_self_map().
-struct SelfMapOptions {
+/// A measure (sdm/measure.h): the distance to the closest point of the faces of the same mesh that the
+/// sample's face does not exclude. Distances are unsigned, exact up to double rounding, stored in float. A
+/// texel with nothing in range, because every face is excluded or farther than max_distance, has the distance
+/// +∞, the vector 0, kNone and SiteType::none, and counts as beyond_max_distance; NaN means that no face owns
+/// the texel. At a vertex, faces that Sites ignores do not count; NaN means that there are no others. Within
+/// a face the distance is 1-Lipschitz; between faces it may jump, as their exclusions differ: the map is of
+/// DistanceKind::self, whose samples do not bound the points between them.
+///
+/// Surface and Sites must be built from the same mesh and positions, the exclusion from the same mesh at
+/// rest. Throws sdm::Error if their numbers of faces differ, for a maximum distance out of range, or if there
+/// is not enough memory; Cancelled. Cost: one search per texel that skips what is excluded; all cores.
+struct SelfOptions {
+  const Exclusion& exclusion;  ///< must outlive the options
   double max_distance =
       std::numeric_limits<double>::infinity();  ///< > 0, in units of the mesh: anything farther is ignored
   Progress progress{};
 };
-
-/// Computes, at every texel, the closest point of the faces that the texel's face does not exclude. Distances
-/// are unsigned, exact up to double rounding, stored in float. A texel with nothing in range, because every
-/// face is excluded or farther than max_distance, has the distance +∞, the vector 0, kNone and
-/// SiteType::none, and counts as beyond_max_distance; NaN means that no face owns the texel. Within a face
-/// the distance is 1-Lipschitz; between faces it may jump, as their exclusions differ: the map is of
-/// DistanceKind::self, whose samples do not bound the points between them.
-///
-/// `surface` and `sites` must be built from the same mesh and positions, `exclusion` from the same mesh at
-/// rest. Throws sdm::Error if their numbers of faces differ, for a maximum distance out of range, or if there
-/// is not enough memory; Cancelled. Cost: one search per texel that skips what is excluded; all cores.
-[[nodiscard]] SDM_API DistanceMap compute_self_map(const Surface& surface, const Sites& sites,
-                                                   const Exclusion& exclusion,
-                                                   const SelfMapOptions& options = {});
-
-/// The same at the vertices: for each, the minimum over its faces; +∞ if nothing is in range, NaN for a
-/// vertex without faces. Faces that Sites ignores are skipped.
-[[nodiscard]] SDM_API std::vector<float> self_distances_at_vertices(const Sites& sites,
-                                                                    const Exclusion& exclusion,
-                                                                    const SelfMapOptions& options = {});
 
 /// Options of a SelfProximityQuery.
 struct SelfProximityOptions {

@@ -27,23 +27,7 @@ enum class ThicknessMethod : std::uint8_t {
 template <>
 inline constexpr std::array kWords<ThicknessMethod>{"ball", "ray"};
 
-/// Options of thickness_maps() and thickness_at_vertices().
-struct ThicknessOptions {
-  /// An angle in degrees, greater than 0 and less than 180: the ball is stopped by faces whose normal turns
-  /// from that of the point's face by more than this. Faces that turn less are the neighbourhood of the
-  /// point, which would stop any ball at 0.
-  double angle = 90;
-  Progress progress{};
-};
-
-/// The thickness by either method. `distance` is the thickness; `vector` leads from the texel's surface point
-/// to the point that stops the ball or the ray, on the face `site`. Of the ball, the vector is shorter than
-/// the diameter unless both ends are opposite.
-struct ThicknessMaps {
-  DistanceMap ball, ray;
-};
-
-/// Computes the thickness of a solid at every texel of its surface.
+/// A measure (sdm/measure.h): the thickness of a solid.
 ///
 /// The ray starts at the texel's surface point and ends at the first face whose outward normal has a product
 /// with it above 1e-12: faces next to the point, which it touches or enters, do not end it. The ball that
@@ -59,19 +43,35 @@ struct ThicknessMaps {
 ///
 /// Values are exact to 1e-11 of the diagonal of the mesh and the rounding to float, at the texels. Nothing
 /// bounds them in between: the thickness may jump from face to face. Texels of faces that Sites ignores, and
-/// balls that nothing stops, have no value (NaN, kNone), and count as beyond_max_distance.
+/// balls that nothing stops, have no value (NaN, kNone), and count as beyond_max_distance. At a vertex, balls
+/// have 0 where faces meet at an edge that is sharper than the angle allows.
 ///
-/// `surface` and `sites` must be built from the same mesh and positions. Throws sdm::Error if their numbers
-/// of faces differ, unless the mesh is closed and orientable, for an angle out of range, or if there is not
-/// enough memory; Cancelled. Cost: a ray and a search in the tree for each texel, all cores.
+/// Surface and Sites must be built from the same mesh and positions. Throws sdm::Error if their numbers of
+/// faces differ, unless the mesh is closed and orientable, for an angle out of range, or if there is not
+/// enough memory; Cancelled. Cost: a ray and a search in the tree for each sample, all cores.
+struct ThicknessOptions {
+  ThicknessMethod method = ThicknessMethod::ball;
+  /// An angle in degrees, greater than 0 and less than 180: the ball is stopped by faces whose normal turns
+  /// from that of the point's face by more than this. Faces that turn less are the neighbourhood of the
+  /// point, which would stop any ball at 0.
+  double angle = 90;
+  Progress progress{};
+};
+
+/// Returns what a thickness with these options is.
+[[nodiscard]] SDM_API MeasuredDistance measured_distance(const ThicknessOptions& options);
+
+/// Maps of the thickness by either method. `distance` is the thickness; `vector` leads from the texel's
+/// surface point to the point that stops the ball or the ray, on the face `site`. Of the ball, the vector is
+/// shorter than the diameter unless both ends are opposite.
+struct ThicknessMaps {
+  DistanceMap ball, ray;
+};
+
+/// Computes the thickness by both methods at once, whatever options.method is: the ball starts from the ray.
+/// Errors and cost as of the measure.
 [[nodiscard]] SDM_API ThicknessMaps thickness_maps(const Surface& surface, const Sites& sites,
                                                    const ThicknessOptions& options = {});
-
-/// The thickness at each vertex: the minimum over its faces, each with its own normal. NaN for a vertex
-/// without faces. 0 for balls where faces meet at an edge that is sharper than the angle allows. Errors as of
-/// thickness_maps(). Cost: a ray and a search for each corner of a face, all cores.
-[[nodiscard]] SDM_API std::vector<float> thickness_at_vertices(const Sites& sites, ThicknessMethod method,
-                                                               const ThicknessOptions& options = {});
 
 /// The walls of a solid, by rays from a sample of its surface. An estimate.
 struct WallEstimate {

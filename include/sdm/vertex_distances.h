@@ -18,9 +18,9 @@ namespace sdm {
 /// its own normal; the result is the one of least absolute value, NaN if no face has one. A maps_only engine
 /// is replaced by cpu. Throws sdm::Error as closest_points does, and for a sign method that O2 does not
 /// allow; Cancelled. Cost: that of closest_points; with options.facing, another search for each face around a
-/// vertex whose closest point it does not allow.
+/// vertex whose closest point it does not allow. For other measures, see sdm/measure.h.
 [[nodiscard]] SDM_API std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites,
-                                                               MapOptions options = {});
+                                                               const MapOptions& options = {});
 
 /// boundary_mask() of the vertices of `mesh`: for each, 1 if its closest site is a boundary edge of an open
 /// O2 or a vertex of one, otherwise 0, also beyond options.max_distance. Distances by SignMethod::side have

@@ -31,21 +31,18 @@ std::unique_ptr<PyMap> map_between(nb::handle surface, nb::handle sites) {
   return result;
 }
 
-std::unique_ptr<PyMap> compute(nb::handle surface, nb::handle sites, const char* engine, const char* sign,
-                               double max_distance, nb::handle facing, nb::handle progress) {
+/// Computes the map of what `prepare` sets in it.
+template <class Prepare>
+std::unique_ptr<PyMap> compute(nb::handle surface, nb::handle sites, const char* engine, nb::handle progress,
+                               const Prepare& prepare) {
   const auto lock = nb::cast<const PySurface&>(surface).access.use();
   const auto sites_lock = nb::cast<const PySites&>(sites).access.use();
   auto result = map_between(surface, sites);
-  result->options = {.engine = engine_of(engine),
-                     .sign = enum_of<SignMethod>("sign", sign),
-                     .max_distance = max_distance,
-                     .facing = facing_of(facing)};
   result->engine = engine;
   run(progress, [&](const Progress& report) {
     const auto begin = std::chrono::steady_clock::now();
-    MapOptions options = result->options;
-    options.progress = report;
-    compute_map(result->on->surface, result->to->sites, options, result->map);
+    prepare(*result, report);
+    result->map = compute_map(result->on->surface, result->to->sites, result->measure(report));
     result->ms = milliseconds_since(begin);
   });
   return result;
@@ -53,62 +50,30 @@ std::unique_ptr<PyMap> compute(nb::handle surface, nb::handle sites, const char*
 
 std::unique_ptr<PyMap> compute_self(nb::handle surface, nb::handle sites, nb::handle rest,
                                     const ExclusionRule& rule, double max_distance, nb::handle progress) {
-  const auto lock = nb::cast<const PySurface&>(surface).access.use();
-  const auto sites_lock = nb::cast<const PySites&>(sites).access.use();
-  auto result = map_between(surface, sites);
-  result->options = {.sign = SignMethod::none, .max_distance = max_distance};
-  result->engine = "self";
   const Mesh at_rest = mesh_of(rest, nb::none());
-  run(progress, [&](const Progress& report) {
-    const auto begin = std::chrono::steady_clock::now();
-    result->exclusion =
-        std::make_shared<Exclusion>(at_rest, ExclusionOptions{.rule = rule, .progress = report});
-    result->map = compute_self_map(result->on->surface, result->to->sites, *result->exclusion,
-                                   {.max_distance = max_distance, .progress = report});
-    result->ms = milliseconds_since(begin);
+  return compute(surface, sites, "self", progress, [&](PyMap& map, const Progress& report) {
+    map.options = {.sign = SignMethod::none, .max_distance = max_distance};
+    map.exclusion = std::make_shared<Exclusion>(at_rest, ExclusionOptions{.rule = rule, .progress = report});
   });
-  return result;
 }
 
 std::unique_ptr<PyMap> compute_along(nb::handle surface, nb::handle sites, nb::handle along,
                                      double max_distance, nb::handle progress) {
-  const AlongOptions options = along_of(along);
-  const auto lock = nb::cast<const PySurface&>(surface).access.use();
-  const auto sites_lock = nb::cast<const PySites&>(sites).access.use();
-  auto result = map_between(surface, sites);
-  result->options = {.max_distance = max_distance};
-  result->engine = "along";
-  result->along = options;
-  result->along->max_distance = max_distance;
-  run(progress, [&](const Progress& report) {
-    const auto begin = std::chrono::steady_clock::now();
-    AlongOptions with_progress = *result->along;
-    with_progress.progress = report;
-    result->map = along_map(result->on->surface, result->to->sites, with_progress);
-    result->ms = milliseconds_since(begin);
+  AlongOptions options = along_of(along);
+  options.max_distance = max_distance;
+  return compute(surface, sites, "along", progress, [&](PyMap& map, const Progress&) {
+    map.options = {.max_distance = max_distance};
+    map.along = options;
   });
-  return result;
 }
 
 std::unique_ptr<PyMap> compute_thickness(nb::handle surface, nb::handle sites, const std::string& method,
                                          double angle, nb::handle progress) {
-  if (method != "ball" && method != "ray")
-    throw Error("method must be 'ball' or 'ray', not '" + method + "'");
-  const bool ball = method == "ball";
-  const auto lock = nb::cast<const PySurface&>(surface).access.use();
-  const auto sites_lock = nb::cast<const PySites&>(sites).access.use();
-  auto result = map_between(surface, sites);
-  result->options = {.sign = SignMethod::none};
-  result->engine = "thickness";
-  result->thickness = {ball ? ThicknessMethod::ball : ThicknessMethod::ray, angle};
-  run(progress, [&](const Progress& report) {
-    const auto begin = std::chrono::steady_clock::now();
-    ThicknessMaps maps =
-        thickness_maps(result->on->surface, result->to->sites, {.angle = angle, .progress = report});
-    result->map = std::move(ball ? maps.ball : maps.ray);
-    result->ms = milliseconds_since(begin);
+  const auto chosen = enum_of<ThicknessMethod>("method", method);
+  return compute(surface, sites, "thickness", progress, [&](PyMap& map, const Progress&) {
+    map.options = {.sign = SignMethod::none};
+    map.thickness = {chosen, angle};
   });
-  return result;
 }
 
 }  // namespace
@@ -122,21 +87,21 @@ AlongOptions along_of(nb::handle value) {
   throw Error("along must be 'normal' or a direction of three numbers");
 }
 
-std::vector<float> PyMap::vertex_distances(const Progress& progress) const {
-  if (along) {
-    AlongOptions at_vertices = *along;
-    at_vertices.progress = progress;
-    return distances_along_at_vertices(on->surface.mesh(), to->sites, at_vertices);
-  }
+Measure PyMap::measure(const Progress& progress) const {
+  const auto with_progress = [&](auto chosen) {
+    chosen.progress = progress;
+    return chosen;
+  };
+  if (along) return with_progress(*along);
   if (thickness)
-    return thickness_at_vertices(to->sites, thickness->first,
-                                 {.angle = thickness->second, .progress = progress});
+    return ThicknessOptions{.method = thickness->first, .angle = thickness->second, .progress = progress};
   if (exclusion)
-    return self_distances_at_vertices(to->sites, *exclusion,
-                                      {.max_distance = options.max_distance, .progress = progress});
-  MapOptions at_vertices = options;
-  at_vertices.progress = progress;
-  return distances_at_vertices(on->surface.mesh(), to->sites, at_vertices);
+    return SelfOptions{.exclusion = *exclusion, .max_distance = options.max_distance, .progress = progress};
+  return with_progress(options);
+}
+
+std::vector<float> PyMap::vertex_distances(const Progress& progress) const {
+  return distances_at_vertices(on->surface.mesh(), to->sites, measure(progress));
 }
 
 void bind_map(nb::module_& module) {
@@ -176,7 +141,13 @@ void bind_map(nb::module_& module) {
       "compute_map",
       [](nb::handle surface, nb::handle sites, const char* engine, const char* sign, double max_distance,
          nb::handle facing, nb::handle progress) {
-        return compute(surface, sites, engine, sign, max_distance, facing, progress).release();
+        const MapOptions options{.engine = engine_of(engine),
+                                 .sign = enum_of<SignMethod>("sign", sign),
+                                 .max_distance = max_distance,
+                                 .facing = facing_of(facing)};
+        return compute(surface, sites, engine, progress,
+                       [&](PyMap& map, const Progress&) { map.options = options; })
+            .release();
       },
       nb::rv_policy::take_ownership, nb::arg("surface").none(), nb::arg("sites").none(), nb::kw_only(),
       nb::arg("engine") = "cpu", nb::arg("sign") = "automatic",

@@ -79,7 +79,7 @@ struct PyMap {
   /// Also throws for distances to other points than the closest one, which bound nothing between texels.
   void require_bounds() const {
     require_other_mesh();
-    if (map.measured.kind != DistanceKind::closest)
+    if (!is_lipschitz(map.measured.kind))
       throw Error("the map is the " + map.measured.text +
                   ", which may jump, so that texels do not bound it; check() judges the texels");
   }
@@ -91,6 +91,8 @@ struct PyMap {
   }
   /// How far both meshes may be from the surfaces that are meant; of a thickness, both ends.
   [[nodiscard]] double guard() const { return on->deviation + (thickness ? on->deviation : to->deviation); }
+  /// What the map was measured by, to measure again.
+  [[nodiscard]] Measure measure(const Progress& progress) const;
   /// The distance at each vertex of the surface.
   [[nodiscard]] std::vector<float> vertex_distances(const Progress& progress) const;
 };

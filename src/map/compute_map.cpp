@@ -1,15 +1,12 @@
+#include <sdm/error.h>
 #include <sdm/map.h>
-#include <sdm/tolerance.h>
 
-#include <array>
-#include <atomic>
 #include <new>
 
 #include "core/memory.h"
-#include "map/engine_of.h"
-#include "map/facing_map.h"
-#include "map/map_writer.h"
-#include "query/inside/inside.h"
+#include "core/numbers/number_text.h"
+#include "map/closest_measure.h"
+#include "query/facing/facing_angle.h"
 
 namespace sdm {
 
@@ -23,30 +20,41 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const MapOpt
 
 void compute_map(const Surface& surface, const Sites& sites, const MapOptions& options,
                  DistanceMap& map) try {
-  const std::shared_ptr<const Engine> engine = map::engine_of(options);
-  if (options.facing) return map::compute_facing_map(surface, sites, options, *engine, map);
-  const SignUsed sign = choose_sign(sites, options.sign);
-  const inside::InsideTest is_inside(internals(sites), sign.method,
-                                     engine_accuracy(engine->info(), surface.mesh(), sites.mesh()));
-
-  map::clear(map, surface);
-  const map::MapWriter writer(map, surface);
-  map.sign = sign;
-  map.measured = {}, map.without_match = 0;
-  // Indexed by the samples' position, so that threads rarely write to the same cache line.
-  struct alignas(64) Counter {
-    std::atomic<std::size_t> count{0};
-  };
-  std::array<Counter, 64> beyond;
-  engine->map(surface, sites, {options.max_distance, options.progress},
-              [&](std::size_t first, std::span<const Vec3> points, const sites::ClosestPacket& closest) {
-                const std::size_t without = writer.store(first, closest, is_inside(points, closest));
-                if (without > 0) beyond[first / 1024 % beyond.size()].count += without;
-              });
-  map.beyond_max_distance = 0;
-  for (const Counter& counter : beyond) map.beyond_max_distance += counter.count;
+  const map::ClosestMeasure measure(surface, sites, options);
+  map::TexelStore texels(map, surface, measure.description(), surface.sample_texels());
+  measure.engine().map(
+      surface, sites, {options.max_distance, options.progress},
+      [&](std::size_t first, std::span<const Vec3> points, const sites::ClosestPacket& closest) {
+        measure.store(first, points, closest, texels);
+      });
+  texels.finish();
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a map");
+}
+
+MeasuredDistance measured_distance(const MapOptions& options) {
+  if (!options.facing) return {};
+  facing::check_angle(*options.facing);
+  return {DistanceKind::facing,
+          "distance to the closest of the faces that face the same way, within " +
+              number_text(*options.facing, 6) + "°",
+          options.facing};
+}
+
+SignUsed choose_sign(const Sites& sites, const MapOptions& options) {
+  if (!options.facing) return choose_sign(sites, options.sign);
+  switch (options.sign) {
+    case SignMethod::none:
+      return {SignMethod::none, "asked for"};
+    case SignMethod::automatic:
+    case SignMethod::side:
+      return {SignMethod::side, "by the side of the face that is matched"};
+    default:
+      throw Error(
+          "distances to faces that face the samples have the sign of the side of these faces; use sign "
+          "automatic, side or none",
+          Remedy::sign_method);
+  }
 }
 
 }  // namespace sdm

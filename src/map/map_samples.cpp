@@ -1,14 +1,11 @@
 #include <sdm/map_samples.h>
 
-#include <atomic>
 #include <new>
 #include <string>
 
 #include "core/memory.h"
-#include "map/engine_of.h"
-#include "map/map_writer.h"
+#include "map/closest_measure.h"
 #include "query/closest/blocks.h"
-#include "query/inside/inside.h"
 #include "surface/surface_data.h"
 
 namespace sdm {
@@ -44,24 +41,17 @@ DistanceMap empty_map(const Surface& surface) try {
 
 void compute_samples(const Surface& surface, const Sites& sites, const MapOptions& options,
                      const SampleRange& range, DistanceMap& map) try {
-  const std::shared_ptr<const Engine> engine = map::engine_of(options);
   check_part(surface, options, range, map);
-  const SignUsed sign = choose_sign(sites, options.sign);
-  const inside::InsideTest is_inside(internals(sites), sign.method,
-                                     engine_accuracy(engine->info(), surface.mesh(), sites.mesh()));
-  const map::MapWriter writer(map, surface);
-  map.sign = sign;
-  map.measured = {}, map.without_match = 0;
-  std::atomic<std::size_t> beyond = 0;
+  const map::ClosestMeasure measure(surface, sites, options);
+  map::TexelStore texels(map, measure.description(), surface.sample_texels());
   closest::for_each_sample_block(
       surface, range, options.progress, "map", [&](std::size_t begin, std::span<const Vec3> points) {
-        engine->closest_points(
+        measure.engine().closest_points(
             sites, points, options.max_distance, [&](std::size_t first, const sites::ClosestPacket& closest) {
-              const auto of_packet = points.subspan(first, closest.count);
-              beyond += writer.store(begin + first, closest, is_inside(of_packet, closest));
+              measure.store(begin + first, points.subspan(first, closest.count), closest, texels);
             });
       });
-  map.beyond_max_distance = beyond;
+  texels.finish();
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a map");
 }

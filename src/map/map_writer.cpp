@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 #include <string>
 
 #include "atlas/size_text.h"
@@ -13,10 +12,10 @@ namespace sdm::map {
 
 namespace {
 
-void store_none(DistanceMap& map, std::size_t texel, std::size_t count) {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  std::fill_n(map.distance.data() + texel, count, nan);
-  std::fill_n(map.vector.data() + texel, count, Vec3f{nan, nan, nan});
+void store_none(DistanceMap& map, std::size_t texel, std::size_t count, const NoValue& no_value = {}) {
+  const float v = no_value.vector;
+  std::fill_n(map.distance.data() + texel, count, no_value.distance);
+  std::fill_n(map.vector.data() + texel, count, Vec3f{v, v, v});
   std::fill_n(map.site.data() + texel, count, kNone);
   std::fill_n(map.site_type.data() + texel, count, SiteType::none);
 }
@@ -58,23 +57,23 @@ void clear_all(DistanceMap& map, const Surface& surface) {
                [&](std::size_t begin, std::size_t end) { store_none(map, begin, end - begin); });
 }
 
-MapWriter::MapWriter(DistanceMap& map, const Surface& surface) : texels_(surface.sample_texels()), map_(map) {
+MapWriter::MapWriter(DistanceMap& map, const NoValue& no_value) : map_(map), no_value_(no_value) {
   distance_ = map.distance.data();
   vector_ = map.vector.data();
   site_ = map.site.data();
   site_type_ = map.site_type.data();
 }
 
-std::size_t MapWriter::store(std::size_t first, const sites::ClosestPacket& closest,
+std::size_t MapWriter::store(std::span<const std::uint32_t> texels, const sites::ClosestPacket& closest,
                              std::uint32_t inside) const {
   constexpr std::size_t kSize = sites::ClosestPacket::kSize;
   // Neighbours in space are scattered over the map: prefetch the texels that are written soon.
   constexpr std::size_t kAhead = 4 * kSize;
-  for (std::size_t i = first + kAhead; i < std::min(first + kAhead + kSize, texels_.size()); ++i) {
-    __builtin_prefetch(distance_ + texels_[i], 1);
-    __builtin_prefetch(vector_ + texels_[i], 1);
-    __builtin_prefetch(site_ + texels_[i], 1);
-    __builtin_prefetch(site_type_ + texels_[i], 1);
+  for (std::size_t i = kAhead; i < std::min(kAhead + kSize, texels.size()); ++i) {
+    __builtin_prefetch(distance_ + texels[i], 1);
+    __builtin_prefetch(vector_ + texels[i], 1);
+    __builtin_prefetch(site_ + texels[i], 1);
+    __builtin_prefetch(site_type_ + texels[i], 1);
   }
 
   float distance[kSize], vector[3][kSize];
@@ -86,7 +85,7 @@ std::size_t MapWriter::store(std::size_t first, const sites::ClosestPacket& clos
     d = -d;
   }
 
-  const std::uint32_t* texel = texels_.data() + first;
+  const std::uint32_t* texel = texels.data();
   std::size_t without = 0;
   for (std::size_t i = 0; i < closest.count; ++i) {
     distance_[texel[i]] = distance[i];
@@ -96,7 +95,7 @@ std::size_t MapWriter::store(std::size_t first, const sites::ClosestPacket& clos
     without += closest.type[i] == SiteType::none;
   }
   for (std::size_t i = 0; without > 0 && i < closest.count; ++i)
-    if (closest.type[i] == SiteType::none) store_none(map_, texel[i], 1);
+    if (closest.type[i] == SiteType::none) store_none(map_, texel[i], 1, no_value_);
   return without;
 }
 

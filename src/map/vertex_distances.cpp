@@ -64,7 +64,8 @@ std::vector<float> facing_distances(const Mesh& mesh, const Sites& sites, MapOpt
 
 }  // namespace
 
-std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, MapOptions options) try {
+std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, const MapOptions& asked) try {
+  MapOptions options = asked;
   if (options.engine && engine_info(*options.engine).maps_only) options.engine = nullptr;
   if (options.facing) return facing_distances(mesh, sites, options);
   const auto [closest, inside] = find(mesh, sites, options);

@@ -42,7 +42,8 @@ TEST_F(AlongOption, StatesTheChangeOfHeightAtItsSamples) {
   EXPECT_EQ(outcome.out, contents(out + "/report.json"));
   const Json report = Json::parse(outcome.out);
   const Surface surface(read_mesh(after), {.resolution = 64});
-  const DistanceMap map = along_map(surface, Sites(read_mesh(before)), {.direction = Vec3{0, 0, 1}});
+  const DistanceMap map =
+      compute_map(surface, Sites(read_mesh(before)), AlongOptions{.direction = Vec3{0, 0, 1}});
   const DistanceStatistics expected = statistics(surface, map);
   EXPECT_EQ(report["measured"]["kind"], "along");
   EXPECT_EQ(report["without_match"], map.without_match);

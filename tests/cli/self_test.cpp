@@ -39,7 +39,7 @@ TEST_F(SelfCommand, WritesAllResultsWithTheNumbersOfTheLibrary) {
     const Mesh mesh = read_mesh(o1);
     const Surface surface(mesh, {.resolution = 128});
     SelfProximityQuery query(mesh, {.exclusion = rule});
-    const DistanceMap map = compute_self_map(surface, query.sites(), query.exclusion());
+    const DistanceMap map = compute_map(surface, query.sites(), SelfOptions{.exclusion = query.exclusion()});
     const DistanceStatistics expected = statistics(surface, map);
     EXPECT_EQ(report["version"], kVersion);
     EXPECT_EQ(report["mesh"]["file"], o1);

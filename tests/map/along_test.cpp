@@ -44,7 +44,7 @@ TEST(Along, TheVerticalItIsTheChangeOfHeightOfTerrain) {
   for (const bool flip_after : {false, true})
     for (const double up : {1.0, -3.0}) {
       const Surface surface(flip_after ? test::flipped(after) : after, {.resolution = 128});
-      const DistanceMap map = along_map(surface, Sites(before), {.direction = Vec3{0, 0, up}});
+      const DistanceMap map = compute_map(surface, Sites(before), AlongOptions{.direction = Vec3{0, 0, up}});
       EXPECT_EQ(map.measured.kind, DistanceKind::along);
       std::size_t checked = 0;
       for (const std::uint32_t texel : surface.sample_texels()) {
@@ -68,7 +68,7 @@ TEST(Along, TexelsBesideO2HaveNoValueAndAreCounted) {
   const Surface surface(terrain(8, [](double, double) { return 0.5; }), {.resolution = 64});
   const Sites half(terrain(
       8, [](double, double) { return 0.0; }, -0.5, 0.5));
-  const DistanceMap map = along_map(surface, half, {.direction = Vec3{0, 0, 1}});
+  const DistanceMap map = compute_map(surface, half, AlongOptions{.direction = Vec3{0, 0, 1}});
   std::size_t none = 0;
   for (const std::uint32_t texel : surface.sample_texels()) {
     const Vec3 p = surface.texel_point(texel);
@@ -81,11 +81,12 @@ TEST(Along, TexelsBesideO2HaveNoValueAndAreCounted) {
     }
   }
   EXPECT_EQ(map.without_match, none);
-  const DistanceMap near = along_map(surface, half, {.direction = Vec3{0, 0, 1}, .max_distance = 0.4});
+  const DistanceMap near =
+      compute_map(surface, half, AlongOptions{.direction = Vec3{0, 0, 1}, .max_distance = 0.4});
   EXPECT_EQ(near.without_match, none);
   EXPECT_EQ(near.beyond_max_distance, surface.sample_texels().size() - none);
   const std::vector<float> at =
-      distances_along_at_vertices(surface.mesh(), half, {.direction = Vec3{0, 0, 1}});
+      distances_at_vertices(surface.mesh(), half, AlongOptions{.direction = Vec3{0, 0, 1}});
   for (std::size_t v = 0; v < at.size(); ++v) {
     const Vec3& p = surface.mesh().positions[v];
     ASSERT_EQ(std::isnan(at[v]), std::max(std::abs(p[0]), std::abs(p[1])) > 0.5);
@@ -99,7 +100,8 @@ TEST(Along, NormalsADentIsAsDeepAsItIsInAThinSheet) {
   const Mesh dent = terrain(8, [](double, double) { return 0.5 - 0.79; });
   const Surface surface(dent, {.resolution = 64});
   const Sites sites(sheet);
-  const DistanceMap along = along_map(surface, sites), closest = compute_map(surface, sites);
+  const DistanceMap along = compute_map(surface, sites, AlongOptions{}),
+                    closest = compute_map(surface, sites);
   for (const std::uint32_t texel : surface.sample_texels()) {
     ASSERT_NEAR(along.distance[texel], -0.79, 1e-6);
     ASSERT_NEAR(along.vector[texel][2], 0.79, 1e-6);
@@ -111,10 +113,10 @@ TEST(Along, ASurfaceAgainstItselfIsZeroAndIsJudgedByItsSamples) {
   const Mesh mesh = test::ring(24);
   const Surface surface(mesh, {.resolution = 128});
   const Sites sites(mesh);
-  const DistanceMap map = along_map(surface, sites);
+  const DistanceMap map = compute_map(surface, sites, AlongOptions{});
   EXPECT_EQ(map.without_match, 0u);
   for (const std::uint32_t texel : surface.sample_texels()) ASSERT_NEAR(map.distance[texel], 0, 1e-9);
-  const std::vector<float> vertices = distances_along_at_vertices(mesh, sites);
+  const std::vector<float> vertices = distances_at_vertices(mesh, sites, AlongOptions{});
   const SummaryOptions options{.accuracy = 1e-6, .tolerance = 0.1};
   const Summary summary = summarize(surface, sites, map, vertices, options);
   EXPECT_TRUE(summary.evidence.samples_only);
@@ -131,10 +133,10 @@ TEST(Along, AClosedSurfaceThatIsWoundInwardHasOutwardNormals) {
     for (const Mesh& o2 : {sheet, test::flipped(sheet)}) {
       const Surface surface(o1, {.resolution = 64});
       const Sites sites(o2);
-      const DistanceMap map = along_map(surface, sites);
+      const DistanceMap map = compute_map(surface, sites, AlongOptions{});
       EXPECT_EQ(map.without_match, 0u);
       for (const std::uint32_t texel : surface.sample_texels()) ASSERT_NEAR(map.distance[texel], 0, 1e-6);
-      for (const float d : distances_along_at_vertices(o1, sites)) EXPECT_NEAR(d, 0, 1e-6);
+      for (const float d : distances_at_vertices(o1, sites, AlongOptions{})) EXPECT_NEAR(d, 0, 1e-6);
     }
 }
 
@@ -144,7 +146,7 @@ TEST(Along, OfPointsItIsThatOfTheVerticesOfOneFace) {
   const Sites sites(before);
   const Vec3 up{0, 0, 2};
   const std::vector<Vec3> normals(after.positions.size(), up), down(after.positions.size(), -1.0 * up);
-  const std::vector<float> expected = distances_along_at_vertices(after, sites, {.direction = up});
+  const std::vector<float> expected = distances_at_vertices(after, sites, AlongOptions{.direction = up});
   const FacingPoints facing = closest_points_along(sites, after.positions, normals, {.direction = up}),
                      turned = closest_points_along(sites, after.positions, down, {.direction = up}),
                      any = closest_points_along(sites, after.positions, {}, {.direction = -1.0 * up}),
@@ -175,10 +177,11 @@ TEST(Along, VerticesOfASolidAreMeasuredToTheSkinThatFacesTheSameWay) {
   const Mesh o1 = test::cube(), o2 = test::cube(2);  // half sides
   const Sites sites(o2);
   const Vec3 direction{0, 0, 1};
-  const std::vector<float> at = distances_along_at_vertices(o1, sites, {.direction = direction});
+  const std::vector<float> at = distances_at_vertices(o1, sites, AlongOptions{.direction = direction});
   for (std::size_t v = 0; v < at.size(); ++v) ASSERT_EQ(at[v], -1.0f);
   const Mesh raised = test::moved(o1, {0, 0, 0.25});
-  const std::vector<float> moved_at = distances_along_at_vertices(raised, sites, {.direction = direction});
+  const std::vector<float> moved_at =
+      distances_at_vertices(raised, sites, AlongOptions{.direction = direction});
   for (std::size_t v = 0; v < at.size(); ++v)
     ASSERT_EQ(moved_at[v], o1.positions[v][2] > 0 ? -0.75f : -1.25f);
 }
@@ -186,8 +189,8 @@ TEST(Along, VerticesOfASolidAreMeasuredToTheSkinThatFacesTheSameWay) {
 TEST(Along, SignsAreThoseOfTheSideOfTheFace) {
   const Surface surface(terrain(4, [](double, double) { return 0.5; }), {.resolution = 64});
   const Sites open(terrain(4, [](double, double) { return 0.0; }));
-  EXPECT_EQ(along_map(surface, open).sign.method, SignMethod::side);
-  EXPECT_EQ(along_map(surface, Sites(test::cube())).sign.method, SignMethod::side);
+  EXPECT_EQ(compute_map(surface, open, AlongOptions{}).sign.method, SignMethod::side);
+  EXPECT_EQ(compute_map(surface, Sites(test::cube()), AlongOptions{}).sign.method, SignMethod::side);
 }
 
 TEST(Along, RefusesOptionsOutOfRange) {
@@ -196,12 +199,13 @@ TEST(Along, RefusesOptionsOutOfRange) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const Vec3& direction : {Vec3{0, 0, 0}, Vec3{kInfinity, 0, 0}, Vec3{0, std::nan(""), 1}})
     EXPECT_NE(test::error_of([&] {
-                (void)along_map(surface, sites, {.direction = direction});
+                (void)compute_map(surface, sites, AlongOptions{.direction = direction});
               }).find("finite and not 0"),
               std::string::npos);
-  EXPECT_NE(
-      test::error_of([&] { (void)along_map(surface, sites, {.max_distance = 0}); }).find("greater than 0"),
-      std::string::npos);
+  EXPECT_NE(test::error_of([&] {
+              (void)compute_map(surface, sites, AlongOptions{.max_distance = 0});
+            }).find("greater than 0"),
+            std::string::npos);
 }
 
 }  // namespace

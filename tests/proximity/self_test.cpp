@@ -237,7 +237,7 @@ TEST(Self, LongFacesDoNotExcludeTheOppositeWall) {
   const Mesh mesh = tube(400, 30, 100);
   const Exclusion exclusion(mesh, {.rule = {.geodesic = length}});
   EXPECT_EQ(exclusion.patches(), mesh.triangles.size());
-  for (const float d : self_distances_at_vertices(Sites(mesh), exclusion)) {
+  for (const float d : distances_at_vertices(mesh, Sites(mesh), SelfOptions{.exclusion = exclusion})) {
     ASSERT_GE(d, 0.9 * length);
     ASSERT_LE(d, 2 * length);
   }
@@ -396,11 +396,12 @@ TEST(Self, MapAgreesWithBruteForceAtEveryTexel) {
     Relation all(c.mesh.triangles.size(), std::vector<bool>(c.mesh.triangles.size()));
     for (std::uint32_t f = 0; f < all.size(); ++f)
       for (std::uint32_t g = 0; g < all.size(); ++g) all[f][g] = exclusion.excludes(f, g);
-    const DistanceMap map = compute_self_map(surface, sites, exclusion);
+    const DistanceMap map = compute_map(surface, sites, SelfOptions{.exclusion = exclusion});
     expect_self_map(surface, sites, map, all);
     const double limit = statistics(surface, map).p50;
-    expect_self_map(surface, sites, compute_self_map(surface, sites, exclusion, {.max_distance = limit}), all,
-                    limit);
+    expect_self_map(surface, sites,
+                    compute_map(surface, sites, SelfOptions{.exclusion = exclusion, .max_distance = limit}),
+                    all, limit);
   }
 }
 
@@ -409,8 +410,8 @@ TEST(Self, DistanceAcrossAFoldIsItsGap) {
   const Surface surface(mesh, {.resolution = 128});
   const Sites sites(mesh);
   // The exclusion is that of the flat rest shape: the path around the bend counts.
-  const DistanceMap map =
-      compute_self_map(surface, sites, Exclusion(flat(60, 8), {.rule = {.geodesic = 0.6}}));
+  const DistanceMap map = compute_map(
+      surface, sites, SelfOptions{.exclusion = Exclusion(flat(60, 8), {.rule = {.geodesic = 0.6}})});
   for (const std::uint32_t texel : surface.sample_texels()) {
     if (surface.texel_point(texel)[0] > 1) continue;
     ASSERT_NEAR(map.distance[texel], 0.2, 1e-6);
@@ -423,9 +424,10 @@ TEST(Self, SamplesDoNotProveATolerance) {
   const Surface surface(mesh, {.resolution = 128});
   const Sites sites(mesh);
   const Exclusion exclusion(flat(60, 8), {.rule = {.geodesic = 0.6}});
-  const DistanceMap map = compute_self_map(surface, sites, exclusion);
+  const DistanceMap map = compute_map(surface, sites, SelfOptions{.exclusion = exclusion});
   EXPECT_EQ(map.measured.kind, DistanceKind::self);
-  const std::vector<float> at_vertices = self_distances_at_vertices(sites, exclusion);
+  const std::vector<float> at_vertices =
+      distances_at_vertices(sites.mesh(), sites, SelfOptions{.exclusion = exclusion});
   const double accuracy = engine_accuracy(engines().front(), mesh, mesh);
   const double bound = covering_radius(surface);
   const Tolerance tolerance(10);
@@ -445,13 +447,14 @@ TEST(Self, NoDistanceWhereAllIsExcluded) {
   const Surface surface(mesh, {.resolution = 32});
   const Sites sites(mesh);
   const Exclusion exclusion(mesh);
-  const DistanceMap map = compute_self_map(surface, sites, exclusion);
+  const DistanceMap map = compute_map(surface, sites, SelfOptions{.exclusion = exclusion});
   expect_self_map(surface, sites, map, Relation(4, std::vector<bool>(4, true)));
   EXPECT_EQ(map.beyond_max_distance, surface.sample_texels().size());
   EXPECT_EQ(statistics(surface, map).texels, 0u);
   EXPECT_TRUE(std::isnan(statistics(surface, map).max));
   EXPECT_EQ(area_fraction_beyond(surface, map, 1), 1);
-  for (const float d : self_distances_at_vertices(sites, exclusion)) EXPECT_EQ(d, kInf);
+  for (const float d : distances_at_vertices(sites.mesh(), sites, SelfOptions{.exclusion = exclusion}))
+    EXPECT_EQ(d, kInf);
   SelfProximityQuery query(mesh);
   EXPECT_FALSE(query.separation());
   EXPECT_TRUE(query.contacts(10).empty());
@@ -465,15 +468,18 @@ TEST(Self, NoDistanceWithinALengthBeyondTheMesh) {
   EXPECT_EQ(exclusion.patches(), 1u);
   const Surface surface(mesh, {.resolution = 64});
   const Sites sites(mesh);
-  EXPECT_EQ(compute_self_map(surface, sites, exclusion).beyond_max_distance, surface.sample_texels().size());
-  for (const float d : self_distances_at_vertices(sites, exclusion)) ASSERT_EQ(d, kInf);
+  EXPECT_EQ(compute_map(surface, sites, SelfOptions{.exclusion = exclusion}).beyond_max_distance,
+            surface.sample_texels().size());
+  for (const float d : distances_at_vertices(sites.mesh(), sites, SelfOptions{.exclusion = exclusion}))
+    ASSERT_EQ(d, kInf);
   EXPECT_FALSE(SelfProximityQuery(mesh, {.exclusion = rule}).separation());
 
   // Another sheet, which is not connected to the first, is not excluded.
   const Mesh sheets = joined(flat(10, 3), placed(flat(10, 3), "translate:0:0:0.1"));
   const Exclusion of_sheets(sheets, {.rule = rule});
   EXPECT_EQ(of_sheets.patches(), 2u);
-  for (const float d : self_distances_at_vertices(Sites(sheets), of_sheets)) ASSERT_NEAR(d, 0.1, 1e-6);
+  for (const float d : distances_at_vertices(sheets, Sites(sheets), SelfOptions{.exclusion = of_sheets}))
+    ASSERT_NEAR(d, 0.1, 1e-6);
 }
 
 TEST(Self, VerticesHaveTheMinimumOfTheirFaces) {
@@ -481,7 +487,8 @@ TEST(Self, VerticesHaveTheMinimumOfTheirFaces) {
   mesh.positions.push_back({9, 9, 9});  // of no face
   const Sites sites(mesh);
   const ExclusionRule rule{.rings = 2};
-  const std::vector<float> found = self_distances_at_vertices(sites, Exclusion(mesh, {.rule = rule}));
+  const std::vector<float> found =
+      distances_at_vertices(sites.mesh(), sites, SelfOptions{.exclusion = Exclusion(mesh, {.rule = rule})});
   const Relation out = excluded(mesh, rule);
   std::vector<double> expected(mesh.positions.size(), kInf);
   for (std::uint32_t f = 0; f < out.size(); ++f)
@@ -501,12 +508,13 @@ TEST(Self, IgnoresDegenerateAndDuplicateFaces) {
   flawed.triangles.push_back({100, 0, 0});  // 100 is a corner of one face only
   const Sites sites(flawed);
   const Exclusion exclusion(flawed);
-  const std::vector<float> found = self_distances_at_vertices(sites, exclusion);
-  EXPECT_EQ(found, self_distances_at_vertices(Sites(clean), Exclusion(clean)));
+  const std::vector<float> found =
+      distances_at_vertices(sites.mesh(), sites, SelfOptions{.exclusion = exclusion});
+  EXPECT_EQ(found, distances_at_vertices(clean, Sites(clean), SelfOptions{.exclusion = Exclusion(clean)}));
   SelfProximityQuery query(clean), other(flawed);
   EXPECT_EQ(query.separation()->value, other.separation()->value);
   const Surface with_flaws(flawed, {.resolution = 64});
-  const DistanceMap map = compute_self_map(with_flaws, sites, exclusion);
+  const DistanceMap map = compute_map(with_flaws, sites, SelfOptions{.exclusion = exclusion});
   for (const std::uint32_t texel : with_flaws.sample_texels())
     ASSERT_TRUE(std::isfinite(map.distance[texel]));
 }
@@ -590,7 +598,8 @@ TEST(Self, FollowsADeformation) {
     const Mesh now = folded(gap);
     query.refit(now.positions);
     surface.refit(now.positions);
-    expect_self_map(surface, query.sites(), compute_self_map(surface, query.sites(), query.exclusion()), out);
+    expect_self_map(surface, query.sites(),
+                    compute_map(surface, query.sites(), SelfOptions{.exclusion = query.exclusion()}), out);
     expect_as_pairs(query, out);
     if (gap > 0.1) continue;  // the bend's faces are nearer than the sheets
     EXPECT_NEAR(query.separation()->value, gap, 1e-9);
@@ -629,11 +638,12 @@ void expect_same_for_any_thread_count(const ExclusionRule& rule) {
   const Mesh mesh = load("eight.off", "fit");
   const Surface surface(mesh, {.resolution = 256});
   SelfProximityQuery query(mesh, {.exclusion = rule});
-  const std::vector<float> at_vertices = self_distances_at_vertices(query.sites(), query.exclusion());
+  const std::vector<float> at_vertices =
+      distances_at_vertices(query.sites().mesh(), query.sites(), SelfOptions{.exclusion = query.exclusion()});
   const double margin = 1.5 * query.separation()->value;
   const auto first = query.separation();
   const std::vector<Contact> contacts(query.contacts(margin).begin(), query.contacts(margin).end());
-  const DistanceMap map = compute_self_map(surface, query.sites(), query.exclusion());
+  const DistanceMap map = compute_map(surface, query.sites(), SelfOptions{.exclusion = query.exclusion()});
   for (const unsigned threads : {0u, 1u, 2u}) {
     const ThreadLimit limit(threads);
     query.refit(mesh.positions);
@@ -645,8 +655,11 @@ void expect_same_for_any_thread_count(const ExclusionRule& rule) {
       EXPECT_EQ(again[i].point2, contacts[i].point2);
       EXPECT_EQ(again[i].patch, contacts[i].patch);
     }
-    EXPECT_TRUE(same_bits(compute_self_map(surface, query.sites(), query.exclusion()), map));
-    EXPECT_EQ(self_distances_at_vertices(query.sites(), query.exclusion()), at_vertices);
+    EXPECT_TRUE(
+        same_bits(compute_map(surface, query.sites(), SelfOptions{.exclusion = query.exclusion()}), map));
+    EXPECT_EQ(distances_at_vertices(query.sites().mesh(), query.sites(),
+                                    SelfOptions{.exclusion = query.exclusion()}),
+              at_vertices);
   }
 }
 
@@ -660,9 +673,11 @@ TEST(Self, RigidMotionsChangeNothing) {
   const ExclusionRule rule{.rings = 3};
   const Sites sites(here), moved(there);
   Surface surface(here, {.resolution = 64});
-  const DistanceMap before = compute_self_map(surface, sites, Exclusion(here, {.rule = rule}));
+  const DistanceMap before =
+      compute_map(surface, sites, SelfOptions{.exclusion = Exclusion(here, {.rule = rule})});
   surface.refit(there.positions);
-  const DistanceMap after = compute_self_map(surface, moved, Exclusion(there, {.rule = rule}));
+  const DistanceMap after =
+      compute_map(surface, moved, SelfOptions{.exclusion = Exclusion(there, {.rule = rule})});
   for (const std::uint32_t texel : surface.sample_texels())
     ASSERT_NEAR(before.distance[texel], after.distance[texel], 1e-6);
   SelfProximityQuery a(here, {.exclusion = rule}), b(there, {.exclusion = rule});
@@ -708,9 +723,11 @@ TEST(Self, RejectsOptionsOutOfRange) {
   EXPECT_THROW((void)query.contacts(-1), Error);
   EXPECT_THROW((void)query.contacts(kInf), Error);
   const Surface surface(mesh, {.resolution = 64}), other(flat(3, 3), {.resolution = 64});
-  EXPECT_THROW((void)compute_self_map(surface, query.sites(), Exclusion(flat(3, 3))), Error);
-  EXPECT_THROW((void)compute_self_map(other, query.sites(), query.exclusion()), Error);
-  EXPECT_THROW((void)compute_self_map(surface, query.sites(), query.exclusion(), {.max_distance = -1}),
+  EXPECT_THROW((void)compute_map(surface, query.sites(), SelfOptions{.exclusion = Exclusion(flat(3, 3))}),
+               Error);
+  EXPECT_THROW((void)compute_map(other, query.sites(), SelfOptions{.exclusion = query.exclusion()}), Error);
+  EXPECT_THROW((void)compute_map(surface, query.sites(),
+                                 SelfOptions{.exclusion = query.exclusion(), .max_distance = -1}),
                Error);
   std::vector<Vec3> wrong(mesh.positions.begin() + 1, mesh.positions.end());
   EXPECT_THROW(query.refit(wrong), Error);

@@ -54,7 +54,7 @@ TEST(StackedFaces, SelfDistancesAreFoundSoon) {
   SelfProximityQuery query(stack);
   const auto separation = query.separation();
   const Surface surface(stack, {.resolution = 256});
-  const DistanceMap map = compute_self_map(surface, query.sites(), query.exclusion());
+  const DistanceMap map = compute_map(surface, query.sites(), SelfOptions{.exclusion = query.exclusion()});
   EXPECT_LT(time.seconds(), 6);
   ASSERT_TRUE(separation);
   EXPECT_EQ(separation->value, 0);

@@ -451,7 +451,9 @@ void ask_all(const Shape& shape) {
   attempt([&] { (void)one_sided_hausdorff(test::single_triangle(), sites); });
   const std::vector<Ray> rays{{{-3, 0.1, 0.2}, {1, 0, 0}}, {{0.1, 0.2, 5}, {0.1, 0, -1}}};
   attempt([&] { (void)first_hits(sites, rays); });
-  attempt([&] { (void)thickness_at_vertices(sites, ThicknessMethod::ball); });
+  attempt([&] {
+    (void)distances_at_vertices(sites.mesh(), sites, ThicknessOptions{.method = ThicknessMethod::ball});
+  });
   if (shape.has_surface()) attempt([&] { (void)compute_map(shape.surface(), other.sites()); });
 }
 

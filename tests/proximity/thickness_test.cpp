@@ -101,7 +101,9 @@ TEST(Thickness, OfABoxIsItsExtentAtEveryTexel) {
   }
   EXPECT_EQ(map.maps.ball.beyond_max_distance, 0u);
   for (const ThicknessMethod method : {ThicknessMethod::ball, ThicknessMethod::ray})
-    for (const float d : thickness_at_vertices(map.sites, method)) EXPECT_NEAR(d, 0.5, 1e-6);
+    for (const float d :
+         distances_at_vertices(map.sites.mesh(), map.sites, ThicknessOptions{.method = method}))
+      EXPECT_NEAR(d, 0.5, 1e-6);
 }
 
 // --- Brute force -------------------------------------------------------------------------------------------

@@ -141,7 +141,7 @@ TEST(SmokeLimits, TolerancesThatDoNotContainZeroAreProven) {
 
 TEST(SmokeLimits, DistancesAlongNormalsAtVertices) {
   const Mesh sheet = grid_square(1, 0.25, 3);
-  for (const float d : distances_along_at_vertices(sheet, Sites(grid_square(3, 0, 2))))
+  for (const float d : distances_at_vertices(sheet, Sites(grid_square(3, 0, 2)), AlongOptions{}))
     EXPECT_NEAR(d, 0.25, 1e-6);
 }
 
@@ -149,8 +149,8 @@ TEST(SmokeLimits, TransferOfThreeAndFourComponentsAndFromMapsAlongLines) {
   const Mesh high = grid_square(2, 0.1, 3);
   const Surface surface(grid_square(1, 0, 2), {.resolution = 24});
   const Sites sites(high);
-  for (const DistanceMap& map :
-       {compute_map(surface, sites), along_map(surface, sites), compute_map(surface, sites, {.facing = 40})})
+  for (const DistanceMap& map : {compute_map(surface, sites), compute_map(surface, sites, AlongOptions{}),
+                                 compute_map(surface, sites, {.facing = 40})})
     for (const std::size_t components : {3, 4, 5}) {
       std::vector<float> values;
       for (const Vec3& p : high.positions)
@@ -271,7 +271,7 @@ TEST(SmokeLimits, WrongArgumentsAreRefused) {
       [&] { (void)point_on_face(sites, SiteType::vertex, 99, {}); },
       [&] { (void)compute_map(surface, sites, {.max_distance = 0}); },
       [&] { (void)compute_map(surface, Sites(square(1, 0)), {.sign = SignMethod::exact}); },
-      [&] { (void)along_map(surface, sites, {.direction = Vec3{}}); },
+      [&] { (void)compute_map(surface, sites, AlongOptions{.direction = Vec3{}}); },
       [&] { (void)closest_points_along(sites, one, none, {}); },
       [&] { (void)closest_points_along(sites, bad, one, {}); },
       [&] {
@@ -312,7 +312,7 @@ TEST(SmokeLimits, WrongArgumentsAreRefused) {
       [&] { (void)matches_of(surface, sites, of_other); },
       [&] { (void)thickness_maps(surface, Sites(mesh), {.angle = 0}); },
       [&] { (void)thickness_maps(Surface(square(1, 0), {.resolution = 32}), Sites(square(1, 0))); },
-      [&] { (void)compute_self_map(surface, sites, Exclusion(cube())); },
+      [&] { (void)compute_map(surface, sites, SelfOptions{.exclusion = Exclusion(cube())}); },
       [&] { (void)Exclusion(mesh, {.rule = {.rings = 0}}); },
       [&] { (void)Exclusion(mesh, {.rule = {.geodesic = -1}}); },
       [&] { (void)coverage(mesh, sites, 0); },

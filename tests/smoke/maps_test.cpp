@@ -170,17 +170,17 @@ TEST(SmokeMaps, DistancesAlongTheVerticalAreChangesOfHeight) {
   const Surface surface(after, {.resolution = 53});
   const Sites sites(before);
   const AlongOptions down{.direction = Vec3{0, 0, -2}};
-  const DistanceMap map = along_map(surface, sites, down);
+  const DistanceMap map = compute_map(surface, sites, down);
   EXPECT_EQ(map.measured.kind, DistanceKind::along);
   EXPECT_EQ(measured_distance(down).kind, DistanceKind::along);
   for (const std::uint32_t t : surface.sample_texels())
     EXPECT_NEAR(map.distance[t], surface.texel_point(t)[2], 1e-6);
-  const std::vector<float> at_vertices = distances_along_at_vertices(after, sites, down);
+  const std::vector<float> at_vertices = distances_at_vertices(after, sites, down);
   for (std::size_t v = 0; v < after.positions.size(); ++v)
     EXPECT_NEAR(at_vertices[v], after.positions[v][2], 1e-6);
   // Along normals the lines are those of the plane, and longer by 1 / n_z.
   const Vec3 n = normalized(Vec3{0.2, -0.1, 1});
-  const DistanceMap normals = along_map(surface, sites, {.max_distance = 0.4});
+  const DistanceMap normals = compute_map(surface, sites, AlongOptions{.max_distance = 0.4});
   std::size_t beyond = 0;
   for (const std::uint32_t t : surface.sample_texels()) {
     const double expected = surface.texel_point(t)[2] / n[2];
@@ -218,9 +218,11 @@ TEST(SmokeMaps, OfAMeshToItselfLeaveOutTheNeighbourhood) {
       EXPECT_EQ(exclusion.patch_of(exclusion.faces_of(p)[0]), p);
     }
     EXPECT_EQ(faces, 64u);
-    const DistanceMap map = compute_self_map(surface, sites, exclusion, {.max_distance = 0.9});
+    const DistanceMap map =
+        compute_map(surface, sites, SelfOptions{.exclusion = exclusion, .max_distance = 0.9});
     for (const std::uint32_t t : surface.sample_texels()) EXPECT_LT(map.distance[t], 0.3 + 1e-6);
-    const std::vector<float> corners = self_distances_at_vertices(sites, exclusion);
+    const std::vector<float> corners =
+        distances_at_vertices(sites.mesh(), sites, SelfOptions{.exclusion = exclusion});
     ASSERT_EQ(corners.size(), mesh.positions.size());
     for (const float d : corners) EXPECT_LT(d, 0.3 + 1e-6);
     if (!rule.geodesic) {
@@ -246,7 +248,9 @@ TEST(SmokeMaps, ThicknessOfAPlateIsItsHeight) {
   }
   EXPECT_GT(inner, 500u);
   for (const ThicknessMethod method : {ThicknessMethod::ball, ThicknessMethod::ray})
-    EXPECT_NEAR(std::ranges::min(thickness_at_vertices(sites, method)), 0.25, 1e-5);
+    EXPECT_NEAR(
+        std::ranges::min(distances_at_vertices(sites.mesh(), sites, ThicknessOptions{.method = method})),
+        0.25, 1e-5);
   EXPECT_NEAR(estimate_walls(sites, 0.3, 301)->thin, 48.0 / 53, 0.05);
   const std::vector<std::uint32_t> thin = thinnest_texels(surface, maps.ray, 3),
                                    thick = thickest_texels(surface, maps.ray, 3);

@@ -123,7 +123,7 @@ void map_nearest(std::span<const shape::PosedBody> bodies, std::size_t on, doubl
   const Affine& pose = bodies[on].pose().map;
   const std::span<const std::uint32_t> texels = surface.sample_texels();
   map::clear(nearest.map, surface);
-  const map::MapWriter writer(nearest.map, surface);
+  const map::MapWriter writer(nearest.map);
   nearest.map.sign = signs_of_others(bodies, on);
   nearest.body.assign(surface.texel_faces().size(), kNone);
   std::atomic<std::size_t> beyond{0};
@@ -146,7 +146,7 @@ void map_nearest(std::span<const shape::PosedBody> bodies, std::size_t on, doubl
           if (search.inside(i + k)) inside |= 1u << k;
           nearest.body[texels[block.first + i + k]] = search.body(i + k);
         }
-        beyond += writer.store(block.first + i, packet, inside);
+        beyond += writer.store(texels.subspan(block.first + i), packet, inside);
       }
     }
   });

@@ -1,0 +1,51 @@
+#include "part_map.h"
+
+#include <utility>
+
+#include "option_checks.h"
+#include "unit_options.h"
+
+void add_part_map_options(CLI::App& app, PartMapCommand& command, const char* mesh) {
+  add_resolution_option(app, command.atlas);
+  add_layout_options(app, command.atlas, mesh);
+  add_write_option(app, command.files, true);
+  add_picture_options(app, command.picture);
+  add_run_options(app, command, "the report (report.json) instead of a summary");
+}
+
+void check_part_map(const PartMapCommand& command) {
+  check_layout(command.atlas);
+  check_units(command.picture.units, command.part.file, command.part.transform);
+}
+
+PartMap::PartMap(const Input& part, double import_ms, const sdm::AtlasOptions& atlas)
+    : input(part), surface(part.mesh, atlas) {
+  times.import = import_ms;
+  times.atlas = watch.lap();
+}
+
+nlohmann::ordered_json write_part_map(const PartMapCommand& command, PartMap& part, sdm::Summary& summary,
+                                      const std::filesystem::path& folder, const PartMapOutputs& outputs) {
+  const Input& input = part.input;
+  summary.notes.insert(summary.notes.begin(), input.notes.begin(), input.notes.end());
+  if (auto note = note_on_unit(command.picture.units)) summary.notes.push_back(std::move(*note));
+  sdm::PictureOptions fixed = sdm::fixed_colors(command.picture, *summary.colors);
+  if (const auto verdict = judged(summary, {})) fixed.verdict.emplace(*verdict);
+  sdm::run_concurrently({[&] {
+                           write_map_files(folder, command.files, part.surface, part.map, part.at_vertices,
+                                           nullptr, command.picture, fixed);
+                         },
+                         outputs.write,
+                         [&] {
+                           if (input.vertices)
+                             write_vertex_files(folder, command.files, *input.vertices, part.at_vertices);
+                         }});
+  part.times.output = part.watch.lap();
+  part.times.total = *part.times.import + part.total.lap();
+  auto report = nlohmann::ordered_json::parse(sdm::report_json(
+      {.on = reported(input), .engine = "cpu", .time_ms = part.times}, part.surface, summary));
+  outputs.extend(report);
+  write_report(folder, command.files, part.surface, part.map, part.at_vertices, to_text(report),
+               outputs.page);
+  return report;
+}

@@ -1,0 +1,43 @@
+// Distances to the closest point of O2, or of the faces that face the samples: what is made of the closest
+// points that engines find.
+#pragma once
+
+#include <sdm/map.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/engine.h"
+#include "map/measure.h"
+#include "query/facing/facing_search.h"
+#include "query/inside/inside.h"
+
+namespace sdm::map {
+
+class ClosestMeasure {
+ public:
+  /// All must outlive this. Throws sdm::Error for options that do not apply.
+  ClosestMeasure(const Surface& surface, const Sites& sites, const MapOptions& options);
+
+  [[nodiscard]] const Engine& engine() const { return *engine_; }
+  [[nodiscard]] const Description& description() const { return description_; }
+
+  /// Stores what follows from the closest points of the samples from the one with this number on.
+  void store(std::size_t first, std::span<const Vec3> points, const sites::ClosestPacket& closest,
+             TexelStore& texels) const;
+
+ private:
+  void store_matches(std::size_t first, std::span<const Vec3> points, const sites::ClosestPacket& closest,
+                     TexelStore& texels) const;
+
+  const Surface& surface_;
+  double max_distance_;
+  std::shared_ptr<const Engine> engine_;
+  Description description_;
+  std::optional<inside::InsideTest> inside_;  ///< without `facing`
+  std::optional<facing::FacingSearch> facing_;
+  std::vector<Vec3> normals_;  ///< of the faces, with `facing`
+};
+
+}  // namespace sdm::map

@@ -1,0 +1,207 @@
+#include "map/measure.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "core/arrays/rows.h"
+#include "core/parallel.h"
+#include "geometry/triangle.h"
+#include "surface/tiles.h"
+
+namespace sdm::map {
+namespace {
+
+constexpr std::size_t kTilesAtOnce = 16, kCornersAtOnce = 768, kPointsAtOnce = 256;
+
+DistanceMap& described(DistanceMap& map, const Description& description) {
+  map.sign = description.sign, map.measured = description.measured;
+  return map;
+}
+
+DistanceMap& cleared(DistanceMap& map, const Surface& surface, const Description& description) {
+  clear(map, surface);
+  if (may_lack_match(description.measured.kind)) map.unmatched.assign(map.distance.size(), 0);
+  return described(map, description);
+}
+
+// The tiles in the order in which they are measured: of one group after another. Empty: in their own.
+Array<std::uint32_t> order_of(const surface::Tiles& tiles, const FaceMeasure& measure) {
+  if (measure.groups.empty()) return {};
+  const std::size_t count = *std::ranges::max_element(measure.groups) + std::size_t{1};
+  return make_rows<std::uint32_t>(count,
+                                  [&](const auto& put) {
+                                    for (std::uint32_t tile = 0; tile < tiles.count(); ++tile)
+                                      put(measure.groups[tiles.faces[tile]], tile);
+                                  })
+      .items;
+}
+
+std::optional<Vec3> normal_of(const FaceMeasure& measure, std::uint32_t face) {
+  if (measure.normals.empty()) return std::nullopt;
+  return measure.normals[face];
+}
+
+// The vertices of all groups: each once in a group.
+struct GroupVertices {
+  std::vector<std::uint32_t> vertices, faces;            // and a face of the group that is there
+  std::vector<std::array<std::uint32_t, 3>> of_corners;  // where each corner of a face is in these; kNone
+
+  GroupVertices(const Mesh& mesh, const FaceMeasure& measure);
+};
+
+GroupVertices::GroupVertices(const Mesh& mesh, const FaceMeasure& measure) {
+  const std::size_t face_count = mesh.triangles.size();
+  of_corners.assign(face_count, {kNone, kNone, kNone});
+  const auto put_all = [&](const auto& put) {
+    for (std::uint32_t f = 0; f < face_count; ++f) put(measure.groups.empty() ? f : measure.groups[f], f);
+  };
+  std::size_t count = face_count;
+  if (!measure.groups.empty()) count = *std::ranges::max_element(measure.groups) + std::size_t{1};
+  const auto groups = make_rows<std::uint32_t>(count, put_all);
+  std::vector<std::uint32_t> last(mesh.positions.size(), kNone);  // where each vertex is in the last group
+  for (std::size_t g = 0; g < count; ++g) {
+    const std::size_t begin = vertices.size();
+    for (const std::uint32_t f : groups.of(g)) {
+      if (is_removed(mesh.triangles[f]) || !measure.counts_at_vertices(f)) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t v = mesh.triangles[f][k];
+        if (last[v] == kNone || last[v] < begin) {
+          last[v] = static_cast<std::uint32_t>(vertices.size());
+          vertices.push_back(v), faces.push_back(f);
+        }
+        of_corners[f][k] = last[v];
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TexelStore::TexelStore(DistanceMap& map, const Surface& surface, const Description& description,
+                       std::span<const std::uint32_t> texels)
+    : map_(cleared(map, surface, description)), texels_(texels), writer_(map, description.no_value) {}
+
+TexelStore::TexelStore(DistanceMap& map, const Description& description,
+                       std::span<const std::uint32_t> texels)
+    : map_(described(map, description)), texels_(texels), writer_(map, description.no_value) {}
+
+void TexelStore::operator()(std::size_t first, const sites::ClosestPacket& values, std::uint32_t negative,
+                            std::uint32_t unmatched) {
+  const std::size_t without = writer_.store(texels_.subspan(first), values, negative);
+  if (without == 0) return;
+  Counter& counter = counters_[first / 1024 % counters_.size()];
+  counter.without += without;
+  if (unmatched == 0) return;
+  counter.unmatched += static_cast<std::size_t>(std::popcount(unmatched));
+  for (std::size_t i = 0; i < values.count; ++i)
+    if ((unmatched >> i & 1) != 0) map_.unmatched[texels_[first + i]] = 1;
+}
+
+void TexelStore::finish() {
+  std::size_t without = 0;
+  map_.without_match = 0;
+  for (const Counter& counter : counters_)
+    without += counter.without, map_.without_match += counter.unmatched;
+  map_.beyond_max_distance = without - map_.without_match;
+  if (map_.without_match == 0) map_.unmatched.clear();
+}
+
+void measure_texels(const Surface& surface, const FaceMeasure& measure, std::span<DistanceMap* const> maps) {
+  const surface::Tiles tiles(surface);
+  const Array<std::uint32_t> order = order_of(tiles, measure);
+  std::vector<std::unique_ptr<TexelStore>> stores;
+  for (DistanceMap* map : maps)
+    stores.push_back(std::make_unique<TexelStore>(*map, surface, measure.description, tiles.texels));
+  // Groups are large enough where there are many tiles that few of them are divided: each division costs what
+  // it takes to start with a group.
+  const std::size_t grain =
+      order.empty() ? kTilesAtOnce : std::clamp<std::size_t>(order.size() / 256, kTilesAtOnce * 16, 16384);
+  parallel_for(tiles.count(), grain, measure.progress, "map", [&](std::size_t begin, std::size_t end) {
+    const std::unique_ptr<FaceSearch> search = measure.search();
+    std::vector<Vec3> points;
+    std::vector<sites::ClosestPacket> packets(maps.size());
+    for (std::size_t place = begin; place < end; ++place) {
+      const std::uint32_t tile = order.empty() ? static_cast<std::uint32_t>(place) : order[place];
+      const std::span<const std::uint32_t> texels = tiles.of(tile);
+      const std::uint32_t face = tiles.faces[tile];
+      points.clear();
+      for (const std::uint32_t texel : texels) points.push_back(surface.texel_point(texel));
+      search->start(face, normal_of(measure, face), points);
+      for (std::size_t i = 0; i < points.size(); i += sites::ClosestPacket::kSize) {
+        const std::size_t count = std::min(sites::ClosestPacket::kSize, points.size() - i);
+        for (std::size_t m = 0; m < maps.size(); ++m) {
+          sites::ClosestPacket& packet = packets[m];
+          packet.count = count;
+          std::uint32_t negative = 0, unmatched = 0;
+          for (std::size_t k = 0; k < count; ++k) {
+            const Value value = search->value(i + k, m);
+            for (int axis = 0; axis < 3; ++axis) packet.vector[axis][k] = value.vector[axis];
+            packet.distance[k] = value.closest.distance;
+            packet.site[k] = value.closest.site, packet.type[k] = value.closest.type;
+            negative |= std::uint32_t{value.negative} << k, unmatched |= std::uint32_t{value.unmatched} << k;
+          }
+          (*stores[m])(tiles.offsets[tile] + i, packet, negative, unmatched);
+        }
+      }
+    }
+  });
+  for (const auto& store : stores) store->finish();
+}
+
+std::vector<float> measure_vertices(const Mesh& mesh, const FaceMeasure& measure) {
+  const GroupVertices at(mesh, measure);
+  std::vector<float> values(at.vertices.size());
+  parallel_for(
+      values.size(), kCornersAtOnce, measure.progress, "vertices", [&](std::size_t begin, std::size_t end) {
+        const std::unique_ptr<FaceSearch> search = measure.search();
+        std::vector<Vec3> points;
+        for (std::size_t i = begin; i < end; i += points.size()) {
+          const std::uint32_t face = at.faces[i];
+          points.clear();
+          for (std::size_t k = i;
+               k < end && points.size() < measure.vertices_at_once && (k == i || at.faces[k] == face); ++k)
+            points.push_back(mesh.positions[at.vertices[k]]);
+          search->start(face, normal_of(measure, face), points);
+          for (std::size_t k = 0; k < points.size(); ++k) {
+            const Value value = search->value(k, 0);
+            const auto distance = static_cast<float>(value.closest.distance);
+            values[i + k] = value.closest.type == SiteType::none ? measure.description.no_value.distance
+                            : value.negative                     ? -distance
+                                                                 : distance;
+          }
+        }
+      });
+  std::vector<float> least(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (at.of_corners[f][k] == kNone) continue;
+      float& value = least[mesh.triangles[f][k]];
+      const float here = values[at.of_corners[f][k]];
+      if (std::isnan(value) || std::abs(here) < std::abs(value)) value = here;
+    }
+  return least;
+}
+
+FacingPoints measure_points(std::span<const Vec3> points, std::span<const Vec3> normals,
+                            const FaceMeasure& measure) {
+  FacingPoints result;
+  result.closest.resize(points.size());
+  result.behind.resize(points.size()), result.unmatched.resize(points.size());
+  parallel_for(points.size(), kPointsAtOnce, measure.progress, "points",
+               [&](std::size_t begin, std::size_t end) {
+                 const std::unique_ptr<FaceSearch> search = measure.search();
+                 for (std::size_t i = begin; i < end; ++i) {
+                   std::optional<Vec3> normal;
+                   if (!normals.empty()) normal = finite(normals[i]) ? normalized(normals[i]) : Vec3{};
+                   search->start(kNone, normal, points.subspan(i, 1));
+                   const Value value = search->value(0, 0);
+                   result.closest[i] = value.closest;
+                   result.behind[i] = value.negative, result.unmatched[i] = value.unmatched;
+                 }
+               });
+  return result;
+}
+
+}  // namespace sdm::map

@@ -1,0 +1,77 @@
+#include <sdm/measure.h>
+
+#include <array>
+#include <new>
+#include <type_traits>
+
+#include "core/memory.h"
+#include "map/along_measure.h"
+#include "map/measure.h"
+#include "proximity/self/self_measure.h"
+#include "proximity/thickness/thickness_measure.h"
+
+namespace sdm {
+namespace {
+
+map::AlongMeasure face_measure(const Mesh& mesh, const Sites& sites, const AlongOptions& options) {
+  return {mesh, sites, options};
+}
+
+self::SelfMeasure face_measure(const Mesh& mesh, const Sites& sites, const SelfOptions& options) {
+  return {mesh, sites, options};
+}
+
+thickness::ThicknessMeasure face_measure(const Mesh& mesh, const Sites& sites,
+                                         const ThicknessOptions& options) {
+  return {mesh, sites, options, {options.method}};
+}
+
+template <class Options>
+constexpr bool kByEngine = std::is_same_v<Options, MapOptions>;
+
+}  // namespace
+
+DistanceMap compute_map(const Surface& surface, const Sites& sites, const Measure& measure) try {
+  return std::visit(
+      [&]<class Options>(const Options& options) {
+        if constexpr (kByEngine<Options>) {
+          return compute_map(surface, sites, options);
+        } else {
+          DistanceMap map;
+          const std::array maps{&map};
+          map::measure_texels(surface, face_measure(surface.mesh(), sites, options), maps);
+          return map;
+        }
+      },
+      measure);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a map");
+}
+
+std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, const Measure& measure) try {
+  return std::visit(
+      [&]<class Options>(const Options& options) {
+        if constexpr (kByEngine<Options>)
+          return distances_at_vertices(mesh, sites, options);
+        else
+          return map::measure_vertices(mesh, face_measure(mesh, sites, options));
+      },
+      measure);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the distances of vertices");
+}
+
+ThicknessMaps thickness_maps(const Surface& surface, const Sites& sites,
+                             const ThicknessOptions& options) try {
+  using enum ThicknessMethod;
+  ThicknessMaps maps;
+  const std::array both{&maps.ball, &maps.ray};
+  map::measure_texels(surface, thickness::ThicknessMeasure(surface.mesh(), sites, options, {ball, ray}),
+                      both);
+  maps.ray.measured = measured_distance(ThicknessOptions{.method = ray});
+  return maps;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a map");
+}
+
+}  // namespace sdm

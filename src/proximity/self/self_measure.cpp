@@ -1,0 +1,78 @@
+#include "proximity/self/self_measure.h"
+
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/vec.h"
+
+namespace sdm::self {
+namespace {
+
+const Exclusion& checked(const Mesh& mesh, const Sites& sites, const SelfOptions& options) {
+  if (sites.mesh().triangles.size() != options.exclusion.faces())
+    throw Error("the exclusion belongs to another mesh: its number of faces differs");
+  if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
+  if (mesh.triangles.size() != options.exclusion.faces())
+    throw Error("surface and sites belong to different meshes: their numbers of faces differ");
+  return options.exclusion;
+}
+
+class FaceSelfSearch final : public map::FaceSearch {
+ public:
+  FaceSelfSearch(const sites::SitesData& sites, const Exclusion& exclusion, const PatchTree& patches,
+                 double max_distance)
+      : search_(sites, exclusion, patches), max_distance_(max_distance) {}
+
+  void start(std::uint32_t face, const std::optional<Vec3>&, std::span<const Vec3> points) override {
+    search_.start_from(face);
+    points_ = points;
+    Box box;
+    for (const Vec3& p : points) extend(box, p);
+    double squared = 0;
+    for (const Vec3& p : points) squared = std::max(squared, squared_norm(p - centre(box)));
+    search_.gather(centre(box), std::sqrt(squared), max_distance_);
+  }
+  map::Value value(std::size_t i, std::size_t) override {
+    map::Value value{.closest = search_.closest_to(points_[i])};
+    value.vector = value.closest.point - points_[i];
+    return value;
+  }
+
+ private:
+  SelfSearch search_;
+  double max_distance_;
+  std::span<const Vec3> points_;
+};
+
+}  // namespace
+
+SelfMeasure::SelfMeasure(const Mesh& mesh, const Sites& sites, const SelfOptions& options)
+    : sites_(internals(sites)),
+      exclusion_(checked(mesh, sites, options)),
+      max_distance_(options.max_distance),
+      patches_(sites_, exclusion_) {
+  description = {
+      .measured = {DistanceKind::self, "distance to the closest point of faces that are not excluded"},
+      .sign = {SignMethod::none, "the distance of a surface to itself has no sign"},
+      .no_value = {.distance = std::numeric_limits<float>::infinity(), .vector = 0}};
+  progress = options.progress;
+  // The faces of a patch exclude the same.
+  std::vector<std::uint32_t> place(exclusion_.patches());
+  for (std::uint32_t i = 0; i < place.size(); ++i) place[patches_.order[i]] = i;
+  groups.resize(exclusion_.faces());
+  for (std::uint32_t face = 0; face < groups.size(); ++face) groups[face] = place[exclusion_.patch_of(face)];
+  vertices_at_once = 1;
+}
+
+std::unique_ptr<map::FaceSearch> SelfMeasure::search() const {
+  return std::make_unique<FaceSelfSearch>(sites_, exclusion_, patches_, max_distance_);
+}
+
+bool SelfMeasure::counts_at_vertices(std::uint32_t face) const {
+  return !sites_.topology.ignored(face);
+}
+
+}  // namespace sdm::self

@@ -1,0 +1,73 @@
+#include "proximity/thickness/thickness_measure.h"
+
+#include <sdm/error.h>
+
+#include <utility>
+
+#include "geometry/vec.h"
+
+namespace sdm {
+namespace thickness {
+namespace {
+
+const Sites& checked(const Mesh& mesh, const Sites& sites) {
+  if (mesh.triangles.size() != sites.mesh().triangles.size())
+    throw Error("surface and sites belong to different meshes: their numbers of faces differ");
+  return sites;
+}
+
+class FaceWallSearch final : public map::FaceSearch {
+ public:
+  FaceWallSearch(const Walls& walls, const std::vector<ThicknessMethod>& methods)
+      : walls_(walls), methods_(methods), search_(walls) {}
+
+  void start(std::uint32_t face, const std::optional<Vec3>&, std::span<const Vec3> points) override {
+    points_ = points;
+    measured_ = walls_.measures(face);
+    if (measured_) search_.start(face, points);
+  }
+  map::Value value(std::size_t i, std::size_t map) override {
+    if (!measured_) return {};
+    const WallEnd& ray = search_.rays()[i];
+    const WallEnd end = methods_[map] == ThicknessMethod::ray ? ray : search_.ball(points_[i], ray);
+    if (end.face == kNone) return {};
+    return {.closest = {.point = end.point,
+                        .distance = end.thickness,
+                        .site = end.face,
+                        .type = SiteType::face,
+                        .face = end.face},
+            .vector = end.point - points_[i]};
+  }
+
+ private:
+  const Walls& walls_;
+  const std::vector<ThicknessMethod>& methods_;
+  WallSearch search_;
+  bool measured_ = false;
+  std::span<const Vec3> points_;
+};
+
+}  // namespace
+
+ThicknessMeasure::ThicknessMeasure(const Mesh& mesh, const Sites& sites, const ThicknessOptions& options,
+                                   std::vector<ThicknessMethod> methods)
+    : walls_(internals(checked(mesh, sites)), options.angle), methods_(std::move(methods)) {
+  description.measured = measured_distance(ThicknessOptions{.method = methods_.front()});
+  description.sign.reason = "a thickness has no sign";
+  progress = options.progress;
+}
+
+std::unique_ptr<map::FaceSearch> ThicknessMeasure::search() const {
+  return std::make_unique<FaceWallSearch>(walls_, methods_);
+}
+
+}  // namespace thickness
+
+MeasuredDistance measured_distance(const ThicknessOptions& options) {
+  return {DistanceKind::thickness,
+          options.method == ThicknessMethod::ball
+              ? "wall thickness, the diameter of the largest ball in the part"
+              : "wall thickness, the length of the ray along the normal into the part"};
+}
+
+}  // namespace sdm

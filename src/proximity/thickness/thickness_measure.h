@@ -1,0 +1,25 @@
+// The wall thickness of a solid, as a measure.
+#pragma once
+
+#include <sdm/thickness.h>
+
+#include "map/measure.h"
+#include "proximity/thickness/thickness_search.h"
+
+namespace sdm::thickness {
+
+class ThicknessMeasure final : public map::FaceMeasure {
+ public:
+  /// `methods`: of the maps that are measured at once. All must outlive this. Throws sdm::Error for options
+  /// that do not apply.
+  ThicknessMeasure(const Mesh& mesh, const Sites& sites, const ThicknessOptions& options,
+                   std::vector<ThicknessMethod> methods);
+
+  [[nodiscard]] std::unique_ptr<map::FaceSearch> search() const override;
+
+ private:
+  Walls walls_;
+  std::vector<ThicknessMethod> methods_;
+};
+
+}  // namespace sdm::thickness
