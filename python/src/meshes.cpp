@@ -93,8 +93,8 @@ void bind_arrays(nb::class_<PyMesh>& type) {
           "deviation", &PyMesh::deviation,
           "How far the triangles were found to be from the surface of a STEP or IGES file, an estimate, in "
           "units of the mesh; 0 for other meshes. Verdicts on a tolerance keep so far from its limits. "
-          "weld() "
-          "and remove_islands() keep it; transformed() scales it.")
+          "weld(), "
+          "remove_islands() and convex_hull() keep it, transformed() scales it, and simplify() adds its own.")
       .def(
           "__iter__",
           [](nb::handle self) { return nb::iter(nb::make_tuple(self.attr("vertices"), self.attr("faces"))); },
@@ -235,10 +235,10 @@ void bind_convex_hull(nb::module_& module) {
   module.def(
       "convex_hull",
       [](nb::handle mesh) {
-        const Mesh given = mesh_of(mesh, nb::none());
+        const PyMesh given = given_mesh(mesh, nb::none());
         Mesh hull;
-        run(nb::none(), [&](const Progress&) { hull = convex_hull(given); });
-        return nb::cast(new PyMesh{std::move(hull)}, nb::rv_policy::take_ownership);
+        run(nb::none(), [&](const Progress&) { hull = convex_hull(given.mesh); });
+        return nb::cast(new PyMesh{std::move(hull), given.deviation}, nb::rv_policy::take_ownership);
       },
       nb::arg("mesh").none(), nb::sig("def convex_hull(mesh: object) -> Mesh"),
       R"(The convex hull of the corners of all faces: a closed mesh, counter-clockwise from outside, whose

@@ -49,11 +49,11 @@ struct Limit {
 
 /// `lods` levels after the finest one. Each goes on from the one before.
 nb::list simplified_levels(nb::handle mesh, const Limit& limit, std::size_t lods, nb::handle progress) {
-  const Mesh given = mesh_of(mesh, nb::none());
+  const PyMesh given = given_mesh(mesh, nb::none());
   std::vector<Simplified> levels;
   levels.reserve(lods + 1);
   run(progress, [&](const Progress& report) {
-    Simplifier simplifier(given);
+    Simplifier simplifier(given.mesh);
     for (std::size_t level = 0; level <= lods; ++level)
       levels.push_back(limit.apply(simplifier, level,
                                    {.from = levels.empty() ? nullptr : &levels.back(), .progress = report}));
@@ -61,9 +61,10 @@ nb::list simplified_levels(nb::handle mesh, const Limit& limit, std::size_t lods
   nb::list result;
   for (std::size_t level = 0; level < levels.size(); ++level) {
     if (levels[level].stopped) limit.warn(level);
-    result.append(
-        nb::make_tuple(nb::cast(new PyMesh{std::move(levels[level].mesh)}, nb::rv_policy::take_ownership),
-                       levels[level].deviation));
+    const double deviation = given.deviation > 0 ? given.deviation + levels[level].deviation.upper : 0;
+    result.append(nb::make_tuple(
+        nb::cast(new PyMesh{std::move(levels[level].mesh), deviation}, nb::rv_policy::take_ownership),
+        levels[level].deviation));
   }
   return result;
 }

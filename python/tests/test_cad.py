@@ -37,6 +37,9 @@ def test_tolerances_hold_for_the_surface(tmp_path):
     assert 0 < fine.deviation < coarse.deviation
     assert sdm.Mesh(coarse).deviation == pickle.loads(pickle.dumps(coarse)).deviation == coarse.deviation
     np.testing.assert_allclose(coarse.transformed(np.diag([2, 2, 2, 1])).deviation, 2 * coarse.deviation)
+    assert sdm.convex_hull(coarse).deviation == sdm.weld(coarse)[0].deviation == coarse.deviation
+    simple, added = sdm.simplify(coarse, triangles=500)
+    assert simple.deviation == coarse.deviation + added.upper
     vertices, faces = sdm.read(f"{FILES}/sphere.step", deflection=0.003)
     assert sdm.Mesh((vertices, faces)).deviation == 0
     place = coarse.vertices[coarse.faces[len(coarse.faces) // 2]].sum(axis=0)
