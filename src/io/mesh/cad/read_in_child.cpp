@@ -16,6 +16,7 @@
 #include <csignal>
 #include <mutex>
 #include <type_traits>
+#include <utility>
 
 #include "core/cancellation.h"
 #include "io/mesh/cad/load_module.h"
@@ -294,7 +295,7 @@ void receive_results(Channel& channel, CadClient& client, CadShape& shape) {
   }
 }
 
-/// Leaves in `shape` what was received, also where it throws.
+/// Sets the fault where the child dies, and leaves what was received before.
 void read_once(const CadRequest& request, const char* format, CadClient& client, CadShape& shape) {
   poll();
   ChildProcess child(request, format);
@@ -319,7 +320,7 @@ CadShape read_in_child(const CadRequest& request, const char* format, CadClient&
     CadShape unlabelled;
     read_once(plain, format, client, unlabelled);
     unlabelled.has_labels = false;
-    if (unlabelled.fault.empty()) return unlabelled;
+    if (!unlabelled.is_exception) shape = std::move(unlabelled);
   }
   if (!shape.fault.empty()) throw Error(shape.fault);
   return shape;
