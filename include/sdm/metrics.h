@@ -32,7 +32,8 @@ struct MetricsOptions {
   std::optional<double> precision{};
   double fraction_precision = 1e-3;  ///< of fractions of the area; > 0
   /// Parts that a surface is divided into, at most, beside its faces: then the bounds stay farther apart.
-  /// In memory at once are 65,536, or 32 for each face up to a million, or twice as many as faces.
+  /// In memory at once are 65,536, or 32 for each face of the finer mesh up to a million, or twice as many as
+  /// faces.
   std::size_t most_parts = 4'000'000;
   /// Whether the measures are estimated from random points, in seconds, in place of bounds that hold.
   bool estimate = false;

@@ -21,9 +21,9 @@ constexpr std::size_t kGrain = 256;
 constexpr double kLeastSize = 1e-9;  // of the diagonal: smaller parts are not divided
 // Parts that are smaller beside their distance, squared, have a close bound by their size.
 constexpr double kNear = 1e-4;
-// At least kAtOnce parts or twice as many as faces, and up to kOfFace for each face or kMany, are in memory
-// at once. Where more are needed, parts are bounded in runs of kRun, one after another, which takes some
-// three times as long, and only sums of them are kept.
+// At least kAtOnce parts or twice as many as faces, and up to kOfFace for each face of the finer mesh or
+// kMany, are in memory at once. Where more are needed, parts are bounded in runs of kRun, one after another,
+// which takes some three times as long, and only sums of them are kept.
 constexpr std::size_t kAtOnce = std::size_t{1} << 16, kOfFace = 32, kMany = std::size_t{1} << 20, kRun = 1024;
 // Steps in which the distribution of distances around a percentile is kept then.
 constexpr std::size_t kSteps = 1024;
@@ -66,9 +66,9 @@ DirectedSearch::DirectedSearch(const Mesh& a, const sites::SitesData& b, const M
 
 DirectedMetrics DirectedSearch::run() {
   make_parts();
-  const std::size_t faces = a_.triangles.size();
+  const std::size_t faces = a_.triangles.size(), most_faces = std::max(faces, b_.mesh.triangles.size());
   const std::size_t at_once =
-      std::min(most_parts_, std::max({kAtOnce, 2 * faces, std::min(kMany, kOfFace * faces)}));
+      std::min(most_parts_, std::max({kAtOnce, 2 * faces, std::min(kMany, kOfFace * most_faces)}));
   Refined refined = Refined::yes;
   while (refined == Refined::yes) {
     sum_up();
@@ -273,15 +273,30 @@ double DirectedSearch::quantile(double fraction, TwoSided (Part::*bound)() const
   return bound == &Part::lower ? lo : hi;
 }
 
-// Parts that together contribute half of what is asked for need not be bounded more closely.
+// Parts that together contribute half of what is asked for need not be bounded more closely. Of the others,
+// those that contribute most are, until half of what they contribute is enough.
 void DirectedSearch::choose_by_share(const std::vector<double>& contributions, double target,
                                      Chosen& chosen) const {
   double total = 0;
   for (const double c : contributions) total += c;
   if (total <= target) return;
   const double share = target / (2 * static_cast<double>(contributions.size()));
-  for (std::size_t i = 0; i < contributions.size(); ++i)
-    if (contributions[i] > share) chosen[i] = 1;
+  std::vector<std::uint32_t> large;
+  double of_large = 0;
+  for (std::uint32_t i = 0; i < contributions.size(); ++i)
+    if (contributions[i] > share && can_be_closer(parts_[i]))
+      large.push_back(i), of_large += contributions[i];
+  constexpr double kLess = 0.8, kLeft = 0.5;  // of what is asked for; of the contribution of a part
+  const double surplus = total - kLess * target;
+  if (kLeft * of_large > surplus)
+    std::ranges::sort(large, [&](std::uint32_t i, std::uint32_t j) {
+      return contributions[i] != contributions[j] ? contributions[i] > contributions[j] : i < j;
+    });
+  double less = 0;
+  for (const std::uint32_t i : large) {
+    if (less > surplus) break;
+    less += kLeft * contributions[i], chosen[i] = 1;
+  }
 }
 
 // A percentile is as close as the bounds of the parts whose distances may be equal to it. Those that are far
@@ -323,17 +338,20 @@ DirectedSearch::Chosen DirectedSearch::choose() const {
   return chosen;
 }
 
-DirectedSearch::Refined DirectedSearch::refine(const Chosen& chosen, std::size_t most) {
+bool DirectedSearch::can_be_thorough(const Part& part) {
+  return !part.thorough && part.squared_size() > kNear * part.upper().least() * part.upper().least();
+}
+
+bool DirectedSearch::can_be_closer(const Part& part) const {
   const double least = kLeastSize * scale_.size;
+  return part.gap() > part.closest_bounds(scale_.accuracy) &&
+         (can_be_thorough(part) || part.squared_size() > least * least);
+}
+
+DirectedSearch::Refined DirectedSearch::refine(const Chosen& chosen, std::size_t most) {
   std::vector<std::size_t> thorough, divided;
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const Part& part = parts_[i];
-    if (!chosen[i] || part.gap() <= part.closest_bounds(scale_.accuracy)) continue;
-    if (!part.thorough && part.squared_size() > kNear * part.upper().least() * part.upper().least())
-      thorough.push_back(i);
-    else if (part.squared_size() > least * least)
-      divided.push_back(i);
-  }
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    if (chosen[i] && can_be_closer(parts_[i])) (can_be_thorough(parts_[i]) ? thorough : divided).push_back(i);
   parallel_for(thorough.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) bound_thoroughly(b_, parts_[thorough[n]]);
   });

@@ -71,6 +71,8 @@ class DirectedSearch {
   [[nodiscard]] Chosen choose() const;
   void choose_by_share(const std::vector<double>& contributions, double target, Chosen& chosen) const;
   void choose_around(const BoundedNumber& percentile, Chosen& chosen) const;
+  [[nodiscard]] static bool can_be_thorough(const Part& part);
+  [[nodiscard]] bool can_be_closer(const Part& part) const;
   /// Returns whether a bound may have changed; `too_many`: there are `most` parts already.
   Refined refine(const Chosen& chosen, std::size_t most);
   void divide(const std::vector<std::size_t>& divided);
