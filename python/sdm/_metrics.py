@@ -155,8 +155,8 @@ def surface_metrics(
     'hd' is the Hausdorff distance, 'hd95' the larger of both 95th percentiles, 'assd' the average symmetric surface
     distance, 'masd' the mean of both average distances, 'rmsd' the root mean square, 'chamfer_l1' and 'chamfer_l2' the
     sums of both means of distances and of their squares; 'normal_consistency' is an estimate. All points of the surfaces
-    count by area; none is sampled, unless `estimate` is given, and lower ≤ truth ≤ upper. If both meshes have no faces, distances are 0 and fractions
-    1; if one has none, distances are infinite and fractions 0. Raises Error for an unusable mesh and options out of range.
+    count by area; none is sampled, unless `estimate` is given, and lower ≤ truth ≤ upper. If both meshes have no faces,
+    distances are 0 and fractions 1; if one has none, distances are infinite and fractions 0. Raises Error for an unusable mesh and options out of range.
 
     >>> metrics = sdm.surface_metrics(box, sphere, tolerances=[0.1])
     >>> metrics["hd95"].lower <= metrics["hd95"].value <= metrics["hd"].upper
