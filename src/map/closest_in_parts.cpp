@@ -9,7 +9,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "query/closest/reference.h"
+#include "query/closest/exact.h"
 #include "sites/sites_data.h"
 
 namespace sdm {
@@ -63,8 +63,8 @@ void merge_closest(const Sites& part, const PartNumbers& numbers, std::span<cons
     for (std::size_t i = begin; i < end; ++i) {
       if (near[i].type == SiteType::none) continue;
       const double limit = best[i].distance, within = widened(near[i].distance);
-      ClosestPoint c = closest::reference_closest(data, queries[i], std::min(limit, within));
-      if (c.type == SiteType::none && within < limit) c = closest::reference_closest(data, queries[i], limit);
+      ClosestPoint c = closest::exact_closest(data, queries[i], std::min(limit, within));
+      if (c.type == SiteType::none && within < limit) c = closest::exact_closest(data, queries[i], limit);
       if (c.type == SiteType::none) continue;
       const ClosestInParts found = in_whole(c, numbers, queries[i]);
       if (best[i].type == SiteType::none || order(found) < order(best[i])) best[i] = found;

@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
+#include "engine/reference/reference_closest.h"
 #include "geometry/vec.h"
 #include "query/closest/finish.h"
-#include "query/closest/reference.h"
 #include "sites/sites_data.h"
 #include "support/map_checks.h"
 #include "support/points.h"
@@ -70,7 +70,7 @@ TEST(Finish, VerifiesEveryWinner) {
   finish_all(closest::SiteId::kUnsettled, limit);
   std::size_t beyond = 0;
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    const ClosestPoint expected = closest::reference_closest(internals(sites), queries[i], limit);
+    const ClosestPoint expected = reference::reference_closest(internals(sites), queries[i], limit);
     EXPECT_EQ(found[i].distance, expected.distance);
     EXPECT_EQ(found[i].type, expected.type);
     beyond += expected.type == SiteType::none;
@@ -181,8 +181,8 @@ TEST(Descent, AgreesWithTheReferenceOnScatteredPoints) {
       for (Vec3& q : queries) q = test::random_point({2 * box.lo - box.hi, 2 * box.hi - box.lo}, random);
       const auto found = closest_points(sites, queries);
       for (std::size_t i = 0; i < queries.size(); ++i) {
-        const ClosestPoint expected =
-            closest::reference_closest(internals(sites), queries[i], std::numeric_limits<double>::infinity());
+        const ClosestPoint expected = reference::reference_closest(internals(sites), queries[i],
+                                                                   std::numeric_limits<double>::infinity());
         ASSERT_NEAR(found[i].distance, expected.distance, tolerance);
         ASSERT_NEAR(test::distance_to_site(sites, found[i].type, found[i].site, queries[i]),
                     found[i].distance, tolerance);

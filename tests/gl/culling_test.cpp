@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
+#include "engine/reference/reference_closest.h"
 #include "gl/pair_culling.h"
 #include "gl/polygons/oriented_box.h"
-#include "query/closest/reference.h"
 #include "support/meshes.h"
 #include "support/points.h"
 #include "support/shapes.h"
@@ -64,7 +64,7 @@ TEST(Culling, RegionsAndBoxesContainTheClosestPoints) {
       const double half = i % 2 ? 1.2 : 4;
       const Vec3 unit = test::random_point({{-half, -half, -half}, {half, half, half}}, random);
       const Vec3 q = (1 / frame.scale) * unit + frame.origin;
-      const ClosestPoint c = closest::reference_closest(internals(sites), q, 1e30);
+      const ClosestPoint c = reference::reference_closest(internals(sites), q, 1e30);
       const auto found = regions.find({c.type, c.site});
       // An edge without a wedge may still be named, for a point over it to rounding: not by random points.
       ASSERT_TRUE(found != regions.end()) << static_cast<int>(c.type) << ' ' << c.site;

@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "engine/reference/reference_closest.h"
 #include "gl/rasteriser.h"
-#include "query/closest/reference.h"
 #include "sites/closest_on_face.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"
@@ -53,7 +53,7 @@ TEST(GridSlice, ContainsTheClosestFaces) {
       const std::uint32_t column = texel % kSide, row = texel / kSide;
       const Vec3 unit = domain.point({column + 0.5, row + 0.5});
       const Vec3 q = (1 / impl.frame.scale) * unit + impl.frame.origin;
-      const ClosestPoint expected = closest::reference_closest(impl, q, 1e30);
+      const ClosestPoint expected = reference::reference_closest(impl, q, 1e30);
       wrong.compare(texel, sites::closest_on_face(impl, faces[texel], q).distance, expected.distance);
     }
     EXPECT_TRUE(wrong.none());

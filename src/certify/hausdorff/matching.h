@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
-#include "query/closest/reference.h"
+#include "query/closest/exact.h"
 #include "query/facing/facing_search.h"
 
 namespace sdm::hausdorff {
@@ -50,8 +50,7 @@ class Matching {
   /// Whether a point of a face of A is behind the faces that it is measured to.
   [[nodiscard]] bool behind(std::uint32_t face, const Vec3& p) const {
     constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-    return rule_->search.match(p, normal(face), kAnywhere, closest::reference_closest(b_, p, kAnywhere))
-        .behind;
+    return rule_->search.match(p, normal(face), kAnywhere, closest::exact_closest(b_, p, kAnywhere)).behind;
   }
 
  private:

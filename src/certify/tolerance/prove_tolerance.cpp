@@ -21,7 +21,7 @@
 #include "core/parallel.h"
 #include "geometry/vec.h"
 #include "mesh/validate.h"
-#include "query/closest/reference.h"
+#include "query/closest/exact.h"
 #include "query/facing/facing_normals.h"
 #include "query/inside/inside.h"
 
@@ -201,7 +201,7 @@ class Prover {
     }
     constexpr double kAnywhere = std::numeric_limits<double>::infinity();
     const auto estimate = [&] {
-      return inside::InsideTest(b_, sign_)(at.point, closest::reference_closest(b_, at.point, kAnywhere));
+      return inside::InsideTest(b_, sign_)(at.point, closest::exact_closest(b_, at.point, kAnywhere));
     };
     const bool is_inside = sign_ == SignMethod::exact ? distance > 0 && inside::contains(b_, at.point)
                                                       : is_estimate(sign_) && estimate();

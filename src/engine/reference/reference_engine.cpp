@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "query/closest/reference.h"
+#include "engine/reference/reference_closest.h"
 
 namespace sdm::reference {
 
@@ -12,8 +12,7 @@ void ReferenceEngine::closest_points(const Sites& sites, std::span<const Vec3> p
   for (std::size_t first = 0; first < points.size(); first += sites::ClosestPacket::kSize) {
     closest.count = std::min(sites::ClosestPacket::kSize, points.size() - first);
     for (std::size_t i = 0; i < closest.count; ++i)
-      closest.set(i, points[first + i],
-                  closest::reference_closest(internals(sites), points[first + i], max_distance));
+      closest.set(i, points[first + i], reference_closest(internals(sites), points[first + i], max_distance));
     sink(first, closest);
   }
 }

@@ -13,8 +13,8 @@
 
 #include "core/nothing_found.h"
 #include "query/closest/candidates-inl.h"
+#include "query/closest/exact.h"
 #include "query/closest/face_distances-inl.h"
-#include "query/closest/reference.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::closest::HWY_NAMESPACE {
@@ -37,7 +37,7 @@ class PointSearch {
 
   ClosestPoint operator()(const Vec3& query) {
     const Vec3 unit = sites_.frame.to_unit(query);
-    if (!is_near(unit)) return reference_closest(sites_, query, max_distance_);
+    if (!is_near(unit)) return exact_closest(sites_, query, max_distance_);
     for (int k = 0; k < 3; ++k) point_[k] = static_cast<float>(unit[k]);
     error_ = distance_error(std::max({std::abs(point_[0]), std::abs(point_[1]), std::abs(point_[2])}),
                             sites_.regions.largest_radius);

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "geometry/vec.h"
-#include "query/closest/reference.h"
+#include "query/closest/exact.h"
 #include "query/facing/normal_tree.h"
 #include "tree/visit.h"
 
@@ -76,13 +76,12 @@ std::optional<std::vector<std::uint32_t>> FacingSearch::few_allowed(const Vec3& 
 ClosestPoint FacingSearch::closest_allowed(const Vec3& query, const Vec3& normal, double max_distance) const {
   std::size_t nodes = 0;
   const auto allowed = [&](std::uint32_t face) { return allows(normal, face); };
-  const ClosestPoint found = closest::reference_closest(
+  const ClosestPoint found = closest::exact_closest(
       sites_, query, max_distance,
       [&](std::uint32_t node) { return ++nodes <= kManyNodes && may_allow(node, normal); }, allowed);
   if (nodes <= kManyNodes) return found;
-  if (const auto few = few_allowed(normal))
-    return closest::reference_closest(sites_, query, max_distance, *few);
-  return closest::reference_closest(
+  if (const auto few = few_allowed(normal)) return closest::exact_closest(sites_, query, max_distance, *few);
+  return closest::exact_closest(
       sites_, query, max_distance, [&](std::uint32_t node) { return may_allow(node, normal); }, allowed);
 }
 

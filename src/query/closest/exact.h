@@ -1,4 +1,5 @@
-// The closest point in plain code that is easy to verify: the oracle for all other searches.
+// The closest point in double precision, of all faces or of some: for few points, where single precision does
+// not tell faces apart.
 #pragma once
 
 #include <cstdint>
@@ -52,9 +53,8 @@ class FirstClosest {
 /// The first of all faces by (distance, type, site, face): the result depends on the faces only, not on the
 /// tree. Of the faces with allows(face), which lie below nodes with may_allow(node).
 template <class MayAllow, class Allows>
-[[nodiscard]] ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& q,
-                                             double max_distance, const MayAllow& may_allow,
-                                             const Allows& allows) {
+[[nodiscard]] ClosestPoint exact_closest(const sites::SitesData& sites, const Vec3& q, double max_distance,
+                                         const MayAllow& may_allow, const Allows& allows) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const Vec3 unit = sites.frame.to_unit(q);
   FirstClosest best(sites, q, max_distance);
@@ -75,16 +75,15 @@ template <class MayAllow, class Allows>
 }
 
 /// The same of listed faces. Cost: linear in them.
-[[nodiscard]] inline ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& q,
-                                                    double max_distance,
-                                                    std::span<const std::uint32_t> faces) {
+[[nodiscard]] inline ClosestPoint exact_closest(const sites::SitesData& sites, const Vec3& q,
+                                                double max_distance, std::span<const std::uint32_t> faces) {
   FirstClosest best(sites, q, max_distance);
   for (const std::uint32_t face : faces) best.offer(face);
   return best.result();
 }
 
 /// The same of all faces.
-[[nodiscard]] ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& point,
-                                             double max_distance);
+[[nodiscard]] ClosestPoint exact_closest(const sites::SitesData& sites, const Vec3& point,
+                                         double max_distance);
 
 }  // namespace sdm::closest
