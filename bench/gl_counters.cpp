@@ -15,7 +15,7 @@ std::vector<std::string> violated_relations(const Surface& surface, const Distan
   check(r.pairs == r.culled_by_bound + r.culled_by_obb + r.clipped_away + r.polygons,
         "pairs = culled_by_bound + culled_by_obb + clipped_away + polygons");
   check(options.bound_culling || r.culled_by_bound == 0, "without bounds culled_by_bound = 0");
-  check(r.texels == surface.sample_texels().size(), "texels = those that a face owns");
+  check(r.texels == surface.owned_texels(), "texels = those that a face owns");
   check(r.fragments >= r.texels - map.beyond_max_distance, "fragments >= texels with a value");
   check(r.stencil_lookups == r.stencil_hits + r.stencil_misses, "lookups = hits + misses");
   check(r.stencil_evictions <= r.stencil_misses &&

@@ -35,7 +35,7 @@ constexpr int kFrameStep = 10;
 void make_rays(const Surface& surface, std::span<const Vec3> points, std::size_t sample, double t_min,
                double t_max, std::span<Ray> rays) {
   const std::uint32_t texel = surface.sample_texels()[sample];
-  const auto& [a, b, c] = surface.mesh().triangles[surface.texel_faces()[texel]];
+  const auto& [a, b, c] = surface.mesh().triangles[surface.map_faces()[texel]];
   const std::vector<Vec3>& p = surface.mesh().positions;
   std::array<Vec3, kRays> directions;
   rays::cosine_hemisphere(normalized(cross(p[b] - p[a], p[c] - p[a])), 0, texel, directions);
@@ -52,6 +52,7 @@ void embree_occlusion(const EmbreeOccluder& embree, const Surface& surface, doub
     std::array<std::uint8_t, kRays> met;
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t texel = surface.sample_texels()[i];
+      if (texel >= surface.texel_faces().size()) continue;  // ambient occlusion is that of texels
       const double from = free.empty() ? 0 : free[texel];
       result[texel] = 1;
       if (from > max_distance) continue;
@@ -80,6 +81,7 @@ bool agree(const Surface& surface, const Sites& sites, const EmbreeOccluder& emb
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::uint32_t texel = surface.sample_texels()[i];
+    if (texel >= ours.size()) continue;
     make_rays(surface, points, i, 0, max_distance, rays);
     embree.occluded(rays, peer.data());
     const std::vector<std::uint8_t> met = occluded(sites, rays);

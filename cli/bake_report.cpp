@@ -18,7 +18,7 @@ Json atlas_json(const BakeCommand& command, const sdm::Surface& surface) {
           {"rows", surface.rows() / command.sample_side},
           {"samples", command.sample_side * command.sample_side},
           {"charts", surface.chart_count()},
-          {"texels", surface.sample_texels().size()},
+          {"texels", surface.owned_texels()},
           {"utilisation", surface.utilisation()},
           {"overlapping_texels", surface.overlapping_texels()}};
 }

@@ -59,7 +59,8 @@ void write_maps(const BodiesCommand& command, const sdm::MultiBodyQuery& bodies,
     const sdm::PictureOptions picture{.units = command.units};
     write_map_files(folder, command.map_files, bodies.surface(body), nearest.map, at_vertices, nullptr,
                     picture, sdm::fixed_colors(picture, sdm::statistics(bodies.surface(body), nearest.map)));
-    sdm::write_npy(folder / "body.npy", nearest.map.resolution, nearest.body);
+    sdm::write_npy(folder / "body.npy", nearest.map.resolution,
+                   std::span(nearest.body).first(nearest.map.texels()));
   }
 }
 

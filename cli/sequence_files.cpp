@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -90,8 +91,11 @@ void SequenceFiles::write_temporal(const sdm::TemporalMaps& temporal, const Movi
   sdm::write_exr(folder_ / "temporal.exr", surface, temporal);
   // The pictures need the other layers of a map.
   sdm::DistanceMap& map = maps.of[0];
-  if (map.distance.size() != surface.texel_faces().size()) maps.compute(pair, 0);
+  if (map.distance.size() != surface.map_faces().size()) maps.compute(pair, 0);
   const auto use = [&](std::span<const float> values) { std::ranges::copy(values, map.distance.begin()); };
+  // Faces without a texel have no values over time.
+  std::fill(map.distance.begin() + static_cast<std::ptrdiff_t>(map.texels()), map.distance.end(),
+            std::numeric_limits<float>::quiet_NaN());
   sdm::PictureOptions picture = command_.picture;
   if (!picture.range) {  // one scale for the three
     use(temporal.least());

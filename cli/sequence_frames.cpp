@@ -86,7 +86,6 @@ void FrameLoop::repeat(std::size_t index) {
   frame.index = index;
   try {
     pair_.move(frame);
-    if (index == 0) note_surfaces();
     if (pair_.has_history()) pair_.bound_errors(frame);
     if (!is_bad(finished.line)) {
       temporal_.pass();
@@ -98,12 +97,6 @@ void FrameLoop::repeat(std::size_t index) {
   }
   if (pair_.hash() != finished.hash)
     checkpoint_.refuse(fmt::format("frame {} is not that of the interrupted run", index));
-}
-
-void FrameLoop::note_surfaces() {
-  if (!command_.measures()) return;
-  for (int body = 0; body < command_.measured_bodies(); ++body)
-    if (auto note = sdm::note_on_texels(pair_.surface(body))) notes_.push_back(std::move(*note));
 }
 
 /// Returns whether the next frame is to be used.
@@ -121,7 +114,6 @@ bool FrameLoop::use(std::size_t index) {
   Stopwatch watch;
   pair_.bound_errors(frame);
   frame.time.error = watch.lap();
-  if (index == 0) note_surfaces();
   answer_queries(frame, pair_.query());
   frame.time.query = watch.lap();
   compute_maps(frame);

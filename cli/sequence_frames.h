@@ -48,7 +48,6 @@ class FrameLoop {
 
  private:
   void repeat(std::size_t index);
-  void note_surfaces();
   void adopt_finished();
   [[nodiscard]] bool use(std::size_t index);
   [[nodiscard]] bool skip(std::size_t index, const std::string& fault);

@@ -60,7 +60,9 @@ void answer_calls(const std::filesystem::path& folder, std::uint32_t resolution)
     if (call == "write") {
       std::vector<double> distances;
       for (const ClosestPoint& one : closest) distances.push_back(one.distance);
-      write(folder / "map.native", map.distance);
+      write(folder / "map.native",
+            std::vector(map.distance.begin(),
+                        map.distance.begin() + static_cast<std::ptrdiff_t>(map.texels())));
       write(folder / "points.native", distances);
       std::cout << "written" << std::endl;
       continue;

@@ -1,4 +1,5 @@
-/// The surface distance map: at every texel of O1's atlas, the distance to O2.
+/// The surface distance map: at every sample of O1, which are the texels of its atlas and one point of each
+/// face without one, the distance to O2.
 ///
 /// Threads: the functions may be called concurrently, also with the same Surface and Sites, if the maps that
 /// they write differ.
@@ -34,24 +35,27 @@ struct MapOptions {
   Progress progress{};
 };
 
-/// One value per texel, in arrays of resolution · rows(), row 0 at the top. Texels without a value, because
-/// no face owns them, O2 is farther than max_distance or no face of O2 faces as they do, hold NaN, kNone and
-/// SiteType::none.
+/// One value per texel, resolution · rows(), row 0 at the top, and after them one for each face that owns no
+/// texel, as Surface::map_faces(). Texels without a value, because no face owns them, O2 is farther than
+/// max_distance or no face of O2 faces as they do, hold NaN, kNone and SiteType::none.
 struct DistanceMap {
   std::uint32_t resolution = 0;     ///< texels per row
+  std::size_t without_texel = 0;    ///< the number of values of faces that own no texel
   std::vector<float> distance;      ///< |vector|, negative inside O2 if signed
   std::vector<Vec3f> vector;        ///< closest point of O2 − texel's surface point
   std::vector<std::uint32_t> site;  ///< index of the closest site among those of its type
   std::vector<SiteType> site_type;
   SignUsed sign;
   MeasuredDistance measured;
-  std::size_t beyond_max_distance = 0;  ///< owned texels without a value, besides the next ones
-  std::size_t without_match = 0;        ///< owned texels that no face of O2 is allowed for
-  std::vector<std::uint8_t> unmatched;  ///< flags of these texels; empty if there are none
+  std::size_t beyond_max_distance = 0;  ///< samples without a value, besides the next ones
+  std::size_t without_match = 0;        ///< samples that no face of O2 is allowed for
+  std::vector<std::uint8_t> unmatched;  ///< flags of these samples; empty if there are none
 
+  /// The number of values of texels, which come first.
+  [[nodiscard]] std::size_t texels() const { return distance.size() - without_texel; }
   /// Texels per column, as Surface::rows().
   [[nodiscard]] std::uint32_t rows() const {
-    return resolution == 0 ? 0 : static_cast<std::uint32_t>(distance.size() / resolution);
+    return resolution == 0 ? 0 : static_cast<std::uint32_t>(texels() / resolution);
   }
 };
 
@@ -87,8 +91,8 @@ SDM_API void compute_map(const Surface& surface, const Sites& sites, const MapOp
 /// Returns what distances with these options are to. Throws sdm::Error if options.facing is out of range.
 [[nodiscard]] SDM_API MeasuredDistance measured_distance(const MapOptions& options);
 
-/// Returns, for each texel, 1 if its closest site is a boundary edge of an open O2 or a vertex of one,
-/// otherwise 0. Such texels may lie beside the part that O2 covers, where distances do not compare the two
+/// Returns, for each value, 1 if its closest site is a boundary edge of an open O2 or a vertex of one,
+/// otherwise 0. Such samples may lie beside the part that O2 covers, where distances do not compare the two
 /// surfaces. The map must be one to these sites. Throws sdm::Error if it names a site that does not exist.
 /// Cost: linear.
 [[nodiscard]] SDM_API std::vector<std::uint8_t> boundary_mask(const Sites& sites, const DistanceMap& map);

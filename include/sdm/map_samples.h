@@ -23,11 +23,11 @@ struct SampleRange {
 /// a 128th of the samples. Cost: O(1).
 [[nodiscard]] SDM_API std::size_t sample_range_grain(const Surface& surface);
 
-/// Returns a map of the size of the surface's atlas, without a value at any texel. Throws sdm::Error if there
+/// Returns a map of the surface, without a value at any sample. Throws sdm::Error if there
 /// is not enough memory. Cost: linear.
 [[nodiscard]] SDM_API DistanceMap empty_map(const Surface& surface);
 
-/// Computes the values of some samples and stores them at their texels; the other texels keep theirs. Once
+/// Computes the values of some samples and stores them; the others keep theirs. Once
 /// this was called for ranges that cover all samples, in any order, with the same arguments otherwise, the
 /// arrays and the sign of the map are those of compute_map() to the bit; beyond_max_distance counts the
 /// samples of this range. Throws sdm::Error as compute_map() does, if `map` has another size than the atlas,

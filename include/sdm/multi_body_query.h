@@ -94,9 +94,9 @@ struct NearestMap {
   /// surface, or to the one with the lowest index if several are equally near. The sign is that of that body
   /// alone: negative inside it if it is closed and orientable.
   DistanceMap map;
-  /// The index of that body for each texel; kNone where the map has no value.
+  /// The index of that body for each value; kNone where the map has no value.
   std::vector<std::uint32_t> body;
-  /// The part of that body for each texel, whose sites those of the map are; empty if no body is a compound.
+  /// The part of that body for each value, whose sites those of the map are; empty if no body is a compound.
   std::vector<std::uint32_t> part;
 };
 

@@ -15,8 +15,8 @@
 
 namespace sdm {
 
-/// Statistics of the texels that hold a finite value, each weighted by its area on the surface. The distances
-/// are NaN if there are none.
+/// Statistics of the samples that hold a finite value, each weighted by its area on the surface; the areas of
+/// all samples add up to that of the mesh. The distances are NaN if there are none.
 struct DistanceStatistics {
   std::size_t texels = 0;
   std::size_t negative_texels = 0;
@@ -29,7 +29,8 @@ struct DistanceStatistics {
 
 template <>
 inline constexpr std::tuple kFields<DistanceStatistics>{
-    Field{"texels", &DistanceStatistics::texels, "The number of texels that have a value."},
+    Field{"texels", &DistanceStatistics::texels,
+          "The number of samples that have a value: texels, and points of faces without one."},
     Field{"negative_texels", &DistanceStatistics::negative_texels, "The number of those that are negative."},
     Field{"min", &DistanceStatistics::min, "The smallest distance."},
     Field{"max", &DistanceStatistics::max, "The largest distance."},
@@ -59,7 +60,7 @@ inline constexpr std::tuple kFields<DistanceStatistics>{
 struct Extreme {
   double distance = 0;
   Vec3 point{};            ///< on the surface
-  bool at_vertex = false;  ///< at a vertex of the mesh; otherwise at a texel
+  bool at_vertex = false;  ///< at a vertex of the mesh; otherwise at a sample
 };
 
 /// The smallest and the largest distance of all texels and of all vertices of faces that have a value.
@@ -78,8 +79,8 @@ struct Extremes {
 [[nodiscard]] SDM_API double area_fraction_beyond(const Surface& surface, const DistanceMap& map,
                                                   double limit);
 
-/// Returns the fraction of the area of the surface, in [0, 1], that lies in faces without a texel: statistics
-/// of its maps, and fractions of their areas, leave it out. Cost: linear in texels and faces.
+/// Returns the fraction of the area of the surface, in [0, 1], that lies in faces without a texel: pictures
+/// of its maps do not show it, and each of these faces has one sample. Cost: linear in faces.
 [[nodiscard]] SDM_API double area_fraction_without_texels(const Surface& surface);
 
 /// The distances between two numbers, and the fraction of the area that has them.

@@ -228,10 +228,6 @@ class SDM_API CombinedSummary {
                                                                std::span<const GroupTolerance> table,
                                                                const std::string& units);
 
-/// Returns a sentence if more than a thousandth of the area lies in faces without a texel, which statistics
-/// and shares of the area leave out. Cost: that of area_fraction_without_texels().
-[[nodiscard]] SDM_API std::optional<std::string> note_on_texels(const Surface& surface);
-
 /// Returns a sentence if faces of a surface are so small that their direction is noise: where distances go to
 /// faces that face the same way, within `facing` degrees, these are measured as their surroundings are (see
 /// sdm/facing.h). Throws sdm::Error for an angle out of range. Cost: linear.

@@ -26,6 +26,12 @@ class SurfaceData;
 /// so that texel (x, y) has its centre at (x + 0.5, y + 0.5) and the index y * resolution + x. Every face has
 /// an affine map M from its plane to the atlas; a texel belongs to the face that contains its centre, at most
 /// one.
+///
+/// The samples of the surface are the centres of the texels that a face owns and, of each face with an area
+/// that owns none, one point: every part of the area has a sample. These points have the indices from
+/// resolution() · rows() on, in the order of the faces; pictures of the atlas do not show them. Where they
+/// lie in their faces depends on the number of the face only, and is spread evenly over such faces: centroids
+/// would average what faces smaller than a texel have at their corners, such as the noise of a scan.
 class SDM_API Surface {
  public:
   /// Lays out the atlas. Throws sdm::Error when the mesh is unusable (see validate), when the resolution is
@@ -56,7 +62,8 @@ class SDM_API Surface {
   /// and their charts keep their numbers. Added faces form charts of their own, of the options of the atlas
   /// (for `uv`: AtlasKind::charts), at the scale of the layout: texels per unit length of the added faces as
   /// they are now. They take free texels first; then rows() grows. Rows are only added at the bottom, so
-  /// texel (x, y) keeps its index. sample_texels() changes; a SamplingBound must be built again.
+  /// texel (x, y) keeps its index; those of faces without a texel change. sample_texels() changes; a
+  /// SamplingBound must be built again.
   ///
   /// Throws sdm::Error, and changes nothing, as apply() does, if a chart of added faces is wider than the
   /// atlas, if more than 65535 rows would be needed, if no face would own a texel, and if there is not enough
@@ -81,12 +88,14 @@ class SDM_API Surface {
 
   /// The face that owns each texel, or kNone; resolution() · rows() values.
   [[nodiscard]] std::span<const std::uint32_t> texel_faces() const;
-  /// The indices of all owned texels, in an order that keeps consecutive texels close together on the
-  /// surface.
+  /// The face of each value of a map: texel_faces(), then the faces that own no texel, ascending.
+  [[nodiscard]] std::span<const std::uint32_t> map_faces() const;
+  /// The indices of all samples, in an order that keeps consecutive ones close together on the surface.
   [[nodiscard]] std::span<const std::uint32_t> sample_texels() const;
   /// texel_point() of each of sample_texels(). Computed by each call. Cost: linear in samples, all cores.
   [[nodiscard]] std::vector<Vec3> sample_points() const;
-  /// The surface point of an owned texel's centre: M⁻¹ of its face.
+  /// The point of a sample: of an owned texel's centre, M⁻¹ of its face; of an index from
+  /// resolution() · rows() on, the one of its face.
   [[nodiscard]] Vec3 texel_point(std::uint32_t texel) const;
 
   /// The number of charts.
@@ -108,7 +117,9 @@ class SDM_API Surface {
   /// it does. 0 for other atlases.
   [[nodiscard]] std::size_t overlapping_texels() const;
 
-  /// The number of owned texels divided by that of all texels.
+  /// The number of texels that a face owns.
+  [[nodiscard]] std::size_t owned_texels() const;
+  /// owned_texels() divided by the number of all texels.
   [[nodiscard]] double utilisation() const;
   /// The largest factor by which a length grows from atlas to surface, relative to the atlas's own scale (for
   /// `uv`: the scale at which areas agree in total). Exactly 1 for `triangles`, at most max_stretch for

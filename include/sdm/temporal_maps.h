@@ -13,7 +13,8 @@
 
 namespace sdm {
 
-/// The minimum, maximum and mean distance of every texel of an atlas over the added maps. NaN where no
+/// The minimum, maximum and mean distance of every texel of an atlas over the added maps; faces without a
+/// texel have none. NaN where no
 /// face owns the texel, where another face or none owned it in an earlier map, or where it
 /// was beyond the maximum distance in one of the maps. Self maps mark the
 /// latter by +∞ instead: the minimum is then that over the other maps.

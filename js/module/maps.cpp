@@ -188,7 +188,7 @@ Result* map_samples(const DistanceMap* map, const Surface* surface, std::uint32_
                     std::uint32_t count) {
   return guarded([&](Result& result) {
     const auto all = surface->sample_texels();
-    if (map->distance.size() != surface->texel_faces().size() || first > all.size() ||
+    if (map->distance.size() != surface->map_faces().size() || first > all.size() ||
         count > all.size() - first)
       throw Error("the samples are not of this map");
     const auto texels = all.subspan(first, count);

@@ -145,6 +145,7 @@ function noValues(resolution: number, rows: number): MapValues {
 function store(into: MapValues, texels: Uint32Array, first: number, values: MapValues): void {
   for (let i = 0; i < values.distances.length; ++i) {
     const texel = texels[first + i]!;
+    if (texel >= into.distances.length) continue; // of a face without a texel
     into.distances[texel] = values.distances[i]!;
     for (let k = 0; k < 3; ++k) into.vectors[3 * texel + k] = values.vectors[3 * i + k]!;
     into.sitesOfTexels[texel] = values.sitesOfTexels[i]!;

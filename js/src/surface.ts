@@ -241,7 +241,10 @@ export class Surface extends Owned {
     return this.module.call('sdm_stored_atlas', [this.handle])[0]!;
   }
 
-  /** The texels that a face owns, and their points. */
+  /**
+   * The samples: the texels that a face owns and, with indices from resolution · rows on, one point of each face that owns none;
+   * and their points. Arrays of a map have no place for the latter, statistics have them.
+   */
   samples(): { texels: Uint32Array; points: Float64Array } {
     const [texels, points] = this.module.call('sdm_surface_samples', [this.handle]);
     return { texels: uint32(texels!), points: float64(points!) };

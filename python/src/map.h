@@ -35,7 +35,7 @@ struct PyMap {
   DistanceMap map;
   double ms = 0;  ///< that it took
 
-  [[nodiscard]] std::size_t texels() const { return map.distance.size(); }
+  [[nodiscard]] std::size_t texels() const { return map.texels(); }
   [[nodiscard]] std::size_t rows() const { return map.rows(); }
 
   /// Locks the surface, and throws if it has another shape than that of the map.

@@ -68,24 +68,39 @@ void merge(const PySites& part, const Numbers& vertices, const Numbers& edges, c
   });
 }
 
+// Calls visit(place, texel) for the samples that are texels: arrays have no place for others.
+template <class Visit>
+void for_each_owned(const Surface& surface, const Visit& visit) {
+  const auto samples = surface.sample_texels();
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (samples[i] < surface.texel_faces().size()) visit(i, samples[i]);
+}
+
 }  // namespace
 
 void bind_parts(nb::module_& module) {
   module.def(
       "sample_texels",
       [](nb::handle self) {
-        const auto texels = nb::cast<const PySurface&>(self).surface.sample_texels();
-        return view_of<std::uint32_t>(texels, {texels.size()}, self);
+        std::vector<std::uint32_t> texels;
+        for_each_owned(nb::cast<const PySurface&>(self).surface,
+                       [&](std::size_t, std::uint32_t texel) { texels.push_back(texel); });
+        const std::size_t count = texels.size();
+        return array_of<std::uint32_t>(std::move(texels), {count});
       },
       nb::arg("surface"),
       nb::sig("def sample_texels(surface: Surface) -> numpy.typing.NDArray[numpy.uint32]"),
-      "Returns the indices of the texels that a face owns, (n,) uint32, read-only: neighbours on the surface "
+      "Returns the indices of the texels that a face owns, (n,) uint32: neighbours on the surface "
       "follow each other.");
   module.def(
       "sample_points",
       [](const PySurface& self) {
         const auto lock = self.access.use();
-        auto points = run_short([&] { return self.surface.sample_points(); });
+        auto points = run_short([&] {
+          std::vector<Vec3> all = self.surface.sample_points(), owned;
+          for_each_owned(self.surface, [&](std::size_t i, std::uint32_t) { owned.push_back(all[i]); });
+          return owned;
+        });
         const std::size_t count = points.size();
         return array_of<double>(std::move(points), {count, 3});
       },

@@ -94,12 +94,12 @@ nb::tuple state_of(const DistanceMap& map) {
       map.resolution, packed(map.distance), packed(map.vector), packed(map.site), packed(map.site_type),
       nb::make_tuple(name_of(map.sign.method), map.sign.reason),
       nb::make_tuple(static_cast<int>(map.measured.kind), map.measured.text, map.measured.facing),
-      map.beyond_max_distance, map.without_match, packed(map.unmatched));
+      map.beyond_max_distance, map.without_match, packed(map.unmatched), map.without_texel);
 }
 
-/// A map of `texels`, whose sites are not checked.
-DistanceMap map_from(nb::handle packed, std::size_t texels) {
-  const nb::tuple state = items(packed, 10), sign = items(state[5], 2), measured = items(state[6], 3);
+/// A map of so many values, whose sites are not checked.
+DistanceMap map_from(nb::handle packed, std::size_t values) {
+  const nb::tuple state = items(packed, 11), sign = items(state[5], 2), measured = items(state[6], 3);
   DistanceMap map;
   map.resolution = nb::cast<std::uint32_t>(state[0]);
   map.distance = unpacked<float>(state[1]), map.vector = unpacked<Vec3f>(state[2]);
@@ -110,18 +110,20 @@ DistanceMap map_from(nb::handle packed, std::size_t texels) {
   map.beyond_max_distance = nb::cast<std::size_t>(state[7]);
   map.without_match = nb::cast<std::size_t>(state[8]);
   map.unmatched = unpacked<std::uint8_t>(state[9]);
-  if (map.distance.size() != texels || map.vector.size() != texels || map.site.size() != texels ||
-      map.site_type.size() != texels || (!map.unmatched.empty() && map.unmatched.size() != texels))
+  map.without_texel = nb::cast<std::size_t>(state[10]);
+  if (map.without_texel > values || map.distance.size() != values || map.vector.size() != values ||
+      map.site.size() != values || map.site_type.size() != values ||
+      (!map.unmatched.empty() && map.unmatched.size() != values))
     throw Error(kDamaged);
   return map;
 }
 
 DistanceMap map_from(nb::handle packed, const Surface& surface, const Sites& sites) {
-  const std::size_t texels = surface.texel_faces().size();
-  DistanceMap map = map_from(packed, texels);
-  if (map.resolution != surface.resolution()) throw Error(kDamaged);
+  DistanceMap map = map_from(packed, surface.map_faces().size());
+  if (map.resolution != surface.resolution() || map.texels() != surface.texel_faces().size())
+    throw Error(kDamaged);
   const std::array counts{sites.mesh().positions.size(), sites.edges().size(), sites.mesh().triangles.size()};
-  for (std::size_t i = 0; i < texels; ++i) {
+  for (std::size_t i = 0; i < map.site.size(); ++i) {
     const auto type = static_cast<std::size_t>(map.site_type[i]);
     if (map.site_type[i] != SiteType::none && (type >= counts.size() || map.site[i] >= counts[type]))
       throw Error(kDamaged);
@@ -198,7 +200,7 @@ void bind_nearest_map_state() {
         NearestMap nearest;
         nearest.body = unpacked<std::uint32_t>(from[1]), nearest.part = unpacked<std::uint32_t>(from[2]);
         nearest.map = map_from(from[0], nearest.body.size());
-        if (nearest.map.resolution == 0 || nearest.body.size() % nearest.map.resolution != 0 ||
+        if (nearest.map.resolution == 0 || nearest.map.texels() % nearest.map.resolution != 0 ||
             (!nearest.part.empty() && nearest.part.size() != nearest.body.size()))
           throw Error(kDamaged);
         new (self) PyNearestMap{.nearest = std::move(nearest), .valid = {}};

@@ -189,7 +189,8 @@ centre, in units of the mesh. Cost: linear in texels and faces, all cores.)")
       .def_prop_ro(
           "area_fraction_without_texels",
           [](const PySurface& self) { return area_fraction_without_texels(self.surface); },
-          "The fraction of the area that lies in faces without a texel, which statistics leave out.")
+          "The fraction of the area that lies in faces without a texel: arrays and pictures of maps do not "
+          "show it; statistics have one sample of each of these faces.")
       .def_prop_ro(
           "max_stretch", [](const PySurface& self) { return self.surface.max_stretch(); },
           "The largest factor by which a length grows from atlas to surface, for the first shape.");

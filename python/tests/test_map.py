@@ -3,6 +3,7 @@
 import html
 import json
 import os
+import pickle
 import re
 import struct
 import subprocess
@@ -130,6 +131,21 @@ def test_statistics_and_vertices(distance_map):
     at_vertices = distance_map.at_vertices()
     expected = sdm.Sites(meshes.box()).signed_distance(vertices).astype(np.float32)
     np.testing.assert_array_equal(at_vertices, expected)
+
+
+def test_faces_without_texels_count_in_statistics_and_have_no_place_in_arrays():
+    mesh = sdm.Mesh(*meshes.sphere(steps=5))
+    surface = sdm.Surface(mesh, resolution=32)
+    coarse, fine = sdm.map(surface, meshes.box()), sdm.map(mesh, meshes.box(), resolution=512)
+    faces = surface.texel_faces
+    assert coarse.distance.shape == coarse.site.shape == faces.shape == (32, 32)
+    assert (coarse.valid == (faces != sdm.NONE)).all()
+    without = np.setdiff1d(np.arange(len(mesh.faces)), faces)
+    assert len(without) > 1000
+    assert coarse.statistics().texels == np.count_nonzero(faces != sdm.NONE) + len(without)
+    for name in ("mean", "rms", "p95"):
+        assert getattr(coarse.statistics(), name) == pytest.approx(getattr(fine.statistics(), name), abs=0.005)
+    assert pickle.loads(pickle.dumps(coarse)).statistics().rms == coarse.statistics().rms
 
 
 def test_prepared_surface_and_sites():

@@ -97,7 +97,7 @@ Interpolation interpolate(const Pair& pair) {
   // Samples of one face of O1 with one closest site: they lie in its region, which is convex.
   std::map<std::array<std::uint32_t, 3>, std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < points.size(); ++i)
-    groups[{surface.texel_faces()[surface.sample_texels()[i]], static_cast<std::uint32_t>(closest[i].type),
+    groups[{surface.map_faces()[surface.sample_texels()[i]], static_cast<std::uint32_t>(closest[i].type),
             closest[i].site}]
         .push_back(i);
   const auto uv = [&](std::size_t i) { return texel_centre(surface, surface.sample_texels()[i]); };

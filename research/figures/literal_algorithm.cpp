@@ -35,7 +35,8 @@ std::vector<Case> cases(Run& run) {
 /// A map with all corrections painted grey, and in red where `wrong` has the texel.
 io::Picture wrong_in_red(const Surface& surface, const std::vector<std::uint32_t>& wrong, const View& view) {
   std::vector<bool> is_wrong(std::size_t{surface.resolution()} * surface.rows());
-  for (const std::uint32_t t : wrong) is_wrong[t] = true;
+  for (const std::uint32_t t : wrong)
+    if (t < is_wrong.size()) is_wrong[t] = true;
   const Shown shown{&surface};
   return Scenery(view, std::span(&shown, 1)).paint([&](const Seen& s) {
     return is_wrong[s.texel] ? io::Rgb{205, 30, 30} : io::Rgb{196, 200, 206};

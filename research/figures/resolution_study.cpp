@@ -24,7 +24,7 @@ void add_row(Method& method, double n, double bytes, double bound, const Surface
 SurfaceErrors errors_of_map(const Surface& surface, const DistanceMap& map, const SurfacePoints& points) {
   constexpr double kRunRadius = 8;  // in texels
   const surface::SampleTree samples(
-      surface, kRunRadius * norm(surface.texel_edges(surface.texel_faces()[surface.sample_texels()[0]])[0]));
+      surface, kRunRadius * norm(surface.texel_edges(surface.map_faces()[surface.sample_texels()[0]])[0]));
   SurfaceErrors errors;
   for (std::size_t i = 0; i < points.points.size(); ++i) {
     const std::uint32_t t = surface.sample_texels()[samples.nearest(points.points[i])];

@@ -47,7 +47,8 @@ bool intersects(const gl::SiteRegion& region, const std::array<Vec3, 3>& corners
 
 std::vector<std::uint32_t> faces_with_texels(const Surface& surface) {
   std::vector<std::uint32_t> faces;
-  for (const std::uint32_t t : surface.sample_texels()) faces.push_back(surface.texel_faces()[t]);
+  for (const std::uint32_t face : surface.texel_faces())
+    if (face != kNone) faces.push_back(face);
   std::ranges::sort(faces);
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   return faces;
@@ -84,7 +85,7 @@ DrawOrder winning_pairs(const Surface& surface, const Sites& sites) {
   std::vector<std::array<std::uint32_t, 4>> pairs;  // in the order of O2's tree
   for (std::size_t i = 0; i < closest.size(); ++i)
     pairs.push_back({place[closest[i].face], static_cast<std::uint32_t>(closest[i].type), closest[i].site,
-                     surface.texel_faces()[surface.sample_texels()[i]]});
+                     surface.map_faces()[surface.sample_texels()[i]]});
   std::ranges::sort(pairs);
   // A site may be found through several of its faces: only its first place counts.
   std::set<std::array<std::uint32_t, 3>> drawn;

@@ -17,6 +17,7 @@
 #include "gl/gl_engine.h"
 #include "gl/map_drawing.h"
 #include "query/closest/blocks.h"
+#include "query/closest/closest_points.h"
 #include "research/literal/rasteriser.h"
 #include "research/site_code.h"
 
@@ -85,8 +86,8 @@ Drawn draw(const Device& device, const gl::DrawTask& task, const Corrections& co
 }
 
 // Passes on the distances and vectors that were drawn, as the paper does.
-void pass_on(const Drawn& winners, std::span<const std::uint32_t> texels, std::span<const Vec3> points,
-             double max_distance, const sites::ClosestSink& sink) {
+void pass_on(const sites::SitesData& sites, const Drawn& winners, std::span<const std::uint32_t> texels,
+             std::span<const Vec3> points, double max_distance, const sites::ClosestSink& sink) {
   sites::ClosestPacket packet;
   for (std::size_t first = 0; first < texels.size(); first += packet.count) {
     packet.count = std::min(sites::ClosestPacket::kSize, texels.size() - first);
@@ -94,6 +95,13 @@ void pass_on(const Drawn& winners, std::span<const std::uint32_t> texels, std::s
       const std::uint32_t texel = texels[first + i];
       const Vec3& point = points[first + i];
       ClosestPoint drawn;
+      if (texel >= winners.winners.size()) {  // a face without a texel
+        closest::closest_points(sites, points.subspan(first + i, 1), max_distance,
+                                [&](std::size_t, const sites::ClosestPacket& found) {
+                                  packet.set(i, point, found.get(0, point));
+                                });
+        continue;
+      }
       if (winners.winners[texel] != kNone) {
         std::tie(drawn.type, drawn.site) = research::site_of(winners.winners[texel]);
         const std::array<float, 4>& v = winners.vectors[texel];
@@ -140,7 +148,7 @@ void LiteralEngine::map(const Surface& surface, const Sites& sites, const engine
   const Drawn drawn = devices().pool.with(options_.device, [&](const Device& device, double ms) {
     report.device = device.context().device();
     report.clip = options_.clip;
-    report.texels = surface.sample_texels().size();
+    report.texels = surface.owned_texels();
     report.time_ms.context = ms;
     gl::TileTreeCache& trees = corrections_.tiles ? devices().tiles : devices().whole_faces;
     return draw(device, {surface, trees.of(surface), internals(sites), options_, options}, corrections_,
@@ -158,7 +166,7 @@ void LiteralEngine::map(const Surface& surface, const Sites& sites, const engine
         if (corrections_.confirmation)
           unconfirmed += gl::confirm(internals(sites), drawn, texels, points, options.max_distance, pass);
         else
-          pass_on(drawn, texels, points, options.max_distance, pass);
+          pass_on(internals(sites), drawn, texels, points, options.max_distance, pass);
       });
   report.unconfirmed = unconfirmed;
   report.time_ms.finish = watch.lap();

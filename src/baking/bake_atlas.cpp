@@ -31,8 +31,7 @@ Surface laid_out_as(const Mesh& mesh, AtlasOptions options, AtlasKind kind) {
 }  // namespace
 
 double overlap_of(const Surface& surface) {
-  return static_cast<double>(surface.overlapping_texels()) /
-         static_cast<double>(surface.sample_texels().size());
+  return static_cast<double>(surface.overlapping_texels()) / static_cast<double>(surface.owned_texels());
 }
 
 BakeAtlas bake_atlas(const Mesh& mesh, const AtlasOptions& options) {

@@ -15,13 +15,16 @@ std::size_t confirm(const sites::SitesData& sites, const RasterWinners& winners,
   for (std::size_t first = 0; first < texels.size(); first += packet.count) {
     packet.count = std::min(sites::ClosestPacket::kSize, texels.size() - first);
     for (std::size_t i = 0; i < packet.count; ++i) {
-      const std::uint32_t texel = texels[first + i], face = winners.winners[texel];
+      const std::uint32_t texel = texels[first + i];
+      const bool drawn = texel < winners.winners.size();
+      const std::uint32_t face = drawn ? winners.winners[texel] : kNone;
       ClosestPoint closest;
       if (face != kNone) closest = sites::closest_around_face(sites, face, points[first + i]);
-      const bool confirmed = face == kNone ? winners.complete : winners.confirms(texel, closest.distance);
+      const bool confirmed =
+          face == kNone ? drawn && winners.complete : winners.confirms(texel, closest.distance);
       packet.set(i, points[first + i], closest.distance <= max_distance ? closest : ClosestPoint{});
       if (confirmed) continue;
-      ++unconfirmed;
+      unconfirmed += drawn;
       closest::closest_points(sites, points.subspan(first + i, 1), max_distance,
                               [&](std::size_t, const sites::ClosestPacket& found) {
                                 packet.set(i, points[first + i], found.get(0, points[first + i]));

@@ -64,7 +64,7 @@ void GlEngine::map(const Surface& surface, const Sites& sites, const engine::Eng
       devices().pool.with(options_.device, [&](const RasterDevice& device, double ms) {
         report.device = device.context().device();
         report.clip = options_.clip;
-        report.texels = surface.sample_texels().size();
+        report.texels = surface.owned_texels();
         report.time_ms.context = ms;
         return draw_winners(
             device, {surface, devices().tiles.of(surface), internals(sites), options_, options}, report);

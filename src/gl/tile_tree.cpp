@@ -28,7 +28,7 @@ tree::AabbTree build_tree(const Surface& surface, const surface::Tiles& tiles) {
 }  // namespace
 
 TileTree::TileTree(const Surface& surface, std::uint32_t side)
-    : tiles(surface, side), tree(build_tree(surface, tiles)) {}
+    : tiles(surface, surface.texel_faces(), side), tree(build_tree(surface, tiles)) {}
 
 const TileTree& TileTreeCache::of(const Surface& surface) {
   std::erase_if(trees_, [](const auto& entry) { return entry.first.expired(); });

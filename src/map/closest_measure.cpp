@@ -26,7 +26,7 @@ void ClosestMeasure::store(std::size_t first, std::span<const Vec3> points,
 
 void ClosestMeasure::store_matches(std::size_t first, std::span<const Vec3> points,
                                    const sites::ClosestPacket& closest, TexelStore& texels) const {
-  const std::span<const std::uint32_t> faces = surface_.texel_faces(),
+  const std::span<const std::uint32_t> faces = surface_.map_faces(),
                                        samples = surface_.sample_texels().subspan(first);
   const bool is_signed = description_.sign.method != SignMethod::none;
   sites::ClosestPacket matches = closest;

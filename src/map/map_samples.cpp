@@ -14,7 +14,7 @@ namespace {
 void check_part(const Surface& surface, const MapOptions& options, const SampleRange& range,
                 const DistanceMap& map) {
   if (options.facing) throw Error("a map of what faces the samples is computed as a whole, not in parts");
-  if (map.distance.size() != surface.texel_faces().size() || map.resolution != surface.resolution())
+  if (map.distance.size() != surface.map_faces().size() || map.resolution != surface.resolution())
     throw Error("the map belongs to another surface");
   const std::size_t samples = surface.sample_texels().size(), grain = sample_range_grain(surface);
   const std::size_t end = range.first + range.count;

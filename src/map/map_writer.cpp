@@ -22,11 +22,12 @@ void store_none(DistanceMap& map, std::size_t texel, std::size_t count, const No
 
 // Resizes the map; the values are unspecified.
 void resize(DistanceMap& map, const Surface& surface) {
-  const std::span<const std::uint32_t> faces = surface.texel_faces();
+  const std::span<const std::uint32_t> faces = surface.map_faces();
   if (map.distance.capacity() < faces.size())
     require_memory(faces.size() * (sizeof(float) + sizeof(Vec3f) + sizeof(std::uint32_t) + sizeof(SiteType)),
                    "a map of " + atlas::size_text(surface.resolution(), surface.rows()) + " texels");
   map.resolution = surface.resolution();
+  map.without_texel = faces.size() - surface.texel_faces().size();
   map.unmatched.clear();
   map.distance.resize(faces.size());
   map.vector.resize(faces.size());
@@ -40,7 +41,7 @@ constexpr std::size_t kClearGrain = 1 << 16;
 
 void clear(DistanceMap& map, const Surface& surface) {
   resize(map, surface);
-  const std::span<const std::uint32_t> faces = surface.texel_faces();
+  const std::span<const std::uint32_t> faces = surface.map_faces();
   parallel_for(faces.size(), kClearGrain, [&](std::size_t begin, std::size_t end) {
     const auto last = faces.begin() + static_cast<std::ptrdiff_t>(end);
     for (auto owned = faces.begin() + static_cast<std::ptrdiff_t>(begin); owned != last;) {

@@ -59,18 +59,19 @@ void TemporalMaps::add(const DistanceMap& map) try {
   const Uncancellable whole;
   State& state = state_;
   if (state.maps == 0) {
+    const auto texels = std::span(map.distance).first(map.texels());
     state = {.maps = 1,
              .resolution = map.resolution,
-             .least = map.distance,
-             .largest = map.distance,
-             .sum = std::vector<double>(map.distance.begin(), map.distance.end())};
+             .least = {texels.begin(), texels.end()},
+             .largest = {texels.begin(), texels.end()},
+             .sum = {texels.begin(), texels.end()}};
     return;
   }
   if (map.resolution != state.resolution)
     throw Error("a map of " + atlas::size_text(map.resolution, map.rows()) +
                 " texels cannot be added to maps of " +
                 atlas::size_text(state.resolution, state.sum.size() / state.resolution));
-  if (map.distance.size() != state.sum.size())
+  if (map.texels() != state.sum.size())
     throw Error("a map of " + std::to_string(map.rows()) + " rows of texels cannot be added to maps of " +
                 std::to_string(state.sum.size() / state.resolution));
   add_to(state, map);

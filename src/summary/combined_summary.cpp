@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/vec.h"
+#include "map/statistics/texel_areas.h"
 #include "summary/combined_verdict.h"
 #include "summary/largest_distance.h"
 
@@ -12,15 +12,10 @@ namespace sdm {
 namespace {
 
 double area_of(const Surface& surface) {
-  std::vector<std::size_t> texels(surface.mesh().triangles.size());
-  for (const std::uint32_t face : surface.texel_faces())
-    if (face != kNone) ++texels[face];
+  const std::vector<std::uint32_t>& samples = internals(surface).face_samples;
   double area = 0;
-  for (std::uint32_t face = 0; face < texels.size(); ++face) {
-    if (texels[face] == 0) continue;
-    const auto [u, v] = surface.texel_edges(face);
-    area += static_cast<double>(texels[face]) * norm(cross(u, v));
-  }
+  for (std::uint32_t face = 0; face < samples.size(); ++face)
+    if (samples[face] > 0) area += map::face_area(surface.mesh(), face);
   return area;
 }
 

@@ -111,15 +111,6 @@ std::optional<std::string> note_on_walls(const Sites& sites, const std::optional
   return largest ? note_of_lengths(thickness::wall_lengths(sites), *largest, units) : std::nullopt;
 }
 
-std::optional<std::string> note_on_texels(const Surface& surface) {
-  constexpr double kLeastShare = 1e-3;
-  const double share = area_fraction_without_texels(surface);
-  if (!(share > kLeastShare)) return std::nullopt;
-  return text_of(100 * share, 2) +
-         " % of the area lies in faces without a sample (texel), which mean, rms, percentiles and shares of "
-         "the area leave out (a higher --resolution includes them)";
-}
-
 std::optional<std::string> note_on_directions(const Mesh& surface, double facing, const std::string& units) {
   const facing::FacingNormals found = facing::facing_normals(surface, facing);
   if (found.replaced.empty()) return std::nullopt;

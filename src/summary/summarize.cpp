@@ -47,8 +47,7 @@ std::vector<std::string> notes_of(const Surface& surface, const Sites& sites, co
     notes.emplace_back("no face of O2 faces as the surface does; are both oriented outwards?");
   else if (summary.distance.texels == 0)
     notes.emplace_back("no texel is within the maximum distance; the map is empty");
-  if (auto note = note_on_texels(surface)) notes.push_back(std::move(*note));
-  if (summary.measured.facing)
+  if (summary.measured.facing && summary.measured.kind == DistanceKind::facing)
     if (auto note = note_on_directions(surface.mesh(), *summary.measured.facing, options.units))
       notes.push_back(std::move(*note));
   if (const std::size_t texels = surface.overlapping_texels(); texels > 0)
@@ -68,7 +67,7 @@ double beyond_fraction(const Surface& surface, const DistanceMap& map) {
   if (map.without_match == 0)
     return area_fraction_beyond(surface, map, std::numeric_limits<double>::infinity());
   DistanceMap matched;
-  matched.distance = map.distance;
+  matched.distance = map.distance, matched.without_texel = map.without_texel;
   for (std::size_t texel = 0; texel < map.unmatched.size(); ++texel)
     if (map.unmatched[texel] != 0) matched.distance[texel] = 0;
   return area_fraction_beyond(surface, matched, std::numeric_limits<double>::infinity());
@@ -195,7 +194,6 @@ Summary summarize_self(const Surface& surface, const DistanceMap& map, const Sum
                  .max_distance = options.max_distance};
   result.colors = colors_of(options, result.distance);
   result.places = places_of(surface, map, {}, result.distance, options);
-  if (auto note = note_on_texels(surface)) result.notes.push_back(std::move(*note));
   return result;
 }
 

@@ -50,12 +50,12 @@ void move_maps(const SurfaceData& s, const Mesh& edited, const MeshEdit& edit,
 }
 
 // The texels that the face owns.
-std::vector<std::uint32_t> owned_texels(const SurfaceData& s, std::uint32_t face) {
+std::vector<std::uint32_t> texels_of(const SurfaceData& s, std::uint32_t face) {
   std::vector<std::uint32_t> texels;
   const atlas::TouchedRows touched(s.corners[face], 0);
   for (std::size_t i = 0; i < touched.columns.size() && touched.first_row + i < s.rows; ++i)
     for (std::size_t x = touched.columns[i][0]; x < std::min(touched.columns[i][1], s.resolution); ++x)
-      if (const std::size_t texel = (touched.first_row + i) * s.resolution + x; s.texel_faces[texel] == face)
+      if (const std::size_t texel = (touched.first_row + i) * s.resolution + x; s.map_faces[texel] == face)
         texels.push_back(static_cast<std::uint32_t>(texel));
   return texels;
 }
@@ -82,13 +82,17 @@ class SurfaceData::Edit {
       charts_.push_back(s_.face_charts[f]);
       corners_.push_back(s_.corners[f]);
       if (s_.face_charts[f] == kNone) continue;
-      for (const std::uint32_t texel : owned_texels(s_, f)) freed_.push_back({texel, f});
+      for (const std::uint32_t texel : texels_of(s_, f)) freed_.push_back({texel, f});
     }
-    texels_ = s_.texel_faces.size();
-    reserve_for(s_.texel_faces, std::size_t{s_.resolution} * rows);
+    const auto without = s_.map_faces.begin() + s_.texels();
+    without_texel_.assign(without, s_.map_faces.end());
+    face_samples_ = s_.face_samples;
+    face_samples_.resize(mesh.triangles.size());
+    reserve_for(s_.map_faces,
+                std::size_t{s_.resolution} * rows + without_texel_.size() + mesh.triangles.size() - faces_);
     reserve_for(s_.corners, mesh.triangles.size());
     reserve_for(s_.face_charts, mesh.triangles.size());
-    rows_ = rows;
+    rows_before_ = s_.rows, rows_ = rows;
   }
   ~Edit() {
     if (begun_ && !completed_) undo();
@@ -102,9 +106,12 @@ class SurfaceData::Edit {
   /// Charts have the numbers of their faces in the mesh.
   void run(const atlas::Layout& added) {
     begun_ = true;
+    const std::uint32_t texels_before = s_.texels();
     exchange();
-    s_.texel_faces.resize(std::size_t{s_.resolution} * rows_, kNone);
-    for (const auto& [texel, face] : freed_) s_.texel_faces[texel] = kNone;
+    s_.map_faces.resize(texels_before);
+    s_.rows = rows_;
+    s_.map_faces.resize(s_.texels(), kNone);
+    for (const auto& [texel, face] : freed_) s_.map_faces[texel] = kNone;
     s_.corners.insert(s_.corners.end(), added.corners.begin(), added.corners.end());
     s_.face_charts.resize(s_.mesh.triangles.size(), kNone);
     for (const std::uint32_t f : removed_) s_.face_charts[f] = kNone, s_.maps[f] = {}, s_.corners[f] = {};
@@ -113,8 +120,10 @@ class SurfaceData::Edit {
         s_.face_charts[f] = static_cast<std::uint32_t>(s_.chart_count + c);
     std::vector<std::uint8_t> removed(s_.mesh.triangles.size(), 0);
     for (const std::uint32_t f : removed_) removed[f] = 1;
-    edit_samples(s_, removed,
-                 atlas::rasterise_added(added.charts, s_.corners, s_.resolution, s_.texel_faces));
+    std::vector<std::uint32_t> samples =
+        atlas::rasterise_added(added.charts, s_.corners, s_.resolution, s_.map_faces);
+    count_samples(removed, samples);
+    edit_samples(s_, removed, samples, texels_before);
     completed_ = true;
   }
 
@@ -122,13 +131,30 @@ class SurfaceData::Edit {
   void exchange() {
     std::swap(s_.mesh, mesh_);
     std::swap(s_.maps, maps_);
+    std::swap(s_.face_samples, face_samples_);
+  }
+  // Faces that stay keep their texels, or their own point. `added`: the texels of added faces, to which own
+  // points are added.
+  void count_samples(std::span<const std::uint8_t> removed, std::vector<std::uint32_t>& added) {
+    for (const std::uint32_t face : removed_) s_.face_samples[face] = 0;
+    for (const std::uint32_t texel : added) ++s_.face_samples[s_.map_faces[texel]];
+    for (const std::uint32_t face : without_texel_)
+      if (removed[face] == 0) s_.map_faces.push_back(face);
+    for (auto face = static_cast<std::uint32_t>(faces_); face < s_.face_charts.size(); ++face) {
+      if (s_.face_charts[face] == kNone || s_.face_samples[face] > 0) continue;
+      added.push_back(static_cast<std::uint32_t>(s_.map_faces.size()));
+      s_.map_faces.push_back(face);
+      s_.face_samples[face] = 1;
+    }
   }
   void undo() {
     exchange();
-    s_.texel_faces.resize(texels_);
-    for (std::uint32_t& face : s_.texel_faces)
+    s_.rows = rows_before_;
+    s_.map_faces.resize(s_.texels());
+    for (std::uint32_t& face : s_.map_faces)
       if (face >= faces_) face = kNone;
-    for (const auto& [texel, face] : freed_) s_.texel_faces[texel] = face;
+    for (const auto& [texel, face] : freed_) s_.map_faces[texel] = face;
+    s_.map_faces.insert(s_.map_faces.end(), without_texel_.begin(), without_texel_.end());
     s_.corners.resize(faces_);
     s_.face_charts.resize(faces_);
     for (std::size_t i = 0; i < removed_.size(); ++i) {
@@ -142,11 +168,14 @@ class SurfaceData::Edit {
   Mesh& mesh_;
   std::vector<atlas::FaceMap>& maps_;
   // Before the edit.
-  std::size_t faces_, texels_ = 0;
+  std::size_t faces_;
+  std::uint32_t rows_before_ = 0;
+  std::vector<std::uint32_t> without_texel_;         // the faces with an own point
   std::vector<std::uint32_t> charts_;                // of removed faces
   std::vector<std::array<Vec2, 3>> corners_;         // likewise
   std::vector<std::array<std::uint32_t, 2>> freed_;  // texels that removed faces own, and these faces
 
+  std::vector<std::uint32_t> face_samples_;  // of the faces after the edit
   std::uint32_t rows_ = 0;
   bool begun_ = false, completed_ = false;
 };
@@ -179,10 +208,9 @@ void SurfaceData::edit(const MeshEdit& edit) {
   auto new_identity = std::make_shared<Identity>();
 
   Edit change(*this, edit.removed_faces, edited, new_maps, room.rows());
-  if (change.freed_texels() == samples.size() && added.charts.empty())
+  if (change.freed_texels() == owned_texels() && added.charts.empty())
     throw Error("no face of the edited mesh would own a texel; lay it out anew");
   change.run(added);
-  rows = room.rows();
   room_ = std::move(room);
   chart_count += added.charts.size();
   max_stretch = std::max(max_stretch, added.max_stretch);

@@ -25,7 +25,7 @@ constexpr std::size_t kParallel = 1 << 13;  // below this many items, one thread
 // gain.
 constexpr std::uint32_t kSingleTexels = 512;
 
-/// A square of texels, or a single one that is in no such square.
+/// A square of texels, or a single sample that is in no such square.
 struct Item {
   Vec3f point;          ///< of the square's middle, in the unit frame
   std::uint32_t texel;  ///< the upper left one
@@ -65,6 +65,8 @@ class SampleOrder {
       items.insert(items.end(), row.begin(), row.end());
       row = {};
     }
+    for (std::uint32_t i = surface_.texels(); i < surface_.map_faces.size(); ++i)
+      items.push_back({point(i), i, true});
     return items;
   }
 
@@ -73,7 +75,7 @@ class SampleOrder {
     const std::uint32_t n = surface_.resolution;
     const std::uint32_t right = std::min(n, left + kSide), bottom = std::min(surface_.rows, top + kSide);
     const auto chart_of = [&](std::uint32_t x, std::uint32_t y) {
-      const std::uint32_t face = surface_.texel_faces[std::size_t{y} * n + x];
+      const std::uint32_t face = surface_.map_faces[std::size_t{y} * n + x];
       return face == kNone ? kNone : surface_.face_charts[face];
     };
     const std::uint32_t chart = chart_of(left, top);
@@ -81,16 +83,18 @@ class SampleOrder {
                  bottom - top == kSide;
     for (std::uint32_t y = top; y < bottom && whole; ++y)
       for (std::uint32_t x = left; x < right && whole; ++x) whole = chart_of(x, y) == chart;
-    const auto add = [&](std::uint32_t x, std::uint32_t y, std::uint32_t texel, bool single) {
-      const Vec3 p =
-          frame_.to_unit(surface_.texel_point(surface_.texel_faces[std::size_t{y} * n + x], y * n + x));
-      items.push_back(
-          {{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])}, texel, single});
-    };
-    if (whole) return add(left + kSide / 2, top + kSide / 2, top * n + left, false);
+    if (whole) {
+      items.push_back({point((top + kSide / 2) * n + left + kSide / 2), top * n + left, false});
+      return;
+    }
     for (std::uint32_t y = top; y < bottom; ++y)
       for (std::uint32_t x = left; x < right; ++x)
-        if (chart_of(x, y) != kNone) add(x, y, y * n + x, true);
+        if (chart_of(x, y) != kNone) items.push_back({point(y * n + x), y * n + x, true});
+  }
+
+  [[nodiscard]] Vec3f point(std::uint32_t sample) const {
+    const Vec3 p = frame_.to_unit(surface_.texel_point(surface_.map_faces[sample], sample));
+    return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
   }
 
   // A k-d tree whose nodes hold 16·2^k samples, but for the last one of a level. Single samples come in

@@ -22,7 +22,7 @@ static_assert(std::endian::native == std::endian::little, "the order of the stor
 
 struct Header {
   std::array<char, 8> magic{'s', 'd', 'm', 'a', 't', 'l', 'a', 's'};
-  std::uint32_t version = 4, kind = 0, resolution = 0, gutter = 0;
+  std::uint32_t version = 5, kind = 0, resolution = 0, gutter = 0;
   double stretch_limit = 0, max_stretch = 0, scale = 0;
   std::uint64_t vertices = 0, faces = 0, charts = 0, samples = 0, rows = 0, overlapping = 0;
   std::uint64_t first_rows = 0;          ///< before edits added any
@@ -84,11 +84,24 @@ bool valid(const SurfaceData& s, std::uint64_t charts) {
     if (!finite(s.maps[f].edges[0]) || !finite(s.maps[f].edges[1])) return false;
   }
   for (std::size_t i = 0; i < s.samples.size(); ++i)
-    if (s.samples[i] >= texels || s.sample_faces[i] >= s.face_charts.size() ||
+    if (s.samples[i] >= texels + s.face_charts.size() || s.sample_faces[i] >= s.face_charts.size() ||
         s.face_charts[s.sample_faces[i]] == kNone ||
         !within(s.texel_point(s.sample_faces[i], s.samples[i]), kLargest))
       return false;
   return !s.samples.empty();
+}
+
+// Whether the samples of faces without a texel are those that the texels of the others leave.
+bool has_own_points(const SurfaceData& s) {
+  std::vector<std::uint8_t> found(s.faces_without_texel());
+  for (std::size_t i = 0; i < s.samples.size(); ++i) {
+    if (s.samples[i] < s.texels()) continue;
+    const std::size_t place = s.samples[i] - s.texels();
+    if (place >= found.size() || found[place] != 0 || s.map_faces[s.samples[i]] != s.sample_faces[i])
+      return false;
+    found[place] = 1;
+  }
+  return std::ranges::count(found, 0) == 0;
 }
 
 Header read_header(std::span<const std::uint8_t> bytes) {
@@ -157,7 +170,8 @@ void restore_atlas(SurfaceData& s, const AtlasOptions& options, std::span<const 
   const std::uint64_t texels = s.resolution * (has_size ? header.rows : 0);
   const std::uint64_t of_faces =
       header.faces * (sizeof s.maps[0] + sizeof s.corners[0] + sizeof(std::uint32_t));
-  if (header.samples > texels || bytes.size() != of_faces + header.samples * 2 * sizeof(std::uint32_t) ||
+  if (header.samples > texels + header.faces ||
+      bytes.size() != of_faces + header.samples * 2 * sizeof(std::uint32_t) ||
       checksum(header, bytes) != header.contents)
     throw Error("the stored atlas is damaged");
   for_each_array(s, header, [&](auto& array, std::uint64_t count) {
@@ -169,13 +183,16 @@ void restore_atlas(SurfaceData& s, const AtlasOptions& options, std::span<const 
     throw Error("the stored atlas has faces that overlap in the texture");
   s.rows = static_cast<std::uint32_t>(header.rows);
   s.scale = header.scale;
-  s.texel_faces.assign(texels, kNone);
+  s.map_faces.assign(texels, kNone);
   if (!valid(s, header.charts)) throw Error("the stored atlas is damaged");
   for (std::size_t i = 0; i < s.samples.size(); ++i) {
-    std::uint32_t& owner = s.texel_faces[s.samples[i]];
+    if (s.samples[i] >= texels) continue;
+    std::uint32_t& owner = s.map_faces[s.samples[i]];
     if (owner != kNone) throw Error("the stored atlas is damaged");
     owner = s.sample_faces[i];
   }
+  s.add_own_points();
+  if (!has_own_points(s)) throw Error("the stored atlas is damaged");
   s.chart_count = header.charts;
   s.overlapping_texels = header.overlapping;
   s.max_stretch = header.max_stretch;

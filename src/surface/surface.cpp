@@ -60,7 +60,10 @@ std::uint32_t Surface::rows() const {
   return internals(*this).rows;
 }
 std::span<const std::uint32_t> Surface::texel_faces() const {
-  return internals(*this).texel_faces;
+  return std::span(internals(*this).map_faces).first(internals(*this).texels());
+}
+std::span<const std::uint32_t> Surface::map_faces() const {
+  return internals(*this).map_faces;
 }
 std::span<const std::uint32_t> Surface::sample_texels() const {
   return internals(*this).samples;
@@ -88,7 +91,7 @@ double Surface::max_stretch() const {
 
 Vec3 Surface::texel_point(std::uint32_t texel) const {
   const surface::SurfaceData& data = internals(*this);
-  return data.texel_point(data.texel_faces[texel], texel);
+  return data.texel_point(data.map_faces[texel], texel);
 }
 
 Vec3 Surface::to_surface(std::uint32_t face, const Vec2& uv) const {
@@ -114,9 +117,12 @@ std::array<Vec3, 2> Surface::texel_edges(std::uint32_t face) const {
   return internals(*this).maps[face].edges;
 }
 
+std::size_t Surface::owned_texels() const {
+  return internals(*this).owned_texels();
+}
+
 double Surface::utilisation() const {
-  const surface::SurfaceData& data = internals(*this);
-  return static_cast<double>(data.samples.size()) / static_cast<double>(data.texel_faces.size());
+  return static_cast<double>(owned_texels()) / internals(*this).texels();
 }
 
 }  // namespace sdm

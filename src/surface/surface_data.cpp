@@ -60,8 +60,8 @@ SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options)
   face_charts.assign(laid_out.triangles.size(), kNone);
   for (std::uint32_t c = 0; c < layout.charts.size(); ++c)
     for (const std::uint32_t f : layout.charts[c]) face_charts[f] = c;
-  texel_faces = atlas::rasterise(layout, kind, resolution, rows, overlapping_texels);
-  if (std::ranges::all_of(texel_faces, [](std::uint32_t face) { return face == kNone; }))
+  map_faces = atlas::rasterise(layout, kind, resolution, rows, overlapping_texels);
+  if (std::ranges::all_of(map_faces, [](std::uint32_t face) { return face == kNone; }))
     throw atlas::TooSmall(
         "no face of the mesh is large enough in the texture to own a texel; use a larger resolution",
         std::uint64_t{2} * resolution);
@@ -71,10 +71,11 @@ SurfaceData::SurfaceData(Mesh laid_out, const AtlasOptions& options)
   scale = layout.scale;
   maps = std::move(layout.maps);
   corners = std::move(layout.corners);
+  add_own_points();
   samples = sample_order(*this);
   sample_faces.resize(samples.size());
   parallel_for(samples.size(), 65536, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) sample_faces[i] = texel_faces[samples[i]];
+    for (std::size_t i = begin; i < end; ++i) sample_faces[i] = map_faces[samples[i]];
   });
 }
 
@@ -106,7 +107,17 @@ void SurfaceData::refit(std::span<const Vec3> positions) {
   });
 }
 
+void SurfaceData::add_own_points() {
+  face_samples.assign(face_charts.size(), 0);
+  for (const std::uint32_t face : map_faces)
+    if (face != kNone) ++face_samples[face];
+  for (std::uint32_t face = 0; face < face_charts.size(); ++face)
+    if (face_charts[face] != kNone && face_samples[face] == 0) map_faces.push_back(face);
+  for (std::size_t i = texels(); i < map_faces.size(); ++i) face_samples[map_faces[i]] = 1;
+}
+
 void SurfaceData::place_samples(std::size_t first, std::span<Vec3> points) const {
+  const std::uint32_t end_of_texels = this->texels();
   const std::uint32_t* texels = samples.data() + first;
   const std::uint32_t* faces = sample_faces.data() + first;
   // The quotient of texel + 1/2 is at least 1/2 / resolution away from integers: its rounding does not
@@ -118,6 +129,10 @@ void SurfaceData::place_samples(std::size_t first, std::span<Vec3> points) const
       __builtin_prefetch(&mesh.triangles[faces[i + 2 * kAhead]]);
       __builtin_prefetch(&maps[faces[i + kAhead]]);
       __builtin_prefetch(&mesh.positions[mesh.triangles[faces[i + kAhead]][0]]);
+    }
+    if (texels[i] >= end_of_texels) {
+      points[i] = own_point(faces[i]);
+      continue;
     }
     const auto row = static_cast<std::uint32_t>((texels[i] + 0.5) * inverse);
     const std::uint32_t column = texels[i] - row * resolution;

@@ -3,6 +3,7 @@
 
 #include <sdm/surface.h>
 
+#include <cmath>
 #include <vector>
 
 #include "atlas/layout.h"
@@ -33,8 +34,23 @@ class SurfaceData {
     const Vec2 d = uv - map.origin;
     return mesh.positions[mesh.triangles[face][0]] + d[0] * map.edges[0] + d[1] * map.edges[1];
   }
-  /// The surface point of the centre of a texel that the face owns.
+  /// The texels of the atlas; samples from this index on are own points.
+  [[nodiscard]] std::uint32_t texels() const { return resolution * rows; }
+  [[nodiscard]] std::size_t faces_without_texel() const { return map_faces.size() - texels(); }
+  [[nodiscard]] std::size_t owned_texels() const { return samples.size() - faces_without_texel(); }
+  /// The sample of a face that owns no texel, evenly distributed over consecutive faces: an additive sequence
+  /// of the powers of 1/1.3247…, the root of x³ = x + 1, with the unit square folded into the triangle.
+  [[nodiscard]] Vec3 own_point(std::uint32_t face) const {
+    double u = 0.7548776662466927 * (face + 0.5), v = 0.5698402909980532 * (face + 0.5);
+    u -= std::floor(u), v -= std::floor(v);
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    const auto& [a, b, c] = mesh.triangles[face];
+    const Vec3& origin = mesh.positions[a];
+    return origin + u * (mesh.positions[b] - origin) + v * (mesh.positions[c] - origin);
+  }
+  /// The surface point of the centre of a texel that the face owns, or the own point of one that owns none.
   [[nodiscard]] Vec3 texel_point(std::uint32_t face, std::uint32_t texel) const {
+    if (texel >= texels()) return own_point(face);
     const std::uint32_t column = texel % resolution, row = texel / resolution;
     return to_surface(face, {column + 0.5, row + 0.5});
   }
@@ -42,6 +58,9 @@ class SurfaceData {
   void place_samples(std::size_t first, std::span<Vec3> points) const;
   /// As Surface::sample_points.
   [[nodiscard]] std::vector<Vec3> sample_points() const;
+  /// Counts the samples of each face from the owners of the texels, which are all of map_faces, and adds the
+  /// faces with a chart that own none.
+  void add_own_points();
 
   Mesh mesh;
   AtlasKind kind;
@@ -53,8 +72,9 @@ class SurfaceData {
   double scale = 0;  ///< of the layout: texels per unit length
   std::vector<atlas::FaceMap> maps;
   std::vector<std::array<Vec2, 3>> corners;  ///< of each face in the atlas
-  std::vector<std::uint32_t> face_charts, texel_faces, samples;
-  std::vector<std::uint32_t> sample_faces;  ///< samples in spatial order are scattered over texel_faces
+  std::vector<std::uint32_t> face_charts, map_faces, samples;
+  std::vector<std::uint32_t> sample_faces;  ///< samples in spatial order are scattered over map_faces
+  std::vector<std::uint32_t> face_samples;  ///< how many each face has
   std::shared_ptr<const Identity> identity = std::make_shared<Identity>();
 
  private:

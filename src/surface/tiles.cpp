@@ -10,13 +10,13 @@ namespace {
 
 constexpr std::size_t kGrain = 512;  // faces or tiles
 
-// Sorts the owned texels by face, those of a face from the top left.
-void sort_by_face(const Surface& surface, Tiles& tiles) {
-  tiles.face_offsets.assign(surface.mesh().triangles.size() + 1, 0);
-  const std::span<const std::uint32_t> owners = surface.texel_faces();
-  for (const std::uint32_t texel : surface.sample_texels()) ++tiles.face_offsets[owners[texel] + 1];
+// Sorts the samples by face, those of a face from the top left.
+void sort_by_face(std::span<const std::uint32_t> owners, std::size_t faces, Tiles& tiles) {
+  tiles.face_offsets.assign(faces + 1, 0);
+  for (const std::uint32_t face : owners)
+    if (face != kNone) ++tiles.face_offsets[face + 1];
   std::partial_sum(tiles.face_offsets.begin(), tiles.face_offsets.end(), tiles.face_offsets.begin());
-  tiles.texels.resize(surface.sample_texels().size());
+  tiles.texels.resize(tiles.face_offsets.back());
   std::vector<std::uint32_t> next(tiles.face_offsets.begin(), tiles.face_offsets.end() - 1);
   for (std::uint32_t texel = 0; texel < owners.size(); ++texel)
     if (owners[texel] != kNone) tiles.texels[next[owners[texel]]++] = texel;
@@ -63,8 +63,8 @@ void cut(const Surface& surface, std::uint32_t side, Tiles& tiles) {
 
 }  // namespace
 
-Tiles::Tiles(const Surface& surface, std::uint32_t side) {
-  sort_by_face(surface, *this);
+Tiles::Tiles(const Surface& surface, std::span<const std::uint32_t> owners, std::uint32_t side) {
+  sort_by_face(owners, surface.mesh().triangles.size(), *this);
   cut(surface, side, *this);
 }
 

@@ -7,15 +7,17 @@
 
 namespace sdm::surface {
 
-/// A tile holds texels of one face in a square of `side` texels; most faces are one tile. Refits do not
-/// change them.
+/// A tile holds samples of one face: texels in a square of `side` texels, or the one of a face without a
+/// texel; most faces are one tile. Refits do not change them.
 struct Tiles {
   static constexpr std::uint32_t kSide = 16;
 
-  /// Cost: linear in texels, plus sorting those of faces with more than one tile; all cores.
-  explicit Tiles(const Surface& surface, std::uint32_t side = kSide);
+  /// Of all samples. Cost: linear in texels, plus sorting those of faces with more than one tile; all cores.
+  explicit Tiles(const Surface& surface) : Tiles(surface, surface.map_faces(), kSide) {}
+  /// `owners`: texel_faces() of the surface, for tiles of texels only, or map_faces().
+  Tiles(const Surface& surface, std::span<const std::uint32_t> owners, std::uint32_t side);
 
-  std::vector<std::uint32_t> texels;        ///< owned texels, by face, then by tile
+  std::vector<std::uint32_t> texels;        ///< samples, by face, then by tile
   std::vector<std::uint32_t> face_offsets;  ///< texels of each face of the mesh, and the end
   std::vector<std::uint32_t> offsets;       ///< texels of each tile, and the end
   std::vector<std::uint32_t> faces;         ///< of each tile

@@ -71,7 +71,7 @@ std::size_t strangers_near(const Surface& surface, std::int64_t x, std::int64_t 
   for (std::int64_t j = std::max<std::int64_t>(0, y - reach);
        j <= std::min<std::int64_t>(surface.rows() - 1, y + reach); ++j)
     for (std::int64_t i = std::max<std::int64_t>(0, x - reach); i <= std::min(n - 1, x + reach); ++i) {
-      const std::uint32_t face = surface.texel_faces()[static_cast<std::size_t>(j * n + i)];
+      const std::uint32_t face = surface.map_faces()[static_cast<std::size_t>(j * n + i)];
       count += face != kNone && surface.face_charts()[face] != own;
     }
   return count;
@@ -110,15 +110,15 @@ void expect_owners(const Surface& surface) {
       for (auto x = std::max<std::int64_t>(0, static_cast<std::int64_t>(left));
            x < std::min(n, static_cast<std::int64_t>(right) + 1); ++x) {
         const Vec2 centre = {static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5};
-        if (depth(t, centre) > kTexels && surface.texel_faces()[static_cast<std::size_t>(y * n + x)] != f)
+        if (depth(t, centre) > kTexels && surface.map_faces()[static_cast<std::size_t>(y * n + x)] != f)
           ++cracks;
       }
   }
   for (const std::uint32_t texel : surface.sample_texels()) {
-    const std::uint32_t f = surface.texel_faces()[texel];
+    const std::uint32_t f = surface.map_faces()[texel];
     const std::int64_t x = texel % n, y = texel / n;
     const Vec2 centre = {static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5};
-    strays += depth(mapped(surface, f), centre) < -kTexels;
+    if (y < surface.rows()) strays += depth(mapped(surface, f), centre) < -kTexels;
     off += !(distance_to_triangle(surface.texel_point(texel), corners(surface.mesh(), f)) <= 1e-9 * length);
   }
   EXPECT_EQ(cracks, 0u);
@@ -130,8 +130,9 @@ void expect_gutters(const Surface& surface, std::uint32_t gutter) {
   const auto n = surface.resolution();
   std::size_t close = 0;
   for (const std::uint32_t texel : surface.sample_texels())
-    close += strangers_near(surface, texel % n, texel / n, std::int64_t{2} * gutter,
-                            surface.face_charts()[surface.texel_faces()[texel]]);
+    if (texel < surface.texel_faces().size())
+      close += strangers_near(surface, texel % n, texel / n, std::int64_t{2} * gutter,
+                              surface.face_charts()[surface.map_faces()[texel]]);
   EXPECT_EQ(close, 0u);
   // A corner's texel need not be owned, but keeps the distance.
   std::size_t touching = 0, outside = 0;
@@ -192,11 +193,17 @@ void expect_stretch(const Surface& surface) {
 void expect_samples(const Surface& surface) {
   std::vector<std::uint32_t> sorted(surface.sample_texels().begin(), surface.sample_texels().end()), owned;
   std::sort(sorted.begin(), sorted.end());
-  for (std::uint32_t i = 0; i < surface.texel_faces().size(); ++i)
-    if (surface.texel_faces()[i] != kNone) owned.push_back(i);
+  std::set<std::uint32_t> faces;
+  for (std::uint32_t i = 0; i < surface.map_faces().size(); ++i)
+    if (surface.map_faces()[i] != kNone) owned.push_back(i), faces.insert(surface.map_faces()[i]);
   EXPECT_EQ(sorted, owned);
+  EXPECT_EQ(static_cast<std::ptrdiff_t>(faces.size()),
+            std::ranges::count_if(surface.face_charts(), [](std::uint32_t chart) { return chart != kNone; }))
+      << "every face with an area has a sample";
+  EXPECT_EQ(surface.owned_texels(),
+            owned.size() - (surface.map_faces().size() - surface.texel_faces().size()));
   EXPECT_DOUBLE_EQ(surface.utilisation() * static_cast<double>(surface.texel_faces().size()),
-                   static_cast<double>(owned.size()));
+                   static_cast<double>(surface.owned_texels()));
 }
 
 }  // namespace sdm::test

@@ -9,6 +9,7 @@
 
 #include "atlas/invariants.h"
 #include "geometry/vec.h"
+#include "support/owned_texels.h"
 #include "support/shapes.h"
 
 namespace sdm {
@@ -69,8 +70,8 @@ void expect_wrapped(const Mesh& mesh) {
 
   const Surface surface(wrapped.mesh, {.kind = AtlasKind::uv, .resolution = 64});
   test::expect_samples(surface);
-  for (const std::uint32_t texel : surface.sample_texels()) {
-    const std::uint32_t source = wrapped.source_face[surface.texel_faces()[texel]];
+  for (const std::uint32_t texel : test::owned_texels(surface)) {
+    const std::uint32_t source = wrapped.source_face[surface.map_faces()[texel]];
     const Vec2 uv = uv_at(mesh, source, surface.texel_point(texel));
     const Vec2 expected{(texel % 64 + 0.5) / 64, 1 - (texel / 64 + 0.5) / 64};
     for (int axis = 0; axis < 2; ++axis)

@@ -12,6 +12,7 @@
 
 #include "geometry/vec.h"
 #include "support/match_pairs.h"
+#include "support/owned_texels.h"
 
 namespace sdm::test {
 namespace {
@@ -91,7 +92,7 @@ TEST(BakePairs, EveryTexelHasTheColorOfTheClosestPointOfBruteForce) {
              {.materials = materials, .face_materials = of_faces, .attributes = attributes},
              std::array{BakeChannel::base_color})
             .front();
-    for (const std::uint32_t texel : surface.sample_texels()) {
+    for (const std::uint32_t texel : test::owned_texels(surface)) {
       ++texels;
       const auto nearest = nearest_faces(o2, surface.texel_point(texel));
       alone += nearest.size() == 1;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "support/error_of.h"
+#include "support/owned_texels.h"
 #include "support/shapes.h"
 #include "support/srgb.h"
 
@@ -99,7 +100,7 @@ struct Baking : ::testing::Test {
     const Image image = to_image(result);
     const auto owners = surface.texel_faces();
     std::size_t compared = 0;
-    for (const std::uint32_t texel : surface.sample_texels()) {
+    for (const std::uint32_t texel : test::owned_texels(surface)) {
       if (std::ranges::any_of(std::array{texel - 1, texel + 1, texel - 64, texel + 64},
                               [&](std::uint32_t i) { return i >= owners.size() || owners[i] == kNone; }))
         continue;
@@ -119,7 +120,7 @@ struct Baking : ::testing::Test {
         ASSERT_NEAR(image.bytes[3 * std::size_t{texel} + k], std::round(255 * srgb_of(mean[k])), 1)
             << texel << ' ' << k;
     }
-    EXPECT_GT(compared, surface.sample_texels().size() * 3 / 4);
+    EXPECT_GT(compared, surface.owned_texels() * 3 / 4);
   }
 };
 
@@ -155,11 +156,11 @@ TEST_F(Baking, NoiseBecomesItsMeanInLinearLight) {
   mean /= static_cast<double>(pictures[0].bytes.size());
   const BakedChannel result = baked(BakeChannel::base_color);
   double sum = 0;
-  for (const std::uint32_t texel : surface.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(surface)) {
     const double value = result.values[3 * std::size_t{texel}];
     sum += value, most = std::max(most, std::abs(value - mean));
   }
-  EXPECT_NEAR(sum / static_cast<double>(surface.sample_texels().size()), mean, 0.005);
+  EXPECT_NEAR(sum / static_cast<double>(surface.owned_texels()), mean, 0.005);
   EXPECT_LT(most, 0.25);
 }
 
@@ -202,7 +203,7 @@ TEST_F(Baking, EveryFaceHasItsMaterial) {
   const Sites sites(high);
   const TexelMatches matches = matches_of(surface, sites, compute_map(surface, sites));
   const BakedChannel result = baked(BakeChannel::base_color);
-  for (const std::uint32_t texel : surface.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(surface)) {
     const std::uint32_t material = face_materials[matches.face[texel]];
     ASSERT_EQ(result.values[3 * std::size_t{texel}], material == 1 ? 0 : 1);
     ASSERT_EQ(result.values[3 * std::size_t{texel} + 2], material == kNone ? 1 : 0);
@@ -220,7 +221,7 @@ TEST_F(Baking, WithoutAMatchTexelsHaveNoValueUnlessTheyAreFilled) {
   std::size_t matched = 0, too_far = 0;
   for (std::size_t i = 0; i < matches.kind.size(); ++i) {
     matched += matches.kind[i] == MatchKind::closest, too_far += matches.kind[i] == MatchKind::too_far;
-    ASSERT_EQ(matches.kind[i] == MatchKind::none, surface.texel_faces()[i] == kNone);
+    ASSERT_EQ(matches.kind[i] == MatchKind::none, surface.map_faces()[i] == kNone);
     ASSERT_EQ(std::isnan(open.values[3 * i]), matches.kind[i] != MatchKind::closest);
     ASSERT_NEAR(filled.values[3 * i], 0.5, 1e-6);
   }

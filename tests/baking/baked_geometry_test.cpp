@@ -15,6 +15,7 @@
 #include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
+#include "support/owned_texels.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
@@ -52,7 +53,7 @@ class NormalMapReader {
 
   /// The normal of a texel from its numbers, stored with this many bits.
   [[nodiscard]] Vec3 read(std::uint32_t texel, const Vec3& coordinates, int bits) const {
-    const std::uint32_t face = surface_.texel_faces()[texel];
+    const std::uint32_t face = surface_.map_faces()[texel];
     const auto corners = surface_.atlas_corners(face);
     const Vec2 at{texel % surface_.resolution() + 0.5, texel / surface_.resolution() + 0.5};
     const double area = cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -91,7 +92,7 @@ TEST(BakedGeometry, TangentSpaceNormalsDecodeToThoseOfTheOtherMesh) {
     const std::vector<float> coordinates = tangent_space_normals(surface, normals, frame, wanted);
     const NormalMapReader reader(surface, normals, frame);
     double worst_of_8 = 0, worst_of_16 = 0;
-    for (const std::uint32_t texel : surface.sample_texels()) {
+    for (const std::uint32_t texel : test::owned_texels(surface)) {
       // The normal of the other mesh there, computed from its vertices.
       const SurfacePoint at = matches.point(texel);
       Vec3 normal{};
@@ -146,7 +147,7 @@ TEST(BakedGeometry, NormalsOfTheSurfaceItselfAreStraightUp) {
   const TexelMatches matches = match_texels(surface, sites);
   const auto coordinates = tangent_space_normals(surface, flat, tangents(surface, flat),
                                                  matched_normals(surface, sites, matches, flat));
-  for (const std::uint32_t texel : surface.sample_texels())
+  for (const std::uint32_t texel : test::owned_texels(surface))
     ASSERT_NEAR(norm(vector_at(coordinates, texel) - Vec3{0, 0, 1}), 0, 1e-6) << texel;
 }
 
@@ -157,14 +158,14 @@ TEST(BakedGeometry, DisplacementsLeadAlongTheNormalToTheMatch) {
   const MeshAttribute normals = smooth_normals(low);
   const TexelMatches matches =
       match_texels(surface, sites, {.method = MatchMethod::ray, .normals = &normals});
-  ASSERT_EQ(matches.count(MatchKind::ray), surface.sample_texels().size());
+  ASSERT_EQ(matches.count(MatchKind::ray), surface.owned_texels());
   const auto displacements = matched_displacements(surface, sites, matches, normals);
   const auto positions = matched_positions(surface, sites, matches);
   // The normals of the surface itself, where no displacement is: transferred to its own texels.
   const Sites itself(low);
   const auto directions = matched_normals(surface, itself, match_texels(surface, itself), normals);
   std::size_t below = 0;
-  for (const std::uint32_t texel : surface.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(surface)) {
     below += displacements[texel] < 0;
     const Vec3 end =
         surface.texel_point(texel) + static_cast<double>(displacements[texel]) * vector_at(directions, texel);
@@ -172,19 +173,19 @@ TEST(BakedGeometry, DisplacementsLeadAlongTheNormalToTheMatch) {
     ASSERT_NEAR(norm(point_of_match(high, matches.point(texel)) - vector_at(positions, texel)), 0, 1e-6);
   }
   EXPECT_GT(below, 100U);
-  EXPECT_LT(below, surface.sample_texels().size());
+  EXPECT_LT(below, surface.owned_texels());
 }
 
 TEST(BakedGeometry, NormalsOfAClosedMeshAreOutwardHoweverItIsWound) {
   const Surface surface(sphere(2), {.resolution = 48});
   const Sites inside_out(flipped(sphere(2)));
   const TexelMatches matches = match_texels(surface, inside_out);
-  ASSERT_EQ(matches.count(MatchKind::facing), surface.sample_texels().size());
+  ASSERT_EQ(matches.count(MatchKind::facing), surface.owned_texels());
   for (const bool by_file : {false, true}) {
     // Of a file, normals may be outward although the faces are not.
     const MeshAttribute normals = by_file ? smooth_normals(sphere(2)) : smooth_normals(inside_out.mesh());
     const auto found = matched_normals(surface, inside_out, matches, normals);
-    for (const std::uint32_t texel : surface.sample_texels())
+    for (const std::uint32_t texel : test::owned_texels(surface))
       ASSERT_GT(dot(vector_at(found, texel), surface.texel_point(texel)), 0.9);
   }
 }
@@ -201,7 +202,7 @@ TEST(BakedGeometry, OcclusionAndThicknessAreThoseOfTheMatchedPoint) {
   const auto visible = matched_occlusion(floor, sites, matches, {.rays = 256});
   double near = 0, far = 0;
   std::size_t of_near = 0, of_far = 0;
-  for (const std::uint32_t texel : floor.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(floor)) {
     ASSERT_FALSE(std::isnan(visible[texel]));
     const Vec3 p = floor.texel_point(texel);
     if (std::abs(p[1]) > 0.3) continue;
@@ -219,7 +220,7 @@ TEST(BakedGeometry, OcclusionAndThicknessAreThoseOfTheMatchedPoint) {
   const Sites solid(plate);
   for (const ThicknessMethod method : {ThicknessMethod::ball, ThicknessMethod::ray}) {
     const auto thickness = matched_thickness(above, solid, match_texels(above, solid), method);
-    for (const std::uint32_t texel : above.sample_texels()) ASSERT_NEAR(thickness[texel], 0.1, 1e-6);
+    for (const std::uint32_t texel : test::owned_texels(above)) ASSERT_NEAR(thickness[texel], 0.1, 1e-6);
   }
   EXPECT_NE(error_of([&] { (void)matched_occlusion(floor, sites, matches, {.rays = 0}); }), "");
   EXPECT_NE(error_of([&] { (void)matched_thickness(floor, sites, matches, ThicknessMethod::ray); }), "");

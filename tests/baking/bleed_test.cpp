@@ -12,6 +12,7 @@
 #include <set>
 #include <vector>
 
+#include "support/owned_texels.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
@@ -32,7 +33,7 @@ struct Charts {
     of_faces.assign(surface.face_charts().begin(), surface.face_charts().end());
   }
   [[nodiscard]] std::uint32_t chart_of(std::size_t texel) const {
-    const std::uint32_t face = surface.texel_faces()[texel];
+    const std::uint32_t face = surface.map_faces()[texel];
     return face == kNone ? kNone : surface.face_charts()[face];
   }
 };
@@ -56,7 +57,7 @@ TEST(Bleed, MipmapsOfAChartHaveItsColorsUpToTheGutter) {
       return std::array{baked.values[3 * texel], baked.values[3 * texel + 1], baked.values[3 * texel + 2]};
     };
     std::map<std::uint32_t, std::set<std::array<float, 3>>> colors;  // of the texels of each chart
-    for (const std::uint32_t texel : surface.sample_texels())
+    for (const std::uint32_t texel : test::owned_texels(surface))
       colors[charts.chart_of(texel)].insert(color_of(texel));
     std::size_t checked = 0;
     for (std::uint32_t side = 2; side <= gutter; side *= 2)

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "support/owned_texels.h"
 #include "support/run_sdm.h"
 #include "support/shapes.h"
 #include "support/srgb.h"
@@ -133,7 +134,7 @@ TEST_F(BakedChannels, LengthsAndPositionsAreThoseOfTheLibrary) {
   EXPECT_EQ(lo, -hi);
   EXPECT_EQ(json["textures"]["thickness"]["picture"]["lo"], 0);
   double largest = 0;
-  for (const std::uint32_t i : surface.sample_texels()) {
+  for (const std::uint32_t i : test::owned_texels(surface)) {
     ASSERT_EQ(d.values.at("displacement.D")[i], displacements[i]) << i;
     ASSERT_EQ(d.values.at("coverage.A")[i], 1);
     ASSERT_EQ(t.values.at("thickness.D")[i], thickness[i]);
@@ -151,7 +152,7 @@ TEST_F(BakedChannels, LengthsAndPositionsAreThoseOfTheLibrary) {
     ASSERT_TRUE(std::isfinite(d.values.at("displacement.D")[i]));
     free += d.values.at("coverage.A")[i] == 0;
   }
-  EXPECT_EQ(free, 64 * 64 - surface.sample_texels().size());
+  EXPECT_EQ(free, 64 * 64 - surface.owned_texels());
 }
 
 TEST_F(BakedChannels, NumbersAreThoseOfTheClosestFace) {
@@ -162,7 +163,7 @@ TEST_F(BakedChannels, NumbersAreThoseOfTheClosestFace) {
   const auto faces = read(out + "/face.exr").numbers.at("face.id"),
              materials = read(out + "/material.exr").numbers.at("material.id");
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    if (surface.texel_faces()[i] == kNone) {
+    if (surface.map_faces()[i] == kNone) {
       ASSERT_EQ(faces[i], kNone);
       ASSERT_EQ(materials[i], kNone);
       continue;
@@ -188,7 +189,7 @@ TEST_F(BakedChannels, ObjectNormalsHave16BitsAndOcclusionIsInTheModel) {
   const Sites sites(read_mesh(high));
   const TexelMatches matches = match_texels(surface, sites, {.method = MatchMethod::closest});
   const auto expected = matched_normals(surface, sites, matches, smooth_normals(sites.mesh()));
-  for (const std::uint32_t i : surface.sample_texels())
+  for (const std::uint32_t i : test::owned_texels(surface))
     for (std::uint32_t k = 0; k < 3; ++k)
       ASSERT_NEAR(2 * normals.value(i % 64, i / 64, k) - 1, expected[3 * std::size_t{i} + k], 2.0 / 65535);
   const MeshFile model = read_mesh_file(out + "/baked.glb", {.attributes = true});
@@ -199,7 +200,8 @@ TEST_F(BakedChannels, ObjectNormalsHave16BitsAndOcclusionIsInTheModel) {
   // A ball that is nearly convex has little to occlude it.
   const Image occlusion = read_image(out + "/ambient_occlusion.png");
   EXPECT_EQ(occlusion.components, 1u);
-  for (const std::uint32_t i : surface.sample_texels()) ASSERT_GT(occlusion.value(i % 64, i / 64, 0), 0.6);
+  for (const std::uint32_t i : test::owned_texels(surface))
+    ASSERT_GT(occlusion.value(i % 64, i / 64, 0), 0.6);
 }
 
 TEST_F(BakedChannels, WhatCannotBeBakedIsSaid) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "support/owned_texels.h"
 
 namespace sdm::test {
 namespace {
@@ -49,11 +50,11 @@ double wrong_share(double thickness, std::optional<double> facing) {
                                  .front();
   const auto owners = low.texel_faces();
   std::size_t wrong = 0;
-  for (const std::uint32_t texel : low.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(low)) {
     const bool outside = owners[texel] < low.mesh().triangles.size() / 2;
     wrong += baked.values[3 * std::size_t{texel} + (outside ? 0 : 2)] != 1;
   }
-  return static_cast<double>(wrong) / static_cast<double>(low.sample_texels().size());
+  return static_cast<double>(wrong) / static_cast<double>(low.owned_texels());
 }
 
 // The chords of the coarse plate are 0.019 deep.

@@ -45,7 +45,7 @@ TEST_F(SelfCommand, WritesAllResultsWithTheNumbersOfTheLibrary) {
     EXPECT_EQ(report["mesh"]["file"], o1);
     EXPECT_EQ(report["mesh"]["triangles"], 288);
     EXPECT_EQ(report["units"], "mm");
-    EXPECT_EQ(report["atlas"]["texels"], surface.sample_texels().size());
+    EXPECT_EQ(report["atlas"]["texels"], surface.owned_texels());
     EXPECT_EQ(report["exclusion"]["rings"], geodesic ? Json(nullptr) : Json(rule.rings));
     EXPECT_EQ(report["exclusion"]["geodesic"], geodesic ? Json(0.7) : Json(nullptr));
     EXPECT_TRUE(report["max_distance"].is_null());

@@ -178,7 +178,7 @@ TEST(TemporalEdit, MapsOverTimeAreThoseOfFixedTopologyWhereFacesStay) {
   const std::vector<float> mean = maps.mean(), expected_mean = expected.mean();
   std::size_t stay = 0, gone = 0;
   for (std::size_t i = 0; i < maps.least().size(); ++i) {
-    const bool stays = i < first.size() && first[i] != kNone && edited.texel_faces()[i] == first[i];
+    const bool stays = i < first.size() && first[i] != kNone && edited.map_faces()[i] == first[i];
     ASSERT_EQ(std::isnan(maps.least()[i]), !stays);
     ASSERT_EQ(std::isnan(maps.largest()[i]), !stays);
     ASSERT_EQ(std::isnan(mean[i]), !stays);

@@ -36,14 +36,35 @@ struct Snapshot {
         maps(internals(surface).maps),
         corners(internals(surface).corners),
         charts(internals(surface).face_charts),
-        owners(internals(surface).texel_faces),
+        owners(internals(surface).map_faces),
         rows(surface.rows()) {}
 };
+
+// The faces with an area that own no texel, ascending, follow the texels, and all of these are samples once.
+void expect_own_points(const Surface& surface) {
+  const auto owners = surface.texel_faces();
+  ASSERT_EQ(owners.size(), std::size_t{surface.rows()} * surface.resolution());
+  std::vector<std::uint32_t> count(surface.mesh().triangles.size()), without, samples;
+  for (std::uint32_t texel = 0; texel < owners.size(); ++texel)
+    if (owners[texel] != kNone) ++count[owners[texel]], samples.push_back(texel);
+  for (std::uint32_t f = 0; f < count.size(); ++f) {
+    if (surface.face_charts()[f] == kNone || count[f] > 0) continue;
+    samples.push_back(static_cast<std::uint32_t>(owners.size() + without.size()));
+    without.push_back(f), ++count[f];
+  }
+  EXPECT_TRUE(std::ranges::equal(surface.map_faces().subspan(owners.size()), without));
+  EXPECT_EQ(internals(surface).face_samples, count);
+  std::vector<std::uint32_t> found(surface.sample_texels().begin(), surface.sample_texels().end());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    ASSERT_EQ(internals(surface).sample_faces[i], surface.map_faces()[found[i]]);
+  std::ranges::sort(found);
+  EXPECT_EQ(found, samples);
+}
 
 void expect_kept(const Snapshot& before, const Surface& after) {
   const surface::SurfaceData& now = internals(after);
   ASSERT_GE(now.rows, before.rows);
-  ASSERT_EQ(now.texel_faces.size(), std::size_t{now.rows} * now.resolution);
+  expect_own_points(after);
   std::size_t changed = 0, taken = 0;
   for (std::uint32_t f = 0; f < before.corners.size(); ++f) {
     if (is_removed(now.mesh.triangles[f])) {
@@ -58,11 +79,11 @@ void expect_kept(const Snapshot& before, const Surface& after) {
           before.mesh.positions[before.mesh.triangles[f][k]] != now.mesh.positions[now.mesh.triangles[f][k]];
     changed += !moved && now.maps[f].edges != before.maps[f].edges;
   }
-  for (std::size_t texel = 0; texel < before.owners.size(); ++texel) {
+  for (std::size_t texel = 0; texel < std::size_t{before.rows} * now.resolution; ++texel) {
     const std::uint32_t owner = before.owners[texel];
     const bool stays = owner != kNone && !is_removed(now.mesh.triangles[owner]);
-    changed += stays && now.texel_faces[texel] != owner;
-    taken += !stays && now.texel_faces[texel] != kNone && now.texel_faces[texel] < before.corners.size();
+    changed += stays && now.map_faces[texel] != owner;
+    taken += !stays && now.map_faces[texel] != kNone && now.map_faces[texel] < before.corners.size();
   }
   EXPECT_EQ(changed, 0u);
   EXPECT_EQ(taken, 0u);  // free texels go to added faces only
@@ -94,13 +115,13 @@ void expect_map(const Surface& surface) {
   const Sites sites(test::moved(test::sphere(1), {0.3, 0.1, 2}));
   const DistanceMap map = compute_map(surface, sites, {.sign = SignMethod::none});
   EXPECT_EQ(map.rows(), surface.rows());
-  ASSERT_EQ(map.distance.size(), surface.texel_faces().size());
+  ASSERT_EQ(map.distance.size(), surface.map_faces().size());
   const auto closest = closest_points(sites, surface.sample_points());
   std::size_t wrong = 0, unowned = 0;
   for (std::size_t i = 0; i < closest.size(); ++i)
     wrong += !(std::abs(map.distance[surface.sample_texels()[i]] - closest[i].distance) <= 1e-5);
   for (std::size_t texel = 0; texel < map.distance.size(); ++texel)
-    unowned += std::isnan(map.distance[texel]) != (surface.texel_faces()[texel] == kNone);
+    unowned += std::isnan(map.distance[texel]) != (surface.map_faces()[texel] == kNone);
   EXPECT_EQ(wrong, 0u);
   EXPECT_EQ(unowned, 0u);
   EXPECT_EQ(statistics(surface, map).texels, surface.sample_texels().size());
@@ -167,7 +188,7 @@ TEST(SurfaceEdit, TearsWithoutAnyChangeOfTheAtlas) {
   surface.edit(edit);
   expect_kept(before, surface);
   EXPECT_EQ(surface.rows(), 256u);
-  EXPECT_EQ(internals(surface).texel_faces, before.owners);
+  EXPECT_EQ(internals(surface).map_faces, before.owners);
   EXPECT_EQ(internals(surface).maps.size(), before.maps.size());
 }
 
@@ -209,7 +230,7 @@ TEST(SurfaceEdit, AddsRowsBelow) {
   // As a stored atlas, too.
   const Surface restored(surface.mesh(), {.resolution = 256}, surface.stored_atlas());
   EXPECT_EQ(restored.rows(), surface.rows());
-  EXPECT_EQ(internals(restored).texel_faces, internals(surface).texel_faces);
+  EXPECT_EQ(internals(restored).map_faces, internals(surface).map_faces);
   EXPECT_EQ(internals(restored).scale, internals(surface).scale);
 }
 
@@ -236,7 +257,7 @@ TEST(SurfaceEdit, DoesNotDependOnThreads) {
     Surface surface(test::torus(24, 16), {.resolution = 256});
     test::RandomEdits edits(3, {});
     for (int i = 0; i < 20; ++i) surface.edit(edits.next(surface.mesh()));
-    owners.push_back(internals(surface).texel_faces);
+    owners.push_back(internals(surface).map_faces);
     samples.push_back(internals(surface).samples);
   }
   EXPECT_EQ(owners[0], owners[1]);
@@ -273,6 +294,40 @@ TEST(SurfaceEdit, ABoundFromBeforeTheEditIsRefused) {
   EXPECT_EQ(bound.value(), before);
   bound = SamplingBound(same);
   bound.refit(same);
+}
+
+// Of faces that stay, these samples keep their places; added faces that own no texel get some.
+TEST(SurfaceEdit, FacesWithoutATexelKeepTheirSamples) {
+  const Mesh mesh = test::sphere(4);
+  const AtlasOptions options{.resolution = 32};
+  Surface surface(mesh, options);
+  const auto points_of_faces = [&] {
+    std::vector<std::vector<Vec3>> points(surface.mesh().triangles.size());
+    for (const std::uint32_t sample : surface.sample_texels())
+      points[surface.map_faces()[sample]].push_back(surface.texel_point(sample));
+    for (std::vector<Vec3>& of_face : points) std::ranges::sort(of_face);
+    return points;
+  };
+  constexpr std::uint32_t kRemoved = 800;
+  MeshEdit edit;
+  for (std::uint32_t f = 0; f < kRemoved; ++f) {
+    edit.removed_faces.push_back(f);
+    edit.added_faces.push_back(mesh.triangles[f]);
+  }
+  const Snapshot before(surface);
+  const auto points = points_of_faces();
+  surface.edit(edit);
+  expect_kept(before, surface);
+  EXPECT_GT(surface.map_faces().back(), mesh.triangles.size()) << "an added face";
+  const auto now = points_of_faces();
+  for (std::size_t f = kRemoved; f < points.size(); ++f) ASSERT_EQ(now[f], points[f]) << f;
+  for (std::size_t f = points.size(); f < now.size(); ++f) ASSERT_FALSE(now[f].empty()) << f;
+  expect_map(surface);
+  std::mt19937 random(3);
+  expect_bounded(surface, random);
+  const Surface restored(surface.mesh(), options, surface.stored_atlas());
+  EXPECT_TRUE(std::ranges::equal(restored.map_faces(), surface.map_faces()));
+  EXPECT_EQ(restored.sample_points(), surface.sample_points());
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ TEST_P(Properties, NeighbouringTexelsAreOneLipschitz) {
   const std::uint32_t n = surface.resolution();
   std::size_t pairs = 0, steeper = 0;
   const auto compare = [&](std::uint32_t s, std::uint32_t t) {
-    if (surface.texel_faces()[s] == kNone || surface.texel_faces()[t] == kNone) return;
+    if (surface.map_faces()[s] == kNone || surface.map_faces()[t] == kNone) return;
     ++pairs;
     const double apart = norm(surface.texel_point(s) - surface.texel_point(t));
     steeper += !(std::abs(double{signed_map.distance[s]} - signed_map.distance[t]) <= apart + tolerance);

@@ -41,7 +41,7 @@ TEST(GlEngine, NeighbouringTexelsAreOneLipschitz) {
   std::size_t pairs = 0, steeper = 0;
   for (std::uint32_t t = 0; t + n < n * n; ++t)
     for (const std::uint32_t next : {t + 1, t + n}) {
-      if (surface.texel_faces()[t] == kNone || surface.texel_faces()[next] == kNone) continue;
+      if (surface.map_faces()[t] == kNone || surface.map_faces()[next] == kNone) continue;
       ++pairs;
       const double apart = norm(surface.texel_point(t) - surface.texel_point(next));
       steeper += !(std::abs(double{map.distance[t]} - map.distance[next]) <= apart + 4e-6);
@@ -91,7 +91,7 @@ TEST(GlEngine, MapsFromConcurrentThreads) {
     for (int i = 0; i < 5; ++i) {
       const test::GlMap map = gl_map(surface, sites, {.clip = clip});
       EXPECT_TRUE(test::identical(map, expected));
-      EXPECT_EQ(map.report.texels, surface.sample_texels().size());
+      EXPECT_EQ(map.report.texels, surface.owned_texels());
     }
   };
   std::thread first([&] { repeat(head, elephant, head_alone, GlClip::planes); });
@@ -159,7 +159,7 @@ TEST(GlEngine, ReportsItsLastMap) {
   for (const Surface* surface : {&small, &large}) {
     (void)gl_map(*surface, sites, gl);
     (void)compute_map(*surface, sites, {.engine = cpu});
-    EXPECT_EQ(gl_report(*gl).value().texels, surface->sample_texels().size());
+    EXPECT_EQ(gl_report(*gl).value().texels, surface->owned_texels());
     EXPECT_FALSE(gl_report(*cpu)) << "of another engine";
   }
 }

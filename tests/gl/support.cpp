@@ -71,7 +71,7 @@ void expect_laws(const GlReport& r, const Surface& surface, const Sites& sites, 
   EXPECT_EQ(r.sites, count_sites(sites));
   EXPECT_LT(r.sites_dropped, r.sites);
   EXPECT_EQ(r.faces, count_owners(surface));
-  EXPECT_EQ(r.texels, surface.sample_texels().size());
+  EXPECT_EQ(r.texels, surface.owned_texels());
   EXPECT_GE(r.tiles, r.faces);
   EXPECT_EQ(r.pairs, (r.sites - r.sites_dropped) * r.tiles);
   EXPECT_EQ(r.pairs, r.culled_by_bound + r.culled_by_obb + r.clipped_away + r.polygons);

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "support/made_up_maps.h"
+#include "support/owned_texels.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"
 
@@ -60,7 +61,7 @@ std::vector<std::uint32_t> expected(const Surface& surface, const DistanceMap& m
           bits(v[2]),
           map.site[source],
           type == SiteType::none ? kNone : static_cast<std::uint32_t>(type),
-          surface.texel_faces()[source]};
+          surface.map_faces()[source]};
 }
 
 TEST(Exr, MapsOverTime) {
@@ -71,7 +72,7 @@ TEST(Exr, MapsOverTime) {
   write_exr(folder / "temporal.exr", surface, maps);
   const Channels channels = read_exr(folder / "temporal.exr", 64);
   ASSERT_EQ(channels.size(), 4u);
-  for (const std::uint32_t t : surface.sample_texels()) {
+  for (const std::uint32_t t : test::owned_texels(surface)) {
     const Vec3 p = surface.texel_point(t);
     const auto value = [&](const char* name) { return std::bit_cast<float>(channels.at(name)[t]); };
     ASSERT_FLOAT_EQ(value("min.D"), static_cast<float>(std::min({p[0], p[1], p[2]})));
@@ -167,7 +168,7 @@ TEST(Exr, MarksTheBoundaryOfAnOpenMesh) {
   const Channels channels = read_exr(folder / "map.exr", map.resolution);
   EXPECT_EQ(channels.size(), 9u);
   std::size_t marked = 0;
-  for (const std::uint32_t t : surface.sample_texels()) {
+  for (const std::uint32_t t : test::owned_texels(surface)) {
     const Vec3 p = surface.texel_point(t);
     const double beyond = std::max(std::abs(p[0]), std::abs(p[1])) - 0.5;  // of the square's sides
     const bool is_marked = std::bit_cast<float>(channels.at("boundary.M")[t]) == 1;
@@ -177,7 +178,7 @@ TEST(Exr, MarksTheBoundaryOfAnOpenMesh) {
     marked += is_marked;
   }
   EXPECT_GT(marked, 0u);
-  EXPECT_LT(marked, surface.sample_texels().size());
+  EXPECT_LT(marked, surface.owned_texels());
   EXPECT_THROW(write_exr(folder / "other.exr", surface, map, {.boundary = std::vector<std::uint8_t>(3)}),
                Error);
   EXPECT_THROW(static_cast<void>(boundary_mask(Sites(single_triangle()), map)), Error);
@@ -202,9 +203,9 @@ TEST(Exr, HasFurtherLayersAndAttributesOnRequest) {
   const auto value = [&](const std::string& name, std::uint32_t t) {
     return double{std::bit_cast<float>(channels.at(name)[t])};
   };
-  for (const std::uint32_t t : surface.sample_texels()) {
+  for (const std::uint32_t t : test::owned_texels(surface)) {
     const Vec3 p = surface.texel_point(t);
-    const Triangle& owner = surface.mesh().triangles[surface.texel_faces()[t]];
+    const Triangle& owner = surface.mesh().triangles[surface.map_faces()[t]];
     const std::uint32_t face = channels.at("closest.face")[t];
     if (map.site_type[t] == SiteType::none) {
       ASSERT_EQ(face, kNone);

@@ -6,6 +6,7 @@
 
 #include "io_write/read_png.h"
 #include "support/made_up_maps.h"
+#include "support/owned_texels.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"
 
@@ -25,7 +26,7 @@ struct Pictures : ::testing::Test {
     for (std::size_t y = 0; y < n; ++y)
       for (std::size_t x = 0; x < n; ++x) {
         const std::size_t texel = y * n + x;
-        if (surface.texel_faces()[texel] == kNone)
+        if (surface.map_faces()[texel] == kNone)
           ASSERT_EQ(pixels.at(x, y), kBackground);
         else
           check(texel, pixels.at(x, y));
@@ -105,7 +106,7 @@ TEST_F(Pictures, NothingInRangeHasItsOwnColourOutsideTheScale) {
 
 TEST_F(Pictures, DirectionDecodesToTheUnitVector) {
   DistanceMap directed = map;
-  for (const std::uint32_t texel : surface.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(surface)) {
     const auto t = static_cast<float>(texel);
     if (!std::isnan(map.distance[texel]))
       directed.vector[texel] = {std::sin(t) * 1e-3f, std::cos(t) * 1e-3f, -2e-3f};

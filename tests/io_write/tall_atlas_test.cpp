@@ -14,6 +14,7 @@
 
 #include "io_write/read_png.h"
 #include "support/made_up_maps.h"
+#include "support/owned_texels.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"
 
@@ -48,7 +49,8 @@ TEST_F(TallAtlas, ExrHasAllRows) {
                Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(distance.data()), 4, std::size_t{4} * kSide));
   exr.setFrameBuffer(frame);
   exr.readPixels(0, window.max.y);
-  for (const std::uint32_t texel : surface.sample_texels()) ASSERT_EQ(distance[texel], map.distance[texel]);
+  for (const std::uint32_t texel : test::owned_texels(surface))
+    ASSERT_EQ(distance[texel], map.distance[texel]);
 }
 
 TEST_F(TallAtlas, PicturesHaveAllRows) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "support/made_up_maps.h"
+#include "support/owned_texels.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"
 
@@ -97,7 +98,7 @@ TEST(Texture, ClampsToAGivenRange) {
   EXPECT_EQ(range.lower, -0.25);
   EXPECT_EQ(range.upper, 0.5);
   const std::vector<std::uint16_t> values = stored_values(folder / "t.png", 64);
-  for (const std::uint32_t texel : surface.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(surface)) {
     if (map.distance[texel] <= -0.25f) {
       ASSERT_EQ(values[texel], 0);
     } else if (map.distance[texel] >= 0.5f) {

@@ -164,7 +164,7 @@ TEST(Views, ShowTheOtherMeshPaleAndMarkVisiblePlaces) {
   const Mesh other = moved(cube(), {0.5, 0, -3});  // behind the cube in the front view, and to the right
   ViewScene scene{.surface = &cube_scene.surface,
                   .normals = shading_normals(cube_scene.surface.mesh()),
-                  .colors = std::vector<Rgb>(cube_scene.map.distance.size(), Rgb{255, 0, 0}),
+                  .colors = std::vector<Rgb>(cube_scene.map.texels(), Rgb{255, 0, 0}),
                   .vertex_distances = cube_scene.vertices,
                   .other = &other,
                   .other_normals = shading_normals(other)};

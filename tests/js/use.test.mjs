@@ -179,6 +179,18 @@ test('parts of a map, in any order, are the map to the bit', () => {
   assert.throws(() => new sdm.Surface(positions, indices, { resolution: 200, storedAtlas: stored }), isInputError(/atlas/));
 });
 
+test('faces without a texel count in statistics, and have no place in arrays', () => {
+  const { positions, indices } = ball(80), inner = ball(40, 0.7);
+  const surface = new sdm.Surface(positions, indices, { resolution: 32 }), sites = new sdm.Sites(inner.positions, inner.indices);
+  const map = surface.map(sites), { texels } = surface.samples(), { texelFaces } = surface.atlas();
+  const owned = texelFaces.filter((face) => face !== 0xffffffff).length;
+  assert.equal(map.distances.length, 32 * 32);
+  assert.equal(map.distances.filter((d) => !Number.isNaN(d)).length, owned);
+  assert.equal(texels.length, map.statistics().texels);
+  assert.ok(texels.length > owned + 1000);
+  assert.ok(Math.abs(map.statistics().mean - 0.3) < 0.01);
+});
+
 test('what is computed again takes no more memory', () => {
   const { positions, indices } = ball(20), surface = new sdm.Surface(positions, indices, { resolution: 256 });
   const sites = new sdm.Sites(positions, indices), map = surface.map(sites);

@@ -93,7 +93,7 @@ TEST_F(ChannelsOfMap, AreThoseOfItsArraysAndMeshes) {
     }
     ASSERT_EQ(site[i], map.site[t]);
     ASSERT_EQ(site_type[i], map.site_type[t]);
-    ASSERT_EQ(face[i], surface.texel_faces()[t]);
+    ASSERT_EQ(face[i], surface.map_faces()[t]);
     ASSERT_EQ(position[i], surface.texel_point(t));
     Vec3 sum{};
     for (int k = 0; k < 3; ++k)

@@ -63,7 +63,7 @@ void expect_brute_force(const Mesh& o1, const Mesh& o2, double angle) {
   std::size_t unmatched = 0, wrong = 0;
   for (const std::uint32_t texel : surface.sample_texels()) {
     const Vec3 q = surface.texel_point(texel);
-    const double expected = brute_force(o2, q, normal_of(o1, surface.texel_faces()[texel]), angle);
+    const double expected = brute_force(o2, q, normal_of(o1, surface.map_faces()[texel]), angle);
     unmatched += std::isinf(expected);
     if (std::isinf(expected))
       wrong += !std::isnan(map.distance[texel]);

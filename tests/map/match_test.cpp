@@ -20,6 +20,7 @@
 #include "support/error_of.h"
 #include "support/match_pairs.h"
 #include "support/oracle.h"
+#include "support/owned_texels.h"
 #include "support/ray_oracle.h"
 #include "support/shapes.h"
 
@@ -80,7 +81,7 @@ std::vector<Vec3> normals_of_vertices(const Mesh& mesh) {
 
 /// The interpolated normal of an owned texel, with weights from areas in the atlas.
 Vec3 normal_at_texel(const Surface& surface, const std::vector<Vec3>& normals, std::uint32_t texel) {
-  const std::uint32_t face = surface.texel_faces()[texel], n = surface.resolution();
+  const std::uint32_t face = surface.map_faces()[texel], n = surface.resolution();
   const auto corners = surface.atlas_corners(face);
   const Vec2 at{texel % n + 0.5, texel / n + 0.5};
   const double area = cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -103,11 +104,11 @@ TEST(Match, ClosestAndFacingPointsAreThoseOfBruteForceAtEveryTexelOf40Pairs) {
     const TexelMatches closest = match_texels(surface, sites, {.method = MatchMethod::closest});
     const TexelMatches facing = match_texels(surface, sites, {.facing = angle});
     for (std::size_t i = 0; i < closest.kind.size(); ++i)
-      wrong += (closest.kind[i] == MatchKind::none) != (surface.texel_faces()[i] == kNone);
-    for (const std::uint32_t texel : surface.sample_texels()) {
+      wrong += (closest.kind[i] == MatchKind::none) != (surface.map_faces()[i] == kNone);
+    for (const std::uint32_t texel : test::owned_texels(surface)) {
       ++texels;
       const Vec3 q = surface.texel_point(texel);
-      const Vec3 normal = normal_of(o1, surface.texel_faces()[texel]);
+      const Vec3 normal = normal_of(o1, surface.map_faces()[texel]);
       const double any = least_distance(o2, q, [](std::uint32_t) { return true; });
       wrong += closest.kind[texel] != MatchKind::closest;
       wrong += !(std::abs(norm(point_of(o2, closest.point(texel)) - q) - any) <= error);
@@ -142,10 +143,10 @@ TEST(Match, RaysEndAtTheHitsOfBruteForceAtEveryTexelOf40Pairs) {
     const TexelMatches matches =
         match_texels(surface, Sites(o2), {.method = MatchMethod::ray, .facing = angle, .cage = kCage});
     const std::vector<Vec3> normals = normals_of_vertices(o1);
-    for (const std::uint32_t texel : surface.sample_texels()) {
+    for (const std::uint32_t texel : test::owned_texels(surface)) {
       ++texels;
       const Vec3 q = surface.texel_point(texel), u = normal_at_texel(surface, normals, texel);
-      const Vec3 normal = normal_of(o1, surface.texel_faces()[texel]);
+      const Vec3 normal = normal_of(o1, surface.map_faces()[texel]);
       // Of faces enlarged, and made smaller, by more than the rounding of the normals.
       const auto least = [&](double margin) {
         double found = kInfinite;
@@ -195,8 +196,8 @@ TEST(Match, NoHitIsLostBesideFacesThatFaceAway) {
   }
   const Surface surface(o1, {.kind = AtlasKind::charts, .resolution = 48});
   const TexelMatches matches = match_texels(surface, Sites(o2), {.method = MatchMethod::ray});
-  ASSERT_GT(surface.sample_texels().size(), 500U);
-  for (const std::uint32_t texel : surface.sample_texels()) {
+  ASSERT_GT(surface.owned_texels(), 500U);
+  for (const std::uint32_t texel : test::owned_texels(surface)) {
     ASSERT_EQ(matches.kind[texel], MatchKind::ray);
     const Vec3 q = surface.texel_point(texel);
     double least = kInfinite;
@@ -267,8 +268,8 @@ double wrong_sides(const Surface& surface, const Sheet& low, const Sites& sites,
   const auto read =
       transfer(surface, sites, matches, {.values = colors, .domain = AttributeDomain::face}, {.fill = false});
   std::size_t wrong = 0, all = 0;
-  for (const std::uint32_t texel : surface.sample_texels()) {
-    const std::size_t part = low.part(surface.texel_faces()[texel]);
+  for (const std::uint32_t texel : test::owned_texels(surface)) {
+    const std::size_t part = low.part(surface.map_faces()[texel]);
     if (part == 2) continue;
     ++all;
     wrong += !(read[texel] == static_cast<float>(part) || read[texel] == 2);
@@ -298,13 +299,13 @@ TEST(Match, StatesWhyATexelHasNoPoint) {
   const Sites sites(square(1, 0));
   const Surface near(square(1, 0.25), {.resolution = 16}),
       turned(flipped(square(1, 0.25)), {.resolution = 16});
-  const std::size_t texels = near.sample_texels().size();
+  const std::size_t texels = near.owned_texels();
   for (const MatchMethod method : {MatchMethod::facing, MatchMethod::ray}) {
     const auto of = [&](const Surface& surface, double max_distance, double cage) {
       return match_texels(surface, sites, {.method = method, .cage = cage, .max_distance = max_distance});
     };
     EXPECT_EQ(of(near, 0.1, kInfinite).count(MatchKind::too_far), texels);
-    EXPECT_EQ(of(turned, kInfinite, kInfinite).count(MatchKind::facing_away), turned.sample_texels().size());
+    EXPECT_EQ(of(turned, kInfinite, kInfinite).count(MatchKind::facing_away), turned.owned_texels());
     EXPECT_EQ(
         of(near, kInfinite, kInfinite).count(method == MatchMethod::ray ? MatchKind::ray : MatchKind::facing),
         texels);
@@ -323,7 +324,7 @@ TEST(Match, FollowsTheNormalsThatAreGiven) {
   for (std::size_t i = 0; i < slanted.values.size(); i += 3) slanted.values[i] = slanted.values[i + 2];
   const TexelMatches matches =
       match_texels(surface, sites, {.method = MatchMethod::ray, .normals = &slanted});
-  for (const std::uint32_t texel : surface.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(surface)) {
     const Vec3 way = point_of(sites.mesh(), matches.point(texel)) - surface.texel_point(texel);
     ASSERT_NEAR(way[0], -0.25, 1e-6);
     ASSERT_NEAR(way[1], 0, 1e-6);

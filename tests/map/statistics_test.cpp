@@ -12,18 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "map/statistics/texel_areas.h"
 #include "support/made_up_maps.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
-
-/// A cross product that does not share the code under test.
-double texel_area(const Surface& surface, std::uint32_t face) {
-  const auto [u, v] = surface.texel_edges(face);
-  const double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
-  return std::sqrt(x * x + y * y + z * z);
-}
 
 struct Naive {
   double min = 1e300, max = -1e300, mean = 0, rms = 0, mean_abs = 0, negative_area = 0;
@@ -41,10 +35,11 @@ struct Naive {
 
 Naive naive(const Surface& surface, const DistanceMap& map) {
   Naive result;
+  const std::vector<double> areas = map::texel_areas(surface);
   for (std::size_t texel = 0; texel < map.distance.size(); ++texel) {
     const double d = map.distance[texel];
     if (!std::isfinite(d)) continue;
-    const double weight = texel_area(surface, surface.texel_faces()[texel]);
+    const double weight = areas[surface.map_faces()[texel]];
     result.values.emplace_back(d, weight);
     result.magnitudes.emplace_back(std::abs(d), weight);
     result.area += weight, result.mean += weight * d, result.rms += weight * d * d;
@@ -82,37 +77,6 @@ void expect_as_naive(const DistanceStatistics& found, const Naive& expected) {
 
 void expect_as_naive(const Surface& surface, const DistanceMap& map) {
   expect_as_naive(statistics(surface, map), naive(surface, map));
-}
-
-// Faces smaller than a texel mostly have none.
-TEST(Statistics, KnowTheAreaWithoutTexels) {
-  const Mesh mesh = sphere(5);
-  for (const std::uint32_t resolution : {64u, 1024u}) {
-    const Surface surface(mesh, {.resolution = resolution});
-    std::vector<std::uint8_t> has_texel(mesh.triangles.size());
-    for (const std::uint32_t face : surface.texel_faces())
-      if (face != kNone) has_texel[face] = 1;
-    double without = 0, all = 0;
-    for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
-      const auto [a, b, c] = surface.atlas_corners(f);
-      const double texels = std::abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
-      const double area = texel_area(surface, f) * texels;
-      all += area, without += has_texel[f] == 0 ? area : 0;
-    }
-    const double share = area_fraction_without_texels(surface);
-    EXPECT_NEAR(share, without / all, 1e-9);
-    const std::optional<std::string> note = note_on_texels(surface);
-    EXPECT_EQ(note.has_value(), resolution == 64);
-    if (resolution == 64) {
-      EXPECT_GT(share, 0.2);
-      ASSERT_TRUE(note);
-      EXPECT_EQ(std::stod(*note), std::round(100 * share)) << *note;
-      EXPECT_EQ(summarize_self(surface, map_of(surface, [](const Vec3& p) { return p[0]; })).notes,
-                std::vector{*note});
-    } else {
-      EXPECT_EQ(share, 0);
-    }
-  }
 }
 
 // Faces of different stretch, so that weights matter.
@@ -164,12 +128,13 @@ TEST(Statistics, BandsAndHistogramsHoldTheAreaBetweenTheirEdges) {
   const DistanceMap map = map_of(surface, [](const Vec3& p) {
     return p[2] > 0.38 ? std::nan("") : std::round(40 * p[0]) / 32;  // multiples of 1/32: exact
   });
+  const std::vector<double> areas = map::texel_areas(surface);
   double all = 0;
   const auto area_if = [&](const auto& holds) {
     double area = 0;
     all = 0;
     for (const std::uint32_t texel : surface.sample_texels()) {
-      const double weight = texel_area(surface, surface.texel_faces()[texel]);
+      const double weight = areas[surface.map_faces()[texel]];
       all += weight;
       if (holds(map.distance[texel])) area += weight;
     }
@@ -222,17 +187,18 @@ TEST(PartStatistics, AreThoseOfAMapOfThePartAlone) {
   const std::vector<PartStatistics> parts =
       part_statistics(surface, map, components, 2, {.tolerance = Tolerance(-0.5, 4)});
   ASSERT_EQ(parts.size(), 2u);
+  const std::vector<double> areas = map::texel_areas(surface);
   double area = 0;
   for (std::uint32_t p = 0; p < 2; ++p) {
     DistanceMap alone = map;
     double part_area = 0, within = 0;
     for (const std::uint32_t texel : surface.sample_texels()) {
-      const std::uint32_t face = surface.texel_faces()[texel];
+      const std::uint32_t face = surface.map_faces()[texel];
       if (components[face] != p) {
         alone.distance[texel] = std::nanf("");
         continue;
       }
-      const double weight = texel_area(surface, face), d = map.distance[texel];
+      const double weight = areas[face], d = map.distance[texel];
       part_area += weight, within += d >= -0.5 && d <= 4 ? weight : 0;
     }
     expect_as_naive(parts[p].distance, naive(surface, alone));

@@ -31,7 +31,7 @@ TEST(Temporal, ComputesMinimumMeanAndMaximum) {
       const double d = map.distance[texel];
       least = std::fmin(least, d), largest = std::fmax(largest, d), sum += d;
     }
-    if (surface.texel_faces()[texel] == kNone) {
+    if (surface.map_faces()[texel] == kNone) {
       ASSERT_TRUE(std::isnan(maps.least()[texel]) && std::isnan(maps.largest()[texel]) &&
                   std::isnan(mean[texel]));
       continue;
@@ -51,6 +51,7 @@ TEST(Temporal, TexelsThatLackedAValueHaveNone) {
       maps.add(
           map_of(surface, [&](const Vec3& p) { return t == missing && p[0] > 0 ? std::nan("") : 1.0 + t; }));
     for (const std::uint32_t texel : surface.sample_texels()) {
+      if (texel >= maps.least().size()) continue;  // of a face without a texel
       const bool none = surface.texel_point(texel)[0] > 0;
       ASSERT_EQ(std::isnan(maps.least()[texel]), none);
       ASSERT_EQ(std::isnan(maps.largest()[texel]), none);
@@ -67,6 +68,7 @@ TEST(Temporal, NothingInRangeIsInfinitelyFar) {
     for (int t = 0; t < 3; ++t)
       maps.add(map_of(surface, [&](const Vec3&) { return t == missing ? kInf : 1.0 + t; }));
     for (const std::uint32_t texel : surface.sample_texels()) {
+      if (texel >= maps.least().size()) continue;  // of a face without a texel
       ASSERT_EQ(maps.least()[texel], missing == 0 ? 2 : 1);
       ASSERT_EQ(maps.largest()[texel], kInf);
       ASSERT_EQ(maps.mean()[texel], kInf);
@@ -85,6 +87,7 @@ TEST(Temporal, ContinuesFromAState) {
   }
   EXPECT_EQ(some.maps(), 9u);
   for (const std::uint32_t texel : surface.sample_texels()) {
+    if (texel >= some.least().size()) continue;
     ASSERT_EQ(some.least()[texel], all.least()[texel]);
     ASSERT_EQ(some.largest()[texel], all.largest()[texel]);
     ASSERT_EQ(some.state().sum[texel], all.state().sum[texel]);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/meshes.h"
+#include "support/owned_texels.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
@@ -27,14 +28,16 @@ TEST(Threads, ShareASurfaceAndSites) {
   const auto all = [&] {
     Result result;
     const DistanceMap map = compute_map(surface, sites);
-    for (const std::uint32_t texel : surface.sample_texels()) result.distance.push_back(map.distance[texel]);
+    for (const std::uint32_t texel : test::owned_texels(surface))
+      result.distance.push_back(map.distance[texel]);
     const std::vector<ClosestPoint> closest = closest_points(sites, on.positions);
     result.inside = inside_flags(sites, on.positions, closest, SignMethod::winding);
     std::vector<Ray> rays;
     for (const Vec3& p : on.positions) rays.push_back({.origin = p, .direction = {1, 0.1, 0.2}});
     for (const RayHit& hit : first_hits(sites, rays)) result.hits.push_back(hit.face);
     const std::vector<float> occlusion = ambient_occlusion(surface, sites, map, {.rays = 4});
-    for (const std::uint32_t texel : surface.sample_texels()) result.occlusion.push_back(occlusion[texel]);
+    for (const std::uint32_t texel : test::owned_texels(surface))
+      result.occlusion.push_back(occlusion[texel]);
     result.bound = SamplingBound(surface).value();
     return result;
   };

@@ -17,6 +17,7 @@
 #include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/oracle.h"
+#include "support/owned_texels.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
@@ -48,9 +49,9 @@ struct Transfer : ::testing::Test {
 // Positions are the attribute whose right value is known without a search: the point that the oracle finds.
 TEST_F(Transfer, PositionsAreTheClosestPointsOfTheOracle) {
   const auto values = moved({positions, 3});
-  ASSERT_EQ(values.size(), 3 * map.distance.size());
+  ASSERT_EQ(values.size(), 3 * map.texels());
   std::size_t without = 0;
-  for (const std::uint32_t texel : surface.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(surface)) {
     if (map.site_type[texel] == SiteType::none) {
       ++without;
       EXPECT_TRUE(std::isnan(values[3 * texel]) && std::isnan(values[3 * texel + 2]));
@@ -61,8 +62,8 @@ TEST_F(Transfer, PositionsAreTheClosestPointsOfTheOracle) {
     ASSERT_NEAR(norm(found - query), oracle::brute_force(target, query), 1e-6) << texel;
   }
   EXPECT_GT(without, 0u);
-  for (std::size_t i = 0; i < map.distance.size(); ++i)
-    ASSERT_TRUE(surface.texel_faces()[i] != kNone || std::isnan(values[3 * i])) << i;
+  for (std::size_t i = 0; i < map.texels(); ++i)
+    ASSERT_TRUE(surface.map_faces()[i] != kNone || std::isnan(values[3 * i])) << i;
 }
 
 TEST_F(Transfer, EveryDomainAndNumberOfComponentsAgrees) {
@@ -81,7 +82,7 @@ TEST_F(Transfer, EveryDomainAndNumberOfComponentsAgrees) {
   const auto of_five = moved({wide, 5});
   const auto of_one = moved({x_only, 1});
   const auto faces = moved({face_numbers, 1, AttributeDomain::face});
-  for (const std::uint32_t texel : surface.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(surface)) {
     if (map.site_type[texel] == SiteType::none) continue;
     ASSERT_EQ(of_one[texel], by_vertex[3 * texel]);
     for (std::size_t k = 0; k < 5; ++k) ASSERT_EQ(of_five[5 * texel + k], by_vertex[3 * texel + k % 3]);
@@ -103,7 +104,7 @@ TEST_F(Transfer, FollowsTheConstraintOfTheMap) {
   const DistanceMap facing = compute_map(plate, other, {.facing = 60});
   const auto values = transfer(plate, other, facing, {positions_as_values(other.mesh()), 3}, {.fill = false});
   std::size_t compared = 0;
-  for (const std::uint32_t texel : plate.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(plate)) {
     if (facing.site_type[texel] == SiteType::none) continue;
     ++compared;
     const Vec3 query = plate.texel_point(texel);
@@ -134,9 +135,9 @@ TEST(TransferAtEdges, TakesTheFaceThatFacesTheSample) {
   const DistanceMap map = compute_map(surface, sites, {.facing = 60});
   const auto values = transfer(surface, sites, map, {heights, 1, AttributeDomain::face}, {.fill = false});
   std::size_t at_edges = 0;
-  for (const std::uint32_t texel : surface.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(surface)) {
     ASSERT_EQ(values[texel],
-              static_cast<float>(height_of_normal(surface.mesh(), surface.texel_faces()[texel])));
+              static_cast<float>(height_of_normal(surface.mesh(), surface.map_faces()[texel])));
     at_edges += map.site_type[texel] != SiteType::face;
   }
   EXPECT_GT(at_edges, 500u);
@@ -153,7 +154,7 @@ TEST_F(Transfer, FillsAllTexelsOfNoFaceAndNoOther) {
   for (std::uint32_t y = 0; y < map.rows(); ++y)
     for (std::uint32_t x = 0; x < n; ++x) {
       const std::size_t i = std::size_t{y} * n + x;
-      if (surface.texel_faces()[i] != kNone) {
+      if (surface.map_faces()[i] != kNone) {
         for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
           ASSERT_TRUE(filled[k] == bare[k] || (std::isnan(filled[k]) && std::isnan(bare[k])));
         continue;
@@ -175,7 +176,7 @@ TEST_F(Transfer, NearestTexelFillsTheGutter) {
   for (int y = 0; y < rows; ++y)
     for (int x = 0; x < n; ++x) {
       const int i = y * n + x;
-      if (surface.texel_faces()[i] != kNone) continue;
+      if (surface.map_faces()[i] != kNone) continue;
       constexpr int kBeyond = 1 << 20;
       const auto distance = [](int dx, int dy) {  // of rings, and then the length
         return 1000 * std::max(std::abs(dx), std::abs(dy)) + dx * dx + dy * dy;
@@ -232,7 +233,7 @@ TEST_F(Transfer, CornersMayShareRows) {
       surface.sample_texels(), [&](auto t) { return map.site_type[t] == SiteType::face; })]][1] = kNone;
   const auto with_gap = moved({of_vertices, 1, AttributeDomain::corner, rows});
   std::size_t in_gap = 0;
-  for (const std::uint32_t texel : surface.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(surface)) {
     if (map.site_type[texel] == SiteType::none) continue;
     ASSERT_EQ(own[texel], shared[texel]);
     ASSERT_TRUE(std::isnan(with_gap[texel]) || with_gap[texel] == shared[texel]);
@@ -241,7 +242,7 @@ TEST_F(Transfer, CornersMayShareRows) {
   // What is missing does not spread.
   const auto filled = moved({of_vertices, 1, AttributeDomain::corner, rows}, /*fill=*/true);
   for (std::size_t i = 0; i < filled.size(); ++i)
-    ASSERT_TRUE(surface.texel_faces()[i] != kNone || std::isfinite(filled[i])) << i;
+    ASSERT_TRUE(surface.map_faces()[i] != kNone || std::isfinite(filled[i])) << i;
   EXPECT_GT(in_gap, 0u);
   EXPECT_EQ(error_of([&] {
               (void)moved({of_vertices, 1, AttributeDomain::vertex, rows});

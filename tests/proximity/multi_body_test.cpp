@@ -196,7 +196,7 @@ TEST(MultiBodyQuery, MapsAreTheMinimumOfSingleMaps) {
         if (least == kAny) {
           wrong += body != kNone || !std::isnan(d) || !std::isnan(nearest.map.vector[texel][0]) ||
                    nearest.map.site[texel] != kNone || nearest.map.site_type[texel] != SiteType::none;
-          beyond += surface.texel_faces()[texel] != kNone;
+          beyond += surface.map_faces()[texel] != kNone;
           continue;
         }
         // The body is one of the nearest, and the values agree with its own map.

@@ -121,7 +121,7 @@ void expect_self_map(const Surface& surface, const Sites& sites, const DistanceM
   std::size_t none = 0;
   const double tolerance = 1e-6 * diagonal(bounds(mesh));
   for (std::uint32_t texel = 0; texel < map.distance.size(); ++texel) {
-    const std::uint32_t face = surface.texel_faces()[texel];
+    const std::uint32_t face = surface.map_faces()[texel];
     const float d = map.distance[texel];
     if (face == kNone) {
       ASSERT_TRUE(std::isnan(d) && std::isnan(map.vector[texel][0]));

@@ -169,7 +169,7 @@ void expect_brute_force(const Mesh& mesh, double angle, std::uint32_t resolution
   const auto texels = map.surface.sample_texels();
   const std::size_t step = std::max<std::size_t>(1, texels.size() / 400);
   for (std::size_t i = 0; i < texels.size(); i += step) {
-    const std::uint32_t face = map.surface.texel_faces()[texels[i]];
+    const std::uint32_t face = map.surface.map_faces()[texels[i]];
     const Vec3 at = map.surface.texel_point(texels[i]), n = -1.0 * normals[face];
     const Point p = point_of(at), inward = point_of(n);
     double ray = kInfinity, turn = 0;

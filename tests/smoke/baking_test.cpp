@@ -18,6 +18,7 @@
 #include "geometry/vec.h"
 #include "smoke/small_meshes.h"
 #include "support/oracle.h"
+#include "support/owned_texels.h"
 #include "support/shapes.h"
 #include "support/srgb.h"
 
@@ -42,25 +43,25 @@ TEST(SmokeMatches, OfParallelSquaresAreStraightAbove) {
   for (const MatchMethod method : {MatchMethod::closest, MatchMethod::facing, MatchMethod::ray}) {
     const TexelMatches matches = match_texels(squares.surface, squares.sites, {.method = method});
     require_matches(squares.surface, squares.sites, matches);
-    for (const std::uint32_t t : squares.surface.sample_texels()) {
+    for (const std::uint32_t t : test::owned_texels(squares.surface)) {
       const Vec3 expected = squares.surface.texel_point(t) + Vec3{0, 0, 0.1};
       EXPECT_LT(norm(place_of(squares.high, matches.point(t)) - expected), 1e-6);
     }
     EXPECT_EQ(matches.count(method == MatchMethod::ray ? MatchKind::ray : MatchKind::closest) +
                   matches.count(MatchKind::facing),
-              squares.surface.sample_texels().size());
+              squares.surface.owned_texels());
   }
   // A cage that ends below O2, a limit that ends below it, and a square that faces the other way.
   const TexelMatches caged =
       match_texels(squares.surface, squares.sites, {.method = MatchMethod::ray, .cage = 0.05});
   EXPECT_EQ(caged.count(MatchKind::ray), 0u);
   EXPECT_EQ(match_texels(squares.surface, squares.sites, {.max_distance = 0.05}).count(MatchKind::too_far),
-            squares.surface.sample_texels().size());
+            squares.surface.owned_texels());
   EXPECT_EQ(match_texels(squares.surface, Sites(flipped(squares.high))).count(MatchKind::facing_away),
-            squares.surface.sample_texels().size());
+            squares.surface.owned_texels());
   const TexelMatches of_map =
       matches_of(squares.surface, squares.sites, compute_map(squares.surface, squares.sites));
-  for (const std::uint32_t t : squares.surface.sample_texels())
+  for (const std::uint32_t t : test::owned_texels(squares.surface))
     EXPECT_LT(
         norm(place_of(squares.high, of_map.point(t)) - squares.surface.texel_point(t) - Vec3{0, 0, 0.1}),
         1e-6);
@@ -74,8 +75,8 @@ TEST(SmokeMatches, OfRaysFromABallAreOnTheBallAroundIt) {
   const MeshAttribute normals = smooth_normals(low);
   const TexelMatches matches =
       match_texels(surface, sites, {.method = MatchMethod::ray, .normals = &normals});
-  EXPECT_GT(matches.count(MatchKind::ray), 9 * surface.sample_texels().size() / 10);
-  for (const std::uint32_t t : surface.sample_texels()) {
+  EXPECT_GT(matches.count(MatchKind::ray), 9 * surface.owned_texels() / 10);
+  for (const std::uint32_t t : test::owned_texels(surface)) {
     const Vec3 q = place_of(high, matches.point(t)), p = surface.texel_point(t);
     EXPECT_NEAR(oracle::brute_force(high, q), 0, 1e-6);
     if (matches.kind[t] == MatchKind::ray) {
@@ -103,7 +104,7 @@ TEST(SmokeTransfer, LinearArraysStayLinear) {
                                               {at_corners, 1, AttributeDomain::corner});
   const std::vector<float> shared = transfer(
       squares.surface, squares.sites, map, {at_vertices, 2, AttributeDomain::corner, squares.high.triangles});
-  for (const std::uint32_t t : squares.surface.sample_texels()) {
+  for (const std::uint32_t t : test::owned_texels(squares.surface)) {
     const Vec3 p = squares.surface.texel_point(t);
     EXPECT_NEAR(vertices[2 * t], p[0], 1e-6);
     EXPECT_NEAR(vertices[2 * t + 1], 2 * p[1] - p[0], 1e-6);
@@ -127,12 +128,12 @@ TEST(SmokeTransfer, TexelsOfNoFaceAreFilled) {
   for (const float value : transfer(surface, sites, compute_map(surface, sites), {ones, 1}))
     EXPECT_NEAR(value, 0.75, 1e-6);
   std::vector<float> values(std::size_t{53} * 53, std::nanf(""));
-  for (const std::uint32_t t : surface.sample_texels()) values[t] = 2;
+  for (const std::uint32_t t : test::owned_texels(surface)) values[t] = 2;
   std::vector<float> within = values;
   fill_texels(surface, 1, values);
   EXPECT_THAT(values, ::testing::Each(2.f));
   fill_texels(53, 1, within, 4);
-  EXPECT_GT(std::ranges::count(within, 2.f), static_cast<std::ptrdiff_t>(surface.sample_texels().size()));
+  EXPECT_GT(std::ranges::count(within, 2.f), static_cast<std::ptrdiff_t>(surface.owned_texels()));
 }
 
 /// Red grows to the right, green to the top; in sRGB.
@@ -176,7 +177,7 @@ TEST(SmokeBake, TexturesOfAnotherMeshArriveAtTheirPlaces) {
   const std::vector<BakedChannel> baked = bake(squares.surface, squares.sites, matches, look, kBakeChannels);
   ASSERT_EQ(baked.size(), 4u);
   ASSERT_EQ(baked[0].components, 3u);
-  for (const std::uint32_t t : squares.surface.sample_texels()) {
+  for (const std::uint32_t t : test::owned_texels(squares.surface)) {
     const Vec3 p = squares.surface.texel_point(t);
     const double u = p[0] + 0.5, v = p[1] + 0.5;
     const bool left = u < 0.4;
@@ -222,7 +223,7 @@ TEST(SmokeBake, PicturesThatRepeatAreAveragedOverTexels) {
   const std::vector<BakedChannel> baked =
       bake(squares.surface, sites, match_texels(squares.surface, sites), look, channels, {.fill = false});
   ASSERT_EQ(baked[0].components, 4u);
-  for (const std::uint32_t t : squares.surface.sample_texels()) {
+  for (const std::uint32_t t : test::owned_texels(squares.surface)) {
     EXPECT_NEAR(baked[0].values[4 * t], 0.5, 0.15);
     EXPECT_NEAR(baked[0].values[4 * t + 3], 128.0 / 255, 0.01);
   }
@@ -244,7 +245,7 @@ TEST(SmokeBake, GeometryOfAnotherMeshIsThatOfItsPoints) {
                            ball = matched_thickness(squares.surface, solid, of_solid, ThicknessMethod::ball);
   const std::vector<std::uint32_t> numbers =
       matched_materials(squares.surface, squares.sites, matches, material_of);
-  for (const std::uint32_t t : squares.surface.sample_texels()) {
+  for (const std::uint32_t t : test::owned_texels(squares.surface)) {
     const Vec3 p = squares.surface.texel_point(t);
     EXPECT_NEAR(up[3 * t + 2], 1, 1e-6);
     EXPECT_NEAR(places[3 * t], p[0], 1e-6);
@@ -287,7 +288,7 @@ TEST(SmokeBake, TangentSpaceNormalsOfTheSurfaceItselfAreStraightUp) {
   const TexelMatches matches = match_texels(surface, sites);
   const std::vector<float> in_space =
       tangent_space_normals(surface, normals, frame, matched_normals(surface, sites, matches, normals));
-  for (const std::uint32_t t : surface.sample_texels()) EXPECT_GT(in_space[3 * t + 2], 0.999);
+  for (const std::uint32_t t : test::owned_texels(surface)) EXPECT_GT(in_space[3 * t + 2], 0.999);
   const std::vector<float> same =
       bake_geometry(surface, sites, matches, GeometryChannel::normal,
                     {.normals = &normals, .drawn_normals = &normals, .drawn_tangents = &frame});

@@ -149,7 +149,7 @@ TEST(SmokeMaps, FacingDistancesOfAPlateAreToTheSkinThatFacesAsTheSample) {
   EXPECT_EQ(measured_distance(MapOptions{.facing = 45}).kind, DistanceKind::facing);
   for (const std::uint32_t t : surface.sample_texels()) {
     const Vec3 p = surface.texel_point(t);
-    const Triangle corners = dented.triangles[surface.texel_faces()[t]];
+    const Triangle corners = dented.triangles[surface.map_faces()[t]];
     const Vec3 n = cross(dented.positions[corners[1]] - dented.positions[corners[0]],
                          dented.positions[corners[2]] - dented.positions[corners[0]]);
     const double side = 1 - std::max(std::abs(p[0]), std::abs(p[1]));

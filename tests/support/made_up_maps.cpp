@@ -8,7 +8,8 @@ namespace sdm::test {
 DistanceMap map_of(const Surface& surface, const Field& field) {
   DistanceMap map;
   map.resolution = surface.resolution();
-  const std::size_t texels = surface.texel_faces().size();
+  const std::size_t texels = surface.map_faces().size();
+  map.without_texel = texels - surface.texel_faces().size();
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   map.distance.assign(texels, kNaN);
   map.vector.assign(texels, {kNaN, kNaN, kNaN});

@@ -41,7 +41,8 @@ double distance_to_site(const Sites& sites, SiteType type, std::uint32_t site, c
 
 void expect_map(const Surface& surface, const Sites& sites, const DistanceMap& map,
                 const std::vector<double>& expected, double tolerance) {
-  const std::size_t texels = std::size_t{surface.resolution()} * surface.rows();
+  const std::size_t texels = surface.map_faces().size();
+  ASSERT_EQ(map.texels(), std::size_t{surface.resolution()} * surface.rows());
   ASSERT_EQ(map.resolution, surface.resolution());
   ASSERT_EQ(map.distance.size(), texels);
   ASSERT_EQ(map.vector.size(), texels);
@@ -67,7 +68,7 @@ void expect_map(const Surface& surface, const Sites& sites, const DistanceMap& m
 
   std::size_t stray = 0;
   for (std::size_t t = 0; t < texels; ++t)
-    if (surface.texel_faces()[t] == kNone)
+    if (surface.map_faces()[t] == kNone)
       stray += !std::isnan(map.distance[t]) || !std::isnan(map.vector[t][0]) || map.site[t] != kNone ||
                map.site_type[t] != SiteType::none;
   EXPECT_EQ(stray, 0u) << "values where no face owns the texel";

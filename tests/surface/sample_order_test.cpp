@@ -31,8 +31,8 @@ double mean_box(const std::vector<Vec3>& points, std::size_t run) {
 // A k-d tree over single samples is the best order known: boxes may be a quarter larger.
 void expect_compact(const Surface& surface) {
   std::vector<std::uint32_t> owned;
-  for (std::uint32_t texel = 0; texel < surface.texel_faces().size(); ++texel)
-    if (surface.texel_faces()[texel] != kNone) owned.push_back(texel);
+  for (std::uint32_t texel = 0; texel < surface.map_faces().size(); ++texel)
+    if (surface.map_faces()[texel] != kNone) owned.push_back(texel);
   std::vector<std::uint32_t> order = surface::sample_order(internals(surface));
   ASSERT_TRUE(std::ranges::equal(order, surface.sample_texels()));
   std::ranges::sort(order);

@@ -179,14 +179,14 @@ TEST(Triangles, SmallOnesOwnATexel) {
   expect_packed(Surface(test::load("pig.off"), options), options);
 }
 
-TEST(Samples, AreTheOwnedTexelsWithTheirPoints) {
+TEST(Samples, AreTheOwnedTexelsAndAPointOfEachOtherFace) {
   const Surface surface(test::load("pig.off"), {.resolution = 256});
   const auto samples = surface.sample_texels();
   const std::vector<Vec3> points = surface.sample_points();
   ASSERT_EQ(points.size(), samples.size());
   std::set<std::uint32_t> owned;
-  for (std::uint32_t texel = 0; texel < surface.texel_faces().size(); ++texel)
-    if (surface.texel_faces()[texel] != kNone) owned.insert(texel);
+  for (std::uint32_t texel = 0; texel < surface.map_faces().size(); ++texel)
+    if (surface.map_faces()[texel] != kNone) owned.insert(texel);
   EXPECT_EQ(std::set<std::uint32_t>(samples.begin(), samples.end()), owned);
   EXPECT_EQ(samples.size(), owned.size());
   for (std::size_t i = 0; i < samples.size(); ++i) ASSERT_EQ(points[i], surface.texel_point(samples[i]));
@@ -200,7 +200,7 @@ TEST(Samples, PacketsOfSixteenAreCompact) {
   for (std::size_t i = 0; i + 16 <= samples.size(); i += 16, ++groups) {
     Box box;
     for (std::size_t k = i; k < i + 16; ++k) extend(box, surface.texel_point(samples[k]));
-    sum += diagonal(box) / norm(surface.texel_edges(surface.texel_faces()[samples[i]])[0]);
+    sum += diagonal(box) / norm(surface.texel_edges(surface.map_faces()[samples[i]])[0]);
   }
   // A full 4×4 block has a diagonal of 3√2 texels; where the surface curves, or sheets are close, it is more.
   EXPECT_LT(sum / static_cast<double>(groups), 12);

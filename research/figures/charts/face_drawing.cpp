@@ -56,6 +56,7 @@ std::string atlas_with_samples(std::string_view title, const Surface& surface, d
   }
   std::vector<Vec2> samples;
   for (const std::uint32_t t : surface.sample_texels()) {
+    if (t >= surface.texel_faces().size()) continue;
     const Vec2 centre = texel_centre(surface, t);
     samples.push_back({centre[0], -centre[1]});
   }

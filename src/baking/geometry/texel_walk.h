@@ -37,7 +37,7 @@ class TexelPlaces {
     Vec3 point, weights;
   };
   [[nodiscard]] Place at(std::uint32_t texel) {
-    const std::uint32_t face = surface_.texel_faces[texel];
+    const std::uint32_t face = surface_.map_faces[texel];
     if (face != face_) {
       face_ = face;
       frame_ = BarycentricFrame(corners_of(surface_.mesh, face));

@@ -50,7 +50,7 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
   const FaceScales of_faces(scale, options);
   const AtlasPicture picture(surface, options.largest);
   float least = std::numeric_limits<float>::infinity(), most = -least;
-  for (const float d : map.distance)
+  for (const float d : std::span(map.distance).first(map.texels()))
     if (std::isfinite(d)) least = std::min(least, d), most = std::max(most, d);
   LegendText text = legend_text(map, least, most, scale, options.units);
   if (least <= most)  // views.png and the reports have those of the vertices too

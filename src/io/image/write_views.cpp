@@ -58,7 +58,7 @@ ViewScene scene_of(const Surface& surface, const DistanceMap& map, std::span<con
                   .scale = scale,
                   .of_faces = &of_faces,
                   .other = other};
-  scene.colors.resize(map.distance.size());
+  scene.colors.resize(map.texels());
   run_concurrently({[&] {
                       constexpr std::size_t kGrain = 1 << 14;
                       parallel_for(scene.colors.size(), kGrain, [&](std::size_t begin, std::size_t end) {

@@ -58,7 +58,7 @@ Json to_json(const Surface& surface) {
           {"resolution", surface.resolution()},
           {"rows", surface.rows()},
           {"charts", surface.chart_count()},
-          {"texels", surface.sample_texels().size()},
+          {"texels", surface.owned_texels()},
           {"utilisation", surface.utilisation()},
           {"max_stretch", surface.max_stretch()},
           {"gutter", surface.gutter()},

@@ -53,7 +53,7 @@ void require_matches(const Surface& surface, const Sites& sites, const TexelMatc
 
 TexelMatches matches_of(const Surface& surface, const Sites& sites, const DistanceMap& map,
                         const Progress& progress) try {
-  if (map.distance.size() != surface.texel_faces().size() || map.resolution != surface.resolution())
+  if (map.distance.size() != surface.map_faces().size() || map.resolution != surface.resolution())
     throw Error("the map belongs to another surface: its number of texels differs");
   const MatchKind found = kind_of(map.measured);
   const std::vector<Vec3> normals =

@@ -77,7 +77,7 @@ class NormalRays {
 };
 
 void match_along_rays(const RayMatching& matching, const Progress& progress, TexelMatches& matches) {
-  const surface::Tiles tiles(matching.surface);
+  const surface::Tiles tiles(matching.surface, matching.surface.texel_faces(), surface::Tiles::kSide);
   parallel_for(tiles.count(), kTilesOfTask, progress, "rays", [&](std::size_t begin, std::size_t end) {
     NormalRays search(matching);
     for (std::size_t tile = begin; tile < end; ++tile) {
@@ -95,7 +95,7 @@ void match_the_rest(const RayMatching& matching, const Sites& sites, const Match
   std::vector<std::uint32_t> texels;
   std::vector<Vec3> points;
   for (const std::uint32_t texel : matching.surface.sample_texels()) {
-    if (matches.kind[texel] != MatchKind::none) continue;
+    if (texel >= matches.kind.size() || matches.kind[texel] != MatchKind::none) continue;
     texels.push_back(texel);
     points.push_back(matching.surface.texel_point(texel));
   }

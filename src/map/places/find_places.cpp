@@ -19,7 +19,7 @@ namespace {
 
 using map::PlaceLimits;
 
-/// A texel or a vertex beyond a limit.
+/// A sample or a vertex beyond a limit.
 struct Member {
   std::uint32_t texel, vertex;  ///< one is kNone
   std::uint32_t face;
@@ -31,7 +31,7 @@ class PlaceSearch {
   PlaceSearch(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
               const PlaceLimits& limits)
       : surface_(surface),
-        owners_(surface.texel_faces()),
+        owners_(surface.map_faces()),
         charts_(surface.face_charts()),
         width_(surface.resolution()),
         height_(surface.rows()),
@@ -41,12 +41,13 @@ class PlaceSearch {
       if (owners_[texel] != kNone)
         if (const int kind = limits.kind(map.distance[texel], owners_[texel]); kind != 0) {
           member_of_texel_[texel] = add(texel, kind);
-          blocks_[block(texel % width_, texel / width_)] = 1;
+          if (is_texel(texel)) blocks_[block(texel % width_, texel / width_)] = 1;
         }
     add_vertices(vertex_distances, limits);
     sets_.reset(ids_.size());
     if (ids_.empty()) return;
     unite_texels();
+    unite_own_points();
     unite_vertices();
     unite_seams();
   }
@@ -63,6 +64,7 @@ class PlaceSearch {
   static constexpr std::uint32_t kBlock = 16;  // texels along a side
 
   [[nodiscard]] std::size_t texels() const { return ids_.size() - vertex_faces_.size(); }
+  [[nodiscard]] bool is_texel(std::uint32_t sample) const { return sample / width_ < height_; }
   [[nodiscard]] std::size_t block(std::uint32_t x, std::uint32_t y) const {
     return std::size_t{y / kBlock} * (width_ / kBlock + 1) + x / kBlock;
   }
@@ -96,6 +98,7 @@ class PlaceSearch {
   void unite_texels() {
     for (std::uint32_t m = 0; m < texels(); ++m) {
       const std::uint32_t texel = ids_[m], x = texel % width_, y = texel / width_;
+      if (!is_texel(texel)) break;
       const auto with = [&](std::uint32_t other) {
         const std::uint32_t n = member_of_texel_[other];
         if (n != kNone && charts_[owners_[other]] == charts_[owners_[texel]]) unite(m, n);
@@ -105,6 +108,27 @@ class PlaceSearch {
       with(texel - width_);
       if (x > 0) with(texel - width_ - 1);
       if (x + 1 < width_) with(texel - width_ + 1);
+    }
+  }
+
+  // Each sample of a face without a texel with the texels around the face, with its vertices, and with those
+  // of faces that share one of these.
+  void unite_own_points() {
+    std::vector<std::array<std::uint32_t, 2>> of_vertex;  // a member there of each side of the limits
+    for (std::uint32_t m = 0; m < texels(); ++m) {
+      if (is_texel(ids_[m])) continue;
+      if (of_vertex.empty()) of_vertex.assign(surface_.mesh().positions.size(), {kNone, kNone});
+      const std::uint32_t face = owners_[ids_[m]];
+      const auto at = surface_.atlas_corners(face);
+      for_each_near(charts_[face], (1.0 / 3) * (at[0] + at[1] + at[2]),
+                    [&](std::uint32_t n) { unite(m, n); });
+      for (const std::uint32_t vertex : surface_.mesh().triangles[face]) {
+        std::uint32_t& other = of_vertex[vertex][kinds_[m] > 0 ? 1 : 0];
+        if (other != kNone) unite(m, other);
+        other = m;
+        if (!member_of_vertex_.empty() && member_of_vertex_[vertex] != kNone)
+          unite(m, member_of_vertex_[vertex]);
+      }
     }
   }
 
@@ -240,14 +264,14 @@ class PlaceSearch {
   std::uint32_t width_, height_;
   std::vector<std::uint32_t> member_of_texel_, member_of_vertex_;
   std::vector<std::uint8_t> blocks_;         ///< 1 with a member
-  std::vector<std::uint32_t> ids_;           ///< of members: texels, ascending, then vertices
+  std::vector<std::uint32_t> ids_;           ///< of members: samples, ascending, then vertices
   std::vector<int> kinds_;                   ///< of members
   std::vector<std::uint32_t> vertex_faces_;  ///< of members that are vertices: one face each
   std::vector<std::uint32_t> there_;         ///< members at a point of a seam
   DisjointSets sets_;
 };
 
-/// The number and the area of all texels.
+/// The number and the area of all samples.
 struct Whole {
   std::size_t texels = 0;
   double area = 0;
@@ -257,7 +281,7 @@ struct Whole {
 Whole whole_of(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
                std::span<const double> texel_area, PlaceLimits& limits) {
   Whole whole;
-  const auto owners = surface.texel_faces();
+  const auto owners = surface.map_faces();
   for (std::size_t texel = 0; texel < owners.size(); ++texel)
     if (owners[texel] != kNone) {
       ++whole.texels, whole.area += texel_area[owners[texel]];
@@ -296,7 +320,7 @@ std::vector<Place> places_of(PlaceSearch& search, const Surface& surface, const 
 
 Places find_places(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
                    const PlacesOptions& options) try {
-  if (map.distance.size() != surface.texel_faces().size())
+  if (map.distance.size() != surface.map_faces().size())
     throw Error("the map belongs to another surface: its number of texels differs");
   if (!vertex_distances.empty() && vertex_distances.size() != surface.mesh().positions.size())
     throw Error("find_places() needs one distance for each vertex of the surface's mesh");

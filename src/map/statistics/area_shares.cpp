@@ -8,8 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "geometry/triangle.h"
-#include "geometry/vec.h"
+#include "map/statistics/texel_areas.h"
 #include "map/statistics/tolerance_limits.h"
 #include "map/statistics/weighted_texels.h"
 
@@ -55,17 +54,11 @@ double area_fraction_beyond(const Surface& surface, const DistanceMap& map, doub
 }
 
 double area_fraction_without_texels(const Surface& surface) {
-  const std::span<const std::uint32_t> owners = surface.texel_faces();
-  std::vector<std::uint8_t> has_texel(surface.mesh().triangles.size());
-  for (const std::uint32_t texel : surface.sample_texels()) has_texel[owners[texel]] = 1;
   double without = 0, all = 0;
-  for (std::size_t face = 0; face < has_texel.size(); ++face) {
-    if (is_removed(surface.mesh().triangles[face])) continue;
-    const auto [a, b, c] = corners_of(surface.mesh(), face);
-    const double area = norm(cross(b - a, c - a));
-    all += area;
-    if (has_texel[face] == 0) without += area;
-  }
+  for (std::uint32_t face = 0; face < surface.mesh().triangles.size(); ++face)
+    if (!is_removed(surface.mesh().triangles[face])) all += map::face_area(surface.mesh(), face);
+  for (const std::uint32_t face : surface.map_faces().subspan(surface.texel_faces().size()))
+    without += map::face_area(surface.mesh(), face);
   return all > 0 ? without / all : 0;
 }
 

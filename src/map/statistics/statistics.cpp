@@ -20,7 +20,7 @@ DistanceStatistics statistics(const Surface& surface, const DistanceMap& map) {
 
 std::optional<Extremes> extremes(const Surface& surface, const DistanceMap& map,
                                  std::span<const float> vertex_distances) {
-  if (map.distance.size() != surface.texel_faces().size())
+  if (map.distance.size() != surface.map_faces().size())
     throw Error("the map belongs to another surface: its number of texels differs");
   if (vertex_distances.size() != surface.mesh().positions.size())
     throw Error("extremes() needs one distance for each vertex of the surface's mesh");
@@ -30,7 +30,7 @@ std::optional<Extremes> extremes(const Surface& surface, const DistanceMap& map,
   const auto less = [&](double d) { return !(result.min.distance <= d) && !std::isnan(d); };
   const auto greater = [&](double d) { return !(result.max.distance >= d) && !std::isnan(d); };
   std::size_t least = 0, most = 0;
-  const auto owners = surface.texel_faces();
+  const auto owners = surface.map_faces();
   for (std::size_t texel = 0; texel < owners.size(); ++texel) {
     const double d = map.distance[texel];
     if (owners[texel] == kNone || std::isinf(d)) continue;

@@ -1,25 +1,64 @@
-// The area that a texel stands for.
+// The area that a sample stands for.
 #pragma once
 
 #include <sdm/surface.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
+#include "geometry/triangle.h"
 #include "geometry/vec.h"
+#include "surface/surface_data.h"
 
 namespace sdm::map {
 
-/// The surface area of a texel of each face, |∂p/∂u × ∂p/∂v|, which is the same for all texels of a face; 0
-/// for faces without a chart. Cost: linear in faces.
+[[nodiscard]] inline double face_area(const Mesh& mesh, std::uint32_t face) {
+  const auto [a, b, c] = corners_of(mesh, face);
+  return 0.5 * norm(cross(b - a, c - a));
+}
+
+/// The surface area of a sample of each face; all together add up to that of the mesh, but for faces without
+/// a sample, which have 0.
+///
+/// The sample of a face without a texel has the area of the face, and the texels of a large face share its
+/// area. Those of small faces must not: of faces of about two texels, the ones that own a single texel have
+/// it near their middle, so that middles would weigh too much. There, texels weigh |∂p/∂u × ∂p/∂v|, as all
+/// positions in a face are equally likely then, times a factor that is common to all faces of about the same
+/// size in the atlas: it makes up for those of them without a texel. Cost: linear in faces.
 [[nodiscard]] inline std::vector<double> texel_areas(const Surface& surface) {
-  const auto charts = surface.face_charts();
-  std::vector<double> areas(charts.size());
-  for (std::uint32_t face = 0; face < charts.size(); ++face) {
-    if (charts[face] == kNone) continue;
-    const auto [du, dv] = surface.texel_edges(face);
-    areas[face] = norm(cross(du, dv));
+  constexpr double kFewTexels = 256;
+  constexpr int kStrataPerOctave = 4, kStrata = 16 * kStrataPerOctave;
+  struct Stratum {
+    double faces = 0, texels = 0;  ///< areas
+  };
+  std::array<Stratum, kStrata> strata;
+  const std::vector<std::uint32_t>& samples = internals(surface).face_samples;
+  std::vector<double> areas(samples.size());
+  std::vector<std::uint8_t> own(samples.size());
+  for (const std::uint32_t face : surface.map_faces().subspan(surface.texel_faces().size())) own[face] = 1;
+  // Calls visit(area, area of a texel, stratum) for a face with few texels.
+  const auto with_few = [&](std::uint32_t face, const auto& visit) {
+    if (samples[face] == 0 || own[face] != 0) return;
+    const auto [u, v] = surface.texel_edges(face);
+    const double area = face_area(surface.mesh(), face), texel = norm(cross(u, v));
+    const double size = area / texel;
+    if (!(size > 0 && size < kFewTexels)) return;
+    const int below = static_cast<int>(kStrataPerOctave * std::log2(kFewTexels / size));
+    visit(area, texel, strata[std::min(below, kStrata - 1)]);
+  };
+  for (std::uint32_t face = 0; face < areas.size(); ++face) {
+    if (samples[face] > 0) areas[face] = face_area(surface.mesh(), face) / samples[face];
+    with_few(face, [&](double area, double texel, Stratum& stratum) {
+      stratum.faces += area, stratum.texels += samples[face] * texel;
+    });
   }
+  for (std::uint32_t face = 0; face < areas.size(); ++face)
+    with_few(face, [&](double, double texel, const Stratum& stratum) {
+      areas[face] = texel * (stratum.faces / stratum.texels);
+    });
   return areas;
 }
 

@@ -10,7 +10,7 @@
 namespace sdm::map {
 namespace {
 
-// The area of a texel of each face, relative to the `largest`.
+// The area of a sample of each face, relative to the `largest`.
 std::vector<float> relative_areas(const Surface& surface, double& largest) {
   const std::vector<double> areas = texel_areas(surface);
   largest = areas.empty() ? 0 : *std::ranges::max_element(areas);
@@ -23,7 +23,7 @@ std::vector<float> relative_areas(const Surface& surface, double& largest) {
 }  // namespace
 
 WeightedTexels::WeightedTexels(const Surface& surface, const DistanceMap& map)
-    : owners_(surface.texel_faces()), distance_(map.distance.data()) {
+    : owners_(surface.map_faces()), distance_(map.distance.data()) {
   if (map.distance.size() != owners_.size())
     throw Error("the map belongs to another surface: its number of texels differs");
   areas_ = relative_areas(surface, largest_area_);

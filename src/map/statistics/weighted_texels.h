@@ -1,4 +1,4 @@
-// The texels of a map with their areas on the surface as weights.
+// The samples of a map with their areas on the surface as weights.
 #pragma once
 
 #include <sdm/map.h>
@@ -12,7 +12,7 @@
 
 namespace sdm::map {
 
-/// Texels are divided into parts whose sums are added in order, so that results do not depend on the number
+/// Samples are divided into parts whose sums are added in order, so that results do not depend on the number
 /// of threads.
 class WeightedTexels {
  public:
@@ -21,7 +21,7 @@ class WeightedTexels {
   /// Both must outlive this. Throws sdm::Error if the map belongs to another surface.
   WeightedTexels(const Surface& surface, const DistanceMap& map);
 
-  /// Calls visit(distance, weight, face) for all owned texels of a part; the distance is not finite where
+  /// Calls visit(distance, weight, face) for all samples of a part; the distance is not finite where
   /// there is none. Weights are areas relative to the largest, so that they fit a float for meshes of any
   /// size.
   template <class Visit>
@@ -48,7 +48,7 @@ class WeightedTexels {
 
  private:
   double largest_area_ = 0;
-  std::vector<float> areas_;  ///< of a texel of each face
+  std::vector<float> areas_;  ///< of a sample of each face
   std::span<const std::uint32_t> owners_;
   const float* distance_;
 };

@@ -50,7 +50,7 @@ ClosestOfTexels::ClosestOfTexels(const Surface& surface, const Sites& sites, con
 SurfacePoint ClosestOfTexels::at(std::uint32_t texel) {
   const SiteType type = map_.site_type[texel];
   if (type == SiteType::none) return {};
-  const std::uint32_t owner = surface_.texel_faces[texel], number = map_.site[texel];
+  const std::uint32_t owner = surface_.map_faces[texel], number = map_.site[texel];
   if (texel - row_begin_ >= surface_.resolution)
     row_ = texel / surface_.resolution, row_begin_ = row_ * surface_.resolution;
   const Vec3 query = surface_.to_surface(owner, {texel - row_begin_ + 0.5, row_ + 0.5});

@@ -173,7 +173,7 @@ std::vector<float> transfer_from(const Surface& surface, const Sites& sites, con
 std::vector<float> transfer(const Surface& surface, const Sites& sites, const DistanceMap& map,
                             const AttributeArray& array, const TransferOptions& options) try {
   require_fitting(array, sites.mesh());
-  if (map.distance.size() != surface.texel_faces().size() || map.resolution != surface.resolution())
+  if (map.distance.size() != surface.map_faces().size() || map.resolution != surface.resolution())
     throw Error("the map belongs to another surface: its number of texels differs");
   const std::vector<Vec3> normals =
       map.measured.kind == DistanceKind::facing

@@ -125,7 +125,7 @@ void map_nearest(std::span<const shape::PosedBody> bodies, std::size_t on, doubl
   map::clear(nearest.map, surface);
   const map::MapWriter writer(nearest.map);
   nearest.map.sign = signs_of_others(bodies, on);
-  nearest.body.assign(surface.texel_faces().size(), kNone);
+  nearest.body.assign(surface.map_faces().size(), kNone);
   std::atomic<std::size_t> beyond{0};
   constexpr std::size_t kGrain = 4;
   parallel_for(surface::block_count(texels.size()), kGrain, [&](std::size_t begin, std::size_t end) {

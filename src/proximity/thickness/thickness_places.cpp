@@ -14,7 +14,7 @@ namespace {
 template <class Before>
 std::vector<std::uint32_t> first_texels(const Surface& surface, const DistanceMap& map, std::size_t count,
                                         const Before& before) {
-  if (map.distance.size() != surface.texel_faces().size()) throw Error("the map belongs to another surface");
+  if (map.distance.size() != surface.map_faces().size()) throw Error("the map belongs to another surface");
   constexpr double kApart = 0.06;  // of the diagonal, as the places of pages
   const double apart = kApart * diagonal(bounds(surface.mesh()));
   std::vector<std::uint32_t> texels;

@@ -25,7 +25,7 @@ double largest_error(const Surface& surface, const Sites& sites) {
 }
 
 void check_resolution(const Surface& surface, const DistanceMap& map, const char* function) {
-  if (map.distance.size() != surface.texel_faces().size())
+  if (map.distance.size() != surface.map_faces().size())
     throw Error(std::string(function) + "() needs a map of the surface: their resolutions differ");
   if (!is_lipschitz(map.measured.kind))
     throw Error(std::string(function) + "() needs a map of distances to the closest point");
@@ -40,8 +40,8 @@ double free_distance(float distance, double error) {
 std::vector<double> free_distances(const Surface& surface, const Sites& sites, const DistanceMap& map) {
   check_resolution(surface, map, "free_distances");
   const double error = largest_error(surface, sites);
-  std::vector<double> result(map.distance.size());
-  std::ranges::transform(map.distance, result.begin(), [&](float d) { return free_distance(d, error); });
+  std::vector<double> result(map.texels());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = free_distance(map.distance[i], error);
   return result;
 }
 
@@ -52,7 +52,7 @@ std::vector<float> ambient_occlusion(const Surface& surface, const Sites& sites,
   rays::check_options(options, "ambient_occlusion");
   const surface::SurfaceData& on = internals(surface);
   const double error = largest_error(surface, sites);
-  std::vector<float> result(map.distance.size(), std::numeric_limits<float>::quiet_NaN());
+  std::vector<float> result(map.texels(), std::numeric_limits<float>::quiet_NaN());
   parallel_for(on.samples.size(), kGrain, options.progress, "ambient occlusion",
                [&](std::size_t begin, std::size_t end) {
                  thread_local rays::HemisphereRays some;
@@ -62,6 +62,7 @@ std::vector<float> ambient_occlusion(const Surface& surface, const Sites& sites,
                  on.place_samples(begin, points);
                  for (std::size_t i = begin; i < end; ++i) {
                    const std::uint32_t texel = on.samples[i];
+                   if (texel >= result.size()) continue;
                    const double free = free_distance(map.distance[texel], error);
                    if (free > options.max_distance) {
                      result[texel] = 1;

@@ -35,13 +35,13 @@ struct WithoutValue {
 std::vector<Evidence> evidence_of_groups(const Surface& surface, const DistanceMap& map,
                                          std::span<const float> vertex_distances, const FaceGroups& groups,
                                          double accuracy) {
-  if (map.distance.size() != surface.texel_faces().size()) throw Error("the map belongs to another surface");
+  if (map.distance.size() != surface.map_faces().size()) throw Error("the map belongs to another surface");
   if (vertex_distances.size() != surface.mesh().positions.size())
     throw Error("a verdict needs one distance for each vertex of the surface's mesh");
   std::vector<DistanceRange> ranges(groups.count);
   std::vector<WithoutValue> without(groups.count);
   for (const std::uint32_t texel : surface.sample_texels()) {
-    const std::uint32_t group = groups.group(surface.texel_faces()[texel]);
+    const std::uint32_t group = groups.group(surface.map_faces()[texel]);
     if (group == kNone) continue;
     if (std::isfinite(map.distance[texel]))
       ranges[group].add(map.distance[texel]);

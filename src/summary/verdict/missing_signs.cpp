@@ -20,7 +20,7 @@ void withhold_failures_by_missing_signs(std::span<ToleranceVerdict> verdicts, co
   std::vector<SignedSamples> samples(groups.count);
   const std::vector<std::uint8_t> texels = boundary_mask(sites, map);
   for (const std::uint32_t texel : surface.sample_texels())
-    if (const std::uint32_t group = groups.group(surface.texel_faces()[texel]);
+    if (const std::uint32_t group = groups.group(surface.map_faces()[texel]);
         group != kNone && std::isfinite(map.distance[texel]))
       samples[group].add(map.distance[texel], texels[texel] == 0);
   const std::vector<std::uint8_t> vertices = boundary_vertices(surface.mesh(), sites);

@@ -13,7 +13,7 @@ namespace {
 /// Stores the pieces of a group of faces.
 class PieceStore {
  public:
-  /// `sample_of`: the sample of each texel that a face owns.
+  /// `sample_of`: the place of each sample in the order of samples.
   PieceStore(std::span<const std::uint32_t> sample_of, std::vector<FacePiece>& pieces,
              std::span<std::uint8_t> whole_square)
       : sample_of_(sample_of), pieces_(pieces), whole_square_(whole_square) {}
@@ -45,7 +45,7 @@ class PieceStore {
 FacePieces cut_faces(const Surface& surface) {
   const FaceCutter cutter(surface);
   const std::span<const std::uint32_t> samples = surface.sample_texels();
-  std::vector<std::uint32_t> sample_of(surface.texel_faces().size());
+  std::vector<std::uint32_t> sample_of(surface.map_faces().size());
   for (std::uint32_t i = 0; i < samples.size(); ++i) sample_of[samples[i]] = i;
 
   constexpr std::size_t kFacesPerGroup = 64;

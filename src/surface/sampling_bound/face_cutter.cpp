@@ -41,14 +41,16 @@ std::array<Vec2, 3> unfolded(const std::array<Vec3, 3>& vertices, double piece_l
 }
 
 FaceCutter::FaceCutter(const Surface& surface)
-    : surface_(surface), typical_(typical_radius(surface)), near_samples_(surface, typical_) {
-  owns_texel_.assign(surface.mesh().triangles.size(), 0);
-  for (const std::uint32_t face : internals(surface).sample_faces) owns_texel_[face] = 1;
-}
+    : surface_(surface), typical_(typical_radius(surface)), near_samples_(surface, typical_) {}
 
 CutFace FaceCutter::face(std::uint32_t index) const {
-  const double radius = owns_texel_[index] ? half_diagonal(surface_.texel_edges(index)) : typical_;
-  return {index, corners_of(surface_.mesh(), index), kNearEnough * radius};
+  const SurfaceData& data = internals(surface_);
+  const auto without = std::span<const std::uint32_t>(data.map_faces).subspan(data.texels());
+  const auto own = std::ranges::lower_bound(without, index);
+  const bool has_own = own != without.end() && *own == index;
+  const double radius = data.face_samples[index] > 0 ? half_diagonal(surface_.texel_edges(index)) : typical_;
+  return {index, corners_of(surface_.mesh(), index), kNearEnough * radius,
+          has_own ? data.texels() + static_cast<std::uint32_t>(own - without.begin()) : kNone};
 }
 
 }  // namespace sdm::surface

@@ -19,7 +19,8 @@ namespace sdm::surface {
 struct CutFace {
   std::uint32_t index;
   std::array<Vec3, 3> vertices;
-  double enough;  ///< a distance from a piece to its sample that needs no improvement
+  double enough;      ///< a distance from a piece to its sample that needs no improvement
+  std::uint32_t own;  ///< the sample of a face that owns no texel, else kNone
 };
 
 /// A triangle in the plane that represents a face without area: its base is the face's longest edge, as many
@@ -58,7 +59,6 @@ class FaceCutter {
   const Surface& surface_;
   const double typical_;
   const NearSamples near_samples_;
-  std::vector<std::uint8_t> owns_texel_;  ///< whether each face does
 };
 
 template <class Sink>
@@ -97,7 +97,8 @@ void FaceCutter::add_piece(const CutFace& face, const Vec2& square, const Polygo
   constexpr std::size_t kMostCorners = 8;  // cutting a polygon of 8 gives at most 12
   const Outline outline(face.vertices, polygon);
   const double enough = sink.enough(face);
-  NearSamples::Choice choice = near_samples_.choose(face.index, square[0], square[1], outline, enough);
+  NearSamples::Choice choice =
+      near_samples_.choose(face.index, face.own, square[0], square[1], outline, enough);
   if (known.distance < choice.distance) choice = known;
   const bool large = 4 * outline.farthest_from(outline.middle()) > choice.distance;
   if (choice.distance <= enough || !large || cuts == kMostCuts || polygon.corners().size() > kMostCorners)

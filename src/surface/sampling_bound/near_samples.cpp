@@ -24,20 +24,21 @@ double Outline::farthest_from(const Vec3& s) const {
   return std::sqrt(squared);
 }
 
-NearSamples::Choice NearSamples::choose(std::uint32_t face, double x, double y, const Outline& outline,
-                                        double enough) const {
+NearSamples::Choice NearSamples::choose(std::uint32_t face, std::uint32_t own, double x, double y,
+                                        const Outline& outline, double enough) const {
   Choice best;
   const auto consider = [&](std::uint32_t texel) {
     if (texel == kNone) return;
     const double distance = outline.farthest_from(surface_.texel_point(texel));
     if (distance < best.distance) best = {texel, distance};
   };
+  consider(own);
   consider(texel_at(x, y));
   for (int j = -1; j <= 1 && best.distance > enough; ++j)
     for (int i = -1; i <= 1; ++i) consider(texel_at(x + i, y + j));
   if (best.distance > enough) {
     const std::uint32_t texel = nearest_texel(outline);
-    if (best.texel == kNone || same_side(face, surface_.texel_faces()[texel])) consider(texel);
+    if (best.texel == kNone || same_side(face, surface_.map_faces()[texel])) consider(texel);
   }
   return best;
 }

@@ -37,9 +37,9 @@ class NearSamples {
     double distance = std::numeric_limits<double>::infinity();  ///< of the outline's farthest corner
   };
   /// Returns, for a piece of the face in the square of the texel at (x, y), the first sample found within
-  /// `enough`, otherwise the nearest.
-  [[nodiscard]] Choice choose(std::uint32_t face, double x, double y, const Outline& outline,
-                              double enough) const;
+  /// `enough`, otherwise the nearest. `own`: the sample of a face without a texel, else kNone.
+  [[nodiscard]] Choice choose(std::uint32_t face, std::uint32_t own, double x, double y,
+                              const Outline& outline, double enough) const;
   /// The same for a piece of a face that is not in the atlas.
   [[nodiscard]] std::uint32_t nearest_texel(const Outline& outline) const {
     return surface_.sample_texels()[tree_.nearest(outline.middle())];

@@ -114,7 +114,7 @@ TEST(FacingVerdicts, FaceWithoutASampleFails) {
   const Judged fold(folded(), thick_plate(2));
   const auto last = static_cast<std::uint32_t>(fold.scan.triangles.size() - 1);
   ASSERT_TRUE(std::ranges::none_of(fold.surface.sample_texels(), [&](std::uint32_t texel) {
-    return fold.surface.texel_faces()[texel] == last;
+    return fold.surface.map_faces()[texel] == last;
   }));
   const CertifiedVerdict verdict = fold.verdict(0.5);
   EXPECT_EQ(verdict.verdict, Verdict::fail);

@@ -11,6 +11,7 @@
 #include "query/rays/hemisphere.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
+#include "support/owned_texels.h"
 #include "support/shapes.h"
 
 namespace sdm {
@@ -48,12 +49,12 @@ TEST(AmbientOcclusion, BelowASquareIsItsFormFactor) {
   const Scene scene(test::square(3, 0), test::square(2, 0.7), 32);
   const std::vector<float> result = scene.occlusion({.rays = 4096});
   double bias = 0;
-  for (const std::uint32_t texel : scene.surface.sample_texels()) {
+  for (const std::uint32_t texel : test::owned_texels(scene.surface)) {
     const double expected = visible_below_square(scene.surface.texel_point(texel), 2, 0.7);
     ASSERT_NEAR(result[texel], expected, 0.01);
     bias += result[texel] - expected;
   }
-  EXPECT_NEAR(bias / static_cast<double>(scene.surface.sample_texels().size()), 0, 2e-4);
+  EXPECT_NEAR(bias / static_cast<double>(scene.surface.owned_texels()), 0, 2e-4);
 }
 
 // A few stratified rays for each of many texels are unbiased, too.
@@ -62,15 +63,15 @@ TEST(AmbientOcclusion, OfFewRaysHasNoBias) {
   for (const std::uint32_t rays : {1u, 5u, 16u}) {
     double bias = 0;
     const std::vector<float> result = scene.occlusion({.rays = rays, .seed = 3});
-    for (const std::uint32_t texel : scene.surface.sample_texels())
+    for (const std::uint32_t texel : test::owned_texels(scene.surface))
       bias += result[texel] - visible_below_square(scene.surface.texel_point(texel), 2, 0.7);
-    EXPECT_NEAR(bias / static_cast<double>(scene.surface.sample_texels().size()), 0, 0.015) << rays;
+    EXPECT_NEAR(bias / static_cast<double>(scene.surface.owned_texels()), 0, 0.015) << rays;
   }
 }
 
 TEST(AmbientOcclusion, OfTheBackIsNone) {
   const Scene scene(test::flipped(test::square(3, 0)), test::square(2, 0.7), 16);
-  for (const std::uint32_t texel : scene.surface.sample_texels())
+  for (const std::uint32_t texel : test::owned_texels(scene.surface))
     EXPECT_EQ(scene.occlusion({.rays = 64})[texel], 1);
 }
 
@@ -78,7 +79,7 @@ TEST(AmbientOcclusion, InAClosedMeshIsComplete) {
   const Scene scene(test::sphere(2), test::moved(test::cube(3), {0.5, 0.2, 0}), 64);
   const std::vector<float> result = scene.occlusion({.rays = 100});
   for (std::size_t texel = 0; texel < result.size(); ++texel) {
-    if (scene.surface.texel_faces()[texel] == kNone)
+    if (scene.surface.map_faces()[texel] == kNone)
       EXPECT_TRUE(std::isnan(result[texel]));
     else
       ASSERT_EQ(result[texel], 0);
@@ -91,7 +92,7 @@ TEST(AmbientOcclusion, EndsAtTheLargestDistance) {
   for (const double most : {0.49, 0.6, 1.0}) {
     const std::vector<float> result = scene.occlusion({.rays = 1024, .max_distance = most});
     const double expected = most < 0.5 ? 1 : 0.25 / (most * most);
-    for (const std::uint32_t texel : scene.surface.sample_texels())
+    for (const std::uint32_t texel : test::owned_texels(scene.surface))
       ASSERT_NEAR(result[texel], expected, 2e-3);
   }
 }
@@ -108,7 +109,7 @@ TEST(AmbientOcclusion, DoesNotDependOnTheMap) {
       const std::vector<float> with = scene.occlusion(options),
                                without = ambient_occlusion(scene.surface, scene.sites, nothing, options);
       std::size_t partly = 0;
-      for (const std::uint32_t texel : scene.surface.sample_texels()) {
+      for (const std::uint32_t texel : test::owned_texels(scene.surface)) {
         ASSERT_EQ(with[texel], without[texel]) << texel;
         partly += with[texel] < 1;
       }
@@ -120,8 +121,8 @@ TEST(AmbientOcclusion, DoesNotDependOnTheMap) {
 TEST(AmbientOcclusion, IsThatOfTheRays) {
   const Scene scene(test::sphere(2), test::moved(test::sphere(2), {1.5, 0, 0}), 32);
   const std::vector<float> result = scene.occlusion({.rays = 8, .seed = 5});
-  for (const std::uint32_t texel : scene.surface.sample_texels()) {
-    const auto& [a, b, c] = scene.surface.mesh().triangles[scene.surface.texel_faces()[texel]];
+  for (const std::uint32_t texel : test::owned_texels(scene.surface)) {
+    const auto& [a, b, c] = scene.surface.mesh().triangles[scene.surface.map_faces()[texel]];
     const std::vector<Vec3>& p = scene.surface.mesh().positions;
     std::vector<Vec3> directions(8);
     rays::cosine_hemisphere(normalized(cross(p[b] - p[a], p[c] - p[a])), 5, texel, directions);
@@ -157,7 +158,7 @@ TEST(AmbientOcclusion, IsTheSameForAnyNumberOfThreads) {
   const std::vector<float> all = scene.occlusion(options);
   const ThreadLimit one(1);
   const std::vector<float> alone = scene.occlusion(options);
-  for (const std::uint32_t texel : scene.surface.sample_texels()) ASSERT_EQ(all[texel], alone[texel]);
+  for (const std::uint32_t texel : test::owned_texels(scene.surface)) ASSERT_EQ(all[texel], alone[texel]);
   EXPECT_NE(all, scene.occlusion({.rays = 20, .seed = 1}));
 }
 

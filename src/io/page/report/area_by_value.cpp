@@ -19,7 +19,7 @@ std::uint32_t key_of(float value) {
   return (bits ^ (bits >> 31 ? 0xFFFFFFFFu : 0x80000000u)) >> 16;
 }
 
-// The area of a texel of each face, relative to the largest, so that sums are finite for meshes of any size.
+// The area of a sample of each face, relative to the largest, so that sums are finite for meshes of any size.
 std::vector<double> relative_texel_areas(const Surface& surface) {
   std::vector<double> areas = map::texel_areas(surface);
   const double largest = areas.empty() ? 0 : *std::ranges::max_element(areas);
@@ -69,7 +69,7 @@ AreaByValue AreaSums::fractions() const {
 }
 
 AreaByValue area_by_value(const Surface& surface, const DistanceMap& map) {
-  const auto owners = surface.texel_faces();
+  const auto owners = surface.map_faces();
   const auto samples = surface.sample_texels();
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
   for (const std::uint32_t texel : samples)

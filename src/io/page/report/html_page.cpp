@@ -44,7 +44,7 @@ void check_meshes_of(const Surface& surface, const HtmlOptions& options) {
 
 HtmlPage html_page(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
                    const HtmlOptions& options) {
-  if (map.distance.size() != surface.texel_faces().size() ||
+  if (map.distance.size() != surface.map_faces().size() ||
       vertex_distances.size() != surface.mesh().positions.size())
     throw Error("the map or the distances belong to another surface");
   check_meshes_of(surface, options);
