@@ -15,6 +15,7 @@
 #include "support/error_of.h"
 #include "support/every_case.h"
 #include "support/meshes.h"
+#include "support/owned_texels.h"
 #include "support/points.h"
 #include "support/ray_oracle.h"
 #include "support/shapes.h"
@@ -259,7 +260,7 @@ TEST_P(Rays, StartWhereTheMapIsFree) {
       const DistanceMap map = compute_map(surface, sites, {.engine = make_engine(engine.name)});
       const std::vector<double> free = free_distances(surface, sites, map);
       std::vector<Ray> all, late;
-      for (const std::uint32_t texel : surface.sample_texels()) {
+      for (const std::uint32_t texel : test::owned_texels(surface)) {
         const Vec3 p = surface.texel_point(texel),
                    v{map.vector[texel][0], map.vector[texel][1], map.vector[texel][2]};
         ASSERT_GE(free[texel], 0);
@@ -279,7 +280,7 @@ TEST_P(Rays, StartWhereTheMapIsFree) {
       std::size_t near = 0;
       for (std::size_t i = 0; i < all.size(); ++i)
         near += a[i].face != kNone && b[i].t < 1.001 * late[i].t_min + 1e-4;
-      EXPECT_GT(near, surface.sample_texels().size() / 2);
+      EXPECT_GT(near, surface.owned_texels() / 2);
     }
   }
 }
