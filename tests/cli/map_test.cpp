@@ -292,7 +292,7 @@ TEST_F(MapCommand, TextureCoordinatesAreWrapped) {
   const Json overlapping = Json::parse(run_sdm(map({"--atlas", "uv", "--json"})).out);
   EXPECT_GT(overlapping["atlas"]["overlapping_texels"], 128 * 128);
   EXPECT_EQ(overlapping["notes"].size(), 2u);
-  EXPECT_GT(overlapping["atlas"]["area_fraction_without_texels"], 0.1);
+  EXPECT_GT(overlapping["atlas"]["area_fraction_without_texels"], 0.001);
 }
 
 TEST_F(MapCommand, ALaterRunTakesTheAtlasFromItsCache) {
