@@ -60,7 +60,7 @@ Json proximity_json(const Command& command, const fields::Proximity& found) {
   json["o1"] = {{"file", command.o1}, {"transform", command.transform_o1}};
   json["separation"] = to_json(found.separation);
   json["depth"] = found.depth ? to_json(*found.depth) : Json(nullptr);
-  json["colliding"] = Json{{"value", found.colliding}, {"kind", name(found.colliding_certainty)}};
+  json["colliding"] = Json{{"value", found.colliding}, {"kind", sdm::name_of(found.colliding_certainty)}};
   json["samples"] = found.samples;
   json["samples_without_value"] = found.without_value;
   json["covering_radius"] = found.covering_radius;
@@ -90,7 +90,7 @@ Json report_of(const Command& command, const Input& o2, const Outcome& outcome) 
 
 std::string length_line(const char* what, const sdm::BoundedLength& d, const std::string& unit) {
   return fmt::format("  {:<11}{}{}   between {} and {} ({})\n", what, number(d.value), unit, number(d.lower),
-                     number(d.upper), name(d.certainty));
+                     number(d.upper), sdm::name_of(d.certainty));
 }
 
 std::string summary(const Command& command, const Outcome& outcome) {
@@ -100,7 +100,8 @@ std::string summary(const Command& command, const Outcome& outcome) {
     text += fmt::format("{} to {}, at {} samples\n", command.o1, command.o2, p->samples);
     text += length_line("separation", p->separation, unit);
     if (p->depth) text += length_line("depth", *p->depth, unit);
-    text += fmt::format("  colliding  {} ({})\n", p->colliding ? "yes" : "no", name(p->colliding_certainty));
+    text += fmt::format("  colliding  {} ({})\n", p->colliding ? "yes" : "no",
+                        sdm::name_of(p->colliding_certainty));
   }
   text += note_lines(outcome.notes, 13);
   const double ms = outcome.field.report.milliseconds + outcome.field.work.sign_milliseconds;

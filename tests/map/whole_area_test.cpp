@@ -5,6 +5,7 @@
 #include <sdm/facing.h>
 #include <sdm/map.h>
 #include <sdm/map_samples.h>
+#include <sdm/measure.h>
 #include <sdm/places.h>
 #include <sdm/self_proximity_query.h>
 #include <sdm/statistics.h>
@@ -202,7 +203,7 @@ TEST_F(OwnPoints, HaveTheDistancesOfQueriesThere) {
   const std::vector<ClosestPoint> closest = closest_points(sites_, points);
   const DistanceMap facing = compute_map(surface_, sites_, {.facing = 60});
   const FacingPoints faced = closest_facing_points(sites_, points, normals, {.facing = 60});
-  const DistanceMap along = along_map(surface_, sites_, {});
+  const DistanceMap along = compute_map(surface_, sites_, AlongOptions{});
   for (std::size_t i = 0; i < points.size(); ++i) {
     ASSERT_NEAR(std::abs(map.distance[first + i]), closest[i].distance, 1e-6);
     ASSERT_NEAR(std::abs(facing.distance[first + i]), faced.closest[i].distance, 1e-6);
@@ -211,7 +212,8 @@ TEST_F(OwnPoints, HaveTheDistancesOfQueriesThere) {
     ASSERT_NEAR(norm(cross(Vec3{v[0], v[1], v[2]}, normals[i])), 0, 1e-5);
   }
   const ThicknessMaps walls = thickness_maps(surface_, own_);
-  const DistanceMap self = compute_self_map(surface_, own_, Exclusion(mesh_));
+  const Exclusion exclusion(mesh_);
+  const DistanceMap self = compute_map(surface_, own_, SelfOptions{.exclusion = exclusion});
   for (std::size_t i = 0; i < points.size(); ++i) {
     ASSERT_NEAR(walls.ball.distance[first + i], 2, 0.1);
     ASSERT_NEAR(walls.ray.distance[first + i], 2, 0.1);

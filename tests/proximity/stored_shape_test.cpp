@@ -5,6 +5,7 @@
 #include <sdm/error.h>
 #include <sdm/hausdorff.h>
 #include <sdm/map.h>
+#include <sdm/measure.h>
 #include <sdm/proximity_query.h>
 #include <sdm/rays.h>
 #include <sdm/self_intersections.h>
