@@ -121,15 +121,6 @@ TEST_F(SequenceCommand, MeasuresBothBodies) {
 }
 
 // The legends of all maps are the same picture.
-TEST_F(SequenceCommand, NotesTheAreaWithoutTexels) {
-  for (int i = 0; i < 12; ++i) write_frame(i, ring(64, 1, {0.5 * i - 3.2, 0, 0}));
-  const std::string note = " % of the area lies in faces without a sample (texel)";
-  const Outcome run = run_sdm(sequence({"--tolerance", "9"}));
-  EXPECT_THAT(run.out, HasSubstr(note)) << run.err;
-  EXPECT_THAT(lines().front()["notes"].dump(), HasSubstr(note));
-  EXPECT_EQ(run_sdm(sequence()).out.find(note), std::string::npos) << "no area is measured";
-}
-
 TEST_F(SequenceCommand, FramesShareAScale) {
   ASSERT_EQ(run_sdm(sequence({"--maps", "3", "--no-temporal"})).code, 0);
   std::vector<std::vector<Rgb>> bars;
