@@ -25,7 +25,7 @@ class BoundedNumber:
     """truth ≤ upper, unless an estimate."""
     certainty: Certainty
     """'exact': but for rounding; 'bounded': the true value lies between the bounds; 'estimate'."""
-    confidence: float | None = None
+    confidence: float | None
     """Of an estimate with bounds: the probability, at least, with which the true value lies between them."""
 
     def __float__(self) -> float:

@@ -17,7 +17,7 @@ from sdm import _arrays
 
 from . import _files, _meshes
 
-_NUMBERS = tuple(name for name in sdm.DistanceStatistics._fields if not name.endswith("texels"))
+_NUMBERS = tuple(name for name in vars(sdm.DistanceStatistics) if not name.startswith("_") and not name.endswith("texels"))
 _BOUNDS = ("lower", "upper", "covering_radius", "accuracy")
 _FORMATS = (".exr", ".png", ".glb", ".ply", ".csv", ".npy", ".vtp")
 _ATTEMPTS = 3  # as many as Dask's setting distributed.scheduler.allowed-failures
