@@ -122,9 +122,9 @@ export function whatIf(report: Report, limits: Limits, outside: number): [string
   return given ? [`With ${text}: `, verdict, `. ${share}${open}`] : ['Would be ', verdict, ` with ${text}. ${share}${open}`];
 }
 
-/// A clause as a sentence.
+/// A clause as a sentence, with the minus sign that all numbers of the page have.
 function sentence(clause: string): string {
-  return `${capital(clause)}.`;
+  return `${capital(clause).replace(/(^|[ (])-(?=\d)/g, '$1−')}.`;
 }
 
 /// What is said where nothing is judged.
