@@ -283,7 +283,7 @@ def test_matching():
     assert share_of_red(facing=60) == (1, {sdm.MatchKind.FACING}) == share_of_red(match="facing")
     assert share_of_red(match="ray") == (1, {sdm.MatchKind.RAY}) == share_of_red(match="ray", cage=0.1, facing=45)
     assert share_of_red(match="ray", cage=0.03) == (1, {sdm.MatchKind.FACING})
-    for options, fault in (({"match": "nearest"}, "'closest', 'facing' or 'ray', not 'nearest'"), ({"cage": 1}, "cage applies to"),
+    for options, fault in (({"match": "nearest"}, "must be one of closest, facing, ray, not 'nearest'"), ({"cage": 1}, "cage applies to"),
                            ({"match": "closest", "facing": 90}, "facing does not apply"), ({"match": "ray", "cage": -1}, "cage"),
                            ({"channels": []}, "channels is empty")):  # fmt: skip
         with pytest.raises(sdm.Error, match=fault):

@@ -15,6 +15,7 @@
 #include <fstream>
 #include <iostream>
 #include <random>
+#include <span>
 #include <string>
 
 #include "support/shapes.h"
@@ -136,7 +137,7 @@ std::string write_pair(const Files& files, Pair pair, unsigned number) {
   const Sites sites(pair.o2);
   const DistanceMap map = compute_map(surface, sites);
   files.write(name + ".texel_faces", surface.texel_faces());
-  files.write(name + ".distances", map.distance);
+  files.write(name + ".distances", std::span(map.distance).first(map.texels()));
   files.write(name + ".vectors", map.vector);
 
   const std::vector<Vec3> points = random_points(pair.o2, 500, number);
