@@ -59,6 +59,8 @@ def declarations(xml: Path) -> dict[str, list[list[str]]]:
     for member in namespace.iter("memberdef"):
         kind, place = member.get("kind"), member.find("location")
         name = f"sdm::{member.findtext('name')}"
+        if "<" in name:  # a specialisation, such as the words of an enumeration
+            continue
         if kind == "function":
             types = ("".join(p.find("type").itertext()) for p in member.findall("param"))
             name += f"({', '.join(types)})"

@@ -219,7 +219,7 @@ TEST_F(Page, StatesTheVerdict) {
   map({"--resolution", "64", "--tolerance", "30", "--facing"});
   EXPECT_TRUE(passes("says", page(), {"PASS", "Every point of the surface is within "}));
   map({"--resolution", "64", "--tolerance=-30:20", "--facing"});
-  EXPECT_TRUE(passes("says", page(), {"PASS", "Every point of the surface is within −30 to 20."}));
+  EXPECT_TRUE(passes("says", page(), {"PASS", "Every point of the surface is within -30 to 20."}));
 }
 
 /// The report in a page.
