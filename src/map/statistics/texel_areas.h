@@ -39,26 +39,24 @@ namespace sdm::map {
   std::vector<double> areas(samples.size());
   std::vector<std::uint8_t> own(samples.size());
   for (const std::uint32_t face : surface.map_faces().subspan(surface.texel_faces().size())) own[face] = 1;
-  // Calls visit(area, area of a texel, stratum) for a face with few texels.
-  const auto with_few = [&](std::uint32_t face, const auto& visit) {
-    if (samples[face] == 0 || own[face] != 0) return;
-    const auto [u, v] = surface.texel_edges(face);
-    const double area = face_area(surface.mesh(), face), texel = norm(cross(u, v));
-    const double size = area / texel;
-    if (!(size > 0 && size < kFewTexels)) return;
-    const int below = static_cast<int>(kStrataPerOctave * std::log2(kFewTexels / size));
-    visit(area, texel, strata[std::min(below, kStrata - 1)]);
-  };
+  std::vector<std::uint8_t> stratum_of(samples.size(), kStrata);  // kStrata: of none
   for (std::uint32_t face = 0; face < areas.size(); ++face) {
-    if (samples[face] > 0) areas[face] = face_area(surface.mesh(), face) / samples[face];
-    with_few(face, [&](double area, double texel, Stratum& stratum) {
-      stratum.faces += area, stratum.texels += samples[face] * texel;
-    });
+    if (samples[face] == 0) continue;
+    const double area = face_area(surface.mesh(), face);
+    areas[face] = area / samples[face];
+    if (own[face] != 0) continue;
+    const auto [u, v] = surface.texel_edges(face);
+    const double texel = norm(cross(u, v)), size = area / texel;
+    if (!(size > 0 && size < kFewTexels)) continue;
+    const int below =
+        std::min(static_cast<int>(kStrataPerOctave * std::log2(kFewTexels / size)), kStrata - 1);
+    stratum_of[face] = static_cast<std::uint8_t>(below);
+    areas[face] = texel;
+    strata[below].faces += area, strata[below].texels += samples[face] * texel;
   }
   for (std::uint32_t face = 0; face < areas.size(); ++face)
-    with_few(face, [&](double, double texel, const Stratum& stratum) {
-      areas[face] = texel * (stratum.faces / stratum.texels);
-    });
+    if (stratum_of[face] < kStrata)
+      areas[face] *= strata[stratum_of[face]].faces / strata[stratum_of[face]].texels;
   return areas;
 }
 
