@@ -18,7 +18,6 @@
 #include "weld.h"
 
 #include <limits>
-#include <map>
 #include <memory>
 
 namespace {
@@ -35,13 +34,6 @@ struct ThicknessResult {
   sdm::Summary summary;
   Json report;
 };
-
-const std::map<std::string, ThicknessMethod> kMethods{{"ball", ThicknessMethod::ball},
-                                                      {"ray", ThicknessMethod::ray}};
-
-std::string name_of_method(ThicknessMethod method) {
-  return method == ThicknessMethod::ball ? "ball" : "ray";
-}
 
 ThicknessMethod other_method(const ThicknessCommand& command) {
   return command.thickness.method == ThicknessMethod::ball ? ThicknessMethod::ray : ThicknessMethod::ball;
@@ -92,8 +84,8 @@ bool only_most(const ThicknessCommand& command) {
 Json thickness_json(const ThicknessCommand& command, const sdm::Surface& surface, const sdm::DistanceMap& map,
                     const sdm::Summary& other) {
   const auto given = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
-  const std::string name = name_of_method(other_method(command));
-  Json json{{"method", name_of_method(command.thickness.method)},
+  const std::string name = name_of(other_method(command));
+  Json json{{"method", name_of(command.thickness.method)},
             {"text", text_of_method(command)},
             {"angle", command.thickness.angle},
             {"min", given(command.least)},
@@ -140,7 +132,7 @@ ThicknessResult measure(const ThicknessCommand& command, const LoadedPart& loade
                          {}};
   const auto write = [&] {
     if (command.files.exr)
-      sdm::write_exr(folder / (name_of_method(other_method(command)) + ".exr"), part.surface, other);
+      sdm::write_exr(folder / fmt::format("{}.exr", name_of(other_method(command))), part.surface, other);
   };
   const auto extend = [&](Json& report) {
     report["thickness"] = thickness_json(command, part.surface, part.map, of_other);
@@ -171,7 +163,7 @@ std::string tolerance_text(const ThicknessCommand& command, const sdm::Summary& 
 
 std::string thickness_summary(const ThicknessCommand& command, const ThicknessResult& result, double size) {
   const sdm::Summary& s = result.summary;
-  const std::string unit = unit_suffix(s.units), name = name_of_method(command.thickness.method);
+  const std::string unit = unit_suffix(s.units), name = name_of(command.thickness.method);
   std::string text = heading(fmt::format("{}: wall thickness", command.part.file), judged(s, {}));
   if (!s.extremes) {
     text += "  thickness   no texel has a value\n";
@@ -214,7 +206,7 @@ int run(ThicknessCommand command) {
       command, [&] { return result.report; },
       [&] {
         std::string files = listed(command.files);
-        if (command.files.exr) files = name_of_method(other_method(command)) + ".exr " + files;
+        if (command.files.exr) files = fmt::format("{}.exr {}", name_of(other_method(command)), files);
         return thickness_summary(command, result, size) +
                result_lines(14, total.lap(), command.out.string(), files);
       });
@@ -222,14 +214,10 @@ int run(ThicknessCommand command) {
 }
 
 void add_limits(CLI::App& app, ThicknessCommand& c) {
-  app.add_option(
-         "--method", c.thickness.method,
-         "The thickness that is drawn and judged: ball, the diameter of the largest ball that touches "
-         "at a texel, or ray, the length of the ray from it along the inward normal. The other one is "
-         "in the report and in a file of its own")
-      ->transform(CLI::CheckedTransformer(kMethods).description(""))
-      ->type_name("ball|ray")
-      ->default_str("ball");
+  add_choice(app, "--method", c.thickness.method,
+             "The thickness that is drawn and judged: ball, the diameter of the largest ball that touches "
+             "at a texel, or ray, the length of the ray from it along the inward normal. The other one is "
+             "in the report and in a file of its own");
   app.add_option("--angle", c.thickness.angle,
                  "The ball is stopped only by faces whose normal turns by more than this from that of the "
                  "texel's face, in degrees")

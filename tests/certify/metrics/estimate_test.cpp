@@ -237,21 +237,5 @@ TEST(MetricsEstimate, OfASurfaceAndItselfIsZero) {
   EXPECT_EQ(none.assd.certainty, Certainty::exact);
 }
 
-TEST(MetricsEstimate, ReportsProgressThatNeverDecreases) {
-  const Mesh a = torus(24, 12), b = moved(torus(20, 10), {0.3, 0.1, 0});
-  double last = 0;
-  const auto watch = [&](std::string_view step, double fraction) {
-    EXPECT_EQ(step, "metrics");
-    EXPECT_GE(fraction, last);
-    last = fraction;
-    return true;
-  };
-  (void)surface_metrics(a, b, {.estimate = true, .most_points = 20'000, .progress = watch});
-  EXPECT_EQ(last, 1);
-  const auto cancel = [&](std::string_view, double fraction) { return fraction < 0.3; };
-  EXPECT_THROW((void)surface_metrics(a, b, {.estimate = true, .most_points = 20'000, .progress = cancel}),
-               Cancelled);
-}
-
 }  // namespace
 }  // namespace sdm::test

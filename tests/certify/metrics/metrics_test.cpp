@@ -431,19 +431,23 @@ TEST(SurfaceMetrics, RefuseWhatHasNoAnswer) {
 
 TEST(SurfaceMetrics, ReportProgressThatNeverDecreases) {
   const Mesh a = torus(24, 12), b = moved(torus(20, 10), {0.3, 0.1, 0});
-  double last = 0;
-  const auto watch = [&](std::string_view step, double fraction) {
-    EXPECT_EQ(step, "metrics");
-    EXPECT_GE(fraction, last);
-    last = fraction;
-    return true;
-  };
-  (void)surface_metrics(a, b, {.precision = 1e-3, .progress = watch});
-  EXPECT_EQ(last, 1);
-  // How many reports there are depends on which thread is ready when.
-  for (const double at : {0.0, 0.3, 1.0}) {
-    const auto cancel = [&](std::string_view, double fraction) { return fraction < at; };
-    EXPECT_THROW((void)surface_metrics(a, b, {.precision = 1e-3, .progress = cancel}), Cancelled) << at;
+  for (MetricsOptions options :
+       {MetricsOptions{.precision = 1e-3}, MetricsOptions{.estimate = true, .most_points = 20'000}}) {
+    SCOPED_TRACE(options.estimate);
+    double last = 0;
+    options.progress = [&](std::string_view step, double fraction) {
+      EXPECT_EQ(step, "metrics");
+      EXPECT_GE(fraction, last);
+      last = fraction;
+      return true;
+    };
+    (void)surface_metrics(a, b, options);
+    EXPECT_EQ(last, 1);
+    // How many reports there are depends on which thread is ready when.
+    for (const double at : {0.0, 0.3, 1.0}) {
+      options.progress = [&](std::string_view, double fraction) { return fraction < at; };
+      EXPECT_THROW((void)surface_metrics(a, b, options), Cancelled) << at;
+    }
   }
 }
 
