@@ -7,17 +7,17 @@ formats: a colour that a file names is baked, or a note says that it is left out
   tests/materials.py SDM [--cases N] [--first SEED]
 """
 
-import argparse
 import base64
 import json
 import math
 import random
 import struct
 import subprocess
-import sys
 import tempfile
 import zlib
 from pathlib import Path
+
+import random_cases
 
 SIDE = 16  # texels of a square
 PIXELS = 4  # of a picture, along each side; the left half has one colour, the right half another
@@ -398,17 +398,5 @@ def check(sdm: Path, seed: int) -> str:
     return ""
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("sdm", type=Path)
-    parser.add_argument("--cases", type=int, default=1000)
-    parser.add_argument("--first", type=int, default=0, metavar="SEED")
-    options = parser.parse_args()
-    for seed in range(options.first, options.first + options.cases):
-        if fault := check(options.sdm, seed):
-            sys.exit(f"case {seed} {fault}")
-    print(f"{options.cases} cases of materials agree")
-
-
 if __name__ == "__main__":
-    main()
+    random_cases.run("cases of materials", __doc__, check)

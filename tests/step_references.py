@@ -7,13 +7,13 @@ what was written: the volume and the number of boxes, or an error that names a f
   tests/step_references.py SDM [--cases N] [--first SEED]
 """
 
-import argparse
 import json
 import random
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
+
+import random_cases
 
 
 class Step:
@@ -220,17 +220,5 @@ def check(sdm: Path, seed: int) -> str:
         return "" if len(notes) == len(named) == min(len(case.notes), 1) else f"has the notes {notes}, not of {case.notes}"
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("sdm", type=Path)
-    parser.add_argument("--cases", type=int, default=1000)
-    parser.add_argument("--first", type=int, default=0, metavar="SEED")
-    options = parser.parse_args()
-    for seed in range(options.first, options.first + options.cases):
-        if fault := check(options.sdm, seed):
-            sys.exit(f"case {seed} {fault}")
-    print(f"{options.cases} assemblies agree")
-
-
 if __name__ == "__main__":
-    main()
+    random_cases.run("assemblies", __doc__, check)
