@@ -279,7 +279,7 @@ Outcome pile(const Trial& trial, std::size_t size, bool all, bool depths) {
   constexpr double kNear = 0.02;
   const ThreadLimit limit(trial.threads);
   const Pile pile(size);
-  const MultiBodyOptions options{.contact_margin = 0.001};
+  const ProximityOptions options{.contact_margin = 0.001};
   MultiBodyQuery query(pile.bodies(), options);
   std::vector<Transform> poses;
   for (std::size_t b = 0; b < size; ++b) poses.push_back(pile.pose(b, 0));

@@ -9,7 +9,7 @@
 #include <algorithm>
 
 #include "cad_options.h"
-#include "facing.h"
+#include "declared_options.h"
 #include "option_checks.h"
 
 namespace {
@@ -157,11 +157,7 @@ void add_options(CLI::App& app, BakeCommand& c) {
   add_layout(app, c.layout);
   add_channels(app, c);
   add_samples(app, c);
-  app.add_option("--max-distance", c.map.max_distance,
-                 "Texels farther than this from HIGH have no match, and are filled from others")
-      ->check(positive_number())
-      ->type_name("D");
-  add_facing_option(app, c.map.facing, "texel's face", "HIGH");
+  add_declared_options(app, c.map, {"sign"});
   add_matching(app, c);
   app.add_option("--units", c.units, "Units of the meshes; m, cm, mm, um, in, ft scale baked.glb to metres")
       ->type_name("NAME");

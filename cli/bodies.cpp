@@ -12,6 +12,7 @@
 
 #include "bodies_report.h"
 #include "common_options.h"
+#include "declared_options.h"
 #include "format.h"
 #include "map_files.h"
 #include "notes.h"
@@ -30,7 +31,7 @@ struct BodiesCommand : RunOptions {
   std::vector<std::string> files;
   std::string units;
   std::filesystem::path out, poses;
-  sdm::MultiBodyOptions options;
+  sdm::ProximityOptions options;
   double max_distance = std::numeric_limits<double>::infinity();
   sdm::AtlasOptions atlas{.resolution = 128};
   MapFiles map_files{.views = false};
@@ -183,7 +184,8 @@ void add_options(CLI::App& app, BodiesCommand& c) {
   app.add_option("--max-distance", c.max_distance, "Omit pairs, and texels, farther apart than D")
       ->check(positive_number())
       ->type_name("D");
-  add_proximity_options(app, c.units, c.options.contact_margin, c.options.depth_precision);
+  add_declared_options(app, c.options);
+  add_units_option(app, c.units);
   app.add_option("--poses", c.poses,
                  "A text file with a pose per body and line: x y z and a quaternion w x y z, or a 4×4 "
                  "matrix, row by row")

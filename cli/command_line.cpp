@@ -3,6 +3,7 @@
 #include "bake.h"
 #include "bodies.h"
 #include "completion.h"
+#include "declared_options.h"
 #include "devices.h"
 #include "exit_codes.h"
 #include "hausdorff.h"
@@ -65,6 +66,8 @@ int run_command_line(int argc, char** argv) {
     add_devices_command(app);
     add_scene_command(app);
     add_completion_command(app);
+    for (CLI::App* command : app.get_subcommands({}))
+      command->parse_complete_callback([command] { check_declared_options(*command); });
     app.failure_message(usage_error);
     if (argc == 3 && std::string_view(argv[1]) == "help" && std::string_view(argv[2]) == "--man") {
       std::cout << manual_page(app);

@@ -1,11 +1,13 @@
 #include "common_options.h"
 
+#include <sdm/map.h>
 #include <sdm/threads.h>
 
 #include <algorithm>
 #include <tuple>
 #include <vector>
 
+#include "declared_options.h"
 #include "option_checks.h"
 
 CLI::Option* add_output_option(CLI::App& app, std::filesystem::path& folder) {
@@ -27,30 +29,37 @@ void add_transform_option(CLI::App& app, const std::string& name, const std::str
       ->type_name("STEPS");
 }
 
+namespace {
+
+const auto& kResolution = std::get<0>(sdm::kOptions<sdm::AtlasOptions>);
+
+sdm::OptionInfo resolution_of(const std::string& maps) {
+  sdm::OptionInfo info = sdm::info_of(kResolution);
+  info.text = "Texels along each side of " + maps;
+  return info;
+}
+
+}  // namespace
+
 CLI::Option* add_side_option(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& maps) {
-  return app.add_option("--resolution", atlas.resolution, "Texels along each side of " + maps)
-      ->transform(whole_number(16, 32768))
-      ->type_name("N")
-      ->capture_default_str();
+  return add_declared_option(app, resolution_of(maps), [&atlas](const std::string& text) {
+    return sdm::read_value(kResolution, text, atlas);
+  });
 }
 
 CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& maps) {
-  return app
-      .add_option_function<std::string>(
-          "--resolution",
-          [&atlas](const std::string& text) {
-            const auto [columns, rows] = *parse_size(text);
-            atlas.resolution = columns, atlas.rows = rows;
-          },
-          "Texels along each side of " + maps + "; with --atlas uv also WxH, those of a row and of a column")
-      ->check(CLI::Validator(
-          [](const std::string& text) {
-            return parse_size(text) ? std::string()
-                                    : text + " is neither a number from 16 to 32768 nor two, as in 2048x1024";
-          },
-          ""))
-      ->type_name("N|WxH")
-      ->default_str(std::to_string(atlas.resolution));
+  sdm::OptionInfo info = resolution_of(maps);
+  info.text += "; with --atlas uv also WxH, those of a row and of a column";
+  info.value = "N|WxH";
+  return add_declared_option(app, std::move(info), [&atlas](const std::string& text) {
+    const std::size_t by = std::min(text.find('x'), text.size());
+    sdm::AtlasOptions side;
+    if (!sdm::read_value(kResolution, text.substr(0, by), atlas)) return false;
+    if (by == text.size()) return true;
+    if (!sdm::read_value(kResolution, text.substr(by + 1), side)) return false;
+    atlas.rows = side.resolution;
+    return true;
+  });
 }
 
 void check_layout(const sdm::AtlasOptions& atlas) {
@@ -58,24 +67,8 @@ void check_layout(const sdm::AtlasOptions& atlas) {
     throw CLI::ValidationError("--resolution", "a map that is not square needs --atlas uv");
 }
 
-void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh) {
-  add_choice(
-      app, "--atlas", atlas.kind,
-      "How " + mesh + " is parametrised: few charts, pairs of triangles without distortion, or its own UVs");
-  app.add_option("--gutter", atlas.gutter,
-                 "Free texels around each chart, and how far values extend beyond charts, if more than 4")
-      ->transform(whole_number(0, 8192))
-      ->type_name("N")
-      ->capture_default_str();
-  app.add_flag("--strict-uv", atlas.strict_uv,
-               "uv: refuse coordinates outside of [0, 1] and faces that overlap in the texture");
-  app.add_option(
-         "--max-stretch", atlas.max_stretch,
-         "Charts: the largest stretch, the factor by which lengths grow from map to surface; from 1.1034 on, "
-         "up to 4 where noise of a scan would leave too little of the atlas")
-      ->check(number("a number above 1", [](double x) { return x > 1; }))
-      ->type_name("S")
-      ->capture_default_str();
+void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas) {
+  add_declared_options(app, atlas, {"resolution"});
 }
 
 void add_engine_option(CLI::App& app, sdm::EngineInfo& engine) {
@@ -94,13 +87,6 @@ std::shared_ptr<const sdm::Engine> make_engine(const sdm::EngineInfo& engine, co
   (void)sdm::gl_device(std::max(atlas.resolution, atlas.rows.value_or(0)),
                        gl);  // fails before a surface is built
   return sdm::make_gl_engine(gl);
-}
-
-void add_sign_option(CLI::App& app, sdm::SignMethod& sign) {
-  add_choice(app, "--sign", sign,
-             "How the inside of O2 (negative) is determined; auto: exact if O2 is "
-             "closed and orientable, otherwise none; side: of an open O2 the side to which "
-             "its normals do not point is negative, an estimate");
 }
 
 void add_color_options(CLI::App& app, sdm::PictureOptions& picture) {
@@ -137,6 +123,10 @@ void add_picture_options(CLI::App& app, sdm::PictureOptions& picture) {
   app.add_flag("--unlit", picture.unlit, "model.glb without shading, in exactly the colours of the scale");
 }
 
+void add_units_option(CLI::App& app, std::string& units) {
+  app.add_option("--units", units, "Units of the meshes, for printed and drawn values")->type_name("NAME");
+}
+
 void add_up_option(CLI::App& app, sdm::UpAxis& up, const std::string& files) {
   add_choice(app, "--up", up, "The axis of the meshes that points up, in " + files);
 }
@@ -155,20 +145,6 @@ void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& toleranc
           },
           ""))
       ->type_name("T|LO:HI");
-}
-
-void add_proximity_options(CLI::App& app, std::string& units, double& contact_margin,
-                           std::optional<double>& depth_precision) {
-  app.add_option("--margin", contact_margin,
-                 "Also report contacts up to a distance of D, not only of penetrating parts")
-      ->check(no_negative_number())
-      ->type_name("D");
-  app.add_option("--precision", depth_precision,
-                 "Bounds on the penetration depth at most EPS apart; by default 1/1000 of the smaller body's "
-                 "diagonal")
-      ->check(positive_number())
-      ->type_name("EPS");
-  app.add_option("--units", units, "Units of the meshes, for printed and drawn values")->type_name("NAME");
 }
 
 void add_run_options(CLI::App& app, RunOptions& run, const std::string& json_prints) {

@@ -23,8 +23,8 @@ CLI::Option* add_side_option(CLI::App& app, sdm::AtlasOptions& atlas, const std:
 /// Returns --resolution, N or WxH; check_layout() checks whether the atlas can have that shape.
 CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas,
                                    const std::string& maps = "the map");
-/// `mesh` describes the parametrised mesh in the help text.
-void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& mesh);
+/// All of an atlas but its resolution.
+void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas);
 /// Throws CLI::ValidationError for a map that is not square unless the atlas is that of the mesh.
 void check_layout(const sdm::AtlasOptions& atlas);
 /// --engine.
@@ -34,18 +34,15 @@ void add_engine_option(CLI::App& app, sdm::EngineInfo& engine);
 [[nodiscard]] std::shared_ptr<const sdm::Engine> make_engine(const sdm::EngineInfo& engine,
                                                              const sdm::GlOptions& gl,
                                                              const sdm::AtlasOptions& atlas);
-/// --sign.
-void add_sign_option(CLI::App& app, sdm::SignMethod& sign);
 /// --colormap and --range.
 void add_color_options(CLI::App& app, sdm::PictureOptions& picture);
 /// --colormap, --range, --picture-size, --units, --up and --unlit.
 void add_picture_options(CLI::App& app, sdm::PictureOptions& picture);
+/// --units, for printed and drawn values.
+void add_units_option(CLI::App& app, std::string& units);
 /// --up; `files` that it applies to, in the help text.
 void add_up_option(CLI::App& app, sdm::UpAxis& up, const std::string& files);
 void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& tolerance);
-/// Adds --units, --margin and --precision, for commands that print proximity.
-void add_proximity_options(CLI::App& app, std::string& units, double& contact_margin,
-                           std::optional<double>& depth_precision);
 /// How a command runs and what it prints.
 struct RunOptions {
   unsigned threads = 0;  ///< 0: all cores

@@ -11,9 +11,9 @@
 #include "bounds_text.h"
 #include "cad_options.h"
 #include "common_options.h"
+#include "declared_options.h"
 #include "doubts.h"
 #include "exit_codes.h"
-#include "facing.h"
 #include "format.h"
 #include "input_pair.h"
 #include "notes.h"
@@ -258,14 +258,8 @@ void add_hausdorff_command(CLI::App& app) {
                      {fmt::format("The mesh whose points are measured ({})", sdm::mesh_format_names()),
                       "The mesh that distances are measured to"});
   add_pair_transforms(*hausdorff, c);
-  hausdorff
-      ->add_option(
-          "--precision", c.options.precision,
-          "Bounds at most EPS apart, in units of the meshes; by default 1e-6 of the diagonal of both")
-      ->check(positive_number())
-      ->type_name("EPS");
+  add_declared_options(*hausdorff, c.options);
   hausdorff->add_flag("--both", c.both, "Measure in both directions");
-  add_facing_option(*hausdorff, c.options.facing, "point's face");
   hausdorff
       ->add_option(
           "--tolerance", c.tolerance,

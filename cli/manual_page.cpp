@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "completion.h"
+#include "declared_options.h"
 #include "exit_codes.h"
 #include "option_words.h"
 
@@ -44,7 +45,7 @@ std::string paragraphs(std::string_view text) {
   return as_is ? result + ".fi\n" : result;
 }
 
-std::string option_entry(const CLI::Option& option) {
+std::string option_entry(const CLI::App& command, const CLI::Option& option) {
   std::string names;
   const auto add = [&](const std::string& name) {
     names += fmt::format("{}\\fB{}\\fP", names.empty() ? "" : ", ", plain(name));
@@ -59,6 +60,8 @@ std::string option_entry(const CLI::Option& option) {
   if (option.get_required() && option.nonpositional()) remarks += " Required.";
   for (const CLI::Option* other : option.get_excludes())
     remarks += fmt::format(" Not with {}.", plain(other->get_name()));
+  if (const std::string excluded = exclusions_of(command, option); !excluded.empty())
+    remarks += " " + plain(excluded);
   return fmt::format(".TP\n{}{}\n{}.{}\n", names, value, plain(option.get_description()), remarks);
 }
 
@@ -68,9 +71,9 @@ std::string command_section(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_positional()) {
       usage += " " + option->get_name(true, false) + (option->get_expected_max() > 1 ? "..." : "");
-      positionals += option_entry(*option);
+      positionals += option_entry(command, *option);
     } else {
-      options += option_entry(*option);
+      options += option_entry(command, *option);
     }
   }
   return fmt::format(".SS \"{}\"\n{}.\n{}{}.PP\n{}", plain(usage + " [OPTIONS]"),

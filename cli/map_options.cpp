@@ -4,7 +4,7 @@
 #include <sdm/io.h>
 
 #include "common_options.h"
-#include "facing.h"
+#include "declared_options.h"
 #include "option_checks.h"
 
 #include <algorithm>
@@ -15,22 +15,15 @@ namespace {
 
 /// Adds the options of the layout; `both`: the option that a stored atlas excludes.
 void add_map_layout(CLI::App& app, MapLayout& layout, CLI::Option* both) {
-  CLI::Option* resolution = add_resolution_option(app, layout.atlas);
-  CLI::Option* precision =
-      app.add_option(
-             "--precision", layout.precision,
-             "Instead: choose the resolution so that every surface point is within EPS of a sample, and "
-             "distances between samples are known to within EPS (error_bound)")
-          ->check(positive_number())
-          ->type_name("EPS")
-          ->excludes(resolution);
-  add_layout_options(app, layout.atlas, "O1");
+  add_resolution_option(app, layout.atlas);
+  add_declared_options(app, layout.fit);
+  add_layout_options(app, layout.atlas);
   app.add_option(
          "--atlas-cache", layout.cache,
          "Take the atlas of O1 from this file, or write it there if the file does not exist; it must be "
          "of the same mesh, transform and layout")
       ->type_name("FILE")
-      ->excludes(precision)
+      ->excludes(app.get_option("--precision"))
       ->excludes(both);
 }
 
@@ -51,12 +44,8 @@ void add_options(CLI::App& app, MapCommand& c) {
   add_align_options(app, c.align);
   add_map_layout(app, c.layout, both);
 
-  app.add_option("--max-distance", c.map.max_distance, "Texels farther than this have no value")
-      ->check(positive_number())
-      ->type_name("D");
-  add_sign_option(app, c.map.sign);
-  add_facing_option(app, c.map.facing, "texel's face");
-  add_along_option(app, c.along, "texel's face", "Between texels, an estimate");
+  add_declared_options(app, c.map);
+  add_along_option(app, c.along);
   add_engine_option(app, c.engine);
   app.add_option("--gl-device", c.gl.device,
                  "gl: the device, by its number in `sdm devices` or part of its name")
@@ -92,13 +81,6 @@ void add_options(CLI::App& app, MapCommand& c) {
 
 void check_combination(const CLI::App& app, const MapCommand& c) {
   check_layout(c.layout.atlas);
-  check_facing(c.map);
-  check_along(app, c.along);
-  if (c.layout.precision && (c.map.facing || c.along))
-    throw CLI::ValidationError(
-        "--precision",
-        "does not apply to --facing and --along: nothing bounds their distances between "
-        "texels");
   check_doubts(c.doubts, c.picture.tolerance);
   if (!std::ranges::is_sorted(c.bands, std::less_equal<>()))
     throw CLI::ValidationError("--bands", "the edges must increase");

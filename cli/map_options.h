@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "alignment.h"
-#include "along_option.h"
 #include "common_options.h"
 #include "doubts.h"
 #include "group_tolerances.h"
@@ -25,7 +24,7 @@
 struct MapLayout {
   sdm::AtlasOptions atlas;
   std::filesystem::path cache;
-  std::optional<double> precision;  ///< the largest error bound, from which the resolution follows
+  sdm::PrecisionOptions fit;  ///< the largest error bound, from which the resolution follows
 };
 
 struct MapOutput {

@@ -25,7 +25,7 @@ namespace {
 
 sdm::AtlasOptions atlas_options(const MapCommand& command, const sdm::Mesh& mesh) {
   sdm::AtlasOptions options = command.layout.atlas;
-  if (const auto& precision = command.layout.precision)
+  if (const auto& precision = command.layout.fit.precision)
     options.resolution = sdm::resolution_for(mesh, *precision, options);
   return options;
 }
@@ -173,7 +173,7 @@ Json report_of(const MapTask& task, const AtlasPart& part, const ComputedMap& co
                                               .on_o1 = task.on.role == "o1",
                                               .embedded = outcome.embedded,
                                               .engine = std::string(command.engine.name),
-                                              .precision = command.layout.precision,
+                                              .precision = command.layout.fit.precision,
                                               .udim = part.udim,
                                               .cut_faces = part.cut_faces,
                                               .time_ms = outcome.time},

@@ -10,6 +10,7 @@
 
 #include "bounds_text.h"
 #include "common_options.h"
+#include "declared_options.h"
 #include "exit_codes.h"
 #include "format.h"
 #include "input_pair.h"
@@ -220,24 +221,13 @@ void add_metrics_command(CLI::App& app) {
               "Distances T for nsd(T), precision(T), recall(T) and f_score(T), separated by commas",
               no_negative_number())
       ->type_name("T,...");
-  CLI::Option* estimate = metrics->add_flag(
-      "--estimate", c.options.estimate,
-      "In seconds, estimates from random points: each is within the printed bounds with a probability of "
-      "99 % at least, 0.2 % from their value where 4 million points of each mesh are enough; only hd is "
-      "certain");
-  metrics
-      ->add_option("--precision", c.options.precision,
-                   "Bounds of distances at most EPS apart, in units of the meshes; by default 0.2 % of their "
-                   "value, or up to 3 % where that is less than 2e-5 of the diagonal of both; 1e-7 of it at "
-                   "least. Of estimates: at most EPS from the value")
-      ->check(positive_number())
-      ->type_name("EPS");
+  add_declared_options(*metrics, c.options, {"fraction_precision"});
   metrics
       ->add_option("--fail-if", *conditions,
                    "A condition such as 'hd95>0.5' or 'nsd(1)<0.95', quoted, under which the comparison "
                    "fails, by the exit code too; several may be given")
       ->allow_extra_args(false)
-      ->excludes(estimate)
+      ->excludes(metrics->get_option("--estimate"))
       ->type_name("CONDITION");
   metrics->add_option("--units", c.units, "Units of the meshes, for printed values")->type_name("NAME");
   add_run_options(*metrics, c, "JSON instead of a summary");

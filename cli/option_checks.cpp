@@ -89,21 +89,6 @@ CLI::Validator whole_number(std::int64_t lowest, std::int64_t highest) {
       "");
 }
 
-std::optional<std::pair<std::uint32_t, std::optional<std::uint32_t>>> parse_size(const std::string& text) {
-  const auto parse = [](const std::string& part, auto& side) {
-    const std::optional<std::int64_t> value = parse_whole_number(part);
-    if (!value || *value < 16 || *value > 32768) return false;
-    side = static_cast<std::uint32_t>(*value);
-    return true;
-  };
-  std::pair<std::uint32_t, std::optional<std::uint32_t>> size{0, std::nullopt};
-  const std::size_t by = text.find('x');
-  const bool good = by == std::string::npos
-                        ? parse(text, size.first)
-                        : parse(text.substr(0, by), size.first) && parse(text.substr(by + 1), size.second);
-  return good ? std::optional(size) : std::nullopt;
-}
-
 std::optional<sdm::Tolerance> parse_tolerance(const std::string& text) {
   const std::size_t colon = text.find(':');
   const std::optional<double> first = parse_number(text.substr(0, colon));

@@ -36,10 +36,6 @@
 /// passed to CLI::Option::transform().
 [[nodiscard]] CLI::Validator whole_number(std::int64_t lowest, std::int64_t highest);
 
-/// Reads "N" (as N and 0) or "WxH", numbers from 16 to 32768; nothing if it is neither.
-[[nodiscard]] std::optional<std::pair<std::uint32_t, std::optional<std::uint32_t>>> parse_size(
-    const std::string& text);
-
 /// Reads "T" or "LO:HI"; nothing if it is neither, or LO is above HI.
 [[nodiscard]] std::optional<sdm::Tolerance> parse_tolerance(const std::string& text);
 

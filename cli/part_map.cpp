@@ -5,9 +5,9 @@
 #include "option_checks.h"
 #include "unit_options.h"
 
-void add_part_map_options(CLI::App& app, PartMapCommand& command, const char* mesh) {
+void add_part_map_options(CLI::App& app, PartMapCommand& command) {
   add_resolution_option(app, command.atlas);
-  add_layout_options(app, command.atlas, mesh);
+  add_layout_options(app, command.atlas);
   add_write_option(app, command.files, true);
   add_picture_options(app, command.picture);
   add_run_options(app, command, "the report (report.json) instead of a summary");

@@ -26,8 +26,8 @@ struct PartMapCommand : RunOptions {
   MapFiles files;
 };
 
-/// Adds those options that do not depend on what is measured; `mesh`: its name in the help.
-void add_part_map_options(CLI::App& app, PartMapCommand& command, const char* mesh);
+/// Adds those options that do not depend on what is measured.
+void add_part_map_options(CLI::App& app, PartMapCommand& command);
 /// Throws CLI::ValidationError for options that contradict each other.
 void check_part_map(const PartMapCommand& command);
 

@@ -12,10 +12,9 @@
 #include <string>
 #include <utility>
 
-#include "along_option.h"
 #include "cad_options.h"
+#include "declared_options.h"
 #include "exit_codes.h"
-#include "facing.h"
 #include "format.h"
 #include "islands.h"
 #include "map_files.h"
@@ -251,7 +250,7 @@ void add_text_options(CLI::App& app, sdm::TextDialect& text) {
 }
 
 /// What options do not allow together.
-void check_points_options(const CLI::App& points, const PointsCommand& command) {
+void check_points_options(const PointsCommand& command) {
   try {
     sdm::validate(command.text);
   } catch (const sdm::Error& fault) {
@@ -261,8 +260,6 @@ void check_points_options(const CLI::App& points, const PointsCommand& command) 
       t && std::max(std::abs(t->lo), std::abs(t->hi)) > command.map.max_distance)
     throw CLI::ValidationError("--tolerance",
                                "must not be greater than --max-distance, beyond which points have no value");
-  check_facing(command.map);
-  check_along(points, command.along);
   check_doubts(command.doubts, command.picture.tolerance);
 }
 
@@ -297,13 +294,8 @@ void add_points_command(CLI::App& app) {
   add_island_option_o2(*points, c.islands_o2);
   add_deflection_option(*points, c.tessellation);
   add_align_options(*points, c.align);
-  points->add_option("--max-distance", c.map.max_distance, "Points farther than this have no value")
-      ->check(positive_number())
-      ->type_name("D");
-  add_sign_option(*points, c.map.sign);
-  add_facing_option(*points, c.map.facing, "point");
-  add_along_option(*points, c.along, "point",
-                   "Along a direction, points without normals are measured to any face");
+  add_declared_options(*points, c.map);
+  add_along_option(*points, c.along, "Along a direction, points without normals are measured to any face.");
   add_tolerance_option(*points, c.picture.tolerance);
   add_tolerance_table_option(
       *points, c.groups,
@@ -318,7 +310,7 @@ void add_points_command(CLI::App& app) {
   add_field_option(*points, c.fields);
   add_run_options(*points, c, "the report (report.json) instead of a summary");
   points->callback([command, points] {
-    check_points_options(*points, *command);
+    check_points_options(*command);
     convert_units(command->file_units, {command->cloud, command->o2, command->transform_o1,
                                         command->transform_o2, command->picture.units});
     if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);

@@ -5,6 +5,7 @@
 #include <sdm/measure.h>
 
 #include "common_options.h"
+#include "declared_options.h"
 #include "format.h"
 #include "notes.h"
 #include "option_checks.h"
@@ -112,21 +113,9 @@ void add_self_command(CLI::App& app) {
   self->add_option("MESH", c.part.file, fmt::format("The mesh ({})", sdm::mesh_format_names()))->required();
   add_output_option(*self, c.out);
   add_transform_option(*self, "--transform", "The mesh", c.part.transform);
-  CLI::Option* rings =
-      self->add_option("--rings", c.self.exclusion.rings,
-                       "Each face excludes itself and K rings of neighbours, which share vertices")
-          ->transform(whole_number(1, 1 << 20))
-          ->type_name("K")
-          ->capture_default_str();
-  self->add_option("--geodesic", c.self.exclusion.geodesic,
-                   "Instead: each face excludes what is closer than L along the surface (conservatively)")
-      ->check(positive_number())
-      ->type_name("L")
-      ->excludes(rings);
-  self->add_option("--max-distance", c.self.max_distance, "Texels without a surface within D have no value")
-      ->check(positive_number())
-      ->type_name("D");
-  add_part_map_options(*self, c, "the mesh");
+  add_declared_options(*self, c.self.exclusion);
+  add_declared_options(*self, c.self);
+  add_part_map_options(*self, c);
   self->callback([command] {
     check_part_map(*command);
     run(*command);

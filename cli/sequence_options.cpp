@@ -55,7 +55,7 @@ void add_options(CLI::App& app, SequenceCommand& c) {
                  "of --resolution; reads all frames beforehand")
       ->check(positive_number())
       ->type_name("EPS");
-  add_layout_options(app, c.atlas, "each body");
+  add_layout_options(app, c.atlas);
   add_output_options(app, c);
   add_reading_options(app, c);
 }
@@ -81,8 +81,8 @@ Json options_json(const SequenceCommand& c) {
           {"--transform-o1", c.pair.transform_o1},
           {"--transform-o2", c.pair.transform_o2},
           {"--units", c.pair.units},
-          {"--margin", c.pair.options.contact_margin},
-          {"--precision", optional(c.pair.options.depth_precision)},
+          {"--contact-margin", c.pair.options.contact_margin},
+          {"--depth-precision", optional(c.pair.options.depth_precision)},
           {"--resolution", {c.atlas.resolution, c.atlas.rows.value_or(0)}},
           {"--map-precision", c.map_precision},
           {"--maps", c.outputs.maps_every},

@@ -6,6 +6,7 @@
 
 #include "cad_options.h"
 #include "common_options.h"
+#include "declared_options.h"
 #include "exit_codes.h"
 #include "format.h"
 #include "notes.h"
@@ -214,16 +215,7 @@ int run(ThicknessCommand command) {
 }
 
 void add_limits(CLI::App& app, ThicknessCommand& c) {
-  add_choice(app, "--method", c.thickness.method,
-             "The thickness that is drawn and judged: ball, the diameter of the largest ball that touches "
-             "at a texel, or ray, the length of the ray from it along the inward normal. The other one is "
-             "in the report and in a file of its own");
-  app.add_option("--angle", c.thickness.angle,
-                 "The ball is stopped only by faces whose normal turns by more than this from that of the "
-                 "texel's face, in degrees")
-      ->check(number("between 0 and 180", [](double x) { return x > 0 && x < 180; }))
-      ->type_name("A")
-      ->capture_default_str();
+  add_declared_options(app, c.thickness);
   app.add_option("--min", c.least, "Check that no texel is thinner than this")
       ->check(positive_number())
       ->type_name("T");
@@ -256,7 +248,7 @@ void add_thickness_command(CLI::App& app) {
   add_weld_option(*thickness, c.part.weld, "the part");
   add_deflection_option(*thickness, c.part.tessellation);
   add_limits(*thickness, c);
-  add_part_map_options(*thickness, c, "the part");
+  add_part_map_options(*thickness, c);
   thickness->callback([command] {
     check_part_map(*command);
     if (command->least && command->most && *command->least > *command->most)

@@ -1,34 +1,12 @@
 #include "usage_error.h"
 
+#include <sdm/options.h>
+
 #include <algorithm>
-#include <numeric>
-#include <utility>
 
 #include "terminal_text.h"
 
 namespace {
-
-// The number of characters to insert, delete or replace to make one text the other.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j)
-      diagonal =
-          std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])}));
-  }
-  return row.back();
-}
-
-/// "; did you mean X?" with the nearest of some names, or nothing if none is near.
-std::string suggestion(const std::string& name, const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 2;
-  const auto nearest = std::ranges::min_element(
-      names, {}, [&](const std::string& other) { return edit_distance(name, other); });
-  if (nearest == names.end() || edit_distance(name, *nearest) > kMost) return {};
-  return "; did you mean " + *nearest + "?";
-}
 
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
@@ -51,7 +29,7 @@ std::string usage_error(const CLI::App* app, const CLI::Error& error) {
   std::string text = app->get_name() + ": error: ";
   if (const std::vector<std::string> extras = command->remaining(true); !extras.empty()) {
     const std::string& name = extras.front();
-    text += name.starts_with('-') ? "unknown option " + name + suggestion(name, option_names(*command))
+    text += name.starts_with('-') ? sdm::unknown_name("option", name, option_names(*command))
                                   : "unexpected argument " + name;
   } else {
     text += error.what();
@@ -69,7 +47,7 @@ std::vector<std::string> arguments(const CLI::App& app, int argc, char** argv) {
   }
   if (!all.empty() && !all.front().starts_with('-'))
     if (const auto names = command_names(app); std::ranges::find(names, all.front()) == names.end())
-      throw UnknownCommand("unknown command " + all.front() + suggestion(all.front(), names));
+      throw UnknownCommand(sdm::unknown_name("command", all.front(), names));
   std::ranges::reverse(all);
   return all;
 }

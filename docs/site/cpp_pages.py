@@ -15,7 +15,7 @@ SUBJECTS = {
     "Files": ["io", "image", "report", "points", "sequence", "field_files", "shape_files", "bake_files"],
     "Distance maps": ["surface", "atlas", "uv_tiles", "sites", "map", "measure", "map_samples", "distance_kind", "along", "sign", "engine", "gl",
                       "closest_points", "closest_in_parts", "facing", "vertex_distances"],
-    "Results of maps": ["names", "channels", "summary", "units", "statistics", "sampling_bound", "tolerance", "tolerance_proof",
+    "Results of maps": ["names", "options", "channels", "summary", "units", "statistics", "sampling_bound", "tolerance", "tolerance_proof",
                          "certified_verdict", "group_verdicts", "tolerance_table", "coverage", "doubts", "part_statistics", "places", "islands", "combined_statistics", "temporal_maps", "match", "transfer", "bake",
                          "baked_geometry", "supersampling"],
     "Proximity": ["proximity_query", "shape", "multi_body_query", "pose_query", "self_proximity_query", "thickness", "time_of_contact",

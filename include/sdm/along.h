@@ -6,14 +6,17 @@
 #include <sdm/api.h>
 #include <sdm/facing.h>
 #include <sdm/map.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/types.h>
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -44,6 +47,28 @@ struct AlongOptions {
   double max_distance = std::numeric_limits<double>::infinity();
   Progress progress{};
 };
+
+inline constexpr std::array kAlongExcludes{ExcludedOption{"sign", "", "none exact winding side"},
+                                           ExcludedOption{"engine", "", "gl reference"},
+                                           ExcludedOption{"facing"}};
+
+template <>
+inline constexpr auto kOptions<AlongOptions> = std::tuple{
+    Option{.name = "along",
+           .member = &AlongOptions::direction,
+           .text =
+               "Measure along a line, the normal of each sample's face or a direction, to both sides: to "
+               "the nearest face of O2 that faces the same way. Along 0,0,1: the change of height of "
+               "terrain. Positive on the side to which the normal of that face points. Between samples, an "
+               "estimate.",
+           .value = "normal|X,Y,Z",
+           .excludes = kAlongExcludes},
+    Option{.name = "max_distance",
+           .member = &AlongOptions::max_distance,
+           .text = "Samples farther than this have no value.",
+           .range = kPositiveOrInfinite,
+           .unit = "length",
+           .value = "D"}};
 
 /// Measures along lines from points with normals, of any length: `closest` are the hits, of SiteType::face,
 /// with the distance without its sign, which is − where `behind`. `unmatched` are the points without a hit at

@@ -4,11 +4,13 @@
 #pragma once
 
 #include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <tuple>
 
 namespace sdm {
 
@@ -41,5 +43,36 @@ struct AtlasOptions {
   bool strict_uv = false;
   Progress progress{};
 };
+
+template <>
+inline constexpr auto kOptions<AtlasOptions> = std::tuple{
+    Option{.name = "resolution",
+           .member = &AtlasOptions::resolution,
+           .text = "Texels along each side of the atlas.",
+           .range = {16, 32768},
+           .unit = "texels",
+           .value = "N"},
+    Option{.name = "atlas",
+           .member = &AtlasOptions::kind,
+           .text =
+               "How the surface is parametrised: few charts, pairs of triangles without distortion, or its "
+               "own UVs."},
+    Option{.name = "gutter",
+           .member = &AtlasOptions::gutter,
+           .text = "Free texels around each chart, and how far values extend beyond charts, if more than 4.",
+           .range = {0, 8192},
+           .unit = "texels",
+           .value = "N"},
+    Option{.name = "strict_uv",
+           .member = &AtlasOptions::strict_uv,
+           .text = "Of the surface's own UVs: refuse coordinates outside of [0, 1] and faces that overlap in "
+                   "the texture."},
+    Option{.name = "max_stretch",
+           .member = &AtlasOptions::max_stretch,
+           .text =
+               "Of charts: the largest stretch, the factor by which lengths grow from map to surface; from "
+               "1.1034 on, up to 4 where noise of a scan would leave too little of the atlas.",
+           .range = {.least = 1, .most = 100, .above = true},
+           .value = "S"}};
 
 }  // namespace sdm

@@ -4,11 +4,13 @@
 #pragma once
 
 #include <sdm/names.h>
+#include <sdm/options.h>
 
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace sdm {
 
@@ -52,7 +54,8 @@ inline constexpr std::array kWords<DistanceKind>{"closest", "facing", "along", "
 struct MeasuredDistance {
   DistanceKind kind = DistanceKind::closest;
   std::string text = "distance to the closest point";  ///< with the rule's numbers, such as an angle
-  std::optional<double> facing{};  ///< of DistanceKind::facing: the angle in degrees, MapOptions::facing
+  std::optional<double> facing{};       ///< of DistanceKind::facing: the angle in degrees, MapOptions::facing
+  std::vector<GivenOption> settings{};  ///< the options of the measure
 };
 
 /// Whether prove_tolerance() decides limits for every point.

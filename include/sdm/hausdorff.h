@@ -6,6 +6,7 @@
 #include <sdm/api.h>
 #include <sdm/bounds.h>
 #include <sdm/mesh.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 
@@ -13,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <tuple>
 
 namespace sdm {
 
@@ -30,6 +32,26 @@ struct HausdorffOptions {
   std::optional<double> facing{};
   Progress progress{};
 };
+
+template <>
+inline constexpr auto kOptions<HausdorffOptions> = std::tuple{
+    Option{
+        .name = "precision",
+        .member = &HausdorffOptions::precision,
+        .text = "Bounds at most this far apart; by default 1e-6 of the diagonal of the box of both meshes.",
+        .range = kPositive,
+        .unit = "length",
+        .value = "EPS"},
+    Option{.name = "facing",
+           .member = &HausdorffOptions::facing,
+           .text =
+               "Measure to the closest of the faces of O2 that face the same way: whose normal is within "
+               "this angle of that of the point's face. For thin walls, where the closest point may be on "
+               "the other skin.",
+           .range = {.least = 0, .most = 180, .above = true},
+           .unit = "degrees",
+           .value = "ANGLE",
+           .implied = "90"}};
 
 /// The largest distance from a point of a surface A to the closest point of a surface B.
 struct HausdorffDistance {

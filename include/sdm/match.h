@@ -9,6 +9,7 @@
 #include <sdm/map.h>
 #include <sdm/mesh_attributes.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
@@ -21,6 +22,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -85,6 +87,33 @@ struct MatchOptions {
   std::shared_ptr<const Engine> engine{};  ///< null: the cpu engine
   Progress progress{};
 };
+
+template <>
+inline constexpr auto kOptions<MatchOptions> = std::tuple{
+    Option{.name = "method",
+           .member = &MatchOptions::method,
+           .text = "Which point of O2 belongs to a texel: the closest one; the closest one of the faces that "
+                   "face as the texel does; or, of ray, the nearest hit of such a face along its normal."},
+    Option{.name = "facing",
+           .member = &MatchOptions::facing,
+           .text =
+               "Of facing and ray: allowed are the faces whose normal is within this angle of that of the "
+               "texel's face.",
+           .range = {.least = 0, .most = 180, .above = true},
+           .unit = "degrees",
+           .value = "ANGLE"},
+    Option{.name = "cage",
+           .member = &MatchOptions::cage,
+           .text = "How far ray searches along the normal, to either side.",
+           .range = kPositiveOrInfinite,
+           .unit = "length",
+           .value = "D"},
+    Option{.name = "max_distance",
+           .member = &MatchOptions::max_distance,
+           .text = "Points of O2 farther than this do not match.",
+           .range = kPositiveOrInfinite,
+           .unit = "length",
+           .value = "D"}};
 
 /// Finds, for each texel, its point of O2.
 ///

@@ -7,6 +7,7 @@
 #include <sdm/api.h>
 #include <sdm/bounds.h>
 #include <sdm/mesh.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 
 #include <array>
@@ -15,6 +16,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -46,6 +48,29 @@ struct MetricsOptions {
   static constexpr double kConfidence = 0.99;
   static constexpr double kRelative = 2e-3, kNear = 2e-5, kOfNear = 0.03, kLeast = 1e-7, kRounding = 1e-6;
 };
+
+template <>
+inline constexpr auto kOptions<MetricsOptions> = std::tuple{
+    Option{.name = "precision",
+           .member = &MetricsOptions::precision,
+           .text =
+               "Bounds of distances at most this far apart; by default 0.2 % of their value, or up to 3 % "
+               "where that is less than 2e-5 of the diagonal of both; 1e-7 of it at least. Of estimates: at "
+               "most this far from the value.",
+           .range = kPositive,
+           .unit = "length",
+           .value = "EPS"},
+    Option{.name = "fraction_precision",
+           .member = &MetricsOptions::fraction_precision,
+           .text = "Bounds of fractions of the area at most this far apart.",
+           .range = kPositive,
+           .value = "EPS"},
+    Option{.name = "estimate",
+           .member = &MetricsOptions::estimate,
+           .text =
+               "In seconds, estimates from random points: each is within the printed bounds with a "
+               "probability of 99 % at least, 0.2 % from their value where 4 million points of each mesh are "
+               "enough; only hd is certain."}};
 
 /// Distances from a surface A to a surface B: from each point p of A to the closest point of B, d(p),
 /// weighted by the area of A.

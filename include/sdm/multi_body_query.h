@@ -27,17 +27,6 @@ struct BodyPart {
 /// The parts of a pair of bodies that an answer is of, by their numbers in each body: 0 for one of one shape.
 using PartPair = std::array<std::uint32_t, 2>;
 
-/// Options of a MultiBodyQuery.
-struct MultiBodyOptions {
-  std::optional<double> depth_precision{};  ///< as that of ProximityOptions
-  double contact_margin = 0;                ///< as that of ProximityOptions
-  /// Leaves out contacts that push a body across an edge between faces that continue each other, as where it
-  /// slides over the tiles of a floor: of edges and vertices whose faces are flat or concave, those that are
-  /// not along a normal of these; and of fixed solids side by side, those out of one into the other. Convex
-  /// edges keep theirs.
-  bool ignore_internal_edges = false;
-};
-
 /// Which pairs a body takes part in. Two bodies are a pair if at most one of them is fixed, and each one's
 /// mask contains a group of the other.
 struct BodyFilter {
@@ -116,12 +105,12 @@ class SDM_API MultiBodyQuery {
  public:
   /// Builds the sites of every body; any number of bodies is allowed, including 0. Throws sdm::Error as Sites
   /// does, naming the body, and for options that are out of range. Cost: that of all sites.
-  explicit MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options = {});
+  explicit MultiBodyQuery(std::vector<Mesh> meshes, const ProximityOptions& options = {});
   /// The same for shapes that are there already, or that have an atlas, for maps. Cost: constant for each.
-  explicit MultiBodyQuery(std::vector<Shape> shapes, const MultiBodyOptions& options = {});
+  explicit MultiBodyQuery(std::vector<Shape> shapes, const ProximityOptions& options = {});
   /// The same for bodies of one part or more. Throws sdm::Error, naming the body, also for a body without
   /// parts, and as set_pose() does for their poses.
-  explicit MultiBodyQuery(std::vector<std::vector<BodyPart>> bodies, const MultiBodyOptions& options = {});
+  explicit MultiBodyQuery(std::vector<std::vector<BodyPart>> bodies, const ProximityOptions& options = {});
   ~MultiBodyQuery();
   MultiBodyQuery(MultiBodyQuery&&) noexcept;
   MultiBodyQuery& operator=(MultiBodyQuery&&) noexcept;
@@ -178,7 +167,7 @@ class SDM_API MultiBodyQuery {
       double max_distance = std::numeric_limits<double>::infinity());
   /// Returns the depths of the pairs that collide and of which one is a solid.
   [[nodiscard]] std::span<const PairDepth> penetration_depths();
-  /// Returns the pairs that have contacts, within MultiBodyOptions::contact_margin; with
+  /// Returns the pairs that have contacts, within ProximityOptions::contact_margin; with
   /// ignore_internal_edges, without those that are internal, at the cost of a sweep over the fixed bodies
   /// and the parts of compounds, and of a few tests of inside for each contact with one that has others
   /// beside it.

@@ -5,6 +5,7 @@
 #include <sdm/bounds.h>
 #include <sdm/map.h>
 #include <sdm/mesh_edit.h>
+#include <sdm/options.h>
 #include <sdm/shape.h>
 #include <sdm/transform.h>
 
@@ -13,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <tuple>
 
 namespace sdm {
 
@@ -44,7 +46,7 @@ struct SeparatingTranslation : BoundedNumber {
   Vec3 translation{};
 };
 
-/// Options of a ProximityQuery.
+/// Options of a ProximityQuery and a MultiBodyQuery.
 struct ProximityOptions {
   /// The bounds on the penetration depth are at most this far apart, by default kDepthPrecision of the
   /// diagonal of the smaller body's box, that of its mesh times the scale of the pose; > 0, in units of the
@@ -58,9 +60,30 @@ struct ProximityOptions {
   /// Leaves out contacts(), and separating_contacts() but for kExitContact, that push a body across an edge
   /// between faces that continue each other, as where it slides over the triangles of a floor: of edges and
   /// vertices whose faces are flat or concave, those that are not along a normal of these. Convex edges keep
-  /// theirs.
+  /// theirs. Of a MultiBodyQuery also, of fixed solids side by side, those out of one into the other.
   bool ignore_internal_edges = false;
 };
+
+template <>
+inline constexpr auto kOptions<ProximityOptions> = std::tuple{
+    Option{.name = "depth_precision",
+           .member = &ProximityOptions::depth_precision,
+           .text = "Bounds on the penetration depth at most this far apart; by default 1/1000 of the smaller "
+                   "body's diagonal.",
+           .range = kPositive,
+           .unit = "length",
+           .value = "EPS"},
+    Option{.name = "contact_margin",
+           .member = &ProximityOptions::contact_margin,
+           .text = "Also report contacts up to this distance, not only of penetrating parts.",
+           .range = {.least = 0},
+           .unit = "length",
+           .value = "D"},
+    Option{.name = "ignore_internal_edges",
+           .member = &ProximityOptions::ignore_internal_edges,
+           .text =
+               "Leave out contacts that push a body across an edge between faces that continue each other, "
+               "as where it slides over the triangles of a floor."}};
 
 /// Proximity of two bodies that move and deform, for simulation loops.
 ///

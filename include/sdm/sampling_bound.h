@@ -6,10 +6,14 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/options.h>
 #include <sdm/surface.h>
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -112,5 +116,25 @@ class SDM_API RelativeError {
 /// as Surface does. Cost: two to six atlas layouts, as the bound is about proportional to 1 / resolution.
 [[nodiscard]] SDM_API std::uint32_t resolution_for(const Mesh& mesh, double precision,
                                                    const AtlasOptions& options = {});
+
+/// The resolution of an atlas, by what it is to reach: see resolution_for().
+struct PrecisionOptions {
+  std::optional<double> precision{};
+};
+
+inline constexpr std::array kPrecisionExcludes{
+    ExcludedOption{"resolution"}, ExcludedOption{"facing", "nothing bounds such distances between samples"},
+    ExcludedOption{"along", "nothing bounds such distances between samples"}};
+
+template <>
+inline constexpr auto kOptions<PrecisionOptions> = std::tuple{
+    Option{.name = "precision",
+           .member = &PrecisionOptions::precision,
+           .text = "Instead of a resolution: the one at which every point of the surface is within this of a "
+                   "sample, so that distances between samples are known as exactly.",
+           .range = kPositive,
+           .unit = "length",
+           .value = "EPS",
+           .excludes = kPrecisionExcludes}};
 
 }  // namespace sdm

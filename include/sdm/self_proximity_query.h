@@ -6,13 +6,16 @@
 #include <sdm/api.h>
 #include <sdm/bounds.h>
 #include <sdm/map.h>
+#include <sdm/options.h>
 #include <sdm/proximity_query.h>
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -25,6 +28,23 @@ struct ExclusionRule {
   /// of the mesh.
   std::optional<double> geodesic{};
 };
+
+inline constexpr std::array kGeodesicExcludes{ExcludedOption{"rings"}};
+
+template <>
+inline constexpr auto kOptions<ExclusionRule> = std::tuple{
+    Option{.name = "rings",
+           .member = &ExclusionRule::rings,
+           .text = "Each face excludes itself and this many rings of neighbours, which share vertices.",
+           .range = {1, 1 << 20},
+           .value = "K"},
+    Option{.name = "geodesic",
+           .member = &ExclusionRule::geodesic,
+           .text = "Instead: each face excludes what is closer than this along the surface (conservatively).",
+           .range = kPositive,
+           .unit = "length",
+           .value = "L",
+           .excludes = kGeodesicExcludes}};
 
 /// Options of an Exclusion.
 struct ExclusionOptions {
@@ -111,6 +131,15 @@ struct SelfProximityOptions {
       std::numeric_limits<double>::infinity();  ///< of separation(); > 0, in units of the mesh
   Progress progress{};                          ///< of the construction
 };
+
+template <>
+inline constexpr auto kOptions<SelfProximityOptions> =
+    std::tuple{Option{.name = "max_distance",
+                      .member = &SelfProximityOptions::max_distance,
+                      .text = "Samples without a surface within this distance have no value.",
+                      .range = kPositiveOrInfinite,
+                      .unit = "length",
+                      .value = "D"}};
 
 /// Proximity of a deforming mesh to itself, for simulation loops. Results are exact: computed from the
 /// triangles, without sampling error.

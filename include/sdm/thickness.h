@@ -6,6 +6,7 @@
 #include <sdm/api.h>
 #include <sdm/map.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
@@ -14,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -57,6 +59,22 @@ struct ThicknessOptions {
   double angle = 90;
   Progress progress{};
 };
+
+template <>
+inline constexpr auto kOptions<ThicknessOptions> = std::tuple{
+    Option{.name = "method",
+           .member = &ThicknessOptions::method,
+           .text = "What the thickness is: of the ball, the diameter of the largest ball in the part that "
+                   "touches at the point; of the ray, the length of the inward normal to where it leaves the "
+                   "part."},
+    Option{.name = "angle",
+           .member = &ThicknessOptions::angle,
+           .text =
+               "Of the ball: only faces whose normal turns by more than this from that of the point's face "
+               "stop it; faces that turn less are the neighbourhood of the point.",
+           .range = {.least = 0, .most = 180, .above = true, .below = true},
+           .unit = "degrees",
+           .value = "DEGREES"}};
 
 /// Returns what a thickness with these options is.
 [[nodiscard]] SDM_API MeasuredDistance measured_distance(const ThicknessOptions& options);

@@ -6,6 +6,7 @@
 #include <sdm/api.h>
 #include <sdm/bounds.h>
 #include <sdm/mesh.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 #include <sdm/sign.h>
 #include <sdm/sites.h>
@@ -15,6 +16,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -56,6 +58,23 @@ struct FieldOptions {
   bool sites = false;  ///< also store the closest sites
   Progress progress{};
 };
+
+template <>
+inline constexpr auto kOptions<FieldOptions> = std::tuple{
+    Option{.name = "max_distance",
+           .member = &FieldOptions::max_distance,
+           .text = "Points farther than this have no value.",
+           .range = kPositiveOrInfinite,
+           .unit = "length",
+           .value = "D"},
+    Option{.name = "sign",
+           .member = &FieldOptions::sign,
+           .text =
+               "How the inside of O2, where distances are negative, is determined; automatic: exact if O2 "
+               "is closed and orientable, otherwise none; winding: by generalised winding numbers, an "
+               "estimate; side: of an open O2 the side to which its normals do not point is negative, an "
+               "estimate."},
+    Option{.name = "sites", .member = &FieldOptions::sites, .text = "Also find the closest sites."}};
 
 /// One value per grid point. Points without a value, farther than the maximum distance, hold NaN, kNone and
 /// SiteType::none.

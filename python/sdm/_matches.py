@@ -9,8 +9,9 @@ from . import _core
 from ._attributes import Normals, corner_normals
 from ._closest_points import NONE
 from ._core import Error, Sites, Surface, TexelMatches
+from ._options import takes_options
 from ._texels import Progress, Texels, read_only
-from ._types import Atlas, Engine
+from ._types import Engine
 
 
 class MatchKind(enum.IntEnum):
@@ -155,61 +156,38 @@ class Matches(Texels):
         return corner_normals(normals, len(of.vertices), of.faces, name)
 
 
+@takes_options("match")
 def match(
     a: object,
     b: object,
     *,
-    method: Literal["closest", "facing", "ray"] = "facing",
-    facing: float = 90.0,
-    cage: float = float("inf"),
-    max_distance: float = float("inf"),
     normals: Normals = "smooth",
-    resolution: "int | tuple[int, int] | None" = None,
     engine: Engine = "cpu",
-    atlas: Atlas = "charts",
-    max_stretch: float = 1.3,
-    gutter: int = 1,
     progress: "Progress | None" = None,
+    **options: object,
 ) -> Matches:
     """Finds, for each texel of the surface of ``a`` (O1), the point of ``b`` (O2) that belongs there, also on thin walls.
 
     a, b: meshes in any form (see Mesh). A Surface for ``a`` and a Sites for ``b`` are used as they are.
-    method: 'closest': the closest point, which may lie on the other skin of a thin wall; 'facing': the closest one of the
-    faces of ``b`` whose normal is within ``facing`` degrees (for 90: less than that) of the normal of the texel's face;
-    'ray': the nearest hit along the interpolated normal of ``a``, to either side and within ``cage``, of such a face; where
-    there is none, as 'facing'. Normals of closed meshes are outward.
-    max_distance: > 0; points farther away do not match.
+    {options}
     normals: of method 'ray', those of ``a``: 'smooth', 'flat', the angle of creases of smooth_normals(), or an array, (n, 3)
     for vertices or (m, 3, 3) for corners of faces, as of read_attributes(). Rays along 'smooth' ones leave no gaps.
-    resolution, atlas, max_stretch, gutter: as of Surface. engine: as of map().
+    engine: as of map().
     progress: called as progress(step, fraction), on this thread; False cancels.
 
-    Closest points have the precision of map(). Which rays meet which faces is exact: faces that face another way are passed,
-    and no other hit is lost beside them. Raises Error for meshes, options and normals that cannot be used; Cancelled. Cost:
-    that of map(); of 'ray', two rays for each texel.
+    Closest points have the precision of map(). Of method 'closest', they may lie on the other skin of a thin wall. A ray goes
+    to either side; where it hits no allowed face, the match is as of 'facing'. Normals of closed meshes are outward. Which
+    rays meet which faces is exact: faces that face another way are passed, and no other hit is lost beside them. Raises Error
+    for meshes, options and normals that cannot be used; Cancelled. Cost: that of map(); of 'ray', two rays for each texel.
 
     >>> matches = sdm.match(sphere, box, method='ray', cage=2, resolution=64)
     >>> bool((matches.kind == sdm.MatchKind.RAY).any())
     True
     """
-    surface, sites = _core.prepare(
-        a, b, resolution=resolution, atlas=atlas, max_stretch=max_stretch, gutter=gutter, progress=progress
-    )
-    if not isinstance(facing, (int, float)) or isinstance(facing, bool):
-        raise Error("facing must be an angle in degrees")
-    return Matches(
-        _core.match_texels(
-            surface,
-            sites,
-            method=method,
-            facing=float(facing),
-            cage=cage,
-            max_distance=max_distance,
-            normals=corner_normals(normals, len(surface.vertices), surface.faces, "normals"),
-            engine=engine,
-            progress=progress,
-        )
-    )
+    _core.check_keywords("match", options)
+    surface, sites = _core.prepare(a, b, options, progress=progress)
+    of_corners = corner_normals(normals, len(surface.vertices), surface.faces, "normals")
+    return Matches(_core.match_texels(surface, sites, options, normals=of_corners, engine=engine, progress=progress))
 
 
 def tangents(surface: Surface, normals: Normals = "smooth") -> "npt.NDArray[np.float32]":

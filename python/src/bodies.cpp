@@ -7,6 +7,7 @@
 #include <string>
 
 #include "arrays.h"
+#include "options.h"
 #include "proximity.h"
 #include "values.h"
 
@@ -124,7 +125,7 @@ void bind_penetration_depths(nb::module_& module) {
   bind_value<P>();
 }
 
-MultiBodyQuery query_of(nb::handle bodies, const MultiBodyOptions& options) {
+MultiBodyQuery query_of(nb::handle bodies, const ProximityOptions& options) {
   std::vector<std::vector<BodyPart>> all;
   std::size_t i = 0;
   for (const nb::handle body : nb::iter(bodies)) {
@@ -141,20 +142,18 @@ MultiBodyQuery query_of(nb::handle bodies, const MultiBodyOptions& options) {
 }
 
 void bind_motion(nb::class_<PyMultiBodyQuery>& query) {
+  static const std::string signature = "def __init__(self, bodies: collections.abc.Iterable[object], *, " +
+                                       option_signature("MultiBodyQuery") + ") -> None";
   query
       .def(
           "__init__",
-          [](PyMultiBodyQuery* self, nb::handle bodies, std::optional<double> depth_precision,
-             double contact_margin, bool ignore_internal_edges) {
-            new (self) PyMultiBodyQuery{query_of(bodies, {.depth_precision = depth_precision,
-                                                          .contact_margin = contact_margin,
-                                                          .ignore_internal_edges = ignore_internal_edges}),
-                                        {}};
+          [](PyMultiBodyQuery* self, nb::handle bodies, const nb::kwargs& given) {
+            check_keywords("MultiBodyQuery", given);
+            ProximityOptions options;
+            set_options(given, options);
+            new (self) PyMultiBodyQuery{query_of(bodies, options), {}};
           },
-          nb::arg("bodies").none(), nb::kw_only(), nb::arg("depth_precision") = nb::none(),
-          nb::arg("contact_margin") = 0.0, nb::arg("ignore_internal_edges") = false,
-          nb::sig("def __init__(self, bodies: collections.abc.Iterable[object], *, depth_precision: float | "
-                  "None = None, contact_margin: float = 0.0, ignore_internal_edges: bool = False) -> None"))
+          nb::arg("bodies").none(), nb::arg("options"), nb::sig(signature.c_str()))
       .def("__len__", [](const PyMultiBodyQuery& self) { return self.query.size(); })
       .def(
           "set_pose",
@@ -355,13 +354,12 @@ void bind_bodies(nb::module_& module) {
   bind_separations(module);
   bind_penetration_depths(module);
   bind_nearest_map(module);
-  nb::class_<PyMultiBodyQuery> query(module, "MultiBodyQuery", nb::is_weak_referenceable(),
-                                     R"(Proximity of bodies that move and deform, each against all others.
+  static const std::string documentation =
+      R"(Proximity of bodies that move and deform, each against all others.
 
 bodies: each any form of a mesh (see Mesh), a Shape, which many bodies can share, or a Compound of several.
-depth_precision, contact_margin: as of ProximityQuery.
-ignore_internal_edges: leave out contacts that push a body across an edge between faces that continue each other,
-in one mesh or in fixed solids side by side, as where it slides over the tiles of a floor.
+)" + option_documentation("MultiBodyQuery") +
+      R"( Tiles of fixed solids side by side are one floor.
 
 Each call computes what it returns, and no more, for the pairs of which a body has moved since the last call:
 the answers of ProximityQuery, to the bit. A call raises Error while another thread uses the object.
@@ -373,7 +371,9 @@ the answers of ProximityQuery, to the bit. A call raises Error while another thr
 >>> query.set_poses(poses)
 >>> query.separations(max_distance=1.5).bodies
 array([[0, 1],
-       [1, 2]], dtype=uint32))");
+       [1, 2]], dtype=uint32))";
+  nb::class_<PyMultiBodyQuery> query(module, "MultiBodyQuery", nb::is_weak_referenceable(),
+                                     documentation.c_str());
   bind_motion(query);
   bind_filters(query);
   bind_answers(query);

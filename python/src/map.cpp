@@ -3,12 +3,14 @@
 
 #include <nanobind/stl/optional.h>
 
+#include <array>
 #include <chrono>
-#include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "groups.h"
+#include "options.h"
 #include "rays.h"
 #include "signatures.h"
 
@@ -48,44 +50,46 @@ std::unique_ptr<PyMap> compute(nb::handle surface, nb::handle sites, const char*
   return result;
 }
 
+std::unique_ptr<PyMap> compute_pair(nb::handle surface, nb::handle sites, const nb::dict& given,
+                                    const char* engine, nb::handle progress) {
+  if (given.contains("along") && !given["along"].is_none()) {
+    AlongOptions options;
+    set_options(given, options);
+    return compute(surface, sites, "along", progress, [&](PyMap& map, const Progress&) {
+      map.options = {.max_distance = options.max_distance};
+      map.along = options;
+    });
+  }
+  MapOptions options{.engine = engine_of(engine)};
+  set_options(given, options);
+  return compute(surface, sites, engine, progress,
+                 [&](PyMap& map, const Progress&) { map.options = options; });
+}
+
 std::unique_ptr<PyMap> compute_self(nb::handle surface, nb::handle sites, nb::handle rest,
-                                    const ExclusionRule& rule, double max_distance, nb::handle progress) {
+                                    const nb::dict& given, nb::handle progress) {
+  SelfProximityOptions options;
+  set_options(given, options);
+  set_options(given, options.exclusion);
   const Mesh at_rest = mesh_of(rest, nb::none());
   return compute(surface, sites, "self", progress, [&](PyMap& map, const Progress& report) {
-    map.options = {.sign = SignMethod::none, .max_distance = max_distance};
-    map.exclusion = std::make_shared<Exclusion>(at_rest, ExclusionOptions{.rule = rule, .progress = report});
+    map.options = {.sign = SignMethod::none, .max_distance = options.max_distance};
+    map.exclusion =
+        std::make_shared<Exclusion>(at_rest, ExclusionOptions{.rule = options.exclusion, .progress = report});
   });
 }
 
-std::unique_ptr<PyMap> compute_along(nb::handle surface, nb::handle sites, nb::handle along,
-                                     double max_distance, nb::handle progress) {
-  AlongOptions options = along_of(along);
-  options.max_distance = max_distance;
-  return compute(surface, sites, "along", progress, [&](PyMap& map, const Progress&) {
-    map.options = {.max_distance = max_distance};
-    map.along = options;
-  });
-}
-
-std::unique_ptr<PyMap> compute_thickness(nb::handle surface, nb::handle sites, const std::string& method,
-                                         double angle, nb::handle progress) {
-  const auto chosen = enum_of<ThicknessMethod>("method", method);
+std::unique_ptr<PyMap> compute_thickness(nb::handle surface, nb::handle sites, const nb::dict& given,
+                                         nb::handle progress) {
+  ThicknessOptions options;
+  set_options(given, options);
   return compute(surface, sites, "thickness", progress, [&](PyMap& map, const Progress&) {
     map.options = {.sign = SignMethod::none};
-    map.thickness = {chosen, angle};
+    map.thickness = {options.method, options.angle};
   });
 }
 
 }  // namespace
-
-AlongOptions along_of(nb::handle value) {
-  if (nb::isinstance<nb::str>(value)) {
-    if (nb::cast<std::string>(value) == "normal") return {};
-  } else if (nb::isinstance<nb::sequence>(value) && nb::len(value) == 3) {
-    return {.direction = Vec3{real_of(value[0]), real_of(value[1]), real_of(value[2])}};
-  }
-  throw Error("along must be 'normal' or a direction of three numbers");
-}
 
 Measure PyMap::measure(const Progress& progress) const {
   const auto with_progress = [&](auto chosen) {
@@ -135,65 +139,35 @@ void bind_map(nb::module_& module) {
   bind_map_rays(map_class);
   bind_map_transfer(map_class);
   bind_channels(module);
-  bind_other_maps(module);
-
-  module.def(
-      "compute_map",
-      [](nb::handle surface, nb::handle sites, const char* engine, const char* sign, double max_distance,
-         nb::handle facing, nb::handle progress) {
-        const MapOptions options{.engine = engine_of(engine),
-                                 .sign = enum_of<SignMethod>("sign", sign),
-                                 .max_distance = max_distance,
-                                 .facing = facing_of(facing)};
-        return compute(surface, sites, engine, progress,
-                       [&](PyMap& map, const Progress&) { map.options = options; })
-            .release();
-      },
-      nb::rv_policy::take_ownership, nb::arg("surface").none(), nb::arg("sites").none(), nb::kw_only(),
-      nb::arg("engine") = "cpu", nb::arg("sign") = "automatic",
-      nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
-      nb::arg("facing").none() = nb::none(), nb::arg("progress") = nb::none(),
-      nb::sig(
-          "def compute_map(surface: Surface, sites: Sites, *, engine: " SDM_ENGINE " = 'cpu', sign: " SDM_SIGN
-          " = 'automatic', "
-          "max_distance: float = ..., facing: float | None = None, progress: collections.abc.Callable[[str, "
-          "float], bool | None] | None = None) -> Map"));
+  bind_computation(module);
 }
 
-void bind_other_maps(nb::module_& module) {
+void bind_computation(nb::module_& module) {
+  static const std::string ends = std::string("options: dict[str, object], *, ") + kProgress + "Map";
+  static const std::array signatures{
+      "def compute_map(surface: Surface, sites: Sites, options: dict[str, object], *, engine: str = 'cpu', " +
+          std::string(kProgress) + "Map",
+      "def compute_self_map(surface: Surface, sites: Sites, rest: object, " + ends,
+      "def compute_thickness(surface: Surface, sites: Sites, " + ends};
+  module.def(
+      "compute_map",
+      [](nb::handle surface, nb::handle sites, const nb::dict& options, const char* engine,
+         nb::handle progress) { return compute_pair(surface, sites, options, engine, progress).release(); },
+      nb::rv_policy::take_ownership, nb::arg("surface"), nb::arg("sites"), nb::arg("options"), nb::kw_only(),
+      nb::arg("engine") = "cpu", nb::arg("progress") = nb::none(), nb::sig(signatures[0].c_str()));
   module.def(
       "compute_self_map",
-      [](nb::handle surface, nb::handle sites, nb::handle rest, std::uint32_t rings,
-         std::optional<double> geodesic, double max_distance, nb::handle progress) {
-        const ExclusionRule rule{.rings = rings, .geodesic = geodesic};
-        return compute_self(surface, sites, rest, rule, max_distance, progress).release();
-      },
-      nb::rv_policy::take_ownership, nb::arg("surface").none(), nb::arg("sites").none(),
-      nb::arg("rest").none(), nb::kw_only(), nb::arg("rings") = 1, nb::arg("geodesic") = nb::none(),
-      nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("progress") = nb::none(),
-      nb::sig("def compute_self_map(surface: Surface, sites: Sites, rest: object, *, rings: int = 1, "
-              "geodesic: float | None = None, max_distance: float = ..., progress: "
-              "collections.abc.Callable[[str, float], bool | None] | None = None) -> Map"));
-  module.def(
-      "compute_along",
-      [](nb::handle surface, nb::handle sites, nb::handle along, double max_distance, nb::handle progress) {
-        return compute_along(surface, sites, along, max_distance, progress).release();
-      },
-      nb::rv_policy::take_ownership, nb::arg("surface").none(), nb::arg("sites").none(), nb::kw_only(),
-      nb::arg("along").none(), nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
-      nb::arg("progress") = nb::none(),
-      nb::sig(
-          "def compute_along(surface: Surface, sites: Sites, *, along: object, max_distance: float = ..., "
-          "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> Map"));
+      [](nb::handle surface, nb::handle sites, nb::handle rest, const nb::dict& options,
+         nb::handle progress) { return compute_self(surface, sites, rest, options, progress).release(); },
+      nb::rv_policy::take_ownership, nb::arg("surface"), nb::arg("sites"), nb::arg("rest").none(),
+      nb::arg("options"), nb::kw_only(), nb::arg("progress") = nb::none(), nb::sig(signatures[1].c_str()));
   module.def(
       "compute_thickness",
-      [](nb::handle surface, nb::handle sites, const std::string& method, double angle, nb::handle progress) {
-        return compute_thickness(surface, sites, method, angle, progress).release();
+      [](nb::handle surface, nb::handle sites, const nb::dict& options, nb::handle progress) {
+        return compute_thickness(surface, sites, options, progress).release();
       },
-      nb::rv_policy::take_ownership, nb::arg("surface").none(), nb::arg("sites").none(), nb::kw_only(),
-      nb::arg("method") = "ball", nb::arg("angle") = 90.0, nb::arg("progress") = nb::none(),
-      nb::sig("def compute_thickness(surface: Surface, sites: Sites, *, method: str = 'ball', angle: float = "
-              "90.0, progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> Map"));
+      nb::rv_policy::take_ownership, nb::arg("surface"), nb::arg("sites"), nb::arg("options"), nb::kw_only(),
+      nb::arg("progress") = nb::none(), nb::sig(signatures[2].c_str()));
 }
 
 }  // namespace sdm::python

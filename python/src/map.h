@@ -100,8 +100,6 @@ struct PyMap {
 /// The accepted distances: a number, or the least and the most. Throws sdm::Error for others, and for a
 /// tolerance that needs signs if distances have none.
 [[nodiscard]] Tolerance tolerance_of(nb::handle value, SignMethod sign);
-/// 'normal', or the three components of a direction. Throws sdm::Error for others.
-[[nodiscard]] AlongOptions along_of(nb::handle value);
 /// The word for a verdict: that of the command, in small letters.
 [[nodiscard]] std::string word_of(Verdict verdict);
 [[nodiscard]] std::optional<std::array<double, 2>> range_of(
@@ -113,7 +111,7 @@ using TransferRows = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::dev
 [[nodiscard]] AttributeArray attribute_of(const TransferRows& rows, const char* domain);
 
 void bind_channels(nb::module_& module);
-void bind_other_maps(nb::module_& module);
+void bind_computation(nb::module_& module);
 void bind_map_numbers(nb::module_& module, nb::class_<PyMap>& map);
 void bind_map_files(nb::module_& module, nb::class_<PyMap>& map);
 void bind_map_transfer(nb::class_<PyMap>& map);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "map.h"
+#include "options.h"
 #include "run.h"
 #include "signatures.h"
 #include "stored.h"
@@ -74,17 +75,13 @@ MeshAttribute corner_normals(nb::handle normals, const Mesh& mesh) {
   return result;
 }
 
-PyMatches* found_matches(nb::handle surface, nb::handle sites, const char* method, double facing, double cage,
-                         double max_distance, nb::handle normals, const char* engine, nb::handle progress) {
+PyMatches* found_matches(nb::handle surface, nb::handle sites, const nb::dict& given, nb::handle normals,
+                         const char* engine, nb::handle progress) {
   auto result = std::make_unique<PyMatches>(nb::borrow(surface), nb::borrow(sites));
   const auto locks = result->use();
   const MeshAttribute of_corners = corner_normals(normals, result->on->surface.mesh());
-  MatchOptions options{.method = enum_of<MatchMethod>("method", method),
-                       .facing = facing,
-                       .cage = cage,
-                       .max_distance = max_distance,
-                       .normals = &of_corners,
-                       .engine = engine_of(engine)};
+  MatchOptions options{.normals = &of_corners, .engine = engine_of(engine)};
+  set_options(given, options);
   run(progress, [&](const Progress& report) {
     options.progress = report;
     result->matches = match_texels(result->on->surface, result->to->sites, options);
@@ -256,12 +253,11 @@ void bind_matches(nb::module_& module) {
       nb::sig("def transfer(self, values: numpy.typing.NDArray[numpy.float32], domain: str, fill: bool, "
               "progress: object) -> numpy.typing.NDArray[numpy.float32]"));
   bind_match_state();
-  module.def("match_texels", &found_matches, nb::rv_policy::take_ownership, nb::arg("surface"),
-             nb::arg("sites"), nb::kw_only(), nb::arg("method"), nb::arg("facing"), nb::arg("cage"),
-             nb::arg("max_distance"), nb::arg("normals"), nb::arg("engine"), nb::arg("progress").none(),
-             nb::sig("def match_texels(surface: Surface, sites: Sites, *, method: str, facing: float, cage: "
-                     "float, max_distance: float, normals: object, engine: str, progress: object) -> "
-                     "TexelMatches"));
+  module.def(
+      "match_texels", &found_matches, nb::rv_policy::take_ownership, nb::arg("surface"), nb::arg("sites"),
+      nb::arg("options"), nb::kw_only(), nb::arg("normals"), nb::arg("engine"), nb::arg("progress").none(),
+      nb::sig("def match_texels(surface: Surface, sites: Sites, options: dict[str, object], *, normals: "
+              "object, engine: str, progress: object) -> TexelMatches"));
   module.def(
       "smooth_normals",
       [](nb::handle mesh, double crease) {

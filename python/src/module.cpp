@@ -1,6 +1,7 @@
 #include <sdm/version.h>
 
 #include "objects.h"
+#include "options.h"
 
 NB_MODULE(_core, module) {
   using namespace sdm::python;
@@ -11,6 +12,7 @@ NB_MODULE(_core, module) {
   nb::set_leak_warnings(false);
   module.def("set_leak_warnings", &nb::set_leak_warnings, nb::arg("on"));
   bind_errors(module);
+  bind_options(module);
   bind_meshes(module);
   bind_sites(module);
   bind_batches(module);

@@ -16,6 +16,7 @@
 #include "objects.h"
 #include "proximity.h"
 #include "stored.h"
+#include "values.h"
 
 namespace sdm::python {
 namespace {
@@ -90,23 +91,19 @@ void bind_surface_state() {
 }
 
 nb::tuple state_of(const DistanceMap& map) {
-  return nb::make_tuple(
-      map.resolution, packed(map.distance), packed(map.vector), packed(map.site), packed(map.site_type),
-      nb::make_tuple(name_of(map.sign.method), map.sign.reason),
-      nb::make_tuple(static_cast<int>(map.measured.kind), map.measured.text, map.measured.facing),
-      map.beyond_max_distance, map.without_match, packed(map.unmatched), map.without_texel);
+  return nb::make_tuple(map.resolution, packed(map.distance), packed(map.vector), packed(map.site),
+                        packed(map.site_type), bytes_of(map.sign), bytes_of(map.measured),
+                        map.beyond_max_distance, map.without_match, packed(map.unmatched), map.without_texel);
 }
 
 /// A map of so many values, whose sites are not checked.
 DistanceMap map_from(nb::handle packed, std::size_t values) {
-  const nb::tuple state = items(packed, 11), sign = items(state[5], 2), measured = items(state[6], 3);
+  const nb::tuple state = items(packed, 11);
   DistanceMap map;
   map.resolution = nb::cast<std::uint32_t>(state[0]);
   map.distance = unpacked<float>(state[1]), map.vector = unpacked<Vec3f>(state[2]);
   map.site = unpacked<std::uint32_t>(state[3]), map.site_type = unpacked<SiteType>(state[4]);
-  map.sign = {enum_of<SignMethod>("sign", nb::cast<std::string>(sign[0])), nb::cast<std::string>(sign[1])};
-  map.measured = {enumerator<DistanceKind>(measured[0], DistanceKind::self),
-                  nb::cast<std::string>(measured[1]), nb::cast<std::optional<double>>(measured[2])};
+  map.sign = value_of<SignUsed>(state[5]), map.measured = value_of<MeasuredDistance>(state[6]);
   map.beyond_max_distance = nb::cast<std::size_t>(state[7]);
   map.without_match = nb::cast<std::size_t>(state[8]);
   map.unmatched = unpacked<std::uint8_t>(state[9]);

@@ -18,6 +18,7 @@
 #include "arrays.h"
 #include "groups.h"
 #include "map.h"
+#include "options.h"
 #include "signatures.h"
 #include "sites_in_use.h"
 
@@ -163,24 +164,23 @@ void require_other(const std::filesystem::path& output, nb::handle input) {
 }
 
 PointDistances measure(nb::handle cloud, nb::handle o2, nb::handle output, nb::handle motion,
-                       const char* engine, const char* sign, double max_distance, nb::handle facing,
-                       nb::handle along, nb::handle tolerance, const std::string& colormap,
+                       const char* engine, nb::handle tolerance, const std::string& colormap,
                        std::optional<std::pair<double, double>> range, nb::handle progress,
                        const std::optional<std::vector<std::string>>& columns, const std::string& separator,
                        const std::string& decimal, nb::handle tolerance_table, nb::handle names,
-                       nb::handle island_points) {
+                       nb::handle island_points, const nb::kwargs& given) {
+  nb::dict all;
+  for (const auto& [name, value] : given) all[name] = value;
+  all["engine"] = engine;
+  check_keywords("measure_points", all);
   const std::filesystem::path from = path_of(cloud), ply = path_of(output);
   for (const nb::handle input : {cloud, o2, tolerance_table}) require_other(ply, input);
   SitesInUse to(o2);
-  PointDistancesOptions options{.map = {.engine = engine_of(engine),
-                                        .sign = enum_of<SignMethod>("sign", sign),
-                                        .max_distance = max_distance,
-                                        .facing = facing_of(facing)}};
-  if (!along.is_none()) {
-    if (options.map.facing || std::string_view(engine) != "cpu" || std::string_view(sign) != "automatic")
-      throw Error("sign, engine and facing do not apply to measure_points() with along");
+  PointDistancesOptions options{.map = {.engine = engine_of(engine)}};
+  set_options(given, options.map);
+  if (given.contains("along") && !given["along"].is_none()) {
     options.map.engine = {};
-    options.along = along_of(along);
+    set_options(given, options.along.emplace());
   }
   options.text = dialect_of(columns, separator, decimal);
   if (!motion.is_none()) options.placement = transform(motion, "transform");
@@ -217,27 +217,16 @@ PointDistances measure(nb::handle cloud, nb::handle o2, nb::handle output, nb::h
 void bind_points(nb::module_& module) {
   bind_distances(module);
   bind_read_points(module);
-  module.def(
-      "measure_points", measure, nb::arg("cloud").none(), nb::arg("o2").none(), nb::arg("output").none(),
-      nb::kw_only(), nb::arg("transform") = nb::none(), nb::arg("engine") = "cpu",
-      nb::arg("sign") = "automatic", nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
-      nb::arg("facing").none() = nb::none(), nb::arg("along") = nb::none(), nb::arg("tolerance") = nb::none(),
-      nb::arg("colormap") = "automatic", nb::arg("range") = nb::none(), nb::arg("progress") = nb::none(),
-      nb::arg("columns") = nb::none(), nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",
-      nb::arg("tolerance_table") = nb::none(), nb::arg("names") = nb::none(), nb::arg("island_points") = 0,
-      nb::sig(
-          "def measure_points(cloud: str | os.PathLike[str], o2: object, output: str | os.PathLike[str], *, "
-          "transform: object = None, engine: " SDM_ENGINE " = 'cpu', sign: " SDM_SIGN " = 'automatic', "
-          "max_distance: float = "
-          "..., facing: float | None = None, along: str | tuple[float, float, float] | None = None, "
-          "tolerance: float | tuple[float, float] | None = None, colormap: "
-          "str = 'automatic', range: "
-          "tuple[float, float] | None = None, progress: collections.abc.Callable[[str, float], bool | "
-          "None] | None = None, columns: collections.abc.Sequence[str] | None = None, separator: str = "
-          "'automatic', "
-          "decimal: str = 'automatic', tolerance_table: object = None, names: object = None, island_points: "
-          "int = "
-          "0) -> PointDistances"),
+  static const std::string signature =
+      "def measure_points(cloud: str | os.PathLike[str], o2: object, output: str | os.PathLike[str], *, "
+      "transform: object = None, engine: " SDM_ENGINE " = 'cpu', " +
+      option_signature("measure_points") +
+      "tolerance: float | tuple[float, float] | None = None, colormap: str = 'automatic', range: "
+      "tuple[float, float] | None = None, columns: collections.abc.Sequence[str] | None = None, separator: "
+      "str = 'automatic', decimal: str = 'automatic', tolerance_table: object = None, names: object = None, "
+      "island_points: int = 0, " +
+      kProgress + "PointDistances";
+  static const std::string documentation =
       R"(Computes the distance of each point of a file to a mesh, in parts: the cloud may be larger than the
 memory. For points in memory, use Sites.closest_points().
 
@@ -246,8 +235,11 @@ o2: any form of a mesh (see Mesh); Sites are used as they are.
 output: a PLY file to write, with the points in their order: x, y, z, the normals if there are any, distance,
 face and colours. It must not be one of the inputs.
 transform: a 4 × 4 affine matrix that moves the points first, such as Alignment.transform.
-engine, sign, max_distance, facing, along: as of map(); facing and along='normal' need the normals of the cloud.
-Along a direction, a cloud without normals is measured to any face. tolerance, colormap, range: of the colours, as of DistanceMap.save();
+)" + option_documentation("measure_points") +
+      R"(
+engine: as of map(). facing and along='normal' need the normals of the cloud. Along a direction, a cloud without normals
+is measured to any face.
+tolerance, colormap, range: of the colours, as of DistanceMap.save();
 the tolerance also of ``beyond_tolerance``.
 tolerance_table: a file, or a dict of tolerances by name, of the groups of o2 (``groups``): each point is of those of its
 closest face; one without a value is of none, and fails. names: FaceNames of the faces of o2, or a list of them, as of read_face_names().
@@ -256,7 +248,15 @@ cloud twice more.
 progress: called as progress(step, fraction), on this thread; False cancels.
 
 Raises Error, naming the file and the fault; Cancelled. Cost: a search per point, and reading the distances
-back three times.)");
+back three times.)";
+  module.def("measure_points", measure, nb::arg("cloud").none(), nb::arg("o2").none(),
+             nb::arg("output").none(), nb::kw_only(), nb::arg("transform") = nb::none(),
+             nb::arg("engine") = "cpu", nb::arg("tolerance") = nb::none(), nb::arg("colormap") = "automatic",
+             nb::arg("range") = nb::none(), nb::arg("progress") = nb::none(), nb::arg("columns") = nb::none(),
+             nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",
+             nb::arg("tolerance_table") = nb::none(), nb::arg("names") = nb::none(),
+             nb::arg("island_points") = 0, nb::arg("options"), nb::sig(signature.c_str()),
+             documentation.c_str());
 }
 
 }  // namespace sdm::python

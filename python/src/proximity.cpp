@@ -1,5 +1,6 @@
 // Proximity of two bodies.
 #include "proximity.h"
+#include "options.h"
 #include "signatures.h"
 #include "stored.h"
 
@@ -178,20 +179,18 @@ Shape shape_of(nb::handle body) {
 }
 
 void bind_motion(nb::class_<PyProximityQuery>& query) {
+  static const std::string signature =
+      "def __init__(self, o1: object, o2: object, *, " + option_signature("ProximityQuery") + ") -> None";
   query
       .def(
           "__init__",
-          [](PyProximityQuery* self, nb::handle o1, nb::handle o2, std::optional<double> depth_precision,
-             double contact_margin, bool ignore_internal_edges) {
-            const ProximityOptions options{.depth_precision = depth_precision,
-                                           .contact_margin = contact_margin,
-                                           .ignore_internal_edges = ignore_internal_edges};
+          [](PyProximityQuery* self, nb::handle o1, nb::handle o2, const nb::kwargs& given) {
+            check_keywords("ProximityQuery", given);
+            ProximityOptions options;
+            set_options(given, options);
             new (self) PyProximityQuery{ProximityQuery(shape_of(o1), shape_of(o2), options), {}};
           },
-          nb::arg("o1").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("depth_precision") = nb::none(),
-          nb::arg("contact_margin") = 0.0, nb::arg("ignore_internal_edges") = false,
-          nb::sig("def __init__(self, o1: object, o2: object, *, depth_precision: float | None = None, "
-                  "contact_margin: float = 0.0, ignore_internal_edges: bool = False) -> None"))
+          nb::arg("o1").none(), nb::arg("o2").none(), nb::arg("options"), nb::sig(signature.c_str()))
       .def(
           "set_pose",
           [](PyProximityQuery& self, int body, nb::handle pose) {
@@ -330,17 +329,12 @@ void bind_proximity(nb::module_& module) {
   bind_separating_translation(module);
   bind_contacts(module);
   bind_shape(module);
-  nb::class_<PyProximityQuery> query(
-      module, "ProximityQuery", nb::is_weak_referenceable(),
+  static const std::string documentation =
       R"(Proximity of two bodies that move and deform: separation, collision, penetration depth, contacts.
 
 o1, o2: each any form of a mesh (see Mesh), or a Shape.
-depth_precision: the bounds on the penetration depth are at most this far apart, > 0; None: 1/1000 of the
-diagonal of the smaller body's box.
-contact_margin: contacts are reported for points inside the other body or within this distance.
-≥ 0. Both in units of the meshes.
-ignore_internal_edges: leave out contacts() and separating_contacts() that push a body across an edge between
-faces that continue each other, as where it slides over the triangles of a floor.
+)" + option_documentation("ProximityQuery") +
+      R"(
 
 A closed, orientable body is a solid; any other one is a surface without an inside. All results are
 in space, with both bodies in their poses, and are computed by the first call after a body has moved.
@@ -351,7 +345,9 @@ A call raises Error while another thread uses the object.
 >>> query.separation()
 sdm.BoundedLength(2, exact)
 >>> query.colliding()
-False)");
+False)";
+  nb::class_<PyProximityQuery> query(module, "ProximityQuery", nb::is_weak_referenceable(),
+                                     documentation.c_str());
   bind_motion(query);
   bind_edit(query);
   bind_answers(query);

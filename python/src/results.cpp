@@ -87,11 +87,6 @@ template <>
 inline constexpr auto kMembers<TextDialect> = std::tuple{&TextDialect::separator, &TextDialect::decimal,
                                                          &TextDialect::columns, &TextDialect::header_line};
 template <>
-inline constexpr auto kMembers<SignUsed> = std::tuple{&SignUsed::method, &SignUsed::reason};
-template <>
-inline constexpr auto kMembers<MeasuredDistance> =
-    std::tuple{&MeasuredDistance::kind, &MeasuredDistance::text, &MeasuredDistance::facing};
-template <>
 inline constexpr auto kMembers<PointExtreme> =
     std::tuple{&PointExtreme::distance, &PointExtreme::point, &PointExtreme::index};
 template <>

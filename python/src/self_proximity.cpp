@@ -5,7 +5,9 @@
 #include <limits>
 #include <optional>
 
+#include "options.h"
 #include "proximity.h"
+#include "signatures.h"
 #include "stored.h"
 
 namespace sdm::python {
@@ -17,29 +19,28 @@ struct PySelfProximityQuery {
 };
 
 void bind_mesh(nb::class_<PySelfProximityQuery>& query) {
+  static const std::string signature =
+      "def __init__(self, rest: object, *, " + option_signature("SelfProximityQuery") + kProgress + "None";
   query
       .def(
           "__init__",
-          [](PySelfProximityQuery* self, nb::handle rest, std::uint32_t rings, std::optional<double> geodesic,
-             double max_distance, nb::handle progress) {
+          [](PySelfProximityQuery* self, nb::handle rest, nb::handle progress, const nb::kwargs& given) {
+            check_keywords("SelfProximityQuery", given);
+            SelfProximityOptions options;
+            set_options(given, options);
+            set_options(given, options.exclusion);
             Mesh mesh = mesh_of(rest, nb::none());
             InPlace<PySelfProximityQuery> made(self);
             run(progress, [&](const Progress& report) {
-              const SelfProximityOptions options{.exclusion = {.rings = rings, .geodesic = geodesic},
-                                                 .max_distance = max_distance,
-                                                 .progress = report};
+              options.progress = report;
               made.make([&] {
                 return PySelfProximityQuery{SelfProximityQuery(std::move(mesh), options), {}};
               });
             });
             made.release();
           },
-          nb::arg("rest").none(), nb::kw_only(), nb::arg("rings") = 1, nb::arg("geodesic") = nb::none(),
-          nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("progress") = nb::none(),
-          nb::sig("def __init__(self, rest: object, *, rings: int = 1, geodesic: float | None = None, "
-                  "max_distance: "
-                  "float = ..., progress: collections.abc.Callable[[str, float], bool | None] | None = None) "
-                  "-> None"))
+          nb::arg("rest").none(), nb::kw_only(), nb::arg("progress") = nb::none(), nb::arg("options"),
+          nb::sig(signature.c_str()))
       .def(
           "refit",
           [](PySelfProximityQuery& self, nb::handle vertices) {
@@ -90,21 +91,21 @@ not exclude, with the nearest such face. depth is -|point2 - point1|, as a surfa
 }  // namespace
 
 void bind_self_proximity(nb::module_& module) {
-  nb::class_<PySelfProximityQuery> query(
-      module, "SelfProximityQuery", nb::is_weak_referenceable(),
+  static const std::string documentation =
       R"(Proximity of a deforming mesh to itself. Results are exact: computed from the triangles.
 
 rest: any form of a mesh (see Mesh), at rest.
-rings: a face excludes itself and this many rings of faces around it, connected by shared vertices; ≥ 1.
-geodesic: instead of rings, exclude everything closer than this along the surface at rest.
-max_distance: of separation(), > 0. Both in units of the mesh.
+)" + option_documentation("SelfProximityQuery") +
+      R"(
 progress: called as progress(step, fraction), on this thread; False cancels.
 
 A call raises Error while another thread uses the object.
 
 >>> query = sdm.SelfProximityQuery(sphere, geodesic=1.5)
 >>> 1 < query.separation().value < 2
-True)");
+True)";
+  nb::class_<PySelfProximityQuery> query(module, "SelfProximityQuery", nb::is_weak_referenceable(),
+                                         documentation.c_str());
   bind_mesh(query);
   bind_answers(query);
   bind_no_state<PySelfProximityQuery>(

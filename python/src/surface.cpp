@@ -9,46 +9,38 @@
 
 #include "arrays.h"
 #include "objects.h"
+#include "options.h"
 #include "signatures.h"
 
 namespace sdm::python {
 namespace {
 
-constexpr std::uint32_t kDefaultResolution = 1024;
-
 struct Layout {
   AtlasOptions options;
-  std::optional<double> precision;
+  PrecisionOptions fit;
 };
 
-Layout layout(nb::handle resolution, nb::handle precision, const char* atlas, double max_stretch,
-              nb::handle gutter) {
-  if (!resolution.is_none() && !precision.is_none())
-    throw Error("resolution and precision exclude each other; give one of them");
+Layout layout(const nb::dict& given) {
   Layout result;
-  result.options.kind = enum_of<AtlasKind>("atlas", atlas);
-  const auto unsigned_of = [](nb::handle value, const char* name) {
-    return static_cast<std::uint32_t>(integer_of(value, name, 0));
-  };
-  result.options.resolution = kDefaultResolution;
-  if (nb::isinstance<nb::tuple>(resolution) || nb::isinstance<nb::list>(resolution)) {
-    if (nb::len(resolution) != 2)
-      throw Error("resolution must be an integer, or two: texels per row, and rows");
-    result.options.resolution = unsigned_of(nb::object(resolution[0]), "resolution");
-    result.options.rows = unsigned_of(nb::object(resolution[1]), "resolution");
-  } else if (!resolution.is_none()) {
-    result.options.resolution = unsigned_of(resolution, "resolution");
-  }
-  result.options.max_stretch = max_stretch;
-  result.options.gutter = unsigned_of(gutter, "gutter");
-  if (!precision.is_none()) result.precision = real_of(precision);
+  set_options(with_side(given, 1), result.options);
+  const std::uint32_t rows = result.options.resolution;
+  set_options(with_side(given, 0), result.options);
+  if (rows != result.options.resolution) result.options.rows = rows;
+  set_options(given, result.fit);
   return result;
+}
+
+/// Throws sdm::Error for an option of a layout, which a surface has.
+void check_laid_out(const nb::dict& given) {
+  for (const OptionInfo& option : call_options("Surface").options)
+    if (given.contains(option.name.c_str()) && !given[option.name.c_str()].is_none())
+      throw Error("a Surface has its " + option.name + "; give another form of the mesh for another one");
 }
 
 std::unique_ptr<PySurface> built(PyMesh mesh, Layout layout, const Progress& progress) {
   layout.options.progress = progress;
-  if (layout.precision)
-    layout.options.resolution = resolution_for(mesh.mesh, *layout.precision, layout.options);
+  if (const auto& precision = layout.fit.precision)
+    layout.options.resolution = resolution_for(mesh.mesh, *precision, layout.options);
   return std::make_unique<PySurface>(std::move(mesh), layout.options);
 }
 
@@ -64,19 +56,13 @@ nb::capsule owner_of(const std::shared_ptr<const std::vector<Value>>& values) {
   return detail::capsule_of(new std::shared_ptr<const std::vector<Value>>(values));
 }
 
-#define SDM_LAYOUT_ARGUMENTS                                                                          \
-  nb::arg("resolution") = nb::none(), nb::arg("precision") = nb::none(), nb::arg("atlas") = "charts", \
-  nb::arg("max_stretch") = AtlasOptions{}.max_stretch, nb::arg("gutter") = AtlasOptions{}.gutter
-
 // Both objects of sdm.map, built beside each other.
-nb::tuple prepare(nb::handle a, nb::handle b, nb::handle motion, nb::handle resolution, nb::handle precision,
-                  const char* atlas, double max_stretch, nb::handle gutter, nb::handle progress) {
+nb::tuple prepare(nb::handle a, nb::handle b, const nb::dict& given, nb::handle motion, nb::handle progress) {
   const bool has_surface = nb::isinstance<PySurface>(a), has_sites = nb::isinstance<PySites>(b);
-  if (has_surface && !(resolution.is_none() && precision.is_none()))
-    throw Error("a Surface has its resolution; give another form of the mesh for another one");
+  if (has_surface) check_laid_out(given);
   if (has_surface && !motion.is_none())
     throw Error("a Surface cannot be transformed; refit() it, or give another form of the mesh");
-  const Layout options = layout(resolution, precision, atlas, max_stretch, gutter);
+  const Layout options = layout(given);
   PyMesh on = has_surface ? PyMesh{} : given_mesh(a, nb::none());
   PyMesh to = has_sites ? PyMesh{} : given_mesh(b, nb::none());
   std::optional<Transform> matrix;
@@ -95,51 +81,42 @@ nb::tuple prepare(nb::handle a, nb::handle b, nb::handle motion, nb::handle reso
     if (!has_sites) tasks.emplace_back([&] { sites = std::make_unique<PySites>(std::move(to)); });
     run_concurrently(tasks);
   });
-  const auto object_of = [](auto& owned, nb::handle given) -> nb::object {
-    return owned ? nb::cast(owned.release(), nb::rv_policy::take_ownership) : nb::borrow(given);
+  const auto object_of = [](auto& owned, nb::handle used) -> nb::object {
+    return owned ? nb::cast(owned.release(), nb::rv_policy::take_ownership) : nb::borrow(used);
   };
   return nb::make_tuple(object_of(surface, a), object_of(sites, b));
 }
 
 void bind_prepare(nb::module_& module) {
   module.def(
-      "prepare", &prepare, nb::arg("a").none(), nb::arg("b").none(), nb::kw_only(),
-      nb::arg("transform") = nb::none(), SDM_LAYOUT_ARGUMENTS, nb::arg("progress") = nb::none(),
-      nb::sig(
-          "def prepare(a: object, b: object, *, transform: object = None, resolution: int | tuple[int, int] "
-          "| "
-          "None = None, precision: "
-          "float | None = None, atlas: " SDM_ATLAS " = 'charts', max_stretch: float = 1.3, gutter: int = "
-          "1, progress: "
-          "collections.abc.Callable[[str, float], bool | None] | None = None) -> tuple[Surface, Sites]"));
+      "prepare", &prepare, nb::arg("a").none(), nb::arg("b").none(), nb::arg("options"),
+      nb::arg("transform") = nb::none(), nb::arg("progress") = nb::none(),
+      nb::sig("def prepare(a: object, b: object, options: dict[str, object], transform: object = None, "
+              "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> "
+              "tuple[Surface, Sites]"));
 }
 
 void bind_construction(nb::class_<PySurface>& surface) {
+  static const std::string signature = "def __init__(self, mesh: object, faces: object = None, *, " +
+                                       option_signature("Surface") + kProgress + "None";
   surface.def(
       "__init__",
-      [](PySurface* self, nb::handle mesh, nb::handle faces, nb::handle resolution, nb::handle precision,
-         const char* atlas, double max_stretch, nb::handle gutter, nb::handle progress) {
-        const Layout options = layout(resolution, precision, atlas, max_stretch, gutter);
+      [](PySurface* self, nb::handle mesh, nb::handle faces, nb::handle progress, const nb::kwargs& given) {
+        check_keywords("Surface", given);
+        const Layout options = layout(given);
         PyMesh value = given_mesh(mesh, faces);
         InPlace<PySurface> made(self);
         run(progress, [&](const Progress& report) {
           AtlasOptions atlas_options = options.options;
           atlas_options.progress = report;
-          if (options.precision)
-            atlas_options.resolution = resolution_for(value.mesh, *options.precision, atlas_options);
+          if (options.fit.precision)
+            atlas_options.resolution = resolution_for(value.mesh, *options.fit.precision, atlas_options);
           made.make([&] { return PySurface(std::move(value), atlas_options); });
         });
         made.release();
       },
-      nb::arg("mesh").none(), nb::arg("faces") = nb::none(), nb::kw_only(), SDM_LAYOUT_ARGUMENTS,
-      nb::arg("progress") = nb::none(),
-      nb::sig("def __init__(self, mesh: object, faces: object = None, *, resolution: int | tuple[int, "
-              "int] | None = "
-              "None, precision: float | None = None, atlas: " SDM_ATLAS " = 'charts', max_stretch: float "
-              "= 1.3, "
-              "gutter: "
-              "int = 1, "
-              "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> None"));
+      nb::arg("mesh").none(), nb::arg("faces") = nb::none(), nb::kw_only(), nb::arg("progress") = nb::none(),
+      nb::arg("options"), nb::sig(signature.c_str()));
 }
 
 void bind_measures(nb::class_<PySurface>& type) {
@@ -249,20 +226,12 @@ void bind_arrays(nb::class_<PySurface>& type) {
 }  // namespace
 
 void bind_surface(nb::module_& module) {
-  nb::class_<PySurface> type(
-      module, "Surface", nb::is_weak_referenceable(),
+  static const std::string documentation =
       R"(The surface on which distances are measured (O1): a mesh laid out in a texture.
 
 mesh, faces: as Mesh.
-resolution: texels per side, 16 to 32768; 1024 by default. With atlas='uv' also two integers, the texels
-per row and the rows.
-precision: instead of the resolution, the largest distance allowed from a point of the surface
-to the nearest texel's centre, in units of the mesh.
-atlas: 'charts': clusters of faces; 'triangles': single faces, without distortion; 'uv': the
-mesh's own texture coordinates.
-max_stretch: bounds the growth of lengths from atlas to surface, for charts; in (1, 100]. From
-1.1034 on, faces are stretched by up to 4 where noise of a scan would leave too little of the atlas.
-gutter: free texels around each chart.
+)" + option_documentation("Surface") +
+      R"(
 progress: called as progress(step, fraction), on this thread; False cancels.
 
 Raises Error for a mesh or options that cannot be used; Cancelled.
@@ -271,7 +240,8 @@ Raises Error for a mesh or options that cannot be used; Cancelled.
 >>> surface.texel_faces.shape
 (256, 256)
 >>> surface.covering_radius() < 0.05
-True)");
+True)";
+  nb::class_<PySurface> type(module, "Surface", nb::is_weak_referenceable(), documentation.c_str());
   bind_construction(type);
   bind_measures(type);
   bind_arrays(type);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "options.h"
 #include "signatures.h"
 #include "sites_in_use.h"
 
@@ -22,14 +23,16 @@ void warn_of_unmatched(const HausdorffDistance& distance, const char* from, cons
   if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) < 0) throw nb::python_error();
 }
 
-BoundedLength hausdorff_of(nb::handle a, nb::handle b, std::optional<double> precision, bool one_sided,
-                           nb::handle facing, nb::handle progress) {
-  const std::optional<double> angle = facing_of(facing);
+BoundedLength hausdorff_of(nb::handle a, nb::handle b, bool one_sided, nb::handle progress,
+                           const nb::kwargs& given) {
+  check_keywords("hausdorff", given);
+  HausdorffOptions options;
+  set_options(given, options);
   SitesInUse on(a), to(b);
   BoundedLength result;
   SymmetricHausdorff both;
   run(progress, [&](const Progress& report) {
-    const HausdorffOptions options{.precision = precision, .facing = angle, .progress = report};
+    options.progress = report;
     if (one_sided) {
       both.from[0] = one_sided_hausdorff(on.get().mesh(), to.get(), options);
       result = both.from[0].distance;
@@ -45,25 +48,16 @@ BoundedLength hausdorff_of(nb::handle a, nb::handle b, std::optional<double> pre
 }
 
 void bind_hausdorff(nb::module_& module) {
-  static const std::string hausdorff_signature =
-      std::string(
-          "def hausdorff(a: object, b: object, *, precision: "
-          "float | None = None, one_sided: bool = False, facing: float | None = None, ") +
-      kProgress + "BoundedLength";
-  module.def("hausdorff", &hausdorff_of, nb::arg("a").none(), nb::arg("b").none(), nb::kw_only(),
-             nb::arg("precision") = nb::none(), nb::arg("one_sided") = false,
-             nb::arg("facing").none() = nb::none(), nb::arg("progress") = nb::none(),
-             nb::sig(hausdorff_signature.c_str()),
-             R"(Returns the Hausdorff distance of two surfaces, with certified bounds.
+  static const std::string signature = "def hausdorff(a: object, b: object, *, one_sided: bool = False, " +
+                                       option_signature("hausdorff") + kProgress + "BoundedLength";
+  static const std::string documentation =
+      R"(Returns the Hausdorff distance of two surfaces, with certified bounds.
 
 a, b: any form of a mesh (see Mesh), or Sites. Any triangle soups.
-precision: the bounds are at most this far apart, > 0, in units of the meshes; None: 1e-6 of the diagonal of the
-box of both.
 one_sided: only the largest distance from a point of a to the closest point of b, which is 0 where a is a part
 of b, as ``sdm hausdorff`` measures by default; otherwise the larger one of both directions, as with its --both.
-facing: an angle in degrees, above 0 and at most 180: points are measured only to faces of the other surface whose
-normal is within this angle of that of their own face, as sdm.map(facing=) does. Faces without such a face are left
-out, with a RuntimeWarning.
+)" + option_documentation("hausdorff") +
+      R"( Faces without such a face are left out, with a RuntimeWarning.
 progress: called as progress(step, fraction), on this thread; False cancels.
 
 The witness is a point of a and a point of b that are ``value`` apart. Nothing is sampled: lower ≤ truth ≤
@@ -73,7 +67,10 @@ upper, rounding included. Raises Error for an unusable mesh, or a precision that
 >>> distance.lower <= distance.value <= distance.upper
 True
 >>> sdm.hausdorff(box, box).value
-0.0)");
+0.0)";
+  module.def("hausdorff", &hausdorff_of, nb::arg("a").none(), nb::arg("b").none(), nb::kw_only(),
+             nb::arg("one_sided") = false, nb::arg("progress") = nb::none(), nb::arg("options"),
+             nb::sig(signature.c_str()), documentation.c_str());
 }
 
 void bind_coverage(nb::module_& module) {

@@ -208,5 +208,12 @@ template <>
 inline constexpr auto kMembers<TimeOfContact> = std::tuple{
     &TimeOfContact::contact, &TimeOfContact::time,  &TimeOfContact::separation, &TimeOfContact::certainty,
     &TimeOfContact::witness, &TimeOfContact::faces, &TimeOfContact::normal};
+template <>
+inline constexpr auto kMembers<SignUsed> = std::tuple{&SignUsed::method, &SignUsed::reason};
+template <>
+inline constexpr auto kMembers<GivenOption> = std::tuple{&GivenOption::name, &GivenOption::value};
+template <>
+inline constexpr auto kMembers<MeasuredDistance> = std::tuple{
+    &MeasuredDistance::kind, &MeasuredDistance::text, &MeasuredDistance::facing, &MeasuredDistance::settings};
 
 }  // namespace sdm::python

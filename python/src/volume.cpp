@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "arrays.h"
+#include "options.h"
 #include "signatures.h"
 #include "sites_in_use.h"
 #include "values.h"
@@ -264,31 +265,12 @@ Arrays are read-only and have the shape (nz, ny, nx): the value of the point wit
 void bind_volume(nb::module_& module) {
   bind_samples(module);
   bind_field(module);
-  module.def(
-      "distance_field",
-      [](nb::handle mesh, std::optional<double> spacing, nb::handle shape, nb::handle bounds,
-         std::optional<double> margin, const char* sign, double max_distance, bool sites,
-         nb::handle progress) {
-        SitesInUse to(mesh);
-        validate(to.mesh());
-        FieldOptions options{
-            .sign = enum_of<SignMethod>("sign", sign), .max_distance = max_distance, .sites = sites};
-        const Grid grid = grid_of(to.mesh(), spacing, shape, bounds, margin, max_distance);
-        auto result = std::make_unique<PyField>();
-        run(progress, [&](const Progress& report) {
-          options.progress = report;
-          result->field = compute_field(to.get(), grid, options);
-        });
-        return result.release();
-      },
-      nb::rv_policy::take_ownership, nb::arg("mesh").none(), nb::kw_only(), nb::arg("spacing") = nb::none(),
-      nb::arg("shape") = nb::none(), nb::arg("bounds") = nb::none(), nb::arg("margin") = nb::none(),
-      nb::arg("sign") = "automatic", nb::arg("max_distance") = kInfinity, nb::arg("sites") = false,
-      nb::arg("progress") = nb::none(),
-      nb::sig("def distance_field(mesh: object, *, spacing: float | None = None, shape: tuple[int, int, int] "
-              "| None = None, bounds: object = None, margin: float | None = None, sign: " SDM_SIGN
-              " = 'automatic', max_distance: float = ..., sites: bool = False, progress: "
-              "collections.abc.Callable[[str, float], bool | None] | None = None) -> DistanceField"),
+  static const std::string signature =
+      "def distance_field(mesh: object, *, spacing: float | None = None, shape: tuple[int, int, int] | None "
+      "= "
+      "None, bounds: object = None, margin: float | None = None, " +
+      option_signature("distance_field") + kProgress + "DistanceField";
+  static const std::string documentation =
       R"(Computes the distances from the points of a regular grid to a mesh.
 
 mesh: any form of a mesh (see Mesh); Sites are used as they are.
@@ -296,8 +278,8 @@ spacing: > 0: cubic cells of this size, the fewest that cover the box.
 shape: instead, the numbers of points (nz, ny, nx), whose outermost ones are on the sides of the box.
 bounds: the lowest and the highest corner of the box, (2, 3) numbers. By default the box of the mesh and
 ``margin`` around it, which is ``max_distance``, or a tenth of the diagonal without one.
-sign: as of map(). max_distance: > 0; points farther away have no value. Lengths are in units of the mesh.
-sites: whether to keep the closest sites.
+)" + option_documentation("distance_field") +
+      R"(
 progress: called as progress(step, fraction), on this thread; False cancels.
 
 Raises Error for an unusable mesh, a grid or an option out of range, or too little memory, which is checked
@@ -307,7 +289,28 @@ first; Cancelled. Cost: a search per point, or per point near the mesh if there 
 >>> field.distance.shape, float(field.distance[1, 2, 2]), float(field.transform[0, 0])
 ((3, 5, 5), -0.5, 0.25)
 >>> field.sample([[0.5, 0.5, 0.75]]).value
-array([-0.25]))");
+array([-0.25]))";
+  module.def(
+      "distance_field",
+      [](nb::handle mesh, std::optional<double> spacing, nb::handle shape, nb::handle bounds,
+         std::optional<double> margin, nb::handle progress, const nb::kwargs& given) {
+        check_keywords("distance_field", given);
+        FieldOptions options;
+        set_options(given, options);
+        SitesInUse to(mesh);
+        validate(to.mesh());
+        const Grid grid = grid_of(to.mesh(), spacing, shape, bounds, margin, options.max_distance);
+        auto result = std::make_unique<PyField>();
+        run(progress, [&](const Progress& report) {
+          options.progress = report;
+          result->field = compute_field(to.get(), grid, options);
+        });
+        return result.release();
+      },
+      nb::rv_policy::take_ownership, nb::arg("mesh").none(), nb::kw_only(), nb::arg("spacing") = nb::none(),
+      nb::arg("shape") = nb::none(), nb::arg("bounds") = nb::none(), nb::arg("margin") = nb::none(),
+      nb::arg("progress") = nb::none(), nb::arg("options"), nb::sig(signature.c_str()),
+      documentation.c_str());
 }
 
 }  // namespace sdm::python

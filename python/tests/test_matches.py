@@ -139,11 +139,15 @@ def test_matches_are_kept(pair):
 
 def test_what_does_not_fit_is_refused(pair):
     for options in (
-        {"method": "nearest"}, {"facing": 0}, {"facing": 181}, {"facing": True}, {"method": "ray", "cage": 0}, {"max_distance": 0},
+        {"method": "nearest"}, {"facing": 0}, {"facing": 181}, {"method": "ray", "cage": 0}, {"max_distance": 0},
         {"normals": "rough"}, {"normals": np.zeros((3, 3))}, {"normals": -1.0},
     ):  # fmt: skip
         with pytest.raises(sdm.Error):
             sdm.match(*pair, **options)
+    with pytest.raises(TypeError, match="facing is True"):
+        sdm.match(*pair, facing=True)
+    with pytest.raises(TypeError, match="unknown option cages; did you mean cage"):
+        sdm.match(*pair, cages=1)
     matches = sdm.match(*pair)
     for normals in ("rough", np.zeros((2, 3)), np.full((len(pair[1].vertices), 3), np.inf), [["a"]], None):
         with pytest.raises(sdm.Error):

@@ -49,7 +49,7 @@ def test_hausdorff_to_faces_that_face_the_same_way():
     assert sdm.hausdorff(dent, plate, one_sided=True, facing=90).value == pytest.approx(0.79)
     with pytest.warns(RuntimeWarning, match="10 faces of b are left out"):
         assert sdm.hausdorff(dent, plate, facing=45).value > 0.79
-    with pytest.raises(sdm.Error, match="angle"):
+    with pytest.raises(sdm.Error, match="facing is 0: it must be a number of degrees greater than 0 and at most 180"):
         sdm.hausdorff(dent, plate, facing=0)
 
 

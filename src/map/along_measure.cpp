@@ -20,14 +20,6 @@ namespace {
 
 constexpr double kParallel = 1e-12;  // products of unit vectors up to here count as 0
 
-void check_options(const AlongOptions& options) {
-  if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
-  if (!options.direction) return;
-  if (!finite(*options.direction) || !(norm(*options.direction) > 0) ||
-      !std::isfinite(norm(*options.direction)))
-    throw Error("the direction of distances must be finite and not 0");
-}
-
 Vec3 unit_vector(const Vec3& d) {
   const double largest = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
   Vec3 scaled;
@@ -119,13 +111,17 @@ std::unique_ptr<FaceSearch> AlongMeasure::search() const {
 }  // namespace map
 
 MeasuredDistance measured_distance(const AlongOptions& options, const std::string& sample) {
-  if (!options.direction)
-    return {DistanceKind::along, "distance along the normal of the " + sample + ", to both sides"};
+  MeasuredDistance measured{.kind = DistanceKind::along, .settings = settings_of(options)};
+  if (!options.direction) {
+    measured.text = "distance along the normal of the " + sample + ", to both sides";
+    return measured;
+  }
   std::array<char, 160> text{};
   const Vec3& d = *options.direction;
   std::snprintf(text.data(), text.size(), "distance along the direction (%.6g %.6g %.6g), to both sides",
                 d[0], d[1], d[2]);
-  return {DistanceKind::along, text.data()};
+  measured.text = text.data();
+  return measured;
 }
 
 FacingPoints closest_points_along(const Sites& sites, std::span<const Vec3> points,

@@ -6,7 +6,6 @@
 #include "core/memory.h"
 #include "core/numbers/number_text.h"
 #include "map/closest_measure.h"
-#include "query/facing/facing_angle.h"
 
 namespace sdm {
 
@@ -33,28 +32,19 @@ void compute_map(const Surface& surface, const Sites& sites, const MapOptions& o
 }
 
 MeasuredDistance measured_distance(const MapOptions& options) {
-  if (!options.facing) return {};
-  facing::check_angle(*options.facing);
+  check_options(options);
+  if (!options.facing) return {.settings = settings_of(options)};
   return {DistanceKind::facing,
           "distance to the closest of the faces that face the same way, within " +
               number_text(*options.facing, 6) + "°",
-          options.facing};
+          options.facing, settings_of(options)};
 }
 
 SignUsed choose_sign(const Sites& sites, const MapOptions& options) {
   if (!options.facing) return choose_sign(sites, options.sign);
-  switch (options.sign) {
-    case SignMethod::none:
-      return {SignMethod::none, "asked for"};
-    case SignMethod::automatic:
-    case SignMethod::side:
-      return {SignMethod::side, "by the side of the face that is matched"};
-    default:
-      throw Error(
-          "distances to faces that face the samples have the sign of the side of these faces; use sign "
-          "automatic, side or none",
-          Remedy::sign_method);
-  }
+  check_options(options);
+  if (options.sign == SignMethod::none) return {SignMethod::none, "asked for"};
+  return {SignMethod::side, "by the side of the face that is matched"};
 }
 
 }  // namespace sdm

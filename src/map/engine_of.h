@@ -1,16 +1,15 @@
 // Selects the engine that computes a map.
 #pragma once
 
-#include <sdm/error.h>
 #include <sdm/map.h>
 
 #include "engine/engine.h"
 
 namespace sdm::map {
 
-/// Returns the engine of the options. Throws sdm::Error unless the maximum distance is greater than 0.
+/// Returns the engine of the options. Throws sdm::Error for options out of their ranges.
 [[nodiscard]] inline std::shared_ptr<const Engine> engine_of(const MapOptions& options) {
-  if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
+  check_options(options);
   return options.engine ? options.engine : make_engine(engines().front().name);
 }
 

@@ -61,11 +61,6 @@ struct ProximityQuery::Impl {
 
 namespace {
 
-const ProximityOptions& checked(const ProximityOptions& options) {
-  pair::check_options(options.contact_margin, options.depth_precision);
-  return options;
-}
-
 void check_body(int body) {
   if (body != 0 && body != 1)
     throw Error("there is no body " + std::to_string(body) + " in a query of two; use 0 or 1");
@@ -82,10 +77,10 @@ decltype(auto) with_memory(const Work& work) try {
 }  // namespace
 
 ProximityQuery::ProximityQuery(const Mesh& o1, const Mesh& o2, const ProximityOptions& options)
-    : ProximityQuery(Shape(o1), Shape(o2), checked(options)) {}
+    : ProximityQuery(Shape(o1), Shape(o2), pair::checked(options)) {}
 ProximityQuery::ProximityQuery(Shape o1, Shape o2, const ProximityOptions& options)
     : impl_(with_memory(
-          [&] { return std::make_unique<Impl>(std::move(o1), std::move(o2), checked(options)); })) {}
+          [&] { return std::make_unique<Impl>(std::move(o1), std::move(o2), pair::checked(options)); })) {}
 ProximityQuery::~ProximityQuery() = default;
 ProximityQuery::ProximityQuery(ProximityQuery&&) noexcept = default;
 ProximityQuery& ProximityQuery::operator=(ProximityQuery&&) noexcept = default;

@@ -18,26 +18,19 @@
 namespace sdm::surface {
 namespace {
 
-constexpr std::uint32_t kMinResolution = 16, kMaxResolution = 32768;
-
 std::uint32_t rows_of(const AtlasOptions& options) {
   return options.rows.value_or(options.resolution);
 }
 
 void check(const Mesh& mesh, const AtlasOptions& options) {
   validate(mesh);
+  check_options(options);
   const std::uint32_t n = options.resolution, rows = rows_of(options);
-  for (const std::uint32_t side : {n, rows})
-    if (side < kMinResolution || side > kMaxResolution)
-      throw Error("an atlas resolution of " + std::to_string(side) + " is out of range; use 16 to 32768",
-                  Remedy::resolution);
+  check_options(AtlasOptions{.resolution = rows});
   if (n != rows && options.kind != AtlasKind::uv)
     throw Error(
         "only atlases from texture coordinates may have more columns than rows or fewer; use a square",
         Remedy::resolution);
-  if (!(options.max_stretch > 1))
-    throw Error("a maximum stretch of " + std::to_string(options.max_stretch) +
-                " is out of range; use more than 1");
   if (options.gutter > std::min(n, rows) / 4)
     throw Error("a gutter of " + std::to_string(options.gutter) + " texels is too wide for an atlas of " +
                 atlas::size_text(n, rows) + " texels; use a quarter of that at most");

@@ -55,7 +55,7 @@ void allocate(DistanceField& field, bool with_sites, std::size_t more_bytes_per_
 
 DistanceField new_field(const Sites& o2, const Grid& grid, const NewField& properties) {
   check_grid(grid);
-  if (!(properties.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
+  check_options(FieldOptions{.max_distance = properties.max_distance});
   DistanceField field;
   field.grid = grid;
   field.max_distance = properties.max_distance;

@@ -19,8 +19,8 @@ void expect_error(const Mesh& mesh, const AtlasOptions& options, const char* wor
 
 TEST(AtlasErrors, OptionsOutOfRange) {
   const Mesh mesh = test::load("cube.off");
-  expect_error(mesh, {.resolution = 15}, "resolution of 15 is out of range");
-  expect_error(mesh, {.resolution = 32769}, "out of range");
+  expect_error(mesh, {.resolution = 15}, "resolution is 15: it must be a whole number from 16 to 32768");
+  expect_error(mesh, {.resolution = 32769}, "resolution is 32769");
   expect_error(mesh, {.max_stretch = 1}, "stretch");
   expect_error(mesh, {.max_stretch = std::numeric_limits<double>::quiet_NaN()}, "stretch");
   expect_error(mesh, {.resolution = 64, .gutter = 17}, "gutter of 17");

@@ -103,12 +103,13 @@ TEST_F(AlongOption, WrongUsageLeavesNoTrace) {
            {"--sign", "none"}, {"--engine", "reference"}, {"--facing", "60"}}) {
     const Outcome outcome = run({"--along", "normal", other[0], other[1]});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr(other[0] + ": does not apply to --along"));
+    EXPECT_THAT(outcome.err, HasSubstr("--along excludes " + other[0]));
   }
   const Outcome bounded =
       run_sdm({"map", after, before, "-o", out, "--precision", "0.1", "--along", "normal"});
   EXPECT_EQ(bounded.code, 2);
-  EXPECT_THAT(bounded.err, HasSubstr("--precision: does not apply to --facing and --along"));
+  EXPECT_THAT(bounded.err,
+              HasSubstr("--precision excludes --along: nothing bounds such distances between samples"));
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 

@@ -69,7 +69,7 @@ TEST_F(BodiesCommand, PlacesBodiesOfOneFileByPoses) {
     return file;
   };
   const auto arguments = [&](const std::string& file) {
-    return std::vector<std::string>{"bodies", o1, o1, "--poses", file, "--json", "--margin", "0.05"};
+    return std::vector<std::string>{"bodies", o1, o1, "--poses", file, "--json", "--contact-margin", "0.05"};
   };
   // By x y z and a quaternion, and by a matrix: 90° about the Z axis.
   const Outcome run = run_sdm(arguments(

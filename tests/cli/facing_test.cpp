@@ -289,7 +289,8 @@ TEST_F(FacingJobs, RefuseOtherSignsAndAngles) {
   EXPECT_EQ(run("map", dent, {"--facing", "181"}).code, 2);
   const Outcome bounded = run_sdm({"map", dent, plate, "-o", out, "--facing", "--precision", "0.1"});
   EXPECT_EQ(bounded.code, 2);
-  EXPECT_THAT(bounded.err, HasSubstr("--precision: does not apply to --facing and --along"));
+  EXPECT_THAT(bounded.err,
+              HasSubstr("--precision excludes --facing: nothing bounds such distances between samples"));
   EXPECT_THAT(run_sdm({"map", "--help"}).out, HasSubstr("--facing [ANGLE]"));
 }
 

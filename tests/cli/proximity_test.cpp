@@ -95,8 +95,8 @@ TEST_F(ProximityCommand, TellsWhyThereIsNoDepth) {
 
 TEST_F(ProximityCommand, RefusesWhatItCannotUse) {
   EXPECT_EQ(run_sdm({"proximity", o1}).code, 2);
-  EXPECT_EQ(run_sdm({"proximity", o1, o2, "--margin", "-1"}).code, 2);
-  EXPECT_EQ(run_sdm({"proximity", o1, o2, "--margin", "nan"}).code, 2);
+  EXPECT_EQ(run_sdm({"proximity", o1, o2, "--contact-margin", "-1"}).code, 2);
+  EXPECT_EQ(run_sdm({"proximity", o1, o2, "--contact-margin", "nan"}).code, 2);
   const Outcome run = run_sdm({"proximity", o1, folder / "none.obj"});
   EXPECT_EQ(run.code, 1);
   EXPECT_THAT(run.err, HasSubstr("none.obj"));

@@ -408,8 +408,8 @@ TEST_F(Resume, RefusesOtherOptionsAndInputs) {
   interrupt();
   for (const auto& [option, value] :
        std::vector<std::pair<std::string, std::string>>{{"--resolution", "64"},
-                                                        {"--margin", "0.1"},
-                                                        {"--precision", "0.1"},
+                                                        {"--contact-margin", "0.1"},
+                                                        {"--depth-precision", "0.1"},
                                                         {"--maps", "5"},
                                                         {"--units", "mm"},
                                                         {"--transform-o2", "translate:1:0:0"}}) {

@@ -162,8 +162,8 @@ points in/ball.ply in/ball.ply -o out
 points in/cloud.xyz in/ground.ply -o out --sign side --write ply --field part=1
 proximity in/ball.ply in/beside.ply
 proximity in/ball.ply in/apart.ply --json
-proximity in/ball.ply in/box.ply --margin 0.1 --json
-proximity in/ground.ply in/ball.ply --precision 0.01 --json
+proximity in/ball.ply in/box.ply --contact-margin 0.1 --json
+proximity in/ground.ply in/ball.ply --depth-precision 0.01 --json
 proximity in/box.ply in/box2.ply --align --json
 proximity in/ball.ply
 hausdorff in/ball.ply in/larger.ply
@@ -181,13 +181,13 @@ metrics in/scan.ply in/plate.ply --tolerance 0.1 --fail-if hd95>0.01 --fail-if n
 metrics in/ball.ply in/larger.ply --fail-if assd>1
 metrics in/ball.ply in/larger.ply --fail-if hd95=1
 bodies in/ball.ply in/beside.ply in/apart.ply --max-distance 2
-bodies in/box.ply in/box.ply in/box.ply --poses in/poses.txt --margin 0.1 --json
+bodies in/box.ply in/box.ply in/box.ply --poses in/poses.txt --contact-margin 0.1 --json
 bodies in/ball.ply in/beside.ply in/apart.ply -o out --resolution 32 --json
 bodies in/ball.ply
 bodies in/box.ply in/box.ply --poses in/poses.txt
 sequence in/walk in/box.ply -o out --resolution 64 --maps 2 --both
 sequence in/walk in/box.ply -o out --resolution 64 --tolerance 1 --player --animation
-sequence in/ball.ply+in/motion.npy in/larger.ply -o out --resolution 64 --json --margin 0.1
+sequence in/ball.ply+in/motion.npy in/larger.ply -o out --resolution 64 --json --contact-margin 0.1
 sequence in/animated.glb in/box.ply -o out --resolution 64 --no-temporal --rate 4
 sequence in/tear in/box.ply -o out --resolution 64 --allow-topology --maps 1
 sequence in/tear in/box.ply -o out --resolution 64

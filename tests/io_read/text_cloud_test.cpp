@@ -60,7 +60,7 @@ std::string columns_of(const std::string& contents, const TextDialect& given = {
   return fmt::format("{}", fmt::join(read(contents, given).dialect.value().columns, ","));
 }
 
-constexpr const char* kOptions = "--columns, --separator and --decimal";
+constexpr const char* kTextOptions = "--columns, --separator and --decimal";
 
 TEST(TextCloud, DecimalCommasAreNotSeparators) {
   const Points expected{{1.5, 2.5, 12.25}, {1.5, 3.5, 12.75}};
@@ -79,7 +79,7 @@ TEST(TextCloud, DecimalCommasAreNotSeparators) {
   // Decided once: a mark that comes later, or another, is a fault.
   EXPECT_THAT(fault("1.5;2;3\n1,5;2;3\n"), StartsWith("line 2: expected a number, not '1,5'"));
   EXPECT_THAT(fault("1,5;2;3\n1.5;2;3\n"), StartsWith("line 2: expected a number, not '1.5'"));
-  EXPECT_THAT(fault("1.234,5;2;3\n"), AllOf(HasSubstr("'1.234,5'"), HasSubstr(kOptions)));
+  EXPECT_THAT(fault("1.234,5;2;3\n"), AllOf(HasSubstr("'1.234,5'"), HasSubstr(kTextOptions)));
 }
 
 TEST(TextCloud, NamesDecideWhatColumnsAre) {
@@ -105,12 +105,12 @@ TEST(TextCloud, NamesDecideWhatColumnsAre) {
   EXPECT_EQ(normals.normals, (Points{{0, 0, 1}, {0, 1, 0}}));
 
   EXPECT_THAT(fault("a,b,c\n1,2,3\n"),
-              AllOf(StartsWith("line 1: "), HasSubstr("x, y and z"), HasSubstr(kOptions)));
-  EXPECT_THAT(fault("x,y,height\n1,2,3\n"), HasSubstr(kOptions));
+              AllOf(StartsWith("line 1: "), HasSubstr("x, y and z"), HasSubstr(kTextOptions)));
+  EXPECT_THAT(fault("x,y,height\n1,2,3\n"), HasSubstr(kTextOptions));
   EXPECT_THAT(fault("x,y,z,X\n1,2,3,4\n"), HasSubstr("line 1: the column x is there twice"));
   EXPECT_THAT(fault("x,y,z\n1,5,2,5,12,25\n"),
-              AllOf(HasSubstr("names 3 columns where rows have 6"), HasSubstr(kOptions)));
-  EXPECT_THAT(fault("# id x y z\n1 2 3 4 5\n"), AllOf(StartsWith("line 1: "), HasSubstr(kOptions)));
+              AllOf(HasSubstr("names 3 columns where rows have 6"), HasSubstr(kTextOptions)));
+  EXPECT_THAT(fault("# id x y z\n1 2 3 4 5\n"), AllOf(StartsWith("line 1: "), HasSubstr(kTextOptions)));
   EXPECT_THAT(fault("x,y,z\n"), HasSubstr("line 1: names columns, but no row follows"));
   EXPECT_EQ(points_of("# x y z are metres\n1 2 3\n"), (Points{{1, 2, 3}}));
 }
@@ -122,8 +122,8 @@ TEST(TextCloud, OnlyAHeaderAndACountAreSkipped) {
   EXPECT_EQ(points_of("x y z\n2\n1 2 3\n4 5 6\n"), expected);
   EXPECT_EQ(points_of("# a\n\n// b\n  # c\n1 2 3 # d, 7\n\n4 5 6 // e\n# f"), expected);
   EXPECT_THAT(fault("x y z\nx y z\n1 2 3\n"), StartsWith("line 2: expected a number, not 'x'"));
-  EXPECT_THAT(fault("Scan of 5\n1 2 3\n"), AllOf(StartsWith("line 1: "), HasSubstr(kOptions)));
-  EXPECT_THAT(fault("My scan\n1 2 3\n"), AllOf(StartsWith("line 1: "), HasSubstr(kOptions)));
+  EXPECT_THAT(fault("Scan of 5\n1 2 3\n"), AllOf(StartsWith("line 1: "), HasSubstr(kTextOptions)));
+  EXPECT_THAT(fault("My scan\n1 2 3\n"), AllOf(StartsWith("line 1: "), HasSubstr(kTextOptions)));
   EXPECT_THAT(fault("ncols 4\nnrows 2\ncellsize 1\n1 2 3 4\n1 2 3 4\n"), StartsWith("unknown format"));
   EXPECT_EQ(fault("Dear Sir or Madam"), "unknown format; " + point_format_names() + " are supported");
   EXPECT_EQ(fault("3\n1 2 3\n4 5 6\n"), "ends after 2 of 3 points; it is truncated");
@@ -220,13 +220,13 @@ TEST(TextCloud, MeshesAreRefusedByTheirFormat) {
 // What the file leaves open is an error that names the options, and these decide.
 TEST(TextCloud, OptionsDecideWhatIsAmbiguous) {
   const std::string counted = "1,5.0,5.0,12.0\n2,5.0,5.0,13.0\n3,5,5,14\n";
-  EXPECT_THAT(fault(counted), AllOf(HasSubstr("the first column counts the rows"), HasSubstr(kOptions)));
+  EXPECT_THAT(fault(counted), AllOf(HasSubstr("the first column counts the rows"), HasSubstr(kTextOptions)));
   EXPECT_EQ(points_of(counted, {.columns = {"id", "X", "y", "z"}}),
             (Points{{5, 5, 12}, {5, 5, 13}, {5, 5, 14}}));
   EXPECT_EQ(points_of(counted, {.columns = {"x", "y", "z"}}), (Points{{1, 5, 5}, {2, 5, 5}, {3, 5, 5}}));
 
   const std::string grid = "0 4 1.5 2.5 0.5\n0 7 1.5 2.25 0.5\n1 2 1.25 2.5 0.75\n";
-  EXPECT_THAT(fault(grid), AllOf(HasSubstr("the row and column of a scanner"), HasSubstr(kOptions)));
+  EXPECT_THAT(fault(grid), AllOf(HasSubstr("the row and column of a scanner"), HasSubstr(kTextOptions)));
   EXPECT_EQ(points_of(grid, {.columns = {"row", "column", "x", "y", "z"}}),
             (Points{{1.5, 2.5, 0.5}, {1.5, 2.25, 0.5}, {1.25, 2.5, 0.75}}));
   EXPECT_EQ(points_of(grid, {.columns = {"x", "y", "z"}}), (Points{{0, 4, 1.5}, {0, 7, 1.5}, {1, 2, 1.25}}));
@@ -235,14 +235,14 @@ TEST(TextCloud, OptionsDecideWhatIsAmbiguous) {
   EXPECT_EQ(points_of("0 4 1.5 200 90\n0 5 1.5 210 90\n1 2 1.25 180 91\n").size(), 3u);
 
   const std::string halves = "1,5,2,5,12,25\n1,5,3,5,12,75\n";
-  EXPECT_THAT(fault(halves), AllOf(HasSubstr("decimal commas"), HasSubstr(kOptions)));
+  EXPECT_THAT(fault(halves), AllOf(HasSubstr("decimal commas"), HasSubstr(kTextOptions)));
   EXPECT_EQ(points_of(halves, {.decimal = DecimalMark::point}), (Points{{1, 5, 2}, {1, 5, 3}}));
   EXPECT_EQ(points_of(halves, {.separator = TextSeparator::comma}), (Points{{1, 5, 2}, {1, 5, 3}}));
 
-  EXPECT_THAT(fault("P1 1 2 3\nP2 1 2 4\n"), AllOf(StartsWith("line 1: "), HasSubstr(kOptions)));
+  EXPECT_THAT(fault("P1 1 2 3\nP2 1 2 4\n"), AllOf(StartsWith("line 1: "), HasSubstr(kTextOptions)));
   EXPECT_EQ(points_of("P1 1 2 3\nP2 1 2 4\n", {.columns = {"name", "x", "y", "z"}}),
             (Points{{1, 2, 3}, {1, 2, 4}}));
-  EXPECT_THAT(fault("1,2,3 4,5,6\n"), HasSubstr(kOptions));
+  EXPECT_THAT(fault("1,2,3 4,5,6\n"), HasSubstr(kTextOptions));
 
   const TextDialect swapped{.columns = {"y", "x", "z"}};
   EXPECT_EQ(points_of("x y z w\n1 2 3 4\n", swapped), (Points{{2, 1, 3}})) << "before the names in the file";
@@ -261,7 +261,7 @@ TEST(TextCloud, OptionsDecideWhatIsAmbiguous) {
   EXPECT_EQ(points_of("1\t2\t3\t \n", {.separator = TextSeparator::blank}), (Points{{1, 2, 3}}));
   EXPECT_THAT(
       fault("VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n", swapped),
-      AllOf(HasSubstr(kOptions), HasSubstr("do not apply to PCD")));
+      AllOf(HasSubstr(kTextOptions), HasSubstr("do not apply to PCD")));
 }
 
 TEST(TextCloud, NormalsOfLengthOneAreFoundByTheirPlace) {

@@ -121,7 +121,7 @@ std::unique_ptr<MultiBodyQuery> bodies() {
   const AtlasOptions atlas{.resolution = 16};
   std::vector<Shape> shapes{Shape(first_mesh(), atlas), Shape(second_mesh()),
                             Shape(moved(cube(0.3), {3, 0, 0}))};
-  return std::make_unique<MultiBodyQuery>(std::move(shapes), MultiBodyOptions{.contact_margin = 0.1});
+  return std::make_unique<MultiBodyQuery>(std::move(shapes), ProximityOptions{.contact_margin = 0.1});
 }
 std::unique_ptr<MultiBodyQuery> bodies_with_answers() {
   auto query = bodies();

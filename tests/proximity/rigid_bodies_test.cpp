@@ -342,7 +342,7 @@ class SharedShapes : public testing::Test {
   std::vector<std::size_t> mesh_of_{0, 1, 0, 2, 1, 0, 3};
   std::vector<Transform> poses_;
 
-  MultiBodyQuery query(const MultiBodyOptions& options) {
+  MultiBodyQuery query(const ProximityOptions& options) {
     std::mt19937 random(11);
     std::vector<Shape> shapes, bodies;
     for (const Mesh& mesh : meshes_) shapes.emplace_back(mesh, kAtlas);

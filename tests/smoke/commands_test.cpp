@@ -114,7 +114,7 @@ TEST_F(SmokeCommands, PointsMeasuresACloud) {
 
 TEST_F(SmokeCommands, ProximityAndBodiesFindTheOverlap) {
   const auto pair =
-      json_of({"proximity", small, large, "--transform-o2", "translate:1.9:0:0", "--margin", "0.01"});
+      json_of({"proximity", small, large, "--transform-o2", "translate:1.9:0:0", "--contact-margin", "0.01"});
   EXPECT_EQ(pair["colliding"]["value"], true);
   EXPECT_NEAR(pair["separating_translation"]["value"], 0.2, 1e-4);
   const std::string poses = folder / "poses.txt";

@@ -18,11 +18,6 @@
 namespace sdm {
 namespace {
 
-void check(const HausdorffOptions& options) {
-  if (options.precision && !(*options.precision > 0))
-    throw Error("the precision of a Hausdorff distance must be greater than 0");
-}
-
 double area(const Mesh& mesh, std::uint32_t face) {
   const auto [a, b, c] = corners_of(mesh, face);
   return norm(cross(b - a, c - a)) / 2;
@@ -68,7 +63,7 @@ HausdorffDistance bound_distance(const Mesh& a, const sites::SitesData& b, const
 }  // namespace
 
 HausdorffDistance one_sided_hausdorff(const Mesh& a, const Sites& b, const HausdorffOptions& options) try {
-  check(options);
+  check_options(options);
   validate(a);
   return bound_distance(a, internals(b), options);
 } catch (const std::bad_alloc&) {
@@ -76,7 +71,7 @@ HausdorffDistance one_sided_hausdorff(const Mesh& a, const Sites& b, const Hausd
 }
 
 SymmetricHausdorff symmetric_hausdorff(const Sites& a, const Sites& b, const HausdorffOptions& options) try {
-  check(options);
+  check_options(options);
   SymmetricHausdorff result{.from = {bound_distance(a.mesh(), internals(b), options),
                                      bound_distance(b.mesh(), internals(a), options)}};
   const BoundedLength &first = result.from[0].distance, &second = result.from[1].distance;

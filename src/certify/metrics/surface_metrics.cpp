@@ -87,9 +87,7 @@ void check(const MetricsOptions& options) {
   for (const double t : options.tolerances)
     if (!(t >= 0 && std::isfinite(t)))
       throw Error("a tolerance of metrics must be a number that is not negative");
-  if (options.precision && !(*options.precision > 0))
-    throw Error("the precision of metrics must be greater than 0");
-  if (!(options.fraction_precision > 0)) throw Error("the precision of fractions must be greater than 0");
+  check_options(options);
 }
 
 double area_of(const Mesh& mesh) {

@@ -19,16 +19,16 @@ namespace sdm::io {
 namespace {
 
 // An option of a picture, and the most arguments that it takes. Those of numbers may be fewer.
-struct Option {
+struct PictureOption {
   std::string_view name;
   std::size_t arguments;
   bool numbers;
 };
-constexpr Option kOptions[] = {{"-blendu", 1, false}, {"-blendv", 1, false},  {"-cc", 1, false},
-                               {"-clamp", 1, false},  {"-imfchan", 1, false}, {"-type", 1, false},
-                               {"-texres", 1, false}, {"-bm", 1, true},       {"-boost", 1, true},
-                               {"-mm", 2, true},      {"-o", 3, true},        {"-s", 3, true},
-                               {"-t", 3, true}};
+constexpr PictureOption kPictureOptions[] = {
+    {"-blendu", 1, false},  {"-blendv", 1, false}, {"-cc", 1, false},     {"-clamp", 1, false},
+    {"-imfchan", 1, false}, {"-type", 1, false},   {"-texres", 1, false}, {"-bm", 1, true},
+    {"-boost", 1, true},    {"-mm", 2, true},      {"-o", 3, true},       {"-s", 3, true},
+    {"-t", 3, true}};
 
 // Pictures that are not read, and why.
 struct Unread {
@@ -162,8 +162,8 @@ class MtlReader {
     while (in_.more_on_line()) {
       TextScanner after = in_;
       const std::string_view word = after.word();
-      const Option* const option = std::ranges::find(kOptions, word, &Option::name);
-      if (option == std::end(kOptions)) return std::string(in_.rest_of_line());
+      const PictureOption* const option = std::ranges::find(kPictureOptions, word, &PictureOption::name);
+      if (option == std::end(kPictureOptions)) return std::string(in_.rest_of_line());
       in_ = after;
       if (!option->numbers) {
         if (in_.more_on_line() && in_.word() == "on" && option->name == "-clamp")

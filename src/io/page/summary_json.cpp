@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/parse_number.h"
+
 namespace sdm {
 namespace {
 
@@ -240,6 +242,21 @@ Json largest_json(const Summary& summary) {
           {"point", optional(d.point)}};
 }
 
+/// The options of a measure by name, as numbers, flags and words; null: absent, or no limit.
+Json settings_json(const std::vector<GivenOption>& settings) {
+  Json json = Json::object();
+  for (const auto& [name, value] : settings) {
+    const std::optional<double> number = core::parse_number(value);
+    if (value.empty() || (number && !std::isfinite(*number)))
+      json[name] = nullptr;
+    else if (value == "true" || value == "false")
+      json[name] = value == "true";
+    else
+      json[name] = number ? Json(*number) : Json(value);
+  }
+  return json;
+}
+
 /// What is measured of a surface and not of points.
 void add_surface(Json& json, const Summary& summary) {
   const Evidence& evidence = summary.evidence;
@@ -265,6 +282,7 @@ Json to_json(const Summary& summary) {
     return json;
   }
   json["measured"] = {{"kind", name_of(summary.measured.kind)}, {"text", summary.measured.text}};
+  json["measured"]["settings"] = settings_json(summary.measured.settings);
   json["sign"] = {{"method", name_of(summary.sign.method)}, {"reason", summary.sign.reason}};
   json["distance"] = to_json(d);
   if (summary.of_points) json["distance"]["kind"] = "bounded", json["distance"]["weights"] = "points";

@@ -32,14 +32,6 @@ MatchKind kind_of(const MeasuredDistance& measured) {
   throw Error("a map of thickness has no matches: its vectors end on the surface itself");
 }
 
-void check_match_options(const MatchOptions& options) {
-  if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
-  if (options.method == MatchMethod::closest) return;
-  facing::check_angle(options.facing);
-  if (options.method == MatchMethod::ray && !(options.cage > 0))
-    throw Error("the cage, how far hits along normals are searched for, must be greater than 0");
-}
-
 }  // namespace
 
 void require_matches(const Surface& surface, const Sites& sites, const TexelMatches& matches) {
@@ -82,7 +74,7 @@ TexelMatches matches_of(const Surface& surface, const Sites& sites, const Distan
 }
 
 TexelMatches match_texels(const Surface& surface, const Sites& sites, const MatchOptions& options) try {
-  check_match_options(options);
+  check_options(options);
   if (options.method == MatchMethod::ray) return map::ray_matches(surface, sites, options);
   MapOptions of_map{.engine = options.engine,
                     .sign = SignMethod::none,

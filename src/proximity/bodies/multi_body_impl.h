@@ -22,7 +22,7 @@
 namespace sdm {
 
 struct MultiBodyQuery::Impl {
-  MultiBodyOptions options;
+  ProximityOptions options;
   bodies::BodyParts parts;
   std::vector<shape::PosedBody> posed;       // the parts, and so in `near`
   std::vector<Transform> given_poses;        // of bodies
@@ -40,7 +40,7 @@ struct MultiBodyQuery::Impl {
   bodies::ContactStore stored_contacts;
   bodies::InternalContacts internal_contacts;
 
-  Impl(std::vector<Shape> shapes, bodies::BodyParts of_bodies, const MultiBodyOptions& asked)
+  Impl(std::vector<Shape> shapes, bodies::BodyParts of_bodies, const ProximityOptions& asked)
       : options(asked), parts(std::move(of_bodies)), given_poses(parts.bodies()), near(parts.body_of()) {
     posed.reserve(shapes.size());
     for (Shape& shape : shapes) posed.emplace_back(std::move(shape));

@@ -19,10 +19,6 @@
 namespace sdm {
 namespace {
 
-const MultiBodyOptions& checked(const MultiBodyOptions& options) {
-  pair::check_options(options.contact_margin, options.depth_precision);
-  return options;
-}
 void check_distance(double max_distance) {
   if (!(max_distance > 0)) throw Error("the maximum distance must be greater than 0");
 }
@@ -46,18 +42,18 @@ using bodies::on_behalf_of;
 
 }  // namespace
 
-MultiBodyQuery::MultiBodyQuery(std::vector<Mesh> meshes, const MultiBodyOptions& options)
-    : MultiBodyQuery(shapes_of(meshes), checked(options)) {}
-MultiBodyQuery::MultiBodyQuery(std::vector<Shape> shapes, const MultiBodyOptions& options)
+MultiBodyQuery::MultiBodyQuery(std::vector<Mesh> meshes, const ProximityOptions& options)
+    : MultiBodyQuery(shapes_of(meshes), pair::checked(options)) {}
+MultiBodyQuery::MultiBodyQuery(std::vector<Shape> shapes, const ProximityOptions& options)
     : impl_(with_memory_of_bodies([&] {
         bodies::BodyParts parts(shapes.size());
-        return std::make_unique<Impl>(std::move(shapes), std::move(parts), checked(options));
+        return std::make_unique<Impl>(std::move(shapes), std::move(parts), pair::checked(options));
       })) {}
-MultiBodyQuery::MultiBodyQuery(std::vector<std::vector<BodyPart>> bodies, const MultiBodyOptions& options) {
+MultiBodyQuery::MultiBodyQuery(std::vector<std::vector<BodyPart>> bodies, const ProximityOptions& options) {
   with_memory_of_bodies([&] {
     std::vector<Shape> shapes;
     bodies::BodyParts parts(std::move(bodies), shapes);
-    impl_ = std::make_unique<Impl>(std::move(shapes), std::move(parts), checked(options));
+    impl_ = std::make_unique<Impl>(std::move(shapes), std::move(parts), pair::checked(options));
   });
 }
 MultiBodyQuery::~MultiBodyQuery() = default;

@@ -25,16 +25,6 @@ mesh::Similarity between(const mesh::Similarity& from, const mesh::Similarity& t
 
 }  // namespace
 
-void check_options(double contact_margin, const std::optional<double>& depth_precision) {
-  const auto fail = [](const char* what, double length, const char* remedy) {
-    throw Error(std::string(what) + " of " + std::to_string(length) + " is out of range; use " + remedy);
-  };
-  if (!(contact_margin >= 0 && std::isfinite(contact_margin)))
-    fail("a contact margin", contact_margin, "0 or more");
-  if (depth_precision && !(*depth_precision > 0 && std::isfinite(*depth_precision)))
-    fail("a precision of the depth", *depth_precision, "a length above 0");
-}
-
 void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, const KnownAnswers& known) {
   known_ = known;
   set_bodies(o1, o2);

@@ -15,8 +15,11 @@
 
 namespace sdm::pair {
 
-/// Throws sdm::Error unless the margin is finite and at least 0, and the precision finite and above 0.
-void check_options(double contact_margin, const std::optional<double>& depth_precision);
+/// Returns the options. Throws sdm::Error if one is out of range.
+inline const ProximityOptions& checked(const ProximityOptions& options) {
+  check_options(options);
+  return options;
+}
 
 using pairs::FacePair, pairs::kNoFaces;
 

@@ -26,13 +26,6 @@ constexpr double kPatchRadius = 1.0 / 6;
 
 constexpr const char* kNeighbourhoods = "the excluded neighbourhoods";
 
-void check(const ExclusionRule& rule) {
-  if (rule.rings == 0) throw Error("with 0 rings a face excludes only itself; use 1 or more");
-  if (rule.geodesic && !(*rule.geodesic > 0 && std::isfinite(*rule.geodesic)))
-    throw Error("a geodesic length of " + std::to_string(*rule.geodesic) +
-                " is out of range; use a positive number");
-}
-
 struct Sphere {
   Vec3 centre;
   double radius = 0;
@@ -212,7 +205,7 @@ void check_pairs(const CompressedRows<std::uint32_t>& faces_of_vertex, std::size
 Exclusion::Exclusion(const Mesh& rest, const ExclusionOptions& options) try {
   const ExclusionRule& rule = options.rule;
   validate(rest);
-  check(rule);
+  check_options(rule);
   const CompressedRows<std::uint32_t> faces_of_vertex = self::faces_of_vertices(rest);
   if (!rule.geodesic) check_pairs(faces_of_vertex, rest.triangles.size());
   self::Patches grouped = rule.geodesic

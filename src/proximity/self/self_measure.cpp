@@ -14,7 +14,7 @@ namespace {
 const Exclusion& checked(const Mesh& mesh, const Sites& sites, const SelfOptions& options) {
   if (sites.mesh().triangles.size() != options.exclusion.faces())
     throw Error("the exclusion belongs to another mesh: its number of faces differs");
-  if (!(options.max_distance > 0)) throw Error("the maximum distance must be greater than 0");
+  check_options(SelfProximityOptions{.max_distance = options.max_distance});
   if (mesh.triangles.size() != options.exclusion.faces())
     throw Error("surface and sites belong to different meshes: their numbers of faces differ");
   return options.exclusion;
@@ -54,10 +54,11 @@ SelfMeasure::SelfMeasure(const Mesh& mesh, const Sites& sites, const SelfOptions
       exclusion_(checked(mesh, sites, options)),
       max_distance_(options.max_distance),
       patches_(sites_, exclusion_) {
-  description = {
-      .measured = {DistanceKind::self, "distance to the closest point of faces that are not excluded"},
-      .sign = {SignMethod::none, "the distance of a surface to itself has no sign"},
-      .no_value = {.distance = std::numeric_limits<float>::infinity(), .vector = 0}};
+  description = {.measured = {.kind = DistanceKind::self,
+                              .text = "distance to the closest point of faces that are not excluded",
+                              .settings = settings_of(SelfProximityOptions{.max_distance = max_distance_})},
+                 .sign = {SignMethod::none, "the distance of a surface to itself has no sign"},
+                 .no_value = {.distance = std::numeric_limits<float>::infinity(), .vector = 0}};
   progress = options.progress;
   // The faces of a patch exclude the same.
   std::vector<std::uint32_t> place(exclusion_.patches());

@@ -16,13 +16,6 @@
 #include "proximity/self/self_search.h"
 
 namespace sdm {
-namespace {
-
-void check_max_distance(double max_distance) {
-  if (!(max_distance > 0)) throw Error("the maximum distance must be greater than 0");
-}
-
-}  // namespace
 
 struct SelfProximityQuery::Impl {
   Sites sites;
@@ -110,7 +103,7 @@ struct SelfProximityQuery::Impl {
 };
 
 SelfProximityQuery::SelfProximityQuery(Mesh rest, const SelfProximityOptions& options) try {
-  check_max_distance(options.max_distance);
+  check_options(options);
   impl_ = std::make_unique<Impl>(std::move(rest), options);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a proximity query of a mesh with itself");

@@ -64,10 +64,11 @@ std::unique_ptr<map::FaceSearch> ThicknessMeasure::search() const {
 }  // namespace thickness
 
 MeasuredDistance measured_distance(const ThicknessOptions& options) {
-  return {DistanceKind::thickness,
-          options.method == ThicknessMethod::ball
-              ? "wall thickness, the diameter of the largest ball in the part"
-              : "wall thickness, the length of the ray along the normal into the part"};
+  return {.kind = DistanceKind::thickness,
+          .text = options.method == ThicknessMethod::ball
+                      ? "wall thickness, the diameter of the largest ball in the part"
+                      : "wall thickness, the length of the ray along the normal into the part",
+          .settings = settings_of(options)};
 }
 
 }  // namespace sdm

@@ -1,6 +1,7 @@
 #include "proximity/thickness/thickness_search.h"
 
 #include <sdm/error.h>
+#include <sdm/thickness.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +28,7 @@ double product_of_turn(double angle) {
 
 Walls::Walls(const sites::SitesData& sites, double angle)
     : sites_(sites), least_turn_(product_of_turn(angle)), ray_turn_(product_of_turn(std::min(angle, 90.0))) {
-  if (!(angle > 0 && angle < 180)) throw Error("the angle of a thickness must be between 0 and 180 degrees");
+  check_options(ThicknessOptions{.angle = angle});
   if (!sites.closed) throw Error("a mesh that is open has no thickness, as it does not bound a solid");
   if (!sites.orientation.orientable)
     throw Error("a mesh that cannot be oriented has no thickness, as it does not bound a solid");

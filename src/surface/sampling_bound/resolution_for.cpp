@@ -50,9 +50,7 @@ Progress trial_progress(const Progress& progress, int trial) {
 }  // namespace
 
 std::uint32_t resolution_for(const Mesh& mesh, double precision, const AtlasOptions& options) {
-  if (!(precision > 0 && std::isfinite(precision)))
-    throw Error("a precision of " + std::to_string(precision) +
-                " is out of range; use a length above 0 in the units of the mesh");
+  check_options(PrecisionOptions{precision});
   if (options.rows)
     throw Error("a resolution for a precision is that of a square atlas; omit the number of rows");
   validate(mesh);
