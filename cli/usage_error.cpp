@@ -28,7 +28,7 @@ std::string usage_error(const CLI::App* app, const CLI::Error& error) {
   const CLI::App* command = commands.empty() ? app : commands.front();
   std::string text = app->get_name() + ": error: ";
   if (const std::vector<std::string> extras = command->remaining(true); !extras.empty()) {
-    const std::string& name = extras.front();
+    const std::string name = extras.front().substr(0, extras.front().find('='));
     text += name.starts_with('-') ? sdm::unknown_name("option", name, option_names(*command))
                                   : "unexpected argument " + name;
   } else {

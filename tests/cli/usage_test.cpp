@@ -125,7 +125,8 @@ TEST(Usage, AllWholeNumbersAreReadInBaseTen) {
         arguments.insert(arguments.end(), values, value);
         const Outcome run = run_sdm(arguments);
         EXPECT_EQ(run.code, 2) << command << ' ' << option;  // at least what is required is missing
-        return run.err.find(value + " is ") != std::string::npos;
+        return run.err.find(value + " is ") != std::string::npos ||
+               run.err.find(option + " is " + value + ":") != std::string::npos;
       };
       // 9 or 99 may be below the least value, 999 above the greatest.
       EXPECT_FALSE(is_refused("09") && is_refused("099") && is_refused("0999")) << command << ' ' << option;
@@ -175,7 +176,6 @@ TEST(Usage, WrongUsageEndsWithTwo) {
                                                           {"--max-stretch", "nan"},
                                                           {"--max-distance", "0"},
                                                           {"--max-distance", "-1"},
-                                                          {"--max-distance", "inf"},
                                                           {"--tolerance", "-0.1"},
                                                           {"--tolerance", "x"},
                                                           {"--tolerance", "0.2:-0.1"},

@@ -57,7 +57,7 @@ TEST_F(VolumeCommand, WrongUsage) {
       {{"--grid", "4", "0", "4", "-o", "f.vdb"}, "1 to 1048576"},
       {{"--grid", "4", "4", "9999999", "-o", "f.vdb"}, "1 to 1048576"},
       {{"--spacing", "-1", "-o", "f.vdb"}, "positive"},
-      {{"--spacing", "1", "--max-distance", "0", "-o", "f.vdb"}, "positive"},
+      {{"--spacing", "1", "--max-distance", "0", "-o", "f.vdb"}, "--max-distance is 0"},
       {{"--spacing", "1", "--bounds", "0", "0", "0", "1", "1", "-o", "f.vdb"}, "--bounds"},
       {{"--spacing", "1", "--bounds", "0", "0", "0", "1", "1", "-1", "-o", "f.vdb"}, "lowest"},
       {{"--spacing", "1", "-o", "f.raw"}, ".vdb (OpenVDB)"},

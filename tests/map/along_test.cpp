@@ -200,7 +200,7 @@ TEST(Along, RefusesOptionsOutOfRange) {
   for (const Vec3& direction : {Vec3{0, 0, 0}, Vec3{kInfinity, 0, 0}, Vec3{0, std::nan(""), 1}})
     EXPECT_NE(test::error_of([&] {
                 (void)compute_map(surface, sites, AlongOptions{.direction = direction});
-              }).find("finite and not 0"),
+              }).find("it must be normal or a direction of three numbers, not all 0"),
               std::string::npos);
   EXPECT_NE(test::error_of([&] {
               (void)compute_map(surface, sites, AlongOptions{.max_distance = 0});

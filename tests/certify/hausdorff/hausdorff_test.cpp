@@ -317,7 +317,7 @@ TEST(Hausdorff, DoesNotDependOnTheNumberOfThreads) {
 TEST(Hausdorff, RejectsWhatItCannotCompute) {
   const Sites sites(cube());
   EXPECT_EQ(error_of([&] { return one_sided_hausdorff(cube(), sites, {.precision = -1}); }),
-            "the precision of a Hausdorff distance must be greater than 0");
+            "precision is -1: it must be a number greater than 0");
   for (const double bad : {0.0, std::nan("")})
     EXPECT_NE(error_of([&] { return one_sided_hausdorff(cube(), sites, {.precision = bad}); }), "");
   EXPECT_NE(error_of([&] { return one_sided_hausdorff(Mesh(), sites); }), "");
