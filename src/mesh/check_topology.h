@@ -8,7 +8,7 @@
 namespace sdm::mesh {
 
 /// Whether the edges, and the faces of edges and vertices, are those of the faces that are not ignored, and
-/// every face with repeated corners is. Triangles must be valid. Cost: linear, all cores.
+/// every face with repeated corners is. Triangles must be valid. Cost: linear.
 [[nodiscard]] bool is_topology(const Topology& topology, const VertexFaces& vertex_faces, const Mesh& mesh);
 
 /// Whether each face has a component, and each component a face, except for ignored ones. Cost: linear.

@@ -61,13 +61,16 @@ SitesData::SitesData(ArrayReader& stored, bool trusted) {
 bool SitesData::is_valid() const {
   const auto one_or_none = [](std::uint8_t flag) { return flag <= 1; };
   bool valid_topology = false, valid_trees = false;
-  parallel_invoke([&] { valid_topology = mesh::is_topology(topology, vertex_faces, mesh); },
-                  [&] {
-                    valid_trees =
-                        !tree.items.empty() && tree::is_tree(tree, kLeafFaces) && tree::is_tree(wide, tree);
-                  });
-  return valid_topology && valid_trees && mesh::is_orientation(orientation, topology) &&
-         sites::match(*this) && std::ranges::all_of(inverted, one_or_none) && have_valid_numbers(*this);
+  parallel_invoke(
+      [&] {
+        valid_topology =
+            mesh::is_topology(topology, vertex_faces, mesh) && mesh::is_orientation(orientation, topology);
+      },
+      [&] {
+        valid_trees =
+            !tree.items.empty() && tree::is_tree(tree, kLeafFaces, kUnitReach) && tree::is_tree(wide, tree);
+      });
+  return valid_topology && valid_trees && sites::match(*this) && std::ranges::all_of(inverted, one_or_none);
 }
 
 void SitesData::find_orientation() {

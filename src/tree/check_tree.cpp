@@ -51,16 +51,43 @@ bool divide(const LeafRanges& leaves, const WideTree::Node& node, std::uint32_t 
   return count == leaves.last(whole) - leaves.first(whole);
 }
 
+// False for NaN.
+bool is_inside(const FloatBox& box, const FloatBox& outer) {
+  bool inside = true;
+  for (int k = 0; k < 3; ++k) {
+    inside &= outer.lo[k] <= box.lo[k];
+    inside &= box.hi[k] <= outer.hi[k];
+  }
+  return inside;
+}
+
+// Whether a node has the boxes of the children that its own stand for, and 0 in lanes without a child.
+bool has_boxes(const WideTree::Node& node, const AabbTree& tree) {
+  bool same = true;
+  for (std::uint32_t i = 0; i < WideTree::kWidth; ++i) {
+    const FloatBox box = i < node.count ? tree.box(node.source[i]) : FloatBox{};
+    for (int k = 0; k < 3; ++k) {
+      same &= node.lo[k][i] == box.lo[k];
+      same &= node.hi[k][i] == box.hi[k];
+    }
+  }
+  return same;
+}
+
 }  // namespace
 
-bool is_tree(const AabbTree& tree, std::uint32_t leaf_size) {
+bool is_tree(const AabbTree& tree, std::uint32_t leaf_size, float reach) {
+  const FloatBox most{{-reach, -reach, -reach}, {reach, reach, reach}};
   std::array<std::uint32_t, kDeepest> right;  // children of the nodes above whose left subtree is not over
   std::size_t open = 0, items = 0;
   const std::size_t count = tree.nodes.size();
   for (std::size_t i = 0; i < count; ++i) {
     const AabbTree::Node& node = tree.nodes[i];
+    if (!is_inside(node.box, most)) return false;
     if (!node.leaf()) {
       if (open == right.size() || node.right <= i + 1 || node.right >= count) return false;
+      if (!is_inside(tree.nodes[i + 1].box, node.box) || !is_inside(tree.box(node.right), node.box))
+        return false;
       right[open++] = node.right;
       continue;
     }
@@ -85,37 +112,8 @@ bool is_tree(const WideTree& wide, const AabbTree& tree) {
       if (!is_child(tree, leaves, node, i, whole, stands_for)) return false;
     for (std::uint32_t i = node.count; i < WideTree::kWidth; ++i)
       if (node.child[i] != 0 || node.source[i] != 0) return false;
-    if (!divide(leaves, node, whole)) return false;
+    if (!divide(leaves, node, whole) || !has_boxes(node, tree)) return false;
   }
-  return true;
-}
-
-// Written so that NaN is refused.
-bool have_valid_boxes(const AabbTree& tree, std::span<const FloatBox> leaves, float reach) {
-  const auto is_inside = [](const FloatBox& box, const FloatBox& outer) {
-    bool inside = true;
-    for (int k = 0; k < 3; ++k) inside &= outer.lo[k] <= box.lo[k] && box.hi[k] <= outer.hi[k];
-    return inside;
-  };
-  const FloatBox most{{-reach, -reach, -reach}, {reach, reach, reach}};
-  std::size_t leaf = 0;
-  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
-    const AabbTree::Node& node = tree.nodes[i];
-    const bool valid = node.leaf() ? is_inside(leaves[leaf++], node.box)
-                                   : is_inside(tree.box(static_cast<std::uint32_t>(i + 1)), node.box) &&
-                                         is_inside(tree.box(node.right), node.box);
-    if (!valid || !is_inside(node.box, most)) return false;
-  }
-  return true;
-}
-
-bool have_same_boxes(const WideTree& wide, const AabbTree& tree) {
-  for (const WideTree::Node& node : wide.nodes)
-    for (std::uint32_t i = 0; i < WideTree::kWidth; ++i) {
-      const FloatBox box = i < node.count ? tree.box(node.source[i]) : FloatBox{};
-      for (int k = 0; k < 3; ++k)
-        if (node.lo[k][i] != box.lo[k] || node.hi[k][i] != box.hi[k]) return false;
-    }
   return true;
 }
 

@@ -22,6 +22,8 @@
 #include <cstddef>
 #include <cstdio>
 #include <exception>
+#include <memory>
+#include <new>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -81,6 +83,33 @@ bool build_sites() {
   std::optional<Sites> sites;
   count([&] { sites.emplace(mesh); });
   return sites->closed() && 2 * sites->edges().size() == 3 * mesh.triangles.size();
+}
+
+bool build_shape() {
+  const Mesh mesh = load("armadillo.off");
+  std::optional<Shape> shape;
+  count([&] { shape.emplace(mesh); });
+  return !shape->convex();
+}
+
+/// With all checks.
+bool read_stored_shape() {
+  const Shape built(load("armadillo.off"));
+  std::vector<std::byte> bytes;
+  built.store([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+  constexpr std::align_val_t kAlignment{64};
+  auto* const data = static_cast<std::byte*>(::operator new(bytes.size(), kAlignment));
+  const std::shared_ptr<void> owner(data, [](void* memory) { ::operator delete(memory, kAlignment); });
+  std::ranges::copy(bytes, data);
+  std::optional<Shape> shape;
+  count([&] { shape.emplace(StoredShape{.bytes = {data, bytes.size()}, .owner = owner}); });
+  const Shape other(load("cow.off"));
+  const auto separation = [&](const Shape& of) {
+    ProximityQuery query(of, other);
+    query.set_pose(1, Transform::translation({2, 0, 0}));
+    return query.separation().value;
+  };
+  return separation(*shape) == separation(built);
 }
 
 bool build_surface() {
@@ -246,6 +275,8 @@ struct Call {
 
 constexpr Call kCalls[] = {
     {"sites", "`Sites` of the armadillo (52 thousand triangles)", build_sites},
+    {"shape", "`Shape` of the armadillo", build_shape},
+    {"stored shape", "`Shape` of the same from memory, all of which is checked", read_stored_shape},
     {"atlas", "`Surface` of the camel (20 thousand triangles), 512²", build_surface},
     {"refit", "`Surface::refit` and `Sites::refit` of the armadillo, 256²", refit},
     {"dense map", "`compute_map`, 768², cow to elephant: 70 samples for each of 6 thousand faces", dense_map},
