@@ -33,7 +33,9 @@ class LineSearch final : public FaceSearch {
       : sites_(sites), direction_(direction), max_distance_(max_distance) {}
 
   // Of points along a direction without a normal, among all faces.
-  void start(std::uint32_t, const std::optional<Vec3>& normal, std::span<const Vec3> points) override {
+  void start(const Samples& samples) override {
+    const std::optional<Vec3>& normal = samples.normal;
+    const std::span<const Vec3> points = samples.points;
     const Vec3 u = direction_ ? *direction_ : *normal, m = normal.value_or(u);
     points_ = points, line_ = u;
     hits_.assign(2 * points.size(), {});

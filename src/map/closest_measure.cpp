@@ -1,21 +1,19 @@
 #include "map/closest_measure.h"
 
 #include "map/engine_of.h"
-#include "query/facing/facing_normals.h"
 
 namespace sdm::map {
 
 ClosestMeasure::ClosestMeasure(const Surface& surface, const Sites& sites, const MapOptions& options)
-    : surface_(surface), max_distance_(options.max_distance), engine_(engine_of(options)) {
+    : surface_(surface), engine_(engine_of(options)) {
   if (options.facing) {
-    facing_.emplace(internals(sites), *options.facing);
-    normals_ = facing::facing_normals(surface.mesh(), *options.facing).normals;
+    facing_.emplace(surface.mesh(), sites, options);
+    return;
   }
   description_.sign = choose_sign(sites, options);
   description_.measured = measured_distance(options);
-  if (!options.facing)
-    inside_.emplace(internals(sites), description_.sign.method,
-                    engine_accuracy(engine_->info(), surface.mesh(), sites.mesh()));
+  inside_.emplace(internals(sites), description_.sign.method,
+                  engine_accuracy(engine_->info(), surface.mesh(), sites.mesh()));
 }
 
 void ClosestMeasure::store(std::size_t first, std::span<const Vec3> points,
@@ -28,15 +26,13 @@ void ClosestMeasure::store_matches(std::size_t first, std::span<const Vec3> poin
                                    const sites::ClosestPacket& closest, TexelStore& texels) const {
   const std::span<const std::uint32_t> faces = surface_.map_faces(),
                                        samples = surface_.sample_texels().subspan(first);
-  const bool is_signed = description_.sign.method != SignMethod::none;
   sites::ClosestPacket matches = closest;
   std::uint32_t behind = 0, unmatched = 0;
   for (std::size_t i = 0; i < closest.count; ++i) {
     const ClosestPoint near = closest.get(i, points[i]);
-    const facing::Match match = facing_->match(points[i], normals_[faces[samples[i]]], max_distance_, near);
-    behind |= static_cast<std::uint32_t>(is_signed && match.behind) << i;
-    unmatched |= static_cast<std::uint32_t>(match.unmatched) << i;
-    const ClosestPoint& found = match.closest;
+    const Value value = facing_->value(points[i], facing_->normals[faces[samples[i]]], near);
+    behind |= std::uint32_t{value.negative} << i, unmatched |= std::uint32_t{value.unmatched} << i;
+    const ClosestPoint& found = value.closest;
     if (found.type != near.type || found.site != near.site) matches.set(i, points[i], found);
   }
   texels(first, matches, behind, unmatched);

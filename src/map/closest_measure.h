@@ -6,11 +6,10 @@
 
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "engine/engine.h"
+#include "map/facing_measure.h"
 #include "map/measure.h"
-#include "query/facing/facing_search.h"
 #include "query/inside/inside.h"
 
 namespace sdm::map {
@@ -21,7 +20,9 @@ class ClosestMeasure {
   ClosestMeasure(const Surface& surface, const Sites& sites, const MapOptions& options);
 
   [[nodiscard]] const Engine& engine() const { return *engine_; }
-  [[nodiscard]] const Description& description() const { return description_; }
+  [[nodiscard]] const Description& description() const {
+    return facing_ ? facing_->description : description_;
+  }
 
   /// Stores what follows from the closest points of the samples from the one with this number on.
   void store(std::size_t first, std::span<const Vec3> points, const sites::ClosestPacket& closest,
@@ -32,12 +33,11 @@ class ClosestMeasure {
                      TexelStore& texels) const;
 
   const Surface& surface_;
-  double max_distance_;
   std::shared_ptr<const Engine> engine_;
+  std::optional<FacingMeasure> facing_;
+  // Without it:
   Description description_;
-  std::optional<inside::InsideTest> inside_;  ///< without `facing`
-  std::optional<facing::FacingSearch> facing_;
-  std::vector<Vec3> normals_;  ///< of the faces, with `facing`
+  std::optional<inside::InsideTest> inside_;
 };
 
 }  // namespace sdm::map

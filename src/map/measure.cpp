@@ -128,7 +128,7 @@ void measure_texels(const Surface& surface, const FaceMeasure& measure, std::spa
       const std::uint32_t face = tiles.faces[tile];
       points.clear();
       for (const std::uint32_t texel : texels) points.push_back(surface.texel_point(texel));
-      search->start(face, normal_of(measure, face), points);
+      search->start({face, normal_of(measure, face), points});
       for (std::size_t i = 0; i < points.size(); i += sites::ClosestPacket::kSize) {
         const std::size_t count = std::min(sites::ClosestPacket::kSize, points.size() - i);
         for (std::size_t m = 0; m < maps.size(); ++m) {
@@ -152,36 +152,42 @@ void measure_texels(const Surface& surface, const FaceMeasure& measure, std::spa
 
 std::vector<float> measure_vertices(const Mesh& mesh, const FaceMeasure& measure) {
   const GroupVertices at(mesh, measure);
-  std::vector<float> values(at.vertices.size());
+  std::vector<double> values(at.vertices.size());
   parallel_for(
       values.size(), kCornersAtOnce, measure.progress, "vertices", [&](std::size_t begin, std::size_t end) {
         const std::unique_ptr<FaceSearch> search = measure.search();
         std::vector<Vec3> points;
+        std::vector<ClosestPoint> closest;
         for (std::size_t i = begin; i < end; i += points.size()) {
           const std::uint32_t face = at.faces[i];
-          points.clear();
+          points.clear(), closest.clear();
           for (std::size_t k = i;
-               k < end && points.size() < measure.vertices_at_once && (k == i || at.faces[k] == face); ++k)
+               k < end && points.size() < measure.vertices_at_once && (k == i || at.faces[k] == face); ++k) {
             points.push_back(mesh.positions[at.vertices[k]]);
-          search->start(face, normal_of(measure, face), points);
+            if (!measure.closest.empty()) closest.push_back(measure.closest[at.vertices[k]]);
+          }
+          search->start({face, normal_of(measure, face), points, closest});
           for (std::size_t k = 0; k < points.size(); ++k) {
             const Value value = search->value(k, 0);
-            const auto distance = static_cast<float>(value.closest.distance);
+            const double distance = value.closest.distance;
             values[i + k] = value.closest.type == SiteType::none ? measure.description.no_value.distance
                             : value.negative                     ? -distance
                                                                  : distance;
           }
         }
       });
-  std::vector<float> least(mesh.positions.size(), std::numeric_limits<float>::quiet_NaN());
+  // Values that only their rounding to float makes equal may have different signs.
+  std::vector<double> least(mesh.positions.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
     for (std::size_t k = 0; k < 3; ++k) {
       if (at.of_corners[f][k] == kNone) continue;
-      float& value = least[mesh.triangles[f][k]];
-      const float here = values[at.of_corners[f][k]];
+      double& value = least[mesh.triangles[f][k]];
+      const double here = values[at.of_corners[f][k]];
       if (std::isnan(value) || std::abs(here) < std::abs(value)) value = here;
     }
-  return least;
+  std::vector<float> result(least.size());
+  std::ranges::transform(least, result.begin(), [](double value) { return static_cast<float>(value); });
+  return result;
 }
 
 FacingPoints measure_points(std::span<const Vec3> points, std::span<const Vec3> normals,
@@ -195,7 +201,9 @@ FacingPoints measure_points(std::span<const Vec3> points, std::span<const Vec3> 
                  for (std::size_t i = begin; i < end; ++i) {
                    std::optional<Vec3> normal;
                    if (!normals.empty()) normal = finite(normals[i]) ? normalized(normals[i]) : Vec3{};
-                   search->start(kNone, normal, points.subspan(i, 1));
+                   Samples sample{.normal = normal, .points = points.subspan(i, 1)};
+                   if (!measure.closest.empty()) sample.closest = std::span(measure.closest).subspan(i, 1);
+                   search->start(sample);
                    const Value value = search->value(0, 0);
                    result.closest[i] = value.closest;
                    result.behind[i] = value.negative, result.unmatched[i] = value.unmatched;

@@ -63,6 +63,14 @@ struct Value {
   bool unmatched = false;  ///< there is nothing to measure to, at any distance
 };
 
+/// Samples of one face, or a point.
+struct Samples {
+  std::uint32_t face = kNone;               ///< kNone: of a point
+  std::optional<Vec3> normal{};             ///< of the face or the point, if there is one
+  std::span<const Vec3> points{};           ///< which must outlive the calls of value()
+  std::span<const ClosestPoint> closest{};  ///< those of FaceMeasure::closest, if there are any
+};
+
 /// Measures from the samples of one face after another. At most one per thread at a time.
 class FaceSearch {
  public:
@@ -71,14 +79,12 @@ class FaceSearch {
   FaceSearch(const FaceSearch&) = delete;
   FaceSearch& operator=(const FaceSearch&) = delete;
 
-  /// Begins with the points of a face, which must outlive the calls of value(); kNone: of points with this
-  /// normal, if there is one.
-  virtual void start(std::uint32_t face, const std::optional<Vec3>& normal, std::span<const Vec3> points) = 0;
+  virtual void start(const Samples& samples) = 0;
   /// The value of each of these points, in their order, in the map with this number.
   virtual Value value(std::size_t point, std::size_t map) = 0;
 };
 
-/// A measure of samples by their faces: of all but the closest points of O2, which engines find.
+/// A measure of samples by their faces, which an engine's closest points of O2 may precede.
 class FaceMeasure {
  public:
   FaceMeasure() = default;
@@ -93,6 +99,8 @@ class FaceMeasure {
   Description description;
   Progress progress;
   std::vector<Vec3> normals;  ///< of the faces, if they decide
+  /// Of O2 to each of the vertices or points, if the measure begins with them.
+  std::vector<ClosestPoint> closest;
   /// The group of each face. Faces of a group measure alike from a point that they share; groups are measured
   /// in their order. Empty: each face is a group.
   std::vector<std::uint32_t> groups;

@@ -26,13 +26,13 @@ class FaceSelfSearch final : public map::FaceSearch {
                  double max_distance)
       : search_(sites, exclusion, patches), max_distance_(max_distance) {}
 
-  void start(std::uint32_t face, const std::optional<Vec3>&, std::span<const Vec3> points) override {
-    search_.start_from(face);
-    points_ = points;
+  void start(const map::Samples& samples) override {
+    search_.start_from(samples.face);
+    points_ = samples.points;
     Box box;
-    for (const Vec3& p : points) extend(box, p);
+    for (const Vec3& p : points_) extend(box, p);
     double squared = 0;
-    for (const Vec3& p : points) squared = std::max(squared, squared_norm(p - centre(box)));
+    for (const Vec3& p : points_) squared = std::max(squared, squared_norm(p - centre(box)));
     search_.gather(centre(box), std::sqrt(squared), max_distance_);
   }
   map::Value value(std::size_t i, std::size_t) override {

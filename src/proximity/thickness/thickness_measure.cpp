@@ -21,10 +21,10 @@ class FaceWallSearch final : public map::FaceSearch {
   FaceWallSearch(const Walls& walls, const std::vector<ThicknessMethod>& methods)
       : walls_(walls), methods_(methods), search_(walls) {}
 
-  void start(std::uint32_t face, const std::optional<Vec3>&, std::span<const Vec3> points) override {
-    points_ = points;
-    measured_ = walls_.measures(face);
-    if (measured_) search_.start(face, points);
+  void start(const map::Samples& samples) override {
+    points_ = samples.points;
+    measured_ = walls_.measures(samples.face);
+    if (measured_) search_.start(samples.face, points_);
   }
   map::Value value(std::size_t i, std::size_t map) override {
     if (!measured_) return {};

@@ -1,0 +1,78 @@
+#include "map/facing_measure.h"
+
+#include <sdm/closest_points.h>
+#include <sdm/error.h>
+
+#include <new>
+
+#include "core/memory.h"
+#include "geometry/vec.h"
+#include "query/facing/facing_normals.h"
+#include "sites/sites_data.h"
+
+namespace sdm {
+namespace map {
+namespace {
+
+class MatchSearch final : public FaceSearch {
+ public:
+  explicit MatchSearch(const FacingMeasure& measure) : measure_(measure) {}
+
+  void start(const Samples& samples) override { samples_ = samples; }
+  Value value(std::size_t i, std::size_t) override {
+    return measure_.value(samples_.points[i], *samples_.normal, samples_.closest[i]);
+  }
+
+ private:
+  const FacingMeasure& measure_;
+  Samples samples_;
+};
+
+}  // namespace
+
+FacingMeasure::FacingMeasure(const Sites& sites, const MapOptions& options)
+    : search_(internals(sites), *options.facing), max_distance_(options.max_distance) {
+  description.measured = measured_distance(options);
+  description.sign.method = SignMethod::side;
+  progress = options.progress;
+}
+
+FacingMeasure::FacingMeasure(const Mesh& mesh, const Sites& sites, const MapOptions& options)
+    : FacingMeasure(sites, options) {
+  description.sign = choose_sign(sites, options);
+  normals = facing::facing_normals(mesh, *options.facing).normals;
+}
+
+void FacingMeasure::find_closest(const Sites& sites, const MapOptions& options,
+                                 std::span<const Vec3> points) {
+  MapOptions of_all = options;
+  of_all.facing.reset();
+  closest = closest_points(sites, points, of_all);
+}
+
+std::unique_ptr<FaceSearch> FacingMeasure::search() const {
+  return std::make_unique<MatchSearch>(*this);
+}
+
+Value FacingMeasure::value(const Vec3& point, const Vec3& normal, const ClosestPoint& near) const {
+  const facing::Match match = search_.match(point, normal, max_distance_, near);
+  return {.closest = match.closest,
+          .vector = match.closest.point - point,
+          .negative = match.behind && description.sign.method != SignMethod::none,
+          .unmatched = match.unmatched};
+}
+
+}  // namespace map
+
+FacingPoints closest_facing_points(const Sites& sites, std::span<const Vec3> points,
+                                   std::span<const Vec3> normals, const MapOptions& options) try {
+  if (!options.facing) throw Error("closest_facing_points() needs an angle within which faces are allowed");
+  if (normals.size() != points.size()) throw Error("closest_facing_points() needs one normal for each point");
+  map::FacingMeasure measure(sites, options);
+  measure.find_closest(sites, options, points);
+  return map::measure_points(points, normals, measure);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("closest points of faces that face the queries");
+}
+
+}  // namespace sdm
