@@ -14,75 +14,12 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "support/blocks.h"
 #include "support/oracle.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
-
-struct Block {
-  Vec3 lo, hi;
-};
-using Blocks = std::vector<Block>;
-
-/// The boundary of the union, on the grid of all sides.
-class UnionMesh {
- public:
-  explicit UnionMesh(const Blocks& blocks) : blocks_(blocks) {
-    for (int k = 0; k < 3; ++k) {
-      for (const Block& b : blocks) at_[k].insert(at_[k].end(), {b.lo[k], b.hi[k]});
-      std::ranges::sort(at_[k]);
-      at_[k].erase(std::unique(at_[k].begin(), at_[k].end()), at_[k].end());
-    }
-  }
-  [[nodiscard]] Mesh mesh() {
-    Cell cell;
-    for (cell[0] = 0; cell[0] + 1 < count(0); ++cell[0])
-      for (cell[1] = 0; cell[1] + 1 < count(1); ++cell[1])
-        for (cell[2] = 0; cell[2] + 1 < count(2); ++cell[2])
-          if (is_filled(cell))
-            for (const int k : {0, 1, 2})
-              for (const int up : {0, 1}) add_side(cell, k, up);
-    return mesh_;
-  }
-
- private:
-  using Cell = std::array<int, 3>;
-
-  [[nodiscard]] int count(int k) const { return static_cast<int>(at_[k].size()); }
-  [[nodiscard]] bool is_filled(const Cell& cell) const {
-    Vec3 middle;
-    for (int k = 0; k < 3; ++k) {
-      if (cell[k] < 0 || cell[k] + 1 >= count(k)) return false;
-      middle[k] = 0.5 * (at_[k][cell[k]] + at_[k][cell[k] + 1]);
-    }
-    return std::ranges::any_of(blocks_, [&](const Block& b) {
-      for (int k = 0; k < 3; ++k)
-        if (middle[k] < b.lo[k] || middle[k] > b.hi[k]) return false;
-      return true;
-    });
-  }
-  void add_side(const Cell& cell, int k, int up) {
-    Cell beyond = cell;
-    beyond[k] += up == 1 ? 1 : -1;
-    if (is_filled(beyond)) return;
-    const auto corner = [&](int i, int j) {
-      Cell c = cell;
-      c[k] += up, c[(k + 1) % 3] += i, c[(k + 2) % 3] += j;
-      const auto [place, added] = numbers_.try_emplace(c, static_cast<std::uint32_t>(mesh_.positions.size()));
-      if (added) mesh_.positions.push_back({at_[0][c[0]], at_[1][c[1]], at_[2][c[2]]});
-      return place->second;
-    };
-    const std::uint32_t a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
-    mesh_.triangles.push_back(up == 1 ? Triangle{a, b, c} : Triangle{a, c, b});
-    mesh_.triangles.push_back(up == 1 ? Triangle{a, c, d} : Triangle{a, d, c});
-  }
-
-  const Blocks& blocks_;
-  std::array<std::vector<double>, 3> at_;
-  std::map<Cell, std::uint32_t> numbers_;
-  Mesh mesh_;
-};
 
 /// n·x ≤ height.
 struct HalfSpace {
@@ -219,7 +156,7 @@ TEST(DeepContacts, OfAnEdgeWithAnEndNearTheSurfaceAreDeep) {
                  {{-1, -1, -0.29}, {-0.66, 1, 0.29}},
                  {{0.66, -1, -0.29}, {1, 1, 0.29}}};
   const Blocks box{{{-0.667, -1.03, -0.92}, {0.06, -0.3, 1.08}}};
-  ProximityQuery query(UnionMesh(u).mesh(), UnionMesh(box).mesh());
+  ProximityQuery query(union_of(u), union_of(box));
   ASSERT_FALSE(query.contacts().empty());
   double deepest = 0;
   for (const Contact& c : query.contacts()) deepest = std::max(deepest, c.depth);
@@ -234,7 +171,7 @@ TEST(DeepContacts, OfAnEdgeKeepTheirIds) {
                  {{-1, -1, -0.29}, {-0.66, 1, 0.29}},
                  {{0.66, -1, -0.29}, {1, 1, 0.29}}};
   const Blocks box{{{-0.667, -1.03, -0.92}, {0.06, -0.3, 1.08}}};
-  ProximityQuery query(UnionMesh(u).mesh(), UnionMesh(box).mesh());
+  ProximityQuery query(union_of(u), union_of(box));
   std::set<std::uint64_t> deep;
   std::set<std::size_t> counts;
   constexpr int kSteps = 100;
@@ -259,7 +196,7 @@ TEST(DeepContacts, OfAnEdgeInsideAreDeep) {
   for (const double beyond : {0.01, 0.05, 0.3}) {
     const double half = 1 + beyond;
     const Blocks rod{{{-1, -0.02, -0.02}, {1, 0.02, 0.02}}}, box{{{-half, -half, -half}, {half, half, half}}};
-    ProximityQuery query(UnionMesh(rod).mesh(), UnionMesh(box).mesh());
+    ProximityQuery query(union_of(rod), union_of(box));
     query.set_pose(0, Transform::rotation({0, 1, 2}));
     std::set<std::uint64_t> ids;
     double deepest = 0;
@@ -280,7 +217,7 @@ TEST(DeepContacts, AreInEachRegionOfAnOverlap) {
     Jacks jacks(seed);
     const Blocks a = jacks.blocks(), b = jacks.blocks();
     const Transform pose = jacks.pose();
-    const Mesh mesh_a = UnionMesh(a).mesh(), mesh_b = UnionMesh(b).mesh();
+    const Mesh mesh_a = union_of(a), mesh_b = union_of(b);
     Mesh placed_b = mesh_b;
     for (Vec3& p : placed_b.positions) p = pose(p);
     const Regions regions(a, b, pose);
@@ -312,7 +249,7 @@ TEST(DeepContacts, SeparateUnionsOfBoxesInTwentySteps) {
     SCOPED_TRACE(seed);
     Jacks jacks(1000 + seed);
     const Blocks a = jacks.blocks(), b = jacks.blocks();
-    ProximityQuery query(UnionMesh(a).mesh(), UnionMesh(b).mesh());
+    ProximityQuery query(union_of(a), union_of(b));
     query.set_pose(0, jacks.pose());
     for (int step = 0; step < 20 && query.colliding(); ++step) {
       Vec3 by{};

@@ -14,6 +14,7 @@
 #include "query/shape/body.h"
 #include "query/shape/column_box.h"
 #include "sites/sites_data.h"
+#include "support/blocks.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
@@ -88,6 +89,30 @@ TEST(WallDepth, OfBoxesInEachOther) {
     EXPECT_GE(depth.upper, 0.01 - 1e-9);
     EXPECT_LE(depth.upper - depth.lower, precision + 2e-5);
   }
+}
+
+// A peg that is pressed into one side of its hole is as deep there everywhere.
+TEST(WallDepth, OfAPegInATightHole) {
+  ProximityQuery query(union_of({{{-0.5, -0.5, -1}, {0.5, 0.5, 1}}}), plate_with_hole(2, 0.51, 1));
+  for (const double depth : {1e-7, 5e-4, 1.5e-3, 0.01, 0.19}) {
+    query.set_pose(0, Transform::translation({0.01 + depth, 0, 0.8}));
+    const BoundedLength found = *query.penetration_depth();
+    EXPECT_LE(found.lower, depth + 1e-5);
+    EXPECT_GE(found.upper, depth - 1e-5);
+    EXPECT_LE(found.upper - found.lower, 1e-3 * std::sqrt(6.0) + 1e-5);
+  }
+}
+
+// The search ends at its limit, with bounds that hold.
+TEST(WallDepth, HasBoundsWhereItsPrecisionIsOutOfReach) {
+  ProximityQuery query(union_of({{{-0.5, -0.5, -1}, {0.5, 0.5, 1}}}), plate_with_hole(2, 0.51, 1),
+                       {.depth_precision = 1e-12});
+  query.set_pose(0, Transform::translation({0.012, 0, 0.8}));
+  const BoundedLength found = *query.penetration_depth();
+  EXPECT_EQ(found.certainty, Certainty::bounded);
+  EXPECT_LE(found.lower, 0.002 + 1e-5);
+  EXPECT_GE(found.upper, 0.002 - 1e-5);
+  EXPECT_LE(found.upper, 0.0025);
 }
 
 // A point in the wall of a hollow ball is at most half a wall deep.

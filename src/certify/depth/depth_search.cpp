@@ -26,7 +26,8 @@ constexpr std::uint32_t kMostCuts = 4;
 // has been measured, the search is likely to end before a new one would, and goes on up to kMostEasy, or
 // until a depth is known that is enough for all points in the walls.
 constexpr std::size_t kEasy = 256, kMostEasy = 1024, kOpenOfMeasured = 6;
-constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
+// No more parts are measured: the bounds stay as far apart as they are then.
+constexpr std::size_t kMostParts = std::size_t{1} << 18;
 
 // Whether the part of the boundary that was found excludes the point for which it was found, even though its
 // distance is taken to be linear in the triangle. If not, the triangle is too large for that. `enough` is in
@@ -61,7 +62,7 @@ Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity,
     search::branch_and_bound(*this, parts_);
   }
   if (is_unfinished()) {
-    budget_ = kUnlimited;
+    budget_ = kMostParts;
     if (look_at_walls()) {
       parts_.start(parts_.lower(), precision);
       search_all();

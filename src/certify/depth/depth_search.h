@@ -27,9 +27,10 @@ class DepthSearch : public search::Policy {
   using Bodies = std::array<const shape::PosedBody*, 2>;
 
   /// Divides parts until the bounds are at most `precision` apart, in space, as far as those on the distance
-  /// to the boundary of a solid that intersects itself are. Distances are computed to about 1e-6 of the size
-  /// of both bodies, which is not part of the bounds. Cost: some thirty searches for the closest point, more
-  /// where surfaces are nearly parallel; all cores if there are many. Reuses its memory.
+  /// to the boundary of a solid that intersects itself are, and at most 2¹⁸ parts are measured. Distances are
+  /// computed to about 1e-6 of the size of both bodies, which is not part of the bounds. Cost: some thirty
+  /// searches for the closest point, more where surfaces are nearly parallel; all cores if there are many.
+  /// Reuses its memory.
   [[nodiscard]] Depth find(const Bodies& bodies, const std::array<mesh::Similarity, 2>& to_other,
                            double precision);
 

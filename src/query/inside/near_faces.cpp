@@ -24,6 +24,32 @@ std::pair<double, double> extent(const std::array<Vec3, N>& points, const Vec3& 
   return range;
 }
 
+// Triangles that share a corner, as vectors from there to the others: whether both are at an angle of more
+// than kClearAngle from a plane through the corner between them, as faces that meet in the corner of a block,
+// of which neither the plane of a face nor one along two edges has both at an angle. With unit vectors, those
+// of b reversed, the normal of the plane that is farthest from all of them is the point closest to the origin
+// of their hull: in the middle of a side, or where the plane of a face is closest.
+bool apart_on_both_sides(const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b,
+                         const std::array<double, 4>& length) {
+  const std::array<Vec3, 4> w{(1 / length[0]) * a[0], (1 / length[1]) * a[1], (-1 / length[2]) * b[0],
+                              (-1 / length[3]) * b[1]};
+  const auto separates = [&](const Vec3& normal) {
+    const std::array<double, 4> along{dot(w[0], normal), dot(w[1], normal), dot(w[2], normal),
+                                      dot(w[3], normal)};
+    const double far = kClearAngle * norm(normal);
+    const auto [least, most] = std::ranges::minmax(along);
+    return least > far || most < -far;
+  };
+  if (separates(w[0] + w[1] + w[2] + w[3])) return true;  // as a rule
+  for (int i = 0; i < 4; ++i)
+    for (int j = i + 1; j < 4; ++j) {
+      if (separates(w[i] + w[j])) return true;
+      for (int k = j + 1; k < 4; ++k)
+        if (separates(cross(w[j] - w[i], w[k] - w[i]))) return true;
+    }
+  return false;
+}
+
 // Triangles that share a corner, as vectors from there to the others: whether a plane through the corner
 // separates them by kClearAngle.
 bool apart_at_corner(const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b) {
@@ -39,7 +65,7 @@ bool apart_at_corner(const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b)
     return (a_least > -none && b_most < -far) || (a_least > far && b_most < none) ||
            (b_least > -none && a_most < -far) || (b_least > far && a_most < none);
   };
-  if (separates(a[0] + a[1] - b[0] - b[1])) return true;
+  if (apart_on_both_sides(a, b, length)) return true;
   const Vec3 a_normal = cross(a[0], a[1]), b_normal = cross(b[0], b[1]);
   if (separates(a_normal) || separates(b_normal)) return true;
   for (int i = 0; i < 2; ++i)

@@ -19,6 +19,7 @@
 #include "query/inside/face_pairs.h"
 #include "query/inside/near_faces.h"
 #include "sites/sites_data.h"
+#include "support/blocks.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
 #include "support/points.h"
@@ -124,6 +125,55 @@ TEST(Solid, FacesNearOthersAreThoseFoundOneByOne) {
       }
     }
   }
+}
+
+TEST(Solid, FacesAtTheCornersOfBlocksAreNotNear) {
+  const test::Blocks stairs{{{0, 0, 0}, {3, 3, 1}}, {{0, 0, 1}, {2, 3, 2}}, {{0, 0, 2}, {1, 2, 3}}};
+  for (const Mesh& mesh : {test::plate_with_hole(2, 0.51, 1), test::union_of(stairs)}) {
+    const Sites sites(mesh);
+    std::vector<std::uint8_t> flags;
+    flag_faces_with_near(internals(sites), flags);
+    std::vector<std::uint32_t> near;
+    for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+      find_near_faces(internals(sites), f, near);
+      EXPECT_TRUE(near.empty()) << f;
+      EXPECT_EQ(flags[f], 0) << f;
+    }
+  }
+}
+
+// Two triangles with a corner in common, many of whose edges are parallel or at right angles.
+TEST(Solid, FacesAtAWideAngleAreNotNear) {
+  std::mt19937 random(5);
+  const auto corner = [&] {
+    Vec3 p;
+    for (double& x : p) x = static_cast<double>(random() % 3) - 1;
+    return p;
+  };
+  const auto directions = [](const Vec3& a, const Vec3& b) {
+    std::vector<Vec3> result;
+    constexpr int kSteps = 100;
+    for (int i = 0; i <= kSteps; ++i) result.push_back(normalized((kSteps - i) * a + double(i) * b));
+    return result;
+  };
+  int wide = 0;
+  for (int pair = 0; pair < 500; ++pair) {
+    Mesh mesh;
+    mesh.positions = {{}, corner(), corner(), corner(), corner()};
+    mesh.triangles = {{0, 1, 2}, {0, 3, 4}};
+    const auto& p = mesh.positions;
+    if (cross(p[1], p[2]) == Vec3{} || cross(p[3], p[4]) == Vec3{}) continue;
+    double cosine = -1;
+    for (const Vec3& a : directions(p[1], p[2]))
+      for (const Vec3& b : directions(p[3], p[4])) cosine = std::max(cosine, dot(a, b));
+    if (cosine > std::cos(0.1)) continue;
+    ++wide;
+    std::vector<std::uint32_t> near;
+    const Sites sites(mesh);
+    find_near_faces(internals(sites), 0, near);
+    EXPECT_TRUE(near.empty()) << pair;
+  }
+  EXPECT_GT(wide, 100);
 }
 
 // Triangles of all sizes and shapes, near each other or not.
