@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "support/blocks.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
 #include "support/shapes.h"
@@ -49,6 +50,62 @@ TEST(Contacts, OfABoxOnAPlateAreItsCorners) {
       EXPECT_EQ(c.patch, 0u);
       EXPECT_NEAR(c.point2[2], 0, 1e-9);
     }
+  }
+}
+
+// However slender a body is, it stands on the corners of its feet, and not on the deepest one alone.
+TEST(Contacts, OfSlenderBodiesAreTheirCorners) {
+  Blocks comb{{{0, 0, 1}, {27, 1, 2}}};
+  for (int foot = 0; foot < 14; ++foot) comb.push_back({{2.0 * foot, 0, 0}, {2.0 * foot + 1, 1, 1}});
+  struct Case {
+    Mesh mesh;
+    std::size_t corners;
+  };
+  const Case cases[]{{union_of({{{0, 0, 0}, {1, 1, 25}}}), 4},
+                     {union_of({{{0, 0, 0}, {1, 1, 100}}}), 4},
+                     {union_of({{{0, 0, 0}, {0.1, 100, 100}}}), 4},
+                     {union_of(comb), 56}};
+  for (const auto& [mesh, corners] : cases) {
+    ProximityQuery query(mesh, beam({200, 200, 1}, {0, 0, -1}));
+    std::set<std::uint64_t> ids;
+    for (const double tilt : {0.0, 1e-5, -1e-5}) {  // degrees
+      query.set_pose(0, Transform::translation({0, 0, -0.01}) * Transform::rotation({tilt, 0, 0}));
+      std::size_t found = 0;
+      for (const Contact& c : query.contacts()) {
+        EXPECT_NEAR(c.point1[2], -0.01, 1e-4);
+        EXPECT_NEAR(c.depth, -c.point1[2], 1e-9);
+        EXPECT_NEAR(c.normal[2], 1, 1e-9);
+        ids.insert(c.id);
+        ++found;
+      }
+      EXPECT_EQ(found, corners);
+    }
+    EXPECT_EQ(ids.size(), corners) << "of all frames";
+  }
+}
+
+// A slender cylinder of many sides stands on points all around, of which there are few.
+TEST(Contacts, OfASlenderCylinderAreAroundItsAxis) {
+  constexpr std::uint32_t kSides = 64;
+  Mesh post;
+  post.positions = {{0, 0, 0}, {0, 0, 25}};
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / kSides;
+    for (const double z : {0, 25})
+      post.positions.push_back({0.5 * std::cos(angle), 0.5 * std::sin(angle), z});
+    const std::uint32_t a = 2 + 2 * i, b = 2 + 2 * ((i + 1) % kSides);
+    for (const Triangle& t :
+         {Triangle{0, b, a}, Triangle{1, a + 1, b + 1}, Triangle{a, b, b + 1}, Triangle{a, b + 1, a + 1}})
+      post.triangles.push_back(t);
+  }
+  ProximityQuery query(post, beam({5, 5, 1}, {0, 0, -1}));
+  query.set_pose(0, Transform::translation({0, 0, -0.01}) * Transform::rotation({0.3, 0.2, 0}));
+  EXPECT_LE(query.contacts().size(), 32u);
+  for (int i = 0; i < 16; ++i) {
+    const Vec3 u{std::cos(0.4 * i), std::sin(0.4 * i), 0};
+    double farthest = 0;
+    for (const Contact& c : query.contacts()) farthest = std::max(farthest, dot(u, c.point1));
+    EXPECT_GT(farthest, 0.45) << i;
   }
 }
 

@@ -1,8 +1,10 @@
 #include "proximity/contacts/feature_contacts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "geometry/barycentric.h"
 #include "geometry/rounding.h"
@@ -19,6 +21,7 @@ constexpr double kFlush = 1.0 / 16;
 // The sine of the angle by which all edges at a corner fall off behind its normal; 0.58 in a cube.
 constexpr double kCorner = 0.25;
 constexpr double kDirection = 1e-9;  // relative to the smaller body: the shortest vector with a direction
+constexpr double kStraight = 1e-4;   // an angle: what an outline turns by at a corner, at least
 // What a contact is of, in the upper bits of its number.
 constexpr std::uint64_t kPart = std::uint64_t{1} << 60;
 constexpr int kBodyBit = 63;
@@ -51,7 +54,8 @@ void FeatureContacts::find_at_vertices(ContactCandidates& candidates, Regions re
   add_contacts();
 }
 
-// Adds the contact at the deepest vertex of a part, or of a region that is deep inside.
+// Adds the contact at the deepest vertex of a part, or of a region that is deep inside, and those of the
+// corners on which it stands.
 void FeatureContacts::find_deepest(Regions part) {
   const sites::SitesData& sites = internals(on().sites());
   const OneSidedVertices& vertices = candidates_->vertices();
@@ -77,12 +81,99 @@ void FeatureContacts::find_deepest(Regions part) {
   const DeepestVertex::Found found = deepest_.find(query().limit);
   const Box box = box_of(part);
   if (found.vertex != kNone)
-    features_.push_back({.key = kPart | part[0].node,
-                         .site = sites.regions.points[found.vertex].vertex,
-                         .point = found.point,
-                         .faces = box});
+    add_deepest(part, found, box);
   else if (box.lo[0] <= box.hi[0])
     bridges_.push_back(image(query().bodies[query().side]->pose().map, box));
+}
+
+void FeatureContacts::add_deepest(Regions part, const DeepestVertex::Found& deepest, const Box& box) {
+  find_corners(part, deepest.point);
+  const auto is_deepest = [&](const Corner& corner) { return corner.vertex == deepest.vertex; };
+  // By itself it is named by the part, whose deepest vertex is another one at times; a corner by its number.
+  if (corners_.size() < 2 || std::ranges::none_of(corners_, is_deepest))
+    features_.push_back({.key = kPart | part[0].node,
+                         .site = internals(on().sites()).regions.points[deepest.vertex].vertex,
+                         .point = deepest.point,
+                         .faces = box});
+  if (corners_.size() < 2) return;
+  OneSidedVertices& vertices = candidates_->vertices();
+  for (const Corner& corner : corners_) {
+    Feature feature{.key = corner.site, .site = corner.site, .faces = box};
+    const SurfacePoint* known = vertices.measured(corner.vertex);
+    feature.point = is_deepest(corner) ? deepest.point
+                    : known != nullptr ? *known
+                                       : vertices.measure(corner.vertex, face_);
+    if (!(feature.point.distance <= query().limit)) continue;
+    find_support(feature);
+    features_.push_back(feature);
+  }
+}
+
+// The corners of a part that are as deep as its deepest vertex, but for a small angle: those of a foot on a
+// floor. A body stands on the hull of such points, which may be much smaller than the body.
+void FeatureContacts::find_corners(Regions part, const SurfacePoint& deepest) {
+  const SitesData& sites = internals(on().sites());
+  const OneSidedVertices& vertices = candidates_->vertices();
+  const Vec3 up = outwards_at(deepest);
+  const auto owned = [&](std::uint32_t leaf) {
+    return sites.regions.owners[sites.regions.leaves[leaf]].vertices;
+  };
+  corners_.clear();
+  for (const ContactRegion& region : part) {
+    if (region.kind == ContactRegion::Kind::deep) continue;  // smaller than its depth
+    const std::uint32_t first = owned(region.first_leaf), last = owned(region.last_leaf);
+    for (std::uint32_t vertex = first; vertex < last; ++vertex) {
+      if (!region.is_inside() && vertices.is_free(vertex)) continue;
+      const std::uint32_t site = sites.regions.points[vertex].vertex;
+      const Vec3 offset = to_other().map(sites.mesh.positions[site]) - deepest.at;
+      const double height = dot(up, offset);
+      if (height * height <= kPushSine * kPushSine * squared_norm(offset) && is_corner(site, up))
+        corners_.push_back({vertex, site, offset - height * up});
+    }
+  }
+  keep_hull(corners_, up);
+}
+
+// Whether a vertex is one of the outline of the faces that lie across a direction: it can be pushed, and seen
+// along that direction, all edges there are in less than a half-plane.
+bool FeatureContacts::is_corner(std::uint32_t vertex, const Vec3& up) {
+  find_spokes(vertex);
+  if (!can_push(up, spokes_)) return false;
+  const Vec3 axis = std::abs(up[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 x = normalized(cross(up, axis)), y = cross(up, x);
+  angles_.clear();
+  for (const Vec3& spoke : spokes_) {
+    const Vec2 seen{dot(x, spoke), dot(y, spoke)};
+    if (dot(seen, seen) > kPushSine * kPushSine * squared_norm(spoke))
+      angles_.push_back(std::atan2(seen[1], seen[0]));
+  }
+  if (angles_.empty()) return true;  // a needle
+  std::ranges::sort(angles_);
+  double gap = angles_.front() + 2 * std::numbers::pi - angles_.back();
+  for (std::size_t i = 1; i < angles_.size(); ++i) gap = std::max(gap, angles_[i] - angles_[i - 1]);
+  return gap > std::numbers::pi + kStraight;
+}
+
+// Of more points than kMostCorners, keeps those that are farthest in as many directions, which are spread by
+// the length and the width of the hull.
+void FeatureContacts::keep_hull(std::vector<Corner>& corners, const Vec3& up) {
+  if (corners.size() <= kMostCorners) return;
+  const auto farthest = [&](const auto& along) { return *std::ranges::max_element(corners, {}, along); };
+  const Vec3 from = farthest([](const Corner&c) { return squared_norm(c.offset); }).offset,
+             to = farthest([&](const Corner&c) { return squared_norm(c.offset - from); }).offset;
+  const Vec3 length = to - from, across = cross(up, length);
+  const auto side = [&](const Corner& c) { return dot(across, c.offset - from); };
+  const double width = std::max(std::abs(side(farthest(side))),
+                                std::abs(side(farthest([&](const Corner& c) { return -side(c); }))));
+  const double along_unit = 1 / squared_norm(length), side_unit = width > 0 ? 1 / width : 0;
+  std::array<std::uint32_t, kMostCorners> kept;
+  for (std::size_t i = 0; i < kMostCorners; ++i) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(i) / kMostCorners;
+    const double u = std::cos(angle) * along_unit, v = std::sin(angle) * side_unit;
+    kept[i] =
+        farthest([&](const Corner& c) { return u * dot(length, c.offset - from) + v * side(c); }).vertex;
+  }
+  std::erase_if(corners, [&](const Corner& c) { return std::ranges::find(kept, c.vertex) == kept.end(); });
 }
 
 // A box of the faces that may be in contact.
@@ -158,22 +249,32 @@ void FeatureContacts::extend_by_star(Box& box, std::uint32_t vertex) const {
     for (const std::uint32_t corner : sites.mesh.triangles[face]) extend(box, sites.mesh.positions[corner]);
 }
 
+// The direction in which a point leaves the other body. That of a vector within the rounding of points is the
+// direction of the face.
+Vec3 FeatureContacts::outwards_at(const SurfacePoint& point) const {
+  const double distance = norm(point.vector);
+  if (!(distance > kDirection * query().size)) return internals(other().sites()).normals.face[point.face];
+  return (point.distance < 0 ? 1 / distance : -1 / distance) * point.vector;
+}
+
+// Sets spokes_, from a vertex to the corners of its faces.
+void FeatureContacts::find_spokes(std::uint32_t vertex) {
+  const SitesData& sites = internals(on().sites());
+  spokes_.clear();
+  for (const std::uint32_t face : sites.vertex_faces.of(vertex))
+    for (const std::uint32_t corner : sites.mesh.triangles[face])
+      if (corner != vertex)
+        spokes_.push_back(to_other().map.linear(sites.mesh.positions[corner] - sites.mesh.positions[vertex]));
+}
+
 // A corner that is flush with a face that cannot push it is carried by another one.
 void FeatureContacts::find_support(Feature& feature) {
   const SitesData& sites = internals(on().sites());
   const SurfacePoint& closest = feature.point;
   const double distance = norm(closest.vector);
   if (distance > std::max(query().limit, kFlush * query().size) || !at_boundary(other(), closest)) return;
-  // The direction of a vector within the rounding of points is that of the face.
-  const Vec3 outwards = distance > kDirection * query().size
-                            ? (closest.distance < 0 ? 1 / distance : -1 / distance) * closest.vector
-                            : internals(other().sites()).normals.face[closest.face];
-  spokes_.clear();
-  for (const std::uint32_t face : sites.vertex_faces.of(feature.site))
-    for (const std::uint32_t corner : sites.mesh.triangles[face])
-      if (corner != feature.site)
-        spokes_.push_back(
-            to_other().map.linear(sites.mesh.positions[corner] - sites.mesh.positions[feature.site]));
+  const Vec3 outwards = outwards_at(closest);
+  find_spokes(feature.site);
   if (can_push(outwards, spokes_)) return;
   // A vertex in a smooth surface has no other direction in which nothing else of the body is in contact
   // sooner.

@@ -40,10 +40,22 @@ class FeatureContacts {
     std::uint32_t own_face = kNone;  ///< which contains the point, if it is not on the vertex or edge
     Box faces{};  ///< a box of the faces around it that are in contact, in the frame of the body
   };
+  /// A corner of the outline of what lies along the other body.
+  struct Corner {
+    std::uint32_t vertex = 0, site = 0;  ///< its numbers among the regions and in the mesh
+    Vec3 offset{};                       ///< from the deepest vertex, across the way out
+  };
+  static constexpr std::size_t kMostCorners = 8;  ///< of a part that have contacts
   using Regions = std::span<const ContactRegion>;
 
   void start(ContactCandidates& candidates);
   void find_deepest(Regions part);
+  void add_deepest(Regions part, const DeepestVertex::Found& deepest, const Box& box);
+  void find_corners(Regions part, const SurfacePoint& deepest);
+  [[nodiscard]] bool is_corner(std::uint32_t vertex, const Vec3& up);
+  static void keep_hull(std::vector<Corner>& corners, const Vec3& up);
+  [[nodiscard]] Vec3 outwards_at(const SurfacePoint& point) const;
+  void find_spokes(std::uint32_t vertex);
   void find_each(const ContactRegion& region);
   void find_on_edge(std::uint32_t edge, bool a_touches, bool b_touches, double reach);
   void find_support(Feature& feature);
@@ -71,6 +83,8 @@ class FeatureContacts {
   WayOutFinder way_out_;
   std::vector<Feature> features_;
   std::vector<Vec3> spokes_;
+  std::vector<Corner> corners_;
+  std::vector<double> angles_;
 
   std::vector<Contact> contacts_;
   std::vector<Box> boxes_, bridges_;
