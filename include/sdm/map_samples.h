@@ -29,10 +29,11 @@ struct SampleRange {
 
 /// Computes the values of some samples and stores them; the others keep theirs. Once
 /// this was called for ranges that cover all samples, in any order, with the same arguments otherwise, the
-/// arrays and the sign of the map are those of compute_map() to the bit; beyond_max_distance counts the
-/// samples of this range. Throws sdm::Error as compute_map() does, if `map` has another size than the atlas,
-/// for ranges other than those of sample_range_grain(), for options.facing, and for engines that compute
-/// whole maps only. Cost: as compute_map(), by the samples of the range.
+/// arrays and the sign of the map are those of compute_map() to the bit; beyond_max_distance and
+/// without_match count the samples of this range. Throws sdm::Error as compute_map() does, if `map` has
+/// another size than the atlas, for ranges other than those of sample_range_grain(), and for engines that
+/// compute whole maps only. Cost: as compute_map(), by the samples of the range, and with options.facing
+/// linear in the faces of the surface.
 SDM_API void compute_samples(const Surface& surface, const Sites& sites, const MapOptions& options,
                              const SampleRange& range, DistanceMap& map);
 

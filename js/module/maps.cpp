@@ -175,9 +175,9 @@ Result* compute_whole_map(DistanceMap* map, const Surface* surface, const Sites*
 
 SDM_EXPORT(sdm_compute_samples)
 Result* compute_range(DistanceMap* map, const Surface* surface, const Sites* sites, std::uint32_t sign,
-                      double max_distance, std::uint32_t first, std::uint32_t count) {
+                      double max_distance, double facing, std::uint32_t first, std::uint32_t count) {
   return guarded([&](Result& result) {
-    compute_samples(*surface, *sites, map_options(sign, max_distance, NAN), {first, count}, *map);
+    compute_samples(*surface, *sites, map_options(sign, max_distance, facing), {first, count}, *map);
     add_sign(result, *map);
   });
 }

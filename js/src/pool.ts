@@ -4,7 +4,7 @@ import { type CallOptions, type SdmWorker, type WorkerMap, type WorkerSites, typ
 import { type Atlas, type MapOptions, type MapValues, type SurfaceOptions } from './surface.js';
 import { type Indices, type Points, SdmError, type SignMethod } from './types.js';
 
-export type PoolMapOptions = Omit<MapOptions, 'progress' | 'facing'> & CallOptions;
+export type PoolMapOptions = Omit<MapOptions, 'progress'> & CallOptions;
 
 /** The arrays of a map, as of DistanceMap. */
 export interface PoolMap extends MapValues {
@@ -191,5 +191,5 @@ checkMethods(SdmPool, { surface: take(mesh, { ...ofSurface, ...ofCalls }), sites
 checkMethods(PoolSites, { refit: take({ positions: mesh.positions }) }, ['refit']);
 checkMethods(PoolSurface, {
   refit: take({ positions: mesh.positions }),
-  map: take({ sites: object(PoolSites, 'PoolSites') }, { sign: ofMap.sign, maxDistance: ofMap.maxDistance, ...ofCalls }),
+  map: take({ sites: object(PoolSites, 'PoolSites') }, { ...ofMap, ...ofCalls }),
 }, ['refit', 'map']);

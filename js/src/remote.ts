@@ -178,7 +178,7 @@ class Connection {
     const request: Request = { call: {
       id, method, object: object ? this.reference(object).sdmObject : 0, options: sentOptions, wantsProgress: progress !== undefined,
       cancellable, values: sent.map((value) => (value instanceof Remote ? this.reference(value) : value)) } };
-    const inParts = kMethodsInParts.includes(method) && rest['facing'] === undefined && cancellable;
+    const inParts = kMethodsInParts.includes(method) && cancellable;
     return new Promise((resolve, reject) => {
       const abort = () => this.abort(id, signal!.reason);
       const release = () => signal?.removeEventListener('abort', abort);
@@ -363,9 +363,7 @@ export class WorkerMap extends Remote {
     Object.assign(this, await this.call('update', [], options));
   }
   /** As of DistanceMap. Returns what `sign` and `signReason` then are. */
-  async computeSamples(
-    first: number, count: number, options?: Options<Omit<MapOptions, 'facing'>>,
-  ): Promise<{ sign: SignMethod; signReason: string }> {
+  async computeSamples(first: number, count: number, options?: Options<MapOptions>): Promise<{ sign: SignMethod; signReason: string }> {
     const signs = await this.call('computeSamples', [first, count], options);
     Object.assign(this, signs);
     return signs;

@@ -332,15 +332,14 @@ export class DistanceMap extends Owned {
 
   /** Computes all values, again after refit() of the surface or the sites; takes no more memory. */
   compute(options: MapOptions = {}): void {
-    this.take(this.module.call('sdm_compute_map', [...this.arguments(options), options.facing ?? NaN], options.progress));
+    this.take(this.module.call('sdm_compute_map', this.arguments(options), options.progress));
   }
   /**
    * Computes the values of some samples, `first` to `first + count` of Surface.samples(), which must be multiples of
    * sampleCounts().grain or the end. The other texels keep theirs. Ranges that cover all samples, computed in any order and in
    * any number of modules, are the whole map to the bit.
    */
-  computeSamples(first: number, count: number, options: Omit<MapOptions, 'facing'> = {}): void {
-    if ((options as MapOptions).facing !== undefined) throw new SdmError('input', 'a map of what faces the samples is computed as a whole');
+  computeSamples(first: number, count: number, options: MapOptions = {}): void {
     this.take(this.module.call('sdm_compute_samples', [...this.arguments(options), first, count], options.progress));
   }
   /** The values of samples, in their order, as those of the arrays of the map. */
@@ -350,9 +349,9 @@ export class DistanceMap extends Owned {
     return { distances: float32(distances), vectors: float32(vectors), sitesOfTexels: uint32(sites), siteTypes: types };
   }
 
-  private arguments(options: MapOptions): [number, number, number, number, number] {
+  private arguments(options: MapOptions): number[] {
     const method = this.module.number('sign', options.sign ?? 'automatic');
-    return [...this.addresses(), method, options.maxDistance ?? Infinity];
+    return [...this.addresses(), method, options.maxDistance ?? Infinity, options.facing ?? NaN];
   }
   private take([used, reason]: Bytes[]): void {
     this.sign = this.module.words('sign')[float64(used!)[0]!] as SignMethod;

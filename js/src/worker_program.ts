@@ -156,8 +156,8 @@ class Server {
   }
 
   /** Where no other thread can set a flag, the samples are computed in parts, between which the message to cancel is received. */
-  private async update(map: DistanceMap, call: Call, options: { facing?: number; progress?: Progress }): Promise<object> {
-    if (this.flags || !call.cancellable || options.facing !== undefined) map.compute(options);
+  private async update(map: DistanceMap, call: Call, options: { progress?: Progress }): Promise<object> {
+    if (this.flags || !call.cancellable) map.compute(options);
     else await this.inParts(map, call, options);
     return { sign: map.sign, signReason: map.signReason };
   }

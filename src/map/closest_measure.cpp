@@ -7,7 +7,7 @@ namespace sdm::map {
 ClosestMeasure::ClosestMeasure(const Surface& surface, const Sites& sites, const MapOptions& options)
     : surface_(surface), engine_(engine_of(options)) {
   if (options.facing) {
-    facing_.emplace(surface.mesh(), sites, options);
+    facing_.emplace(surface, sites, options);
     return;
   }
   description_.sign = choose_sign(sites, options);

@@ -43,6 +43,12 @@ FacingMeasure::FacingMeasure(const Mesh& mesh, const Sites& sites, const MapOpti
   normals = facing::facing_normals(mesh, *options.facing).normals;
 }
 
+FacingMeasure::FacingMeasure(const Surface& surface, const Sites& sites, const MapOptions& options)
+    : FacingMeasure(sites, options) {
+  description.sign = choose_sign(sites, options);
+  normals = facing::facing_normals(surface, *options.facing).normals;
+}
+
 void FacingMeasure::find_closest(const Sites& sites, const MapOptions& options,
                                  std::span<const Vec3> points) {
   MapOptions of_all = options;

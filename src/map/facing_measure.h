@@ -15,6 +15,8 @@ class FacingMeasure final : public FaceMeasure {
   FacingMeasure(const Sites& sites, const MapOptions& options);
   /// Of the faces of a mesh.
   FacingMeasure(const Mesh& mesh, const Sites& sites, const MapOptions& options);
+  /// The same, which keeps the normals of the surface for further maps.
+  FacingMeasure(const Surface& surface, const Sites& sites, const MapOptions& options);
 
   /// Sets `closest` to the closest points of vertices or points, by the engine of the options.
   void find_closest(const Sites& sites, const MapOptions& options, std::span<const Vec3> points);

@@ -11,9 +11,7 @@
 namespace sdm {
 namespace {
 
-void check_part(const Surface& surface, const MapOptions& options, const SampleRange& range,
-                const DistanceMap& map) {
-  if (options.facing) throw Error("a map of what faces the samples is computed as a whole, not in parts");
+void check_part(const Surface& surface, const SampleRange& range, const DistanceMap& map) {
   if (map.distance.size() != surface.map_faces().size() || map.resolution != surface.resolution())
     throw Error("the map belongs to another surface");
   const std::size_t samples = surface.sample_texels().size(), grain = sample_range_grain(surface);
@@ -41,9 +39,9 @@ DistanceMap empty_map(const Surface& surface) try {
 
 void compute_samples(const Surface& surface, const Sites& sites, const MapOptions& options,
                      const SampleRange& range, DistanceMap& map) try {
-  check_part(surface, options, range, map);
+  check_part(surface, range, map);
   const map::ClosestMeasure measure(surface, sites, options);
-  map::TexelStore texels(map, measure.description(), surface.sample_texels());
+  map::TexelStore texels(map, measure.description(), surface.sample_texels(), range);
   closest::for_each_sample_block(
       surface, range, options.progress, "map", [&](std::size_t begin, std::span<const Vec3> points) {
         measure.engine().closest_points(

@@ -26,6 +26,14 @@ DistanceMap& cleared(DistanceMap& map, const Surface& surface, const Description
   return described(map, description);
 }
 
+DistanceMap& cleared(DistanceMap& map, const Description& description,
+                     std::span<const std::uint32_t> texels) {
+  if (may_lack_match(description.measured.kind)) map.unmatched.resize(map.distance.size());
+  if (!map.unmatched.empty())
+    for (const std::uint32_t texel : texels) map.unmatched[texel] = 0;
+  return described(map, description);
+}
+
 // The tiles in the order in which they are measured: of one group after another. Empty: in their own.
 Array<std::uint32_t> order_of(const surface::Tiles& tiles, const FaceMeasure& measure) {
   if (measure.groups.empty()) return {};
@@ -84,8 +92,10 @@ TexelStore::TexelStore(DistanceMap& map, const Surface& surface, const Descripti
     : map_(cleared(map, surface, description)), texels_(texels), writer_(map, description.no_value) {}
 
 TexelStore::TexelStore(DistanceMap& map, const Description& description,
-                       std::span<const std::uint32_t> texels)
-    : map_(described(map, description)), texels_(texels), writer_(map, description.no_value) {}
+                       std::span<const std::uint32_t> texels, const SampleRange& range)
+    : map_(cleared(map, description, texels.subspan(range.first, range.count))),
+      texels_(texels),
+      writer_(map, description.no_value) {}
 
 void TexelStore::operator()(std::size_t first, const sites::ClosestPacket& values, std::uint32_t negative,
                             std::uint32_t unmatched) {
@@ -105,7 +115,7 @@ void TexelStore::finish() {
   for (const Counter& counter : counters_)
     without += counter.without, map_.without_match += counter.unmatched;
   map_.beyond_max_distance = without - map_.without_match;
-  if (map_.without_match == 0) map_.unmatched.clear();
+  if (map_.without_match == 0 && std::ranges::count(map_.unmatched, 1) == 0) map_.unmatched.clear();
 }
 
 void measure_texels(const Surface& surface, const FaceMeasure& measure, std::span<DistanceMap* const> maps) {

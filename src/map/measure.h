@@ -3,6 +3,7 @@
 
 #include <sdm/facing.h>
 #include <sdm/map.h>
+#include <sdm/map_samples.h>
 #include <sdm/mesh.h>
 #include <sdm/surface.h>
 
@@ -33,8 +34,9 @@ class TexelStore {
   /// this.
   TexelStore(DistanceMap& map, const Surface& surface, const Description& description,
              std::span<const std::uint32_t> texels);
-  /// The same of a part of the texels, whose other values the map keeps.
-  TexelStore(DistanceMap& map, const Description& description, std::span<const std::uint32_t> texels);
+  /// The same of a range of the texels: the others keep their values.
+  TexelStore(DistanceMap& map, const Description& description, std::span<const std::uint32_t> texels,
+             const SampleRange& range);
 
   /// Stores the values of the texels from the one with this number on; their bits are set in `negative` if
   /// the distance is negative, and in `unmatched` if nothing is allowed at any distance: these have no value.

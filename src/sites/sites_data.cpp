@@ -112,6 +112,7 @@ void SitesData::refit(std::span<const Vec3> positions) {
     tree::refit(wide, tree);
     frames.forget();
     signs.outdate();
+    normal_bounds.forget();
     compute_regions(refit);
   });
 }

@@ -17,6 +17,9 @@
 #include "tree/aabb_tree.h"
 #include "tree/wide_tree.h"
 
+namespace sdm::facing {
+struct NormalBounds;
+}
 namespace sdm::inside {
 struct ShapeSigns;
 }
@@ -68,8 +71,9 @@ class SitesData {
   Regions regions;      ///< by the leaves of both
   LeafFrames frames;    ///< of the leaves of both
   Pseudonormals normals;
-  Array<std::uint8_t> sliver;      ///< of each face: too thin for a reliable normal
-  Kept<inside::ShapeSigns> signs;  ///< of the present shape: see inside::signs_of()
+  Array<std::uint8_t> sliver;                ///< of each face: too thin for a reliable normal
+  Kept<inside::ShapeSigns> signs;            ///< of the present shape: see inside::signs_of()
+  Kept<facing::NormalBounds> normal_bounds;  ///< of the present shape: see facing::normal_bounds_of()
 
   /// What is stored; the rest is derived from it. See core/arrays/stored_arrays.h.
   template <class Self, class Visit>

@@ -215,6 +215,7 @@ void SurfaceData::edit(const MeshEdit& edit) {
   chart_count += added.charts.size();
   max_stretch = std::max(max_stretch, added.max_stretch);
   identity = std::move(new_identity);
+  outward_normals.forget();
 }
 
 }  // namespace sdm::surface

@@ -97,6 +97,7 @@ void SurfaceData::refit(std::span<const Vec3> positions) {
   intact_.change([&] {
     parallel_for(mesh.triangles.size(), 4096, move);
     std::ranges::copy(positions, current.begin());
+    outward_normals.forget();
   });
 }
 

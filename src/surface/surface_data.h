@@ -9,6 +9,7 @@
 #include "atlas/layout.h"
 #include "atlas/packing/room.h"
 #include "core/intact.h"
+#include "core/lazy/kept.h"
 #include "geometry/vec.h"
 
 namespace sdm::surface {
@@ -76,6 +77,7 @@ class SurfaceData {
   std::vector<std::uint32_t> sample_faces;  ///< samples in spatial order are scattered over map_faces
   std::vector<std::uint32_t> face_samples;  ///< how many each face has
   std::shared_ptr<const Identity> identity = std::make_shared<Identity>();
+  Kept<std::vector<Vec3>> outward_normals;  ///< of the present shape: see facing::outward_normals()
 
  private:
   class Edit;

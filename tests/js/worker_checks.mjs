@@ -64,15 +64,19 @@ export async function abortsMaps(worker) {
   const { positions, indices } = ball(120), other = ball(120, 0.9);
   const surface = await worker.surface(positions, indices, { resolution: 1024 });
   const sites = await worker.sites(other.positions, other.indices);
+  for (const options of [{}, { facing: 60 }]) await abortsMapsOf(worker, surface, sites, options);
+}
+
+async function abortsMapsOf(worker, surface, sites, options) {
   const before = worker.restarts;
   const controller = new AbortController();
   let seen = 0;
-  const running = rejection(surface.map(sites, { signal: controller.signal, progress: (_, fraction) => {
+  const running = rejection(surface.map(sites, { ...options, signal: controller.signal, progress: (_, fraction) => {
     seen = fraction;
     controller.abort();
   } }));
-  const waiting = rejection(surface.map(sites, { signal: controller.signal }));
-  const later = surface.map(sites);
+  const waiting = rejection(surface.map(sites, { ...options, signal: controller.signal }));
+  const later = surface.map(sites, options);
   for (const error of await Promise.all([running, waiting])) assert(error.name === 'AbortError', `aborted with ${error}`);
   assert(seen > 0 && seen < 1, `aborted at ${seen}`);
   const { distances } = await (await later).arrays('distances');
@@ -199,10 +203,10 @@ export async function dividesMaps(pool, worker) {
   const part = ball(50), other = ball(30, 0.8);
   const surfaces = [await pool.surface(part.positions, part.indices, { resolution: 300 }), await worker.surface(part.positions, part.indices, { resolution: 300 })];
   const sites = [await pool.sites(other.positions, other.indices), await worker.sites(other.positions, other.indices)];
-  for (const scale of [1, 1.1]) {
+  for (const [scale, options] of [[1, {}], [1.1, {}], [1.2, { facing: 1, maxDistance: 0.2 }]]) {
     const moved = other.positions.map((x) => scale * x);
     await Promise.all(sites.map((one) => one.refit(moved)));
-    const ours = await surfaces[0].map(sites[0]), map = await surfaces[1].map(sites[1]);
+    const ours = await surfaces[0].map(sites[0], options), map = await surfaces[1].map(sites[1], options);
     const whole = await map.arrays('distances', 'vectors', 'sitesOfTexels', 'siteTypes');
     for (const name of Object.keys(whole)) assert(sameBits(ours[name], whole[name]), `${name} of the pool differ`);
     assert(ours.sign === map.sign && ours.signReason === map.signReason, `sign ${ours.sign}`);

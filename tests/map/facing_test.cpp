@@ -196,6 +196,30 @@ double dent(double x, double y) {
   return -0.79 * u * u;
 }
 
+TEST(Facing, FollowsRefits) {
+  const Mesh on = sphere(3), other = moved(cube(), {0.3, 0.1, 0});
+  const MapOptions options{.facing = 60};
+  const auto stretched = [](const Mesh& mesh) {
+    Mesh result = mesh;
+    for (Vec3& p : result.positions) p = {p[0] + 2 * p[1], 3 * p[1], p[2] - p[0]};
+    return result;
+  };
+  Surface surface(on, {.resolution = 64});
+  Sites sites(other);
+  static_cast<void>(compute_map(surface, sites, options));
+  surface.refit(stretched(on).positions);
+  sites.refit(stretched(other).positions);
+  const Surface rebuilt(surface.mesh(), {.resolution = 64}, surface.stored_atlas());
+  const DistanceMap expected = compute_map(rebuilt, Sites(sites.mesh()), options);
+  EXPECT_GT(expected.without_match, 0U);
+  const DistanceMap map = compute_map(surface, sites, options);
+  EXPECT_EQ(map.without_match, expected.without_match);
+  for (const std::uint32_t texel : surface.sample_texels()) {
+    if (std::isnan(expected.distance[texel])) continue;
+    EXPECT_NEAR(map.distance[texel], expected.distance[texel], 1e-6) << texel;
+  }
+}
+
 struct Sheets : ::testing::TestWithParam<double> {
   Sites sites{plate(GetParam())};
   Surface surface{terrain(40, dent), {.resolution = 128}};

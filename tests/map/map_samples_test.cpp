@@ -24,6 +24,7 @@ std::vector<std::uint32_t> bits(const DistanceMap& map) {
     for (const float x : v) all.push_back(std::bit_cast<std::uint32_t>(x));
   all.insert(all.end(), map.site.begin(), map.site.end());
   for (const SiteType type : map.site_type) all.push_back(static_cast<std::uint32_t>(type));
+  all.insert(all.end(), map.unmatched.begin(), map.unmatched.end());
   return all;
 }
 
@@ -64,6 +65,29 @@ TEST(MapSamples, InAnyOrderAreTheMapToTheBit) {
     }
 }
 
+TEST(MapSamples, OfFacingFacesAreTheMapToTheBit) {
+  const Surface surface(moved(sphere(4), {0, 0, 1}), {.resolution = 128});
+  for (const auto& [o2, unmatched] : {std::pair{cube(), false}, {height_field(9), true}}) {
+    const Sites sites(o2);
+    const MapOptions options{.max_distance = 0.5, .facing = 60};
+    const DistanceMap whole = compute_map(surface, sites, options);
+    EXPECT_EQ(whole.without_match > 0, unmatched);
+    EXPECT_GT(whole.beyond_max_distance, 0u);
+    DistanceMap parts = compute_map(surface, Sites(height_field(9)), options);  // of which nothing may stay
+    std::size_t without_match = 0;
+    std::vector<SampleRange> ranges = ranges_of(surface, 2);
+    std::ranges::reverse(ranges);
+    for (const SampleRange& range : ranges) {
+      compute_samples(surface, sites, options, range, parts);
+      without_match += parts.without_match;
+    }
+    EXPECT_TRUE(bits(parts) == bits(whole));
+    EXPECT_EQ(without_match, whole.without_match);
+    EXPECT_EQ(parts.measured.facing, 60);
+    EXPECT_EQ(parts.sign.method, SignMethod::side);
+  }
+}
+
 TEST(MapSamples, LeaveTheOtherTexelsAsTheyAre) {
   const Surface surface(sphere(3), {.resolution = 128});
   DistanceMap map = empty_map(surface);
@@ -90,7 +114,6 @@ TEST(MapSamples, RefuseWhatTheyCannotDo) {
   EXPECT_THAT(fault({}, {1, samples - 1}, map), HasSubstr("must begin and end at multiples of"));
   EXPECT_THAT(fault({}, {0, samples + grain}, map), HasSubstr("must begin and end at multiples of"));
   EXPECT_THAT(fault({}, {SIZE_MAX - grain + 1, grain}, map), HasSubstr("must begin and end at multiples of"));
-  EXPECT_THAT(fault({.facing = 90}, {0, grain}, map), HasSubstr("as a whole"));
   EXPECT_THAT(fault({}, {0, grain}, of_other), HasSubstr("belongs to another surface"));
   EXPECT_EQ(fault({}, {0, samples}, map), "");
 }

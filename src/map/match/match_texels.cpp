@@ -49,9 +49,8 @@ TexelMatches matches_of(const Surface& surface, const Sites& sites, const Distan
     throw Error("the map belongs to another surface: its number of texels differs");
   const MatchKind found = kind_of(map.measured);
   const std::vector<Vec3> normals =
-      found == MatchKind::facing
-          ? facing::facing_normals(surface.mesh(), map.measured.facing.value_or(90)).normals
-          : std::vector<Vec3>();
+      found == MatchKind::facing ? facing::facing_normals(surface, map.measured.facing.value_or(90)).normals
+                                 : std::vector<Vec3>();
   const auto faces = surface.texel_faces();
   TexelMatches matches = map::no_matches(surface);
   constexpr std::size_t kRowsOfTask = 8;

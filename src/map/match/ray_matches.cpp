@@ -127,7 +127,7 @@ TexelMatches ray_matches(const Surface& surface, const Sites& sites, const Match
   if (options.normals == nullptr) smooth = smooth_normals(surface.mesh());
   const CornerNormals normals(surface.mesh(), smooth ? *smooth : *options.normals, "the surface");
   const facing::FacingSearch allowed(internals(sites), options.facing);
-  const std::vector<Vec3> face_normals = facing::facing_normals(surface.mesh(), options.facing).normals;
+  const std::vector<Vec3> face_normals = facing::facing_normals(surface, options.facing).normals;
   const RayMatching matching{surface,      internals(sites), allowed,
                              face_normals, normals,          std::min(options.cage, options.max_distance)};
   TexelMatches matches = no_matches(surface);

@@ -177,7 +177,7 @@ std::vector<float> transfer(const Surface& surface, const Sites& sites, const Di
     throw Error("the map belongs to another surface: its number of texels differs");
   const std::vector<Vec3> normals =
       map.measured.kind == DistanceKind::facing
-          ? facing::facing_normals(surface.mesh(), map.measured.facing.value_or(90)).normals
+          ? facing::facing_normals(surface, map.measured.facing.value_or(90)).normals
           : std::vector<Vec3>();
   const auto points_of = [&] {
     return [points = ClosestOfTexels(surface, sites, map, normals)](std::uint32_t texel) mutable {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
@@ -34,11 +35,9 @@ double least_height(const Mesh& mesh, std::size_t face) {
   return norm(cross(b - a, c - a)) / std::max({norm(b - a), norm(c - b), norm(a - c)});
 }
 
-}  // namespace
-
-FacingNormals facing_normals(const Mesh& mesh, double angle) {
+FacingNormals with_surroundings(const Mesh& mesh, std::vector<Vec3> normals, double angle) {
   const FacingAngle facing(angle);
-  FacingNormals result{.normals = outward_normals(mesh), .height = kLow * diagonal(bounds(mesh))};
+  FacingNormals result{.normals = std::move(normals), .height = kLow * diagonal(bounds(mesh))};
   std::vector<std::uint32_t> low;
   for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
     if (result.normals[f] != Vec3{} && least_height(mesh, f) < result.height) low.push_back(f);
@@ -63,6 +62,16 @@ FacingNormals facing_normals(const Mesh& mesh, double angle) {
     result.replaced.push_back(f);
   }
   return result;
+}
+
+}  // namespace
+
+FacingNormals facing_normals(const Mesh& mesh, double angle) {
+  return with_surroundings(mesh, outward_normals(mesh), angle);
+}
+
+FacingNormals facing_normals(const Surface& surface, double angle) {
+  return with_surroundings(surface.mesh(), outward_normals(surface), angle);
 }
 
 }  // namespace sdm::facing

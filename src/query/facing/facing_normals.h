@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sdm/mesh.h>
+#include <sdm/surface.h>
 
 #include <cstdint>
 #include <vector>
@@ -27,5 +28,8 @@ struct FacingNormals {
 
 /// `angle` as of check_angle(). Cost: that of outward_normals() and linear in the faces.
 [[nodiscard]] FacingNormals facing_normals(const Mesh& mesh, double angle);
+
+/// The same; further calls for the shape of the surface cost what is linear only.
+[[nodiscard]] FacingNormals facing_normals(const Surface& surface, double angle);
 
 }  // namespace sdm::facing

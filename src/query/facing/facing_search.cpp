@@ -23,9 +23,8 @@ double angle_at(const Mesh& mesh, std::uint32_t face, std::uint32_t vertex) {
 
 }  // namespace
 
-FacingSearch::FacingSearch(const sites::SitesData& sites, double angle) : sites_(sites), angle_(angle) {
-  cones_ = normal_cones(sites);
-}
+FacingSearch::FacingSearch(const sites::SitesData& sites, double angle)
+    : sites_(sites), bounds_(normal_bounds_of(sites)), angle_(angle) {}
 
 std::span<const std::uint32_t> FacingSearch::faces_of(const ClosestPoint& closest) const {
   switch (closest.type) {
@@ -52,7 +51,7 @@ Vec3 FacingSearch::normal_at(const ClosestPoint& closest, const Vec3& normal, st
 
 std::vector<std::uint32_t> FacingSearch::some_allowed(const Vec3& normal, std::size_t most) const {
   const tree::AabbTree& tree =
-      by_normal_.get([this] { return std::make_shared<tree::AabbTree>(normal_tree(sites_)); });
+      bounds_.by_normal.get([this] { return std::make_shared<tree::AabbTree>(normal_tree(sites_)); });
   std::vector<std::uint32_t> found;
   const auto enter = [&](const tree::Subtree& below) {
     return found.size() < most && angle_.allows(largest_cosine(tree.box(below.root), normal));

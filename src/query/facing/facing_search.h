@@ -2,15 +2,12 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <vector>
 
-#include "core/lazy/kept.h"
 #include "query/facing/facing_angle.h"
-#include "query/facing/normal_cones.h"
+#include "query/facing/normal_bounds.h"
 #include "sites/sites_data.h"
-#include "tree/aabb_tree.h"
 
 namespace sdm::facing {
 
@@ -24,7 +21,7 @@ struct Match {
 
 class FacingSearch {
  public:
-  /// `angle` as of check_angle(). Cost: linear in the faces.
+  /// `angle` as of check_angle(). The sites must outlive this. Cost: that of normal_bounds_of().
   FacingSearch(const sites::SitesData& sites, double angle);
 
   /// Whether the normal of a face is within the angle of a unit vector; for 90° less than that.
@@ -34,12 +31,12 @@ class FacingSearch {
 
   /// Whether there may be an allowed face below a node of the tree.
   [[nodiscard]] bool may_allow(std::uint32_t node, const Vec3& normal) const {
-    return angle_.allows(largest_cosine(cones_[node], normal));
+    return angle_.allows(largest_cosine(bounds_.cones[node], normal));
   }
 
   /// Returns the faces that are allowed for a unit vector, if they are fewer than about the root of all
   /// faces. A search of the tree, where few leaves have such a face, would visit most of it. Cost: by these
-  /// faces, mostly; the first call builds a tree, O(n log n).
+  /// faces, mostly; the first call for a shape builds a tree, O(n log n).
   [[nodiscard]] std::optional<std::vector<std::uint32_t>> few_allowed(const Vec3& normal) const;
 
   /// A search that visits more nodes is continued among few_allowed().
@@ -61,8 +58,7 @@ class FacingSearch {
   [[nodiscard]] Vec3 normal_at(const ClosestPoint& closest, const Vec3& normal, std::uint32_t& face) const;
 
   const sites::SitesData& sites_;
-  std::vector<Cone> cones_;
-  Kept<tree::AabbTree> by_normal_;  ///< a tree over the normals, which most searches do without
+  const NormalBounds& bounds_;
   FacingAngle angle_;
 };
 

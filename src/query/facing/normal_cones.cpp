@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "geometry/vec.h"
+#include "query/facing/normal_bounds.h"
 #include "tree/fold.h"
 
 namespace sdm::facing {
@@ -68,6 +70,14 @@ std::vector<Cone> normal_cones(const sites::SitesData& sites) {
   std::vector<Cone> cones(wide.size());
   std::ranges::transform(wide, cones.begin(), in_single);
   return cones;
+}
+
+const NormalBounds& normal_bounds_of(const sites::SitesData& sites) {
+  return sites.normal_bounds.get([&] {
+    auto bounds = std::make_shared<NormalBounds>();
+    bounds->cones = normal_cones(sites);
+    return bounds;
+  });
 }
 
 }  // namespace sdm::facing

@@ -2,12 +2,15 @@
 
 #include <sdm/mesh_edit.h>
 
+#include <memory>
+
 #include "core/parallel.h"
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
 #include "mesh/topology.h"
 #include "sites/orient_outward.h"
 #include "sites/regions.h"
+#include "surface/surface_data.h"
 #include "tree/aabb_tree.h"
 
 namespace sdm::facing {
@@ -61,6 +64,11 @@ std::vector<Vec3> outward_normals(const Mesh& mesh) {
     }
   });
   return normals;
+}
+
+const std::vector<Vec3>& outward_normals(const Surface& surface) {
+  return internals(surface).outward_normals.get(
+      [&] { return std::make_shared<std::vector<Vec3>>(outward_normals(surface.mesh())); });
 }
 
 }  // namespace sdm::facing

@@ -3,6 +3,7 @@
 
 #include <sdm/mesh.h>
 #include <sdm/mesh_edit.h>
+#include <sdm/surface.h>
 
 #include <vector>
 
@@ -16,6 +17,9 @@ namespace sdm::facing {
 /// outward, as Sites orients O2, whichever way its faces are wound; otherwise by the order of their corners.
 /// Cost: O(n log n), all cores.
 [[nodiscard]] std::vector<Vec3> outward_normals(const Mesh& mesh);
+
+/// The same, valid until the shape of the surface changes. Cost: that for the first call, then O(1).
+[[nodiscard]] const std::vector<Vec3>& outward_normals(const Surface& surface);
 
 /// Whether a mesh is closed and orientable, so that its outward normals do not depend on how faces are wound.
 [[nodiscard]] bool has_outside(const Mesh& mesh);
