@@ -21,9 +21,18 @@ export class Animation extends Owned {
   }
 
   /** @internal Null if the file has no animation. */
-  static read(module: Module, bytes: Uint8Array | ArrayBuffer, name: string, options: ReadAnimationOptions = {}): Animation | null {
+  static read(
+    module: Module,
+    bytes: Uint8Array | ArrayBuffer,
+    name: string,
+    options: ReadAnimationOptions = {},
+  ): Animation | null {
     const values = fileArguments(module, 'readAnimation', bytes, name, options);
-    const [, ...parts] = module.call('sdm_read_animation', [...values, options.rate ?? NaN], options.progress);
+    const [, ...parts] = module.call(
+      'sdm_read_animation',
+      [...values, options.rate ?? NaN],
+      options.progress,
+    );
     if (parts.length === 0) return null;
     const [address, frames, positions, indices] = parts as [Bytes, Bytes, Bytes, Bytes];
     return new Animation(module, address, frames, positions, indices);

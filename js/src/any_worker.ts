@@ -37,7 +37,10 @@ export async function newWorker(script: string): Promise<AnyWorker> {
   try {
     return await begun(script);
   } catch (error) {
-    throw new SdmError('ended', `the worker ${script} cannot be started: ${error instanceof Error ? error.message : error}`);
+    throw new SdmError(
+      'ended',
+      `the worker ${script} cannot be started: ${error instanceof Error ? error.message : error}`,
+    );
   }
 }
 
@@ -52,7 +55,9 @@ async function begun(script: string): Promise<AnyWorker> {
   let ended = (_: SdmError) => {};
   let message = (_: unknown) => {};
   worker.on('message', (sent) => message(sent));
-  worker.on('error', (error) => ended(new SdmError('ended', `the worker failed: ${error instanceof Error ? error.message : error}`)));
+  worker.on('error', (error) =>
+    ended(new SdmError('ended', `the worker failed: ${error instanceof Error ? error.message : error}`)),
+  );
   worker.on('exit', () => ended(new SdmError('ended', 'the worker has ended')));
   return {
     postMessage: (sent, transfer = []) => worker.postMessage(sent, transfer as never),
@@ -69,14 +74,25 @@ async function begun(script: string): Promise<AnyWorker> {
  * Sends the first message and returns the answer. Throws SdmError, and ends the worker, if it cannot be started; throws the reason of
  * the signal if that is aborted before.
  */
-export async function started<Answer>(worker: AnyWorker, message: unknown, signal?: AbortSignal): Promise<Answer> {
+export async function started<Answer>(
+  worker: AnyWorker,
+  message: unknown,
+  signal?: AbortSignal,
+): Promise<Answer> {
   worker.hold(true);
   let timer: ReturnType<typeof setTimeout> | undefined;
   try {
     return await new Promise<Answer>((resolve, reject) => {
-      worker.listen((answer: { failed?: string } & Answer) => (answer.failed !== undefined ? reject(new SdmError('internal', answer.failed)) : resolve(answer)), reject);
+      worker.listen(
+        (answer: { failed?: string } & Answer) =>
+          answer.failed !== undefined ? reject(new SdmError('internal', answer.failed)) : resolve(answer),
+        reject,
+      );
       signal?.addEventListener('abort', () => reject(signal.reason), { once: true });
-      timer = setTimeout(() => reject(new SdmError('ended', 'the worker does not answer: is its program worker.js?')), kStartMilliseconds);
+      timer = setTimeout(
+        () => reject(new SdmError('ended', 'the worker does not answer: is its program worker.js?')),
+        kStartMilliseconds,
+      );
       worker.postMessage(message);
     });
   } catch (error) {

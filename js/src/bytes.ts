@@ -11,12 +11,20 @@ export const text = (bytes: Bytes) => new TextDecoder().decode(bytes);
 export function fields(names: Bytes, numbers: Bytes): Record<string, number> {
   const camel = (name: string) => name.replace(/_(.)/g, (_, letter: string) => letter.toUpperCase());
   const values = float64(numbers);
-  return Object.fromEntries(text(names).split(' ').map((name, i) => [camel(name), values[i]!]));
+  return Object.fromEntries(
+    text(names)
+      .split(' ')
+      .map((name, i) => [camel(name), values[i]!]),
+  );
 }
 
 /** The number of a word among those that an option may have. */
 export function wordNumber(words: readonly string[], word: string, option: string): number {
   const number = words.indexOf(word);
-  if (number < 0) throw new SdmError('input', `${option} is ${JSON.stringify(word)}: it must be one of ${words.join(', ')}`);
+  if (number < 0)
+    throw new SdmError(
+      'input',
+      `${option} is ${JSON.stringify(word)}: it must be one of ${words.join(', ')}`,
+    );
   return number;
 }

@@ -27,9 +27,11 @@ function shown(value: unknown): string {
 const refuse = (name: string, value: unknown, needed: string) => {
   throw new SdmError('input', `${name} is ${shown(value)}: it must be ${needed}`);
 };
-const check = (holds: (value: unknown) => boolean, needed: string): Check => (value, name) => {
-  if (!holds(value)) refuse(name, value, needed);
-};
+const check =
+  (holds: (value: unknown) => boolean, needed: string): Check =>
+  (value, name) => {
+    if (!holds(value)) refuse(name, value, needed);
+  };
 const isObject = (value: unknown): value is object => typeof value === 'object' && value !== null;
 const isBytes = (value: unknown) => value instanceof Uint8Array || value instanceof ArrayBuffer;
 
@@ -40,13 +42,22 @@ const flag = check((value) => typeof value === 'boolean', 'true or false');
 const word = check((value) => typeof value === 'string', 'a string');
 const bytes = check(isBytes, 'a Uint8Array or an ArrayBuffer');
 const callback = check((value) => typeof value === 'function', 'a function');
-const whole = (least: number, most = 0xffffffff) => check(
-  (value) => Number.isInteger(value) && (value as number) >= least && (value as number) <= most,
-  most < 0xffffffff ? `an integer from ${least} to ${most}` : `an integer of at least ${least}`);
-const files = check((value) => isObject(value) && Object.values(value).every(isBytes), 'an object with a Uint8Array or an ArrayBuffer for each path');
+const whole = (least: number, most = 0xffffffff) =>
+  check(
+    (value) => Number.isInteger(value) && (value as number) >= least && (value as number) <= most,
+    most < 0xffffffff ? `an integer from ${least} to ${most}` : `an integer of at least ${least}`,
+  );
+const files = check(
+  (value) => isObject(value) && Object.values(value).every(isBytes),
+  'an object with a Uint8Array or an ArrayBuffer for each path',
+);
 
 const numbers: Check = (value, name) => {
-  const isArray = Array.isArray(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView) && typeof (value as unknown as ArrayLike<unknown>)[0] !== 'bigint');
+  const isArray =
+    Array.isArray(value) ||
+    (ArrayBuffer.isView(value) &&
+      !(value instanceof DataView) &&
+      typeof (value as unknown as ArrayLike<unknown>)[0] !== 'bigint');
   if (!isArray) refuse(name, value, 'an array of numbers');
   if (!Array.isArray(value)) return;
   for (let i = 0; i < value.length; ++i)
@@ -60,29 +71,41 @@ const body: Check = (value, name, call) => {
 };
 const picture: Check = (value, name) => {
   const { width, height, data } = (isObject(value) ? value : {}) as Record<string, unknown>;
-  if (!Number.isInteger(width) || !Number.isInteger(height) || !(data instanceof Uint8Array || data instanceof Uint8ClampedArray))
+  if (
+    !Number.isInteger(width) ||
+    !Number.isInteger(height) ||
+    !(data instanceof Uint8Array || data instanceof Uint8ClampedArray)
+  )
     refuse(name, value, 'an object with width, height, and data in a Uint8Array or Uint8ClampedArray');
 };
-export const object = (Kind: abstract new (...values: never[]) => object, needed: string): Check => (value, _, call) => {
-  if (!(value instanceof Kind)) throw new SdmError('input', `${call} needs ${needed}, but was given ${shown(value)}`);
-};
+export const object =
+  (Kind: abstract new (...values: never[]) => object, needed: string): Check =>
+  (value, _, call) => {
+    if (!(value instanceof Kind))
+      throw new SdmError('input', `${call} needs ${needed}, but was given ${shown(value)}`);
+  };
 function optional(one: Check): Check {
   return (value, name, call) => {
     if (value !== undefined && value !== null) one(value, name, call);
   };
 }
 
-const list = (words: string[]) => (words.length > 1 ? `${words.slice(0, -1).join(', ')} and ${words.at(-1)}` : words[0]);
+const list = (words: string[]) =>
+  words.length > 1 ? `${words.slice(0, -1).join(', ')} and ${words.at(-1)}` : words[0];
 
 /** Throws SdmError for options that there are not, and for wrong ones. */
 function checkOptions(call: string, given: unknown, options: Checks): void {
   if (given === undefined) return;
-  if (!isObject(given) || Array.isArray(given) || ArrayBuffer.isView(given)) refuse(`the last argument of ${call}`, given, 'an object of options');
+  if (!isObject(given) || Array.isArray(given) || ArrayBuffer.isView(given))
+    refuse(`the last argument of ${call}`, given, 'an object of options');
   for (const [name, value] of Object.entries(given as object)) {
     if (value === undefined) continue;
     if (!Object.hasOwn(options, name)) {
       const known = Object.keys(options).filter((one) => one !== 'progress');
-      throw new SdmError('input', `${call} has no option ${name}${known.length > 0 ? `; it has ${list(known)}` : ''}`);
+      throw new SdmError(
+        'input',
+        `${call} has no option ${name}${known.length > 0 ? `; it has ${list(known)}` : ''}`,
+      );
     }
     optional(options[name]!)(value, name, call);
   }
@@ -95,15 +118,33 @@ function checkCall(name: string, { values, options }: Call, given: unknown[]): v
 }
 
 const progress = callback;
-export const take = (values: Checks, options: Checks = {}): Call => ({ values, options: { ...options, progress } });
+export const take = (values: Checks, options: Checks = {}): Call => ({
+  values,
+  options: { ...options, progress },
+});
 
 export const mesh = { positions: numbers, indices: optional(numbers) };
 const file = { bytes, name: word };
 export const ofMap = { sign: anything, maxDistance: number, facing: number };
-export const ofSurface = { resolution: whole(0), atlas: anything, gutter: whole(0), uvs: numbers, storedAtlas: bytes };
+export const ofSurface = {
+  resolution: whole(0),
+  atlas: anything,
+  gutter: whole(0),
+  uvs: numbers,
+  storedAtlas: bytes,
+};
 const ofTransfer = { components: whole(1), domain: anything, fill: flag };
-const ofSummary = { tolerance: anything, units: word, colormap: anything, range: anything, names: anything, xxh3: anything, maxDistance: number };
-const aSurface = object(Surface, 'a Surface'), sites = object(Sites, 'Sites');
+const ofSummary = {
+  tolerance: anything,
+  units: word,
+  colormap: anything,
+  range: anything,
+  names: anything,
+  xxh3: anything,
+  maxDistance: number,
+};
+const aSurface = object(Surface, 'a Surface'),
+  sites = object(Sites, 'Sites');
 
 const kNew: Record<string, Call> = {
   Surface: take(mesh, ofSurface),
@@ -112,46 +153,70 @@ const kNew: Record<string, Call> = {
 };
 /** Of the library itself. */
 export const kLibraryCalls: Record<string, Call> = {
-  surface: kNew['Surface']!, sites: kNew['Sites']!, pair: kNew['Pair']!,
+  surface: kNew['Surface']!,
+  sites: kNew['Sites']!,
+  pair: kNew['Pair']!,
   readMesh: take(file, { files }),
   readLook: take(file, { files }),
   readAnimation: take(file, { files, rate: number }),
-  match: take({ surface: aSurface, sites }, { method: anything, facing: number, cage: number, maxDistance: number }),
+  match: take(
+    { surface: aSurface, sites },
+    { method: anything, facing: number, cage: number, maxDistance: number },
+  ),
 };
 const kCalls: [Kind: { prototype: object }, calls: Record<string, Call>][] = [
-  [Sites, {
-    refit: take({ positions: numbers }),
-    closestPoints: take({ points: numbers }, { maxDistance: number }),
-    signedDistance: take({ points: numbers }, { sign: anything }),
-    firstHits: take({ origins: numbers, directions: numbers }, { tMin: number, tMax: number }),
-    hausdorff: take({ other: sites }, { precision: number }),
-  }],
+  [
+    Sites,
+    {
+      refit: take({ positions: numbers }),
+      closestPoints: take({ points: numbers }, { maxDistance: number }),
+      signedDistance: take({ points: numbers }, { sign: anything }),
+      firstHits: take({ origins: numbers, directions: numbers }, { tMin: number, tMax: number }),
+      hausdorff: take({ other: sites }, { precision: number }),
+    },
+  ],
   [Surface, { refit: take({ positions: numbers }), map: take({ sites }, ofMap), emptyMap: take({ sites }) }],
-  [DistanceMap, {
-    compute: take({}, ofMap),
-    computeSamples: take({ first: whole(0), count: whole(0) }, ofMap),
-    valuesOfSamples: take({ first: whole(0), count: whole(0) }),
-    transfer: take({ values: numbers }, ofTransfer),
-    summary: take({}, ofSummary),
-    report: take({}, { ...ofSummary, up: anything }),
-  }],
-  [Matches, {
-    transfer: take({ values: numbers }, ofTransfer),
-    bake: take({ look: object(Look, 'a Look') }),
-    normals: take({}, { tangentSpace: flag, look: object(Look, 'a Look'), pose: numbers }),
-    normalsOf: take({ look: optional(object(Look, 'a Look')) }, { tangentSpace: flag, pose: numbers }),
-    model: take({}, { tangents: flag }),
-  }],
+  [
+    DistanceMap,
+    {
+      compute: take({}, ofMap),
+      computeSamples: take({ first: whole(0), count: whole(0) }, ofMap),
+      valuesOfSamples: take({ first: whole(0), count: whole(0) }),
+      transfer: take({ values: numbers }, ofTransfer),
+      summary: take({}, ofSummary),
+      report: take({}, { ...ofSummary, up: anything }),
+    },
+  ],
+  [
+    Matches,
+    {
+      transfer: take({ values: numbers }, ofTransfer),
+      bake: take({ look: object(Look, 'a Look') }),
+      normals: take({}, { tangentSpace: flag, look: object(Look, 'a Look'), pose: numbers }),
+      normalsOf: take({ look: optional(object(Look, 'a Look')) }, { tangentSpace: flag, pose: numbers }),
+      model: take({}, { tangents: flag }),
+    },
+  ],
   [Look, { setPicture: take({ texture: whole(0), picture }) }],
   [Animation, { positions: take({ frame: whole(0) }) }],
-  [Pair, { setPose: take({ body: whole(0, 1), matrix: numbers }), refit: take({ body: whole(0, 1), positions: numbers }) }],
+  [
+    Pair,
+    {
+      setPose: take({ body: whole(0, 1), matrix: numbers }),
+      refit: take({ body: whole(0, 1), positions: numbers }),
+    },
+  ],
 ];
 
 /** The words by which users know methods that workers call. */
 const kNames: Record<string, string> = { emptyMap: 'map', compute: 'map', normalsOf: 'normals' };
 
 /** Lets methods check what they are given; those that return promises reject. */
-export function checkMethods(Kind: { prototype: object }, calls: Record<string, Call>, rejecting: readonly string[] = []): void {
+export function checkMethods(
+  Kind: { prototype: object },
+  calls: Record<string, Call>,
+  rejecting: readonly string[] = [],
+): void {
   const methods = Kind.prototype as Record<string, (...given: unknown[]) => unknown>;
   for (const [name, call] of Object.entries(calls)) {
     const method = methods[name]!;
@@ -172,13 +237,21 @@ for (const [Kind, calls] of kCalls) checkMethods(Kind, calls, ['report']);
 export function checkStart(call: string, given: unknown): void {
   const threads = whole(1, 256);
   checkOptions(call, given, {
-    threads, full: flag, modules: check(isObject, 'an object of modules'), reportPage: word,
-    script: check((value) => typeof value === 'string' || value instanceof URL, 'an address'), ...(call === 'createPool' ? { workers: threads } : {}),
+    threads,
+    full: flag,
+    modules: check(isObject, 'an object of modules'),
+    reportPage: word,
+    script: check((value) => typeof value === 'string' || value instanceof URL, 'an address'),
+    ...(call === 'createPool' ? { workers: threads } : {}),
   });
 }
 
 /** A class whose objects are in a module, and whose constructor checks what it is given. */
-export function constructorIn<Made>(module: unknown, name: string, Kind: abstract new (...values: any[]) => object): Made {
+export function constructorIn<Made>(
+  module: unknown,
+  name: string,
+  Kind: abstract new (...values: any[]) => object,
+): Made {
   const Checked = class extends (Kind as new (...values: any[]) => object) {
     constructor(...given: unknown[]) {
       checkCall(name, kNew[name]!, given);

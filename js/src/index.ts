@@ -13,17 +13,46 @@ export type { Sdm } from './library.js';
 export type { Look, Picture } from './look.js';
 export { kMatchKinds } from './matches.js';
 export type {
-  BakeChannel, BakedLook, BakedTexture, DrawnModel, MatchArrays, MatchCounts, MatchMethod, MatchOptions, Matches, NormalOptions,
+  BakeChannel,
+  BakedLook,
+  BakedTexture,
+  DrawnModel,
+  MatchArrays,
+  MatchCounts,
+  MatchMethod,
+  MatchOptions,
+  Matches,
+  NormalOptions,
 } from './matches.js';
 export type { FaceNames, MeshFile, ReadMeshOptions } from './mesh_file.js';
 export type { PoolMap, PoolMapOptions, PoolSites, PoolSurface, SdmPool } from './pool.js';
 export type { Colormap, MapSummary, ReportOptions, SummaryOptions } from './report.js';
 export type {
-  Atlas, ClosestPoints, Contacts, DistanceMap, Hausdorff, MapOptions, MapStatistics, MapValues, Pair, RayHits, SignedDistances, Sites,
-  Surface, SurfaceOptions,
+  Atlas,
+  ClosestPoints,
+  Contacts,
+  DistanceMap,
+  Hausdorff,
+  MapOptions,
+  MapStatistics,
+  MapValues,
+  Pair,
+  RayHits,
+  SignedDistances,
+  Sites,
+  Surface,
+  SurfaceOptions,
 } from './surface.js';
 export type {
-  CallOptions, SdmWorker, WorkerAnimation, WorkerLook, WorkerMap, WorkerMatches, WorkerPair, WorkerSites, WorkerSurface,
+  CallOptions,
+  SdmWorker,
+  WorkerAnimation,
+  WorkerLook,
+  WorkerMap,
+  WorkerMatches,
+  WorkerPair,
+  WorkerSites,
+  WorkerSurface,
 } from './remote.js';
 export type { TransferOptions } from './transfer.js';
 
@@ -53,12 +82,18 @@ const urls = {
 async function threadsOf(options: StartOptions): Promise<number> {
   if (!canShareMemory()) return 1;
   if (options.threads !== undefined) return options.threads;
-  const cores = typeof navigator === 'object' ? navigator.hardwareConcurrency : (await import('node:os')).availableParallelism();
+  const cores =
+    typeof navigator === 'object'
+      ? navigator.hardwareConcurrency
+      : (await import('node:os')).availableParallelism();
   return Math.min(8, cores);
 }
 
 /** The module that the options ask for, compiled, and the number of its threads. */
-async function compiled(options: StartOptions, threads: number): Promise<{ module: WebAssembly.Module; threads: number }> {
+async function compiled(
+  options: StartOptions,
+  threads: number,
+): Promise<{ module: WebAssembly.Module; threads: number }> {
   const name = options.full ? 'full' : 'core';
   const file: ModuleFile = options.modules?.[name] ?? (await (await load(urls[name]())).arrayBuffer());
   if (file instanceof WebAssembly.Module) return { module: file, threads: 1 };
@@ -68,7 +103,8 @@ async function compiled(options: StartOptions, threads: number): Promise<{ modul
 const scriptOf = (options: StartOptions) => String(options.script ?? urls.worker());
 /** Loaded when the first report is made. In a bundle of one file there is no address. */
 function pageOf(options: StartOptions): ReportPage {
-  if (options.reportPage !== undefined || !import.meta.url) return { text: options.reportPage, url: undefined };
+  if (options.reportPage !== undefined || !import.meta.url)
+    return { text: options.reportPage, url: undefined };
   return { text: undefined, url: String(urls.page()) };
 }
 
@@ -90,11 +126,17 @@ export async function createWorker(options: StartOptions = {}): Promise<SdmWorke
 /** Starts the library in several workers of one thread each, by default as many as there are cores, at most 8. */
 export async function createPool(options: StartOptions & { workers?: number } = {}): Promise<SdmPool> {
   checkStart('createPool', options);
-  const cores = typeof navigator === 'object' ? navigator.hardwareConcurrency : (await import('node:os')).availableParallelism();
+  const cores =
+    typeof navigator === 'object'
+      ? navigator.hardwareConcurrency
+      : (await import('node:os')).availableParallelism();
   const count = options.workers ?? Math.min(8, cores);
   const { module } = await compiled(options, 1);
-  const script = scriptOf(options), reportPage = pageOf(options);
-  const starts = Array.from({ length: count }, () => SdmWorker.open({ module, threads: 1, script, reportPage }));
+  const script = scriptOf(options),
+    reportPage = pageOf(options);
+  const starts = Array.from({ length: count }, () =>
+    SdmWorker.open({ module, threads: 1, script, reportPage }),
+  );
   const opened = await Promise.allSettled(starts);
   const workers = opened.flatMap((one) => (one.status === 'fulfilled' ? [one.value] : []));
   const failed = opened.find((one): one is PromiseRejectedResult => one.status === 'rejected');

@@ -12,10 +12,21 @@ type Body = { positions: Points; indices?: Indices };
 
 /** The library, with a memory of its own. Its calls are synchronous: in a page, call them in a worker (createWorker()). */
 export class Sdm {
-  readonly Surface: new (positions: Points, indices?: Indices, options?: bound.SurfaceOptions) => bound.Surface;
-  readonly Sites: new (positions: Points, indices?: Indices) => bound.Sites;
+  readonly Surface: new (
+    positions: Points,
+    indices?: Indices,
+    options?: bound.SurfaceOptions,
+  ) => bound.Surface;
+  readonly Sites: new (
+    positions: Points,
+    indices?: Indices,
+  ) => bound.Sites;
   /** Of the module `full` only. */
-  readonly Pair: new (first: Body, second: Body, options?: { contactMargin?: number }) => bound.Pair;
+  readonly Pair: new (
+    first: Body,
+    second: Body,
+    options?: { contactMargin?: number },
+  ) => bound.Pair;
 
   /** @internal */
   constructor(
@@ -47,7 +58,11 @@ export class Sdm {
     return new Look(this.module, bytes, name, options);
   }
   /** The animation of the morph targets of a glTF file; null if the file has no animation. Of the module `full` only. */
-  readAnimation(bytes: Uint8Array | ArrayBuffer, name: string, options: ReadAnimationOptions = {}): Animation | null {
+  readAnimation(
+    bytes: Uint8Array | ArrayBuffer,
+    name: string,
+    options: ReadAnimationOptions = {},
+  ): Animation | null {
     return Animation.read(this.module, bytes, name, options);
   }
   /** Finds, for each texel of a surface, the point of the sites that belongs to it. Of the module `full` only. */

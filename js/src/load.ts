@@ -7,7 +7,8 @@ export async function load(url: URL): Promise<Response> {
     return new Response(await readFile(url));
   }
   const response = await fetch(url);
-  if (!response.ok) throw new SdmError('internal', `${url} cannot be loaded: ${response.status} ${response.statusText}`);
+  if (!response.ok)
+    throw new SdmError('internal', `${url} cannot be loaded: ${response.status} ${response.statusText}`);
   return response;
 }
 
@@ -19,6 +20,7 @@ export interface ReportPage {
 
 export async function textOf({ text, url }: ReportPage): Promise<string> {
   if (text !== undefined) return text;
-  if (url === undefined) throw new SdmError('input', 'a report needs the option reportPage, the text of report_page.html');
+  if (url === undefined)
+    throw new SdmError('input', 'a report needs the option reportPage, the text of report_page.html');
   return (await load(new URL(url))).text();
 }

@@ -24,16 +24,27 @@ export class Look extends Owned {
   private readonly facts: { textures: string[]; notes: string[] };
 
   constructor(module: Module, bytes: Uint8Array | ArrayBuffer, name: string, options: ReadMeshOptions = {}) {
-    const [address, flags, facts] = module.call('sdm_read_look', fileArguments(module, 'readLook', bytes, name, options), options.progress);
+    const [address, flags, facts] = module.call(
+      'sdm_read_look',
+      fileArguments(module, 'readLook', bytes, name, options),
+      options.progress,
+    );
     super(module, float64(address!)[0]!, 'sdm_free_look');
-    const [materials, colors, normals] = Array.from(float64(flags!), (flag) => flag !== 0) as [boolean, boolean, boolean];
+    const [materials, colors, normals] = Array.from(float64(flags!), (flag) => flag !== 0) as [
+      boolean,
+      boolean,
+      boolean,
+    ];
     [this.hasMaterials, this.hasColors, this.hasNormals] = [materials, colors, normals];
     this.facts = JSON.parse(text(facts!));
   }
 
   /** The names of the textures, and their files, in PNG, JPEG or WebP. */
   textures(): { name: string; bytes: Uint8Array<ArrayBuffer> }[] {
-    return this.facts.textures.map((name, i) => ({ name, bytes: this.module.call('sdm_texture_file', [this.handle, i])[0]! }));
+    return this.facts.textures.map((name, i) => ({
+      name,
+      bytes: this.module.call('sdm_texture_file', [this.handle, i])[0]!,
+    }));
   }
   /** What was left out or may be wrong, a sentence each. */
   notes(): string[] {
@@ -43,8 +54,12 @@ export class Look extends Owned {
   /** Sets the pixels of a texture, by its number in textures(). */
   setPicture(texture: number, { width, height, data }: Picture): void {
     if (!(Number.isInteger(width) && Number.isInteger(height) && data.length === 4 * width * height))
-      throw new SdmError('input', `a picture of ${width} × ${height} pixels needs ${4 * width * height} numbers, not ${data.length}`);
-    const bytes = data instanceof Uint8Array ? data : new Uint8Array(data.buffer, data.byteOffset, data.length);
+      throw new SdmError(
+        'input',
+        `a picture of ${width} × ${height} pixels needs ${4 * width * height} numbers, not ${data.length}`,
+      );
+    const bytes =
+      data instanceof Uint8Array ? data : new Uint8Array(data.buffer, data.byteOffset, data.length);
     this.module.call('sdm_set_picture', [this.handle, texture, width, height, bytes, bytes.length]);
   }
 }

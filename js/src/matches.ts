@@ -98,14 +98,37 @@ export class Matches extends Owned {
   readonly rows: number;
   private readonly numbers: MatchCounts;
 
-  constructor(module: Module, private readonly surface: Surface, private readonly sites: Sites, options: MatchOptions = {}) {
-    if (!module.has('sdm_match')) throw new SdmError('input', 'matches need the module of start({ full: true })');
+  constructor(
+    module: Module,
+    private readonly surface: Surface,
+    private readonly sites: Sites,
+    options: MatchOptions = {},
+  ) {
+    if (!module.has('sdm_match'))
+      throw new SdmError('input', 'matches need the module of start({ full: true })');
     const method = module.number('method', options.method ?? 'facing');
-    const [address, numbers] = module.call('sdm_match', [
-      surface.handleIn(module), sites.handleIn(module), method, options.facing ?? 90, options.cage ?? Infinity, options.maxDistance ?? Infinity,
-    ], options.progress);
+    const [address, numbers] = module.call(
+      'sdm_match',
+      [
+        surface.handleIn(module),
+        sites.handleIn(module),
+        method,
+        options.facing ?? 90,
+        options.cage ?? Infinity,
+        options.maxDistance ?? Infinity,
+      ],
+      options.progress,
+    );
     super(module, float64(address!)[0]!, 'sdm_free_matches');
-    const [resolution, rows, closest, facing, ray, tooFar, facingAway] = Array.from(float64(numbers!)) as [number, number, number, number, number, number, number];
+    const [resolution, rows, closest, facing, ray, tooFar, facingAway] = Array.from(float64(numbers!)) as [
+      number,
+      number,
+      number,
+      number,
+      number,
+      number,
+      number,
+    ];
     [this.resolution, this.rows] = [resolution, rows];
     this.numbers = { closest, facing, ray, tooFar, facingAway };
   }
@@ -114,7 +137,11 @@ export class Matches extends Owned {
     return { ...this.numbers };
   }
   arrays(): MatchArrays {
-    const [kinds, faces, barycentric] = this.module.call('sdm_match_arrays', [this.handle]) as [Bytes, Bytes, Bytes];
+    const [kinds, faces, barycentric] = this.module.call('sdm_match_arrays', [this.handle]) as [
+      Bytes,
+      Bytes,
+      Bytes,
+    ];
     return { kinds, faces: uint32(faces), barycentric: float32(barycentric) };
   }
 
@@ -125,14 +152,38 @@ export class Matches extends Owned {
 
   /** The textures of a look at the points: base colours, and what else differs between them. Texels without a point are filled. */
   bake(look: Look, options: { progress?: Progress } = {}): BakedLook {
-    const [channels, factors, ...pictures] = this.module.call('sdm_bake', [...this.addresses(), look.handleIn(this.module)], options.progress);
-    const f = Array.from(float64(factors!)) as [number, number, number, number, number, number, number, number, number, number, number];
+    const [channels, factors, ...pictures] = this.module.call(
+      'sdm_bake',
+      [...this.addresses(), look.handleIn(this.module)],
+      options.progress,
+    );
+    const f = Array.from(float64(factors!)) as [
+      number,
+      number,
+      number,
+      number,
+      number,
+      number,
+      number,
+      number,
+      number,
+      number,
+      number,
+    ];
     const kinds = uint32(channels!);
     return {
-      textures: pictures.map((data, i) => ({ channel: kChannels[kinds[2 * i]!]!, components: kinds[2 * i + 1]!, data })),
+      textures: pictures.map((data, i) => ({
+        channel: kChannels[kinds[2 * i]!]!,
+        components: kinds[2 * i + 1]!,
+        data,
+      })),
       material: {
-        baseColor: [f[0], f[1], f[2], f[3]], emissive: [f[4], f[5], f[6]], metallic: f[7], roughness: f[8],
-        alphaMode: (['opaque', 'mask', 'blend'] as const)[f[9]]!, alphaCutoff: f[10],
+        baseColor: [f[0], f[1], f[2], f[3]],
+        emissive: [f[4], f[5], f[6]],
+        metallic: f[7],
+        roughness: f[8],
+        alphaMode: (['opaque', 'mask', 'blend'] as const)[f[9]]!,
+        alphaCutoff: f[10],
       },
     };
   }
@@ -140,10 +191,16 @@ export class Matches extends Owned {
   /** The normals of O2 at the points as a picture: red, green and blue of each texel. Texels without a point are filled. */
   normals(options: NormalOptions = {}): Uint8Array {
     const { look, pose } = options;
-    if (pose && pose.length !== 16) throw new SdmError('input', `a pose is a matrix of 16 numbers, not ${pose.length}`);
-    const rotation = Float64Array.from({ length: 9 }, (_, i) => (pose ? pose[(i % 3) * 4 + Math.floor(i / 3)]! : i % 4 === 0 ? 1 : 0));
+    if (pose && pose.length !== 16)
+      throw new SdmError('input', `a pose is a matrix of 16 numbers, not ${pose.length}`);
+    const rotation = Float64Array.from({ length: 9 }, (_, i) =>
+      pose ? pose[(i % 3) * 4 + Math.floor(i / 3)]! : i % 4 === 0 ? 1 : 0,
+    );
     const [picture] = this.module.call(
-      'sdm_bake_normals', [...this.addresses(), look ? look.handleIn(this.module) : 0, rotation, options.tangentSpace ? 1 : 0], options.progress);
+      'sdm_bake_normals',
+      [...this.addresses(), look ? look.handleIn(this.module) : 0, rotation, options.tangentSpace ? 1 : 0],
+      options.progress,
+    );
     return picture!;
   }
 
@@ -154,11 +211,17 @@ export class Matches extends Owned {
 
   /** What the textures are drawn on. */
   model(options: { tangents?: boolean } = {}): DrawnModel {
-    const [positions, normals, uvs, tangents, indices, origin] = this.module.call(
-      'sdm_drawn_model', [this.surface.handleIn(this.module), options.tangents ? 1 : 0]) as [Bytes, Bytes, Bytes, Bytes, Bytes, Bytes];
+    const [positions, normals, uvs, tangents, indices, origin] = this.module.call('sdm_drawn_model', [
+      this.surface.handleIn(this.module),
+      options.tangents ? 1 : 0,
+    ]) as [Bytes, Bytes, Bytes, Bytes, Bytes, Bytes];
     return {
-      positions: float32(positions), normals: float32(normals), uvs: float32(uvs), tangents: options.tangents ? float32(tangents) : null,
-      indices: uint32(indices), origin: Array.from(float64(origin)) as [number, number, number],
+      positions: float32(positions),
+      normals: float32(normals),
+      uvs: float32(uvs),
+      tangents: options.tangents ? float32(tangents) : null,
+      indices: uint32(indices),
+      origin: Array.from(float64(origin)) as [number, number, number],
     };
   }
 

@@ -25,7 +25,8 @@ export function hostImports(
       start_thread: (argument: Address) => (threads()?.start(argument) ? 1 : 0),
       thread_failed: () => (threads()?.failure.reason === undefined ? 0 : 1),
       now: () => performance.timeOrigin + performance.now(),
-      progress: (step: Address, bytes: number, fraction: number) => (progress(text(step, bytes), fraction) ? 1 : 0),
+      progress: (step: Address, bytes: number, fraction: number) =>
+        progress(text(step, bytes), fraction) ? 1 : 0,
     },
     wasi_snapshot_preview1: {
       // There are no variables of the environment.
@@ -52,7 +53,9 @@ export function hostImports(
       random_get: (address: Address, bytes: number) => {
         // Not into the memory itself, which may be shared. Node 18 has no `crypto`.
         const random = Uint8Array.from({ length: bytes }, () => 256 * Math.random());
-        new Uint8Array(memory(), address >>> 0, bytes).set(globalThis.crypto?.getRandomValues(random) ?? random);
+        new Uint8Array(memory(), address >>> 0, bytes).set(
+          globalThis.crypto?.getRandomValues(random) ?? random,
+        );
         return 0;
       },
       proc_exit: () => {
@@ -121,7 +124,10 @@ export class Module {
     const instance = await WebAssembly.instantiate(module, { ...imports, env: { memory } });
     started = new Module(instance, memory);
     started.functions['__wasm_call_ctors']!();
-    if (threads > 1) started.threads = await startThreads(module, memory, threads, script, (bytes) => started!.allocate(bytes));
+    if (threads > 1)
+      started.threads = await startThreads(module, memory, threads, script, (bytes) =>
+        started!.allocate(bytes),
+      );
     return started;
   }
 
@@ -196,7 +202,9 @@ export class Module {
         if (typeof value === 'number') return value;
         const block = this.allocate(value.byteLength);
         blocks.push(block);
-        new Uint8Array(this.memory.buffer, block, value.byteLength).set(new Uint8Array(value.buffer, value.byteOffset, value.byteLength));
+        new Uint8Array(this.memory.buffer, block, value.byteLength).set(
+          new Uint8Array(value.buffer, value.byteOffset, value.byteLength),
+        );
         return block;
       });
       return this.read(this.run(name, numbers));
@@ -222,10 +230,15 @@ export class Module {
 
   /** The words of an option or a result, in the order of their numbers. */
   words(option: string): readonly string[] {
-    this.wordsOf ??= new Map(text(this.call('sdm_words', [])[0]!).trimEnd().split('\n').map((line) => {
-      const [name, ...words] = line.split(' ');
-      return [name!, words];
-    }));
+    this.wordsOf ??= new Map(
+      text(this.call('sdm_words', [])[0]!)
+        .trimEnd()
+        .split('\n')
+        .map((line) => {
+          const [name, ...words] = line.split(' ');
+          return [name!, words];
+        }),
+    );
     return this.wordsOf.get(option)!;
   }
   /** The number of a word that an option has. */

@@ -1,6 +1,13 @@
 // Maps by several workers that share no memory.
 import { anything, checkMethods, mesh, object, ofMap, ofSurface, take } from './calls.js';
-import { type CallOptions, type SdmWorker, type WorkerMap, type WorkerSites, type WorkerSurface, unlessAborted } from './remote.js';
+import {
+  type CallOptions,
+  type SdmWorker,
+  type WorkerMap,
+  type WorkerSites,
+  type WorkerSurface,
+  unlessAborted,
+} from './remote.js';
 import { type Atlas, type MapOptions, type MapValues, type SurfaceOptions } from './surface.js';
 import { type Indices, type Points, SdmError, type SignMethod } from './types.js';
 
@@ -40,7 +47,10 @@ async function all<Value>(promises: Promise<Value>[]): Promise<Value[]> {
 /** Sites in all workers of a pool. */
 export class PoolSites {
   /** @internal */
-  constructor(/** @internal */ readonly each: WorkerSites[], private readonly turns: Turns) {}
+  constructor(
+    /** @internal */ readonly each: WorkerSites[],
+    private readonly turns: Turns,
+  ) {}
   get closed(): boolean {
     return this.each[0]!.closed;
   }
@@ -63,7 +73,10 @@ export class PoolSurface {
   private texels: Uint32Array | undefined;
 
   /** @internal */
-  constructor(private readonly each: WorkerSurface[], private readonly turns: Turns) {}
+  constructor(
+    private readonly each: WorkerSurface[],
+    private readonly turns: Turns,
+  ) {}
 
   async refit(positions: Points): Promise<void> {
     const moved = Float64Array.from(positions);
@@ -79,7 +92,10 @@ export class PoolSurface {
    */
   async map(sites: PoolSites, options: PoolMapOptions = {}): Promise<PoolMap> {
     options.signal?.throwIfAborted();
-    return unlessAborted(this.turns.take(() => this.mapNow(sites, options)), options.signal);
+    return unlessAborted(
+      this.turns.take(() => this.mapNow(sites, options)),
+      options.signal,
+    );
   }
 
   private async mapNow(sites: PoolSites, options: PoolMapOptions): Promise<PoolMap> {
@@ -92,11 +108,14 @@ export class PoolSurface {
     const { resolution, rows } = maps[0]!;
     const result = noValues(resolution, rows);
     const size = grain * Math.max(1, Math.floor(samples / grain / (kRangesPerWorker * maps.length)));
-    let next = 0, done = 0, failed = false;
+    let next = 0,
+      done = 0,
+      failed = false;
     let signs = {} as { sign: SignMethod; signReason: string };
     const computeRanges = async (map: WorkerMap) => {
       while (next < samples && !failed && !signal?.aborted) {
-        const first = next, count = Math.min(size, samples - first);
+        const first = next,
+          count = Math.min(size, samples - first);
         next += count;
         const { sign, signReason, ...values } = await map.computeValues(first, count, rest);
         signs = { sign, signReason };
@@ -104,10 +123,14 @@ export class PoolSurface {
         if (!signal?.aborted) progress?.('map', (done += count) / samples);
       }
     };
-    await all(maps.map((map) => computeRanges(map).catch((error) => {
-      failed = true;
-      throw error;
-    })));
+    await all(
+      maps.map((map) =>
+        computeRanges(map).catch((error) => {
+          failed = true;
+          throw error;
+        }),
+      ),
+    );
     signal?.throwIfAborted();
     return { resolution, rows, ...signs, ...result };
   }
@@ -121,7 +144,10 @@ export class PoolSurface {
 
   /** The maps of the workers to these sites; those to other sites are freed. */
   private async mapsTo(sites: PoolSites): Promise<WorkerMap[]> {
-    if (this.each.length !== sites.each.length || this.each.some((one, i) => one.connection !== sites.each[i]!.connection))
+    if (
+      this.each.length !== sites.each.length ||
+      this.each.some((one, i) => one.connection !== sites.each[i]!.connection)
+    )
       throw new SdmError('input', 'the objects belong to different pools');
     if (this.maps?.sites !== sites) {
       const each = await all(this.each.map((surface, i) => surface.emptyMap(sites.each[i]!)));
@@ -167,18 +193,28 @@ export class SdmPool {
     return this.each.length;
   }
   /** The atlas is laid out by one worker. */
-  async surface(positions: Points, indices: Indices = null, options: Omit<SurfaceOptions, 'progress'> & CallOptions = {}): Promise<PoolSurface> {
+  async surface(
+    positions: Points,
+    indices: Indices = null,
+    options: Omit<SurfaceOptions, 'progress'> & CallOptions = {},
+  ): Promise<PoolSurface> {
     const { transfer: _, ...rest } = options;
     // The others need them later, when the caller may have changed them.
-    const at = Float64Array.from(positions), corners = indices && Float64Array.from(indices);
+    const at = Float64Array.from(positions),
+      corners = indices && Float64Array.from(indices);
     const first = await this.each[0]!.surface(at, corners, rest);
     const storedAtlas = rest.storedAtlas ?? (await first.storedAtlas());
-    const others = await all(this.each.slice(1).map((worker) => worker.surface(at, corners, { ...rest, storedAtlas })));
+    const others = await all(
+      this.each.slice(1).map((worker) => worker.surface(at, corners, { ...rest, storedAtlas })),
+    );
     return new PoolSurface([first, ...others], this.turns);
   }
   async sites(positions: Points, indices: Indices = null, options: CallOptions = {}): Promise<PoolSites> {
     const { transfer: _, ...rest } = options;
-    return new PoolSites(await all(this.each.map((worker) => worker.sites(positions, indices, rest))), this.turns);
+    return new PoolSites(
+      await all(this.each.map((worker) => worker.sites(positions, indices, rest))),
+      this.turns,
+    );
   }
   terminate(): void {
     this.each.forEach((worker) => worker.terminate());
@@ -187,9 +223,16 @@ export class SdmPool {
 
 // Before anything is sent: what the workers get is a copy, in which wrong values are others.
 const ofCalls = { signal: anything, transfer: anything };
-checkMethods(SdmPool, { surface: take(mesh, { ...ofSurface, ...ofCalls }), sites: take(mesh, ofCalls) }, ['surface', 'sites']);
+checkMethods(SdmPool, { surface: take(mesh, { ...ofSurface, ...ofCalls }), sites: take(mesh, ofCalls) }, [
+  'surface',
+  'sites',
+]);
 checkMethods(PoolSites, { refit: take({ positions: mesh.positions }) }, ['refit']);
-checkMethods(PoolSurface, {
-  refit: take({ positions: mesh.positions }),
-  map: take({ sites: object(PoolSites, 'PoolSites') }, { ...ofMap, ...ofCalls }),
-}, ['refit', 'map']);
+checkMethods(
+  PoolSurface,
+  {
+    refit: take({ positions: mesh.positions }),
+    map: take({ sites: object(PoolSites, 'PoolSites') }, { ...ofMap, ...ofCalls }),
+  },
+  ['refit', 'map'],
+);

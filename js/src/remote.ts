@@ -2,13 +2,28 @@
 import { type AnyWorker, newWorker, started } from './any_worker.js';
 import { type ReadAnimationOptions } from './animation.js';
 import { type Picture } from './look.js';
-import { type BakedLook, type DrawnModel, type MatchArrays, type MatchCounts, type MatchOptions, type NormalOptions } from './matches.js';
+import {
+  type BakedLook,
+  type DrawnModel,
+  type MatchArrays,
+  type MatchCounts,
+  type MatchOptions,
+  type NormalOptions,
+} from './matches.js';
 import { type MeshFile, type ReadMeshOptions } from './mesh_file.js';
 import { type Reference, type Reply, type Request, type Started, type WorkerStart } from './protocol.js';
 import { type MapSummary, type ReportOptions, type SummaryOptions } from './report.js';
 import {
-  type Atlas, type ClosestPoints, type Contacts, type Hausdorff, type MapOptions, type MapStatistics, type MapValues, type RayHits,
-  type SignedDistances, type SurfaceOptions,
+  type Atlas,
+  type ClosestPoints,
+  type Contacts,
+  type Hausdorff,
+  type MapOptions,
+  type MapStatistics,
+  type MapValues,
+  type RayHits,
+  type SignedDistances,
+  type SurfaceOptions,
 } from './surface.js';
 import { type TransferOptions } from './transfer.js';
 import { type BoundedLength, type Indices, type Points, SdmError, type SignMethod } from './types.js';
@@ -71,9 +86,14 @@ class Connection {
   private end: SdmError | undefined;
   private readonly terminated = new AbortController();
   private readonly collected = new FinalizationRegistry<Reference & { generation: number }>(
-    ({ sdmObject, generation }) => this.dispose(sdmObject, generation));
+    ({ sdmObject, generation }) => this.dispose(sdmObject, generation),
+  );
 
-  private constructor(private worker: AnyWorker, answer: Started, private readonly start: WorkerStart) {
+  private constructor(
+    private worker: AnyWorker,
+    answer: Started,
+    private readonly start: WorkerStart,
+  ) {
     this.answer = answer;
     this.listen();
   }
@@ -84,7 +104,10 @@ class Connection {
   }
 
   private listen(): void {
-    this.worker.listen((reply: Reply) => this.receive(reply), (error) => this.restart(error));
+    this.worker.listen(
+      (reply: Reply) => this.receive(reply),
+      (error) => this.restart(error),
+    );
   }
 
   terminate(error = new SdmError('ended', 'the worker was terminated')): void {
@@ -136,11 +159,17 @@ class Connection {
     if ('object' in reply) {
       // Nobody waits for the object of a call that was aborted.
       if (!call || call.settle) this.dispose(reply.object, this.generation);
-      else call.resolve({ object: reply.object, fields: reply.fields, generation: this.generation } satisfies Made);
+      else
+        call.resolve({
+          object: reply.object,
+          fields: reply.fields,
+          generation: this.generation,
+        } satisfies Made);
     } else if ('value' in reply) call?.resolve(reply.value);
     else {
       const { kind, message, broken } = reply.error;
-      if (broken) this.restart(new SdmError('ended', `the worker was ended by a fault of an earlier call: ${message}`));
+      if (broken)
+        this.restart(new SdmError('ended', `the worker was ended by a fault of an earlier call: ${message}`));
       call?.reject(kind === 'other' ? new SdmError('internal', message) : new SdmError(kind, message));
     }
   }
@@ -159,15 +188,25 @@ class Connection {
   reference(object: Remote): Reference {
     if (object.connection !== this) throw new SdmError('input', 'the objects belong to different workers');
     if (object.generation !== this.generation)
-      throw new SdmError('ended', 'the object was in a worker that an aborted or failed call has ended; make it again');
+      throw new SdmError(
+        'ended',
+        'the object was in a worker that an aborted or failed call has ended; make it again',
+      );
     return { sdmObject: object.id };
   }
 
-  async call(object: Remote | null, method: string, values: unknown[], options: CallOptions & Record<string, unknown> = {}): Promise<any> {
+  async call(
+    object: Remote | null,
+    method: string,
+    values: unknown[],
+    options: CallOptions & Record<string, unknown> = {},
+  ): Promise<any> {
     const { signal, progress, transfer, ...rest } = options;
     signal?.throwIfAborted();
     const moved = new Set<Transferable>();
-    const sent = values.map((value) => (value instanceof Remote ? value : plain(value, transfer === true, moved)));
+    const sent = values.map((value) =>
+      value instanceof Remote ? value : plain(value, transfer === true, moved),
+    );
     const sentOptions = plain(rest, transfer === true, moved) as Record<string, unknown>;
     // The arrays are copied now, so that the caller may change them while a worker is started again.
     while (this.restarting) await unlessAborted(this.restarting, signal);
@@ -175,9 +214,17 @@ class Connection {
     signal?.throwIfAborted();
     const id = ++this.lastCall;
     const cancellable = signal !== undefined || progress !== undefined;
-    const request: Request = { call: {
-      id, method, object: object ? this.reference(object).sdmObject : 0, options: sentOptions, wantsProgress: progress !== undefined,
-      cancellable, values: sent.map((value) => (value instanceof Remote ? this.reference(value) : value)) } };
+    const request: Request = {
+      call: {
+        id,
+        method,
+        object: object ? this.reference(object).sdmObject : 0,
+        options: sentOptions,
+        wantsProgress: progress !== undefined,
+        cancellable,
+        values: sent.map((value) => (value instanceof Remote ? this.reference(value) : value)),
+      },
+    };
     const inParts = kMethodsInParts.includes(method) && cancellable;
     return new Promise((resolve, reject) => {
       const abort = () => this.abort(id, signal!.reason);
@@ -189,7 +236,12 @@ class Connection {
         this.worker.postMessage(request, [...moved]);
       } catch (error) {
         this.remove(id);
-        reject(new SdmError('input', `the arguments of ${method} cannot be sent to the worker: ${error instanceof Error ? error.message : error}`));
+        reject(
+          new SdmError(
+            'input',
+            `the arguments of ${method} cannot be sent to the worker: ${error instanceof Error ? error.message : error}`,
+          ),
+        );
       }
     });
   }
@@ -208,7 +260,8 @@ class Connection {
       if (!isFirst()) return;
       // Again and again, as the worker clears the flag when it begins the call.
       if (flags) Atomics.store(flags, id % flags.length, 1);
-      if (++periods > patience) this.restart(new SdmError('ended', 'the worker was ended, as a call in it was aborted'));
+      if (++periods > patience)
+        this.restart(new SdmError('ended', 'the worker was ended, as a call in it was aborted'));
     };
     const timer = setInterval(stop, kPeriodMilliseconds);
     call.settle = () => clearInterval(timer);
@@ -236,9 +289,12 @@ function plain(value: unknown, transfer: boolean, moved: Set<Transferable>): unk
     moved.add(sent instanceof ArrayBuffer ? sent : (sent.buffer as ArrayBuffer));
     return sent;
   }
-  if (Array.isArray(value)) return typeof value[0] === 'object' ? value.map((item) => plain(item, transfer, moved)) : value.slice();
+  if (Array.isArray(value))
+    return typeof value[0] === 'object' ? value.map((item) => plain(item, transfer, moved)) : value.slice();
   if (value && typeof value === 'object')
-    return Object.fromEntries(Object.entries(value).map(([name, item]) => [name, plain(item, transfer, moved)]));
+    return Object.fromEntries(
+      Object.entries(value).map(([name, item]) => [name, plain(item, transfer, moved)]),
+    );
   return value;
 }
 
@@ -261,7 +317,10 @@ abstract class Remote {
   private disposed = false;
 
   /** @internal */
-  constructor(/** @internal */ readonly connection: Connection, { object, generation }: Made) {
+  constructor(
+    /** @internal */ readonly connection: Connection,
+    { object, generation }: Made,
+  ) {
     [this.id, this.generation] = [object, generation];
     connection.watch(this);
   }
@@ -302,7 +361,11 @@ export class WorkerSites extends Remote {
   signedDistance(points: Points, options?: { sign?: SignMethod } & CallOptions): Promise<SignedDistances> {
     return this.call('signedDistance', [points], options);
   }
-  firstHits(origins: Points, directions: Points, options?: { tMin?: number; tMax?: number } & CallOptions): Promise<RayHits> {
+  firstHits(
+    origins: Points,
+    directions: Points,
+    options?: { tMin?: number; tMax?: number } & CallOptions,
+  ): Promise<RayHits> {
     return this.call('firstHits', [origins, directions], options);
   }
   hausdorff(other: WorkerSites, options?: { precision?: number } & CallOptions): Promise<Hausdorff> {
@@ -348,7 +411,12 @@ export class WorkerMap extends Remote {
   signReason: string;
 
   /** @internal Keeps the surface and the sites from being collected before it. */
-  constructor(connection: Connection, made: Made, /** @internal */ readonly surface: WorkerSurface, /** @internal */ readonly sites: WorkerSites) {
+  constructor(
+    connection: Connection,
+    made: Made,
+    /** @internal */ readonly surface: WorkerSurface,
+    /** @internal */ readonly sites: WorkerSites,
+  ) {
     super(connection, made);
     const { fields } = made;
     [this.resolution, this.rows] = [fields['resolution'] as number, fields['rows'] as number];
@@ -363,13 +431,21 @@ export class WorkerMap extends Remote {
     Object.assign(this, await this.call('update', [], options));
   }
   /** As of DistanceMap. Returns what `sign` and `signReason` then are. */
-  async computeSamples(first: number, count: number, options?: Options<MapOptions>): Promise<{ sign: SignMethod; signReason: string }> {
+  async computeSamples(
+    first: number,
+    count: number,
+    options?: Options<MapOptions>,
+  ): Promise<{ sign: SignMethod; signReason: string }> {
     const signs = await this.call('computeSamples', [first, count], options);
     Object.assign(this, signs);
     return signs;
   }
   /** @internal computeSamples() and valuesOfSamples() at once, so that no other call comes between. */
-  computeValues(first: number, count: number, options: object): Promise<MapValues & { sign: SignMethod; signReason: string }> {
+  computeValues(
+    first: number,
+    count: number,
+    options: object,
+  ): Promise<MapValues & { sign: SignMethod; signReason: string }> {
     return this.call('computeValues', [first, count], options);
   }
   valuesOfSamples(first: number, count: number): Promise<MapValues> {
@@ -401,7 +477,9 @@ export class WorkerLook extends Remote {
   constructor(connection: Connection, made: Made) {
     super(connection, made);
     const { fields } = made;
-    [this.hasMaterials, this.hasColors, this.hasNormals] = ['hasMaterials', 'hasColors', 'hasNormals'].map((name) => fields[name]) as [boolean, boolean, boolean];
+    [this.hasMaterials, this.hasColors, this.hasNormals] = ['hasMaterials', 'hasColors', 'hasNormals'].map(
+      (name) => fields[name],
+    ) as [boolean, boolean, boolean];
   }
   textures(): Promise<{ name: string; bytes: Uint8Array<ArrayBuffer> }[]> {
     return this.call('textures', []);
@@ -420,7 +498,12 @@ export class WorkerMatches extends Remote {
   readonly rows: number;
 
   /** @internal Keeps the surface and the sites from being collected before it. */
-  constructor(connection: Connection, made: Made, /** @internal */ readonly surface: WorkerSurface, /** @internal */ readonly sites: WorkerSites) {
+  constructor(
+    connection: Connection,
+    made: Made,
+    /** @internal */ readonly surface: WorkerSurface,
+    /** @internal */ readonly sites: WorkerSites,
+  ) {
     super(connection, made);
     const { fields } = made;
     [this.resolution, this.rows] = [fields['resolution'] as number, fields['rows'] as number];
@@ -437,7 +520,9 @@ export class WorkerMatches extends Remote {
   bake(look: WorkerLook, options?: CallOptions): Promise<BakedLook> {
     return this.call('bake', [look], options);
   }
-  normals(options: Options<Omit<NormalOptions, 'look'>> & { look?: WorkerLook | undefined } = {}): Promise<Uint8Array> {
+  normals(
+    options: Options<Omit<NormalOptions, 'look'>> & { look?: WorkerLook | undefined } = {},
+  ): Promise<Uint8Array> {
     const { look, ...others } = options;
     return this.call('normalsOf', [look ?? null], others);
   }
@@ -512,31 +597,67 @@ export class SdmWorker {
     return this.connection.generation;
   }
   /** Of Surface: lays out the atlas. */
-  async surface(positions: Points, indices: Indices = null, options: Options<SurfaceOptions> = {}): Promise<WorkerSurface> {
-    return new WorkerSurface(this.connection, await this.connection.call(null, 'surface', [positions, indices], { ...options }));
+  async surface(
+    positions: Points,
+    indices: Indices = null,
+    options: Options<SurfaceOptions> = {},
+  ): Promise<WorkerSurface> {
+    return new WorkerSurface(
+      this.connection,
+      await this.connection.call(null, 'surface', [positions, indices], { ...options }),
+    );
   }
   async sites(positions: Points, indices: Indices = null, options: CallOptions = {}): Promise<WorkerSites> {
-    return new WorkerSites(this.connection, await this.connection.call(null, 'sites', [positions, indices], { ...options }));
+    return new WorkerSites(
+      this.connection,
+      await this.connection.call(null, 'sites', [positions, indices], { ...options }),
+    );
   }
   /** Of the module `full` only. */
-  async pair(first: Body, second: Body, options: { contactMargin?: number } & CallOptions = {}): Promise<WorkerPair> {
-    return new WorkerPair(this.connection, await this.connection.call(null, 'pair', [first, second], { ...options }));
+  async pair(
+    first: Body,
+    second: Body,
+    options: { contactMargin?: number } & CallOptions = {},
+  ): Promise<WorkerPair> {
+    return new WorkerPair(
+      this.connection,
+      await this.connection.call(null, 'pair', [first, second], { ...options }),
+    );
   }
   /** Reads a mesh file. Of the module `full` only. */
-  readMesh(bytes: Uint8Array | ArrayBuffer, name: string, options: Options<ReadMeshOptions> = {}): Promise<MeshFile> {
+  readMesh(
+    bytes: Uint8Array | ArrayBuffer,
+    name: string,
+    options: Options<ReadMeshOptions> = {},
+  ): Promise<MeshFile> {
     return this.connection.call(null, 'readMesh', [bytes, name], { ...options });
   }
   /** As of Sdm. */
-  async readLook(bytes: Uint8Array | ArrayBuffer, name: string, options: Options<ReadMeshOptions> = {}): Promise<WorkerLook> {
-    return new WorkerLook(this.connection, await this.connection.call(null, 'readLook', [bytes, name], { ...options }));
+  async readLook(
+    bytes: Uint8Array | ArrayBuffer,
+    name: string,
+    options: Options<ReadMeshOptions> = {},
+  ): Promise<WorkerLook> {
+    return new WorkerLook(
+      this.connection,
+      await this.connection.call(null, 'readLook', [bytes, name], { ...options }),
+    );
   }
   /** As of Sdm: null if the file has no animation. */
-  async readAnimation(bytes: Uint8Array | ArrayBuffer, name: string, options: Options<ReadAnimationOptions> = {}): Promise<WorkerAnimation | null> {
+  async readAnimation(
+    bytes: Uint8Array | ArrayBuffer,
+    name: string,
+    options: Options<ReadAnimationOptions> = {},
+  ): Promise<WorkerAnimation | null> {
     const made = await this.connection.call(null, 'readAnimation', [bytes, name], { ...options });
     return made && new WorkerAnimation(this.connection, made);
   }
   /** As of Sdm. */
-  async match(surface: WorkerSurface, sites: WorkerSites, options: Options<MatchOptions> = {}): Promise<WorkerMatches> {
+  async match(
+    surface: WorkerSurface,
+    sites: WorkerSites,
+    options: Options<MatchOptions> = {},
+  ): Promise<WorkerMatches> {
     const made = await this.connection.call(null, 'match', [surface, sites], { ...options });
     return new WorkerMatches(this.connection, made, surface, sites);
   }

@@ -34,9 +34,18 @@ export type MapSummary = { distance: Record<string, number>; [key: string]: unkn
 type Addresses = [map: number, surface: number, sites: number];
 
 /** Two of a kind, or what stands for none. The module reads as many. */
-function two<Value>(given: readonly Value[] | undefined, none: readonly [Value, Value], type: 'number' | 'string', option: string): readonly Value[] {
+function two<Value>(
+  given: readonly Value[] | undefined,
+  none: readonly [Value, Value],
+  type: 'number' | 'string',
+  option: string,
+): readonly Value[] {
   if (given === undefined) return none;
-  if (!Array.isArray(given) || given.length !== 2 || given.some((value) => typeof value !== type || Number.isNaN(value)))
+  if (
+    !Array.isArray(given) ||
+    given.length !== 2 ||
+    given.some((value) => typeof value !== type || Number.isNaN(value))
+  )
     throw new SdmError('input', `${option} is ${JSON.stringify(given)}: it must be two ${type}s`);
   return given;
 }
@@ -44,15 +53,31 @@ function two<Value>(given: readonly Value[] | undefined, none: readonly [Value, 
 /** The numbers and words of the options, as the module takes them. */
 function argumentsOf(module: Module, options: ReportOptions) {
   const none = [NaN, NaN] as const;
-  const limits = [...two(options.tolerance, none, 'number', 'tolerance'), ...two(options.range, none, 'number', 'range')];
-  const words = new TextEncoder().encode(JSON.stringify({
-    units: options.units ?? '', names: two(options.names, ['O1', 'O2'], 'string', 'names'), xxh3: two(options.xxh3, ['', ''], 'string', 'xxh3') }));
+  const limits = [
+    ...two(options.tolerance, none, 'number', 'tolerance'),
+    ...two(options.range, none, 'number', 'range'),
+  ];
+  const words = new TextEncoder().encode(
+    JSON.stringify({
+      units: options.units ?? '',
+      names: two(options.names, ['O1', 'O2'], 'string', 'names'),
+      xxh3: two(options.xxh3, ['', ''], 'string', 'xxh3'),
+    }),
+  );
   const colormap = module.number('colormap', options.colormap ?? 'automatic');
-  return [...limits, options.maxDistance ?? Infinity, colormap, module.number('up', options.up ?? 'y'), words, words.length];
+  return [
+    ...limits,
+    options.maxDistance ?? Infinity,
+    colormap,
+    module.number('up', options.up ?? 'y'),
+    words,
+    words.length,
+  ];
 }
 
 function demandFull(module: Module, name: string): void {
-  if (!module.has('sdm_map_summary')) throw new SdmError('input', `${name} needs the module of start({ full: true })`);
+  if (!module.has('sdm_map_summary'))
+    throw new SdmError('input', `${name} needs the module of start({ full: true })`);
 }
 
 export function summaryOf(module: Module, map: Addresses, options: SummaryOptions): MapSummary {
@@ -67,22 +92,36 @@ async function deflated(bytes: Bytes): Promise<Bytes> {
   return new Uint8Array(await new Response(stream).arrayBuffer()).slice(2, -4);
 }
 
-const kDataPlace = '<!-- data -->';  // of the page, as src/io/page/report/page_file.cpp looks for it
+const kDataPlace = '<!-- data -->'; // of the page, as src/io/page/report/page_file.cpp looks for it
 
 /** `map`: called once nothing has to be waited for any more, as the objects may be disposed of meanwhile. */
-export async function reportOf(module: Module, map: () => Addresses, options: ReportOptions): Promise<string> {
+export async function reportOf(
+  module: Module,
+  map: () => Addresses,
+  options: ReportOptions,
+): Promise<string> {
   demandFull(module, 'report');
   const html = await module.reportPage!();
-  if (!html.includes(kDataPlace)) throw new SdmError('input', `the reportPage has no ${kDataPlace}: it must be the text of report_page.html`);
+  if (!html.includes(kDataPlace))
+    throw new SdmError(
+      'input',
+      `the reportPage has no ${kDataPlace}: it must be the text of report_page.html`,
+    );
   const page = new TextEncoder().encode(html);
-  const [address, lengths, planes] = module.call('sdm_new_report', [...map(), ...argumentsOf(module, options)], options.progress);
+  const [address, lengths, planes] = module.call(
+    'sdm_new_report',
+    [...map(), ...argumentsOf(module, options)],
+    options.progress,
+  );
   const draft = float64(address!)[0]!;
   try {
     let at = 0;
-    const compressed = await Promise.all(Array.from(uint32(lengths!), (length) => {
-      const plane = planes!.slice(at, (at += length));
-      return length > 0 ? deflated(plane) : plane;
-    }));
+    const compressed = await Promise.all(
+      Array.from(uint32(lengths!), (length) => {
+        const plane = planes!.slice(at, (at += length));
+        return length > 0 ? deflated(plane) : plane;
+      }),
+    );
     const sizes = Uint32Array.from(compressed, (plane) => plane.length);
     const all = new Uint8Array(await new Blob(compressed).arrayBuffer());
     const [report] = module.call('sdm_finish_report', [draft, all, sizes, sizes.length, page, page.length]);

@@ -8,10 +8,15 @@ const [kMaximum, kShared] = [1, 2];
 
 /** A module as bytes, with a memory that is shared or not. */
 export function withMemory(file: BufferSource, shared: boolean): Uint8Array<ArrayBuffer> {
-  const bytes = Uint8Array.from(ArrayBuffer.isView(file) ? new Uint8Array(file.buffer, file.byteOffset, file.byteLength) : new Uint8Array(file));
+  const bytes = Uint8Array.from(
+    ArrayBuffer.isView(file)
+      ? new Uint8Array(file.buffer, file.byteOffset, file.byteLength)
+      : new Uint8Array(file),
+  );
   const at = bytes.findIndex((_, i) => kImport.every((byte, k) => bytes[i + k] === byte));
   const flags = at + kImport.length;
-  if (at < 0 || (bytes[flags]! & ~kShared) !== kMaximum) throw new SdmError('input', 'the module is not one of this package');
+  if (at < 0 || (bytes[flags]! & ~kShared) !== kMaximum)
+    throw new SdmError('input', 'the module is not one of this package');
   bytes[flags] = kMaximum | (shared ? kShared : 0);
   return bytes;
 }

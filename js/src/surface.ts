@@ -4,8 +4,16 @@ import { type Module } from './module.js';
 import { type MapSummary, type ReportOptions, type SummaryOptions, reportOf, summaryOf } from './report.js';
 import { type TransferOptions, transferred } from './transfer.js';
 import {
-  type AtlasKind, type BoundedLength, type Certainty, type Indices, type Point, type Points, type Progress,
-  type SignMethod, type SiteType, SdmError,
+  type AtlasKind,
+  type BoundedLength,
+  type Certainty,
+  type Indices,
+  type Point,
+  type Points,
+  type Progress,
+  type SignMethod,
+  type SiteType,
+  SdmError,
 } from './types.js';
 
 const kNone = 0xffffffff;
@@ -13,14 +21,19 @@ const kSiteTypes: Record<number, SiteType> = { 0: 'vertex', 1: 'edge', 2: 'face'
 
 /** Coordinates as doubles, three for each point. */
 export function coordinates(points: Points, name: string): Float64Array {
-  if (points.length % 3 !== 0) throw new SdmError('input', `${name} has ${points.length} numbers, but three are needed for each point`);
+  if (points.length % 3 !== 0)
+    throw new SdmError('input', `${name} has ${points.length} numbers, but three are needed for each point`);
   return points instanceof Float64Array ? points : Float64Array.from(points);
 }
 
 /** Indices of corners, three for each triangle. */
 export function corners(indices: Indices, vertices: number): Uint32Array {
   if (!indices) return Uint32Array.from({ length: vertices - (vertices % 3) }, (_, i) => i);
-  if (indices.length % 3 !== 0) throw new SdmError('input', `indices has ${indices.length} numbers, but three are needed for each triangle`);
+  if (indices.length % 3 !== 0)
+    throw new SdmError(
+      'input',
+      `indices has ${indices.length} numbers, but three are needed for each triangle`,
+    );
   for (let i = 0; i < indices.length; ++i) {
     const index = indices[i]!;
     if (!(index >= 0 && index < vertices && Number.isInteger(index)))
@@ -30,9 +43,21 @@ export function corners(indices: Indices, vertices: number): Uint32Array {
 }
 
 function boundedLength(module: Module, bytes: Bytes): BoundedLength {
-  const [value, lower, upper, certainty, ...witness] = Array.from(float64(bytes)) as [number, number, number, number, ...number[]];
+  const [value, lower, upper, certainty, ...witness] = Array.from(float64(bytes)) as [
+    number,
+    number,
+    number,
+    number,
+    ...number[],
+  ];
   const points: [Point, Point] = [witness.slice(0, 3) as Point, witness.slice(3, 6) as Point];
-  return { value, lower, upper, certainty: module.words('certainty')[certainty] as Certainty, witness: Number.isNaN(witness[0]!) ? null : points };
+  return {
+    value,
+    lower,
+    upper,
+    certainty: module.words('certainty')[certainty] as Certainty,
+    witness: Number.isNaN(witness[0]!) ? null : points,
+  };
 }
 
 /** An object in the memory of a module. It is freed when it is collected, by dispose(), or at the end of the block of `using`. */
@@ -112,7 +137,12 @@ export class Sites extends Owned {
   constructor(module: Module, positions: Points, indices: Indices = null) {
     const at = coordinates(positions, 'positions');
     const triangles = corners(indices, at.length / 3);
-    const [address, flags] = module.call('sdm_new_sites', [at, at.length / 3, triangles, triangles.length / 3]);
+    const [address, flags] = module.call('sdm_new_sites', [
+      at,
+      at.length / 3,
+      triangles,
+      triangles.length / 3,
+    ]);
     super(module, float64(address!)[0]!, 'sdm_free_sites');
     [this.closed, this.orientable] = Array.from(float64(flags!), (flag) => flag !== 0) as [boolean, boolean];
   }
@@ -131,25 +161,49 @@ export class Sites extends Owned {
   closestPoints(points: Points, options: { maxDistance?: number; progress?: Progress } = {}): ClosestPoints {
     const at = coordinates(points, 'points');
     const [found, distances, faces, barycentric] = this.module.call(
-      'sdm_closest_points', [this.handle, at, at.length / 3, options.maxDistance ?? Infinity], options.progress);
-    return { points: float64(found!), distances: float64(distances!), faces: uint32(faces!), barycentric: float64(barycentric!) };
+      'sdm_closest_points',
+      [this.handle, at, at.length / 3, options.maxDistance ?? Infinity],
+      options.progress,
+    );
+    return {
+      points: float64(found!),
+      distances: float64(distances!),
+      faces: uint32(faces!),
+      barycentric: float64(barycentric!),
+    };
   }
 
   /** Distances that are negative inside, of closestPoints(). Of an open mesh, `automatic` gives none a sign. */
   signedDistance(points: Points, options: { sign?: SignMethod; progress?: Progress } = {}): SignedDistances {
     const at = coordinates(points, 'points');
     const method = this.module.number('sign', options.sign ?? 'automatic');
-    const [distances, used, reason] = this.module.call('sdm_signed_distance', [this.handle, at, at.length / 3, method], options.progress);
-    return { distances: float64(distances!), sign: this.module.words('sign')[float64(used!)[0]!] as SignMethod, reason: text(reason!) };
+    const [distances, used, reason] = this.module.call(
+      'sdm_signed_distance',
+      [this.handle, at, at.length / 3, method],
+      options.progress,
+    );
+    return {
+      distances: float64(distances!),
+      sign: this.module.words('sign')[float64(used!)[0]!] as SignMethod,
+      reason: text(reason!),
+    };
   }
 
   /** The first point on each ray from an origin along a direction, at origin + t · direction. */
-  firstHits(origins: Points, directions: Points, options: { tMin?: number; tMax?: number; progress?: Progress } = {}): RayHits {
+  firstHits(
+    origins: Points,
+    directions: Points,
+    options: { tMin?: number; tMax?: number; progress?: Progress } = {},
+  ): RayHits {
     const from = coordinates(origins, 'origins');
     const along = coordinates(directions, 'directions');
-    if (from.length !== along.length) throw new SdmError('input', `there are ${from.length / 3} origins, but ${along.length / 3} directions`);
+    if (from.length !== along.length)
+      throw new SdmError('input', `there are ${from.length / 3} origins, but ${along.length / 3} directions`);
     const [t, faces, barycentric] = this.module.call(
-      'sdm_first_hits', [this.handle, from, along, from.length / 3, options.tMin ?? 0, options.tMax ?? Infinity], options.progress);
+      'sdm_first_hits',
+      [this.handle, from, along, from.length / 3, options.tMin ?? 0, options.tMax ?? Infinity],
+      options.progress,
+    );
     return { t: float64(t!), faces: uint32(faces!), barycentric: float64(barycentric!) };
   }
 
@@ -158,8 +212,15 @@ export class Sites extends Owned {
    * 10⁻⁶ of the diagonal of both meshes.
    */
   hausdorff(other: Sites, options: { precision?: number; progress?: Progress } = {}): Hausdorff {
-    const result = this.module.call('sdm_hausdorff', [this.handle, other.handleIn(this.module), options.precision ?? 0], options.progress);
-    return { from: [boundedLength(this.module, result[0]!), boundedLength(this.module, result[2]!)], larger: boundedLength(this.module, result[4]!) };
+    const result = this.module.call(
+      'sdm_hausdorff',
+      [this.handle, other.handleIn(this.module), options.precision ?? 0],
+      options.progress,
+    );
+    return {
+      from: [boundedLength(this.module, result[0]!), boundedLength(this.module, result[2]!)],
+      larger: boundedLength(this.module, result[4]!),
+    };
   }
 }
 
@@ -213,14 +274,33 @@ export class Surface extends Owned {
     let uvs: Float64Array | null = null;
     if (options.uvs) {
       const of = options.uvs;
-      if (of.length * 3 !== at.length * 2) throw new SdmError('input', `uvs has ${of.length} numbers, but two are needed for each of ${at.length / 3} vertices`);
-      uvs = Float64Array.from({ length: triangles.length * 2 }, (_, i) => of[triangles[i >> 1]! * 2 + (i & 1)]!);
+      if (of.length * 3 !== at.length * 2)
+        throw new SdmError(
+          'input',
+          `uvs has ${of.length} numbers, but two are needed for each of ${at.length / 3} vertices`,
+        );
+      uvs = Float64Array.from(
+        { length: triangles.length * 2 },
+        (_, i) => of[triangles[i >> 1]! * 2 + (i & 1)]!,
+      );
     }
     const kind = module.number('atlas', options.atlas ?? 'charts');
     const [address] = module.call(
       'sdm_new_surface',
-      [at, at.length / 3, triangles, triangles.length / 3, uvs, kind, options.resolution ?? 1024, options.gutter ?? 1,
-        options.storedAtlas ?? null, options.storedAtlas?.length ?? 0], options.progress);
+      [
+        at,
+        at.length / 3,
+        triangles,
+        triangles.length / 3,
+        uvs,
+        kind,
+        options.resolution ?? 1024,
+        options.gutter ?? 1,
+        options.storedAtlas ?? null,
+        options.storedAtlas?.length ?? 0,
+      ],
+      options.progress,
+    );
     super(module, float64(address!)[0]!, 'sdm_free_surface');
   }
 
@@ -232,7 +312,12 @@ export class Surface extends Owned {
 
   atlas(): Atlas {
     const [numbers, faces, places] = this.module.call('sdm_surface_atlas', [this.handle]);
-    const [resolution, rows, charts, utilisation] = Array.from(float64(numbers!)) as [number, number, number, number];
+    const [resolution, rows, charts, utilisation] = Array.from(float64(numbers!)) as [
+      number,
+      number,
+      number,
+      number,
+    ];
     return { resolution, rows, charts, utilisation, texelFaces: uint32(faces!), corners: float32(places!) };
   }
 
@@ -251,7 +336,9 @@ export class Surface extends Owned {
   }
   /** The number of samples, and that of which ranges for DistanceMap.computeSamples() begin and end at multiples. */
   sampleCounts(): { samples: number; grain: number } {
-    const [samples, grain] = Array.from(float64(this.module.call('sdm_sample_counts', [this.handle])[0]!)) as [number, number];
+    const [samples, grain] = Array.from(
+      float64(this.module.call('sdm_sample_counts', [this.handle])[0]!),
+    ) as [number, number];
     return { samples, grain };
   }
 
@@ -318,7 +405,12 @@ export class DistanceMap extends Owned {
   signReason = '';
 
   /** @internal */
-  constructor(module: Module, private readonly surface: Surface, surfaceAddress: number, private readonly sites: Sites) {
+  constructor(
+    module: Module,
+    private readonly surface: Surface,
+    surfaceAddress: number,
+    private readonly sites: Sites,
+  ) {
     sites.handleIn(module);
     const [address, numbers] = module.call('sdm_new_map', [surfaceAddress]);
     super(module, float64(address!)[0]!, 'sdm_free_map');
@@ -340,13 +432,24 @@ export class DistanceMap extends Owned {
    * any number of modules, are the whole map to the bit.
    */
   computeSamples(first: number, count: number, options: MapOptions = {}): void {
-    this.take(this.module.call('sdm_compute_samples', [...this.arguments(options), first, count], options.progress));
+    this.take(
+      this.module.call('sdm_compute_samples', [...this.arguments(options), first, count], options.progress),
+    );
   }
   /** The values of samples, in their order, as those of the arrays of the map. */
   valuesOfSamples(first: number, count: number): MapValues {
-    const [distances, vectors, sites, types] = this.module.call(
-      'sdm_map_samples', [this.handle, this.surface.handleIn(this.module), first, count]) as [Bytes, Bytes, Bytes, Bytes];
-    return { distances: float32(distances), vectors: float32(vectors), sitesOfTexels: uint32(sites), siteTypes: types };
+    const [distances, vectors, sites, types] = this.module.call('sdm_map_samples', [
+      this.handle,
+      this.surface.handleIn(this.module),
+      first,
+      count,
+    ]) as [Bytes, Bytes, Bytes, Bytes];
+    return {
+      distances: float32(distances),
+      vectors: float32(vectors),
+      sitesOfTexels: uint32(sites),
+      siteTypes: types,
+    };
   }
 
   private arguments(options: MapOptions): number[] {
@@ -377,7 +480,10 @@ export class DistanceMap extends Owned {
 
   /** Statistics of the distances, weighted by area. */
   statistics(): MapStatistics {
-    const [names, numbers] = this.module.call('sdm_map_statistics', [this.surface.handleIn(this.module), this.handle]);
+    const [names, numbers] = this.module.call('sdm_map_statistics', [
+      this.surface.handleIn(this.module),
+      this.handle,
+    ]);
     return fields(names!, numbers!) as unknown as MapStatistics;
   }
 
@@ -423,7 +529,8 @@ export class Pair extends Owned {
     second: { positions: Points; indices?: Indices },
     options: { contactMargin?: number } = {},
   ) {
-    if (!module.has('sdm_new_pair')) throw new SdmError('input', 'Pair needs the module of start({ full: true })');
+    if (!module.has('sdm_new_pair'))
+      throw new SdmError('input', 'Pair needs the module of start({ full: true })');
     const bodies = [first, second].flatMap(({ positions, indices }, body) => {
       const at = coordinates(positions, `positions of body ${body}`);
       const triangles = corners(indices ?? null, at.length / 3);
@@ -435,7 +542,8 @@ export class Pair extends Owned {
 
   /** Moves a body, 0 or 1. `matrix`: 16 numbers, column after column, as three.js has them (Matrix4.elements). */
   setPose(body: 0 | 1, matrix: ArrayLike<number>): void {
-    if (matrix.length !== 16) throw new SdmError('input', `a pose is a matrix of 16 numbers, not ${matrix.length}`);
+    if (matrix.length !== 16)
+      throw new SdmError('input', `a pose is a matrix of 16 numbers, not ${matrix.length}`);
     const rows = Float64Array.from({ length: 12 }, (_, i) => matrix[(i % 4) * 4 + (i >> 2)]!);
     this.module.call('sdm_set_pose', [this.handle, body, rows]);
   }
@@ -458,10 +566,16 @@ export class Pair extends Owned {
     return depth ? boundedLength(this.module, depth) : null;
   }
   contacts(): Contacts {
-    const [points1, points2, normals, depths, patches, ids] = this.module.call('sdm_contacts', [this.handle]) as Bytes[];
+    const [points1, points2, normals, depths, patches, ids] = this.module.call('sdm_contacts', [
+      this.handle,
+    ]) as Bytes[];
     return {
-      points1: float64(points1!), points2: float64(points2!), normals: float64(normals!), depths: float64(depths!),
-      patches: uint32(patches!), ids: new BigUint64Array(ids!.buffer),
+      points1: float64(points1!),
+      points2: float64(points2!),
+      normals: float64(normals!),
+      depths: float64(depths!),
+      patches: uint32(patches!),
+      ids: new BigUint64Array(ids!.buffer),
     };
   }
 }

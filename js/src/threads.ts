@@ -47,9 +47,21 @@ export async function startThreads(
     workers.push(worker);
     const stackTop = (allocate(kStackBytes) + kStackBytes) & ~15;
     const threadLocal = allocate(kThreadLocalBytes);
-    const thread: ThreadStart = { module, memory, slots, failure: failure.memory, slot, count, stackTop, threadLocal };
+    const thread: ThreadStart = {
+      module,
+      memory,
+      slots,
+      failure: failure.memory,
+      slot,
+      count,
+      stackTop,
+      threadLocal,
+    };
     await started(worker, { thread });
-    worker.listen(() => {}, (error) => failure.set(error.message));
+    worker.listen(
+      () => {},
+      (error) => failure.set(error.message),
+    );
   };
   try {
     await Promise.all(Array.from({ length: count - 1 }, (_, slot) => startOne(slot)));
@@ -78,7 +90,12 @@ function startIn(slots: Int32Array, workers: number, argument: number): boolean 
 export async function runThread(start: ThreadStart, ready: () => void): Promise<void> {
   const { slots, slot, count } = start;
   const failure = new Failure(start.failure);
-  const threads: Threads = { count, start: (argument) => startIn(slots, count - 1, argument), failure, stop: () => {} };
+  const threads: Threads = {
+    count,
+    start: (argument) => startIn(slots, count - 1, argument),
+    failure,
+    stop: () => {},
+  };
   let lastWords = '';
   const imports = hostImports(
     () => start.memory.buffer,
@@ -90,7 +107,8 @@ export async function runThread(start: ThreadStart, ready: () => void): Promise<
   const instance = await WebAssembly.instantiate(start.module, { ...imports, env: { memory: start.memory } });
   const exports = instance.exports as Record<string, any>;
   exports['__stack_pointer'].value = start.stackTop;
-  if (exports['__tls_size'].value > kThreadLocalBytes) throw new SdmError('internal', 'sdm: threads have too much of their own');
+  if (exports['__tls_size'].value > kThreadLocalBytes)
+    throw new SdmError('internal', 'sdm: threads have too much of their own');
   exports['__wasm_init_tls'](start.threadLocal);
   ready();
   try {

@@ -1,10 +1,32 @@
 // sdm/three: distance maps on meshes of three.js.
 import {
-  BufferAttribute, BufferGeometry, DataTexture, FloatType, LinearFilter, MeshStandardMaterial, type MeshStandardMaterialParameters,
-  NearestFilter, RedFormat, SRGBColorSpace, type WebGLProgramParametersWithUniforms,
+  BufferAttribute,
+  BufferGeometry,
+  DataTexture,
+  FloatType,
+  LinearFilter,
+  MeshStandardMaterial,
+  type MeshStandardMaterialParameters,
+  NearestFilter,
+  RedFormat,
+  SRGBColorSpace,
+  type WebGLProgramParametersWithUniforms,
 } from 'three';
 import {
-  kAbove, kBands, kBelow, kCentred, kColorRule, kDiverging, kEndToEnd, kNoValue, kOpposite, kPaper2006, kSequential, kUnjudged, kViridis, kWithin,
+  kAbove,
+  kBands,
+  kBelow,
+  kCentred,
+  kColorRule,
+  kDiverging,
+  kEndToEnd,
+  kNoValue,
+  kOpposite,
+  kPaper2006,
+  kSequential,
+  kUnjudged,
+  kViridis,
+  kWithin,
 } from './rules.js';
 import { type Atlas } from './surface.js';
 import { SdmError } from './types.js';
@@ -14,7 +36,9 @@ import { SdmError } from './types.js';
  * Vertices stay apart where normals or texture coordinates differ, so that the mesh is open there: for signs, merge them first by
  * `mergeVertices` of three.js, without these attributes.
  */
-export function fromBufferGeometry(geometry: BufferGeometry): [positions: Float64Array, indices: Uint32Array] {
+export function fromBufferGeometry(
+  geometry: BufferGeometry,
+): [positions: Float64Array, indices: Uint32Array] {
   const position = geometry.getAttribute('position');
   if (!position) throw new SdmError('input', 'the geometry has no positions');
   const positions = new Float64Array(3 * position.count);
@@ -22,7 +46,10 @@ export function fromBufferGeometry(geometry: BufferGeometry): [positions: Float6
     positions.set([position.getX(i), position.getY(i), position.getZ(i)], 3 * i);
   const { index } = geometry;
   const count = index?.count ?? position.count;
-  return [positions, Uint32Array.from({ length: count - (count % 3) }, (_, i) => (index ? index.getX(i) : i))];
+  return [
+    positions,
+    Uint32Array.from({ length: count - (count % 3) }, (_, i) => (index ? index.getX(i) : i)),
+  ];
 }
 
 /**
@@ -31,7 +58,8 @@ export function fromBufferGeometry(geometry: BufferGeometry): [positions: Float6
  */
 export function withAtlas(geometry: BufferGeometry, atlas: Atlas): BufferGeometry {
   const copy = geometry.index ? geometry.toNonIndexed() : geometry.clone();
-  const corners = atlas.corners.length / 2, { count } = copy.getAttribute('position');
+  const corners = atlas.corners.length / 2,
+    { count } = copy.getAttribute('position');
   if (count - (count % 3) !== corners) throw new SdmError('input', 'the atlas is of another geometry');
   const uvs = new Float32Array(2 * count);
   for (let i = 0; i < corners; ++i) {
@@ -56,7 +84,7 @@ export interface DistanceMaterialOptions extends MeshStandardMaterialParameters 
 }
 
 const kLut = 256;
-const kNone = 1e38;  // stands for NaN and for no limit: drivers treat NaN and infinity in different ways
+const kNone = 1e38; // stands for NaN and for no limit: drivers treat NaN and infinity in different ways
 const kModes = { viridis: kEndToEnd, sequential: kSequential, diverging: kCentred, paper2006: kEndToEnd };
 
 /** Shows the distances of a map on a geometry of withAtlas(). */
@@ -74,11 +102,21 @@ export class DistanceMaterial extends MeshStandardMaterial {
     sdmAccuracy: { value: 0 },
   };
 
-  constructor(map: { distances: Float32Array }, atlas: Pick<Atlas, 'resolution' | 'rows' | 'texelFaces'>, options: DistanceMaterialOptions = {}) {
+  constructor(
+    map: { distances: Float32Array },
+    atlas: Pick<Atlas, 'resolution' | 'rows' | 'texelFaces'>,
+    options: DistanceMaterialOptions = {},
+  ) {
     const { range, tolerance, accuracy, colormap, ...parameters } = options;
     super({ roughness: 0.7, metalness: 0, ...parameters });
     this.texelFaces = atlas.texelFaces;
-    this.texture = new DataTexture(new Float32Array(atlas.resolution * atlas.rows), atlas.resolution, atlas.rows, RedFormat, FloatType);
+    this.texture = new DataTexture(
+      new Float32Array(atlas.resolution * atlas.rows),
+      atlas.resolution,
+      atlas.rows,
+      RedFormat,
+      FloatType,
+    );
     [this.texture.minFilter, this.texture.magFilter] = [NearestFilter, NearestFilter];
     this.uniformsOfDistances.sdmDistances.value = this.texture;
     this.setDistances(map.distances);
@@ -95,7 +133,8 @@ export class DistanceMaterial extends MeshStandardMaterial {
     return this.uniformsOfDistances.sdmRange.value;
   }
   set range(range: [number, number]) {
-    if (!(range[0] < range[1])) throw new SdmError('input', `the range ${range.join(' to ')} is not increasing`);
+    if (!(range[0] < range[1]))
+      throw new SdmError('input', `the range ${range.join(' to ')} is not increasing`);
     this.uniformsOfDistances.sdmRange.value = range;
   }
   get tolerance(): [number, number] | null {
@@ -103,10 +142,16 @@ export class DistanceMaterial extends MeshStandardMaterial {
   }
   set tolerance(limits: [number, number] | null) {
     if (limits && !(limits[0] <= limits[1] && limits.some(Number.isFinite)))
-      throw new SdmError('input', `the tolerance is ${limits.join(' to ')}: it must be two numbers, the smaller one first, one of them finite`);
+      throw new SdmError(
+        'input',
+        `the tolerance is ${limits.join(' to ')}: it must be two numbers, the smaller one first, one of them finite`,
+      );
     this.limits = limits;
     this.uniformsOfDistances.sdmMode.value = limits ? kBands : kModes[this.colormap];
-    if (limits) this.uniformsOfDistances.sdmLimits.value = limits.map((limit) => Math.min(kNone, Math.max(-kNone, limit))) as [number, number];
+    if (limits)
+      this.uniformsOfDistances.sdmLimits.value = limits.map((limit) =>
+        Math.min(kNone, Math.max(-kNone, limit)),
+      ) as [number, number];
   }
   get accuracy(): number {
     return this.uniformsOfDistances.sdmAccuracy.value;
@@ -119,7 +164,8 @@ export class DistanceMaterial extends MeshStandardMaterial {
   /** Shows other distances, of the same atlas: of the next frame. */
   setDistances(distances: Float32Array): void {
     const data = this.texture.image.data as Float32Array;
-    if (distances.length !== data.length) throw new SdmError('input', `there are ${distances.length} distances, but ${data.length} texels`);
+    if (distances.length !== data.length)
+      throw new SdmError('input', `there are ${distances.length} distances, but ${data.length} texels`);
     for (let i = 0; i < data.length; ++i) data[i] = Number.isNaN(distances[i]) ? kNone : distances[i]!;
     fillBorders(data, this.texelFaces, this.texture.image.width);
     this.texture.needsUpdate = true;
@@ -132,12 +178,20 @@ export class DistanceMaterial extends MeshStandardMaterial {
       .replace('#include <map_fragment>', 'diffuseColor.rgb *= sdmColor(texture2D(sdmDistances, vUv).r);');
   }
   override clone(): this {
-    const { data, width, height } = this.texture.image as { data: Float32Array; width: number; height: number };
+    const { data, width, height } = this.texture.image as {
+      data: Float32Array;
+      width: number;
+      height: number;
+    };
     const atlas = { resolution: width, rows: height, texelFaces: this.texelFaces };
-    const options = { range: [...this.range] as [number, number], colormap: this.colormap, accuracy: this.accuracy };
+    const options = {
+      range: [...this.range] as [number, number],
+      colormap: this.colormap,
+      accuracy: this.accuracy,
+    };
     const copy = new DistanceMaterial({ distances: data }, atlas, options).copy(this);
     copy.tolerance = this.tolerance && [...this.tolerance];
-    copy.defines = { ...this.defines };  // copy() of three.js resets these
+    copy.defines = { ...this.defines }; // copy() of three.js resets these
     return copy as this;
   }
   override customProgramCacheKey(): string {
@@ -169,9 +223,15 @@ vec3 sdmColor(float d) {
 type Rgb = [number, number, number];
 
 function colorTexture(colormap: keyof typeof kModes): DataTexture {
-  const colors = { viridis: kViridis, sequential: kViridis, diverging: kDiverging, paper2006: kPaper2006 }[colormap];
+  const colors = { viridis: kViridis, sequential: kViridis, diverging: kDiverging, paper2006: kPaper2006 }[
+    colormap
+  ];
   const rows = [colors, kOpposite, kWithin, kAbove, kBelow, [kUnjudged, kUnjudged], [kNoValue, kNoValue]];
-  const data = Uint8Array.from(rows.flatMap((row) => Array.from({ length: kLut }, (_, i) => [...gradient(row, i / (kLut - 1)), 255]).flat()));
+  const data = Uint8Array.from(
+    rows.flatMap((row) =>
+      Array.from({ length: kLut }, (_, i) => [...gradient(row, i / (kLut - 1)), 255]).flat(),
+    ),
+  );
   const texture = new DataTexture(data, kLut, kRows);
   [texture.minFilter, texture.magFilter] = [LinearFilter, LinearFilter];
   texture.colorSpace = SRGBColorSpace;
@@ -180,18 +240,21 @@ function colorTexture(colormap: keyof typeof kModes): DataTexture {
 }
 
 function gradient(colors: Rgb[], t: number): Rgb {
-  const at = Math.min(colors.length - 2, Math.floor(t * (colors.length - 1))), f = t * (colors.length - 1) - at;
+  const at = Math.min(colors.length - 2, Math.floor(t * (colors.length - 1))),
+    f = t * (colors.length - 1) - at;
   return colors[at]!.map((x, k) => Math.round(x * (1 - f) + colors[at + 1]![k]! * f)) as Rgb;
 }
 
 /** Texels beside those of faces get a value of these: a face reaches into texels whose centres are outside of it. */
 function fillBorders(data: Float32Array, texelFaces: Uint32Array, width: number): void {
-  const free = 0xffffffff, height = data.length / width;
+  const free = 0xffffffff,
+    height = data.length / width;
   for (let y = 0; y < height; ++y)
     for (let x = 0; x < width; ++x) {
       if (texelFaces[y * width + x] !== free) continue;
       for (let n = 0; n < 9; ++n) {
-        const u = x + (n % 3) - 1, v = y + Math.floor(n / 3) - 1;
+        const u = x + (n % 3) - 1,
+          v = y + Math.floor(n / 3) - 1;
         if (u < 0 || v < 0 || u >= width || v >= height || texelFaces[v * width + u] === free) continue;
         data[y * width + x] = data[v * width + u]!;
         break;

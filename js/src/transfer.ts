@@ -15,10 +15,18 @@ export interface TransferOptions {
 
 /** @internal `objects`: surface, sites, and the map or matches, in the module. */
 export function transferred(
-  module: Module, name: 'sdm_transfer' | 'sdm_transfer_matches', objects: readonly number[], values: ArrayLike<number>, options: TransferOptions,
+  module: Module,
+  name: 'sdm_transfer' | 'sdm_transfer_matches',
+  objects: readonly number[],
+  values: ArrayLike<number>,
+  options: TransferOptions,
 ): Float32Array {
   const rows: NumberArray = values instanceof Float32Array ? values : Float32Array.from(values);
   const domain = module.number('domain', options.domain ?? 'vertex');
-  const [result] = module.call(name, [...objects, rows, rows.length, options.components ?? 1, domain, options.fill === false ? 0 : 1], options.progress);
+  const [result] = module.call(
+    name,
+    [...objects, rows, rows.length, options.components ?? 1, domain, options.fill === false ? 0 : 1],
+    options.progress,
+  );
   return float32(result as Bytes);
 }

@@ -3,7 +3,14 @@
 import { Sdm } from './library.js';
 import { textOf } from './load.js';
 import { Module, canShareMemory } from './module.js';
-import { type Call, type FirstMessage, type Reply, type Request, type Started, type WorkerStart } from './protocol.js';
+import {
+  type Call,
+  type FirstMessage,
+  type Reply,
+  type Request,
+  type Started,
+  type WorkerStart,
+} from './protocol.js';
 import { wordNumber } from './bytes.js';
 import { DistanceMap, Owned } from './surface.js';
 import { runThread } from './threads.js';
@@ -42,7 +49,8 @@ const tick = (() => {
 /** The buffers of arrays in a result. */
 function buffersOf(value: unknown, found = new Set<ArrayBuffer>()): ArrayBuffer[] {
   if (ArrayBuffer.isView(value)) {
-    if (value.buffer instanceof ArrayBuffer && value.buffer.byteLength === value.byteLength) found.add(value.buffer);
+    if (value.buffer instanceof ArrayBuffer && value.buffer.byteLength === value.byteLength)
+      found.add(value.buffer);
   } else if (Array.isArray(value)) value.forEach((item) => buffersOf(item, found));
   else if (value && typeof value === 'object') Object.values(value).forEach((item) => buffersOf(item, found));
   return [...found];
@@ -67,7 +75,15 @@ class Server {
     } else if ('cancel' in request) this.cancelled.add(request.cancel);
     else {
       // Calls that were made before still use it.
-      this.queue.push({ id: 0, object: request.dispose, method: 'dispose', values: [], options: {}, wantsProgress: false, cancellable: false });
+      this.queue.push({
+        id: 0,
+        object: request.dispose,
+        method: 'dispose',
+        values: [],
+        options: {},
+        wantsProgress: false,
+        cancellable: false,
+      });
       if (!this.running) void this.run();
     }
   }
@@ -104,7 +120,9 @@ class Server {
   private reply({ id }: Call, result: unknown): void {
     if (result instanceof Owned) {
       this.objects.set(id, result);
-      const fields = Object.entries(result).filter(([, value]) => ['number', 'string', 'boolean'].includes(typeof value));
+      const fields = Object.entries(result).filter(([, value]) =>
+        ['number', 'string', 'boolean'].includes(typeof value),
+      );
       this.post({ id, object: id, fields: Object.fromEntries(fields) });
     } else this.post({ id, value: result }, buffersOf(result));
   }
@@ -121,7 +139,10 @@ class Server {
 
   private async compute(call: Call): Promise<unknown> {
     const values = call.values.map((value) =>
-      value && typeof value === 'object' && 'sdmObject' in value ? this.object(value.sdmObject as number) : value);
+      value && typeof value === 'object' && 'sdmObject' in value
+        ? this.object(value.sdmObject as number)
+        : value,
+    );
     const options = { ...call.options, progress: this.progressOf(call) };
     const target = call.object === 0 ? this.library : this.object(call.object);
     if (target instanceof DistanceMap) {
@@ -130,7 +151,11 @@ class Server {
       if (call.method === 'computeSamples' || call.method === 'computeValues') {
         const [first, count] = values as [number, number];
         target.computeSamples(first, count, options);
-        return { sign: target.sign, signReason: target.signReason, ...(call.method === 'computeValues' ? target.valuesOfSamples(first, count) : {}) };
+        return {
+          sign: target.sign,
+          signReason: target.signReason,
+          ...(call.method === 'computeValues' ? target.valuesOfSamples(first, count) : {}),
+        };
       }
     }
     if (call.method === 'map') return this.map(target as never, values[0] as never, call, options);
@@ -144,7 +169,12 @@ class Server {
     return Object.fromEntries(names.map((name) => [name, map[known[wordNumber(known, name, 'an array')]!]]));
   }
 
-  private async map(surface: InstanceType<Sdm['Surface']>, sites: InstanceType<Sdm['Sites']>, call: Call, options: object): Promise<DistanceMap> {
+  private async map(
+    surface: InstanceType<Sdm['Surface']>,
+    sites: InstanceType<Sdm['Sites']>,
+    call: Call,
+    options: object,
+  ): Promise<DistanceMap> {
     const map = surface.emptyMap(sites);
     try {
       await this.update(map, call, options);
@@ -169,12 +199,14 @@ class Server {
     for (let first = 0, count; first < samples; first += count) {
       count = Math.min(step, samples - first);
       const [done, part] = [first, count];
-      const progress: Progress = (name, fraction) => options.progress?.(name, (done + fraction * part) / samples);
+      const progress: Progress = (name, fraction) =>
+        options.progress?.(name, (done + fraction * part) / samples);
       const since = performance.now();
       map.computeSamples(first, count, { ...options, progress });
       const took = performance.now() - since;
       if (took < kPartMilliseconds / 2) step *= 2;
-      else if (took > kPartMilliseconds) step = Math.max(grain, grain * Math.floor((step / grain) * (kPartMilliseconds / took)));
+      else if (took > kPartMilliseconds)
+        step = Math.max(grain, grain * Math.floor((step / grain) * (kPartMilliseconds / took)));
       await tick();
       if (this.cancelled.has(call.id)) throw new SdmError('cancelled', 'cancelled');
     }
@@ -196,7 +228,8 @@ class Server {
 
 async function serve(port: Port, { reportPage, ...start }: WorkerStart): Promise<void> {
   const started = await Module.start(start);
-  const flags = started.sharedFlags() ?? (canShareMemory() ? new Uint8Array(new SharedArrayBuffer(256)) : undefined);
+  const flags =
+    started.sharedFlags() ?? (canShareMemory() ? new Uint8Array(new SharedArrayBuffer(256)) : undefined);
   const server = new Server(port, new Sdm(started, () => textOf(reportPage)), flags);
   port.receive((request) => server.receive(request));
   port.post({ threads: started.threadCount, flags } satisfies Started);
@@ -205,6 +238,12 @@ async function serve(port: Port, { reportPage, ...start }: WorkerStart): Promise
 const port = openPort();
 void port.then((open) =>
   open.receive((first: FirstMessage) => {
-    const run = 'thread' in first ? runThread(first.thread, () => open.post({ ready: true })) : serve(open, first.worker);
-    run.catch((error: unknown) => open.post({ failed: error instanceof Error ? error.message : String(error) }));
-  }));
+    const run =
+      'thread' in first
+        ? runThread(first.thread, () => open.post({ ready: true }))
+        : serve(open, first.worker);
+    run.catch((error: unknown) =>
+      open.post({ failed: error instanceof Error ? error.message : String(error) }),
+    );
+  }),
+);

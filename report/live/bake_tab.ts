@@ -7,15 +7,32 @@ import { capital } from '../src/words';
 import type { Baking } from './baking';
 import { addTabs } from './tabs';
 
-const kShown: [string, string][] = [['', 'Distances'], ['colors', 'Colours of the reference'], ['normals', 'Normals of the reference']];
-const kMethods: [MatchMethod, string][] = [['facing', 'Closest facing the same way'], ['closest', 'Closest point'], ['ray', 'Along the normal']];
+const kShown: [string, string][] = [
+  ['', 'Distances'],
+  ['colors', 'Colours of the reference'],
+  ['normals', 'Normals of the reference'],
+];
+const kMethods: [MatchMethod, string][] = [
+  ['facing', 'Closest facing the same way'],
+  ['closest', 'Closest point'],
+  ['ray', 'Along the normal'],
+];
 
 const sentence = (note: string): string => `${capital(note)}.`;
 
 /// The rows of a field for a number greater than 0; empty: none.
-function numberField(id: string, label: string, value: string, set: (value: number | null) => void): HTMLElement {
+function numberField(
+  id: string,
+  label: string,
+  value: string,
+  set: (value: number | null) => void,
+): HTMLElement {
   const input = make('input', {
-    type: 'text', inputmode: 'decimal', autocomplete: 'off', id, value,
+    type: 'text',
+    inputmode: 'decimal',
+    autocomplete: 'off',
+    id,
+    value,
     change: () => {
       const number = typedNumber(input.value);
       const isEmpty = input.value.trim() === '';
@@ -29,14 +46,24 @@ function numberField(id: string, label: string, value: string, set: (value: numb
 
 export class BakeTab {
   /// `changed`: after each choice; `save`: the model with its textures.
-  constructor(baking: () => Baking, changed: () => void, save: () => Promise<void>, fault: (error: unknown) => void) {
+  constructor(
+    baking: () => Baking,
+    changed: () => void,
+    save: () => Promise<void>,
+    fault: (error: unknown) => void,
+  ) {
     const set = (options: Partial<Baking['options']>) => {
       Object.assign(baking().options, options);
       changed();
     };
-    const cage = numberField('bake-cage', 'Within, along the normal', '', (x) => set({ cage: x ?? Infinity }));
-    const facing = numberField('bake-facing', 'Normals differ by less than, in °', '90', (x) => set({ facing: Math.min(180, x ?? 90) }));
-    const showFields = (method: string) => ([cage.hidden, facing.hidden] = [method !== 'ray', method === 'closest']);
+    const cage = numberField('bake-cage', 'Within, along the normal', '', (x) =>
+      set({ cage: x ?? Infinity }),
+    );
+    const facing = numberField('bake-facing', 'Normals differ by less than, in °', '90', (x) =>
+      set({ facing: Math.min(180, x ?? 90) }),
+    );
+    const showFields = (method: string) =>
+      ([cage.hidden, facing.hidden] = [method !== 'ray', method === 'closest']);
     const [shown] = select('bake-shown', 'Show', kShown, '', (kind) => {
       baking().kind = kind === '' ? null : (kind as 'colors' | 'normals');
       changed();
@@ -47,26 +74,45 @@ export class BakeTab {
     });
     showFields('facing');
     const panel = make(
-      'div', { id: 'bake', class: 'form' },
-      shown, method, facing, cage,
+      'div',
+      { id: 'bake', class: 'form' },
+      shown,
+      method,
+      facing,
+      cage,
       make('p', { id: 'bake-words', role: 'status', 'aria-live': 'polite' }),
-      make('button', { type: 'button', id: 'save-baked', click: () => void save().catch(fault) }, 'Save baked model (GLB)'),
+      make(
+        'button',
+        { type: 'button', id: 'save-baked', click: () => void save().catch(fault) },
+        'Save baked model (GLB)',
+      ),
     );
     byId('form').after(panel);
     byId('controls-title').classList.add('hidden');
-    addTabs('Controls', [['Display', byId('form')], ['Bake', panel]]);
+    addTabs('Controls', [
+      ['Display', byId('form')],
+      ['Bake', panel],
+    ]);
   }
 
   /// The reference has no colours.
   showMissing(name: string, notes: string[]): void {
-    byId('bake-words').textContent = [`${name} has neither colours nor materials to bake. Its normals can be baked.`, ...notes.map(sentence)].join(' ');
+    byId('bake-words').textContent = [
+      `${name} has neither colours nor materials to bake. Its normals can be baked.`,
+      ...notes.map(sentence),
+    ].join(' ');
   }
 
   /// How many texels have a point; `shown`: something is baked, or will be at rest.
   showCounts(counts: MatchCounts | null, shown: boolean, notes: string[] = []): void {
     document.body.classList.toggle('painted', shown && counts !== null);
     const words = byId('bake-words');
-    if (!counts) return void words.replaceChildren(shown ? 'Baked at rest.' : 'Colours or normals of the reference as a texture of the part, in place of the distances.');
+    if (!counts)
+      return void words.replaceChildren(
+        shown
+          ? 'Baked at rest.'
+          : 'Colours or normals of the reference as a texture of the part, in place of the distances.',
+      );
     const { tooFar, facingAway } = counts;
     const all = Object.values(counts).reduce((sum, n) => sum + n, 0);
     const without = tooFar + facingAway;
@@ -74,9 +120,14 @@ export class BakeTab {
     words.replaceChildren(
       without === 0
         ? `All ${count(all)} texels of the part have a point of the reference.`
-        : `${count(without)} of ${count(all)} texels (${share}) have no point of the reference: `
-          + [tooFar && `${count(tooFar)} are too far away`, facingAway && `nothing faces ${count(facingAway)}`].filter(Boolean).join(', ')
-          + '. They are grey here, and filled in the saved texture.',
+        : `${count(without)} of ${count(all)} texels (${share}) have no point of the reference: ` +
+            [
+              tooFar && `${count(tooFar)} are too far away`,
+              facingAway && `nothing faces ${count(facingAway)}`,
+            ]
+              .filter(Boolean)
+              .join(', ') +
+            '. They are grey here, and filled in the saved texture.',
       ...notes.map((note) => ` ${sentence(note)}`),
     );
   }

@@ -1,15 +1,33 @@
 // The part with what was baked as its textures, as a GLB.
 import type { BakedLook, BakedTexture, DrawnModel } from 'sdm';
-import { BufferAttribute, BufferGeometry, DataTexture, DoubleSide, LinearFilter, LinearMipmapLinearFilter, Mesh, MeshStandardMaterial, NoColorSpace, RGBAFormat, SRGBColorSpace, UnsignedByteType } from 'three';
+import {
+  BufferAttribute,
+  BufferGeometry,
+  DataTexture,
+  DoubleSide,
+  LinearFilter,
+  LinearMipmapLinearFilter,
+  Mesh,
+  MeshStandardMaterial,
+  NoColorSpace,
+  RGBAFormat,
+  SRGBColorSpace,
+  UnsignedByteType,
+} from 'three';
 import { GLTFExporter } from 'three/addons/exporters/GLTFExporter.js';
 import { metresOf } from './save';
 
 /// As pictures of glTF are: four numbers a pixel.
-function textureOf({ data, components }: Pick<BakedTexture, 'data' | 'components'>, width: number, isColor: boolean): DataTexture {
+function textureOf(
+  { data, components }: Pick<BakedTexture, 'data' | 'components'>,
+  width: number,
+  isColor: boolean,
+): DataTexture {
   const texels = data.length / components;
   const pixels = new Uint8Array(4 * texels).fill(255);
   for (let i = 0; i < texels; ++i)
-    for (let k = 0; k < Math.max(3, components); ++k) pixels[4 * i + k] = data[components * i + (components < 3 ? 0 : k)];
+    for (let k = 0; k < Math.max(3, components); ++k)
+      pixels[4 * i + k] = data[components * i + (components < 3 ? 0 : k)];
   const texture = new DataTexture(pixels, width, texels / width, RGBAFormat, UnsignedByteType);
   texture.colorSpace = isColor ? SRGBColorSpace : NoColorSpace;
   texture.magFilter = LinearFilter;
@@ -51,7 +69,14 @@ function materialOf(look: BakedLook | null, normals: Uint8Array, width: number):
 }
 
 /// glTF has y up, and metres.
-export async function bakedGlb(model: DrawnModel, look: BakedLook | null, normals: Uint8Array, width: number, up: 'y' | 'z', units: string): Promise<ArrayBuffer> {
+export async function bakedGlb(
+  model: DrawnModel,
+  look: BakedLook | null,
+  normals: Uint8Array,
+  width: number,
+  up: 'y' | 'z',
+  units: string,
+): Promise<ArrayBuffer> {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(model.positions, 3));
   geometry.setAttribute('normal', new BufferAttribute(model.normals, 3));
@@ -62,7 +87,9 @@ export async function bakedGlb(model: DrawnModel, look: BakedLook | null, normal
   mesh.name = 'part';
   mesh.scale.setScalar(metresOf(units));
   const [x, y, z] = model.origin;
-  mesh.position.set(...(up === 'z' ? [x, z, -y] as const : [x, y, z] as const)).multiplyScalar(metresOf(units));
+  mesh.position
+    .set(...(up === 'z' ? ([x, z, -y] as const) : ([x, y, z] as const)))
+    .multiplyScalar(metresOf(units));
   if (up === 'z') mesh.rotation.x = -Math.PI / 2;
   return (await new GLTFExporter().parseAsync(mesh, { binary: true })) as ArrayBuffer;
 }

@@ -30,7 +30,10 @@ export class Baking {
   private version = 0;
   private notes: string[] = []; // on what the file of the reference lacks
 
-  constructor(private readonly session: Session, private readonly tab: BakeTab) {
+  constructor(
+    private readonly session: Session,
+    private readonly tab: BakeTab,
+  ) {
     this.looks = new Looks(session.worker);
   }
 
@@ -73,7 +76,8 @@ export class Baking {
     const matches = await this.session.engine.match(this.options);
     try {
       const [{ kinds }, counts] = await Promise.all([matches.arrays(), matches.counts()]);
-      if (!look) return { paint: { kind, pixels: pixelsOf(await this.normalsOf(matches, false), 3, kinds) }, counts };
+      if (!look)
+        return { paint: { kind, pixels: pixelsOf(await this.normalsOf(matches, false), 3, kinds) }, counts };
       const { textures } = await matches.bake(look);
       const { data, components } = textures.find(({ channel }) => channel === 'base_color')!;
       return { paint: { kind, pixels: pixelsOf(data, components, kinds) }, counts };
@@ -92,7 +96,11 @@ export class Baking {
   private async normalsOf(matches: WorkerMatches, tangentSpace: boolean): Promise<Uint8Array> {
     const { bodies, pair, engine } = this.session;
     const look = engine.deformed ? null : await this.looks.lookOf(bodies![1]);
-    return matches.normals({ look: look ?? undefined, pose: inFile(pair!.view.motion, pair!.subject).elements, tangentSpace });
+    return matches.normals({
+      look: look ?? undefined,
+      pose: inFile(pair!.view.motion, pair!.subject).elements,
+      tangentSpace,
+    });
   }
 
   /// All textures on the part, as a GLB.
@@ -102,7 +110,11 @@ export class Baking {
       const matches = await session.engine.match(this.options);
       try {
         const look = await this.lookWithColors();
-        const [baked, normals, model] = [look && (await matches.bake(look)), await this.normalsOf(matches, true), await matches.model({ tangents: true })];
+        const [baked, normals, model] = [
+          look && (await matches.bake(look)),
+          await this.normalsOf(matches, true),
+          await matches.model({ tangents: true }),
+        ];
         return await bakedGlb(model, baked, normals, matches.resolution, kUp, session.units);
       } finally {
         matches.dispose();

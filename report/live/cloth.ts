@@ -17,7 +17,10 @@ function sheet(): { positions: Float64Array; indices: Uint32Array } {
     for (let x = 0; x < kSide; ++x) {
       const [u, v] = [x / (kSide - 1) - 0.5, y / (kSide - 1) - 0.5];
       // Turned, so that the folds differ, and beside the middle of the ball.
-      positions.set([0.92 * u - 0.39 * v + 0.05, 0.39 * u + 0.92 * v + 0.02, 0.36 + 0.05 * u], 3 * (y * kSide + x));
+      positions.set(
+        [0.92 * u - 0.39 * v + 0.05, 0.39 * u + 0.92 * v + 0.02, 0.36 + 0.05 * u],
+        3 * (y * kSide + x),
+      );
       if (x + 1 === kSide || y + 1 === kSide) continue;
       const a = y * kSide + x;
       const [b, c, d] = [a + 1, a + kSide + 1, a + kSide];
@@ -28,8 +31,24 @@ function sheet(): { positions: Float64Array; indices: Uint32Array } {
 
 /// An octahedron divided four times into smaller triangles, on a sphere.
 function ball(): { positions: Float64Array; indices: Uint32Array } {
-  const points: number[][] = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
-  let faces: number[][] = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+  const points: number[][] = [
+    [1, 0, 0],
+    [-1, 0, 0],
+    [0, 1, 0],
+    [0, -1, 0],
+    [0, 0, 1],
+    [0, 0, -1],
+  ];
+  let faces: number[][] = [
+    [0, 2, 4],
+    [2, 1, 4],
+    [1, 3, 4],
+    [3, 0, 4],
+    [2, 0, 5],
+    [1, 2, 5],
+    [3, 1, 5],
+    [0, 3, 5],
+  ];
   for (let level = 0; level < 5; ++level) {
     const middles = new Map<string, number>();
     const middle = (a: number, b: number) => {
@@ -44,19 +63,35 @@ function ball(): { positions: Float64Array; indices: Uint32Array } {
     };
     faces = faces.flatMap(([a, b, c]) => {
       const [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
-      return [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]];
+      return [
+        [a, ab, ca],
+        [ab, b, bc],
+        [ca, bc, c],
+        [ab, bc, ca],
+      ];
     });
   }
-  return { positions: Float64Array.from(points.flat(), (x) => kRadius * x), indices: Uint32Array.from(faces.flat()) };
+  return {
+    positions: Float64Array.from(points.flat(), (x) => kRadius * x),
+    indices: Uint32Array.from(faces.flat()),
+  };
 }
 
 /// Pairs of vertices: along rows, columns and diagonals, and of every second one against bending.
 function springsOf(): Uint32Array {
   const springs: number[] = [];
-  for (const [dx, dy] of [[1, 0], [0, 1], [1, 1], [1, -1], [2, 0], [0, 2]])
+  for (const [dx, dy] of [
+    [1, 0],
+    [0, 1],
+    [1, 1],
+    [1, -1],
+    [2, 0],
+    [0, 2],
+  ])
     for (let y = 0; y < kSide; ++y)
       for (let x = 0; x < kSide; ++x)
-        if (x + dx < kSide && y + dy < kSide && y + dy >= 0) springs.push(y * kSide + x, (y + dy) * kSide + x + dx);
+        if (x + dx < kSide && y + dy < kSide && y + dy >= 0)
+          springs.push(y * kSide + x, (y + dy) * kSide + x + dx);
   return Uint32Array.from(springs);
 }
 
@@ -106,8 +141,8 @@ class Cloth {
       const [x, y, z] = [p[b] - p[a], p[b + 1] - p[a + 1], p[b + 2] - p[a + 2]];
       const length = Math.sqrt(x * x + y * y + z * z) || 1;
       const shift = (length - lengths[s]) / length / (2 + (s < firm ? 0 : soft));
-      p[a] += shift * x, p[a + 1] += shift * y, p[a + 2] += shift * z;
-      p[b] -= shift * x, p[b + 1] -= shift * y, p[b + 2] -= shift * z;
+      (p[a] += shift * x), (p[a + 1] += shift * y), (p[a + 2] += shift * z);
+      (p[b] -= shift * x), (p[b + 1] -= shift * y), (p[b + 2] -= shift * z);
     }
   }
 
@@ -132,7 +167,10 @@ export function clothOnBall(): Scene {
   return {
     title: 'Cloth on a ball',
     words: 'A cloth falls on a ball and over its side.',
-    bodies: [{ name: 'cloth', ...cloth, positions: cloth.positions.slice() }, { name: 'ball', ...solid }],
+    bodies: [
+      { name: 'cloth', ...cloth, positions: cloth.positions.slice() },
+      { name: 'ball', ...solid },
+    ],
     units: 'm',
     advance: () => {
       if (++frame > kSeconds / kTimeStep) {

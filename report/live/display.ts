@@ -15,7 +15,6 @@ import { showLimits, showReport } from './results';
 import { addSaveButtons, glbOf } from './save';
 import type { Session } from './session';
 
-
 const colorsOf = ({ scale: { mode, lo, hi } }: State) => [mode, lo, hi].join();
 
 export class Display {
@@ -61,7 +60,15 @@ export class Display {
     // The tolerance is that of the sliders, which can be taken away again.
     const { tolerance: _, ...unjudged } = session.report!;
     this.state = makeControls(
-      unjudged, session.area!, true, false, true, false, false, [toFile(subject, subject.lo), toFile(subject, subject.hi)], this.kept(unjudged),
+      unjudged,
+      session.area!,
+      true,
+      false,
+      true,
+      false,
+      false,
+      [toFile(subject, subject.lo), toFile(subject, subject.hi)],
+      this.kept(unjudged),
       (state) => {
         this.touched = colorsOf(state) !== this.fitted;
         this.apply(state);
@@ -120,22 +127,39 @@ export class Display {
     const { report, area, moving } = this.session;
     if (!this.state || !area || !report) return;
     // The extremes of the report are those of the last rest.
-    const extremes = { min: { ...report.extremes?.min, distance: area.lo }, max: { ...report.extremes?.max, distance: area.hi } } as Report['extremes'];
-    drawHistogram(moving ? { ...report, extremes } : report, area, this.state.scale, this.state.logarithmic ?? false);
+    const extremes = {
+      min: { ...report.extremes?.min, distance: area.lo },
+      max: { ...report.extremes?.max, distance: area.hi },
+    } as Report['extremes'];
+    drawHistogram(
+      moving ? { ...report, extremes } : report,
+      area,
+      this.state.scale,
+      this.state.logarithmic ?? false,
+    );
   }
 
   /// Judges limits that are new: by the rule at once, and a little later by what the library can prove. While something moves
   /// the next rest does that.
   private judge(lower: number, upper: number): void {
     const { session } = this;
-    const [before, verdict, after] = whatIf(session.report!, { lower, upper }, outsideOf(session.report!, this.state!.scale, session.area!));
+    const [before, verdict, after] = whatIf(
+      session.report!,
+      { lower, upper },
+      outsideOf(session.report!, this.state!.scale, session.area!),
+    );
     document.getElementById('what-if')?.replaceChildren(before, make('b', {}, verdict), after);
-    const limits: [number, number] | null = Number.isFinite(lower) || Number.isFinite(upper) ? [lower, upper] : null;
+    const limits: [number, number] | null =
+      Number.isFinite(lower) || Number.isFinite(upper) ? [lower, upper] : null;
     if (String(limits) === String(session.tolerance)) return;
     session.tolerance = limits;
     if (!session.moving) showLimits(session, limits);
     const { version } = session;
-    const isCurrent = () => String(limits) === String(session.tolerance) && version === session.version && !session.moving && !session.loading;
+    const isCurrent = () =>
+      String(limits) === String(session.tolerance) &&
+      version === session.version &&
+      !session.moving &&
+      !session.loading;
     window.setTimeout(() => {
       if (!isCurrent()) return;
       session

@@ -1,6 +1,15 @@
 // What is computed for the page, in a worker: the map of the part to the reference, coarse while something moves and fine at
 // rest, and the separation of both.
-import type { Atlas, MatchOptions, SdmWorker, WorkerMap, WorkerMatches, WorkerPair, WorkerSites, WorkerSurface } from 'sdm';
+import type {
+  Atlas,
+  MatchOptions,
+  SdmWorker,
+  WorkerMap,
+  WorkerMatches,
+  WorkerPair,
+  WorkerSites,
+  WorkerSurface,
+} from 'sdm';
 import { Matrix4, Vector3 } from 'three';
 import type { Report } from '../src/page_data';
 import type { Film } from './film';
@@ -52,7 +61,10 @@ export function moved(positions: Float64Array, matrix: Matrix4): Float64Array {
 }
 
 /// A motion of the scene in the units of the files: its translation is that of the middle of the scene.
-export function inFile(motion: Matrix4, { centre, size }: { centre: [number, number, number]; size: number }): Matrix4 {
+export function inFile(
+  motion: Matrix4,
+  { centre, size }: { centre: [number, number, number]; size: number },
+): Matrix4 {
   const toFile = new Matrix4().makeTranslation(...centre).scale(new Vector3(size, size, size));
   return toFile.clone().multiply(motion).multiply(toFile.clone().invert());
 }
@@ -73,9 +85,15 @@ export class Engine {
 
   constructor(private readonly worker: SdmWorker) {}
 
-  get isClosed(): boolean { return this.closed[0]; }
-  get referenceIsClosed(): boolean { return this.closed[1]; }
-  get deformed(): boolean { return this.changed; }
+  get isClosed(): boolean {
+    return this.closed[0];
+  }
+  get referenceIsClosed(): boolean {
+    return this.closed[1];
+  }
+  get deformed(): boolean {
+    return this.changed;
+  }
 
   /// Distances are to the closest of the faces whose normal is within an angle of the part's; null: to the closest point.
   setFacing(degrees: number | null): void {
@@ -107,15 +125,25 @@ export class Engine {
   }
 
   private sitesOf(body: Body, step: string, say: Say): Promise<WorkerSites> {
-    return this.worker.sites(body.positions, body.indices, { signal: this.signal, progress: (_, f) => say(step, f) }).catch((error: Error) => {
-      throw named(error, body);
-    });
+    return this.worker
+      .sites(body.positions, body.indices, { signal: this.signal, progress: (_, f) => say(step, f) })
+      .catch((error: Error) => {
+        throw named(error, body);
+      });
   }
 
   private async measured(part: Body, sites: WorkerSites, resolution: number, say: Say): Promise<Measured> {
-    const surface = await this.worker.surface(part.positions, part.indices, { resolution, signal: this.signal, progress: (_, f) => say('Laying out the atlas', f) });
+    const surface = await this.worker.surface(part.positions, part.indices, {
+      resolution,
+      signal: this.signal,
+      progress: (_, f) => say('Laying out the atlas', f),
+    });
     try {
-      const map = await surface.map(sites, { ...this.matching, signal: this.signal, progress: (_, f) => say('Measuring', f) });
+      const map = await surface.map(sites, {
+        ...this.matching,
+        signal: this.signal,
+        progress: (_, f) => say('Measuring', f),
+      });
       return { surface, map, atlas: await surface.atlas() };
     } catch (error) {
       surface.dispose();
@@ -143,7 +171,10 @@ export class Engine {
   async place(motion: Matrix4): Promise<void> {
     this.motion = motion.clone();
     const back = this.placed.clone().multiply(motion.clone().invert());
-    await Promise.all([this.coarse!.surface.refit(moved(this.bodies![0].positions, back)), this.pair!.setPose(1, motion.elements)]);
+    await Promise.all([
+      this.coarse!.surface.refit(moved(this.bodies![0].positions, back)),
+      this.pair!.setPose(1, motion.elements),
+    ]);
   }
 
   /// Moves the sites to where place() has moved the reference, and the coarse surface back.
@@ -151,7 +182,10 @@ export class Engine {
     if (this.placed.equals(this.motion)) return;
     this.placed = this.motion.clone();
     const [part, reference] = this.bodies!;
-    await Promise.all([this.sites!.refit(moved(reference.positions, this.motion)), this.coarse!.surface.refit(part.positions)]);
+    await Promise.all([
+      this.sites!.refit(moved(reference.positions, this.motion)),
+      this.coarse!.surface.refit(part.positions),
+    ]);
   }
 
   /// Moves the vertices of both bodies.
@@ -162,16 +196,28 @@ export class Engine {
     this.placed = this.motion.clone();
     this.turned = this.changed = true;
     await Promise.all([
-      this.sites!.refit(moved(reference.positions, this.placed)), this.coarse!.surface.refit(part.positions),
-      this.pair!.refit(0, part.positions), this.pair!.refit(1, reference.positions), this.pair!.setPose(1, this.motion.elements),
+      this.sites!.refit(moved(reference.positions, this.placed)),
+      this.coarse!.surface.refit(part.positions),
+      this.pair!.refit(0, part.positions),
+      this.pair!.refit(1, reference.positions),
+      this.pair!.setPose(1, this.motion.elements),
     ]);
   }
 
   /// The coarse map, and the separation, after `change`.
   async frame(change: Promise<void>, began = performance.now()): Promise<FrameResult> {
     const { map } = this.coarse!;
-    const [, , arrays, separation] = await Promise.all([change, map.update(this.matching), map.arrays('distances'), this.pair!.separation()]);
-    return { distances: arrays.distances!, separation: separation.value, milliseconds: performance.now() - began };
+    const [, , arrays, separation] = await Promise.all([
+      change,
+      map.update(this.matching),
+      map.arrays('distances'),
+      this.pair!.separation(),
+    ]);
+    return {
+      distances: arrays.distances!,
+      separation: separation.value,
+      milliseconds: performance.now() - began,
+    };
   }
 
   /// The fine map with its report.
@@ -186,11 +232,21 @@ export class Engine {
     const milliseconds = performance.now() - began;
     const [arrays, atVertices] = await Promise.all([
       measured.map.arrays('distances', 'sitesOfTexels', 'siteTypes'),
-      this.facing === undefined ? this.sites!.signedDistance(part.positions, { sign: measured.map.sign }) : null,
+      this.facing === undefined
+        ? this.sites!.signedDistance(part.positions, { sign: measured.map.sign })
+        : null,
     ]);
     const report = await this.report(tolerance, units);
-    const sites = arrays.sitesOfTexels!.map((n, i) => (arrays.siteTypes![i] > 2 || n >= 2 ** 30 ? 0xffffffff : (n << 2) | arrays.siteTypes![i]));
-    return { distances: arrays.distances!, atVertices: atVertices?.distances ?? null, sites, milliseconds, report };
+    const sites = arrays.sitesOfTexels!.map((n, i) =>
+      arrays.siteTypes![i] > 2 || n >= 2 ** 30 ? 0xffffffff : (n << 2) | arrays.siteTypes![i],
+    );
+    return {
+      distances: arrays.distances!,
+      atVertices: atVertices?.distances ?? null,
+      sites,
+      milliseconds,
+      report,
+    };
   }
 
   /// The point of the reference that belongs to each texel of the fine map.
@@ -203,7 +259,11 @@ export class Engine {
   async report(tolerance: [number, number] | null, units: string): Promise<Report> {
     const { map } = this.fine ?? this.coarse!;
     const report = (await map.summary({ units, ...(tolerance ? { tolerance } : {}) })) as Report;
-    for (const [key, { name }] of [['o1', this.bodies![0]], ['o2', this.bodies![1]]] as const) report[key] = { ...report[key]!, file: name };
+    for (const [key, { name }] of [
+      ['o1', this.bodies![0]],
+      ['o2', this.bodies![1]],
+    ] as const)
+      report[key] = { ...report[key]!, file: name };
     if (!isIdentity(this.motion)) report.o2!.transform = 'the handles';
     return report;
   }

@@ -23,7 +23,11 @@ interface Muscle {
 // Bones: hips, chest, head; then of each side thigh, shin, upper arm and forearm.
 const kBonesOfSide = 4;
 function skeleton(): { bones: Bone[]; muscles: Muscle[] } {
-  const bones: Bone[] = [{ parent: 0, joint: [0, 0, 0.53] }, { parent: 0, joint: [0, 0, 0.6] }, { parent: 1, joint: [0, 0.005, 0.83] }];
+  const bones: Bone[] = [
+    { parent: 0, joint: [0, 0, 0.53] },
+    { parent: 0, joint: [0, 0, 0.6] },
+    { parent: 1, joint: [0, 0.005, 0.83] },
+  ];
   const muscles: Muscle[] = [
     { bone: 1, from: [0, 0.005, 0.82], to: [0, 0, 0.88], radii: [0.035, 0.036] },
     { bone: 2, from: [0, -0.005, 0.91], to: [0, -0.01, 0.945], radii: [0.054, 0.057] },
@@ -32,8 +36,12 @@ function skeleton(): { bones: Bone[]; muscles: Muscle[] } {
     const at = (x: number, y: number, z: number): Point => [side * x, y, z];
     const first = side > 0 ? 3 : 3 + kBonesOfSide;
     bones.push({ parent: 0, joint: at(0.05, 0, 0.5) }, { parent: first, joint: at(0.062, 0, 0.275) });
-    bones.push({ parent: 1, joint: at(0.115, 0.005, 0.79) }, { parent: first + 2, joint: at(0.18, 0.01, 0.645) });
-    const add = (bone: number, from: Point, to: Point, radii: [number, number]) => muscles.push({ bone, from, to, radii });
+    bones.push(
+      { parent: 1, joint: at(0.115, 0.005, 0.79) },
+      { parent: first + 2, joint: at(0.18, 0.01, 0.645) },
+    );
+    const add = (bone: number, from: Point, to: Point, radii: [number, number]) =>
+      muscles.push({ bone, from, to, radii });
     add(0, at(0.035, 0, 0.515), at(0.03, 0, 0.59), [0.06, 0.055]);
     add(1, at(0.03, 0, 0.62), at(0.05, 0.003, 0.74), [0.055, 0.06]);
     add(1, at(0.06, 0.005, 0.785), at(0.105, 0.005, 0.79), [0.042, 0.036]);
@@ -78,11 +86,28 @@ function skinDistance(muscles: Muscle[], x: number, y: number, z: number): numbe
 
 function about(axis: 0 | 1 | 2, angle: number): Matrix {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
-  if (axis === 0) return [[1, 0, 0], [0, c, -s], [0, s, c]];
-  return axis === 1 ? [[c, 0, s], [0, 1, 0], [-s, 0, c]] : [[c, -s, 0], [s, c, 0], [0, 0, 1]];
+  if (axis === 0)
+    return [
+      [1, 0, 0],
+      [0, c, -s],
+      [0, s, c],
+    ];
+  return axis === 1
+    ? [
+        [c, 0, s],
+        [0, 1, 0],
+        [-s, 0, c],
+      ]
+    : [
+        [c, -s, 0],
+        [s, c, 0],
+        [0, 0, 1],
+      ];
 }
-const times = (m: Matrix, p: Point): Point => m.map((row) => row[0] * p[0] + row[1] * p[1] + row[2] * p[2]) as Point;
-const product = (a: Matrix, b: Matrix): Matrix => a.map((row) => [0, 1, 2].map((k) => row[0] * b[0][k] + row[1] * b[1][k] + row[2] * b[2][k])) as Matrix;
+const times = (m: Matrix, p: Point): Point =>
+  m.map((row) => row[0] * p[0] + row[1] * p[1] + row[2] * p[2]) as Point;
+const product = (a: Matrix, b: Matrix): Matrix =>
+  a.map((row) => [0, 1, 2].map((k) => row[0] * b[0][k] + row[1] * b[1][k] + row[2] * b[2][k])) as Matrix;
 
 /// The rotations of the bones: legs and arms swing in opposition, and the chest turns against the hips.
 function stride(phase: number): Matrix[] {
@@ -93,11 +118,21 @@ function stride(phase: number): Matrix[] {
     swing(0.1 + 0.5 * Math.sin(at)),
     swing(-0.5 + 0.25 * Math.sin(at)),
   ]);
-  return [about(2, 0.08 * Math.sin(phase)), product(about(2, -0.22 * Math.sin(phase)), swing(0.05)), about(2, 0.14 * Math.sin(phase)), ...sides];
+  return [
+    about(2, 0.08 * Math.sin(phase)),
+    product(about(2, -0.22 * Math.sin(phase)), swing(0.05)),
+    about(2, 0.14 * Math.sin(phase)),
+    ...sides,
+  ];
 }
 
 /// Where the vertices are when the bones are turned.
-function moved(rest: Float64Array, weights: Float64Array[], bones: Bone[], rotations: Matrix[]): Float64Array {
+function moved(
+  rest: Float64Array,
+  weights: Float64Array[],
+  bones: Bone[],
+  rotations: Matrix[],
+): Float64Array {
   const turns: Matrix[] = [];
   const shifts: Point[] = [];
   bones.forEach(({ parent, joint }, b) => {
@@ -112,29 +147,82 @@ function moved(rest: Float64Array, weights: Float64Array[], bones: Bone[], rotat
     for (let b = 0; b < ofVertex.length; ++b) {
       const w = ofVertex[b];
       if (w < 1e-6) continue;
-      for (let k = 0; k < 3; ++k) result[3 * v + k] += w * (turns[b][k][0] * x + turns[b][k][1] * y + turns[b][k][2] * z + shifts[b][k]);
+      for (let k = 0; k < 3; ++k)
+        result[3 * v + k] +=
+          w * (turns[b][k][0] * x + turns[b][k][1] * y + turns[b][k][2] * z + shifts[b][k]);
     }
   });
   return result;
 }
 
 function box(lo: Point, hi: Point) {
-  const positions = Float64Array.from(Array.from({ length: 8 }, (_, corner) => [0, 1, 2].map((k) => (corner & (1 << k) ? hi[k] : lo[k]))).flat());
-  const indices = Uint32Array.of(0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5);
+  const positions = Float64Array.from(
+    Array.from({ length: 8 }, (_, corner) =>
+      [0, 1, 2].map((k) => (corner & (1 << k) ? hi[k] : lo[k])),
+    ).flat(),
+  );
+  const indices = Uint32Array.of(
+    0,
+    2,
+    3,
+    0,
+    3,
+    1,
+    4,
+    5,
+    7,
+    4,
+    7,
+    6,
+    0,
+    1,
+    5,
+    0,
+    5,
+    4,
+    2,
+    6,
+    7,
+    2,
+    7,
+    3,
+    0,
+    4,
+    6,
+    0,
+    6,
+    2,
+    1,
+    3,
+    7,
+    1,
+    7,
+    5,
+  );
   return { positions, indices };
 }
 
 export function figureInBox(): Scene {
   const { bones, muscles } = skeleton();
-  const { positions: rest, indices } = surfaceNet((x, y, z) => skinDistance(muscles, x, y, z), [-0.36, -0.16, -0.06], [0.36, 0.16, 1.08], kSpacing);
-  const weights = Array.from({ length: rest.length / 3 }, (_, v) => shares(muscles, bones.length, rest, 3 * v));
+  const { positions: rest, indices } = surfaceNet(
+    (x, y, z) => skinDistance(muscles, x, y, z),
+    [-0.36, -0.16, -0.06],
+    [0.36, 0.16, 1.08],
+    kSpacing,
+  );
+  const weights = Array.from({ length: rest.length / 3 }, (_, v) =>
+    shares(muscles, bones.length, rest, 3 * v),
+  );
   const reference = box([-0.5, -0.5, -0.15], [0.5, 0.5, 1.15]);
   let frame = 0;
   const at = () => moved(rest, weights, bones, stride((2 * Math.PI * frame) / kFramesPerStride));
   return {
     title: 'Figure in a box',
     words: 'A figure walks on the spot in a box; inside of the box, distances are negative.',
-    bodies: [{ name: 'figure', positions: at(), indices }, { name: 'box', ...reference }],
+    bodies: [
+      { name: 'figure', positions: at(), indices },
+      { name: 'box', ...reference },
+    ],
     units: 'm',
     advance: () => {
       ++frame;

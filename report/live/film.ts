@@ -7,7 +7,12 @@ import type { Body } from './engine';
 
 /// The frames of a file, read again when the worker has lost them.
 export class Film {
-  private constructor(private readonly worker: SdmWorker, private readonly file: File, private animation: WorkerAnimation, private readonly motion = new Matrix4()) {}
+  private constructor(
+    private readonly worker: SdmWorker,
+    private readonly file: File,
+    private animation: WorkerAnimation,
+    private readonly motion = new Matrix4(),
+  ) {}
 
   /// Null: the file has no animation.
   static async of(worker: SdmWorker, file: File): Promise<Film | null> {
@@ -15,7 +20,9 @@ export class Film {
     return animation && new Film(worker, file, animation);
   }
 
-  get frames(): number { return this.animation.frames; }
+  get frames(): number {
+    return this.animation.frames;
+  }
 
   mesh(): Promise<{ positions: Float64Array; indices: Uint32Array }> {
     return this.animation.mesh();
@@ -39,7 +46,10 @@ export class Film {
 }
 
 async function read(worker: SdmWorker, file: File): Promise<WorkerAnimation | null> {
-  return worker.readAnimation(new Uint8Array(await file.arrayBuffer()), file.name, { rate: 1 / kTimeStep, transfer: true });
+  return worker.readAnimation(new Uint8Array(await file.arrayBuffer()), file.name, {
+    rate: 1 / kTimeStep,
+    transfer: true,
+  });
 }
 
 /// How two bodies move whose files are animated; null: neither is.
@@ -49,7 +59,9 @@ export function movesOf(bodies: [Body, Body]): Moves | null {
   return {
     advance: async () => {
       ++frame;
-      return (await Promise.all(bodies.map(({ film, positions }) => film?.positions(frame) ?? positions))) as [Float64Array, Float64Array];
+      return (await Promise.all(
+        bodies.map(({ film, positions }) => film?.positions(frame) ?? positions),
+      )) as [Float64Array, Float64Array];
     },
   };
 }

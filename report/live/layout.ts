@@ -38,7 +38,11 @@ export function frameOf({ positions }: Triangles): Frame {
 }
 
 /// Positions in units of the scene.
-export function inScene(positions: Float64Array, { centre, size }: Frame, out: Float32Array = new Float32Array(positions.length)): Float32Array {
+export function inScene(
+  positions: Float64Array,
+  { centre, size }: Frame,
+  out: Float32Array = new Float32Array(positions.length),
+): Float32Array {
   for (let i = 0; i < positions.length; ++i) out[i] = (positions[i] - centre[i % 3]) / size;
   return out;
 }
@@ -112,7 +116,15 @@ export function layoutOf(mesh: Triangles, atlas: Atlas, frame: Frame): Layout {
     site: null,
     channels: [],
   };
-  const layout: Layout = { model, map, vertexOf, texelOf: new Int32Array(vertexOf.length).fill(-1), areas: new Float64Array(atlas.texelFaces.length), texelFaces: atlas.texelFaces, inAtlas: inAtlasOf(atlas.corners) };
+  const layout: Layout = {
+    model,
+    map,
+    vertexOf,
+    texelOf: new Int32Array(vertexOf.length).fill(-1),
+    areas: new Float64Array(atlas.texelFaces.length),
+    texelFaces: atlas.texelFaces,
+    inAtlas: inAtlasOf(atlas.corners),
+  };
   findTexels(layout);
   measureTexels(layout, mesh);
   placeVertices(layout, mesh);
@@ -141,7 +153,10 @@ function inAtlasOf(corners: Float32Array): Float64Array {
 }
 
 /// The area of the surface for each texel: that of its face by the face's area in the atlas.
-export function measureTexels({ areas, texelFaces, inAtlas }: Layout, { positions: p, indices }: Triangles): void {
+export function measureTexels(
+  { areas, texelFaces, inAtlas }: Layout,
+  { positions: p, indices }: Triangles,
+): void {
   const ofFace = inAtlas.map((area, f) => {
     const [a, b, c] = [0, 1, 2].map((k) => 3 * indices[3 * f + k]);
     return area > 0 ? Math.hypot(...cross(p, a, b, c)) / area : 0;
@@ -159,7 +174,8 @@ function cross(p: ArrayLike<number>, a: number, b: number, c: number): Vec {
 export function placeVertices({ model, vertexOf }: Layout, mesh: Triangles): void {
   const { centre, size, position, normal, triangle } = model;
   for (let m = 0; m < vertexOf.length; ++m)
-    for (let k = 0; k < 3; ++k) position[3 * m + k] = (mesh.positions[3 * vertexOf[m] + k] - centre[k]) / size;
+    for (let k = 0; k < 3; ++k)
+      position[3 * m + k] = (mesh.positions[3 * vertexOf[m] + k] - centre[k]) / size;
   // Normals of the faces, times their areas: of the charts at the vertices of the model, of all at those of the mesh.
   const faces = new Float32Array(triangle.length);
   const own = new Float32Array(position.length);

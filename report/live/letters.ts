@@ -21,7 +21,13 @@ function upright(positions: Float64Array, degrees: number): Float64Array {
 
 /// A letter at rest as it is when it is `near` the other one, 0 to 1: at `middle`, twisted about the vertical axis, leaning
 /// away by its upper end and flattened.
-function bent(rest: Float64Array, middle: number, near: number, swing: number, out: Float64Array): Float64Array {
+function bent(
+  rest: Float64Array,
+  middle: number,
+  near: number,
+  swing: number,
+  out: Float64Array,
+): Float64Array {
   const away = Math.sign(middle);
   for (let i = 0; i < rest.length; i += 3) {
     const [x, y, z] = [rest[i], rest[i + 1], rest[i + 2]];
@@ -36,20 +42,28 @@ function bent(rest: Float64Array, middle: number, near: number, swing: number, o
 }
 
 export async function letters(worker: SdmWorker): Promise<Scene> {
-  const [e, g] = await Promise.all([worker.readMesh(letterE, 'letter_e.ply'), worker.readMesh(letterG, 'letter_g.ply')]);
+  const [e, g] = await Promise.all([
+    worker.readMesh(letterE, 'letter_e.ply'),
+    worker.readMesh(letterG, 'letter_g.ply'),
+  ]);
   const rest = [upright(e.positions, 0), upright(g.positions, 20)];
   let time = 0;
   const at = (): [Float64Array, Float64Array] => {
     const phase = (2 * Math.PI * time) / kPeriod;
     const near = (1 - Math.cos(phase)) / 2;
     const place = (which: number) => (which === 0 ? -1 : 1) * (kApart - kWay * near);
-    return [0, 1].map((which) => bent(rest[which], place(which), near, Math.sin(phase), new Float64Array(rest[which].length))) as [Float64Array, Float64Array];
+    return [0, 1].map((which) =>
+      bent(rest[which], place(which), near, Math.sin(phase), new Float64Array(rest[which].length)),
+    ) as [Float64Array, Float64Array];
   };
   const [first, second] = at();
   return {
     title: 'Letters E and G',
     words: 'Two letters approach each other, bend and part again.',
-    bodies: [{ name: 'E', positions: first, indices: e.indices }, { name: 'G', positions: second, indices: g.indices }],
+    bodies: [
+      { name: 'E', positions: first, indices: e.indices },
+      { name: 'G', positions: second, indices: g.indices },
+    ],
     units: '',
     advance: () => {
       time += kTimeStep;

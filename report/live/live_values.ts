@@ -6,7 +6,8 @@ import type { Rate } from './rate';
 import type { Session } from './session';
 
 export function showSeparation(session: Session, separation: number): void {
-  byId('separation').textContent = separation === 0 ? '0, they touch or intersect' : session.lengthText(separation);
+  byId('separation').textContent =
+    separation === 0 ? '0, they touch or intersect' : session.lengthText(separation);
 }
 
 export function showMean(session: Session, mean: number): void {
@@ -24,6 +25,7 @@ export function showTime(resolution: number, milliseconds: number): void {
 export function meanOf({ map, areas }: Layout): number {
   let [sum, total] = [0, 0];
   for (let i = 0; i < areas.length; ++i)
-    if (areas[i] > 0 && Number.isFinite(map.distance[i])) (sum += areas[i] * map.distance[i]), (total += areas[i]);
+    if (areas[i] > 0 && Number.isFinite(map.distance[i]))
+      (sum += areas[i] * map.distance[i]), (total += areas[i]);
   return total > 0 ? sum / total : Number.NaN;
 }

@@ -23,7 +23,12 @@ export class Loading {
   private wanted: number; // resolution
   private readonly emptyView = byId('view').cloneNode(true) as HTMLElement;
 
-  constructor(private readonly session: Session, private readonly motion: Motion, private readonly display: Display, private readonly baking: Baking) {
+  constructor(
+    private readonly session: Session,
+    private readonly motion: Motion,
+    private readonly display: Display,
+    private readonly baking: Baking,
+  ) {
     this.wanted = session.resolution;
     session.fault = (error) => this.recover(error);
   }
@@ -37,7 +42,8 @@ export class Loading {
 
   /// Two files, or one in place of one of the bodies.
   async openFiles(files: File[], which: 0 | 1 | null): Promise<void> {
-    if (files.length > 2 || (files.length === 2 && which !== null)) return say('Choose one file for each body.', 'fault');
+    if (files.length > 2 || (files.length === 2 && which !== null))
+      return say('Choose one file for each body.', 'fault');
     if (files.length < 2 && !this.session.bodies) await this.running; // the first pair
     return this.run(async (load) => {
       const read: Body[] = [];
@@ -61,7 +67,11 @@ export class Loading {
     if (!bodies || !pair) return;
     const motion = inFile(pair.view.motion, pair.subject);
     const { film, positions, ...others } = bodies[1];
-    const part = { ...others, positions: moved(positions, motion), ...(film ? { film: film.movedBy(motion) } : {}) };
+    const part = {
+      ...others,
+      positions: moved(positions, motion),
+      ...(film ? { film: film.movedBy(motion) } : {}),
+    };
     await this.run((load) => this.put(filesOf([part, bodies[0]], units), load));
   }
 
@@ -131,7 +141,9 @@ export class Loading {
     this.motion.resume();
   }
 
-  private get isIntact(): boolean { return this.intact && this.restarts === this.session.worker.restarts; }
+  private get isIntact(): boolean {
+    return this.intact && this.restarts === this.session.worker.restarts;
+  }
 
   /// Calls once more what failed only as the worker was ended for an earlier call.
   private async again<T>(load: AbortController, call: () => Promise<T>): Promise<T> {
@@ -214,20 +226,39 @@ export class Loading {
     session.resolution = kCoarse;
     session.units = isOther ? choice.units : session.units;
     moves.forget();
-    const pair = new Pair(choice.bodies, layout, engine.isClosed, engine.referenceIsClosed, (d) => session.valueText(d), () => moves.move());
+    const pair = new Pair(
+      choice.bodies,
+      layout,
+      engine.isClosed,
+      engine.referenceIsClosed,
+      (d) => session.valueText(d),
+      () => moves.move(),
+    );
     session.pair = pair;
     pair.setMotion(motion);
     this.baking.renew();
     display.renew(isOther);
     listenToKeys(pair.view, moves);
-    const words = { quantity: 'distance', get unit() { return session.unitText; }, valueText: (d: number) => session.valueText(d) };
+    const words = {
+      quantity: 'distance',
+      get unit() {
+        return session.unitText;
+      },
+      valueText: (d: number) => session.valueText(d),
+    };
     explore(pair.view, pair.subject, pair.callouts, words, () => pair.lookAtAll());
     showChoices(session, this.wanted);
   }
 }
 
-const filesOf = (bodies: [Body, Body], units: string): Choice => ({ name: 'files', bodies, scene: movesOf(bodies), units });
+const filesOf = (bodies: [Body, Body], units: string): Choice => ({
+  name: 'files',
+  bodies,
+  scene: movesOf(bodies),
+  units,
+});
 
 const faultOf = (error: unknown): Error => (error instanceof Error ? error : new Error(String(error)));
 
-const progress = (step: string, fraction: number) => say(`${step}… ${Math.round(100 * fraction)} %`, 'progress');
+const progress = (step: string, fraction: number) =>
+  say(`${step}… ${Math.round(100 * fraction)} %`, 'progress');

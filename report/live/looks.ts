@@ -16,7 +16,9 @@ export class Looks {
     this.forget();
     if (!body.file) return null;
     const { restarts } = this.worker;
-    const look = await this.worker.readLook(new Uint8Array(await body.file.arrayBuffer()), body.name, { transfer: true });
+    const look = await this.worker.readLook(new Uint8Array(await body.file.arrayBuffer()), body.name, {
+      transfer: true,
+    });
     for (const [i, { name, bytes }] of (await look.textures()).entries()) {
       const picture = await decoded(bytes).catch((error: Error) => {
         throw new Error(`${body.name}: its picture ${name || i} cannot be decoded (${error.message}).`);

@@ -19,14 +19,19 @@ const kFirst = 'letters';
 /// `wanted`: the name of a pair; `map`: the resolution, if it is one of those that can be chosen.
 async function open(worker: SdmWorker, wanted: string, map: string | null): Promise<Probe> {
   const session = new Session(worker);
-  session.resolution = kResolutions.find((n) => String(n) === map) ?? (window.matchMedia('(max-width: 600px)').matches ? 512 : 1024);
+  session.resolution =
+    kResolutions.find((n) => String(n) === map) ??
+    (window.matchMedia('(max-width: 600px)').matches ? 512 : 1024);
   const display = new Display(session);
-  const baking: Baking = new Baking(session, new BakeTab(
-    () => baking,
-    () => void baking.update().catch((error) => session.fault(error)),
-    () => saveBaked(baking),
-    (error) => session.fault(error),
-  ));
+  const baking: Baking = new Baking(
+    session,
+    new BakeTab(
+      () => baking,
+      () => void baking.update().catch((error) => session.fault(error)),
+      () => saveBaked(baking),
+      (error) => session.fault(error),
+    ),
+  );
   const motion = new Motion(session, display, baking);
   const loading = new Loading(session, motion, display, baking);
   const name = Object.hasOwn(kScenes, wanted) ? wanted : kFirst;
@@ -54,7 +59,8 @@ async function open(worker: SdmWorker, wanted: string, map: string | null): Prom
   listenToDrops((files) => void loading.openFiles(files, null));
   document.body.append(make('script', { type: 'application/json', id: 'report' }));
   await loading.openScene(name);
-  if (name !== wanted) say(`There is no scene “${wanted}”; there are ${Object.keys(kScenes).join(', ')}.`, 'fault');
+  if (name !== wanted)
+    say(`There is no scene “${wanted}”; there are ${Object.keys(kScenes).join(', ')}.`, 'fault');
   if (!session.pair) throw new Error(byId('status').textContent!.replace(/\.$/, ''));
   return new Probe(session, motion, baking);
 }

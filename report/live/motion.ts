@@ -22,9 +22,15 @@ export class Motion {
   private histogramAt = 0;
   private readonly rate = new Rate();
 
-  constructor(private readonly session: Session, private readonly display: Display, private readonly baking: Baking) {}
+  constructor(
+    private readonly session: Session,
+    private readonly display: Display,
+    private readonly baking: Baking,
+  ) {}
 
-  get isPumping(): boolean { return this.pumping; }
+  get isPumping(): boolean {
+    return this.pumping;
+  }
 
   /// The reference was moved.
   move(): void {
@@ -152,7 +158,8 @@ export class Motion {
     const { session } = this;
     const { version } = session;
     this.timer = window.setTimeout(() => {
-      if (version === session.version && !this.pumping && !session.loading) this.showAtRest().catch((error) => session.fault(error));
+      if (version === session.version && !this.pumping && !session.loading)
+        this.showAtRest().catch((error) => session.fault(error));
     }, kRest);
   }
 
@@ -163,7 +170,9 @@ export class Motion {
     const result = await session.inOrder(async () => {
       if (!isOn()) return null;
       const frame = await engine.frame(Promise.resolve());
-      return isOn() ? { ...frame, ...(await engine.atRest(session.tolerance, session.units, () => {})) } : null;
+      return isOn()
+        ? { ...frame, ...(await engine.atRest(session.tolerance, session.units, () => {})) }
+        : null;
     });
     if (!result || !isOn()) return;
     pair!.placeReference();

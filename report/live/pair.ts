@@ -11,7 +11,6 @@ import { inScene, Layout } from './layout';
 import { ChangingSurface, LiveSubject } from './subject';
 import { Handles, LiveView } from './view';
 
-
 export const kUp = 'z';
 
 export class Pair {
@@ -39,11 +38,27 @@ export class Pair {
     this.ghost = inScene(positions, this.subject);
     this.reference = { position: this.ghost.slice(), triangle: indices, isClosed: referenceIsClosed };
     this.section = new SectionView(this.subject.cuttable, this.reference, this.subject.size);
-    const ghost = { position: this.ghost, triangle: indices, covered: null, trianglesOfMesh: indices.length / 3, isBox: false };
-    this.view = new LiveView(byId('view'), this.subject, ghost, this.section, kUp, () => this.callouts?.update(), onMove);
+    const ghost = {
+      position: this.ghost,
+      triangle: indices,
+      covered: null,
+      trianglesOfMesh: indices.length / 3,
+      isBox: false,
+    };
+    this.view = new LiveView(
+      byId('view'),
+      this.subject,
+      ghost,
+      this.section,
+      kUp,
+      () => this.callouts?.update(),
+      onMove,
+    );
     this.callouts = new Callouts(this.view, valueText, '', this.subject.size, (at) => this.lookAt(at));
     this.forgetPrinting = printPicture(this.view);
-    this.setHandles((document.querySelector('input[name=handles]:checked') as HTMLInputElement).value as Handles);
+    this.setHandles(
+      (document.querySelector('input[name=handles]:checked') as HTMLInputElement).value as Handles,
+    );
     this.lookAtAll();
   }
 
@@ -90,7 +105,9 @@ export class Pair {
   /// The reference is moved by a matrix in the units of the files.
   setMotion(motion: Matrix4): void {
     const { centre, size } = this.subject;
-    const toFile = new Matrix4().makeTranslation(...centre).multiply(new Matrix4().makeScale(size, size, size));
+    const toFile = new Matrix4()
+      .makeTranslation(...centre)
+      .multiply(new Matrix4().makeScale(size, size, size));
     this.view.setMotion(toFile.clone().invert().multiply(motion).multiply(toFile));
   }
 

@@ -20,20 +20,33 @@ export interface Actions {
 }
 
 export const kResolutions = [256, 512, 1024, 2048];
-const kFacing: [string, string][] = [['', 'any face'], ...[90, 60, 30].map((degrees): [string, string] => [String(degrees), `faces within ${degrees}°`])];
+const kFacing: [string, string][] = [
+  ['', 'any face'],
+  ...[90, 60, 30].map((degrees): [string, string] => [String(degrees), `faces within ${degrees}°`]),
+];
 
 /// Adds the controls to the page, once.
 export function addPanel(scene: string, resolution: number, actions: Actions): void {
-  const button = (id: string, label: string, click: () => void) => make('button', { type: 'button', id, click }, label);
+  const button = (id: string, label: string, click: () => void) =>
+    make('button', { type: 'button', id, click }, label);
   const scenes = Object.entries(kScenes).map(([name, { title }]): [string, string] => [name, title]);
-  const units = make('input', { type: 'text', id: 'units', size: 4, maxlength: 12, autocomplete: 'off', change: () => actions.setUnits(units.value.trim()) });
+  const units = make('input', {
+    type: 'text',
+    id: 'units',
+    size: 4,
+    maxlength: 12,
+    autocomplete: 'off',
+    change: () => actions.setUnits(units.value.trim()),
+  });
   const cancel = button('cancel', 'Cancel', actions.cancel);
   cancel.hidden = true;
   const section = make(
-    'section', { id: 'compare', 'aria-labelledby': 'compare-title' },
+    'section',
+    { id: 'compare', 'aria-labelledby': 'compare-title' },
     make('h2', { id: 'compare-title', class: 'hidden' }, 'What to compare'),
     make(
-      'div', { class: 'row' },
+      'div',
+      { class: 'row' },
       select('scene', 'Pair', [...scenes, ['files', 'Your files…']], scene, (name) => {
         if (name !== 'files') return actions.openScene(name);
         (byId('scene') as HTMLSelectElement).value = byId('scene').dataset.shown ?? scene; // until there are files
@@ -43,32 +56,65 @@ export function addPanel(scene: string, resolution: number, actions: Actions): v
       fileButton('open-part', 'Open part…', false, (files) => actions.openFiles(files, 0)),
       fileButton('open-reference', 'Open reference…', false, (files) => actions.openFiles(files, 1)),
       button('swap', 'Swap', actions.swap),
-      select('resolution', 'Map', kResolutions.map((n) => [String(n), `${n} × ${n}`]), String(resolution), (n) => actions.setResolution(Number(n)))[0],
-      select('facing', 'Closest of', kFacing, '', (degrees) => actions.setFacing(degrees === '' ? null : Number(degrees)))[0],
+      select(
+        'resolution',
+        'Map',
+        kResolutions.map((n) => [String(n), `${n} × ${n}`]),
+        String(resolution),
+        (n) => actions.setResolution(Number(n)),
+      )[0],
+      select('facing', 'Closest of', kFacing, '', (degrees) =>
+        actions.setFacing(degrees === '' ? null : Number(degrees)),
+      )[0],
       make('div', { class: 'field-of' }, make('label', { for: 'units' }, 'Unit'), units),
     ),
     make(
-      'div', { id: 'said' },
-      make('p', { class: 'hint' }, 'Or drop two files here: STL, PLY, OBJ, OFF, 3DS or GLB, the part and the reference. They stay on this computer: the page cannot send anything.'),
-      make('div', { class: 'row' }, make('p', { id: 'status', role: 'status', 'aria-live': 'polite' }), cancel),
+      'div',
+      { id: 'said' },
+      make(
+        'p',
+        { class: 'hint' },
+        'Or drop two files here: STL, PLY, OBJ, OFF, 3DS or GLB, the part and the reference. They stay on this computer: the page cannot send anything.',
+      ),
+      make(
+        'div',
+        { class: 'row' },
+        make('p', { id: 'status', role: 'status', 'aria-live': 'polite' }),
+        cancel,
+      ),
     ),
   );
   document.querySelector('main')!.prepend(section);
 
   const handle = (value: Handles, label: string) => {
-    const input = make('input', { type: 'radio', name: 'handles', id: `handles-${value}`, value, change: () => actions.setHandles(value) });
+    const input = make('input', {
+      type: 'radio',
+      name: 'handles',
+      id: `handles-${value}`,
+      value,
+      change: () => actions.setHandles(value),
+    });
     input.checked = value === 'none';
     return make('span', { class: 'segment' }, input, make('label', { for: `handles-${value}` }, label));
   };
   // Above the picture, so that a window of 800 pixels shows it whole.
   byId('view').before(
     make(
-      'div', { id: 'transport' },
+      'div',
+      { id: 'transport' },
       make('button', { type: 'button', id: 'play', click: actions.togglePlay }, 'Play'),
-      make('fieldset', { id: 'handles' }, make('legend', {}, 'Reference'), handle('none', 'Fixed'), handle('move', 'Move'), handle('turn', 'Turn')),
+      make(
+        'fieldset',
+        { id: 'handles' },
+        make('legend', {}, 'Reference'),
+        handle('none', 'Fixed'),
+        handle('move', 'Move'),
+        handle('turn', 'Turn'),
+      ),
       button('reset-motion', 'Put back', actions.resetMotion),
       make(
-        'dl', { id: 'live-values' },
+        'dl',
+        { id: 'live-values' },
         make('div', {}, make('dt', {}, 'Separation'), make('dd', { id: 'separation' }, '–')),
         make('div', {}, make('dt', {}, 'Mean'), make('dd', { id: 'live-mean' }, '–')),
         make('div', {}, make('dt', {}, 'Computed'), make('dd', { id: 'rate' }, '–')),
@@ -78,7 +124,11 @@ export function addPanel(scene: string, resolution: number, actions: Actions): v
   byId('view').after(make('p', { id: 'spoken', class: 'hidden', role: 'status', 'aria-live': 'polite' }));
   byId('keys').append(
     ' ',
-    make('span', { class: 'by-mouse' }, 'Shift with arrows, Page up and Page down moves the reference, Shift with < and > turns it; P plays.'),
+    make(
+      'span',
+      { class: 'by-mouse' },
+      'Shift with arrows, Page up and Page down moves the reference, Shift with < and > turns it; P plays.',
+    ),
     make('span', { class: 'by-touch' }, 'With Move or Turn, one finger drags the handles of the reference.'),
   );
 }
@@ -105,7 +155,8 @@ export function sayFault(error: unknown): void {
 
 /// The choices of what is shown.
 export function showChoices({ choice, units, resolution }: Session, wanted = resolution): void {
-  const set = (id: string, value: string) => ((byId(id) as HTMLSelectElement | HTMLInputElement).value = value);
+  const set = (id: string, value: string) =>
+    ((byId(id) as HTMLSelectElement | HTMLInputElement).value = value);
   if (choice) {
     set('scene', choice.name);
     byId('scene').dataset.shown = choice.name;
@@ -119,5 +170,6 @@ export function showBusy({ loading, moving }: Session): void {
   document.body.classList.toggle('stale', loading || moving);
   document.body.setAttribute('aria-busy', String(loading));
   for (const id of ['play', 'reset-motion']) (byId(id) as HTMLButtonElement).disabled = loading;
-  for (const button of document.querySelectorAll<HTMLButtonElement>('#controls button[id^=save-]')) button.disabled = loading || moving;
+  for (const button of document.querySelectorAll<HTMLButtonElement>('#controls button[id^=save-]'))
+    button.disabled = loading || moving;
 }

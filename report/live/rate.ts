@@ -11,7 +11,9 @@ export class Rate {
   }
 
   add(milliseconds: number): void {
-    this.average = Number.isNaN(this.average) ? milliseconds : (1 - kShare) * this.average + kShare * milliseconds;
+    this.average = Number.isNaN(this.average)
+      ? milliseconds
+      : (1 - kShare) * this.average + kShare * milliseconds;
   }
 
   /// Frames a second, by the average frame.

@@ -23,7 +23,8 @@ export function showReport(session: Session, of: Report): void {
   const pair = session.pair!;
   showPlaces(report, {} as PageJson, pair.subject.size, (place) => {
     const at = toScene(pair.subject, place.point);
-    if (place.distance !== null) pair.callouts.add({ distance: place.distance, point: place.point, at, detail: '' });
+    if (place.distance !== null)
+      pair.callouts.add({ distance: place.distance, point: place.point, at, detail: '' });
     pair.lookAt(at);
   });
 }
@@ -45,6 +46,9 @@ export function showNoVerdict({ report }: Session): void {
 /// Reads the results out.
 export function speak(session: Session): void {
   const { extremes } = session.report!;
-  const [least, most] = [extremes?.min, extremes?.max].map((end) => session.valueText(end?.distance ?? Number.NaN));
-  byId('spoken').textContent = `${verdictOf(session.report!).verdict}. Distances from ${least} to ${most}. Separation ${byId('separation').textContent}.`;
+  const [least, most] = [extremes?.min, extremes?.max].map((end) =>
+    session.valueText(end?.distance ?? Number.NaN),
+  );
+  byId('spoken').textContent =
+    `${verdictOf(session.report!).verdict}. Distances from ${least} to ${most}. Separation ${byId('separation').textContent}.`;
 }

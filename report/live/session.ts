@@ -37,8 +37,12 @@ export class Session {
     this.engine = new Engine(worker);
   }
 
-  get bodies(): [Body, Body] | null { return this.choice?.bodies ?? null; }
-  get scene(): Moves | null { return this.choice?.scene ?? null; }
+  get bodies(): [Body, Body] | null {
+    return this.choice?.bodies ?? null;
+  }
+  get scene(): Moves | null {
+    return this.choice?.scene ?? null;
+  }
 
   /// Calls of the worker, one after the other.
   inOrder<T>(call: () => Promise<T>): Promise<T> {
@@ -47,11 +51,21 @@ export class Session {
     return result;
   }
 
-  private get signs(): boolean { return this.report !== null && isSigned(this.report); }
+  private get signs(): boolean {
+    return this.report !== null && isSigned(this.report);
+  }
   /// The unit with the space before it; empty without one.
-  get unitText(): string { return this.units && `\u00a0${this.units}`; }
-  valueText(distance: number): string { return distanceText(distance, this.report!, this.signs) + unitOf(this.report!); }
+  get unitText(): string {
+    return this.units && `\u00a0${this.units}`;
+  }
+  valueText(distance: number): string {
+    return distanceText(distance, this.report!, this.signs) + unitOf(this.report!);
+  }
   /// The text of a distance has its sign, as in the table of numbers; that of a length has none.
-  signedText(distance: number): string { return signedText(distance, this.signs, 3) + this.unitText; }
-  lengthText(length: number): string { return signedText(length, false, 3) + this.unitText; }
+  signedText(distance: number): string {
+    return signedText(distance, this.signs, 3) + this.unitText;
+  }
+  lengthText(length: number): string {
+    return signedText(length, false, 3) + this.unitText;
+  }
 }

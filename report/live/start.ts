@@ -14,8 +14,13 @@ async function embedded(id: string): Promise<Uint8Array<ArrayBuffer>> {
 const textOf = async (id: string) => new TextDecoder().decode(await embedded(id));
 
 export async function startWorker(): Promise<SdmWorker> {
-  if (typeof WebAssembly !== 'object') throw new Error('this browser has no WebAssembly, or it is switched off');
-  const [full, program, reportPage] = await Promise.all([embedded('sdm-module'), textOf('sdm-worker'), textOf('sdm-report')]);
+  if (typeof WebAssembly !== 'object')
+    throw new Error('this browser has no WebAssembly, or it is switched off');
+  const [full, program, reportPage] = await Promise.all([
+    embedded('sdm-module'),
+    textOf('sdm-worker'),
+    textOf('sdm-report'),
+  ]);
   const script = URL.createObjectURL(new Blob([program], { type: 'text/javascript' }));
   return createWorker({ full: true, modules: { full }, script, reportPage });
 }

@@ -39,7 +39,10 @@ export class ChangingSurface extends Surface {
   painted: Paint | null = null; // in place of the distances
   private readonly sources: Int32Array;
 
-  constructor(readonly layout: Layout, isClosed: boolean) {
+  constructor(
+    readonly layout: Layout,
+    isClosed: boolean,
+  ) {
     super(layout.model, layout.map, isClosed, '', null);
     this.sources = sourcesOf(layout.map, layout.model.place);
   }
@@ -57,8 +60,12 @@ export class ChangingSurface extends Surface {
     this.forgetCopies();
   }
 
-  protected override get lookShader(): string { return kPaintedLook; }
-  protected override lookUniforms(): Uniforms { return { paint: { value: null }, painted: { value: 0 } }; }
+  protected override get lookShader(): string {
+    return kPaintedLook;
+  }
+  protected override lookUniforms(): Uniforms {
+    return { paint: { value: null }, painted: { value: 0 } };
+  }
 
   /// Shows a texture in place of the distances; null: the distances.
   setPaint(paint: Paint | null): void {
@@ -68,7 +75,10 @@ export class ChangingSurface extends Surface {
     texture.value = null;
     painted.value = paint === null ? 0 : paint.kind === 'colors' ? 1 : 2;
     if (!paint) return;
-    const { map: { width, height }, texelOf } = this.layout;
+    const {
+      map: { width, height },
+      texelOf,
+    } = this.layout;
     // Beside the charts, what has no owner is as where its value comes from.
     this.sources.forEach((source, i) => {
       const from = source < this.sources.length ? source : texelOf[source - this.sources.length];
@@ -111,10 +121,18 @@ export class LiveSubject implements Subject {
     this.object.add(coarse.object);
   }
 
-  get surface(): ChangingSurface { return this.shown; }
-  get uniforms(): Uniforms { return this.shown.uniforms; }
-  get lo(): Vec { return boxOf(this.shown.layout.model.position).lo; }
-  get hi(): Vec { return boxOf(this.shown.layout.model.position).hi; }
+  get surface(): ChangingSurface {
+    return this.shown;
+  }
+  get uniforms(): Uniforms {
+    return this.shown.uniforms;
+  }
+  get lo(): Vec {
+    return boxOf(this.shown.layout.model.position).lo;
+  }
+  get hi(): Vec {
+    return boxOf(this.shown.layout.model.position).hi;
+  }
 
   show(surface: ChangingSurface): void {
     if (surface === this.shown) return;
@@ -129,8 +147,12 @@ export class LiveSubject implements Subject {
   get cuttable(): CutPart {
     const now = () => this.shown.layout;
     return {
-      get position() { return now().model.position; },
-      get triangle() { return now().model.triangle; },
+      get position() {
+        return now().model.position;
+      },
+      get triangle() {
+        return now().model.triangle;
+      },
       isClosed: this.isClosed,
       scaleAt: (_, scale) => scale,
       valueAt: (triangle, weights) => valueAt(now().model, now().map, { triangle, weights }).distance,

@@ -1,13 +1,19 @@
 // The surface where a function is zero: S. F. F. Gibson, "Constrained Elastic Surface Nets" (1998), without the relaxation.
 type Point = [number, number, number];
 
-export function surfaceNet(f: (x: number, y: number, z: number) => number, lo: Point, hi: Point, spacing: number) {
+export function surfaceNet(
+  f: (x: number, y: number, z: number) => number,
+  lo: Point,
+  hi: Point,
+  spacing: number,
+) {
   const n = lo.map((x, k) => Math.ceil((hi[k] - x) / spacing) + 1);
   const values = new Float64Array(n[0] * n[1] * n[2]);
   const at = (x: number, y: number, z: number) => (z * n[1] + y) * n[0] + x;
   for (let z = 0; z < n[2]; ++z)
     for (let y = 0; y < n[1]; ++y)
-      for (let x = 0; x < n[0]; ++x) values[at(x, y, z)] = f(lo[0] + spacing * x, lo[1] + spacing * y, lo[2] + spacing * z);
+      for (let x = 0; x < n[0]; ++x)
+        values[at(x, y, z)] = f(lo[0] + spacing * x, lo[1] + spacing * y, lo[2] + spacing * z);
   const vertexOf = new Int32Array(values.length).fill(-1); // of the cell at each corner
   const positions: number[] = [];
   const offsets = Array.from({ length: 8 }, (_, c) => at(c & 1, (c >> 1) & 1, c >> 2));
@@ -16,7 +22,9 @@ export function surfaceNet(f: (x: number, y: number, z: number) => number, lo: P
       for (let x = 0; x + 1 < n[0]; ++x) {
         const cell = at(x, y, z);
         const middle = middleOf(offsets.map((offset) => values[cell + offset]));
-        if (middle) vertexOf[cell] = positions.push(...middle.map((u, k) => lo[k] + spacing * ([x, y, z][k] + u))) / 3 - 1;
+        if (middle)
+          vertexOf[cell] =
+            positions.push(...middle.map((u, k) => lo[k] + spacing * ([x, y, z][k] + u))) / 3 - 1;
       }
   // A quadrilateral of the four cells around each edge that crosses the surface.
   const indices: number[] = [];

@@ -4,7 +4,17 @@ import { make } from '../src/dom';
 /// Puts a list of tabs before the first of the panels, which have an id each.
 export function addTabs(name: string, panels: [title: string, panel: HTMLElement][]): void {
   const tabs = panels.map(([title, panel]) =>
-    make('button', { type: 'button', role: 'tab', id: `tab-${panel.id}`, 'aria-controls': panel.id, click: () => choose(panel) }, title),
+    make(
+      'button',
+      {
+        type: 'button',
+        role: 'tab',
+        id: `tab-${panel.id}`,
+        'aria-controls': panel.id,
+        click: () => choose(panel),
+      },
+      title,
+    ),
   );
   const choose = (shown: HTMLElement) =>
     panels.forEach(([, panel], i) => {

@@ -17,7 +17,15 @@ export class LiveView extends View {
   private fittedPose = ''; // where the camera was when all was fitted into the picture
 
   /// `onMove` is called after each motion of the reference by its handles.
-  constructor(container: HTMLElement, subject: Subject, reference: Ghost, section: SectionView, up: 'y' | 'z', onChange: () => void, onMove: () => void) {
+  constructor(
+    container: HTMLElement,
+    subject: Subject,
+    reference: Ghost,
+    section: SectionView,
+    up: 'y' | 'z',
+    onChange: () => void,
+    onMove: () => void,
+  ) {
     super(container, subject, reference, section, up, onChange);
     this.handles = new TransformControls(this.camera, this.canvas);
     this.handles.size = window.matchMedia('(pointer: coarse)').matches ? 1.5 : 1.1;
@@ -116,7 +124,13 @@ export class LiveView extends View {
   /// Where the handle of an axis is in the canvas; for tests.
   handleAt(axis: 'X' | 'Y' | 'Z'): { x: number; y: number } {
     const kAlong = 0.3; // of the length of a handle, by three's sizes
-    const length = (kAlong * this.camera.position.distanceTo(this.pivot.position) * Math.tan((this.camera.fov * Math.PI) / 360) * 1.9 * this.handles.size) / 4;
+    const length =
+      (kAlong *
+        this.camera.position.distanceTo(this.pivot.position) *
+        Math.tan((this.camera.fov * Math.PI) / 360) *
+        1.9 *
+        this.handles.size) /
+      4;
     const at = this.pivot.position.clone();
     at.setComponent('XYZ'.indexOf(axis), at.getComponent('XYZ'.indexOf(axis)) + length);
     return this.place(at.toArray() as Vec);

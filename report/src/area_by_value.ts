@@ -37,10 +37,18 @@ export class AreaByValue {
     areas.forEach((area, i) => {
       if (area === 0 || !Number.isFinite(distances[i])) return;
       byKey[keyOfFloat(distances[i])] += area / total;
-      byBin[Math.min(kBins - 1, Math.floor(hi > lo ? (kBins * (distances[i] - lo)) / (hi - lo) : 0))] += area / total;
+      byBin[Math.min(kBins - 1, Math.floor(hi > lo ? (kBins * (distances[i] - lo)) / (hi - lo) : 0))] +=
+        area / total;
     });
     const keys = Uint32Array.from(byKey.keys()).filter((key) => byKey[key] > 0);
-    return new AreaByValue(lo, hi, keys, Float32Array.from(keys, (key) => byKey[key]), Float32Array.from(byBin), total > 0 ? without / total : 0);
+    return new AreaByValue(
+      lo,
+      hi,
+      keys,
+      Float32Array.from(keys, (key) => byKey[key]),
+      Float32Array.from(byBin),
+      total > 0 ? without / total : 0,
+    );
   }
 
   /// The fraction of the area whose distance is at most d.

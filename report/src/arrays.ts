@@ -141,7 +141,12 @@ export function unguessed(numbers: Uint32Array, stride: number, guesses: Uint32A
   for (let i = 0; i < numbers.length; ++i) {
     const k = i % stride;
     const g = 3 * ((i - k) / stride);
-    const guess = guesses[g] === kNone ? 0 : numbers[guesses[g] * stride + k] + numbers[guesses[g + 1] * stride + k] - numbers[guesses[g + 2] * stride + k];
+    const guess =
+      guesses[g] === kNone
+        ? 0
+        : numbers[guesses[g] * stride + k] +
+          numbers[guesses[g + 1] * stride + k] -
+          numbers[guesses[g + 2] * stride + k];
     numbers[i] = unzigzag(numbers[i]) + guess;
   }
   return numbers;

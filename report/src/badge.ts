@@ -2,7 +2,14 @@
 import { byId, make } from './dom';
 import type { Verdict } from './verdict';
 
-const kSigns: Record<Verdict | 'MOVING', string> = { MOVING: '…', PASS: '✓', FAIL: '✗', 'NOT DECIDED': '?', DOUBTFUL: '?', MEASURED: 'i' };
+const kSigns: Record<Verdict | 'MOVING', string> = {
+  MOVING: '…',
+  PASS: '✓',
+  FAIL: '✗',
+  'NOT DECIDED': '?',
+  DOUBTFUL: '?',
+  MEASURED: 'i',
+};
 
 export function showBadge(verdict: Verdict | 'MOVING'): void {
   const badge = byId('verdict');

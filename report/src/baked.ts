@@ -17,8 +17,12 @@ class BakedPage {
   constructor(private readonly data: BakedData) {
     this.view = new BakedView(byId('view'), data, () => {});
     const { report } = data;
-    for (const [which, { file }] of [['low', report.low], ['high', report.high]] as const) {
-      byId(`name-${which}`).textContent = `${nameOf(file)}, ${which === 'low' ? 'with its textures' : 'detailed'}`;
+    for (const [which, { file }] of [
+      ['low', report.low],
+      ['high', report.high],
+    ] as const) {
+      byId(`name-${which}`).textContent =
+        `${nameOf(file)}, ${which === 'low' ? 'with its textures' : 'detailed'}`;
       byId(`split-${which}`).textContent = nameOf(file);
     }
     this.split.addEventListener('input', () => this.show(Number(this.split.value) / 1000));
@@ -74,7 +78,8 @@ class BakedPage {
   }
 
   private choose(event: KeyboardEvent): void {
-    if (event.ctrlKey || event.metaKey || event.altKey || (event.target as HTMLElement).tagName === 'SELECT') return;
+    if (event.ctrlKey || event.metaKey || event.altKey || (event.target as HTMLElement).tagName === 'SELECT')
+      return;
     const share = { l: 1, h: 0, b: 0.5 }[event.key.toLowerCase()];
     if (share !== undefined && !this.split.disabled) this.show(share);
   }
@@ -92,11 +97,37 @@ class BakedPage {
       for (const [value, name] of options) select.append(make('option', { value }, name));
       return make('div', { class: 'choice' }, make('label', { for: id }, label), select);
     };
-    const edges = make('input', { type: 'checkbox', id: 'edges', change: () => this.view.setEdges(edges.checked) });
+    const edges = make('input', {
+      type: 'checkbox',
+      id: 'edges',
+      change: () => this.view.setEdges(edges.checked),
+    });
     byId('form').append(
-      choice('arrangement', 'Meshes', [['over', 'One over the other'], ['beside', 'Side by side']], (value) => this.setBeside(value === 'beside')),
-      choice('shading', 'Shading', [['lit', 'Colours in light'], ['colours', 'Colours alone'], ['shape', 'Shape alone']], (value) => this.view.setShading(value as Shading)),
-      make('div', { class: 'check' }, edges, make('label', { for: 'edges' }, `Triangles of ${nameOf(this.data.report.low.file)}`)),
+      choice(
+        'arrangement',
+        'Meshes',
+        [
+          ['over', 'One over the other'],
+          ['beside', 'Side by side'],
+        ],
+        (value) => this.setBeside(value === 'beside'),
+      ),
+      choice(
+        'shading',
+        'Shading',
+        [
+          ['lit', 'Colours in light'],
+          ['colours', 'Colours alone'],
+          ['shape', 'Shape alone'],
+        ],
+        (value) => this.view.setShading(value as Shading),
+      ),
+      make(
+        'div',
+        { class: 'check' },
+        edges,
+        make('label', { for: 'edges' }, `Triangles of ${nameOf(this.data.report.low.file)}`),
+      ),
       make('button', { type: 'button', id: 'reset', click: () => this.view.look('corner') }, 'Look at all'),
     );
     byId('form').addEventListener('submit', (event) => event.preventDefault());
@@ -117,8 +148,12 @@ function describe({ page, report, pictures }: BakedData): void {
     ? `${high} is drawn by a coarser copy, ${count(triangles)} of ${count(all)} triangles, with its own colours and normals at their corners`
     : `${high} is drawn with its colours and normals at the corners of triangles${parts}`;
   const picture = pictures.values().next().value;
-  const smaller = picture && picture.width < resolution ? ` Textures are shown with ${count(picture.width)} × ${count(picture.height)} texels; the files have all.` : '';
-  byId('shown').textContent = `${drawn}. Both are drawn in the same light, with the roughness and the metal of their materials.${smaller}`;
+  const smaller =
+    picture && picture.width < resolution
+      ? ` Textures are shown with ${count(picture.width)} × ${count(picture.height)} texels; the files have all.`
+      : '';
+  byId('shown').textContent =
+    `${drawn}. Both are drawn in the same light, with the roughness and the metal of their materials.${smaller}`;
 }
 
 function showNumbers({ atlas, texels, time_ms: time }: BakedReport): void {
@@ -154,7 +189,12 @@ function showTextures({ report, pictures }: BakedData): void {
   byId('textures-table').replaceChildren(table(['Channel', 'File', 'Values'], rows, 'Channels'));
   byId('pictures').replaceChildren(
     ...[...pictures].map(([name, picture]) => {
-      const canvas = make('canvas', { width: 192, height: Math.max(1, Math.round((192 * picture.height) / picture.width)), role: 'img', 'aria-label': `The texture ${name.replace(/_/g, ' ')}` });
+      const canvas = make('canvas', {
+        width: 192,
+        height: Math.max(1, Math.round((192 * picture.height) / picture.width)),
+        role: 'img',
+        'aria-label': `The texture ${name.replace(/_/g, ' ')}`,
+      });
       canvas.getContext('2d')!.drawImage(picture, 0, 0, canvas.width, canvas.height);
       return make('figure', {}, canvas, make('figcaption', {}, name.replace(/_/g, ' ')));
     }),
@@ -172,7 +212,10 @@ function showMethod(report: BakedReport): void {
     ray: `Each texel of ${low} has what ${high} has at the nearest hit along its normal${cage === null ? '' : `, at most ${length(cage)} away,`} on ${allowed}, or else at the closest point of these.`,
   }[match];
   const limit = most === null ? '' : ` What is farther than ${length(most)} does not count.`;
-  byId('method-text').replaceChildren(make('p', {}, words + limit), ...notes.map((note) => make('p', { class: 'note' }, note)));
+  byId('method-text').replaceChildren(
+    make('p', {}, words + limit),
+    ...notes.map((note) => make('p', { class: 'note' }, note)),
+  );
 }
 
 void openPage('sdmBaked', 'meshes', 'The numbers are below. Is WebGL 2 on in this browser?', async () => {

@@ -32,13 +32,25 @@ export interface BakedReport {
   high: Input;
   low: Input;
   units: string;
-  atlas: { kind: string; resolution: number; rows: number; samples: number; charts: number; texels: number; utilisation: number; overlapping_texels: number };
+  atlas: {
+    kind: string;
+    resolution: number;
+    rows: number;
+    samples: number;
+    charts: number;
+    texels: number;
+    utilisation: number;
+    overlapping_texels: number;
+  };
   max_distance: number | null;
   match: 'closest' | 'facing' | 'ray';
   facing: number | null;
   cage: number | null;
   texels: { closest: number; facing: number; ray: number; too_far: number; facing_away: number };
-  textures: Record<string, { file: string; values: string; picture?: { file: string; lo: number; hi: number } }>;
+  textures: Record<
+    string,
+    { file: string; values: string; picture?: { file: string; lo: number; hi: number } }
+  >;
   notes: string[];
   time_ms: Record<string, number>;
 }
@@ -65,7 +77,10 @@ export interface BakedData {
 }
 
 /// Steps of all positions of a mesh, and what they are guessed from.
-function stepsOf(arrays: Arrays, mesh: string): { triangle: Uint32Array; steps: Uint32Array; guesses: Uint32Array } {
+function stepsOf(
+  arrays: Arrays,
+  mesh: string,
+): { triangle: Uint32Array; steps: Uint32Array; guesses: Uint32Array } {
   const triangle = cornersOfCodes(arrays.get(`${mesh}_triangle`)!);
   const guesses = guessesOf(triangle);
   return { triangle, guesses, steps: unguessed(arrays.get(`${mesh}_position`)!, 3, guesses) };
@@ -94,11 +109,21 @@ async function picturesOf(json: BakedJson['pictures']): Promise<Map<string, Imag
 export async function readBaked(): Promise<BakedData> {
   const textOf = (id: string) => document.getElementById(id)!.textContent!;
   const page = JSON.parse(textOf('page')) as BakedJson;
-  const [arrays, pictures] = await Promise.all([unpacked(page.arrays, textOf('arrays')), picturesOf(page.pictures)]);
-  const ends: [Vec, Vec] = [[Infinity, Infinity, Infinity], [0, 0, 0]];
+  const [arrays, pictures] = await Promise.all([
+    unpacked(page.arrays, textOf('arrays')),
+    picturesOf(page.pictures),
+  ]);
+  const ends: [Vec, Vec] = [
+    [Infinity, Infinity, Infinity],
+    [0, 0, 0],
+  ];
   const steps = (['low', 'high'] as const).map((mesh) => {
     const read = stepsOf(arrays, mesh);
-    read.steps.forEach((x, i) => ((ends[0][i % 3] = Math.min(ends[0][i % 3], x)), (ends[1][i % 3] = Math.max(ends[1][i % 3], x))));
+    read.steps.forEach(
+      (x, i) => (
+        (ends[0][i % 3] = Math.min(ends[0][i % 3], x)), (ends[1][i % 3] = Math.max(ends[1][i % 3], x))
+      ),
+    );
     return read;
   });
   const { origin, step } = page.place;
@@ -121,7 +146,10 @@ export async function readBaked(): Promise<BakedData> {
       position: toCentre(low.steps, page.place, centre, size),
       normal: unfoldedNormals(arrays.get('low_normal')!),
       triangle: low.triangle,
-      place: Float32Array.from(unguessed(arrays.get('low_place')!, 2, low.guesses), (x, i) => x / extent[i % 2]),
+      place: Float32Array.from(
+        unguessed(arrays.get('low_place')!, 2, low.guesses),
+        (x, i) => x / extent[i % 2],
+      ),
       tangent: tangentsOf(arrays.get('low_tangent')),
       color: null,
       surface: null,

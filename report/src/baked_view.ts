@@ -1,5 +1,18 @@
 // A coarse mesh with its textures and a detailed one, in two parts of one picture, under one camera.
-import { BufferAttribute, BufferGeometry, ClampToEdgeWrapping, DoubleSide, LinearFilter, LinearMipmapLinearFilter, Mesh, NoColorSpace, ShaderMaterial, SRGBColorSpace, Texture, WebGLRenderer } from 'three';
+import {
+  BufferAttribute,
+  BufferGeometry,
+  ClampToEdgeWrapping,
+  DoubleSide,
+  LinearFilter,
+  LinearMipmapLinearFilter,
+  Mesh,
+  NoColorSpace,
+  ShaderMaterial,
+  SRGBColorSpace,
+  Texture,
+  WebGLRenderer,
+} from 'three';
 import type { BakedData, Shape } from './baked_data';
 import { CoarseWhileMoving } from './coarse_copy';
 import { Viewer } from './viewer';
@@ -121,7 +134,10 @@ function geometryOf(shape: Shape): BufferGeometry {
   geometry.setAttribute('normal', new BufferAttribute(shape.normal, 3, true));
   geometry.setAttribute('place', new BufferAttribute(shape.place ?? new Float32Array(2 * vertices), 2));
   geometry.setAttribute('tangent', new BufferAttribute(shape.tangent ?? new Float32Array(4 * vertices), 4));
-  geometry.setAttribute('surface', new BufferAttribute(shape.surface ?? new Uint8Array(4 * vertices), 4, true));
+  geometry.setAttribute(
+    'surface',
+    new BufferAttribute(shape.surface ?? new Uint8Array(4 * vertices), 4, true),
+  );
   geometry.setAttribute('paint', new BufferAttribute(shape.color ?? new Uint8Array(4 * vertices), 4, true));
   geometry.setIndex(new BufferAttribute(shape.triangle, 1));
   return geometry;
@@ -139,7 +155,15 @@ export class BakedView extends Viewer {
     super(container, data.page.up, onChange);
     this.low = this.makeMesh(data, data.low, false);
     this.high = this.makeMesh(data, data.high, true);
-    this.edges = new Mesh(this.low.geometry, new ShaderMaterial({ glslVersion: '300 es', vertexShader: kVertexShader, fragmentShader: kEdgeShader, wireframe: true }));
+    this.edges = new Mesh(
+      this.low.geometry,
+      new ShaderMaterial({
+        glslVersion: '300 es',
+        vertexShader: kVertexShader,
+        fragmentShader: kEdgeShader,
+        wireframe: true,
+      }),
+    );
     this.edges.visible = false;
     this.edges.frustumCulled = false;
     this.low.add(this.edges);
@@ -150,8 +174,13 @@ export class BakedView extends Viewer {
   }
 
   private makeMesh({ page, pictures }: BakedData, shape: Shape, painted: boolean): Mesh {
-    const texture = (name: string, isColor = false) => (painted ? null : textureOf(pictures.get(name), isColor));
-    const [colors, normals, occlusion] = [texture('base_color', true), texture('normal'), texture('occlusion')];
+    const texture = (name: string, isColor = false) =>
+      painted ? null : textureOf(pictures.get(name), isColor);
+    const [colors, normals, occlusion] = [
+      texture('base_color', true),
+      texture('normal'),
+      texture('occlusion'),
+    ];
     const [emission, surfaces] = [texture('emissive', true), texture('metallic_roughness')];
     const material = new ShaderMaterial({
       glslVersion: '300 es',
@@ -177,7 +206,9 @@ export class BakedView extends Viewer {
         roughMetal: { value: painted ? [1, 0] : [page.roughness, page.metallic] },
         baseColor: { value: page.base_color },
         emissive: { value: page.emissive },
-        cutoff: { value: painted || page.alpha_mode === 0 ? -1 : page.alpha_mode === 1 ? page.alpha_cutoff : 0.02 },
+        cutoff: {
+          value: painted || page.alpha_mode === 0 ? -1 : page.alpha_mode === 1 ? page.alpha_cutoff : 0.02,
+        },
       },
     });
     const mesh = new Mesh(geometryOf(shape), material);
@@ -224,7 +255,8 @@ export class BakedView extends Viewer {
   }
 
   setShading(shading: Shading): void {
-    for (const mesh of [this.low, this.high]) (mesh.material as ShaderMaterial).uniforms.shading.value = kShadings.indexOf(shading);
+    for (const mesh of [this.low, this.high])
+      (mesh.material as ShaderMaterial).uniforms.shading.value = kShadings.indexOf(shading);
     this.draw();
   }
 

@@ -38,9 +38,22 @@ export class Callouts {
     const item = make(
       'li',
       { value: number },
-      make('button', { type: 'button', class: 'link', click: () => this.show(callout.at), 'aria-label': `Show callout ${number}, ${value}` }, value),
+      make(
+        'button',
+        {
+          type: 'button',
+          class: 'link',
+          click: () => this.show(callout.at),
+          'aria-label': `Show callout ${number}, ${value}`,
+        },
+        value,
+      ),
       ` at ${place(callout.point, this.size)}${this.unit}${callout.detail ? `, ${callout.detail}` : ''} `,
-      make('button', { type: 'button', class: 'remove', click: remove, 'aria-label': `Remove callout ${number}` }, '×'),
+      make(
+        'button',
+        { type: 'button', class: 'remove', click: remove, 'aria-label': `Remove callout ${number}` },
+        '×',
+      ),
     );
     const label = new Label(this.view, make('b', {}, String(number)), ` ${value}`);
     byId('callout-list').append(item);

@@ -62,7 +62,10 @@ function spacing(position: Float32Array): number {
     const p = 3 * Math.floor(((k + 0.5) * points) / Math.min(probes, points));
     let least = Infinity;
     for (let i = 0; i < position.length; i += 3) {
-      const away = (position[i] - position[p]) ** 2 + (position[i + 1] - position[p + 1]) ** 2 + (position[i + 2] - position[p + 2]) ** 2;
+      const away =
+        (position[i] - position[p]) ** 2 +
+        (position[i + 1] - position[p + 1]) ** 2 +
+        (position[i + 2] - position[p + 2]) ** 2;
       if (away > 0 && away < least) least = away;
     }
     if (Number.isFinite(least)) found.push(Math.sqrt(least));
@@ -98,15 +101,32 @@ export class Cloud implements Subject {
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(data.position, 3));
     geometry.setAttribute('normal', new BufferAttribute(data.normal, 3, true));
-    geometry.setAttribute('value', new BufferAttribute(Float32Array.from(data.distance, (d) => (Number.isNaN(d) ? kNoValue : d)), 1));
+    geometry.setAttribute(
+      'value',
+      new BufferAttribute(
+        Float32Array.from(data.distance, (d) => (Number.isNaN(d) ? kNoValue : d)),
+        1,
+      ),
+    );
     this.object = new Points(
       geometry,
-      new ShaderMaterial({ glslVersion: '300 es', vertexShader: kVertexShader, fragmentShader: kShader, uniforms: this.uniforms }),
+      new ShaderMaterial({
+        glslVersion: '300 es',
+        vertexShader: kVertexShader,
+        fragmentShader: kShader,
+        uniforms: this.uniforms,
+      }),
     );
     this.object.frustumCulled = false;
     const points = data.distance.length;
     this.stride = Math.max(1, Math.ceil(points / kCoarse));
-    this.few = this.stride === 1 ? null : new BufferAttribute(Uint32Array.from({ length: Math.floor(points / this.stride) }, (_, i) => i * this.stride), 1);
+    this.few =
+      this.stride === 1
+        ? null
+        : new BufferAttribute(
+            Uint32Array.from({ length: Math.floor(points / this.stride) }, (_, i) => i * this.stride),
+            1,
+          );
   }
 
   setScale(scale: Scale): void {
@@ -166,11 +186,14 @@ export class Cloud implements Subject {
     for (let i = 0; i < p.length; i += 3) {
       const z = -(v[2] * p[i] + v[6] * p[i + 1] + v[10] * p[i + 2] + v[14]);
       if (z <= viewer.camera.near) continue;
-      const dx = clientWidth / 2 + ((v[0] * p[i] + v[4] * p[i + 1] + v[8] * p[i + 2] + v[12]) * scale) / z - x;
-      const dy = clientHeight / 2 - ((v[1] * p[i] + v[5] * p[i + 1] + v[9] * p[i + 2] + v[13]) * scale) / z - y;
+      const dx =
+        clientWidth / 2 + ((v[0] * p[i] + v[4] * p[i + 1] + v[8] * p[i + 2] + v[12]) * scale) / z - x;
+      const dy =
+        clientHeight / 2 - ((v[1] * p[i] + v[5] * p[i + 1] + v[9] * p[i + 2] + v[13]) * scale) / z - y;
       const outside = Math.hypot(dx, dy) - Math.min(kMost, Math.max(kLeast, (width * scale) / z)) / 2;
       if (outside > least || (outside <= 0 && z > depth)) continue;
-      if (cut && cut.normal[0] * p[i] + cut.normal[1] * p[i + 1] + cut.normal[2] * p[i + 2] > cut.offset) continue;
+      if (cut && cut.normal[0] * p[i] + cut.normal[1] * p[i + 1] + cut.normal[2] * p[i + 2] > cut.offset)
+        continue;
       if (outside <= 0) [front, depth] = [i, z];
       else [near, least] = [i, outside];
     }
@@ -190,6 +213,6 @@ export class Cloud implements Subject {
   normalNear(point: Vec): Vec {
     const i = nearest(this.data.position, point);
     const normal = Array.from(this.data.normal.subarray(3 * i, 3 * i + 3)) as Vec;
-    return normal.some((x) => x !== 0) ? normal : point.map((x) => x || 1e-6) as Vec;
+    return normal.some((x) => x !== 0) ? normal : (point.map((x) => x || 1e-6) as Vec);
   }
 }

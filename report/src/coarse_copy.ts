@@ -15,7 +15,8 @@ function cellsOf(position: ArrayLike<number>, cells: number): Float64Array {
   const size = Math.hypot(...lo.map((x, k) => hi[k] - x)) / cells || 1;
   const result = new Float64Array(position.length / 3);
   for (let v = 0; v < result.length; ++v)
-    for (let k = 0; k < 3; ++k) result[v] = result[v] * 128 + Math.floor((position[3 * v + k] - lo[k]) / size);
+    for (let k = 0; k < 3; ++k)
+      result[v] = result[v] * 128 + Math.floor((position[3 * v + k] - lo[k]) / size);
   return result;
 }
 
@@ -43,8 +44,12 @@ function representatives(cell: Float64Array, normal: ArrayLike<number> | null) {
 function copied(geometry: BufferGeometry, cells: number): BufferGeometry {
   const position = geometry.getAttribute('position').array;
   const triangle = geometry.getIndex()!.array;
-  const { place, like } = representatives(cellsOf(position, cells), geometry.getAttribute('normal')?.array ?? null);
-  const groups = geometry.groups.length > 0 ? geometry.groups : [{ start: 0, count: triangle.length, materialIndex: 0 }];
+  const { place, like } = representatives(
+    cellsOf(position, cells),
+    geometry.getAttribute('normal')?.array ?? null,
+  );
+  const groups =
+    geometry.groups.length > 0 ? geometry.groups : [{ start: 0, count: triangle.length, materialIndex: 0 }];
   const copy = new BufferGeometry();
   const used: number[] = []; // vertices of the geometry, one for each of the copy
   const number = new Map<number, number>();
@@ -98,7 +103,10 @@ export class CoarseWhileMoving {
   private copy: BufferGeometry | null = null;
   private readonly fine: BufferGeometry;
 
-  constructor(private readonly mesh: { geometry: BufferGeometry }, private readonly most: number) {
+  constructor(
+    private readonly mesh: { geometry: BufferGeometry },
+    private readonly most: number,
+  ) {
     this.fine = mesh.geometry;
   }
 

@@ -1,7 +1,25 @@
 // Colours for distances, by the rule of all pictures.
 import {
-  colorPlace, kAbove, kBands, kBelow, kCentred, kColorRule, kDiverging, kEndToEnd, kInAbove, kInBelow, kInOpposite, kInUnjudged, kInWithin,
-  kNoValue, kOpposite, kPaper2006, kSequential, kUnjudged, kViridis, kWithin,
+  colorPlace,
+  kAbove,
+  kBands,
+  kBelow,
+  kCentred,
+  kColorRule,
+  kDiverging,
+  kEndToEnd,
+  kInAbove,
+  kInBelow,
+  kInOpposite,
+  kInUnjudged,
+  kInWithin,
+  kNoValue,
+  kOpposite,
+  kPaper2006,
+  kSequential,
+  kUnjudged,
+  kViridis,
+  kWithin,
 } from 'sdm-rules';
 import type { Vec } from './page_data';
 
@@ -18,7 +36,13 @@ export interface Scale {
 
 export const kViridisInWords = 'Violet – green – yellow';
 
-const kModes: Record<Mode, number> = { viridis: kEndToEnd, paper2006: kEndToEnd, diverging: kCentred, tolerance: kBands, sequential: kSequential };
+const kModes: Record<Mode, number> = {
+  viridis: kEndToEnd,
+  paper2006: kEndToEnd,
+  diverging: kCentred,
+  tolerance: kBands,
+  sequential: kSequential,
+};
 export const modeOf = ({ mode }: Scale): number => kModes[mode];
 
 /// Piecewise linear through equally spaced colours; t in [0, 1].
@@ -30,7 +54,15 @@ function gradient(colors: Vec[], t: number): Vec {
 
 export function colorOf(scale: Scale, distance: number): Vec {
   if (!Number.isFinite(distance)) return kNoValue;
-  const place = colorPlace(distance, modeOf(scale), scale.lo, scale.hi, scale.lower, scale.upper, scale.accuracy);
+  const place = colorPlace(
+    distance,
+    modeOf(scale),
+    scale.lo,
+    scale.hi,
+    scale.lower,
+    scale.upper,
+    scale.accuracy,
+  );
   if (place >= kInUnjudged) return kUnjudged;
   if (place >= kInBelow) return gradient(kBelow, place - kInBelow);
   if (place >= kInAbove) return gradient(kAbove, place - kInAbove);

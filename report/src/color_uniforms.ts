@@ -32,8 +32,11 @@ export function colorUniforms(): Uniforms {
 export function setScale(uniforms: Uniforms, scale: Scale): void {
   uniforms.mode.value = modeOf(scale);
   const kMost = 1e38; // shaders cannot rely on infinity
-  for (const key of ['lo', 'hi', 'lower', 'upper', 'accuracy'] as const) uniforms[key].value = Math.min(kMost, Math.max(-kMost, scale[key]));
+  for (const key of ['lo', 'hi', 'lower', 'upper', 'accuracy'] as const)
+    uniforms[key].value = Math.min(kMost, Math.max(-kMost, scale[key]));
   const stops = colormapOf(scale);
   uniforms.stopCount.value = stops.length;
-  uniforms.stops.value = triple(Array.from({ length: kStops }, (_, i) => stops[Math.min(i, stops.length - 1)]));
+  uniforms.stops.value = triple(
+    Array.from({ length: kStops }, (_, i) => stops[Math.min(i, stops.length - 1)]),
+  );
 }

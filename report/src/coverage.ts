@@ -45,7 +45,10 @@ export function coverageOf({ position, triangle, covered }: Ghost): CoverageObje
   if (!covered) return null;
   const object = new Group();
   const materials: ShaderMaterial[] = [];
-  for (const [flag, color] of [[1, kCovered], [0, kMissing]] as const) {
+  for (const [flag, color] of [
+    [1, kCovered],
+    [0, kMissing],
+  ] as const) {
     const corners: number[] = [];
     covered.forEach((c, t) => c === flag && corners.push(...triangle.subarray(3 * t, 3 * t + 3)));
     const shape = new BufferGeometry();
@@ -73,22 +76,28 @@ export function coverageOf({ position, triangle, covered }: Ghost): CoverageObje
 /// Draws the legend of coverage, which takes the place of the colour scale.
 export function drawCoverageLegend(report: Report): void {
   const coverage = report.coverage!;
-  const row = (color: Vec, words: string) => make('p', { class: 'missing' }, make('span', { style: `background: ${css(color)}` }), words);
+  const row = (color: Vec, words: string) =>
+    make('p', { class: 'missing' }, make('span', { style: `background: ${css(color)}` }), words);
   byId('legend').replaceChildren(
     make('p', { class: 'unit' }, `measured within ${text(coverage.reach)}${unitOf(report)}`),
     row(kCovered, `covered ${percent(coverage.value)}`),
     row(kMissing, `not covered ${percent(1 - coverage.value)}`),
   );
-  byId('legend').setAttribute('aria-label', `${percent(coverage.value)} of the reference is covered; the rest is drawn in another colour`);
+  byId('legend').setAttribute(
+    'aria-label',
+    `${percent(coverage.value)} of the reference is covered; the rest is drawn in another colour`,
+  );
 }
 
 /// Returns the row on coverage for the table of numbers.
 export function coverageRow(report: Report): string[][] {
   const c = report.coverage;
   if (!c) return [];
-  return [[
-    'Coverage of the reference',
-    percent(c.value),
-    `of its area have a measured point within ${text(c.reach)}${unitOf(report)}: an estimate, proven to be between ${percent(c.lower)} and ${percent(c.upper)}`,
-  ]];
+  return [
+    [
+      'Coverage of the reference',
+      percent(c.value),
+      `of its area have a measured point within ${text(c.reach)}${unitOf(report)}: an estimate, proven to be between ${percent(c.lower)} and ${percent(c.upper)}`,
+    ],
+  ];
 }

@@ -17,7 +17,13 @@ function sectionWords({ part, other, factor }: SectionView): string {
 
 /// Shows a section; `before`: the axis of the one that is shown, returned for the next call. The cut surface of a section that
 /// is new faces the viewer.
-export function cutOpen(view: View, subject: Subject, shown: SectionView, section: State['section'], before: State['section']['axis']): State['section']['axis'] {
+export function cutOpen(
+  view: View,
+  subject: Subject,
+  shown: SectionView,
+  section: State['section'],
+  before: State['section']['axis'],
+): State['section']['axis'] {
   const { axis } = section;
   if (axis === null) {
     view.setCut(null);

@@ -18,7 +18,11 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-export function makeSvg(tag: string, attributes: Record<string, string | number>, ...content: (Node | string)[]): SVGElement {
+export function makeSvg(
+  tag: string,
+  attributes: Record<string, string | number>,
+  ...content: (Node | string)[]
+): SVGElement {
   const element = document.createElementNS('http://www.w3.org/2000/svg', tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
   element.append(...content);
@@ -30,20 +34,29 @@ export function byId(id: string): HTMLElement {
 }
 
 /// A table; of more rows than `most`, the first ones, with a button that shows all of them.
-export function table(head: string[], rows: (Node | string)[][], caption: string, most = Infinity): HTMLElement {
+export function table(
+  head: string[],
+  rows: (Node | string)[][],
+  caption: string,
+  most = Infinity,
+): HTMLElement {
   const made = rows.map(([first, ...rest]) =>
     make('tr', {}, make('th', { scope: 'row' }, first), ...rest.map((cell) => make('td', {}, cell))),
   );
   const hidden = made.length > most + 1 ? made.slice(most) : [];
   for (const row of hidden) row.hidden = true;
-  const button = make('button', {
-    type: 'button',
-    class: 'show-all',
-    click: () => {
-      for (const row of hidden) row.hidden = false;
-      button.remove();
+  const button = make(
+    'button',
+    {
+      type: 'button',
+      class: 'show-all',
+      click: () => {
+        for (const row of hidden) row.hidden = false;
+        button.remove();
+      },
     },
-  }, `Show all ${made.length} rows`);
+    `Show all ${made.length} rows`,
+  );
   return make(
     'div',
     { class: 'scroll' },

@@ -18,7 +18,13 @@ interface Explored {
 }
 
 /// Listens to the canvas of a view; `home` shows what the page opened with.
-export function explore(view: View, subject: Subject, callouts: Callouts, words: ValueWords, home: () => void): Explored {
+export function explore(
+  view: View,
+  subject: Subject,
+  callouts: Callouts,
+  words: ValueWords,
+  home: () => void,
+): Explored {
   const { canvas } = view;
   const probe = (x: number, y: number): void => {
     const found = view.find(x, y);
@@ -26,10 +32,15 @@ export function explore(view: View, subject: Subject, callouts: Callouts, words:
       byId('probe-values').replaceChildren();
       return;
     }
-    const row = (label: string, text: string, id: string) => make('div', {}, make('dt', {}, label), make('dd', { id }, text));
+    const row = (label: string, text: string, id: string) =>
+      make('div', {}, make('dt', {}, label), make('dd', { id }, text));
     const isNone = Number.isNaN(found.distance);
     byId('probe-values').replaceChildren(
-      row(capital(words.quantity), isNone ? 'none in range' : words.valueText(found.distance), 'probe-distance'),
+      row(
+        capital(words.quantity),
+        isNone ? 'none in range' : words.valueText(found.distance),
+        'probe-distance',
+      ),
       row('Position', place(toFile(subject, found.at), subject.size) + words.unit, 'probe-position'),
       ...(isNone ? [] : [row('Not rounded', exactText(found.distance) + words.unit, 'probe-exact')]),
       ...found.rows.map(([label, text, id]) => row(label, text, id)),
@@ -62,16 +73,26 @@ export function explore(view: View, subject: Subject, callouts: Callouts, words:
     action();
     probe(...middle());
   });
-  canvas.addEventListener('focus', () => byId('view').classList.toggle('keyboard', canvas.matches(':focus-visible')));
+  canvas.addEventListener('focus', () =>
+    byId('view').classList.toggle('keyboard', canvas.matches(':focus-visible')),
+  );
   canvas.addEventListener('blur', () => byId('view').classList.remove('keyboard'));
   return { addCallout, middle };
 }
 
 /// Probes where the pointer is, at most once a frame, and picks where it is pressed and released.
-function listenToPointer(canvas: HTMLCanvasElement, probe: (x: number, y: number) => void, pick: (x: number, y: number) => void): void {
+function listenToPointer(
+  canvas: HTMLCanvasElement,
+  probe: (x: number, y: number) => void,
+  pick: (x: number, y: number) => void,
+): void {
   let next: (() => void) | null = null;
   const later = (action: () => void) => {
-    if (!next) requestAnimationFrame(() => { next?.(); next = null; });
+    if (!next)
+      requestAnimationFrame(() => {
+        next?.();
+        next = null;
+      });
     next = action;
   };
   const at = (event: PointerEvent): [number, number] => [event.offsetX, event.offsetY];

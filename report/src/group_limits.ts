@@ -20,7 +20,13 @@ function common(a: Limits, b: Limits): Limits {
 
 /// The scale with these limits.
 function banded(scale: Scale, { lower, upper }: Limits): Scale {
-  return { ...scale, lower, upper, lo: bandedLo(lower, upper, scale.lo, scale.hi), hi: bandedHi(lower, upper, scale.lo, scale.hi) };
+  return {
+    ...scale,
+    lower,
+    upper,
+    lo: bandedLo(lower, upper, scale.lo, scale.hi),
+    hi: bandedHi(lower, upper, scale.lo, scale.hi),
+  };
 }
 
 /// Sets of limits, of which each triangle has one: what all the rows of the table that name it accept.
@@ -28,7 +34,10 @@ export class GroupLimits {
   readonly ofTriangle: Uint32Array;
   private readonly sets: Limits[] = [kNoLimit]; // the first is of triangles that no row names
 
-  constructor(private readonly report: Report, { names, triangle }: Model) {
+  constructor(
+    private readonly report: Report,
+    { names, triangle }: Model,
+  ) {
     this.ofTriangle = new Uint32Array(triangle.length / 3);
     const joined = new Map<string, number>();
     report.group_tolerances?.groups.forEach(({ kind, group, lower, upper }, row) => {
@@ -63,15 +72,27 @@ export class GroupLimits {
 
   /// The limits that several sets have in units of these, from 0 if none has a lower one below: a scale for the legend of
   /// all of them. Of sets with the same limits it is theirs.
-  joined(sets: number[], scale: Scale): { scale: Scale; isRelative: boolean; lower: boolean; upper: boolean; someHaveNone: boolean } {
+  joined(
+    sets: number[],
+    scale: Scale,
+  ): { scale: Scale; isRelative: boolean; lower: boolean; upper: boolean; someHaveNone: boolean } {
     const limits = sets.map((set) => realLimits(common(this.sets[set], scale), this.report));
     const judged = limits.filter(isLimited);
     const [lower, upper] = [judged.some((l) => l.lower > -Infinity), judged.some((l) => l.upper < Infinity)];
     const isRelative = judged.some((l) => l.lower !== judged[0].lower || l.upper !== judged[0].upper);
-    const relative = { ...scale, lower: lower ? -1 : -Infinity, upper: upper ? 1 : Infinity, lo: lower ? -2 : 0, hi: upper ? 2 : 0, accuracy: 0 };
+    const relative = {
+      ...scale,
+      lower: lower ? -1 : -Infinity,
+      upper: upper ? 1 : Infinity,
+      lo: lower ? -2 : 0,
+      hi: upper ? 2 : 0,
+      accuracy: 0,
+    };
     return {
       scale: isRelative || judged.length === 0 ? relative : banded(scale, judged[0]),
-      isRelative, lower, upper,
+      isRelative,
+      lower,
+      upper,
       someHaveNone: judged.length < limits.length,
     };
   }
@@ -79,10 +100,15 @@ export class GroupLimits {
   /// The share of the area of the part that no limit is for.
   unjudged({ position, triangle }: Model): number {
     const area = [0, 0]; // without limits, and all
-    const edge = (t: number, k: number) => [0, 1, 2].map((i) => position[3 * triangle[3 * t + k] + i] - position[3 * triangle[3 * t] + i]);
+    const edge = (t: number, k: number) =>
+      [0, 1, 2].map((i) => position[3 * triangle[3 * t + k] + i] - position[3 * triangle[3 * t] + i]);
     this.ofTriangle.forEach((set, t) => {
       const [a, b] = [edge(t, 1), edge(t, 2)];
-      const size = Math.hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+      const size = Math.hypot(
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+      );
       area[1] += size;
       if (!isLimited(this.sets[set])) area[0] += size;
     });

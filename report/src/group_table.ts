@@ -19,14 +19,20 @@ function kindOf({ verdict, certified, undecided_by: by }: Row, unit: string): st
 }
 
 /// `show`, if given, is called with a group that is chosen, or null for one that was.
-export function showGroups(report: Report, chosen: GroupName | null = null, show?: (group: GroupName | null) => void): void {
+export function showGroups(
+  report: Report,
+  chosen: GroupName | null = null,
+  show?: (group: GroupName | null) => void,
+): void {
   const groups = report.group_tolerances?.groups ?? [];
   byId('groups').hidden = groups.length === 0;
   if (groups.length === 0) return;
   const unit = unitOf(report);
   // A distance below the accuracy may as well be 0.
   const value = (x: number | null) =>
-    x === null ? 'none' : `${distanceText(Math.abs(x) <= (report.accuracy ?? 0) ? 0 : x, report, isSigned(report))}${unit}`;
+    x === null
+      ? 'none'
+      : `${distanceText(Math.abs(x) <= (report.accuracy ?? 0) ? 0 : x, report, isSigned(report))}${unit}`;
   const name = (g: Row, i: number): Node | string => {
     if (!show) return g.group;
     const pressed = chosen?.kind === g.kind && chosen.group === g.group;
@@ -49,7 +55,24 @@ export function showGroups(report: Report, chosen: GroupName | null = null, show
   ]);
   const what = capital(quantityOf(report));
   byId('groups-table').replaceChildren(
-    table(['Group', 'Verdict', 'Named as', 'Limits', `Least ${quantityOf(report)}`, `Largest ${quantityOf(report)}`, `${capital(wholeOf(report))} out of tolerance`, 'Kind'], rows, `${what} by group`),
-    make('p', { class: 'hint' }, `${show ? 'Choose a group to see it alone in colours. ' : ''}Of all groups: ${report.group_tolerances!.verdict}. ${isCloud(report) ? 'A point is of the groups of its closest face.' : 'Shares are estimates from the samples of each group.'} The verdict at the top is the worse one of those of the part and of its groups.`),
+    table(
+      [
+        'Group',
+        'Verdict',
+        'Named as',
+        'Limits',
+        `Least ${quantityOf(report)}`,
+        `Largest ${quantityOf(report)}`,
+        `${capital(wholeOf(report))} out of tolerance`,
+        'Kind',
+      ],
+      rows,
+      `${what} by group`,
+    ),
+    make(
+      'p',
+      { class: 'hint' },
+      `${show ? 'Choose a group to see it alone in colours. ' : ''}Of all groups: ${report.group_tolerances!.verdict}. ${isCloud(report) ? 'A point is of the groups of its closest face.' : 'Shares are estimates from the samples of each group.'} The verdict at the top is the worse one of those of the part and of its groups.`,
+    ),
   );
 }

@@ -13,11 +13,19 @@ export function showVerdict(report: Report): void {
   const { verdict, sentence } = verdictOf(report);
   showBadge(verdict);
   showSure(report);
-  const tile = report.atlas?.udim ? ' This page is of one tile of the texture; the verdict on all tiles is in report.json in the folder above.' : '';
-  const doubts = verdict === 'FAIL' || verdict === 'NOT DECIDED' ? (report.doubts ?? []).map((doubt) => ` ${capital(doubt.text)}.`).join('') : '';
+  const tile = report.atlas?.udim
+    ? ' This page is of one tile of the texture; the verdict on all tiles is in report.json in the folder above.'
+    : '';
+  const doubts =
+    verdict === 'FAIL' || verdict === 'NOT DECIDED'
+      ? (report.doubts ?? []).map((doubt) => ` ${capital(doubt.text)}.`).join('')
+      : '';
   const notes = report.notes?.length ?? 0;
   const link = notes === 0 ? '' : make('a', { href: '#method' }, notes === 1 ? 'One note' : `${notes} notes`);
-  byId('sentence').replaceChildren(named(sentence + doubts, report) + tile, ...(link ? [' ', link, notes === 1 ? ' qualifies this.' : ' qualify this.'] : []));
+  byId('sentence').replaceChildren(
+    named(sentence + doubts, report) + tile,
+    ...(link ? [' ', link, notes === 1 ? ' qualifies this.' : ' qualify this.'] : []),
+  );
   document.title = `${verdict}: ${titleOf(report)}`;
   byId('title').textContent = titleOf(report);
 }

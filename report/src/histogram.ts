@@ -36,7 +36,8 @@ function rangeOf(area: AreaByValue, scale: Scale, { lower, upper }: Limits): [nu
 /// Heights by the share of the whole, and the shares at the lines of a grid.
 function heights(shares: number[], logarithmic: boolean): { y: (share: number) => number; grid: number[] } {
   const most = Math.max(...shares, 1e-9);
-  if (!logarithmic) return { y: (share) => kTop + (1 - share / most) * (kFloor - kTop), grid: ticks(0, most, 4) };
+  if (!logarithmic)
+    return { y: (share) => kTop + (1 - share / most) * (kFloor - kTop), grid: ticks(0, most, 4) };
   const least = Math.max(-6, Math.floor(Math.log10(Math.min(...shares.filter((share) => share > 0), most))));
   const top = Math.max(least + 1, Math.log10(most));
   const grid = Array.from({ length: Math.floor(top + 1e-9) - least + 1 }, (_, i) => 10 ** (least + i));
@@ -45,20 +46,47 @@ function heights(shares: number[], logarithmic: boolean): { y: (share: number) =
 }
 
 /// The limits, each with its number, and tints of what is beyond them; a limit that is not in the chart at its side.
-function limitMarks({ lower, upper }: Limits, [lo, hi]: [number, number], x: (d: number) => number, unit: string): [SVGElement[], SVGElement[]] {
+function limitMarks(
+  { lower, upper }: Limits,
+  [lo, hi]: [number, number],
+  x: (d: number) => number,
+  unit: string,
+): [SVGElement[], SVGElement[]] {
   const tints: SVGElement[] = [];
   const lines: SVGElement[] = [];
   const [left, right] = [x(lo), x(hi)];
-  for (const [limit, from, to, beyond] of [[lower, left, x(lower), lower < lo], [upper, x(upper), right, upper > hi]] as const) {
+  for (const [limit, from, to, beyond] of [
+    [lower, left, x(lower), lower < lo],
+    [upper, x(upper), right, upper > hi],
+  ] as const) {
     if (!Number.isFinite(limit)) continue;
     const at = Math.min(Math.max(x(limit), left), right);
     const isInside = limit >= lo && limit <= hi;
     const [a, b] = [Math.min(Math.max(from, left), right), Math.min(Math.max(to, left), right)];
-    if (!beyond && b > a) tints.push(makeSvg('rect', { class: 'out', x: a, y: kTop, width: b - a, height: kFloor - kTop }));
-    lines.push(makeSvg('line', { class: isInside ? 'limit' : 'limit beyond', x1: at, x2: at, y1: kTop, y2: kFloor, 'data-limit': limit }));
+    if (!beyond && b > a)
+      tints.push(makeSvg('rect', { class: 'out', x: a, y: kTop, width: b - a, height: kFloor - kTop }));
+    lines.push(
+      makeSvg('line', {
+        class: isInside ? 'limit' : 'limit beyond',
+        x1: at,
+        x2: at,
+        y1: kTop,
+        y2: kFloor,
+        'data-limit': limit,
+      }),
+    );
     const words = `${beyond && limit === lower ? '← ' : ''}${text(limit)}${unit ? ` ${unit}` : ''}${beyond && limit === upper ? ' →' : ''}`;
     const isLower = limit === lower && lower !== upper;
-    const anchor = at < left + 40 ? 'start' : at > right - 40 ? 'end' : upper - lower < 0.3 * (hi - lo) ? (isLower ? 'end' : 'start') : 'middle';
+    const anchor =
+      at < left + 40
+        ? 'start'
+        : at > right - 40
+          ? 'end'
+          : upper - lower < 0.3 * (hi - lo)
+            ? isLower
+              ? 'end'
+              : 'start'
+            : 'middle';
     lines.push(makeSvg('text', { class: 'limit-text', x: at, y: kTop - 8, 'text-anchor': anchor }, words));
   }
   return [tints, lines];
@@ -66,7 +94,12 @@ function limitMarks({ lower, upper }: Limits, [lo, hi]: [number, number], x: (d:
 
 /// Fills the chart, as wide as its place is.
 export function drawHistogram(report: Report, area: AreaByValue, scale: Scale, logarithmic: boolean): void {
-  const [whole, quantity, unit, limits] = [wholeOf(report), quantityOf(report), report.units ?? '', realLimits(scale, report)];
+  const [whole, quantity, unit, limits] = [
+    wholeOf(report),
+    quantityOf(report),
+    report.units ?? '',
+    realLimits(scale, report),
+  ];
   const plotWidth = Math.max(280, byId('histogram-chart').clientWidth || 640);
   const [lo, hi] = rangeOf(area, scale, limits);
   const width = (hi - lo) / kBins;
@@ -79,17 +112,31 @@ export function drawHistogram(report: Report, area: AreaByValue, scale: Scale, l
   const [tints, limitLines] = limitMarks(limits, [lo, hi], x, unit);
   svg.append(...tints);
   for (const share of grid) {
-    svg.append(makeSvg('line', { class: 'grid', x1: kLeft, x2: plotWidth - kRight, y1: y(share), y2: y(share) }));
-    svg.append(makeSvg('text', { x: kLeft - 6, y: y(share) + 4, 'text-anchor': 'end' }, `${text(100 * share, 3)} %`));
+    svg.append(
+      makeSvg('line', { class: 'grid', x1: kLeft, x2: plotWidth - kRight, y1: y(share), y2: y(share) }),
+    );
+    svg.append(
+      makeSvg('text', { x: kLeft - 6, y: y(share) + 4, 'text-anchor': 'end' }, `${text(100 * share, 3)} %`),
+    );
   }
   shares.forEach((share, i) => {
     const from = lo + i * width;
     const height = share > 0 ? Math.max(kLeastBar, kFloor - y(share)) : 0;
     const bar = makeSvg('rect', {
-      class: 'bin', x: x(from) + 0.5, y: kFloor - height, width: x(from + width) - x(from) - 1, height,
+      class: 'bin',
+      x: x(from) + 0.5,
+      y: kFloor - height,
+      width: x(from + width) - x(from) - 1,
+      height,
       fill: css(colorOf(scale, from + width / 2)),
     });
-    bar.append(makeSvg('title', {}, `${text(from)} to ${text(from + width)}${unit ? ` ${unit}` : ''}: ${percent(share)} of the ${whole}`));
+    bar.append(
+      makeSvg(
+        'title',
+        {},
+        `${text(from)} to ${text(from + width)}${unit ? ` ${unit}` : ''}: ${percent(share)} of the ${whole}`,
+      ),
+    );
     svg.append(bar);
   });
   svg.append(...limitLines);
@@ -97,29 +144,58 @@ export function drawHistogram(report: Report, area: AreaByValue, scale: Scale, l
   const step = marks.length > 1 ? marks[1] - marks[0] : hi - lo;
   for (const mark of marks) {
     svg.append(makeSvg('line', { class: 'axis', x1: x(mark), x2: x(mark), y1: kFloor, y2: kFloor + 4 }));
-    svg.append(makeSvg('text', { class: 'tick-text', x: x(mark), y: kFloor + 18, 'text-anchor': 'middle' }, tickText(mark, step)));
+    svg.append(
+      makeSvg(
+        'text',
+        { class: 'tick-text', x: x(mark), y: kFloor + 18, 'text-anchor': 'middle' },
+        tickText(mark, step),
+      ),
+    );
   }
   svg.append(makeSvg('line', { class: 'axis', x1: kLeft, x2: plotWidth - kRight, y1: kFloor, y2: kFloor }));
-  svg.append(makeSvg('text', { x: (kLeft + plotWidth - kRight) / 2, y: kFloor + 38, 'text-anchor': 'middle' }, unit ? `${quantity} in ${unit}` : quantity));
+  svg.append(
+    makeSvg(
+      'text',
+      { x: (kLeft + plotWidth - kRight) / 2, y: kFloor + 38, 'text-anchor': 'middle' },
+      unit ? `${quantity} in ${unit}` : quantity,
+    ),
+  );
 
   const sentence = sentenceOf(report, area, [lo, hi], logarithmic);
   byId('histogram-chart').replaceChildren(
-    make('div', { role: 'img', class: 'chart', 'aria-label': `Histogram of the ${whole} by ${quantity}. ${sentence}` }, svg),
+    make(
+      'div',
+      { role: 'img', class: 'chart', 'aria-label': `Histogram of the ${whole} by ${quantity}. ${sentence}` },
+      svg,
+    ),
     make('p', { class: 'hint' }, sentence),
   );
 }
 
 /// The range of the values, and what is not in the chart.
-function sentenceOf(report: Report, area: AreaByValue, [lo, hi]: [number, number], logarithmic: boolean): string {
+function sentenceOf(
+  report: Report,
+  area: AreaByValue,
+  [lo, hi]: [number, number],
+  logarithmic: boolean,
+): string {
   const below = area.upTo(lo - ((hi - lo) / kBins) * 1e-9);
   const without = area.withoutValue;
   const above = Math.max(0, 1 - without - area.upTo(hi));
   const whole = wholeOf(report);
-  const [min, max] = (['min', 'max'] as const).map((end) => report.extremes?.[end]?.distance ?? (report.distance?.[end] as number | null));
+  const [min, max] = (['min', 'max'] as const).map(
+    (end) => report.extremes?.[end]?.distance ?? (report.distance?.[end] as number | null),
+  );
   const shown = (d: number) => distanceText(d, report, isSigned(report));
-  const beside = [below > 0 && `${percent(below)} below the chart`, above > 0 && `${percent(above)} above the chart`, without > 0 && `${percent(without)} without a value`].filter(Boolean);
+  const beside = [
+    below > 0 && `${percent(below)} below the chart`,
+    above > 0 && `${percent(above)} above the chart`,
+    without > 0 && `${percent(without)} without a value`,
+  ].filter(Boolean);
   return (
-    (typeof min === 'number' && typeof max === 'number' ? `${capital(quantityOf(report))} from ${shown(min)} to ${shown(max)}${unitOf(report)}` : 'No values') +
+    (typeof min === 'number' && typeof max === 'number'
+      ? `${capital(quantityOf(report))} from ${shown(min)} to ${shown(max)}${unitOf(report)}`
+      : 'No values') +
     (beside.length > 0 ? `; of the ${whole}, ${beside.join(', ')}` : '') +
     (report.group_tolerances ? '. The limits of groups are not in this chart' : '') +
     (logarithmic ? '. Each line of the grid is ten times the one below it' : '') +

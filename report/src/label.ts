@@ -9,7 +9,10 @@ export class Label {
   private readonly halo = makeSvg('line', { class: 'halo' });
   private readonly line = makeSvg('line', {});
 
-  constructor(private readonly viewer: Viewer, ...words: (Node | string)[]) {
+  constructor(
+    private readonly viewer: Viewer,
+    ...words: (Node | string)[]
+  ) {
     this.label = make('div', { class: 'callout' }, ...words);
     byId('labels').append(this.label);
     byId('leaders').append(this.halo, this.line, this.dot);
@@ -29,7 +32,8 @@ export class Label {
     const lx = right ? Math.max(x + 26, 4) : Math.max(Math.min(x - 26, most), width + 4);
     const ly = Math.min(Math.max(y - 30, 14), clientHeight - 14);
     this.label.style.transform = `translate(${lx}px, ${ly}px) translate(${right ? '0' : '-100%'}, -50%)`;
-    const set = (element: Element, numbers: Record<string, number>) => Object.entries(numbers).forEach(([name, value]) => element.setAttribute(name, String(value)));
+    const set = (element: Element, numbers: Record<string, number>) =>
+      Object.entries(numbers).forEach(([name, value]) => element.setAttribute(name, String(value)));
     set(this.dot, { cx: x, cy: y });
     for (const line of [this.halo, this.line]) set(line, { x1: x, y1: y, x2: lx, y2: ly });
     this.mark('outside', behind || at === null);

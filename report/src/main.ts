@@ -58,12 +58,26 @@ class Page {
     this.cloud = cloud && new Cloud(cloud);
     const limits = surface && new GroupLimits(report, surface.model);
     this.limits = limits && limits.count > 1 ? limits : null;
-    this.subject = this.cloud ?? new Surface(surface!.model, surface!.map, measured?.closed ?? false, this.unit, this.limits);
+    this.subject =
+      this.cloud ??
+      new Surface(surface!.model, surface!.map, measured?.closed ?? false, this.unit, this.limits);
     if (this.limits) showSure(report, this.limits.unjudged(surface!.model));
     this.section = this.makeSection();
-    this.view = new View(byId('view'), this.subject, ghost, this.section, page.up, () => this.callouts?.update());
-    this.callouts = new Callouts(this.view, (d) => this.valueText(d), this.unit, this.subject.size, (at) => this.lookAt(at));
-    const words = { quantity: quantityOf(report), unit: this.unit, valueText: (d: number) => this.valueText(d) };
+    this.view = new View(byId('view'), this.subject, ghost, this.section, page.up, () =>
+      this.callouts?.update(),
+    );
+    this.callouts = new Callouts(
+      this.view,
+      (d) => this.valueText(d),
+      this.unit,
+      this.subject.size,
+      (at) => this.lookAt(at),
+    );
+    const words = {
+      quantity: quantityOf(report),
+      unit: this.unit,
+      valueText: (d: number) => this.valueText(d),
+    };
     this.explored = explore(this.view, this.subject, this.callouts, words, () => this.lookAtFirst());
     const ghostShown = this.apart();
     this.state = makeControls(
@@ -96,7 +110,9 @@ class Page {
     this.view.pose = saved.camera;
   }
 
-  get firstPicture(): Promise<void> { return this.view.firstPicture; }
+  get firstPicture(): Promise<void> {
+    return this.view.firstPicture;
+  }
 
   private makeSection(): SectionView {
     const { ghost } = this.data;
@@ -111,7 +127,10 @@ class Page {
     const { ghost } = this.data;
     if (!ghost || !ghostShown) return;
     const { lo, hi } = boxOf(ghost.position);
-    const both = { lo: lo.map((x, k) => Math.min(x, this.subject.lo[k])) as Vec, hi: hi.map((x, k) => Math.max(x, this.subject.hi[k])) as Vec };
+    const both = {
+      lo: lo.map((x, k) => Math.min(x, this.subject.lo[k])) as Vec,
+      hi: hi.map((x, k) => Math.max(x, this.subject.hi[k])) as Vec,
+    };
     const kMost = 5; // half diagonals of the part: with a larger box, the part would be too small
     if (Math.hypot(...both.hi.map((x, k) => x - both.lo[k])) <= kMost) this.view.setShown(both.lo, both.hi);
   }
@@ -168,15 +187,29 @@ class Page {
     const { report, limits } = this;
     const { scale, group, coverage } = this.state;
     if (coverage) return drawCoverageLegend(report);
-    const hasGaps = [report.beyond_max_distance, report.without_match, report.texels_without_value].some((n) => Number(n ?? 0) > 0);
+    const hasGaps = [report.beyond_max_distance, report.without_match, report.texels_without_value].some(
+      (n) => Number(n ?? 0) > 0,
+    );
     const unit = report.units ?? '';
-    if (limits !== null && scale.mode === 'tolerance') drawGroupLegend(scale, limits, limits.setsOf(this.data.surface!.model, group ?? null), quantityOf(report), unit, hasGaps);
+    if (limits !== null && scale.mode === 'tolerance')
+      drawGroupLegend(
+        scale,
+        limits,
+        limits.setsOf(this.data.surface!.model, group ?? null),
+        quantityOf(report),
+        unit,
+        hasGaps,
+      );
     else drawLegend(scale, quantityOf(report), unit, hasGaps);
   }
 
   private showGroup(state: State): void {
     const { subject } = this;
-    if (!(subject instanceof Surface) || !this.report.group_tolerances?.groups.some((g) => subject.hasGroup(g.kind, g.group))) return;
+    if (
+      !(subject instanceof Surface) ||
+      !this.report.group_tolerances?.groups.some((g) => subject.hasGroup(g.kind, g.group))
+    )
+      return;
     const chosen = state.group ?? null;
     if (chosen === this.highlighted) return;
     this.highlighted = chosen;
@@ -196,7 +229,11 @@ class Page {
   }
 
   private showWhatIf({ scale }: State): void {
-    const [before, verdict, after] = whatIf(this.report, scale, outsideOf(this.report, scale, this.data.area));
+    const [before, verdict, after] = whatIf(
+      this.report,
+      scale,
+      outsideOf(this.report, scale, this.data.area),
+    );
     document.getElementById('what-if')?.replaceChildren(before, make('b', {}, verdict), after);
   }
 
@@ -232,7 +269,10 @@ class Page {
   /// A callout at a place of the list, if it has a value; where it is in the scene.
   private addPlace(place: { distance: number | null; point: Vec; group?: string | null }): Vec {
     const at = toScene(this.subject, place.point);
-    if (place.distance !== null && !this.callouts.all.some((c) => c.point.every((x, k) => x === place.point[k])))
+    if (
+      place.distance !== null &&
+      !this.callouts.all.some((c) => c.point.every((x, k) => x === place.point[k]))
+    )
       this.callouts.add({ distance: place.distance, point: place.point, at, detail: place.group ?? '' });
     return at;
   }
@@ -247,7 +287,9 @@ class Page {
   /// What is under a place of the canvas; for tests.
   inspect(x: number, y: number) {
     const found = this.view.find(x, y);
-    return found && { ...found.value, point: toFile(this.subject, found.at), place: this.view.place(found.at) };
+    return (
+      found && { ...found.value, point: toFile(this.subject, found.at), place: this.view.place(found.at) }
+    );
   }
 }
 

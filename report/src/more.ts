@@ -54,10 +54,14 @@ function freedomWords(freedoms: Freedom[], unit: string): string {
   const free = freedoms.filter((f) => f.free).length;
   const locked = freedoms.filter((f) => f.locked).length;
   const errors = freedoms.map((f) => f.standard_error).filter((x): x is number => typeof x === 'number');
-  const lockedWords = locked > 0 ? ` ${locked === 1 ? 'One motion was' : `${locked} motions were`} locked.` : '';
+  const lockedWords =
+    locked > 0 ? ` ${locked === 1 ? 'One motion was' : `${locked} motions were`} locked.` : '';
   if (free > 0)
     return `The surfaces do not determine ${free === 1 ? 'one motion' : `${free} motions`} of six, such as sliding along a plane or turning about an axis: there the placement is arbitrary.${lockedWords}`;
-  const error = errors.length > 0 ? ` The least certain one has a standard error of ${text(Math.max(...errors), 2)}${unit}, an estimate.` : '';
+  const error =
+    errors.length > 0
+      ? ` The least certain one has a standard error of ${text(Math.max(...errors), 2)}${unit}, an estimate.`
+      : '';
   return `${locked > 0 ? 'All other motions' : 'All six motions'} are determined by the surfaces.${error}${lockedWords}`;
 }
 
@@ -68,11 +72,14 @@ export function alignmentWords(report: Report): Node[] {
   const unit = unitOf(report);
   // Its residuals are named in a sentence.
   const done = named(a.text.replace(/; residual rms .*?\(.*?\)/, ''), report);
-  const from = (key: keyof Residual) => `from ${text(a.before?.[key], 3)} to ${text(a.after?.[key], 3)}${unit}`;
+  const from = (key: keyof Residual) =>
+    `from ${text(a.before?.[key], 3)} to ${text(a.after?.[key], 3)}${unit}`;
   return [
     words(
       `Alignment: ${done}.`,
-      a.before && a.after && `The root mean square distance went ${from('trimmed_rms')} for the samples that fit, and ${from('rms')} for all samples: estimates.`,
+      a.before &&
+        a.after &&
+        `The root mean square distance went ${from('trimmed_rms')} for the samples that fit, and ${from('rms')} for all samples: estimates.`,
     ),
   ];
 }
@@ -86,19 +93,35 @@ function alignment(report: Report): Node[] {
     make('h3', {}, 'Alignment'),
     words(
       'Before anything was measured, the part was placed on the reference.',
-      fitted && typeof a.fraction_used === 'number' && typeof a.samples === 'number' && `${percent(a.fraction_used)} of ${count(a.samples)} samples fit; dents and outliers did not count.`,
+      fitted &&
+        typeof a.fraction_used === 'number' &&
+        typeof a.samples === 'number' &&
+        `${percent(a.fraction_used)} of ${count(a.samples)} samples fit; dents and outliers did not count.`,
       fitted && a.converged === false && 'It did not settle: another start may fit better.',
       a.degrees_of_freedom && freedomWords(a.degrees_of_freedom, unit),
     ),
     ...(a.matrix
-      ? [make('details', {}, make('summary', {}, 'Its matrix'), table(['Row', 'x', 'y', 'z', 'Translation'], a.matrix.map((row, i) => [String(i + 1), ...row.map((x) => text(x, 7))]), 'The matrix of the alignment'))]
+      ? [
+          make(
+            'details',
+            {},
+            make('summary', {}, 'Its matrix'),
+            table(
+              ['Row', 'x', 'y', 'z', 'Translation'],
+              a.matrix.map((row, i) => [String(i + 1), ...row.map((x) => text(x, 7))]),
+              'The matrix of the alignment',
+            ),
+          ),
+        ]
       : []),
   ];
 }
 
 function between({ lower, upper, kind }: Bounds, unit: string): string | null {
   if (kind === 'unknown' || lower === null || upper === null) return null;
-  return lower === upper ? `is ${text(lower)}${unit}, exactly` : `is between ${text(lower)} and ${text(upper)}${unit}: proven, for every point`;
+  return lower === upper
+    ? `is ${text(lower)}${unit}, exactly`
+    : `is between ${text(lower)} and ${text(upper)}${unit}: proven, for every point`;
 }
 
 function hausdorff(report: Report): Node[] {
@@ -112,7 +135,9 @@ function hausdorff(report: Report): Node[] {
   return [
     make('h3', {}, 'Largest distance of all points (Hausdorff distance)'),
     words(
-      one ? `The largest distance from any point of the part to the reference (one-sided) ${one}.${at}` : 'The largest distance of all points of the part is not bounded by this measurement.',
+      one
+        ? `The largest distance from any point of the part to the reference (one-sided) ${one}.${at}`
+        : 'The largest distance of all points of the part is not bounded by this measurement.',
       both && `That of both directions (symmetric) ${both}.`,
     ),
   ];
@@ -128,8 +153,11 @@ function separation(report: Report): Node[] {
     make('h3', {}, 'Separation'),
     words(
       `The part comes as near to itself as ${text(s.value)}${unitOf(report)}, neighbours along the surface aside: exact, of all points.`,
-      typeof geodesic === 'number' && `Neighbours are what is nearer than ${text(geodesic)}${unitOf(report)} along the surface.`,
-      typeof geodesic !== 'number' && typeof rings === 'number' && `Neighbours of a face are those within ${rings === 1 ? 'one ring' : `${rings} rings`} of faces around it.`,
+      typeof geodesic === 'number' &&
+        `Neighbours are what is nearer than ${text(geodesic)}${unitOf(report)} along the surface.`,
+      typeof geodesic !== 'number' &&
+        typeof rings === 'number' &&
+        `Neighbours of a face are those within ${rings === 1 ? 'one ring' : `${rings} rings`} of faces around it.`,
       a && b && `There, (${place(a, size)}) is opposite of (${place(b, size)}).`,
     ),
   ];
@@ -137,7 +165,11 @@ function separation(report: Report): Node[] {
 
 /// What the method of wall thickness says that is not shown.
 function otherThickness(report: Report): Node[] {
-  const other = (report.thickness as { other?: { method: string; distance: Record<string, number | null>; file: string | null } | null } | undefined)?.other;
+  const other = (
+    report.thickness as
+      | { other?: { method: string; distance: Record<string, number | null>; file: string | null } | null }
+      | undefined
+  )?.other;
   if (!other) return [];
   const unit = unitOf(report);
   return [
@@ -150,7 +182,10 @@ function otherThickness(report: Report): Node[] {
 }
 
 /// Where a band lies with respect to the tolerance: without one, to zero.
-function sideOf({ lower, upper }: Band, limits: { lower: number; upper: number }): 'below' | 'within' | 'above' {
+function sideOf(
+  { lower, upper }: Band,
+  limits: { lower: number; upper: number },
+): 'below' | 'within' | 'above' {
   if (upper !== null && upper <= limits.lower) return 'below';
   return lower !== null && lower >= limits.upper ? 'above' : 'within';
 }
@@ -163,31 +198,63 @@ function bandsBar(report: Report): Node[] {
   const unit = unitOf(report);
   const what = quantityOf(report);
   const within = bands.findIndex((band) => sideOf(band, limits) === 'within');
-  const zero = bands.findIndex(({ lower, upper }) => lower !== null && lower <= 0 && (upper === null || upper > 0));
+  const zero = bands.findIndex(
+    ({ lower, upper }) => lower !== null && lower <= 0 && (upper === null || upper > 0),
+  );
   const middle = zero >= 0 ? zero : within; // lighter than its neighbours
   const named = bands.map((band, i) => {
     const { lower, upper } = band;
     const label =
-      lower === null ? `below ${text(upper)}${unit}`
-      : upper === null ? `above ${text(lower)}${unit}`
-      : limitsIn({ lower, upper }, unit, isSigned(report));
-    return { share: band.area_fraction, label, mark: `${sideOf(band, limits)}${(i - middle) % 2 ? ' odd' : ''}` };
+      lower === null
+        ? `below ${text(upper)}${unit}`
+        : upper === null
+          ? `above ${text(lower)}${unit}`
+          : limitsIn({ lower, upper }, unit, isSigned(report));
+    return {
+      share: band.area_fraction,
+      label,
+      mark: `${sideOf(band, limits)}${(i - middle) % 2 ? ' odd' : ''}`,
+    };
   });
   const whole = wholeOf(report);
-  const sum = Math.max(1, named.reduce((total, { share }) => total + share, 0));
-  const bar = make('div', { class: 'bands', role: 'img', 'aria-label': named.map(({ label, share }) => `${label}: ${percent(share)}`).join(', ') });
-  for (const { share, mark } of named) if (share > 0) bar.append(make('span', { class: mark, style: `width: ${(100 * share) / sum}%` }));
-  const rows = named.map(({ share, label, mark }) => [make('span', {}, make('span', { class: `band ${mark}`, 'aria-hidden': 'true' }), label), percent(share)]);
+  const sum = Math.max(
+    1,
+    named.reduce((total, { share }) => total + share, 0),
+  );
+  const bar = make('div', {
+    class: 'bands',
+    role: 'img',
+    'aria-label': named.map(({ label, share }) => `${label}: ${percent(share)}`).join(', '),
+  });
+  for (const { share, mark } of named)
+    if (share > 0) bar.append(make('span', { class: mark, style: `width: ${(100 * share) / sum}%` }));
+  const rows = named.map(({ share, label, mark }) => [
+    make('span', {}, make('span', { class: `band ${mark}`, 'aria-hidden': 'true' }), label),
+    percent(share),
+  ]);
   return [
     make('h3', {}, `Bands of ${what}`),
     bar,
-    table([isThickness(report) ? 'Thickness' : isSigned(report) ? 'Distance, negative inside' : 'Distance', `Share of the ${whole}, an estimate`], rows, `Bands of ${what}`),
+    table(
+      [
+        isThickness(report) ? 'Thickness' : isSigned(report) ? 'Distance, negative inside' : 'Distance',
+        `Share of the ${whole}, an estimate`,
+      ],
+      rows,
+      `Bands of ${what}`,
+    ),
   ];
 }
 
 /// What the page says of them, in the order of interest.
 export function inWords(report: Report): Node[] {
-  return [...alignment(report), ...hausdorff(report), ...separation(report), ...otherThickness(report), ...bandsBar(report)];
+  return [
+    ...alignment(report),
+    ...hausdorff(report),
+    ...separation(report),
+    ...otherThickness(report),
+    ...bandsBar(report),
+  ];
 }
 
 /// Folded away, with a word of what is inside.

@@ -72,7 +72,8 @@ export function ticks(lo: number, hi: number, steps: number): number[] {
   const step = multiple(1);
   const first = Math.ceil(lo / step - 1e-9);
   const result: number[] = [];
-  for (let i = 0; i <= 2 * steps && multiple(first + i) <= hi + 1e-9 * step; ++i) result.push(multiple(first + i) || 0);
+  for (let i = 0; i <= 2 * steps && multiple(first + i) <= hi + 1e-9 * step; ++i)
+    result.push(multiple(first + i) || 0);
   return result;
 }
 
@@ -82,7 +83,9 @@ export function tickText(value: number, step: number): string {
   const size = Math.max(Math.abs(value), step);
   const short =
     size >= 1e6 || size < 1e-4
-      ? value.toExponential(Math.min(15, Math.max(0, Math.floor(Math.log10(size)) - Math.floor(Math.log10(step)))))
+      ? value.toExponential(
+          Math.min(15, Math.max(0, Math.floor(Math.log10(size)) - Math.floor(Math.log10(step)))),
+        )
       : value.toFixed(Math.min(15, Math.max(0, -Math.floor(Math.log10(step) + 1e-9))));
   return asPrinted(short);
 }

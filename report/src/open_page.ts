@@ -4,14 +4,21 @@ import { byId } from './dom';
 /// Calls `open`, keeps what it makes under `name`, for tests, and takes the message in the view away when the first
 /// picture is there. If that fails, the message in the view names the
 /// `subject` that cannot be shown, with an advice.
-export async function openPage(name: string, subject: string, advice: string, open: () => Promise<{ firstPicture: Promise<void> }>): Promise<void> {
+export async function openPage(
+  name: string,
+  subject: string,
+  advice: string,
+  open: () => Promise<{ firstPicture: Promise<void> }>,
+): Promise<void> {
   const message = byId('message');
   const fail = (text: string) => {
     message.textContent = `${text} ${advice}`;
     byId('view').classList.add('failed');
   };
   if (typeof DecompressionStream === 'undefined') {
-    fail(`This browser is too old to show the ${subject}: it cannot unpack the data. Chrome 103, Firefox 113 and Safari 16.4 can.`);
+    fail(
+      `This browser is too old to show the ${subject}: it cannot unpack the data. Chrome 103, Firefox 113 and Safari 16.4 can.`,
+    );
     return;
   }
   try {

@@ -16,7 +16,11 @@ export class Pace {
 
   /// `rest` is called when nothing has changed for a while after coarse pictures; `slow` when fine pictures are found to
   /// take long, so that coarse ones can be prepared.
-  constructor(private readonly gl: WebGL2RenderingContext, private readonly rest: () => void, private readonly slow: () => void) {}
+  constructor(
+    private readonly gl: WebGL2RenderingContext,
+    private readonly rest: () => void,
+    private readonly slow: () => void,
+  ) {}
 
   /// Something changes: whether pictures of it are coarse.
   change(): boolean {

@@ -36,7 +36,9 @@ class Player {
     const { page } = data;
     this.view = new PlayerView(byId('view'), data, () => this.mark?.update());
     this.worst = worstOf(data);
-    const text = this.worst && `${signedText(this.worst.distance, hasSigns(data), 3)}${page.units ? `\u00a0${page.units}` : ''} at a vertex`;
+    const text =
+      this.worst &&
+      `${signedText(this.worst.distance, hasSigns(data), 3)}${page.units ? `\u00a0${page.units}` : ''} at a vertex`;
     this.mark = text === null ? null : new Mark(this.view, text);
     this.scale = { ...page.scale };
     this.time.max = String(page.shown.length - 1);
@@ -45,8 +47,11 @@ class Player {
     document.addEventListener('keydown', (event) => this.key(event));
     const pick = (place: number) => this.show(this.nearest(place));
     // O1 and O2 in titles are the bodies.
-    const named = (title: string) => title.replace(/\bO([12])\b/g, (_, which: string) => nameOf(data, Number(which) - 1));
-    this.charts = page.panels.map((panel) => new Chart({ ...panel, title: named(panel.title) }, page.added, page.units, pick));
+    const named = (title: string) =>
+      title.replace(/\bO([12])\b/g, (_, which: string) => nameOf(data, Number(which) - 1));
+    this.charts = page.panels.map(
+      (panel) => new Chart({ ...panel, title: named(panel.title) }, page.added, page.units, pick),
+    );
     byId('charts').replaceChildren(...this.charts.map(({ element }) => element));
     const drawCharts = () => this.charts.forEach((chart) => chart.draw(chart.element.clientWidth));
     drawCharts();
@@ -55,7 +60,8 @@ class Player {
     window.addEventListener('beforeprint', () => this.charts.forEach((chart) => chart.draw(kOnPaper)));
     window.addEventListener('afterprint', drawCharts);
     printPicture(this.view);
-    for (const type of ['pointerdown', 'wheel']) this.view.canvas.addEventListener(type, () => (this.isNear = false), { passive: true });
+    for (const type of ['pointerdown', 'wheel'])
+      this.view.canvas.addEventListener(type, () => (this.isNear = false), { passive: true });
     this.makeForm();
     this.recolour();
     this.show(0);
@@ -94,7 +100,8 @@ class Player {
     this.view.show(this.frame);
     this.time.value = String(this.frame);
     this.time.setAttribute('aria-valuetext', `frame ${page.added[place]}`);
-    byId('frame').textContent = `frame ${page.added[place]} (${page.added[0]} to ${page.added[page.added.length - 1]})`;
+    byId('frame').textContent =
+      `frame ${page.added[place]} (${page.added[0]} to ${page.added[page.added.length - 1]})`;
     this.mark?.show(this.worst && this.frame === this.worst.frame ? this.view.at(this.worst) : null);
     for (const chart of this.charts) chart.show(place);
   }
@@ -125,7 +132,8 @@ class Player {
 
   private key(event: KeyboardEvent): void {
     const target = event.target as HTMLElement;
-    if (event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|SELECT|BUTTON)$/.test(target.tagName)) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|SELECT|BUTTON)$/.test(target.tagName))
+      return;
     if (event.key === ' ') this.toggle();
     else if (event.key === 'ArrowRight') this.show(this.frame + 1);
     else if (event.key === 'ArrowLeft') this.show(this.frame - 1);
@@ -144,9 +152,16 @@ class Player {
 
   private makeForm(): void {
     const { page } = this.data;
-    const choice = (id: string, label: string, options: [string, string][], value: string, set: (value: string) => void) => {
+    const choice = (
+      id: string,
+      label: string,
+      options: [string, string][],
+      value: string,
+      set: (value: string) => void,
+    ) => {
       const select = make('select', { id, change: () => set(select.value) });
-      for (const [key, name] of options) select.append(make('option', { value: key, selected: key === value }, name));
+      for (const [key, name] of options)
+        select.append(make('option', { value: key, selected: key === value }, name));
       return make('div', { class: 'choice' }, make('label', { for: id }, label), select);
     };
     const modes: [Mode, string][] = [
@@ -167,7 +182,16 @@ class Player {
         const valid = hi > 0 && hi > (this.scale.mode === 'tolerance' ? this.scale.upper : 0);
         range.setAttribute('aria-invalid', String(!valid));
         if (!valid) return;
-        this.scale = { ...this.scale, hi, lo: page.scale.mode === 'sequential' ? (page.scale.lo / page.scale.hi) * hi : page.scale.lo < 0 ? -hi : Math.min(page.scale.lo, hi / 2) };
+        this.scale = {
+          ...this.scale,
+          hi,
+          lo:
+            page.scale.mode === 'sequential'
+              ? (page.scale.lo / page.scale.hi) * hi
+              : page.scale.lo < 0
+                ? -hi
+                : Math.min(page.scale.lo, hi / 2),
+        };
         this.recolour();
       },
     });
@@ -183,18 +207,37 @@ class Player {
         this.scale = { ...this.scale, mode: mode as Mode };
         this.recolour();
       }),
-      make('div', { class: 'choice' }, make('label', { for: 'range' }, 'Colours up to'), make('span', { class: 'field' }, range, page.units)),
-      ...page.names.map((_, which) => nameOf(this.data, which)).map((name, which) =>
-        choice(`style${which}`, name, styles, startStyles[which], (style) =>
-          this.view.setStyle(which, style as 'solid' | 'ghost' | 'hidden'),
-        ),
+      make(
+        'div',
+        { class: 'choice' },
+        make('label', { for: 'range' }, 'Colours up to'),
+        make('span', { class: 'field' }, range, page.units),
       ),
-      choice('speed', 'Speed', kSpeeds.map(([name, n]) => [String(n), name]), '30', (speed) => {
-        this.perSecond = Number(speed);
-        if (this.playing) this.toggle(), this.toggle();
-      }),
+      ...page.names
+        .map((_, which) => nameOf(this.data, which))
+        .map((name, which) =>
+          choice(`style${which}`, name, styles, startStyles[which], (style) =>
+            this.view.setStyle(which, style as 'solid' | 'ghost' | 'hidden'),
+          ),
+        ),
+      choice(
+        'speed',
+        'Speed',
+        kSpeeds.map(([name, n]) => [String(n), name]),
+        '30',
+        (speed) => {
+          this.perSecond = Number(speed);
+          if (this.playing) this.toggle(), this.toggle();
+        },
+      ),
       ...(this.worst
-        ? [make('button', { type: 'button', id: 'to-worst', click: () => this.showWorst() }, `Show the ${this.worst.isLeast ? 'least' : 'largest'} distance`)]
+        ? [
+            make(
+              'button',
+              { type: 'button', id: 'to-worst', click: () => this.showWorst() },
+              `Show the ${this.worst.isLeast ? 'least' : 'largest'} distance`,
+            ),
+          ]
         : []),
       make('button', { type: 'button', id: 'reset', click: () => this.lookAtAll() }, 'Look at all frames'),
     );
@@ -221,7 +264,9 @@ class Player {
 
 /// The files of a body, without their folders.
 function nameOf(data: PlayerData, which: number): string {
-  const files = data.page.names[which].split('+').map((file) => file.split(/[\\/]/).filter(Boolean).pop() ?? file);
+  const files = data.page.names[which]
+    .split('+')
+    .map((file) => file.split(/[\\/]/).filter(Boolean).pop() ?? file);
   return files.join('+');
 }
 
@@ -229,7 +274,9 @@ function describe(data: PlayerData): void {
   const { added, shown, stride, bodies } = data.page;
   const [o1, o2] = [nameOf(data, 0), nameOf(data, 1)];
   byId('title').textContent = document.title = `${o1} and ${o2} over time`;
-  const coloured = bodies[1].coloured ? 'each coloured by its distance to the other' : `${o1} coloured by its distance to ${o2}`;
+  const coloured = bodies[1].coloured
+    ? 'each coloured by its distance to the other'
+    : `${o1} coloured by its distance to ${o2}`;
   const thinned = stride > 1 ? `, of which ${count(shown.length)}, one of ${stride}, are in this page` : '';
   byId('sentence').textContent =
     `${count(added.length)} frames${thinned}, numbered ${added[0]} to ${added[added.length - 1]}; ${coloured}, with one scale for all frames. ` +
@@ -239,6 +286,9 @@ function describe(data: PlayerData): void {
 void openPage('sdmPlayer', 'bodies', 'Is WebGL 2 on in this browser?', async () => {
   const data = await readPlayer();
   describe(data);
-  showMade([0, 1].map((which) => ({ file: nameOf(data, which), xxh3: data.page.xxh3?.[which] })), data.page);
+  showMade(
+    [0, 1].map((which) => ({ file: nameOf(data, which), xxh3: data.page.xxh3?.[which] })),
+    data.page,
+  );
   return new Player(data);
 });

@@ -11,7 +11,13 @@ const kStyles = ['first', 'second', 'third']; // of curves: colour and dashes
 
 /// A piece of a curve, before its name.
 function swatch(i: number): SVGElement {
-  const svg = makeSvg('svg', { class: 'swatch', viewBox: '0 0 22 8', width: 22, height: 8, 'aria-hidden': 'true' });
+  const svg = makeSvg('svg', {
+    class: 'swatch',
+    viewBox: '0 0 22 8',
+    width: 22,
+    height: 8,
+    'aria-hidden': 'true',
+  });
   svg.append(makeSvg('path', { class: `curve ${kStyles[i % kStyles.length]}`, d: 'M1 4H21' }));
   return svg;
 }
@@ -28,7 +34,12 @@ export class Chart {
 
   /// `pick` is called with a place among `frames` when the chart is clicked. A title that ends with the units in
   /// brackets is of lengths.
-  constructor(private readonly panel: Panel, private readonly frames: number[], units: string, pick: (place: number) => void) {
+  constructor(
+    private readonly panel: Panel,
+    private readonly frames: number[],
+    units: string,
+    pick: (place: number) => void,
+  ) {
     const end = ` (${units})`;
     const isLength = units !== '' && panel.title.endsWith(end);
     this.title = isLength ? panel.title.slice(0, -end.length) : panel.title;
@@ -77,9 +88,23 @@ export class Chart {
     const { curves } = this.panel;
     this.readout.replaceChildren(
       ...curves.map(({ name, values }, i) =>
-        make('span', {}, ...(curves.length > 1 ? [swatch(i), ` ${name} `] : []), `${text(values[place])}${values[place] === null ? '' : this.unit}`),
+        make(
+          'span',
+          {},
+          ...(curves.length > 1 ? [swatch(i), ` ${name} `] : []),
+          `${text(values[place])}${values[place] === null ? '' : this.unit}`,
+        ),
       ),
-      ...(this.hasSigns() ? [make('span', {}, make('span', { class: 'negative', 'aria-hidden': 'true' }), 'frames with negative values')] : []),
+      ...(this.hasSigns()
+        ? [
+            make(
+              'span',
+              {},
+              make('span', { class: 'negative', 'aria-hidden': 'true' }),
+              'frames with negative values',
+            ),
+          ]
+        : []),
     );
   }
 
@@ -99,7 +124,15 @@ export class Chart {
       while (place + 1 < this.frames.length && isNegative(place + 1)) ++place;
       const left = Math.max(kLeft, this.x(from) - half);
       const right = Math.min(this.width - 8, this.x(place) + half);
-      this.svg.append(makeSvg('rect', { class: 'negative', x: left, y: kTop, width: right - left, height: kHeight - kTop - kBottom }));
+      this.svg.append(
+        makeSvg('rect', {
+          class: 'negative',
+          x: left,
+          y: kTop,
+          width: right - left,
+          height: kHeight - kTop - kBottom,
+        }),
+      );
     }
   }
 
@@ -109,7 +142,9 @@ export class Chart {
 
   private range(): string {
     const values = this.values();
-    return values.length === 0 ? 'no values' : `from ${text(Math.min(...values))} to ${text(Math.max(...values))}${this.unit}`;
+    return values.length === 0
+      ? 'no values'
+      : `from ${text(Math.min(...values))} to ${text(Math.max(...values))}${this.unit}`;
   }
 
   private ends(): [number, number] {
@@ -119,7 +154,9 @@ export class Chart {
     if (!(lo <= hi)) [lo, hi] = [0, 1];
     if (lo > 0 && lo < 0.5 * hi) lo = 0;
     if (lo === 0 && hi === 0) hi = 1;
-    return hi - lo > 1e-9 * Math.abs(hi) ? [lo, hi] : [lo - 0.5 * (Math.abs(lo) || 1), hi + 0.5 * (Math.abs(hi) || 1)];
+    return hi - lo > 1e-9 * Math.abs(hi)
+      ? [lo, hi]
+      : [lo - 0.5 * (Math.abs(lo) || 1), hi + 0.5 * (Math.abs(hi) || 1)];
   }
 
   private x(place: number): number {
@@ -137,22 +174,42 @@ export class Chart {
     const marks = ticks(lo, hi, 3);
     const step = marks.length > 1 ? marks[1] - marks[0] : hi - lo;
     for (const mark of marks) {
-      svg.append(makeSvg('line', { class: 'grid', x1: kLeft, x2: this.width - 8, y1: this.y(mark), y2: this.y(mark) }));
-      svg.append(makeSvg('text', { x: kLeft - 6, y: this.y(mark) + 4, 'text-anchor': 'end' }, `${tickText(mark, step)}${this.unit}`));
+      svg.append(
+        makeSvg('line', { class: 'grid', x1: kLeft, x2: this.width - 8, y1: this.y(mark), y2: this.y(mark) }),
+      );
+      svg.append(
+        makeSvg(
+          'text',
+          { x: kLeft - 6, y: this.y(mark) + 4, 'text-anchor': 'end' },
+          `${tickText(mark, step)}${this.unit}`,
+        ),
+      );
     }
-    if (lo < 0 && hi > 0) svg.append(makeSvg('line', { class: 'axis', x1: kLeft, x2: this.width - 8, y1: this.y(0), y2: this.y(0) }));
+    if (lo < 0 && hi > 0)
+      svg.append(
+        makeSvg('line', { class: 'axis', x1: kLeft, x2: this.width - 8, y1: this.y(0), y2: this.y(0) }),
+      );
     svg.append(makeSvg('text', { x: kLeft - 6, y: kHeight - 6, 'text-anchor': 'end' }, 'frame'));
     const last = this.frames.length - 1;
-    const places = ticks(0, Math.max(1, last), Math.max(2, this.width / 90)).filter((p) => Number.isInteger(p) && p <= last);
+    const places = ticks(0, Math.max(1, last), Math.max(2, this.width / 90)).filter(
+      (p) => Number.isInteger(p) && p <= last,
+    );
     for (const place of places)
-      svg.append(makeSvg('text', { x: this.x(place), y: kHeight - 6, 'text-anchor': 'middle' }, String(this.frames[place])));
+      svg.append(
+        makeSvg(
+          'text',
+          { x: this.x(place), y: kHeight - 6, 'text-anchor': 'middle' },
+          String(this.frames[place]),
+        ),
+      );
   }
 
   private path(values: (number | null)[], style: string): SVGElement {
     let d = '';
     let drawing = false;
     values.forEach((value, place) => {
-      if (value !== null) d += `${drawing ? 'L' : 'M'}${this.x(place).toFixed(1)} ${this.y(value).toFixed(1)}${drawing ? '' : 'h0'}`;
+      if (value !== null)
+        d += `${drawing ? 'L' : 'M'}${this.x(place).toFixed(1)} ${this.y(value).toFixed(1)}${drawing ? '' : 'h0'}`;
       drawing = value !== null;
     });
     return makeSvg('path', { class: `curve ${style}`, d });

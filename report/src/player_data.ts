@@ -53,7 +53,9 @@ export interface PlayerData {
 
 /// Whether a distance of the curves is negative: otherwise numbers have no signs.
 export function hasSigns({ page }: PlayerData): boolean {
-  return page.panels.some(({ curves }) => curves.some(({ values }) => values.some((x) => x !== null && x < 0)));
+  return page.panels.some(({ curves }) =>
+    curves.some(({ values }) => values.some((x) => x !== null && x < 0)),
+  );
 }
 
 const kNoDistance = 65535;
@@ -76,11 +78,19 @@ export async function readPlayer(): Promise<PlayerData> {
 }
 
 /// The positions of a frame, relative to `middle` and divided by `size`.
-export function placeFrame(data: PlayerData, which: number, frame: number, middle: Vec, size: number, to: Float32Array): void {
+export function placeFrame(
+  data: PlayerData,
+  which: number,
+  frame: number,
+  middle: Vec,
+  size: number,
+  to: Float32Array,
+): void {
   const { positions, vertices, moves } = data.bodies[which];
   const { origin, step } = data.page;
   const first = moves ? 3 * vertices * frame : 0;
-  for (let i = 0; i < 3 * vertices; ++i) to[i] = (origin[i % 3] + step * positions[first + i] - middle[i % 3]) / size;
+  for (let i = 0; i < 3 * vertices; ++i)
+    to[i] = (origin[i % 3] + step * positions[first + i] - middle[i % 3]) / size;
 }
 
 /// The distances of a frame; NaN for none.

@@ -39,16 +39,23 @@ export function showVerdict(data: PlayerData, show: (place: number) => void): vo
   const signed = hasSigns(data);
   const limits = `the tolerance of ${limitsIn(tolerance, unit, signed)}`;
   const words =
-    verdict === 'FAIL' ? `Out of ${limits} in ${count(of(verdict))} of ${all} frames`
-    : verdict === 'PASS' ? `Within ${limits} in all ${all} frames`
-    : verdict === 'DOUBTFUL' ? `Within ${limits}, but in doubt in ${count(of(verdict))} of ${all} frames, as ${page.doubt}`
-    : `Not decided in ${count(of(verdict))} of ${all} frames, within ${limits} in the others`;
+    verdict === 'FAIL'
+      ? `Out of ${limits} in ${count(of(verdict))} of ${all} frames`
+      : verdict === 'PASS'
+        ? `Within ${limits} in all ${all} frames`
+        : verdict === 'DOUBTFUL'
+          ? `Within ${limits}, but in doubt in ${count(of(verdict))} of ${all} frames, as ${page.doubt}`
+          : `Not decided in ${count(of(verdict))} of ${all} frames, within ${limits} in the others`;
   const worst = worstFrame(data, tolerance);
   if (!worst) byId('judged').textContent = `${words}.`;
   else
     byId('judged').replaceChildren(
       `${words}; ${worst.excess > 0 ? 'worst' : 'nearest to a limit'} in `,
-      make('button', { type: 'button', class: 'link', id: 'to-worst-frame', click: () => show(worst.place) }, `frame ${page.added[worst.place]}`),
+      make(
+        'button',
+        { type: 'button', class: 'link', id: 'to-worst-frame', click: () => show(worst.place) },
+        `frame ${page.added[worst.place]}`,
+      ),
       `: ${signedText(worst.distance, signed, 3)}${unit}.`,
     );
   byId('judged').hidden = false;

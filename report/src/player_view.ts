@@ -1,5 +1,13 @@
 // The bodies of a sequence in 3D, one frame at a time.
-import { BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Mesh, ShaderMaterial, Vector3 } from 'three';
+import {
+  BufferAttribute,
+  BufferGeometry,
+  DoubleSide,
+  DynamicDrawUsage,
+  Mesh,
+  ShaderMaterial,
+  Vector3,
+} from 'three';
 import { kColorShader, Scale } from './color_scale';
 import { colorUniforms, setScale } from './color_uniforms';
 import type { Vec } from './page_data';
@@ -52,7 +60,11 @@ export class PlayerView extends Viewer {
   private readonly middle: Vec;
   private readonly size: number;
 
-  constructor(container: HTMLElement, private readonly data: PlayerData, onChange: () => void) {
+  constructor(
+    container: HTMLElement,
+    private readonly data: PlayerData,
+    onChange: () => void,
+  ) {
     super(container, data.page.up, onChange);
     const box = extent(data, null);
     this.middle = box.lo.map((x, k) => (x + box.hi[k]) / 2) as Vec;
@@ -114,7 +126,9 @@ export class PlayerView extends Viewer {
 
   /// Where a vertex is in the frame that is shown.
   at({ body, vertex }: Worst): Vec {
-    return Array.from((this.bodies[body].position.array as Float32Array).subarray(3 * vertex, 3 * vertex + 3)) as Vec;
+    return Array.from(
+      (this.bodies[body].position.array as Float32Array).subarray(3 * vertex, 3 * vertex + 3),
+    ) as Vec;
   }
 
   /// Shows the frame of the worst place, which is the one that is shown, from where this is seen. Returns whether there is
@@ -124,7 +138,16 @@ export class PlayerView extends Viewer {
     const at = this.at(worst);
     const normals = this.bodies[worst.body].mesh.geometry.getAttribute('normal').array;
     const normal = Array.from(normals.subarray(3 * worst.vertex, 3 * worst.vertex + 3)) as Vec;
-    const from: Parameters<Viewer['look']>[0][] = ['corner', { normal }, 'front', 'right', 'back', 'left', 'top', 'bottom'];
+    const from: Parameters<Viewer['look']>[0][] = [
+      'corner',
+      { normal },
+      'front',
+      'right',
+      'back',
+      'left',
+      'top',
+      'bottom',
+    ];
     const free = from.find((side) => {
       this.look(side);
       return !this.isHidden(at);

@@ -25,7 +25,8 @@ export function worstOf(data: PlayerData): Worst | null {
       values.forEach((distance, vertex) => {
         if (Number.isNaN(distance)) return;
         if (!least || distance < least.distance) least = { frame, body, vertex, distance, isLeast: true };
-        if (!largest || distance > largest.distance) largest = { frame, body, vertex, distance, isLeast: false };
+        if (!largest || distance > largest.distance)
+          largest = { frame, body, vertex, distance, isLeast: false };
       });
     }
   });

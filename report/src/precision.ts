@@ -9,7 +9,10 @@ const kMostDigits = 5;
 /// bounds what is between the samples. Null if the numbers are so large or small that they need exponents.
 function decimalsOf(report: Report): number | null {
   const { min, max } = report.extremes ?? {};
-  const largest = Math.max(Math.abs(min?.distance ?? 0), Math.abs(max?.distance ?? Number(report.distance?.max ?? 0)));
+  const largest = Math.max(
+    Math.abs(min?.distance ?? 0),
+    Math.abs(max?.distance ?? Number(report.distance?.max ?? 0)),
+  );
   if (!(largest >= 1e-4 && largest < 1e7)) return null;
   const error = report.error_bound || report.accuracy || 1e-4 * largest;
   const first = Math.floor(Math.log10(largest)); // the place of the first digit

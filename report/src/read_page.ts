@@ -1,6 +1,16 @@
 // Reads the data of the page: arrays of numbers, packed by src/io/page/report.
 import { AreaByValue } from './area_by_value';
-import { Arrays, cornersOfCodes, floatsOfOrdered, guessesOf, summed, unguessed, unguessedBytes, unpacked, unzigzag } from './arrays';
+import {
+  Arrays,
+  cornersOfCodes,
+  floatsOfOrdered,
+  guessesOf,
+  summed,
+  unguessed,
+  unguessedBytes,
+  unpacked,
+  unzigzag,
+} from './arrays';
 import type { CloudData, Ghost, Model, PageData, PageJson, Placement, TexelMap, Vec } from './page_data';
 
 function textOf(id: string): string {
@@ -17,7 +27,8 @@ function guessed(chart: Uint32Array, width: number, differences: Uint32Array): U
     const left = i % width > 0 && chart[i - 1] !== 0;
     const above = i >= width && chart[i - width] !== 0;
     let guess = last;
-    if (left && above && chart[i - width - 1] !== 0) guess = numbers[i - 1] + numbers[i - width] - numbers[i - width - 1];
+    if (left && above && chart[i - width - 1] !== 0)
+      guess = numbers[i - 1] + numbers[i - width] - numbers[i - width - 1];
     else if (left) guess = numbers[i - 1];
     else if (above) guess = numbers[i - width];
     last = numbers[i] = unzigzag(differences[owned++]) + guess;
@@ -102,7 +113,10 @@ function readModel(page: PageJson, arrays: Arrays): Model {
     triangle,
     place: places ? Float32Array.from(unguessed(places, 2, guesses), (x) => x / 64) : null,
     chart: charts ? summed(charts) : null,
-    names: (placement.names ?? []).map((kind, k) => ({ ...kind, ofTriangle: summed(arrays.get(`triangle_name_${k}`)!) })),
+    names: (placement.names ?? []).map((kind, k) => ({
+      ...kind,
+      ofTriangle: summed(arrays.get(`triangle_name_${k}`)!),
+    })),
     trianglesOfMesh: placement.triangles_of_mesh,
   };
 }
@@ -131,7 +145,8 @@ function readCloud(page: PageJson, arrays: Arrays): CloudData {
   const usual = steps.length > 0 ? usualBox(steps) : { lo: [0, 0, 0], hi: [1, 1, 1] };
   const centre = origin.map((x, k) => x + (step * (usual.lo[k] + usual.hi[k])) / 2) as Vec;
   const size = (step * Math.hypot(...usual.lo.map((x, k) => usual.hi[k] - x))) / 2 || 1;
-  const inScene = (corner: number[]) => corner.map((x, k) => (origin[k] + step * x - centre[k]) / size) as Vec;
+  const inScene = (corner: number[]) =>
+    corner.map((x, k) => (origin[k] + step * x - centre[k]) / size) as Vec;
   const low = summed(arrays.get('number')!);
   const high = arrays.get('number_high');
   const octahedral = arrays.get('normal')!;
@@ -150,7 +165,11 @@ function readCloud(page: PageJson, arrays: Arrays): CloudData {
   };
 }
 
-function readGhost(page: PageJson, arrays: Arrays, { centre, size }: { centre: Vec; size: number }): Ghost | null {
+function readGhost(
+  page: PageJson,
+  arrays: Arrays,
+  { centre, size }: { centre: Vec; size: number },
+): Ghost | null {
   const ghost = page.ghost;
   if (!ghost) return null;
   const steps = arrays.get('ghost_position');
@@ -172,7 +191,13 @@ function readGhost(page: PageJson, arrays: Arrays, { centre, size }: { centre: V
   const triangle: number[] = [];
   for (let s = 0; s < sides.length; s += 4)
     triangle.push(sides[s], sides[s + 1], sides[s + 2], sides[s], sides[s + 2], sides[s + 3]);
-  return { position, triangle: Uint32Array.from(triangle), covered: null, trianglesOfMesh: ghost.triangles_of_mesh, isBox: true };
+  return {
+    position,
+    triangle: Uint32Array.from(triangle),
+    covered: null,
+    trianglesOfMesh: ghost.triangles_of_mesh,
+    isBox: true,
+  };
 }
 
 function floats(numbers: Uint32Array): Float32Array {

@@ -47,7 +47,14 @@ export interface Report {
   alignment?: { text: string };
   live?: boolean; ///< of the live page, which has no options of a command
   fields?: Record<string, string>; ///< as the author of the report named them
-  atlas?: { kind: string; resolution: number; rows?: number; udim?: number | null; charts: number; texels: number };
+  atlas?: {
+    kind: string;
+    resolution: number;
+    rows?: number;
+    udim?: number | null;
+    charts: number;
+    texels: number;
+  };
   engine?: string;
   max_distance?: number | null;
   colors?: { map: string; range: [number, number]; range_from: string; by_group?: boolean }; ///< with a table: bands by it

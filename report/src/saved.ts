@@ -54,7 +54,10 @@ function csvField(value: unknown): string {
 /// Every number and word of report.json and every callout, one a row: the path of its key and the value as in the file.
 export function csvOf(report: Report, callouts: Callout[]): string {
   const rows = flattened({ ...report, ...(callouts.length > 0 ? { callouts } : {}) }, '', true);
-  return ['name,value', ...rows.map(([path, value]) => `${csvField(path)},${csvField(value)}`)].join('\r\n') + '\r\n';
+  return (
+    ['name,value', ...rows.map(([path, value]) => `${csvField(path)},${csvField(value)}`)].join('\r\n') +
+    '\r\n'
+  );
 }
 
 /// Offers a text, or bytes, as a file.

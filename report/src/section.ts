@@ -16,7 +16,10 @@ export interface Profile {
 
 /// The profile of triangles in a plane. Neighbours that share an edge, as points if not by number, share the point on it
 /// bit by bit, so that the profile of a closed surface is closed. Cost: linear in the triangles.
-export function profileOf({ position: p, triangle: t }: Triangles, { normal: n, offset }: HalfSpace): Profile {
+export function profileOf(
+  { position: p, triangle: t }: Triangles,
+  { normal: n, offset }: HalfSpace,
+): Profile {
   const ends: number[] = [];
   const cut: number[] = [];
   const above = (v: number) => n[0] * p[v] + n[1] * p[v + 1] + n[2] * p[v + 2] - offset;
@@ -68,7 +71,9 @@ export function sampledProfile(
 ): ProfilePoint[] {
   const points: ProfilePoint[] = [];
   profile.triangle.forEach((triangle, piece) => {
-    const corners = [0, 1, 2].map((k) => model.position.subarray(3 * model.triangle[3 * triangle + k], 3 * model.triangle[3 * triangle + k] + 3));
+    const corners = [0, 1, 2].map((k) =>
+      model.position.subarray(3 * model.triangle[3 * triangle + k], 3 * model.triangle[3 * triangle + k] + 3),
+    );
     const a = profile.ends.subarray(6 * piece, 6 * piece + 3);
     const b = profile.ends.subarray(6 * piece + 3, 6 * piece + 6);
     const parts = Math.min(200, Math.max(1, Math.ceil(length(minus(b, a)) / longest)));
@@ -99,8 +104,12 @@ function nearestOf({ ends }: Profile, to: Vec): Vec | null {
   let best: Vec | null = null;
   let least = Infinity;
   for (let i = 0; i < ends.length; i += 6) {
-    const ux = ends[i + 3] - ends[i], uy = ends[i + 4] - ends[i + 1], uz = ends[i + 5] - ends[i + 2];
-    const px = to[0] - ends[i], py = to[1] - ends[i + 1], pz = to[2] - ends[i + 2];
+    const ux = ends[i + 3] - ends[i],
+      uy = ends[i + 4] - ends[i + 1],
+      uz = ends[i + 5] - ends[i + 2];
+    const px = to[0] - ends[i],
+      py = to[1] - ends[i + 1],
+      pz = to[2] - ends[i + 2];
     const s = Math.min(1, Math.max(0, (px * ux + py * uy + pz * uz) / (ux * ux + uy * uy + uz * uz || 1)));
     const away = (px - s * ux) ** 2 + (py - s * uy) ** 2 + (pz - s * uz) ** 2;
     if (away >= least) continue;
@@ -112,7 +121,13 @@ function nearestOf({ ends }: Profile, to: Vec): Vec | null {
 
 /// Lines from some points of the profile of a part, `spacing` apart, towards the nearest points of that of the reference,
 /// `factor` times as long as the gap in the plane: two points each. Those that are longer than `longest` are left out.
-export function gapLines(points: ProfilePoint[], reference: Profile, spacing: number, factor: number, longest: number): ProfilePoint[] {
+export function gapLines(
+  points: ProfilePoint[],
+  reference: Profile,
+  spacing: number,
+  factor: number,
+  longest: number,
+): ProfilePoint[] {
   const lines: ProfilePoint[] = [];
   const taken = new Set<string>();
   for (const point of points) {
@@ -123,7 +138,8 @@ export function gapLines(points: ProfilePoint[], reference: Profile, spacing: nu
     const nearest = nearestOf(reference, point.at);
     if (!nearest) continue;
     const line = minus(nearest, point.at).map((x) => factor * x) as Vec;
-    if (length(line) <= longest) lines.push(point, { ...point, at: point.at.map((x, k) => x + line[k]) as Vec });
+    if (length(line) <= longest)
+      lines.push(point, { ...point, at: point.at.map((x, k) => x + line[k]) as Vec });
   }
   return lines;
 }

@@ -1,14 +1,34 @@
 // The section in 3D: cut surfaces, profiles and gap.
 import {
-  AlwaysStencilFunc, BufferAttribute, BufferGeometry, Color, DoubleSide, EqualStencilFunc, Group, InvertStencilOp, KeepStencilOp, Mesh, ShaderMaterial,
-  SRGBColorSpace, Vector3,
+  AlwaysStencilFunc,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DoubleSide,
+  EqualStencilFunc,
+  Group,
+  InvertStencilOp,
+  KeepStencilOp,
+  Mesh,
+  ShaderMaterial,
+  SRGBColorSpace,
+  Vector3,
 } from 'three';
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 import { colorOf, Scale } from './color_scale';
 import type { Vec } from './page_data';
-import { fanOf, gapFactor, gapLines, Profile, profileOf, ProfilePoint, sampledProfile, Triangles } from './section';
+import {
+  fanOf,
+  gapFactor,
+  gapLines,
+  Profile,
+  profileOf,
+  ProfilePoint,
+  sampledProfile,
+  Triangles,
+} from './section';
 import type { HalfSpace } from './subject';
 
 const kLongest = 0.008; // pieces of a profile of one colour, in units of the scene
@@ -54,22 +74,44 @@ class Caps {
 
   constructor(isClosed: boolean[]) {
     isClosed.forEach((closed, body) => {
-      const fan = new Mesh(new BufferGeometry(), new ShaderMaterial({
-        glslVersion: '300 es', vertexShader: kVertexShader, fragmentShader: 'precision highp float; out vec4 c; void main() { c = vec4(0.0); }',
-        side: DoubleSide, colorWrite: false, depthWrite: false, depthTest: false,
-        stencilWrite: true, stencilFunc: AlwaysStencilFunc, stencilWriteMask: 1 << body,
-        stencilFail: KeepStencilOp, stencilZFail: InvertStencilOp, stencilZPass: InvertStencilOp,
-      }));
+      const fan = new Mesh(
+        new BufferGeometry(),
+        new ShaderMaterial({
+          glslVersion: '300 es',
+          vertexShader: kVertexShader,
+          fragmentShader: 'precision highp float; out vec4 c; void main() { c = vec4(0.0); }',
+          side: DoubleSide,
+          colorWrite: false,
+          depthWrite: false,
+          depthTest: false,
+          stencilWrite: true,
+          stencilFunc: AlwaysStencilFunc,
+          stencilWriteMask: 1 << body,
+          stencilFail: KeepStencilOp,
+          stencilZFail: InvertStencilOp,
+          stencilZPass: InvertStencilOp,
+        }),
+      );
       fan.visible = closed;
       fan.renderOrder = 1;
       this.fans.push(fan);
     });
     for (const [covers, color] of kFills) {
-      const fill = new Mesh(this.plane, new ShaderMaterial({
-        glslVersion: '300 es', vertexShader: kVertexShader, fragmentShader: kFillShader, side: DoubleSide,
-        uniforms: { color: { value: new Vector3(...(isClosed[1] ? color : kPartAlone)) } },
-        stencilWrite: true, stencilFunc: EqualStencilFunc, stencilRef: covers, stencilFuncMask: 3, stencilWriteMask: 0,
-      }));
+      const fill = new Mesh(
+        this.plane,
+        new ShaderMaterial({
+          glslVersion: '300 es',
+          vertexShader: kVertexShader,
+          fragmentShader: kFillShader,
+          side: DoubleSide,
+          uniforms: { color: { value: new Vector3(...(isClosed[1] ? color : kPartAlone)) } },
+          stencilWrite: true,
+          stencilFunc: EqualStencilFunc,
+          stencilRef: covers,
+          stencilFuncMask: 3,
+          stencilWriteMask: 0,
+        }),
+      );
       fill.renderOrder = 2;
       this.object.add(fill);
     }
@@ -79,7 +121,10 @@ class Caps {
 
   show(profiles: (Profile | null)[], { normal, offset }: HalfSpace): void {
     profiles.forEach((profile, body) => {
-      this.fans[body].geometry.setAttribute('position', new BufferAttribute(profile ? fanOf(profile) : new Float32Array(0), 3));
+      this.fans[body].geometry.setAttribute(
+        'position',
+        new BufferAttribute(profile ? fanOf(profile) : new Float32Array(0), 3),
+      );
     });
     // A square of the plane around all of the scene that is cut.
     const axis = normal.findIndex((x) => x !== 0);
@@ -89,7 +134,12 @@ class Caps {
       return at;
     };
     const reach = Math.max(...profiles.flatMap((profile) => (profile ? [farthest(profile.ends)] : [0])));
-    const square = [corner(-reach, -reach), corner(reach, -reach), corner(reach, reach), corner(-reach, reach)];
+    const square = [
+      corner(-reach, -reach),
+      corner(reach, -reach),
+      corner(reach, reach),
+      corner(-reach, reach),
+    ];
     this.plane.setAttribute('position', new BufferAttribute(Float32Array.from(square.flat()), 3));
     this.plane.setIndex([0, 1, 2, 0, 2, 3]);
   }
@@ -102,7 +152,10 @@ function farthest(values: Float32Array): number {
 }
 
 function lines(width: number, order: number): LineSegments2 {
-  const mesh = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({ linewidth: width, vertexColors: true, depthWrite: false }));
+  const mesh = new LineSegments2(
+    new LineSegmentsGeometry(),
+    new LineMaterial({ linewidth: width, vertexColors: true, depthWrite: false }),
+  );
   mesh.frustumCulled = false;
   mesh.renderOrder = order;
   return mesh;
@@ -121,7 +174,11 @@ export class SectionView {
   private largest = 0; // distance of the scale
 
   /// `part` is null for clouds, `other` if the reference is not in the page; `size` of a unit of the scene.
-  constructor(readonly part: CutPart | null, readonly other: Cuttable | null, private readonly size: number) {
+  constructor(
+    readonly part: CutPart | null,
+    readonly other: Cuttable | null,
+    private readonly size: number,
+  ) {
     // The reference is filled where the part is not, which is known only of a part that has an inside.
     const filled = part?.isClosed ?? false;
     this.caps = new Caps([filled, filled && (other?.isClosed ?? false)]);
@@ -135,10 +192,15 @@ export class SectionView {
     if (!cut) return;
     const profiles = [this.part, this.other].map((body) => (body ? profileOf(body, cut) : null));
     this.caps.show(profiles, cut);
-    this.points = this.part && profiles[0] ? sampledProfile(this.part, profiles[0], kLongest, this.part.valueAt) : [];
+    this.points =
+      this.part && profiles[0] ? sampledProfile(this.part, profiles[0], kLongest, this.part.valueAt) : [];
     if (profiles[1]) this.otherProfile = profiles[1];
     const { ends } = this.otherProfile;
-    setLines(this.reference, ends, Array.from(ends, (_, i) => kReferenceLine[i % 3]));
+    setLines(
+      this.reference,
+      ends,
+      Array.from(ends, (_, i) => kReferenceLine[i % 3]),
+    );
     this.recolour();
   }
 
@@ -162,7 +224,11 @@ export class SectionView {
 
   private recolour(): void {
     const draw = (mesh: LineSegments2, points: ProfilePoint[]) =>
-      setLines(mesh, Float32Array.from(points.flatMap(({ at }) => at)), points.flatMap((point) => this.color(point)));
+      setLines(
+        mesh,
+        Float32Array.from(points.flatMap(({ at }) => at)),
+        points.flatMap((point) => this.color(point)),
+      );
     draw(this.profile, this.points);
     draw(this.gap, gapLines(this.points, this.otherProfile, kSpacing, this.factor, kLongestGap));
   }
@@ -175,7 +241,9 @@ function setLines(mesh: LineSegments2, ends: Float32Array, colors: number[]): vo
   const color = new Color();
   const linear = new Float32Array(colors.length);
   for (let i = 0; i < colors.length; i += 3)
-    color.setRGB(colors[i] / 255, colors[i + 1] / 255, colors[i + 2] / 255, SRGBColorSpace).toArray(linear, i);
+    color
+      .setRGB(colors[i] / 255, colors[i + 1] / 255, colors[i + 2] / 255, SRGBColorSpace)
+      .toArray(linear, i);
   mesh.geometry.dispose();
   mesh.geometry = new LineSegmentsGeometry().setPositions(ends).setColors(linear);
 }

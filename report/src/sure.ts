@@ -16,17 +16,26 @@ export function sayHowSure([word, why]: Sure, more = ''): void {
 /// Nothing where nothing is judged.
 function howSure(report: Report, verdict: Verdict): Sure | null {
   const { tolerance, group_tolerances: table } = report;
-  const of = [...(tolerance ? [tolerance] : []), ...(table?.groups ?? [])].filter((t) => t.verdict === verdict);
+  const of = [...(tolerance ? [tolerance] : []), ...(table?.groups ?? [])].filter(
+    (t) => t.verdict === verdict,
+  );
   const certified = of.filter((t) => t.certified).length;
   const cloud = isCloud(report);
   switch (verdict) {
     case 'FAIL':
       // Points of a cloud without a group fail by their number.
-      if (certified > 0 || of.length === 0) return ['proven', cloud ? 'a point that is out was found.' : 'a place that is out was found.'];
+      if (certified > 0 || of.length === 0)
+        return ['proven', cloud ? 'a point that is out was found.' : 'a place that is out was found.'];
       return ['an estimate', 'it depends on the sign of a distance, and signs are estimates here.'];
     case 'PASS':
-      if (certified < of.length) return ['an estimate', 'it holds at the measured points; between them nothing is proven.'];
-      return ['proven', cloud ? 'for every point of the cloud; nothing is said between them.' : `for every point${tolerance ? '' : ' that has a limit'}, also between the measured ones.`];
+      if (certified < of.length)
+        return ['an estimate', 'it holds at the measured points; between them nothing is proven.'];
+      return [
+        'proven',
+        cloud
+          ? 'for every point of the cloud; nothing is said between them.'
+          : `for every point${tolerance ? '' : ' that has a limit'}, also between the measured ones.`,
+      ];
     case 'NOT DECIDED':
       return ['open', 'neither PASS nor FAIL is proven.'];
     case 'DOUBTFUL':
@@ -41,7 +50,10 @@ export function showSure(report: Report, unjudged = 0): void {
   const sure = howSure(report, verdictOf(report).verdict);
   byId('sure').hidden = !sure;
   if (!sure) byId('sure').replaceChildren();
-  const rest = unjudged > 0 && !report.tolerance ? ` About ${text(100 * unjudged, 2)}\u00a0% of the area has no limits and is not judged.` : '';
+  const rest =
+    unjudged > 0 && !report.tolerance
+      ? ` About ${text(100 * unjudged, 2)}\u00a0% of the area has no limits and is not judged.`
+      : '';
   if (sure) sayHowSure(sure, rest);
 }
 
@@ -49,6 +61,12 @@ export function showSure(report: Report, unjudged = 0): void {
 export function howSureOfFrames(verdict: Verdict, certified: boolean): Sure {
   if (verdict === 'NOT DECIDED') return ['open', 'in some frame neither PASS nor FAIL is proven.'];
   if (verdict === 'DOUBTFUL') return kInDoubt;
-  if (!certified) return ['an estimate', 'it depends on the sign of a distance, and signs are estimates here.'];
-  return ['proven', verdict === 'FAIL' ? 'a frame with a place that is out was found.' : 'for every point in every frame; nothing is said between frames.'];
+  if (!certified)
+    return ['an estimate', 'it depends on the sign of a distance, and signs are estimates here.'];
+  return [
+    'proven',
+    verdict === 'FAIL'
+      ? 'a frame with a place that is out was found.'
+      : 'for every point in every frame; nothing is said between frames.',
+  ];
 }

@@ -1,5 +1,15 @@
 // A measured surface: its triangles with the texels of the map.
-import { BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, Mesh, RedFormat, ShaderMaterial, Vector3 } from 'three';
+import {
+  BufferAttribute,
+  BufferGeometry,
+  DataTexture,
+  DoubleSide,
+  FloatType,
+  Mesh,
+  RedFormat,
+  ShaderMaterial,
+  Vector3,
+} from 'three';
 import { CoarseWhileMoving } from './coarse_copy';
 import { kColorShader } from './color_scale';
 import { colorUniforms, setScale, Uniforms } from './color_uniforms';
@@ -90,7 +100,11 @@ function siteText(site: number): string {
 }
 
 /// The row of a channel below the distance, such as "Closest face: 12".
-function channelRow({ name, whole, length, values }: Channel, texel: number, unit: string): Found['rows'][number] {
+function channelRow(
+  { name, whole, length, values }: Channel,
+  texel: number,
+  unit: string,
+): Found['rows'][number] {
   const numbers = values.map((ofComponent) => ofComponent[texel]);
   const isNone = numbers.some((x) => (whole ? x === 0xffffffff : Number.isNaN(x)));
   const label = name[0].toUpperCase() + name.slice(1).replace(/_/g, ' ');
@@ -135,11 +149,16 @@ export class Surface implements Subject {
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(model.position, 3));
     geometry.setAttribute('normal', new BufferAttribute(model.normal, 3, true));
-    geometry.setAttribute('place', new BufferAttribute(model.place ?? new Float32Array(2 * model.distance.length), 2));
+    geometry.setAttribute(
+      'place',
+      new BufferAttribute(model.place ?? new Float32Array(2 * model.distance.length), 2),
+    );
     geometry.setAttribute('value', new BufferAttribute(new Float32Array(model.distance.length), 1));
     this.showVertexValues(geometry);
     const own = () => Object.fromEntries(['lo', 'hi', 'lower', 'upper'].map((key) => [key, { value: 0 }]));
-    this.ofSet = limits ? Array.from({ length: limits.count }, () => ({ ...this.uniforms, ...own() })) : [this.uniforms];
+    this.ofSet = limits
+      ? Array.from({ length: limits.count }, () => ({ ...this.uniforms, ...own() }))
+      : [this.uniforms];
     const meshOf = (shape: BufferGeometry, faded: boolean) => {
       const materials = this.ofSet.map(
         (uniforms) =>
@@ -166,8 +185,12 @@ export class Surface implements Subject {
   }
 
   /// What partShader() is made with.
-  protected get lookShader(): string { return 'vec3 lookHere(inout vec3 n) { return lookOfValue(); }'; }
-  protected lookUniforms(): Uniforms { return {}; }
+  protected get lookShader(): string {
+    return 'vec3 lookHere(inout vec3 n) { return lookOfValue(); }';
+  }
+  protected lookUniforms(): Uniforms {
+    return {};
+  }
 
   /// Has coarse copies made again, for other vertices or values.
   protected forgetCopies(): void {
@@ -184,13 +207,21 @@ export class Surface implements Subject {
   /// What a section is made of.
   get cuttable(): CutPart {
     const { model, map, isClosed } = this;
-    const scaleAt = (triangle: number, scale: Scale) => this.limits?.scaleOf(this.limits.ofTriangle[triangle], scale) ?? scale;
-    return { position: model.position, triangle: model.triangle, isClosed, scaleAt, valueAt: (triangle, weights) => valueAt(model, map, { triangle, weights }).distance };
+    const scaleAt = (triangle: number, scale: Scale) =>
+      this.limits?.scaleOf(this.limits.ofTriangle[triangle], scale) ?? scale;
+    return {
+      position: model.position,
+      triangle: model.triangle,
+      isClosed,
+      scaleAt,
+      valueAt: (triangle, weights) => valueAt(model, map, { triangle, weights }).distance,
+    };
   }
 
   setScale(scale: Scale): void {
     setScale(this.uniforms, scale);
-    if (this.limits) this.ofSet.forEach((uniforms, set) => setScale(uniforms, this.limits!.scaleOf(set, scale)));
+    if (this.limits)
+      this.ofSet.forEach((uniforms, set) => setScale(uniforms, this.limits!.scaleOf(set, scale)));
   }
 
   /// The triangles of a geometry, by their sets of limits, which have a material each; by default all.
@@ -201,7 +232,10 @@ export class Surface implements Subject {
     const add = (t: number) => bySet[setOf(t)].push(t);
     if (chosen) chosen.forEach(add);
     else if (this.limits) for (let t = 0; t < triangle.length / 3; ++t) add(t);
-    const index = chosen || this.limits ? new Uint32Array(3 * bySet.reduce((sum, list) => sum + list.length, 0)) : triangle;
+    const index =
+      chosen || this.limits
+        ? new Uint32Array(3 * bySet.reduce((sum, list) => sum + list.length, 0))
+        : triangle;
     geometry.clearGroups();
     if (index === triangle) geometry.addGroup(0, triangle.length, 0);
     let at = 0;
@@ -221,7 +255,9 @@ export class Surface implements Subject {
     const corners: number[] = [];
     named!.ofTriangle.forEach((n, t) => n === number && corners.push(...triangle.subarray(3 * t, 3 * t + 3)));
     const of = (v: number) => Array.from(position.subarray(3 * v, 3 * v + 3)) as Vec;
-    const mean = corners.reduce((sum, v) => sum.map((x, k) => x + of(v)[k] / corners.length) as Vec, [0, 0, 0] as Vec);
+    const mean = corners.reduce((sum, v) => sum.map((x, k) => x + of(v)[k] / corners.length) as Vec, [
+      0, 0, 0,
+    ] as Vec);
     const away = (v: number) => Math.hypot(...of(v).map((x, k) => x - mean[k]));
     const best = corners.reduce((nearest, v) => (away(v) < away(nearest) ? v : nearest), corners[0]);
     return corners.length > 0 ? of(best) : null;
@@ -265,13 +301,25 @@ export class Surface implements Subject {
     const rows: Found['rows'] = [];
     const detail = siteText(value.site);
     if (detail) rows.push(['Nearest', detail, 'probe-site']);
-    if (value.texel) rows.push([map.step > 1 ? `Pixels (${map.step}² each)` : 'Pixel', value.texel.join(', '), 'probe-texel']);
+    if (value.texel)
+      rows.push([
+        map.step > 1 ? `Pixels (${map.step}² each)` : 'Pixel',
+        value.texel.join(', '),
+        'probe-texel',
+      ]);
     else rows.push(['Of', 'the nearest vertex', 'probe-texel']);
     if (value.texel) {
       const texel = value.texel[1] * map.width + value.texel[0];
       rows.push(...map.channels.map((channel) => channelRow(channel, texel, this.unit)));
     }
-    return { at: pointOf(model, hit), normal: this.normalOf(hit), distance: value.distance, detail, rows, value: { ...value, triangle: hit.triangle } };
+    return {
+      at: pointOf(model, hit),
+      normal: this.normalOf(hit),
+      distance: value.distance,
+      detail,
+      rows,
+      value: { ...value, triangle: hit.triangle },
+    };
   }
 
   isHidden(viewer: Viewer, point: Vec, cut: HalfSpace | null): boolean {

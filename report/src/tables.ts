@@ -34,7 +34,9 @@ export function titleOf(report: Report): string {
 export function showFields(report: Report): void {
   const rows = Object.entries(report.fields ?? {});
   byId('fields').hidden = rows.length === 0;
-  byId('fields').replaceChildren(...rows.map(([name, value]) => make('div', {}, make('dt', {}, name), make('dd', {}, value))));
+  byId('fields').replaceChildren(
+    ...rows.map(([name, value]) => make('div', {}, make('dt', {}, name), make('dd', {}, value))),
+  );
 }
 
 /// What is measured, as the head of a table, unless it is the closest point.
@@ -60,17 +62,24 @@ export function showNumbers(report: Report): void {
   const cloud = isCloud(report);
   const compared = signs && !isThickness(report);
   const sampled = (by: number, how: 'more' | 'less') =>
-    report.evidence?.samples_only ? 'at the points; an estimate in between'
-    : by > 0 ? `measured; at most ${distanceText(by, report)}${unit} ${how} in between` : 'measured';
+    report.evidence?.samples_only
+      ? 'at the points; an estimate in between'
+      : by > 0
+        ? `measured; at most ${distanceText(by, report)}${unit} ${how} in between`
+        : 'measured';
   // A distance below the accuracy may as well be 0; a wall is not.
   const shown = (x: number) =>
     `${distanceText(!isThickness(report) && Math.abs(x) <= (report.accuracy ?? 0) ? 0 : x, report, signs)}${unit}`;
-  if (extremes?.max)
-    rows.push([ends.largest, shown(extremes.max.distance), sampled(bound ?? 0, 'more')]);
+  if (extremes?.max) rows.push([ends.largest, shown(extremes.max.distance), sampled(bound ?? 0, 'more')]);
   else add('Largest', 'max', 'measured', true);
   if (extremes?.min)
-    rows.push([ends.smallest, shown(extremes.min.distance), sampled(Math.min(bound ?? 0, signs ? Infinity : extremes.min.distance), 'less')]);
-  else if (separationOf(report) !== null) rows.push(['Smallest', `${distanceText(separationOf(report), report)}${unit}`, 'exact, of all points']);
+    rows.push([
+      ends.smallest,
+      shown(extremes.min.distance),
+      sampled(Math.min(bound ?? 0, signs ? Infinity : extremes.min.distance), 'less'),
+    ]);
+  else if (separationOf(report) !== null)
+    rows.push(['Smallest', `${distanceText(separationOf(report), report)}${unit}`, 'exact, of all points']);
   else add('Smallest', 'min', 'measured', true);
   const estimate = cloud ? 'of all points' : 'estimate over the area';
   const share = cloud ? 'points are' : 'area is';
@@ -85,11 +94,14 @@ export function showNumbers(report: Report): void {
   if (samples !== undefined) rows.push(['Measured points', count(samples), 'exact']);
   if ((report.beyond_max_distance ?? 0) > 0)
     rows.push(['Points farther than the limit', count(report.beyond_max_distance!), 'exact']);
-  if ((report.without_match ?? 0) > 0) rows.push(['Points that no face of the reference matches', count(report.without_match!), 'exact']);
+  if ((report.without_match ?? 0) > 0)
+    rows.push(['Points that no face of the reference matches', count(report.without_match!), 'exact']);
   if (cloud && (report.o1?.invalid_points ?? 0) > 0)
     rows.push(['Points without coordinates', count(report.o1!.invalid_points!), 'exact']);
   rows.push(...coverageRow(report));
-  byId('numbers-table').replaceChildren(table([otherDistance(report) ?? capital(quantityOf(report)), 'Value', 'Kind'], rows, 'The numbers'));
+  byId('numbers-table').replaceChildren(
+    table([otherDistance(report) ?? capital(quantityOf(report)), 'Value', 'Kind'], rows, 'The numbers'),
+  );
 }
 
 export function showInputs(report: Report): void {
@@ -107,7 +119,9 @@ export function showInputs(report: Report): void {
       .filter(Boolean)
       .join(', ') || 'none';
   const moved = (i: Input) =>
-    [i.transform, report.alignment && i === report.o1 ? 'the alignment' : ''].filter(Boolean).join(', then ') || 'nothing';
+    [i.transform, report.alignment && i === report.o1 ? 'the alignment' : '']
+      .filter(Boolean)
+      .join(', then ') || 'nothing';
   byId('inputs-table').replaceChildren(
     table(
       head,
@@ -144,13 +158,15 @@ export function showMethod(report: Report): void {
     sentence(
       atlas &&
         `The surface of the measured part was covered with ${count(atlas.texels)} points, the centres of the pixels (texels) of a texture of ${atlas.resolution} × ${atlas.rows ?? atlas.resolution}.`,
-      isCloud(report) && `The measured part is a cloud of ${count(report.o1!.points!)} points. Nothing is said about places between them.`,
+      isCloud(report) &&
+        `The measured part is a cloud of ${count(report.o1!.points!)} points. Nothing is said about places between them.`,
       report.thickness
         ? `For each, the thickness of the wall below it was found (${report.thickness.text}). Between the points, the thickness is an estimate.`
         : otherDistance(report)
-        ? `Measured is the ${report.measured!.text}. What lies between the measured points is an estimate.`
-        : `For each, the nearest point of ${reference} was found: on its faces, edges and corners, not only at its vertices.`,
-      typeof accuracy === 'number' && `Each of these ${isThickness(report) ? 'values' : 'distances'} is exact to ${text(accuracy, 2)}${unit}.`,
+          ? `Measured is the ${report.measured!.text}. What lies between the measured points is an estimate.`
+          : `For each, the nearest point of ${reference} was found: on its faces, edges and corners, not only at its vertices.`,
+      typeof accuracy === 'number' &&
+        `Each of these ${isThickness(report) ? 'values' : 'distances'} is exact to ${text(accuracy, 2)}${unit}.`,
     ),
   );
   if (typeof bound === 'number')
@@ -168,9 +184,9 @@ export function showMethod(report: Report): void {
           ? `Distances have no sign (${sign.reason}).`
           : report.measured && report.measured.kind !== 'closest'
             ? 'Positive is in front of the face that is measured to, the side to which its normal points: outside, or above. Negative is behind it.'
-          : sign.method === 'side'
-            ? `Positive is in front of ${reference}, negative is behind (${sign.reason}).`
-            : `Positive is outside ${reference}, negative is inside (${sign.reason}).`,
+            : sign.method === 'side'
+              ? `Positive is in front of ${reference}, negative is behind (${sign.reason}).`
+              : `Positive is outside ${reference}, negative is inside (${sign.reason}).`,
         sign.method === 'winding' && 'The reference is not watertight, so inside and outside are estimates.',
       ),
     );
@@ -180,7 +196,8 @@ export function showMethod(report: Report): void {
         `${count(report.boundary_texels)} points are nearest to an open edge of the reference: they may lie beside the part of the surface that it covers.`,
       ),
     );
-  for (const note of report.notes ?? []) out.push(make('p', { class: 'note' }, `Note: ${note}${note.endsWith('?') ? '' : '.'}`));
+  for (const note of report.notes ?? [])
+    out.push(make('p', { class: 'note' }, `Note: ${note}${note.endsWith('?') ? '' : '.'}`));
   const total = report.time_ms?.total;
   out.push(
     sentence(
@@ -209,11 +226,18 @@ export function showOmissions(report: Report, { page, surface, cloud, ghost }: P
     );
   if (cloud && page.cloud) out.push(...omittedPoints(cloud.distance.length, page.cloud));
   if (ghost?.isBox)
-    out.push(sentence(`The reference has ${count(ghost.trianglesOfMesh)} triangles; the 3D view shows only its box${report.coverage ? ', without its coverage' : ''}.`));
+    out.push(
+      sentence(
+        `The reference has ${count(ghost.trianglesOfMesh)} triangles; the 3D view shows only its box${report.coverage ? ', without its coverage' : ''}.`,
+      ),
+    );
   byId('method-text').append(...out);
 }
 
-function omittedPoints(shown: number, { points, picked, normals }: NonNullable<PageData['page']['cloud']>): HTMLElement[] {
+function omittedPoints(
+  shown: number,
+  { points, picked, normals }: NonNullable<PageData['page']['cloud']>,
+): HTMLElement[] {
   const out: HTMLElement[] = [];
   if (shown < points) {
     const short = `${count(shown)} of the ${count(points)} points are shown`;
@@ -226,14 +250,49 @@ function omittedPoints(shown: number, { points, picked, normals }: NonNullable<P
       ),
     );
   }
-  if (!normals) out.push(sentence('The cloud has no normals: its points are shaded by those of their closest faces.'));
+  if (!normals)
+    out.push(sentence('The cloud has no normals: its points are shaded by those of their closest faces.'));
   return out;
 }
 
 const kShown = new Set([
-  'version', 'live', 'fields', 'o1', 'o2', 'mesh', 'measured_on', 'units', 'atlas', 'precision', 'engine', 'max_distance', 'colors', 'measured', 'sign',
-  'distance', 'extremes', 'texels_with_value', 'points_with_value', 'negative_points', 'texels_without_value', 'negative_texels', 'beyond_max_distance', 'without_match',
-  'boundary_texels', 'accuracy', 'accuracy_kind', 'error_bound', 'error_bound_kind', 'evidence', 'tolerance', 'places', 'group_tolerances', 'coverage', 'notes', 'time_ms', 'histogram',
+  'version',
+  'live',
+  'fields',
+  'o1',
+  'o2',
+  'mesh',
+  'measured_on',
+  'units',
+  'atlas',
+  'precision',
+  'engine',
+  'max_distance',
+  'colors',
+  'measured',
+  'sign',
+  'distance',
+  'extremes',
+  'texels_with_value',
+  'points_with_value',
+  'negative_points',
+  'texels_without_value',
+  'negative_texels',
+  'beyond_max_distance',
+  'without_match',
+  'boundary_texels',
+  'accuracy',
+  'accuracy_kind',
+  'error_bound',
+  'error_bound_kind',
+  'evidence',
+  'tolerance',
+  'places',
+  'group_tolerances',
+  'coverage',
+  'notes',
+  'time_ms',
+  'histogram',
 ]);
 
 function isScalar(value: unknown): boolean {
@@ -248,7 +307,8 @@ function cell(key: string, value: unknown): string {
     if (/fraction/.test(key)) return percent(value);
     return Number.isInteger(value) ? count(value) : text(value);
   }
-  if (Array.isArray(value) && value.every((x) => typeof x === 'number')) return value.map((x: number) => text(x, 10)).join(', ');
+  if (Array.isArray(value) && value.every((x) => typeof x === 'number'))
+    return value.map((x: number) => text(x, 10)).join(', ');
   return String(value);
 }
 
@@ -262,7 +322,13 @@ function label(key: string): string {
 export function flattened(value: object, prefix = '', lists = false): [string, unknown][] {
   return Object.entries(value).flatMap(([key, x]): [string, unknown][] => {
     const path = prefix ? `${prefix}.${key}` : key;
-    if (isScalar(x) || (Array.isArray(x) && x.length > 0 && x.every(isScalar) && (lists || x.every((y) => typeof y === 'number'))))
+    if (
+      isScalar(x) ||
+      (Array.isArray(x) &&
+        x.length > 0 &&
+        x.every(isScalar) &&
+        (lists || x.every((y) => typeof y === 'number')))
+    )
       return [[path, x]];
     return Array.isArray(x) && !lists ? [] : flattened(x as object, path, lists);
   });
@@ -278,13 +344,22 @@ function tableOf(key: string, value: unknown): HTMLElement | null {
     const columns = [...new Set(rows.flatMap((row) => row.map(([path]) => path)))].slice(0, kMostColumns);
     return table(
       ['', ...columns.map(label)],
-      rows.map((row, i) => [String(i + 1), ...columns.map((c) => cell(c, Object.fromEntries(row)[c] ?? null))]),
+      rows.map((row, i) => [
+        String(i + 1),
+        ...columns.map((c) => cell(c, Object.fromEntries(row)[c] ?? null)),
+      ]),
       label(key),
       kMostRows,
     );
   }
   const rows = flattened(value as object);
-  return rows.length === 0 ? null : table(['', 'Value'], rows.map(([path, x]) => [label(path), cell(path, x)]), label(key));
+  return rows.length === 0
+    ? null
+    : table(
+        ['', 'Value'],
+        rows.map(([path, x]) => [label(path), cell(path, x)]),
+        label(key),
+      );
 }
 
 /// What is left of the report: in words, or else by a table of each key, of which those that the page does not know are
@@ -298,12 +373,17 @@ export function showMore(report: Report): void {
     };
     add(key, value);
     if (value !== null && !Array.isArray(value))
-      for (const [inner, x] of Object.entries(value as object)) if (Array.isArray(x) && x.some((y) => !isScalar(y))) add(`${key}: ${inner}`, x);
+      for (const [inner, x] of Object.entries(value as object))
+        if (Array.isArray(x) && x.some((y) => !isScalar(y))) add(`${key}: ${inner}`, x);
     return out;
   };
   const tables = Object.entries(report).filter(([key, value]) => !isScalar(value) && !kShown.has(key));
-  const known = tables.filter(([key]) => kInWords.includes(key)).flatMap(([key, value]) => tablesOf(key, value));
-  const other = tables.filter(([key]) => !kInWords.includes(key)).flatMap(([key, value]) => tablesOf(key, value));
+  const known = tables
+    .filter(([key]) => kInWords.includes(key))
+    .flatMap(([key, value]) => tablesOf(key, value));
+  const other = tables
+    .filter(([key]) => !kInWords.includes(key))
+    .flatMap(([key, value]) => tablesOf(key, value));
   byId('more-tables').replaceChildren(
     make('div', { class: 'in-words' }, ...inWords(report)),
     ...other,

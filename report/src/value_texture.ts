@@ -10,7 +10,10 @@ const kNone = -1;
 /// Where the value of each texel comes from: the number of a texel, the number of texels plus that of a vertex, or -1. The
 /// charts are extended around their texels, which do not cover their corners: free texels at a corner get the vertex's own
 /// distance, the others the value of a neighbour.
-export function sourcesOf({ width, height, chart }: Pick<TexelMap, 'width' | 'height' | 'chart'>, place: Float32Array | null): Int32Array {
+export function sourcesOf(
+  { width, height, chart }: Pick<TexelMap, 'width' | 'height' | 'chart'>,
+  place: Float32Array | null,
+): Int32Array {
   const sources = new Int32Array(width * height).fill(kNone);
   for (let i = 0; i < sources.length; ++i) if (chart[i] !== 0) sources[i] = i;
   for (let v = 0; v < (place?.length ?? 0) / 2; ++v)
@@ -44,10 +47,20 @@ export function sourcesOf({ width, height, chart }: Pick<TexelMap, 'width' | 'he
 }
 
 /// The values of the texels of a map and of the vertices of a model, by their sources.
-export function filledValues(map: TexelMap, model: Model, sources = sourcesOf(map, model.place), values: Float32Array = new Float32Array(sources.length)): Float32Array {
+export function filledValues(
+  map: TexelMap,
+  model: Model,
+  sources = sourcesOf(map, model.place),
+  values: Float32Array = new Float32Array(sources.length),
+): Float32Array {
   for (let i = 0; i < values.length; ++i) {
     const source = sources[i];
-    const value = source === kNone ? Number.NaN : source < values.length ? map.distance[source] : model.distance[source - values.length];
+    const value =
+      source === kNone
+        ? Number.NaN
+        : source < values.length
+          ? map.distance[source]
+          : model.distance[source - values.length];
     values[i] = Number.isNaN(value) ? kNoValue : value;
   }
   return values;

@@ -1,7 +1,16 @@
 // Whether a part is within a tolerance: as the report says, where a proof may have decided, and for other limits by
 // the rule of judge() in include/sdm/tolerance.h, on the evidence of the samples.
 import {
-  kAtLeast, kBetween, kLimitDigits, kLimitWords, kReasonNames, kVerdictNames, limitsForm, lowerOf, reasonOf, verdictOf as ruledVerdict,
+  kAtLeast,
+  kBetween,
+  kLimitDigits,
+  kLimitWords,
+  kReasonNames,
+  kVerdictNames,
+  limitsForm,
+  lowerOf,
+  reasonOf,
+  verdictOf as ruledVerdict,
 } from 'sdm-rules';
 import type { Evidence, Report } from './page_data';
 import { percent, text } from './numbers';
@@ -73,10 +82,24 @@ export function judge(evidence: Evidence, { lower: least, upper }: Limits): Judg
   const lower = lowerOf(least, evidence.signed ?? true);
   const [lowest, highest] = [evidence.lowest ?? Infinity, evidence.highest ?? -Infinity];
   const reason = reasonOf(
-    lowest, highest, lower, upper, evidence.accuracy ?? Infinity, evidence.guard ?? 0, evidence.error_bound ?? Infinity,
-    evidence.thin_walls ?? Infinity, evidence.complete, evidence.unmatched ?? false, evidence.estimated_signs, evidence.samples_only ?? false,
+    lowest,
+    highest,
+    lower,
+    upper,
+    evidence.accuracy ?? Infinity,
+    evidence.guard ?? 0,
+    evidence.error_bound ?? Infinity,
+    evidence.thin_walls ?? Infinity,
+    evidence.complete,
+    evidence.unmatched ?? false,
+    evidence.estimated_signs,
+    evidence.samples_only ?? false,
   );
-  return { verdict: kVerdictNames[ruledVerdict(reason)], reason: kReasonNames[reason], nearestIsLower: lower - lowest > highest - upper };
+  return {
+    verdict: kVerdictNames[ruledVerdict(reason)],
+    reason: kReasonNames[reason],
+    nearestIsLower: lower - lowest > highest - upper,
+  };
 }
 
 /// Whether limits can be judged.
@@ -94,7 +117,9 @@ function isJudged(report: Report, { lower, upper }: Limits): boolean {
 export function verdictFor(report: Report, limits: Limits): Verdict | null {
   const { tolerance, evidence } = report;
   if (!evidence || !canJudge(report)) return null;
-  return tolerance?.verdict && isJudged(report, limits) ? (tolerance.verdict as Verdict) : judge(evidence, limits).verdict;
+  return tolerance?.verdict && isJudged(report, limits)
+    ? (tolerance.verdict as Verdict)
+    : judge(evidence, limits).verdict;
 }
 
 /// The fraction of the area, or of the points, that is out of limits: as the report says, and for other limits by the
@@ -112,14 +137,22 @@ export function whatIf(report: Report, limits: Limits, outside: number): [string
   const verdict = verdictFor(report, limits);
   const given = isJudged(report, limits);
   const text = limitsText(limits, report);
-  if (verdict === null) return [`With ${text}: `, '', 'The accuracy of this map is unknown, so no tolerance can be checked.'];
+  if (verdict === null)
+    return [`With ${text}: `, '', 'The accuracy of this map is unknown, so no tolerance can be checked.'];
   const cloud = isCloud(report);
   const share =
-    verdict !== 'FAIL' || outside <= 0 ? `No ${cloud ? 'point' : 'sample'} is out of it.`
-    : cloud ? `${percent(outside)} of the points are out of it.`
-    : `About ${percent(outside)} of the area is out of it.`;
-  const open = verdict === 'NOT DECIDED' && !given ? ` Samples alone do not decide this: ${report.live ? 'a proof follows' : 'the command does, with this tolerance'}.` : '';
-  return given ? [`With ${text}: `, verdict, `. ${share}${open}`] : ['Would be ', verdict, ` with ${text}. ${share}${open}`];
+    verdict !== 'FAIL' || outside <= 0
+      ? `No ${cloud ? 'point' : 'sample'} is out of it.`
+      : cloud
+        ? `${percent(outside)} of the points are out of it.`
+        : `About ${percent(outside)} of the area is out of it.`;
+  const open =
+    verdict === 'NOT DECIDED' && !given
+      ? ` Samples alone do not decide this: ${report.live ? 'a proof follows' : 'the command does, with this tolerance'}.`
+      : '';
+  return given
+    ? [`With ${text}: `, verdict, `. ${share}${open}`]
+    : ['Would be ', verdict, ` with ${text}. ${share}${open}`];
 }
 
 /// A clause as a sentence, with the minus sign that all numbers of the page have.
@@ -145,13 +178,23 @@ function failure(report: Report): string {
   if (t.reason === 'without match' && faces > 0)
     return `${t.text}: ${faces === 1 ? 'a face' : `${faces} faces`} between the measured points ${faces === 1 ? 'has' : 'have'} no value`;
   if (t.reason === 'without match' || t.reason === 'beyond max distance') {
-    const most = t.reason === 'beyond max distance' && report.max_distance ? ` (${text(report.max_distance)}${unit})` : '';
+    const most =
+      t.reason === 'beyond max distance' && report.max_distance
+        ? ` (${text(report.max_distance)}${unit})`
+        : '';
     return `${t.text}${most}${outside === null ? '' : `: ${percent(outside)} of the ${whole} out of tolerance or without a value`}`;
   }
   const between = t.proof?.witness;
   if (t.by_facing && !between) return t.text ?? '';
-  const most = between ? between.distance : t.nearest_limit === 'lower' ? report.evidence!.lowest : report.evidence!.highest;
-  const share = outside === null || between ? '' : `, and ${isCloud(report) ? '' : 'about '}${percent(outside)} of the ${whole} out of tolerance`;
+  const most = between
+    ? between.distance
+    : t.nearest_limit === 'lower'
+      ? report.evidence!.lowest
+      : report.evidence!.highest;
+  const share =
+    outside === null || between
+      ? ''
+      : `, and ${isCloud(report) ? '' : 'about '}${percent(outside)} of the ${whole} out of tolerance`;
   return `${t.text}: a ${quantityOf(report)} of ${distanceText(most, report)}${unit} was found${between ? ' between the measured points' : ''}${share}`;
 }
 
@@ -165,7 +208,7 @@ function ofPart(report: Report): Stated | null {
   const t = report.tolerance;
   if (!t?.verdict || !report.evidence) return null;
   const verdict = t.verdict as Verdict;
-  return { verdict, sentence: sentence(verdict === 'FAIL' ? failure(report) : t.text ?? '') };
+  return { verdict, sentence: sentence(verdict === 'FAIL' ? failure(report) : (t.text ?? '')) };
 }
 
 /// The points of a cloud that have no value, and so no group, as sentences.
@@ -175,8 +218,11 @@ function withoutGroup(report: Report): string[] {
   const most = report.max_distance ? ` (${text(report.max_distance)}${unitOf(report)})` : '';
   const sentences: string[] = [];
   if (beyond > 0)
-    sentences.push(`${points(beyond)} of no group, as the reference is farther than the largest distance that was measured${most}.`);
-  if (unmatched > 0) sentences.push(`${points(unmatched)} of no group, as no face of the reference faces the same way.`);
+    sentences.push(
+      `${points(beyond)} of no group, as the reference is farther than the largest distance that was measured${most}.`,
+    );
+  if (unmatched > 0)
+    sentences.push(`${points(unmatched)} of no group, as no face of the reference faces the same way.`);
   return sentences;
 }
 
@@ -205,7 +251,12 @@ function ofGroups(report: Report): Stated | null {
   const names = quoted.slice(0, kMost).join(', ') + (some.length > kMost ? ' and others' : '');
   const count = `${some.length} of ${table.groups.length} groups of the table of tolerances`;
   const words: Partial<Record<Verdict, string>> = {
-    FAIL: [...(some.length > 0 ? [`${count} ${some.length > 1 ? 'fail' : 'fails'}: ${names}.${worstOf(report, table)}`] : []), ...withoutGroup(report)].join(' '),
+    FAIL: [
+      ...(some.length > 0
+        ? [`${count} ${some.length > 1 ? 'fail' : 'fails'}: ${names}.${worstOf(report, table)}`]
+        : []),
+      ...withoutGroup(report),
+    ].join(' '),
     'NOT DECIDED': `${count} ${some.length > 1 ? 'are' : 'is'} not decided: ${names}.`,
     DOUBTFUL: `Every group of the table of tolerances is within its limits, but ${report.doubts?.map((d) => d.text).join('; ') ?? 'in doubt'}.`,
     PASS: 'Every group of the table of tolerances is within its limits.',

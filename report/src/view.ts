@@ -59,7 +59,11 @@ export class View extends Viewer {
       polygonOffset: true,
       polygonOffsetFactor: 1,
       polygonOffsetUnits: 1,
-      uniforms: { cut: { value: [0, 0, 0, 1] }, color: { value: new Vector3(0.45, 0.5, 0.58) }, opacity: { value: 0.1 } },
+      uniforms: {
+        cut: { value: [0, 0, 0, 1] },
+        color: { value: new Vector3(0.45, 0.5, 0.58) },
+        opacity: { value: 0.1 },
+      },
     });
     if (!ghost) return;
     const shape = new BufferGeometry();
@@ -71,7 +75,8 @@ export class View extends Viewer {
     this.scene.add(this.ghost);
     this.coverage = coverageOf(ghost);
     if (this.coverage) this.scene.add(this.coverage.object);
-    for (const mesh of [this.ghost, ...((this.coverage?.object.children ?? []) as Mesh[])]) this.coarse.push(new CoarseWhileMoving(mesh, kCoarseGhost));
+    for (const mesh of [this.ghost, ...((this.coverage?.object.children ?? []) as Mesh[])])
+      this.coarse.push(new CoarseWhileMoving(mesh, kCoarseGhost));
   }
 
   protected override setCoarse(coarse: boolean): void {
@@ -99,7 +104,16 @@ export class View extends Viewer {
   /// Shows all of the part from where a point of it is seen, and nothing hides it.
   lookFrom(point: Vec): void {
     const normal = this.subject.normalNear(point);
-    const from: Parameters<View['look']>[0][] = [{ normal }, 'corner', 'front', 'right', 'back', 'left', 'top', 'bottom'];
+    const from: Parameters<View['look']>[0][] = [
+      { normal },
+      'corner',
+      'front',
+      'right',
+      'back',
+      'left',
+      'top',
+      'bottom',
+    ];
     for (const side of from) {
       this.look(side);
       if (!this.isHidden(point)) return;

@@ -7,8 +7,24 @@ import type { Camera } from './saved';
 
 // Right, up and towards the viewer in the front view.
 const kSides: Record<'y' | 'z', Record<string, Vec>> = {
-  z: { front: [0, -1, 0], back: [0, 1, 0], left: [-1, 0, 0], right: [1, 0, 0], top: [0, -1e-4, 1], bottom: [0, -1e-4, -1], corner: [0.6, -1, 0.55] },
-  y: { front: [0, 0, 1], back: [0, 0, -1], left: [-1, 0, 0], right: [1, 0, 0], top: [0, 1, 1e-4], bottom: [0, -1, 1e-4], corner: [0.6, 0.55, 1] },
+  z: {
+    front: [0, -1, 0],
+    back: [0, 1, 0],
+    left: [-1, 0, 0],
+    right: [1, 0, 0],
+    top: [0, -1e-4, 1],
+    bottom: [0, -1e-4, -1],
+    corner: [0.6, -1, 0.55],
+  },
+  y: {
+    front: [0, 0, 1],
+    back: [0, 0, -1],
+    left: [-1, 0, 0],
+    right: [1, 0, 0],
+    top: [0, 1, 1e-4],
+    bottom: [0, -1, 1e-4],
+    corner: [0.6, 0.55, 1],
+  },
 };
 
 /// The scene is about the origin, in units of half of its diagonal.
@@ -28,14 +44,27 @@ export class Viewer {
   private shown: { lo: Vec; hi: Vec } | null = null; // its box; without one, all of the ball is framed
 
   /// `onChange` is called after every picture.
-  constructor(container: HTMLElement, private readonly up: 'y' | 'z', private readonly onChange = () => {}) {
+  constructor(
+    container: HTMLElement,
+    private readonly up: 'y' | 'z',
+    private readonly onChange = () => {},
+  ) {
     this.canvas = container.querySelector('canvas')!;
     // The picture is kept for printing.
-    const context = this.canvas.getContext('webgl2', { antialias: true, stencil: true, alpha: true, preserveDrawingBuffer: true });
+    const context = this.canvas.getContext('webgl2', {
+      antialias: true,
+      stencil: true,
+      alpha: true,
+      preserveDrawingBuffer: true,
+    });
     if (!context) throw new Error('this browser has no WebGL 2, or it is switched off');
     this.renderer = new WebGLRenderer({ canvas: this.canvas, context });
     this.renderer.setPixelRatio(this.finest);
-    this.pace = new Pace(this.renderer.getContext() as WebGL2RenderingContext, () => this.draw(false), () => this.prepareCoarse());
+    this.pace = new Pace(
+      this.renderer.getContext() as WebGL2RenderingContext,
+      () => this.draw(false),
+      () => this.prepareCoarse(),
+    );
     this.firstPicture = new Promise((resolve) => (this.pace.complete = () => !this.scheduled && resolve()));
     this.camera.up.set(0, up === 'y' ? 1 : 0, up === 'z' ? 1 : 0);
     this.controls = new OrbitControls(this.camera, this.canvas);
@@ -60,7 +89,11 @@ export class Viewer {
     this.controls.touches = { ONE: null, TWO: TOUCH.DOLLY_ROTATE };
     this.canvas.style.touchAction = 'pan-y';
     for (const type of ['touchstart', 'touchmove'] as const)
-      this.canvas.addEventListener(type, (event) => event.touches.length > 1 && event.cancelable && event.preventDefault(), { passive: false });
+      this.canvas.addEventListener(
+        type,
+        (event) => event.touches.length > 1 && event.cancelable && event.preventDefault(),
+        { passive: false },
+      );
   }
 
   /// Fits the picture to its place, where that has another size: the canvas is empty until the next picture.
@@ -175,8 +208,13 @@ export class Viewer {
     const { lo, hi } = this.shown!;
     let away = 0;
     for (let corner = 0; corner < 8; ++corner) {
-      const at = new Vector3(...([0, 1, 2].map((k) => (corner & (1 << k) ? hi[k] : lo[k])) as Vec)).sub(this.controls.target);
-      away = Math.max(away, at.dot(direction) + 1.06 * Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(up)) / tall));
+      const at = new Vector3(...([0, 1, 2].map((k) => (corner & (1 << k) ? hi[k] : lo[k])) as Vec)).sub(
+        this.controls.target,
+      );
+      away = Math.max(
+        away,
+        at.dot(direction) + 1.06 * Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(up)) / tall),
+      );
     }
     return Math.max(away, 1e-3);
   }

@@ -27,5 +27,9 @@ export function endsOf(report: Report): { largest: string; smallest: string } {
 /// Words of the report, which names the meshes O1 and O2, as the page names them.
 export function named(words: string, report: Report): string {
   const [o1, o2] = report.measured_on === 'o2' ? ['reference', 'part'] : ['part', 'reference'];
-  return words.replace(/(^|[.:] )?\bO([12])\b/g, (_, start: string | undefined, n) => `${start ?? ''}${start === undefined ? 'the' : 'The'} ${n === '1' ? o1 : o2}`);
+  return words.replace(
+    /(^|[.:] )?\bO([12])\b/g,
+    (_, start: string | undefined, n) =>
+      `${start ?? ''}${start === undefined ? 'the' : 'The'} ${n === '1' ? o1 : o2}`,
+  );
 }
