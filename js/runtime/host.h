@@ -1,4 +1,4 @@
-// What the modules import from JavaScript (js/src/module.ts).
+// What the modules import from JavaScript (js/src/host.ts).
 #pragma once
 
 extern "C" {

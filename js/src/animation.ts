@@ -2,7 +2,7 @@
 import { type Bytes, float64, uint32 } from './bytes.js';
 import { type ReadMeshOptions, fileArguments } from './mesh_file.js';
 import { type Module } from './module.js';
-import { Owned } from './surface.js';
+import { Owned } from './owned.js';
 
 export interface ReadAnimationOptions extends ReadMeshOptions {
   /** Frames per second, from the first key to the last; by default one frame for each key. */

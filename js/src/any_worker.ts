@@ -65,7 +65,10 @@ async function begun(script: string): Promise<AnyWorker> {
       ended = message = () => {};
       void worker.terminate();
     },
-    listen: (onMessage, onEnd) => void ([message, ended] = [onMessage, onEnd]),
+    listen: (onMessage, onEnd) => {
+      message = onMessage;
+      ended = onEnd;
+    },
     hold: (wait) => (wait ? worker.ref() : worker.unref()),
   };
 }

@@ -2,7 +2,9 @@
 import { Animation } from './animation.js';
 import { Look } from './look.js';
 import { Matches } from './matches.js';
-import { DistanceMap, Pair, Sites, Surface } from './surface.js';
+import { Pair } from './pair.js';
+import { Sites } from './sites.js';
+import { DistanceMap, Surface } from './surface.js';
 import { SdmError } from './types.js';
 
 /** Throws SdmError unless the value is one. `name`: of the argument or option. */
@@ -143,8 +145,8 @@ const ofSummary = {
   xxh3: anything,
   maxDistance: number,
 };
-const aSurface = object(Surface, 'a Surface'),
-  sites = object(Sites, 'Sites');
+const aSurface = object(Surface, 'a Surface');
+const sites = object(Sites, 'Sites');
 
 const kNew: Record<string, Call> = {
   Surface: take(mesh, ofSurface),

@@ -4,7 +4,7 @@ import { Sdm } from './library.js';
 import { type ReportPage, load, textOf } from './load.js';
 import { Module, type ModuleFile, type ModuleFiles, canShareMemory, mayWait } from './module.js';
 import { SdmPool } from './pool.js';
-import { SdmWorker } from './remote.js';
+import { SdmWorker } from './sdm_worker.js';
 import { withMemory } from './shared_memory.js';
 
 export * from './types.js';
@@ -27,33 +27,13 @@ export type {
 export type { FaceNames, MeshFile, ReadMeshOptions } from './mesh_file.js';
 export type { PoolMap, PoolMapOptions, PoolSites, PoolSurface, SdmPool } from './pool.js';
 export type { Colormap, MapSummary, ReportOptions, SummaryOptions } from './report.js';
-export type {
-  Atlas,
-  ClosestPoints,
-  Contacts,
-  DistanceMap,
-  Hausdorff,
-  MapOptions,
-  MapStatistics,
-  MapValues,
-  Pair,
-  RayHits,
-  SignedDistances,
-  Sites,
-  Surface,
-  SurfaceOptions,
-} from './surface.js';
-export type {
-  CallOptions,
-  SdmWorker,
-  WorkerAnimation,
-  WorkerLook,
-  WorkerMap,
-  WorkerMatches,
-  WorkerPair,
-  WorkerSites,
-  WorkerSurface,
-} from './remote.js';
+export type { Contacts, Pair } from './pair.js';
+export type { ClosestPoints, Hausdorff, RayHits, SignedDistances, Sites } from './sites.js';
+export type { Atlas, DistanceMap, MapOptions, Surface, SurfaceOptions } from './surface.js';
+export type { CallOptions } from './connection.js';
+export type { WorkerMap, WorkerPair, WorkerSites, WorkerSurface } from './remote.js';
+export type { WorkerAnimation, WorkerLook, WorkerMatches } from './remote_looks.js';
+export type { SdmWorker } from './sdm_worker.js';
 export type { TransferOptions } from './transfer.js';
 
 export interface StartOptions {
@@ -132,8 +112,8 @@ export async function createPool(options: StartOptions & { workers?: number } = 
       : (await import('node:os')).availableParallelism();
   const count = options.workers ?? Math.min(8, cores);
   const { module } = await compiled(options, 1);
-  const script = scriptOf(options),
-    reportPage = pageOf(options);
+  const script = scriptOf(options);
+  const reportPage = pageOf(options);
   const starts = Array.from({ length: count }, () =>
     SdmWorker.open({ module, threads: 1, script, reportPage }),
   );

@@ -5,7 +5,9 @@ import { Look } from './look.js';
 import { type MatchOptions, Matches } from './matches.js';
 import { type MeshFile, type ReadMeshOptions, readMesh } from './mesh_file.js';
 import { type Module } from './module.js';
-import * as bound from './surface.js';
+import { Pair } from './pair.js';
+import { Sites } from './sites.js';
+import { Surface, type SurfaceOptions } from './surface.js';
 import { type Indices, type Points } from './types.js';
 
 type Body = { positions: Points; indices?: Indices };
@@ -15,18 +17,18 @@ export class Sdm {
   readonly Surface: new (
     positions: Points,
     indices?: Indices,
-    options?: bound.SurfaceOptions,
-  ) => bound.Surface;
+    options?: SurfaceOptions,
+  ) => Surface;
   readonly Sites: new (
     positions: Points,
     indices?: Indices,
-  ) => bound.Sites;
+  ) => Sites;
   /** Of the module `full` only. */
   readonly Pair: new (
     first: Body,
     second: Body,
     options?: { contactMargin?: number },
-  ) => bound.Pair;
+  ) => Pair;
 
   /** @internal */
   constructor(
@@ -34,9 +36,9 @@ export class Sdm {
     reportPage: () => Promise<string>,
   ) {
     module.reportPage = reportPage;
-    this.Surface = constructorIn(module, 'Surface', bound.Surface);
-    this.Sites = constructorIn(module, 'Sites', bound.Sites);
-    this.Pair = constructorIn(module, 'Pair', bound.Pair);
+    this.Surface = constructorIn(module, 'Surface', Surface);
+    this.Sites = constructorIn(module, 'Sites', Sites);
+    this.Pair = constructorIn(module, 'Pair', Pair);
   }
 
   get threads(): number {
@@ -66,7 +68,7 @@ export class Sdm {
     return Animation.read(this.module, bytes, name, options);
   }
   /** Finds, for each texel of a surface, the point of the sites that belongs to it. Of the module `full` only. */
-  match(surface: bound.Surface, sites: bound.Sites, options: MatchOptions = {}): Matches {
+  match(surface: Surface, sites: Sites, options: MatchOptions = {}): Matches {
     return new Matches(this.module, surface, sites, options);
   }
   /** Ends its threads. Its objects cannot be used any more. */
@@ -75,15 +77,15 @@ export class Sdm {
   }
 
   /** @internal What a worker is asked for. */
-  surface(positions: Points, indices: Indices, options: bound.SurfaceOptions): bound.Surface {
+  surface(positions: Points, indices: Indices, options: SurfaceOptions): Surface {
     return new this.Surface(positions, indices, options);
   }
   /** @internal */
-  sites(positions: Points, indices: Indices): bound.Sites {
+  sites(positions: Points, indices: Indices): Sites {
     return new this.Sites(positions, indices);
   }
   /** @internal */
-  pair(first: Body, second: Body, options: { contactMargin?: number }): bound.Pair {
+  pair(first: Body, second: Body, options: { contactMargin?: number }): Pair {
     return new this.Pair(first, second, options);
   }
   /** @internal */

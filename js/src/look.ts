@@ -2,7 +2,7 @@
 import { float64, text } from './bytes.js';
 import { type ReadMeshOptions, fileArguments } from './mesh_file.js';
 import { type Module } from './module.js';
-import { Owned } from './surface.js';
+import { Owned } from './owned.js';
 import { SdmError } from './types.js';
 
 /** The pixels of a texture. */

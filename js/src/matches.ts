@@ -2,7 +2,9 @@
 import { type Bytes, float32, float64, uint32 } from './bytes.js';
 import { type Look } from './look.js';
 import { type Module } from './module.js';
-import { Owned, type Sites, type Surface } from './surface.js';
+import { Owned } from './owned.js';
+import { type Sites } from './sites.js';
+import { type Surface } from './surface.js';
 import { type TransferOptions, transferred } from './transfer.js';
 import { type Progress, SdmError } from './types.js';
 

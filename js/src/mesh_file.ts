@@ -46,7 +46,10 @@ function packed(
   const join = (arrays: Uint8Array[]) => {
     const all = new Uint8Array(arrays.reduce((sum, array) => sum + array.length, 0));
     let at = 0;
-    for (const array of arrays) all.set(array, at), (at += array.length);
+    for (const array of arrays) {
+      all.set(array, at);
+      at += array.length;
+    }
     return all;
   };
   return [
@@ -66,8 +69,8 @@ export function fileArguments(
 ) {
   if (!module.has('sdm_read_mesh'))
     throw new SdmError('input', `${call} needs the module of start({ full: true })`);
-  const file = bytesOf(bytes),
-    path = new TextEncoder().encode(name);
+  const file = bytesOf(bytes);
+  const path = new TextEncoder().encode(name);
   const [names, contents, lengths] = packed(files ?? {});
   return [file, file.length, path, path.length, names, contents, lengths, lengths.length / 2];
 }

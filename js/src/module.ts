@@ -1,69 +1,14 @@
 // A WebAssembly module of the library: its memory, its calls and their results.
 import { text, wordNumber } from './bytes.js';
+import { type Threads, hostImports } from './host.js';
+import { startThreads } from './threads.js';
 import { type NumberArray, SdmError, type Progress } from './types.js';
-import { type Threads, startThreads } from './threads.js';
 
 type Address = number;
 type Argument = number | NumberArray | null;
 type Result = Uint8Array<ArrayBuffer>[];
 
 const kErrors = ['', 'input', 'cancelled', 'memory'] as const;
-
-/** What the module imports (runtime/host.h), and the few functions that its C library names without calling them. */
-export function hostImports(
-  memory: () => ArrayBufferLike,
-  threads: () => Threads | undefined,
-  progress: (step: string, fraction: number) => boolean,
-  said: (text: string) => void,
-) {
-  const text = (address: Address, bytes: number) =>
-    new TextDecoder().decode(new Uint8Array(memory(), address >>> 0, bytes).slice());
-  const unsupported = () => 52; // ENOSYS
-  return {
-    host: {
-      threads: () => threads()?.count ?? 1,
-      start_thread: (argument: Address) => (threads()?.start(argument) ? 1 : 0),
-      thread_failed: () => (threads()?.failure.reason === undefined ? 0 : 1),
-      now: () => performance.timeOrigin + performance.now(),
-      progress: (step: Address, bytes: number, fraction: number) =>
-        progress(text(step, bytes), fraction) ? 1 : 0,
-    },
-    wasi_snapshot_preview1: {
-      // There are no variables of the environment.
-      environ_get: () => 0,
-      environ_sizes_get: (count: Address, bytes: Address) => {
-        const view = new DataView(memory());
-        for (const at of [count, bytes]) view.setUint32(at >>> 0, 0, true);
-        return 0;
-      },
-      fd_close: unsupported,
-      fd_seek: unsupported,
-      // Why the module ends.
-      fd_write: (_file: number, parts: Address, count: number, written: Address) => {
-        const view = new DataView(memory());
-        let sum = 0;
-        for (let at = parts >>> 0, i = 0; i < count; ++i, at += 8) {
-          const bytes = view.getUint32(at + 4, true);
-          said(text(view.getUint32(at, true), bytes));
-          sum += bytes;
-        }
-        view.setUint32(written >>> 0, sum, true);
-        return 0;
-      },
-      random_get: (address: Address, bytes: number) => {
-        // Not into the memory itself, which may be shared. Node 18 has no `crypto`.
-        const random = Uint8Array.from({ length: bytes }, () => 256 * Math.random());
-        new Uint8Array(memory(), address >>> 0, bytes).set(
-          globalThis.crypto?.getRandomValues(random) ?? random,
-        );
-        return 0;
-      },
-      proc_exit: () => {
-        throw new SdmError('internal', 'sdm: the module has ended');
-      },
-    },
-  };
-}
 
 export type ModuleFile = BufferSource | WebAssembly.Module;
 /** `full` has bodies that move, files and reports, too. */
@@ -119,7 +64,9 @@ export class Module {
       () => memory.buffer,
       () => started?.threads,
       (step, fraction) => started?.progress?.(step, fraction) !== false,
-      (text) => started && (started.lastWords = (started.lastWords + text).slice(-1000)),
+      (text) => {
+        if (started) started.lastWords = (started.lastWords + text).slice(-1000);
+      },
     );
     const instance = await WebAssembly.instantiate(module, { ...imports, env: { memory } });
     started = new Module(instance, memory);

@@ -1,15 +1,10 @@
 // Maps by several workers that share no memory.
 import { anything, checkMethods, mesh, object, ofMap, ofSurface, take } from './calls.js';
-import {
-  type CallOptions,
-  type SdmWorker,
-  type WorkerMap,
-  type WorkerSites,
-  type WorkerSurface,
-  unlessAborted,
-} from './remote.js';
-import { type Atlas, type MapOptions, type MapValues, type SurfaceOptions } from './surface.js';
-import { type Indices, type Points, SdmError, type SignMethod } from './types.js';
+import { type CallOptions, unlessAborted } from './connection.js';
+import { type WorkerMap, type WorkerSites, type WorkerSurface } from './remote.js';
+import { type SdmWorker } from './sdm_worker.js';
+import { type Atlas, type MapOptions, type SurfaceOptions } from './surface.js';
+import { type Indices, type MapValues, type Points, SdmError, type SignMethod } from './types.js';
 
 export type PoolMapOptions = Omit<MapOptions, 'progress'> & CallOptions;
 
@@ -108,19 +103,20 @@ export class PoolSurface {
     const { resolution, rows } = maps[0]!;
     const result = noValues(resolution, rows);
     const size = grain * Math.max(1, Math.floor(samples / grain / (kRangesPerWorker * maps.length)));
-    let next = 0,
-      done = 0,
-      failed = false;
+    let next = 0;
+    let done = 0;
+    let failed = false;
     let signs = {} as { sign: SignMethod; signReason: string };
     const computeRanges = async (map: WorkerMap) => {
       while (next < samples && !failed && !signal?.aborted) {
-        const first = next,
-          count = Math.min(size, samples - first);
+        const first = next;
+        const count = Math.min(size, samples - first);
         next += count;
         const { sign, signReason, ...values } = await map.computeValues(first, count, rest);
         signs = { sign, signReason };
         store(result, texels, first, values);
-        if (!signal?.aborted) progress?.('map', (done += count) / samples);
+        done += count;
+        if (!signal?.aborted) progress?.('map', done / samples);
       }
     };
     await all(
@@ -200,8 +196,8 @@ export class SdmPool {
   ): Promise<PoolSurface> {
     const { transfer: _, ...rest } = options;
     // The others need them later, when the caller may have changed them.
-    const at = Float64Array.from(positions),
-      corners = indices && Float64Array.from(indices);
+    const at = Float64Array.from(positions);
+    const corners = indices && Float64Array.from(indices);
     const first = await this.each[0]!.surface(at, corners, rest);
     const storedAtlas = rest.storedAtlas ?? (await first.storedAtlas());
     const others = await all(

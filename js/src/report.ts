@@ -118,7 +118,8 @@ export async function reportOf(
     let at = 0;
     const compressed = await Promise.all(
       Array.from(uint32(lengths!), (length) => {
-        const plane = planes!.slice(at, (at += length));
+        const plane = planes!.slice(at, at + length);
+        at += length;
         return length > 0 ? deflated(plane) : plane;
       }),
     );

@@ -2,23 +2,13 @@
 // given a function to run.
 import { type AnyWorker, newWorker, started } from './any_worker.js';
 import { Failure } from './failure.js';
-import { hostImports } from './module.js';
+import { type Threads, hostImports } from './host.js';
 import { SdmError } from './types.js';
 
 /** What thread_local objects of a thread take, at most. */
 const kThreadLocalBytes = 4096;
 
 const kStackBytes = 1 << 20;
-
-export interface Threads {
-  /** Of the module: the workers, and the thread that calls it. */
-  count: number;
-  /** Lets an idle worker run a function. False if all are busy. */
-  start(argument: number): boolean;
-  /** Of one of the threads, after which those that wait for it end, too. */
-  failure: Failure;
-  stop(): void;
-}
 
 /** What a worker is started with. A slot is 0 while its worker is idle, otherwise the argument of its function. */
 export interface ThreadStart {

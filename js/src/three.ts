@@ -58,8 +58,8 @@ export function fromBufferGeometry(
  */
 export function withAtlas(geometry: BufferGeometry, atlas: Atlas): BufferGeometry {
   const copy = geometry.index ? geometry.toNonIndexed() : geometry.clone();
-  const corners = atlas.corners.length / 2,
-    { count } = copy.getAttribute('position');
+  const corners = atlas.corners.length / 2;
+  const { count } = copy.getAttribute('position');
   if (count - (count % 3) !== corners) throw new SdmError('input', 'the atlas is of another geometry');
   const uvs = new Float32Array(2 * count);
   for (let i = 0; i < corners; ++i) {
@@ -240,21 +240,21 @@ function colorTexture(colormap: keyof typeof kModes): DataTexture {
 }
 
 function gradient(colors: Rgb[], t: number): Rgb {
-  const at = Math.min(colors.length - 2, Math.floor(t * (colors.length - 1))),
-    f = t * (colors.length - 1) - at;
+  const at = Math.min(colors.length - 2, Math.floor(t * (colors.length - 1)));
+  const f = t * (colors.length - 1) - at;
   return colors[at]!.map((x, k) => Math.round(x * (1 - f) + colors[at + 1]![k]! * f)) as Rgb;
 }
 
 /** Texels beside those of faces get a value of these: a face reaches into texels whose centres are outside of it. */
 function fillBorders(data: Float32Array, texelFaces: Uint32Array, width: number): void {
-  const free = 0xffffffff,
-    height = data.length / width;
+  const free = 0xffffffff;
+  const height = data.length / width;
   for (let y = 0; y < height; ++y)
     for (let x = 0; x < width; ++x) {
       if (texelFaces[y * width + x] !== free) continue;
       for (let n = 0; n < 9; ++n) {
-        const u = x + (n % 3) - 1,
-          v = y + Math.floor(n / 3) - 1;
+        const u = x + (n % 3) - 1;
+        const v = y + Math.floor(n / 3) - 1;
         if (u < 0 || v < 0 || u >= width || v >= height || texelFaces[v * width + u] === free) continue;
         data[y * width + x] = data[v * width + u]!;
         break;

@@ -42,3 +42,37 @@ export interface BoundedLength {
   /** A point of each surface that are `value` apart. */
   witness: [Point, Point] | null;
 }
+
+/** Statistics of the texels that have a value, each weighted by its area; NaN if there are none. */
+export interface MapStatistics {
+  texels: number;
+  negativeTexels: number;
+  min: number;
+  max: number;
+  mean: number;
+  rms: number;
+  stddev: number;
+  p01: number;
+  p05: number;
+  p50: number;
+  p95: number;
+  p99: number;
+  meanAbs: number;
+  maxAbs: number;
+  p50Abs: number;
+  p95Abs: number;
+  p99Abs: number;
+  negativeAreaFraction: number;
+}
+
+/** Values of texels, or of samples. */
+export interface MapValues {
+  /** Negative inside; NaN without a value. */
+  distances: Float32Array;
+  /** Closest point − point of the texel: three numbers each. */
+  vectors: Float32Array;
+  /** The closest vertex, edge or face. */
+  sitesOfTexels: Uint32Array;
+  /** 0: a vertex, 1: an edge, 2: a face, 255: no value. */
+  siteTypes: Uint8Array;
+}

@@ -12,7 +12,8 @@ import {
   type WorkerStart,
 } from './protocol.js';
 import { wordNumber } from './bytes.js';
-import { DistanceMap, Owned } from './surface.js';
+import { Owned } from './owned.js';
+import { DistanceMap } from './surface.js';
 import { runThread } from './threads.js';
 import { type Progress, SdmError } from './types.js';
 
@@ -28,7 +29,9 @@ async function openPort(): Promise<Port> {
   if (typeof self === 'object' && typeof postMessage === 'function')
     return {
       post: (message, transfer = []) => self.postMessage(message, { transfer }),
-      receive: (receive) => void (self.onmessage = (event) => receive(event.data)),
+      receive: (receive) => {
+        self.onmessage = (event) => receive(event.data);
+      },
     };
   const { parentPort } = await import('node:worker_threads');
   return {
@@ -43,7 +46,11 @@ const tick = (() => {
   const { port1, port2 } = new MessageChannel();
   let next = () => {};
   port2.onmessage = () => next();
-  return () => new Promise<void>((resolve) => void ((next = resolve), port1.postMessage(0)));
+  return () =>
+    new Promise<void>((resolve) => {
+      next = resolve;
+      port1.postMessage(0);
+    });
 })();
 
 /** The buffers of arrays in a result. */
@@ -196,13 +203,15 @@ class Server {
   private async inParts(map: DistanceMap, call: Call, options: { progress?: Progress }): Promise<void> {
     const { samples, grain } = map.sampleCounts();
     let step = grain;
-    for (let first = 0, count; first < samples; first += count) {
-      count = Math.min(step, samples - first);
-      const [done, part] = [first, count];
+    let first = 0;
+    while (first < samples) {
+      const count = Math.min(step, samples - first);
+      const done = first;
       const progress: Progress = (name, fraction) =>
-        options.progress?.(name, (done + fraction * part) / samples);
+        options.progress?.(name, (done + fraction * count) / samples);
       const since = performance.now();
       map.computeSamples(first, count, { ...options, progress });
+      first += count;
       const took = performance.now() - since;
       if (took < kPartMilliseconds / 2) step *= 2;
       else if (took > kPartMilliseconds)

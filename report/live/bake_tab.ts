@@ -1,11 +1,17 @@
 // The tab “Bake”: what of the reference is shown on the part, and which of its points belong to a texel.
-import type { MatchCounts, MatchMethod } from 'sdm';
+import type { MatchCounts, MatchMethod, MatchOptions } from 'sdm';
 import { byId, make } from '../src/dom';
 import { select } from '../src/fields';
 import { count, percent, typedNumber } from '../src/numbers';
 import { capital } from '../src/words';
-import type { Baking } from './baking';
+import type { Paint } from './subject';
 import { addTabs } from './tabs';
+
+/// What the tab sets.
+export interface BakeChoices {
+  options: MatchOptions;
+  kind: Paint['kind'] | null; ///< that is shown in place of the distances
+}
 
 const kShown: [string, string][] = [
   ['', 'Distances'],
@@ -47,13 +53,13 @@ function numberField(
 export class BakeTab {
   /// `changed`: after each choice; `save`: the model with its textures.
   constructor(
-    baking: () => Baking,
+    choices: () => BakeChoices,
     changed: () => void,
     save: () => Promise<void>,
     fault: (error: unknown) => void,
   ) {
-    const set = (options: Partial<Baking['options']>) => {
-      Object.assign(baking().options, options);
+    const set = (options: Partial<MatchOptions>) => {
+      Object.assign(choices().options, options);
       changed();
     };
     const cage = numberField('bake-cage', 'Within, along the normal', '', (x) =>
@@ -65,7 +71,7 @@ export class BakeTab {
     const showFields = (method: string) =>
       ([cage.hidden, facing.hidden] = [method !== 'ray', method === 'closest']);
     const [shown] = select('bake-shown', 'Show', kShown, '', (kind) => {
-      baking().kind = kind === '' ? null : (kind as 'colors' | 'normals');
+      choices().kind = kind === '' ? null : (kind as Paint['kind']);
       changed();
     });
     const [method] = select('bake-method', 'Point of a texel', kMethods, 'facing', (value) => {

@@ -1,9 +1,9 @@
 // What the reference has at the points that belong to the texels of the map at rest: its colours and normals, as a texture.
 import type { MatchCounts, MatchOptions, WorkerMatches } from 'sdm';
-import type { BakeTab } from './bake_tab';
+import type { BakeChoices, BakeTab } from './bake_tab';
 import { download } from '../src/saved';
 import { bakedGlb } from './baked_model';
-import { inFile } from './engine';
+import { inFile } from './placing';
 import { Looks } from './looks';
 import { kUp } from './pair';
 import type { Session } from './session';
@@ -22,7 +22,7 @@ function pixelsOf(picture: Uint8Array, components: number, kinds: Uint8Array): U
   return pixels;
 }
 
-export class Baking {
+export class Baking implements BakeChoices {
   options: MatchOptions = { method: 'facing', facing: 90 };
   kind: Paint['kind'] | null = null; // that is shown in place of the distances
   counts: MatchCounts | null = null;

@@ -1,6 +1,7 @@
 // A cloth that falls on a ball: M. Macklin, M. Müller and N. Chentanez, "XPBD: Position-Based Simulation of Compliant
 // Constrained Dynamics" (2016).
-import { kTimeStep, type Scene } from './scene';
+import { type Scene } from './scene';
+import { kTimeStep } from './body';
 
 const kSide = 64; // vertices
 const kSteps = 8; // in a frame
@@ -141,8 +142,12 @@ class Cloth {
       const [x, y, z] = [p[b] - p[a], p[b + 1] - p[a + 1], p[b + 2] - p[a + 2]];
       const length = Math.sqrt(x * x + y * y + z * z) || 1;
       const shift = (length - lengths[s]) / length / (2 + (s < firm ? 0 : soft));
-      (p[a] += shift * x), (p[a + 1] += shift * y), (p[a + 2] += shift * z);
-      (p[b] -= shift * x), (p[b + 1] -= shift * y), (p[b + 2] -= shift * z);
+      p[a] += shift * x;
+      p[a + 1] += shift * y;
+      p[a + 2] += shift * z;
+      p[b] -= shift * x;
+      p[b + 1] -= shift * y;
+      p[b + 2] -= shift * z;
     }
   }
 

@@ -1,6 +1,7 @@
 // How a pair is shown: the form, the legend, the histogram, and the verdict with the limits of the sliders.
 import { cutOpen } from '../src/cut';
-import { makeControls, startOf, State } from '../src/controls';
+import { makeControls } from '../src/controls';
+import { startOf, State } from '../src/state';
 import { byId, make } from '../src/dom';
 import { drawHistogram } from '../src/histogram';
 import { drawLegend } from '../src/legend';
@@ -9,11 +10,10 @@ import { csvOf } from '../src/saved';
 import { toFile } from '../src/subject';
 import { outsideOf, whatIf } from '../src/verdict';
 import { quantityOf } from '../src/words';
-import { kRest } from './motion';
 import { kUp } from './pair';
 import { showLimits, showReport } from './results';
 import { addSaveButtons, glbOf } from './save';
-import type { Session } from './session';
+import { kRest, type Session } from './session';
 
 const colorsOf = ({ scale: { mode, lo, hi } }: State) => [mode, lo, hi].join();
 
@@ -48,7 +48,10 @@ export class Display {
     const { lo, hi } = pair!.subject;
     const ranges = this.touched ? [] : [extremes?.min?.distance, extremes?.max?.distance, lo, hi];
     const made = JSON.stringify([units, sign?.method, ranges]);
-    if (this.state && made === this.made) return this.apply(this.state);
+    if (this.state && made === this.made) {
+      this.apply(this.state);
+      return;
+    }
     if (this.made && (JSON.parse(this.made) as unknown[])[0] !== (units ?? null)) pair!.callouts.renew();
     this.made = made;
     this.makeForm();

@@ -10,18 +10,13 @@ import type {
   WorkerSites,
   WorkerSurface,
 } from 'sdm';
-import { Matrix4, Vector3 } from 'three';
+import { Matrix4 } from 'three';
 import type { Report } from '../src/page_data';
-import type { Film } from './film';
+import type { Body } from './body';
 import { isClosed, type Triangles } from './layout';
+import { isIdentity, moved } from './placing';
 
 export const kCoarse = 256; // texels a side while something moves
-
-export interface Body extends Triangles {
-  name: string;
-  file?: File; ///< none: the page has made it
-  film?: Film; ///< of an animated file
-}
 
 /// The map of one frame, while a body moves.
 export interface FrameResult {
@@ -45,29 +40,6 @@ interface Measured {
 
 /// Says what is going on, such as "Laying out the atlas", and how far it is.
 export type Say = (step: string, fraction: number) => void;
-
-/// Positions moved by a matrix.
-export function moved(positions: Float64Array, matrix: Matrix4): Float64Array {
-  if (isIdentity(matrix)) return positions.slice();
-  const [a, b, c, , d, e, f, , g, h, i, , x, y, z] = matrix.elements;
-  const result = new Float64Array(positions.length);
-  for (let v = 0; v < positions.length; v += 3) {
-    const [px, py, pz] = [positions[v], positions[v + 1], positions[v + 2]];
-    result[v] = a * px + d * py + g * pz + x;
-    result[v + 1] = b * px + e * py + h * pz + y;
-    result[v + 2] = c * px + f * py + i * pz + z;
-  }
-  return result;
-}
-
-/// A motion of the scene in the units of the files: its translation is that of the middle of the scene.
-export function inFile(
-  motion: Matrix4,
-  { centre, size }: { centre: [number, number, number]; size: number },
-): Matrix4 {
-  const toFile = new Matrix4().makeTranslation(...centre).scale(new Vector3(size, size, size));
-  return toFile.clone().multiply(motion).multiply(toFile.clone().invert());
-}
 
 export class Engine {
   private sites: WorkerSites | null = null;
@@ -294,8 +266,4 @@ const shapeOf = ({ positions, indices }: Body): Triangles => ({ positions, indic
 function named(error: Error, { name }: Body): Error {
   const isOfWorker = error.name === 'AbortError' || (error as { kind?: string }).kind === 'ended';
   return isOfWorker || error.message.includes(name) ? error : new Error(`${name}: ${error.message}`);
-}
-
-function isIdentity({ elements }: Matrix4): boolean {
-  return new Matrix4().elements.every((x, i) => Math.abs(x - elements[i]) < 1e-12);
 }

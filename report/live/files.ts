@@ -1,8 +1,7 @@
 // Files of meshes, dropped or chosen.
 import type { SdmWorker } from 'sdm';
 import { make } from '../src/dom';
-import type { Body } from './engine';
-import { Film } from './film';
+import { type Body, Film } from './body';
 
 const kLargest = 512 * 2 ** 20; // bytes: more than a module of 32 bits can read and measure
 const kMostTriangles = 5_000_000;

@@ -2,7 +2,8 @@
 import type { SdmWorker } from 'sdm';
 import letterE from '../../scenes/meshes/letter_e.ply';
 import letterG from '../../scenes/meshes/letter_g.ply';
-import { kTimeStep, type Scene } from './scene';
+import { type Scene } from './scene';
+import { kTimeStep } from './body';
 
 const kPeriod = 4; // seconds
 const kApart = 0.75; // of the middle of each letter from that of both

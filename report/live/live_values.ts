@@ -25,7 +25,9 @@ export function showTime(resolution: number, milliseconds: number): void {
 export function meanOf({ map, areas }: Layout): number {
   let [sum, total] = [0, 0];
   for (let i = 0; i < areas.length; ++i)
-    if (areas[i] > 0 && Number.isFinite(map.distance[i]))
-      (sum += areas[i] * map.distance[i]), (total += areas[i]);
+    if (areas[i] > 0 && Number.isFinite(map.distance[i])) {
+      sum += areas[i] * map.distance[i];
+      total += areas[i];
+    }
   return total > 0 ? sum / total : Number.NaN;
 }

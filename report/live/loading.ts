@@ -4,14 +4,16 @@ import { byId } from '../src/dom';
 import { explore } from '../src/explore';
 import type { Baking } from './baking';
 import type { Display } from './display';
-import { Body, inFile, kCoarse, moved } from './engine';
+import { kCoarse } from './engine';
+import { inFile, moved } from './placing';
 import { readBody } from './files';
-import { movesOf } from './film';
+import { Body, movesOf } from './body';
 import { listenToKeys } from './keys';
 import { frameOf, Layout, layoutOf } from './layout';
 import type { Motion } from './motion';
 import { Pair } from './pair';
-import { say, sayFault, showBusy, showChoices } from './panel';
+import { showBusy, showChoices } from './panel';
+import { say, sayFault } from './status';
 import { kScenes } from './scenes';
 import type { Choice, Session } from './session';
 
@@ -116,8 +118,10 @@ export class Loading {
   private async runNow(work: (load: AbortController) => Promise<string | void>): Promise<void> {
     if (this.current) this.cancel();
     const load = this.begin();
-    let note: string | void = '';
-    let fault = await work(load).then((said) => ((note = said), null), faultOf);
+    let [note, fault] = await work(load).then(
+      (said): [string, null] => [said || '', null],
+      (error): [string, ReturnType<typeof faultOf>] => ['', faultOf(error)],
+    );
     if (this.current !== load) return; // a later choice has taken its place
     const cancelled = load.signal.aborted;
     if (cancelled) fault = null;
@@ -129,7 +133,7 @@ export class Loading {
     }
     this.end();
     if (fault) sayFault(fault);
-    else say(cancelled ? 'Cancelled.' : note || '');
+    else say(cancelled ? 'Cancelled.' : note);
   }
 
   private end(): void {
@@ -210,8 +214,8 @@ export class Loading {
   /// Says an error of what was computed; if the worker was lost by it, loads what is shown again.
   private recover(error: unknown): void {
     if (this.current) return; // that says it
-    if (!this.session.choice || this.isIntact) return sayFault(error);
-    void this.run(() => Promise.reject(error));
+    if (!this.session.choice || this.isIntact) sayFault(error);
+    else void this.run(() => Promise.reject(error));
   }
 
   /// A new view, of a pair whose distances follow.

@@ -1,6 +1,6 @@
 // How the reference looks: read of its file when that is first asked for, and again when the worker has lost it.
 import type { SdmWorker, WorkerLook } from 'sdm';
-import type { Body } from './engine';
+import type { Body } from './body';
 import { decoded } from './pictures';
 
 export class Looks {

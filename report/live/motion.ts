@@ -3,15 +3,15 @@ import { Matrix4 } from 'three';
 import type { Vec } from '../src/page_data';
 import type { Baking } from './baking';
 import type { Display } from './display';
-import { FineResult, FrameResult, inFile } from './engine';
+import { FineResult, FrameResult } from './engine';
+import { inFile } from './placing';
 import { areaOf } from './layout';
 import { meanOf, showMean, showRate, showSeparation, showTime } from './live_values';
 import { showBusy, showPlaying } from './panel';
 import { Rate } from './rate';
 import { showNoVerdict, showReport, speak } from './results';
-import type { Session } from './session';
+import { kRest, type Session } from './session';
 
-export const kRest = 220; // milliseconds without a motion, after which the map is fine
 const kHistogram = 120; // milliseconds between histograms while something moves
 
 export class Motion {

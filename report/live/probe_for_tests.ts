@@ -3,7 +3,7 @@ import { Matrix4 } from 'three';
 import type { MatchCounts, SdmWorker } from 'sdm';
 import type { Report, Vec } from '../src/page_data';
 import type { Baking } from './baking';
-import { inFile, moved } from './engine';
+import { inFile, moved } from './placing';
 import type { Motion } from './motion';
 import { decoded } from './pictures';
 import type { Session } from './session';

@@ -4,7 +4,8 @@ import { nameSubject, showMoving, showVerdict } from '../src/headline';
 import type { PageJson, Report } from '../src/page_data';
 import { showPlaces } from '../src/places';
 import { toScene } from '../src/subject';
-import { showInputs, showMethod, showMore, showNumbers } from '../src/tables';
+import { showInputs, showMethod, showNumbers } from '../src/tables';
+import { showMore } from '../src/json_tables';
 import { verdictOf } from '../src/verdict';
 import type { Session } from './session';
 

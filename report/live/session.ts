@@ -4,11 +4,14 @@ import type { AreaByValue } from '../src/area_by_value';
 import { signedText } from '../src/numbers';
 import type { Report } from '../src/page_data';
 import { distanceText } from '../src/precision';
-import { isSigned, unitOf } from '../src/verdict';
-import { Body, Engine } from './engine';
+import { unitOf } from '../src/verdict';
+import { isSigned } from '../src/words';
+import { Engine } from './engine';
+import { Body, type Moves } from './body';
 import type { Pair } from './pair';
-import { sayFault } from './panel';
-import type { Moves } from './scene';
+import { sayFault } from './status';
+
+export const kRest = 220; // milliseconds without a motion, after which the map is fine
 
 /// Two bodies, as they are chosen.
 export interface Choice {

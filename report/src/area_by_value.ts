@@ -28,8 +28,8 @@ export class AreaByValue {
     let [lo, hi, total, without] = [Infinity, -Infinity, 0, 0];
     areas.forEach((area, i) => {
       total += area;
-      if (!Number.isFinite(distances[i])) return void (without += area);
-      if (area > 0) [lo, hi] = [Math.min(lo, distances[i]), Math.max(hi, distances[i])];
+      if (!Number.isFinite(distances[i])) without += area;
+      else if (area > 0) [lo, hi] = [Math.min(lo, distances[i]), Math.max(hi, distances[i])];
     });
     if (lo > hi) lo = hi = 0;
     const byKey = new Float64Array(1 << 16);

@@ -119,11 +119,10 @@ export async function readBaked(): Promise<BakedData> {
   ];
   const steps = (['low', 'high'] as const).map((mesh) => {
     const read = stepsOf(arrays, mesh);
-    read.steps.forEach(
-      (x, i) => (
-        (ends[0][i % 3] = Math.min(ends[0][i % 3], x)), (ends[1][i % 3] = Math.max(ends[1][i % 3], x))
-      ),
-    );
+    read.steps.forEach((x, i) => {
+      ends[0][i % 3] = Math.min(ends[0][i % 3], x);
+      ends[1][i % 3] = Math.max(ends[1][i % 3], x);
+    });
     return read;
   });
   const { origin, step } = page.place;

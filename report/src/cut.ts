@@ -1,5 +1,5 @@
 // Cuts a view open where the form says.
-import type { State } from './controls';
+import type { State } from './state';
 import { byId } from './dom';
 import type { Vec } from './page_data';
 import type { SectionView } from './section_view';

@@ -3,8 +3,8 @@ import { byId, make, table } from './dom';
 import { percent, text } from './numbers';
 import type { Report } from './page_data';
 import { distanceText } from './precision';
-import { isCloud, isSigned, limitsText, unitOf, wholeOf } from './verdict';
-import { capital, quantityOf } from './words';
+import { isCloud, limitsText, unitOf, wholeOf } from './verdict';
+import { capital, isSigned, quantityOf } from './words';
 
 export interface GroupName {
   kind: string;

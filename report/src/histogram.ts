@@ -6,8 +6,8 @@ import { percent, text, ticks, tickText } from './numbers';
 import type { AreaByValue } from './area_by_value';
 import type { Report } from './page_data';
 import { distanceText } from './precision';
-import { isSigned, Limits, realLimits, unitOf, wholeOf } from './verdict';
-import { capital, quantityOf } from './words';
+import { Limits, realLimits, unitOf, wholeOf } from './verdict';
+import { capital, isSigned, quantityOf } from './words';
 
 const kBins = 48;
 const kHeight = 236;

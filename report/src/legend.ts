@@ -35,7 +35,8 @@ export function scaleLabels(scale: Scale, apart = kApart): ScaleLabel[] {
     const isRound = Math.abs(value / step - Math.round(value / step)) < 1e-6;
     labels.push({ value, text: close ? '' : isRound ? tickText(value, step) : valueLabel(value), isLimit });
   };
-  add(lo, false), add(hi, false);
+  add(lo, false);
+  add(hi, false);
   if (scale.mode === 'tolerance')
     for (const limit of [scale.lower, scale.upper]) if (limit > lo && limit < hi) add(limit, true);
   for (const value of round) add(value, false);

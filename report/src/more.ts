@@ -2,8 +2,8 @@
 import { make, table } from './dom';
 import { count, percent, place, text } from './numbers';
 import type { Report, Vec } from './page_data';
-import { isSigned, limitsIn, limitsOf, unitOf, wholeOf } from './verdict';
-import { isThickness, named, quantityOf } from './words';
+import { limitsIn, limitsOf, unitOf, wholeOf } from './verdict';
+import { isSigned, isThickness, named, quantityOf } from './words';
 
 /// The keys of the report that are shown in words.
 export const kInWords = ['alignment', 'hausdorff', 'bands', 'separation', 'exclusion', 'thickness', 'doubts'];

@@ -45,7 +45,10 @@ export class Pace {
     const { moving } = this;
     const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
-    if (!sync) return this.complete();
+    if (!sync) {
+      this.complete();
+      return;
+    }
     const begin = performance.now();
     this.pending = true;
     const look = () => {

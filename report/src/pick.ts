@@ -32,25 +32,25 @@ export function firstHit(
     const a = 3 * t[i];
     const b = 3 * t[i + 1];
     const c = 3 * t[i + 2];
-    const ex = p[b] - p[a],
-      ey = p[b + 1] - p[a + 1],
-      ez = p[b + 2] - p[a + 2];
-    const fx = p[c] - p[a],
-      fy = p[c + 1] - p[a + 1],
-      fz = p[c + 2] - p[a + 2];
-    const hx = dy * fz - dz * fy,
-      hy = dz * fx - dx * fz,
-      hz = dx * fy - dy * fx;
+    const ex = p[b] - p[a];
+    const ey = p[b + 1] - p[a + 1];
+    const ez = p[b + 2] - p[a + 2];
+    const fx = p[c] - p[a];
+    const fy = p[c + 1] - p[a + 1];
+    const fz = p[c + 2] - p[a + 2];
+    const hx = dy * fz - dz * fy;
+    const hy = dz * fx - dx * fz;
+    const hz = dx * fy - dy * fx;
     const det = ex * hx + ey * hy + ez * hz;
     if (det === 0) continue;
-    const sx = ox - p[a],
-      sy = oy - p[a + 1],
-      sz = oz - p[a + 2];
+    const sx = ox - p[a];
+    const sy = oy - p[a + 1];
+    const sz = oz - p[a + 2];
     const v = (sx * hx + sy * hy + sz * hz) / det;
     if (v < 0 || v > 1) continue;
-    const qx = sy * ez - sz * ey,
-      qy = sz * ex - sx * ez,
-      qz = sx * ey - sy * ex;
+    const qx = sy * ez - sz * ey;
+    const qy = sz * ex - sx * ez;
+    const qz = sx * ey - sy * ex;
     const w = (dx * qx + dy * qy + dz * qz) / det;
     if (w < 0 || v + w > 1) continue;
     const at = (fx * qx + fy * qy + fz * qz) / det;

@@ -3,8 +3,8 @@ import { byId, make, table } from './dom';
 import { count, percent, place, text } from './numbers';
 import type { PageJson, Place, Places, Report } from './page_data';
 import { distanceText } from './precision';
-import { isCloud, isSigned, limitsText, unitOf } from './verdict';
-import { capital, quantityOf } from './words';
+import { isCloud, limitsText, unitOf } from './verdict';
+import { capital, isSigned, quantityOf } from './words';
 
 export type Listed = Pick<Place, 'distance' | 'point' | 'at'> & Partial<Place>;
 

@@ -227,7 +227,9 @@ class Player {
         '30',
         (speed) => {
           this.perSecond = Number(speed);
-          if (this.playing) this.toggle(), this.toggle();
+          if (!this.playing) return;
+          this.toggle();
+          this.toggle();
         },
       ),
       ...(this.worst

@@ -1,13 +1,9 @@
 // What a reader of the page may keep: the page with its callouts and settings, and its numbers.
 import type { Callout } from './callouts';
-import type { State } from './controls';
-import type { Report, Vec } from './page_data';
-import { flattened } from './tables';
-
-export interface Camera {
-  position: Vec;
-  target: Vec;
-}
+import type { State } from './state';
+import type { Report } from './page_data';
+import { flattened } from './json_tables';
+import type { Camera } from './viewer';
 
 /// What a saved page opens with.
 export interface Saved {

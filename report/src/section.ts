@@ -104,12 +104,12 @@ function nearestOf({ ends }: Profile, to: Vec): Vec | null {
   let best: Vec | null = null;
   let least = Infinity;
   for (let i = 0; i < ends.length; i += 6) {
-    const ux = ends[i + 3] - ends[i],
-      uy = ends[i + 4] - ends[i + 1],
-      uz = ends[i + 5] - ends[i + 2];
-    const px = to[0] - ends[i],
-      py = to[1] - ends[i + 1],
-      pz = to[2] - ends[i + 2];
+    const ux = ends[i + 3] - ends[i];
+    const uy = ends[i + 4] - ends[i + 1];
+    const uz = ends[i + 5] - ends[i + 2];
+    const px = to[0] - ends[i];
+    const py = to[1] - ends[i + 1];
+    const pz = to[2] - ends[i + 2];
     const s = Math.min(1, Math.max(0, (px * ux + py * uy + pz * uz) / (ux * ux + uy * uy + uz * uz || 1)));
     const away = (px - s * ux) ** 2 + (py - s * uy) ** 2 + (pz - s * uz) ** 2;
     if (away >= least) continue;

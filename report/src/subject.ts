@@ -40,7 +40,12 @@ export interface Subject {
   normalNear(point: Vec): Vec;
 }
 
-export function boxOf(position: Float32Array | Float64Array): { lo: Vec; hi: Vec } {
+export interface Box {
+  lo: Vec;
+  hi: Vec;
+}
+
+export function boxOf(position: Float32Array | Float64Array): Box {
   const lo: Vec = [Infinity, Infinity, Infinity];
   const hi: Vec = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < position.length; ++i) {
@@ -49,6 +54,17 @@ export function boxOf(position: Float32Array | Float64Array): { lo: Vec; hi: Vec
     if (position[i] > hi[k]) hi[k] = position[i];
   }
   return { lo, hi };
+}
+
+export function united(a: Box, b: Box): Box {
+  return {
+    lo: a.lo.map((x, k) => Math.min(x, b.lo[k])) as Vec,
+    hi: a.hi.map((x, k) => Math.max(x, b.hi[k])) as Vec,
+  };
+}
+
+export function areApart(a: Box, b: Box): boolean {
+  return [0, 1, 2].some((k) => a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]);
 }
 
 /// The number of the position that is nearest to a point.

@@ -16,7 +16,7 @@ import type { Evidence, Report } from './page_data';
 import { percent, text } from './numbers';
 import { distanceText } from './precision';
 import type { AreaByValue } from './area_by_value';
-import { capital, isThickness, quantityOf } from './words';
+import { capital, isSigned, isThickness, quantityOf } from './words';
 
 export type Verdict = (typeof kVerdictNames)[number] | 'MEASURED';
 
@@ -38,10 +38,6 @@ export function isCloud(report: Report): boolean {
 /// What fractions are of.
 export function wholeOf(report: Report): 'area' | 'points' {
   return isCloud(report) ? 'points' : 'area';
-}
-
-export function isSigned(report: Report): boolean {
-  return report.sign !== undefined && report.sign.method !== 'none';
 }
 
 export function unitOf(report: Report): string {

@@ -4,10 +4,9 @@ import { CoarseWhileMoving } from './coarse_copy';
 import type { Scale } from './color_scale';
 import { coverageOf, kReferenceVertexShader } from './coverage';
 import type { Ghost, Vec } from './page_data';
-import type { Camera } from './saved';
 import type { SectionView } from './section_view';
 import type { Found, HalfSpace, Subject } from './subject';
-import { Viewer } from './viewer';
+import { type Camera, Viewer } from './viewer';
 
 const kGhostShader = `
   precision highp float;

@@ -3,7 +3,6 @@ import { PerspectiveCamera, Scene, TOUCH, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { Pace } from './pace';
 import type { Vec } from './page_data';
-import type { Camera } from './saved';
 
 // Right, up and towards the viewer in the front view.
 const kSides: Record<'y' | 'z', Record<string, Vec>> = {
@@ -26,6 +25,11 @@ const kSides: Record<'y' | 'z', Record<string, Vec>> = {
     corner: [0.6, 0.55, 1],
   },
 };
+
+export interface Camera {
+  position: Vec;
+  target: Vec;
+}
 
 /// The scene is about the origin, in units of half of its diagonal.
 export class Viewer {

@@ -1,5 +1,5 @@
 // The page where no picture can be drawn: all that is not in 3D.
-import { startOf } from './controls';
+import { startOf } from './state';
 import { byId } from './dom';
 import { drawHistogram } from './histogram';
 import type { PageData, Report } from './page_data';

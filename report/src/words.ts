@@ -1,6 +1,9 @@
 // What is measured, in words.
 import type { Report } from './page_data';
-import { isSigned } from './verdict';
+
+export function isSigned(report: Report): boolean {
+  return report.sign !== undefined && report.sign.method !== 'none';
+}
 
 export function isThickness(report: Report): boolean {
   return report.thickness !== undefined || report.measured?.kind === 'thickness';

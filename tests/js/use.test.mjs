@@ -36,8 +36,8 @@ test('signs, rays and maps of a ball', () => {
   const statistics = map.statistics();
   assert.ok(statistics.max < -0.49 && statistics.min >= -0.5 - 1e-6, JSON.stringify(statistics));
   assert.ok(statistics.p50 <= statistics.p95 && statistics.p95Abs === -statistics.p05 && statistics.negativeAreaFraction === 1);
-  // Names come from the library, types from surface.ts.
-  const [, type] = /interface MapStatistics \{([^}]*)\}/.exec(readFileSync(join(process.env.SDM_PACKAGE, 'surface.d.ts'), 'utf8'));
+  // Names come from the library, types from types.ts.
+  const [, type] = /interface MapStatistics \{([^}]*)\}/.exec(readFileSync(join(process.env.SDM_PACKAGE, 'types.d.ts'), 'utf8'));
   assert.deepEqual(Object.keys(statistics), [...type.matchAll(/(\w+): number/g)].map(([, name]) => name));
   const heights = map.transfer(positions.filter((_, i) => i % 3 === 2));
   assert.equal(heights.length, 128 * 128);

@@ -1,9 +1,21 @@
-// What an animated file plays.
+// Bodies, and how they move: by what an animated file plays, or as a scene has it.
 import type { SdmWorker, WorkerAnimation } from 'sdm';
 import { Matrix4 } from 'three';
-import { moved } from './engine';
-import { kTimeStep, type Moves } from './scene';
-import type { Body } from './engine';
+import type { Triangles } from './layout';
+import { moved } from './placing';
+
+export const kTimeStep = 1 / 60; // seconds between frames
+
+export interface Moves {
+  /// The vertices of both bodies a time step later.
+  advance(): [Float64Array, Float64Array] | Promise<[Float64Array, Float64Array]>;
+}
+
+export interface Body extends Triangles {
+  name: string;
+  file?: File; ///< none: the page has made it
+  film?: Film; ///< of an animated file
+}
 
 /// The frames of a file, read again when the worker has lost them.
 export class Film {

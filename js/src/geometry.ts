@@ -1,0 +1,52 @@
+// Points, triangles and lengths, as the module takes and returns them.
+import { type Bytes, float64 } from './bytes.js';
+import { type Module } from './module.js';
+import {
+  type BoundedLength,
+  type Certainty,
+  type Indices,
+  type Point,
+  type Points,
+  SdmError,
+} from './types.js';
+
+/** Coordinates as doubles, three for each point. */
+export function coordinates(points: Points, name: string): Float64Array {
+  if (points.length % 3 !== 0)
+    throw new SdmError('input', `${name} has ${points.length} numbers, but three are needed for each point`);
+  return points instanceof Float64Array ? points : Float64Array.from(points);
+}
+
+/** Indices of corners, three for each triangle. */
+export function corners(indices: Indices, vertices: number): Uint32Array {
+  if (!indices) return Uint32Array.from({ length: vertices - (vertices % 3) }, (_, i) => i);
+  if (indices.length % 3 !== 0)
+    throw new SdmError(
+      'input',
+      `indices has ${indices.length} numbers, but three are needed for each triangle`,
+    );
+  for (let i = 0; i < indices.length; ++i) {
+    const index = indices[i]!;
+    if (!(index >= 0 && index < vertices && Number.isInteger(index)))
+      throw new SdmError('input', `indices[${i}] is ${index}, but there are ${vertices} vertices`);
+  }
+  return indices instanceof Uint32Array ? indices : Uint32Array.from(indices);
+}
+
+export function boundedLength(module: Module, bytes: Bytes): BoundedLength {
+  const [value, lower, upper, certainty, ...witness] = Array.from(float64(bytes)) as [
+    number,
+    number,
+    number,
+    number,
+    ...number[],
+  ];
+  const points: [Point, Point] = [witness.slice(0, 3) as Point, witness.slice(3, 6) as Point];
+  return {
+    value,
+    lower,
+    upper,
+    certainty: module.words('certainty')[certainty] as Certainty,
+    witness: Number.isNaN(witness[0]!) ? null : points,
+  };
+}

@@ -1,0 +1,76 @@
+// Two bodies that move.
+import { type Bytes, float64, uint32 } from './bytes.js';
+import { boundedLength, coordinates, corners } from './geometry.js';
+import { type Module } from './module.js';
+import { Owned } from './owned.js';
+import { type BoundedLength, type Indices, type Points, SdmError } from './types.js';
+
+export interface Contacts {
+  /** Points on the first and on the second body, three numbers each. */
+  points1: Float64Array;
+  points2: Float64Array;
+  /** Along which moving the first body separates them. */
+  normals: Float64Array;
+  depths: Float64Array;
+  patches: Uint32Array;
+  ids: BigUint64Array;
+}
+
+/** Two bodies that move and deform. Of the module `full` only. */
+export class Pair extends Owned {
+  constructor(
+    module: Module,
+    first: { positions: Points; indices?: Indices },
+    second: { positions: Points; indices?: Indices },
+    options: { contactMargin?: number } = {},
+  ) {
+    if (!module.has('sdm_new_pair'))
+      throw new SdmError('input', 'Pair needs the module of start({ full: true })');
+    const bodies = [first, second].flatMap(({ positions, indices }, body) => {
+      const at = coordinates(positions, `positions of body ${body}`);
+      const triangles = corners(indices ?? null, at.length / 3);
+      return [at, at.length / 3, triangles, triangles.length / 3];
+    });
+    const [address] = module.call('sdm_new_pair', [...bodies, options.contactMargin ?? 0]);
+    super(module, float64(address!)[0]!, 'sdm_free_pair');
+  }
+
+  /** Moves a body, 0 or 1. `matrix`: 16 numbers, column after column, as three.js has them (Matrix4.elements). */
+  setPose(body: 0 | 1, matrix: ArrayLike<number>): void {
+    if (matrix.length !== 16)
+      throw new SdmError('input', `a pose is a matrix of 16 numbers, not ${matrix.length}`);
+    const rows = Float64Array.from({ length: 12 }, (_, i) => matrix[(i % 4) * 4 + (i >> 2)]!);
+    this.module.call('sdm_set_pose', [this.handle, body, rows]);
+  }
+  /** Moves the vertices of a body. */
+  refit(body: 0 | 1, positions: Points): void {
+    const at = coordinates(positions, 'positions');
+    this.module.call('sdm_refit_pair', [this.handle, body, at, at.length / 3]);
+  }
+  /** The smallest distance between both surfaces; 0 if they intersect. */
+  separation(): BoundedLength {
+    return boundedLength(this.module, this.module.call('sdm_separation', [this.handle])[0]!);
+  }
+  /** Whether the surfaces intersect, or a solid contains part of the other body. */
+  colliding(): boolean {
+    return float64(this.module.call('sdm_colliding', [this.handle])[0]!)[0] !== 0;
+  }
+  /** How deep a point of one body is inside the other; null if neither is a solid. */
+  penetrationDepth(): BoundedLength | null {
+    const [depth] = this.module.call('sdm_penetration_depth', [this.handle]);
+    return depth ? boundedLength(this.module, depth) : null;
+  }
+  contacts(): Contacts {
+    const [points1, points2, normals, depths, patches, ids] = this.module.call('sdm_contacts', [
+      this.handle,
+    ]) as Bytes[];
+    return {
+      points1: float64(points1!),
+      points2: float64(points2!),
+      normals: float64(normals!),
+      depths: float64(depths!),
+      patches: uint32(patches!),
+      ids: new BigUint64Array(ids!.buffer),
+    };
+  }
+}
