@@ -25,8 +25,7 @@ namespace {
 
 sdm::AtlasOptions atlas_options(const MapCommand& command, const sdm::Mesh& mesh) {
   sdm::AtlasOptions options = command.layout.atlas;
-  if (const auto& precision = command.layout.fit.precision)
-    options.resolution = sdm::resolution_for(mesh, *precision, options);
+  options.resolution = sdm::resolution_for(mesh, command.layout.fit, options);
   return options;
 }
 

@@ -117,9 +117,9 @@ class SDM_API RelativeError {
 [[nodiscard]] SDM_API std::uint32_t resolution_for(const Mesh& mesh, double precision,
                                                    const AtlasOptions& options = {});
 
-/// The resolution of an atlas, by what it is to reach: see resolution_for().
+/// What decides the resolution of an atlas in place of a number.
 struct PrecisionOptions {
-  std::optional<double> precision{};
+  std::optional<double> precision{};  ///< as of resolution_for()
 };
 
 inline constexpr std::array kPrecisionExcludes{
@@ -136,5 +136,9 @@ inline constexpr auto kOptions<PrecisionOptions> = std::tuple{
            .unit = "length",
            .value = "EPS",
            .excludes = kPrecisionExcludes}};
+
+/// Returns the resolution that they ask for; atlas.resolution if they ask for none. Errors and cost as above.
+[[nodiscard]] SDM_API std::uint32_t resolution_for(const Mesh& mesh, const PrecisionOptions& options,
+                                                   const AtlasOptions& atlas);
 
 }  // namespace sdm

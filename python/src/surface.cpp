@@ -39,8 +39,7 @@ void check_laid_out(const nb::dict& given) {
 
 std::unique_ptr<PySurface> built(PyMesh mesh, Layout layout, const Progress& progress) {
   layout.options.progress = progress;
-  if (const auto& precision = layout.fit.precision)
-    layout.options.resolution = resolution_for(mesh.mesh, *precision, layout.options);
+  layout.options.resolution = resolution_for(mesh.mesh, layout.fit, layout.options);
   return std::make_unique<PySurface>(std::move(mesh), layout.options);
 }
 
@@ -109,8 +108,7 @@ void bind_construction(nb::class_<PySurface>& surface) {
         run(progress, [&](const Progress& report) {
           AtlasOptions atlas_options = options.options;
           atlas_options.progress = report;
-          if (options.fit.precision)
-            atlas_options.resolution = resolution_for(value.mesh, *options.fit.precision, atlas_options);
+          atlas_options.resolution = resolution_for(value.mesh, options.fit, atlas_options);
           made.make([&] { return PySurface(std::move(value), atlas_options); });
         });
         made.release();

@@ -85,4 +85,9 @@ std::uint32_t resolution_for(const Mesh& mesh, double precision, const AtlasOpti
   }
 }
 
+std::uint32_t resolution_for(const Mesh& mesh, const PrecisionOptions& options, const AtlasOptions& atlas) {
+  check_options(options);
+  return options.precision ? resolution_for(mesh, *options.precision, atlas) : atlas.resolution;
+}
+
 }  // namespace sdm
