@@ -119,12 +119,14 @@ class SDM_API RelativeError {
 
 /// What decides the resolution of an atlas in place of a number.
 struct PrecisionOptions {
-  std::optional<double> precision{};  ///< as of resolution_for()
+  std::optional<double> precision{};   ///< as of resolution_for()
+  std::optional<double> texel_size{};  ///< a precision of 1/√2 of it, that of square texels of this side
 };
 
 inline constexpr std::array kPrecisionExcludes{
     ExcludedOption{"resolution"}, ExcludedOption{"facing", "nothing bounds such distances between samples"},
     ExcludedOption{"along", "nothing bounds such distances between samples"}};
+inline constexpr std::array kTexelSizeExcludes{ExcludedOption{"resolution"}, ExcludedOption{"precision"}};
 
 template <>
 inline constexpr auto kOptions<PrecisionOptions> = std::tuple{
@@ -135,7 +137,15 @@ inline constexpr auto kOptions<PrecisionOptions> = std::tuple{
            .range = kPositive,
            .unit = "length",
            .value = "EPS",
-           .excludes = kPrecisionExcludes}};
+           .excludes = kPrecisionExcludes},
+    Option{.name = "texel_size",
+           .member = &PrecisionOptions::texel_size,
+           .text = "Instead of a resolution: the one of texels of about this size on the surface, at which "
+                   "every point of it is within 0.71 of that of a sample.",
+           .range = kPositive,
+           .unit = "length",
+           .value = "SIZE",
+           .excludes = kTexelSizeExcludes}};
 
 /// Returns the resolution that they ask for; atlas.resolution if they ask for none. Errors and cost as above.
 [[nodiscard]] SDM_API std::uint32_t resolution_for(const Mesh& mesh, const PrecisionOptions& options,

@@ -143,6 +143,17 @@ TEST(ResolutionFor, CoarsePrecisionsUseTheMinimumOfTheCharts) {
   EXPECT_LE(resolution, 512u);
 }
 
+TEST(ResolutionFor, TexelSizesArePrecisionsOfHalfTheirDiagonal) {
+  const Mesh mesh = test::load("elephant-with-holes.off");
+  const double size = 0.02 * diagonal(bounds(mesh));
+  AtlasOptions atlas;
+  atlas.resolution = resolution_for(mesh, {.texel_size = size}, atlas);
+  EXPECT_EQ(atlas.resolution, resolution_for(mesh, size / std::sqrt(2)));
+  EXPECT_LE(bound_or_none(mesh, atlas), size / std::sqrt(2));
+  EXPECT_EQ(resolution_for(mesh, PrecisionOptions{}, {.resolution = 48}), 48u);
+  EXPECT_THROW((void)resolution_for(mesh, {.precision = size, .texel_size = size}, atlas), Error);
+}
+
 TEST(ResolutionFor, RejectsUnattainablePrecisions) {
   const Mesh mesh = test::load("cube.off");
   for (const double precision : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})

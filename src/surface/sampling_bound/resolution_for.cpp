@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "atlas/packing/too_small.h"
 #include "core/numbers/number_text.h"
@@ -87,7 +88,9 @@ std::uint32_t resolution_for(const Mesh& mesh, double precision, const AtlasOpti
 
 std::uint32_t resolution_for(const Mesh& mesh, const PrecisionOptions& options, const AtlasOptions& atlas) {
   check_options(options);
-  return options.precision ? resolution_for(mesh, *options.precision, atlas) : atlas.resolution;
+  if (options.precision) return resolution_for(mesh, *options.precision, atlas);
+  if (options.texel_size) return resolution_for(mesh, *options.texel_size / std::numbers::sqrt2, atlas);
+  return atlas.resolution;
 }
 
 }  // namespace sdm
