@@ -17,12 +17,12 @@
 #include <string>
 #include <vector>
 
+#include "bodies/shape/body.h"
+#include "bodies/shape/posed_body.h"
 #include "geometry/vec.h"
 #include "harness.h"
 #include "mesh/similarity.h"
 #include "poses.h"
-#include "query/shape/body.h"
-#include "query/shape/posed_body.h"
 #include "scenes.h"
 #include "scenes/reduce_mesh.h"
 #include "thin_parts.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "closest/point_group.h"
 #include "geometry/vec.h"
-#include "query/closest/point_group.h"
 
 namespace sdm::bench {
 

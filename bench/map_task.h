@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "closest/work_counts.h"
 #include "embree_map.h"
-#include "query/closest/work_counts.h"
 #include "timing.h"
 
 namespace sdm::bench {

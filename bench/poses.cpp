@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "query/pairs/pair_search.h"
+#include "bodies/pairs/pair_search.h"
 
 namespace sdm::bench {
 

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "query/pairs/mesh_pair.h"
+#include "bodies/pairs/mesh_pair.h"
 
 namespace sdm::bench {
 

@@ -21,13 +21,13 @@
 #include <string>
 #include <vector>
 
+#include "bodies/pairs/pair_search.h"
 #include "core/stopwatch.h"
 #include "fcl_pair.h"
 #include "geometry/vec.h"
 #include "harness.h"
 #include "mesh/similarity.h"
 #include "poses.h"
-#include "query/pairs/pair_search.h"
 #include "refine_mesh.h"
 #include "scenes.h"
 #include "scenes/letters.h"

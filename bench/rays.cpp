@@ -22,7 +22,7 @@
 #include "geometry/line_triangle.h"
 #include "geometry/vec.h"
 #include "harness.h"
-#include "query/rays/hemisphere.h"
+#include "rays/hemisphere.h"
 #include "timing.h"
 
 namespace sdm::bench {

@@ -17,8 +17,8 @@
 
 #include "geometry/vec.h"
 #include "harness.h"
+#include "inside/angles/solid_angle.h"
 #include "point_sets.h"
-#include "query/inside/angles/solid_angle.h"
 #include "refine_mesh.h"
 #include "scenes.h"
 #include "sites/sites_data.h"

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "closest/reference/reference_engine.h"
 #include "core/memory.h"
 #include "core/stopwatch.h"
-#include "engine/reference/reference_engine.h"
 #include "research/fields/drawing_task.h"
 #include "research/fields/scan_convert.h"
 #include "research/fields/site_signs.h"

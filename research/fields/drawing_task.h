@@ -1,7 +1,7 @@
 // What the methods of the literature compute a field from.
 #pragma once
 
-#include "query/inside/inside.h"
+#include "inside/inside.h"
 #include "research/fields/fields.h"
 #include "sites/sites_data.h"
 

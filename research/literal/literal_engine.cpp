@@ -11,13 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "closest/blocks.h"
+#include "closest/closest_points.h"
 #include "core/stopwatch.h"
 #include "gl/confirm.h"
 #include "gl/device/device_pool.h"
 #include "gl/gl_engine.h"
 #include "gl/map_drawing.h"
-#include "query/closest/blocks.h"
-#include "query/closest/closest_points.h"
 #include "research/literal/rasteriser.h"
 #include "research/site_code.h"
 

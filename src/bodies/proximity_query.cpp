@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "bodies/many/internal_contacts.h"
+#include "bodies/pair/pair_answers.h"
+#include "bodies/separate/separating_contacts.h"
+#include "bodies/separate/separating_translation.h"
+#include "bodies/shape/posed_body.h"
 #include "core/cancellation.h"
 #include "core/memory.h"
-#include "proximity/bodies/internal_contacts.h"
-#include "proximity/pair/pair_answers.h"
-#include "proximity/separate/separating_contacts.h"
-#include "proximity/separate/separating_translation.h"
-#include "query/shape/posed_body.h"
 
 namespace sdm {
 

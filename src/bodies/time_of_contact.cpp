@@ -3,8 +3,8 @@
 #include <new>
 #include <optional>
 
+#include "bodies/motion/moving_pair.h"
 #include "core/memory.h"
-#include "proximity/motion/moving_pair.h"
 
 namespace sdm {
 namespace {

@@ -1,4 +1,4 @@
-#include "query/closest/blocks.h"
+#include "closest/blocks.h"
 
 #include <algorithm>
 #include <vector>

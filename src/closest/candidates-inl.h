@@ -9,8 +9,8 @@
 
 #include <span>
 
+#include "closest/single_point.h"
 #include "geometry/lanes/closest_feature-inl.h"
-#include "query/closest/single_point.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::closest::HWY_NAMESPACE {

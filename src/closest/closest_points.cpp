@@ -1,11 +1,11 @@
-#include "query/closest/closest_points.h"
+#include "closest/closest_points.h"
 
 #include <algorithm>
 #include <memory>
 
-#include "query/closest/blocks.h"
-#include "query/closest/descent.h"
-#include "query/closest/finish.h"
+#include "closest/blocks.h"
+#include "closest/descent.h"
+#include "closest/finish.h"
 
 namespace sdm::closest {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "query/closest/single_point.h"
+#include "closest/single_point.h"
 #include "sites/closest_packet.h"
 #include "sites/sites_data.h"
 

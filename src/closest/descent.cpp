@@ -1,7 +1,7 @@
-#include "query/closest/descent.h"
+#include "closest/descent.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query/closest/descent.cpp"
+#define HWY_TARGET_INCLUDE "closest/descent.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -10,8 +10,8 @@
 #include <bit>
 #include <limits>
 
-#include "query/closest/site_lists-inl.h"
-#include "query/closest/work_counts.h"
+#include "closest/site_lists-inl.h"
+#include "closest/work_counts.h"
 
 #ifndef SDM_DESCENT_ONCE
 #define SDM_DESCENT_ONCE

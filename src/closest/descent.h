@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "query/closest/point_group.h"
-#include "query/closest/site_lists.h"
+#include "closest/point_group.h"
+#include "closest/site_lists.h"
 #include "sites/sites_data.h"
 #include "tree/visit.h"
 

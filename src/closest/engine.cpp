@@ -1,8 +1,8 @@
-#include "engine/engine.h"
+#include "closest/engine.h"
 
+#include "closest/blocks.h"
+#include "closest/scattered.h"
 #include "geometry/spatial_order.h"
-#include "query/closest/blocks.h"
-#include "query/closest/scattered.h"
 #include "sites/sites_data.h"
 
 namespace sdm {

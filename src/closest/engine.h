@@ -42,7 +42,7 @@ class Engine {
                    const engine::SampleSink& sink) const;
 
   /// Passes the closest point of every point to the sink, in order and on the calling thread. Called for
-  /// blocks of neighbouring points (see query/closest/blocks.h) from several threads. Throws sdm::Error if
+  /// blocks of neighbouring points (see closest/blocks.h) from several threads. Throws sdm::Error if
   /// the engine computes maps only.
   virtual void closest_points(const Sites& sites, std::span<const Vec3> points, double max_distance,
                               const sites::ClosestSink& sink) const = 0;

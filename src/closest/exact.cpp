@@ -1,4 +1,4 @@
-#include "query/closest/exact.h"
+#include "closest/exact.h"
 
 namespace sdm::closest {
 

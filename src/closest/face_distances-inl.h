@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "closest/region_kernels-inl.h"
 #include "geometry/lanes/vec-inl.h"
-#include "query/closest/region_kernels-inl.h"
 #include "sites/frames/face_frames.h"
 
 #ifndef SDM_FACE_DISTANCES_ONCE

@@ -1,7 +1,7 @@
-#include "query/closest/finish.h"
+#include "closest/finish.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query/closest/finish.cpp"
+#define HWY_TARGET_INCLUDE "closest/finish.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -9,10 +9,10 @@
 #include <bit>
 #include <limits>
 
+#include "closest/closest_points.h"
 #include "core/nothing_found.h"
 #include "geometry/lanes/vec-inl.h"
 #include "geometry/vec.h"
-#include "query/closest/closest_points.h"
 #include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();

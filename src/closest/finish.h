@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "query/closest/descent.h"
+#include "closest/descent.h"
 #include "sites/closest_packet.h"
 #include "sites/sites_data.h"
 

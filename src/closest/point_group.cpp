@@ -1,7 +1,7 @@
-#include "query/closest/point_group.h"
+#include "closest/point_group.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query/closest/point_group.cpp"
+#define HWY_TARGET_INCLUDE "closest/point_group.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>

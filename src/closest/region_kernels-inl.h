@@ -12,8 +12,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "query/closest/point_group.h"
-#include "query/closest/site_lists.h"
+#include "closest/point_group.h"
+#include "closest/site_lists.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::closest::HWY_NAMESPACE {

@@ -1,16 +1,16 @@
-#include "query/closest/scattered.h"
+#include "closest/scattered.h"
 
 #include <algorithm>
 #include <numeric>
 #include <vector>
 
+#include "closest/blocks.h"
+#include "closest/closest_points.h"
+#include "closest/single_point.h"
 #include "core/parallel.h"
 #include "geometry/morton_order.h"
 #include "geometry/spatial_order.h"
 #include "geometry/vec.h"
-#include "query/closest/blocks.h"
-#include "query/closest/closest_points.h"
-#include "query/closest/single_point.h"
 
 namespace sdm::closest {
 namespace {

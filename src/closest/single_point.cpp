@@ -1,7 +1,7 @@
-#include "query/closest/single_point.h"
+#include "closest/single_point.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query/closest/single_point.cpp"
+#define HWY_TARGET_INCLUDE "closest/single_point.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -11,10 +11,10 @@
 #include <cmath>
 #include <limits>
 
+#include "closest/candidates-inl.h"
+#include "closest/exact.h"
+#include "closest/face_distances-inl.h"
 #include "core/nothing_found.h"
-#include "query/closest/candidates-inl.h"
-#include "query/closest/exact.h"
-#include "query/closest/face_distances-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::closest::HWY_NAMESPACE {

@@ -16,8 +16,8 @@
 #include <cstring>
 #include <span>
 
-#include "query/closest/region_kernels-inl.h"
-#include "query/closest/site_lists.h"
+#include "closest/region_kernels-inl.h"
+#include "closest/site_lists.h"
 
 #ifndef SDM_SITE_LISTS_ONCE
 #define SDM_SITE_LISTS_ONCE

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "query/closest/closest_points.h"
+#include "closest/closest_points.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::gl {

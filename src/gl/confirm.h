@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "engine/engine.h"
+#include "closest/engine.h"
 #include "gl/draw_winners.h"
 
 namespace sdm::gl {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "closest/closest_points.h"
 #include "core/parallel.h"
-#include "query/closest/closest_points.h"
 
 namespace sdm::gl {
 namespace {

@@ -8,11 +8,11 @@
 #include <string>
 #include <utility>
 
+#include "closest/blocks.h"
 #include "core/stopwatch.h"
 #include "gl/confirm.h"
 #include "gl/device/device_pool.h"
 #include "gl/draw_winners.h"
-#include "query/closest/blocks.h"
 
 namespace sdm {
 namespace gl {

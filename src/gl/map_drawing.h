@@ -6,8 +6,8 @@
 
 #include <vector>
 
+#include "closest/engine.h"
 #include "core/stopwatch.h"
-#include "engine/engine.h"
 #include "gl/domain_tree.h"
 #include "gl/pair_stream.h"
 #include "gl/tile_tree.h"

@@ -1,4 +1,4 @@
-#include "query/inside/closing_faces.h"
+#include "inside/closing_faces.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,7 +1,7 @@
-#include "query/inside/face_pairs.h"
+#include "inside/face_pairs.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query/inside/face_pairs.cpp"
+#define HWY_TARGET_INCLUDE "inside/face_pairs.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>

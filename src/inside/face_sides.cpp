@@ -1,11 +1,11 @@
-#include "query/inside/face_sides.h"
+#include "inside/face_sides.h"
 
 #include <algorithm>
 
 #include "core/cancellation.h"
 #include "geometry/vec.h"
-#include "query/inside/near_faces.h"
-#include "query/inside/solid.h"
+#include "inside/near_faces.h"
+#include "inside/solid.h"
 
 namespace sdm::inside {
 namespace {

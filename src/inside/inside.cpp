@@ -1,4 +1,4 @@
-#include "query/inside/inside.h"
+#include "inside/inside.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "geometry/vec.h"
-#include "query/inside/winding_walk.h"
+#include "inside/winding_walk.h"
 
 namespace sdm::inside {
 namespace {

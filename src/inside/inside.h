@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <span>
 
-#include "query/inside/shape_signs.h"
-#include "query/inside/solid.h"
+#include "inside/shape_signs.h"
+#include "inside/solid.h"
 #include "sites/closest_packet.h"
 #include "sites/sites_data.h"
 

@@ -1,4 +1,4 @@
-#include "query/inside/near_faces.h"
+#include "inside/near_faces.h"
 
 #include <algorithm>
 #include <atomic>
@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "geometry/rounding.h"
-#include "query/inside/face_pairs.h"
+#include "inside/face_pairs.h"
 #include "tree/visit.h"
 
 namespace sdm::inside {

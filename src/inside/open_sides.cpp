@@ -1,4 +1,4 @@
-#include "query/inside/open_sides.h"
+#include "inside/open_sides.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 
 #include "geometry/predicates.h"
 #include "geometry/vec.h"
-#include "query/inside/face_sides.h"
-#include "query/inside/near_faces.h"
-#include "query/inside/solid.h"
+#include "inside/face_sides.h"
+#include "inside/near_faces.h"
+#include "inside/solid.h"
 #include "tree/visit.h"
 
 namespace sdm::inside {

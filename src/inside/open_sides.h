@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "inside/angles/oriented_faces.h"
 #include "mesh/topology.h"
-#include "query/inside/angles/oriented_faces.h"
 
 namespace sdm::inside {
 

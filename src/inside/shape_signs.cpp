@@ -1,9 +1,9 @@
-#include "query/inside/shape_signs.h"
+#include "inside/shape_signs.h"
 
 #include <memory>
 
 #include "core/lazy/unique_number.h"
-#include "query/inside/near_faces.h"
+#include "inside/near_faces.h"
 
 namespace sdm::inside {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "core/lazy/kept.h"
-#include "query/inside/face_sides.h"
-#include "query/inside/open_sides.h"
-#include "query/inside/winding_number.h"
+#include "inside/face_sides.h"
+#include "inside/open_sides.h"
+#include "inside/winding_number.h"
 #include "sites/sites_data.h"
 
 namespace sdm::inside {

@@ -10,8 +10,8 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/morton_order.h"
+#include "inside/inside.h"
 #include "mesh/validate.h"
-#include "query/inside/inside.h"
 
 namespace sdm {
 SignUsed choose_sign(const Sites& sites, SignMethod asked) {

@@ -1,4 +1,4 @@
-#include "query/inside/solid.h"
+#include "inside/solid.h"
 
 #include <algorithm>
 

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "geometry/affine.h"
-#include "query/inside/angles/oriented_faces.h"
-#include "query/rays/trace.h"
+#include "inside/angles/oriented_faces.h"
+#include "rays/trace.h"
 #include "sites/sites_data.h"
 
 namespace sdm::inside {

@@ -1,4 +1,4 @@
-#include "query/inside/solid_boundary.h"
+#include "inside/solid_boundary.h"
 
 #include <algorithm>
 #include <limits>
@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "geometry/clip.h"
 #include "geometry/point_triangle.h"
-#include "query/inside/solid.h"
+#include "inside/solid.h"
 #include "search/branch_and_bound.h"
 
 namespace sdm::inside {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/arrays/rows.h"
-#include "query/inside/face_sides.h"
-#include "query/inside/near_faces.h"
+#include "inside/face_sides.h"
+#include "inside/near_faces.h"
 
 namespace sdm::inside {
 

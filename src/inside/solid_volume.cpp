@@ -6,7 +6,7 @@
 
 #include "core/memory.h"
 #include "geometry/vec.h"
-#include "query/inside/solid_boundary.h"
+#include "inside/solid_boundary.h"
 
 namespace sdm {
 

@@ -1,4 +1,4 @@
-#include "query/inside/winding_number.h"
+#include "inside/winding_number.h"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,8 @@
 
 #include "core/cancellation.h"
 #include "geometry/affine.h"
-#include "query/inside/closing_faces.h"
-#include "query/inside/solid.h"
+#include "inside/closing_faces.h"
+#include "inside/solid.h"
 
 namespace sdm::inside {
 namespace {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/lazy/kept.h"
-#include "query/inside/angles/packet_angles.h"
-#include "query/inside/angles/solid_angles.h"
-#include "query/inside/open_sides.h"
+#include "inside/angles/packet_angles.h"
+#include "inside/angles/solid_angles.h"
+#include "inside/open_sides.h"
 #include "sites/sites_data.h"
 
 namespace sdm::inside {

@@ -1,4 +1,4 @@
-#include "query/inside/winding_walk.h"
+#include "inside/winding_walk.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "geometry/vec.h"
-#include "query/inside/solid.h"
+#include "inside/solid.h"
 
 namespace sdm::inside {
 namespace {

@@ -9,8 +9,8 @@
 #include <optional>
 #include <span>
 
-#include "query/inside/shape_signs.h"
-#include "query/rays/trace.h"
+#include "inside/shape_signs.h"
+#include "rays/trace.h"
 #include "sites/sites_data.h"
 
 namespace sdm::inside {

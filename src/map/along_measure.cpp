@@ -9,10 +9,10 @@
 #include <new>
 #include <string>
 
+#include "closest/facing/outward_normals.h"
 #include "core/memory.h"
 #include "geometry/vec.h"
-#include "query/facing/outward_normals.h"
-#include "query/rays/trace.h"
+#include "rays/trace.h"
 
 namespace sdm {
 namespace map {

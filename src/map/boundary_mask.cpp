@@ -4,7 +4,7 @@
 #include <new>
 
 #include "core/memory.h"
-#include "query/inside/open_sides.h"
+#include "inside/open_sides.h"
 #include "sites/sites_data.h"
 
 namespace sdm {

@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
+#include "closest/exact.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "query/closest/exact.h"
 #include "sites/sites_data.h"
 
 namespace sdm {

@@ -7,10 +7,10 @@
 #include <memory>
 #include <optional>
 
-#include "engine/engine.h"
+#include "closest/engine.h"
+#include "inside/inside.h"
 #include "map/facing_measure.h"
 #include "map/measure.h"
-#include "query/inside/inside.h"
 
 namespace sdm::map {
 

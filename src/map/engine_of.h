@@ -3,7 +3,7 @@
 
 #include <sdm/map.h>
 
-#include "engine/engine.h"
+#include "closest/engine.h"
 
 namespace sdm::map {
 

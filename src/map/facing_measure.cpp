@@ -5,9 +5,9 @@
 
 #include <new>
 
+#include "closest/facing/facing_normals.h"
 #include "core/memory.h"
 #include "geometry/vec.h"
-#include "query/facing/facing_normals.h"
 #include "sites/sites_data.h"
 
 namespace sdm {

@@ -3,8 +3,8 @@
 
 #include <sdm/map.h>
 
+#include "closest/facing/facing_search.h"
 #include "map/measure.h"
-#include "query/facing/facing_search.h"
 
 namespace sdm::map {
 

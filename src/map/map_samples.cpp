@@ -3,9 +3,9 @@
 #include <new>
 #include <string>
 
+#include "closest/blocks.h"
 #include "core/memory.h"
 #include "map/closest_measure.h"
-#include "query/closest/blocks.h"
 #include "surface/surface_data.h"
 
 namespace sdm {

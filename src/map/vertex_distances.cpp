@@ -7,8 +7,8 @@
 #include <new>
 
 #include "core/memory.h"
+#include "inside/open_sides.h"
 #include "map/facing_measure.h"
-#include "query/inside/open_sides.h"
 #include "sites/sites_data.h"
 
 namespace sdm {

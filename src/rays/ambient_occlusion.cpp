@@ -10,7 +10,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
-#include "query/rays/hemisphere_rays.h"
+#include "rays/hemisphere_rays.h"
 #include "surface/surface_data.h"
 
 namespace sdm {

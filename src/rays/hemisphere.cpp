@@ -1,4 +1,4 @@
-#include "query/rays/hemisphere.h"
+#include "rays/hemisphere.h"
 
 #include <algorithm>
 #include <cmath>

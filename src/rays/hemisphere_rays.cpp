@@ -1,11 +1,11 @@
-#include "query/rays/hemisphere_rays.h"
+#include "rays/hemisphere_rays.h"
 
 #include <sdm/error.h>
 
 #include <algorithm>
 #include <string>
 
-#include "query/rays/hemisphere.h"
+#include "rays/hemisphere.h"
 
 namespace sdm::rays {
 

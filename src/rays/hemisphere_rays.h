@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "query/rays/trace.h"
+#include "rays/trace.h"
 
 namespace sdm::rays {
 

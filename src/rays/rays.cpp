@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "mesh/validate.h"
-#include "query/rays/trace.h"
+#include "rays/trace.h"
 
 namespace sdm {
 namespace {

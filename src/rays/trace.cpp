@@ -1,7 +1,7 @@
-#include "query/rays/trace.h"
+#include "rays/trace.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query/rays/trace.cpp"
+#define HWY_TARGET_INCLUDE "rays/trace.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -10,7 +10,7 @@
 
 #include "geometry/barycentric.h"
 #include "geometry/line_triangle.h"
-#include "query/rays/unit_ray.h"
+#include "rays/unit_ray.h"
 
 #ifndef SDM_TRACE_ONCE
 #define SDM_TRACE_ONCE

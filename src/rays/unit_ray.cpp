@@ -1,4 +1,4 @@
-#include "query/rays/unit_ray.h"
+#include "rays/unit_ray.h"
 
 #include <algorithm>
 #include <cmath>

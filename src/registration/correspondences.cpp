@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "closest/blocks.h"
+#include "closest/closest_points.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
-#include "query/closest/blocks.h"
-#include "query/closest/closest_points.h"
 #include "sites/sites_data.h"
 
 namespace sdm::registration {

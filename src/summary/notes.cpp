@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 
+#include "closest/facing/facing_normals.h"
 #include "core/numbers/number_text.h"
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
-#include "proximity/thickness/wall_lengths.h"
-#include "query/facing/facing_normals.h"
+#include "map/thickness/wall_lengths.h"
 #include "summary/wall_note.h"
 
 namespace sdm {

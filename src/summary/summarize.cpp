@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "proximity/thickness/wall_lengths.h"
+#include "map/thickness/wall_lengths.h"
 #include "summary/distribution.h"
 #include "summary/largest_distance.h"
 #include "summary/wall_note.h"

@@ -4,8 +4,8 @@
 #include <limits>
 #include <new>
 
+#include "closest/cpu/cpu_engine.h"
 #include "core/memory.h"
-#include "engine/cpu/cpu_engine.h"
 #include "volume/field_by_engine.h"
 
 namespace sdm {

@@ -3,7 +3,7 @@
 
 #include <sdm/volume.h>
 
-#include "engine/engine.h"
+#include "closest/engine.h"
 
 namespace sdm::volume {
 

@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "query/inside/inside.h"
+#include "inside/inside.h"
 #include "sites/sites_data.h"
 
 namespace sdm::volume {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <bit>
 
+#include "closest/blocks.h"
 #include "core/cancellation.h"
 #include "core/parallel.h"
 #include "geometry/spatial_order.h"
-#include "query/closest/blocks.h"
 #include "volume/grid.h"
 
 namespace sdm::volume {

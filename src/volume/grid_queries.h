@@ -1,7 +1,7 @@
 // Fields by an engine: closest points of the points of a grid.
 #pragma once
 
-#include "engine/engine.h"
+#include "closest/engine.h"
 #include "volume/field_writer.h"
 
 namespace sdm::volume {

@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "engine/reference/reference_closest.h"
+#include "closest/finish.h"
+#include "closest/reference/reference_closest.h"
 #include "geometry/vec.h"
-#include "query/closest/finish.h"
 #include "sites/sites_data.h"
 #include "support/map_checks.h"
 #include "support/points.h"

@@ -11,10 +11,10 @@
 #include <thread>
 #include <vector>
 
+#include "closest/scattered.h"
+#include "closest/single_point.h"
 #include "geometry/morton_order.h"
 #include "geometry/vec.h"
-#include "query/closest/scattered.h"
-#include "query/closest/single_point.h"
 #include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
 #include "support/points.h"

@@ -1,8 +1,8 @@
 // Errors of the gl engine and their messages.
 #include <gmock/gmock.h>
 
+#include "closest/engine.h"
 #include "core/platform.h"
-#include "engine/engine.h"
 #include "gl/support.h"
 #include "support/error_of.h"
 #include "support/shapes.h"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "engine/reference/reference_closest.h"
+#include "closest/reference/reference_closest.h"
 #include "gl/rasteriser.h"
 #include "sites/closest_on_face.h"
 #include "support/map_checks.h"

@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "engine/engine.h"
+#include "closest/engine.h"
 #include "gl/domain_tree.h"
 #include "support/meshes.h"
 #include "support/shapes.h"

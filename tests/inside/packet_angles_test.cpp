@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "geometry/vec.h"
-#include "query/inside/angles/packet_angles.h"
-#include "query/inside/open_meshes.h"
-#include "query/inside/winding_number.h"
+#include "inside/angles/packet_angles.h"
+#include "inside/open_meshes.h"
+#include "inside/winding_number.h"
 #include "scenes/scene.h"
 #include "sites/sites_data.h"
 #include "support/every_case.h"

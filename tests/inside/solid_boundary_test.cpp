@@ -1,5 +1,5 @@
 // The boundary of solids whose faces intersect each other.
-#include "query/inside/solid_boundary.h"
+#include "inside/solid_boundary.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Points inside solids, by the winding number.
-#include "query/inside/solid.h"
+#include "inside/solid.h"
 
 #include <gtest/gtest.h>
 #include <sdm/closest_points.h>
@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "geometry/triangle_pair.h"
+#include "inside/face_pairs.h"
+#include "inside/near_faces.h"
 #include "poses.h"
-#include "query/inside/face_pairs.h"
-#include "query/inside/near_faces.h"
 #include "sites/sites_data.h"
 #include "support/blocks.h"
 #include "support/meshes.h"

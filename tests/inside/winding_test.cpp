@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "geometry/vec.h"
-#include "query/inside/angles/solid_angle.h"
-#include "query/inside/angles/solid_angles.h"
-#include "query/inside/open_meshes.h"
-#include "query/inside/winding_number.h"
+#include "inside/angles/solid_angle.h"
+#include "inside/angles/solid_angles.h"
+#include "inside/open_meshes.h"
+#include "inside/winding_number.h"
 #include "sites/sites_data.h"
 #include "support/meshes.h"
 #include "support/shapes.h"

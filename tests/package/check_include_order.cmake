@@ -24,21 +24,20 @@ set(order
   sites/frames
   sites/normals
   sites
-  query/closest
-  query/facing
-  query/rays
-  query/inside/angles
-  query/inside
-  query/pairs
-  query/convex
-  query/shape
-  engine
-  engine/reference
-  engine/cpu
+  closest
+  closest/facing
+  closest/reference
+  closest/cpu
+  rays
+  inside/angles
+  inside
+  bodies/pairs
+  bodies/convex
+  bodies/shape
   gl/device
   gl/polygons
   gl
-  engines
+  closest/engines
   map/statistics
   map/places
   map/transfer
@@ -52,14 +51,15 @@ set(order
   certify/depth
   simplify
   volume
-  proximity/contacts
-  proximity/pair
-  proximity/separate
-  proximity/motion
-  proximity/bodies
-  proximity/self
-  proximity/thickness
-  proximity
+  bodies/contacts
+  bodies/pair
+  bodies/separate
+  bodies/motion
+  bodies/many
+  bodies
+  map/self
+  map/thickness
+  map/measures
   baking/geometry/mikktspace
   baking/geometry
   summary/verdict
@@ -88,10 +88,10 @@ set(order
   io/page)
 
 # Another engine is before the table of engines.
-file(GLOB engines LIST_DIRECTORIES true RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/engine/*)
+file(GLOB engines LIST_DIRECTORIES true RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/closest/*)
 foreach(engine ${engines})
   if(IS_DIRECTORY ${SOURCE_DIR}/src/${engine} AND NOT engine IN_LIST order)
-    list(FIND order engines place)
+    list(FIND order closest/engines place)
     list(INSERT order ${place} ${engine})
   endif()
 endforeach()
@@ -116,7 +116,7 @@ foreach(file ${files})
     if(included_place EQUAL -1 OR included_place GREATER place)
       message(SEND_ERROR "src/${file} may not have ${include}: ${included} is not before ${folder}")
     endif()
-    if("${included}" MATCHES "^gl(/|$)" AND NOT "${folder}" MATCHES "^(gl(/|$)|engines$)")
+    if("${included}" MATCHES "^gl(/|$)" AND NOT "${folder}" MATCHES "^(gl(/|$)|closest/engines$)")
       message(SEND_ERROR "src/${file} may not have ${include}: only the table of engines includes the gl engine")
     endif()
     if("${included}" MATCHES "^io/mesh/cad/" AND NOT "${folder}" MATCHES "^io/mesh/cad/")
@@ -143,21 +143,21 @@ endforeach()
 # Searches are policies of tree/visit.h and tree/visit_pairs.h. Only these files outside of tree/ read the nodes of
 # a tree by themselves.
 set(readers_of_nodes
-  engine/reference/reference_closest.cpp  # the oracle shares no search with what it tests
+  closest/reference/reference_closest.cpp  # the oracle shares no search with what it tests
   certify/depth/leaving.cpp            # the children of a node are parts of its branch and bound
-  query/closest/descent.cpp            # appends all leaves within reach to a list, by vector instructions
-  proximity/motion/parts.h             # nodes are divided into faces too, by time
-  proximity/self/self_search.cpp       # marks the nodes whose faces are all excluded
-  query/inside/angles/expansions.cpp  # computes an expansion for each child of a node
-  query/inside/angles/far_field-inl.h  # one search for several points, eight children at a time
-  query/inside/angles/solid_angles.cpp  # nodes whose errors are too large are opened again
-  query/inside/solid_boundary.cpp      # faces are divided further, nearest first
-  query/pairs/near_faces.cpp           # bounds the children of a pair, and marks those below a node
-  query/pairs/pair_search.cpp          # bounds the children of a pair
-  query/pairs/separating_axis.cpp      # the boxes below the root
-  query/rays/trace.cpp                 # segments in a box begin at the nodes that meet it
-  query/shape/body.cpp                 # the boxes below the root
-  query/shape/wall_thickness.cpp       # keeps a bound for each node, found on first use
+  closest/descent.cpp            # appends all leaves within reach to a list, by vector instructions
+  bodies/motion/parts.h             # nodes are divided into faces too, by time
+  map/self/self_search.cpp       # marks the nodes whose faces are all excluded
+  inside/angles/expansions.cpp  # computes an expansion for each child of a node
+  inside/angles/far_field-inl.h  # one search for several points, eight children at a time
+  inside/angles/solid_angles.cpp  # nodes whose errors are too large are opened again
+  inside/solid_boundary.cpp      # faces are divided further, nearest first
+  bodies/pairs/near_faces.cpp           # bounds the children of a pair, and marks those below a node
+  bodies/pairs/pair_search.cpp          # bounds the children of a pair
+  bodies/pairs/separating_axis.cpp      # the boxes below the root
+  rays/trace.cpp                 # segments in a box begin at the nodes that meet it
+  bodies/shape/body.cpp                 # the boxes below the root
+  bodies/shape/wall_thickness.cpp       # keeps a bound for each node, found on first use
   sites/check_regions.cpp              # compares its leaves with those of regions
   sites/bounding_cylinders.cpp)        # computes a cylinder for each node
 foreach(file ${files})

@@ -1,5 +1,5 @@
 // Collision of solids: nested, hollow, touching, apart.
-#include "query/pairs/collision.h"
+#include "bodies/pairs/collision.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Closest points and collisions of convex solids by their support functions, against the searches of trees.
-#include "query/convex/convex_pair.h"
+#include "bodies/convex/convex_pair.h"
 
 #include <gmock/gmock.h>
 #include <sdm/sdm.h>
@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "bodies/pairs/collision.h"
 #include "mesh/similarity.h"
 #include "poses.h"
-#include "query/pairs/collision.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 

@@ -8,10 +8,10 @@
 #include <set>
 #include <vector>
 
+#include "bodies/contacts/faces_near_edge.h"
+#include "bodies/contacts/support.h"
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
-#include "proximity/contacts/faces_near_edge.h"
-#include "proximity/contacts/support.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 

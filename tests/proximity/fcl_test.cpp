@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "bodies/pairs/pair_search.h"
 #include "poses.h"
 #include "proximity/crowd.h"
 #include "proximity/posed_pairs.h"
-#include "query/pairs/pair_search.h"
 #include "support/every_case.h"
 #include "support/map_checks.h"
 #include "support/pair_oracle.h"

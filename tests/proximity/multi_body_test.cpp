@@ -9,10 +9,10 @@
 #include <set>
 #include <vector>
 
+#include "bodies/pairs/mesh_pair.h"
 #include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
 #include "proximity/crowd.h"
-#include "query/pairs/mesh_pair.h"
 #include "support/allocations.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"

@@ -7,10 +7,10 @@
 #include <random>
 #include <vector>
 
+#include "bodies/pairs/near_faces.h"
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 #include "mesh/similarity.h"
-#include "query/pairs/near_faces.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 

@@ -1,5 +1,5 @@
 // Properties of the closest points of any two surfaces.
-#include "query/pairs/pair_search.h"
+#include "bodies/pairs/pair_search.h"
 
 #include <gmock/gmock.h>
 #include <sdm/sdm.h>

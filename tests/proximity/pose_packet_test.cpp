@@ -1,5 +1,5 @@
 // Collisions of convex solids in several poses at once, against the search of trees for each.
-#include "query/convex/pose_packet.h"
+#include "bodies/convex/pose_packet.h"
 
 #include <gmock/gmock.h>
 #include <sdm/sdm.h>
@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "bodies/pairs/collision.h"
 #include "geometry/vec.h"
 #include "mesh/similarity.h"
 #include "poses.h"
-#include "query/pairs/collision.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 

@@ -10,8 +10,8 @@
 #include <ostream>
 #include <string>
 
+#include "bodies/pairs/mesh_pair.h"
 #include "geometry/vec.h"
-#include "query/pairs/mesh_pair.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
 #include "support/shapes.h"

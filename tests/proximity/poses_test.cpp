@@ -6,9 +6,9 @@
 #include <cctype>
 #include <random>
 
+#include "bodies/pairs/pair_search.h"
 #include "poses.h"
 #include "proximity/posed_pairs.h"
-#include "query/pairs/pair_search.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"
 #include "support/pair_oracle.h"

@@ -1,5 +1,5 @@
 // Parts of moving bodies are apart until the time that was proven, by their extents at many times before.
-#include "proximity/motion/safe_time.h"
+#include "bodies/motion/safe_time.h"
 
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>

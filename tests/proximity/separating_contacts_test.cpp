@@ -9,8 +9,8 @@
 #include <set>
 #include <vector>
 
+#include "bodies/separate/separating_contacts.h"
 #include "geometry/vec.h"
-#include "proximity/separate/separating_contacts.h"
 #include "support/allocations.h"
 #include "support/meshes.h"
 #include "support/shapes.h"

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "bodies/shape/body.h"
 #include "geometry/vec.h"
-#include "query/shape/body.h"
 #include "support/every_case.h"
 #include "support/meshes.h"
 #include "support/minkowski_oracle.h"

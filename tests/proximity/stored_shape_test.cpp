@@ -28,9 +28,9 @@
 #include <thread>
 #include <vector>
 
+#include "bodies/shape/body.h"
 #include "core/checksum.h"
 #include "geometry/vec.h"
-#include "query/shape/body.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
 #include "support/shapes.h"

@@ -9,10 +9,10 @@
 #include <random>
 #include <vector>
 
+#include "bodies/shape/body.h"
+#include "bodies/shape/column_box.h"
 #include "geometry/vec.h"
-#include "query/inside/solid.h"
-#include "query/shape/body.h"
-#include "query/shape/column_box.h"
+#include "inside/solid.h"
 #include "sites/sites_data.h"
 #include "support/blocks.h"
 #include "support/shapes.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "engine/reference/reference_engine.h"
+#include "closest/reference/reference_engine.h"
 #include "support/oracle.h"
 #include "volume/field_by_engine.h"
 #include "volume/scenes.h"

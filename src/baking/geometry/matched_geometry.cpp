@@ -8,11 +8,11 @@
 
 #include "atlas/gutter.h"
 #include "baking/geometry/texel_walk.h"
+#include "closest/facing/outward_normals.h"
 #include "core/memory.h"
 #include "geometry/vec.h"
 #include "map/match/corner_normals.h"
 #include "map/transfer/fill_texels.h"
-#include "query/facing/outward_normals.h"
 #include "sites/sites_data.h"
 
 namespace sdm {

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "baking/geometry/texel_walk.h"
+#include "closest/facing/outward_normals.h"
 #include "core/memory.h"
 #include "geometry/vec.h"
-#include "proximity/thickness/thickness_search.h"
-#include "query/facing/outward_normals.h"
-#include "query/rays/hemisphere_rays.h"
+#include "map/thickness/thickness_search.h"
+#include "rays/hemisphere_rays.h"
 
 namespace sdm {
 

@@ -1,4 +1,4 @@
-#include "proximity/contacts/contact_candidates.h"
+#include "bodies/contacts/contact_candidates.h"
 
 namespace sdm::contacts {
 

@@ -4,11 +4,11 @@
 #include <array>
 #include <span>
 
+#include "bodies/contacts/contact_regions.h"
+#include "bodies/contacts/one_sided.h"
+#include "bodies/pairs/near_faces.h"
+#include "bodies/shape/posed_body.h"
 #include "mesh/similarity.h"
-#include "proximity/contacts/contact_regions.h"
-#include "proximity/contacts/one_sided.h"
-#include "query/pairs/near_faces.h"
-#include "query/shape/posed_body.h"
 
 namespace sdm::contacts {
 

@@ -1,4 +1,4 @@
-#include "proximity/contacts/contact_finder.h"
+#include "bodies/contacts/contact_finder.h"
 
 #include <algorithm>
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "proximity/contacts/contact_patches.h"
-#include "proximity/contacts/feature_contacts.h"
+#include "bodies/contacts/contact_patches.h"
+#include "bodies/contacts/feature_contacts.h"
 
 namespace sdm::contacts {
 

@@ -1,4 +1,4 @@
-#include "proximity/contacts/contact_patches.h"
+#include "bodies/contacts/contact_patches.h"
 
 #include <algorithm>
 #include <numeric>

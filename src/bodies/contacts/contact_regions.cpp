@@ -1,11 +1,11 @@
-#include "proximity/contacts/contact_regions.h"
+#include "bodies/contacts/contact_regions.h"
 
 #include <algorithm>
 #include <utility>
 
+#include "closest/closest_points.h"
 #include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
-#include "query/closest/closest_points.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "proximity/contacts/surface_point.h"
-#include "query/pairs/near_faces.h"
-#include "query/shape/posed_body.h"
+#include "bodies/contacts/surface_point.h"
+#include "bodies/pairs/near_faces.h"
+#include "bodies/shape/posed_body.h"
 #include "tree/visit.h"
 
 namespace sdm::contacts {

@@ -1,4 +1,4 @@
-#include "proximity/contacts/deepest_on_edge.h"
+#include "bodies/contacts/deepest_on_edge.h"
 
 #include <algorithm>
 #include <array>

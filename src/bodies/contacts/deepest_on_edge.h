@@ -1,7 +1,7 @@
 // A deep point of a part of an edge.
 #pragma once
 
-#include "proximity/contacts/surface_point.h"
+#include "bodies/contacts/surface_point.h"
 
 namespace sdm::contacts {
 

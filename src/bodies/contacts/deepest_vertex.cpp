@@ -1,7 +1,7 @@
-#include "proximity/contacts/deepest_vertex.h"
+#include "bodies/contacts/deepest_vertex.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "proximity/contacts/deepest_vertex.cpp"
+#define HWY_TARGET_INCLUDE "bodies/contacts/deepest_vertex.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>

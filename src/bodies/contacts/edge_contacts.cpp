@@ -1,4 +1,4 @@
-#include "proximity/contacts/edge_contacts.h"
+#include "bodies/contacts/edge_contacts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +6,11 @@
 #include <tuple>
 #include <utility>
 
+#include "closest/closest_points.h"
 #include "core/cancellation.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
-#include "query/closest/closest_points.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "proximity/contacts/faces_near_edge.h"
-#include "proximity/contacts/support.h"
-#include "proximity/contacts/way_out.h"
-#include "query/shape/body.h"
+#include "bodies/contacts/faces_near_edge.h"
+#include "bodies/contacts/support.h"
+#include "bodies/contacts/way_out.h"
+#include "bodies/shape/body.h"
 
 namespace sdm::contacts {
 

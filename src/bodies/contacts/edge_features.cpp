@@ -4,9 +4,9 @@
 #include <cmath>
 #include <span>
 
+#include "bodies/contacts/deepest_on_edge.h"
+#include "bodies/contacts/feature_contacts.h"
 #include "geometry/vec.h"
-#include "proximity/contacts/deepest_on_edge.h"
-#include "proximity/contacts/feature_contacts.h"
 #include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
 

@@ -1,7 +1,7 @@
-#include "proximity/contacts/faces_near_edge.h"
+#include "bodies/contacts/faces_near_edge.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "proximity/contacts/faces_near_edge.cpp"
+#define HWY_TARGET_INCLUDE "bodies/contacts/faces_near_edge.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -11,7 +11,7 @@
 #include <cmath>
 #include <optional>
 
-#include "proximity/contacts/support.h"
+#include "bodies/contacts/support.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::contacts::HWY_NAMESPACE {

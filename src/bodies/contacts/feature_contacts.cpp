@@ -1,4 +1,4 @@
-#include "proximity/contacts/feature_contacts.h"
+#include "bodies/contacts/feature_contacts.h"
 
 #include <algorithm>
 #include <array>

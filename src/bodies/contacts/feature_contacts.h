@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "proximity/contacts/contact_candidates.h"
-#include "proximity/contacts/deepest_vertex.h"
-#include "proximity/contacts/edge_contacts.h"
-#include "proximity/contacts/surface_point.h"
+#include "bodies/contacts/contact_candidates.h"
+#include "bodies/contacts/deepest_vertex.h"
+#include "bodies/contacts/edge_contacts.h"
+#include "bodies/contacts/surface_point.h"
 
 namespace sdm::contacts {
 

@@ -1,4 +1,4 @@
-#include "proximity/contacts/one_sided.h"
+#include "bodies/contacts/one_sided.h"
 
 #include <algorithm>
 #include <atomic>

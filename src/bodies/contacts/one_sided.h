@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "bodies/contacts/surface_point.h"
 #include "mesh/similarity.h"
-#include "proximity/contacts/surface_point.h"
 
 namespace sdm::contacts {
 

@@ -1,4 +1,4 @@
-#include "proximity/contacts/support.h"
+#include "bodies/contacts/support.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #include <span>
 
+#include "bodies/shape/body.h"
 #include "geometry/vec.h"
-#include "query/shape/body.h"
 
 namespace sdm::contacts {
 

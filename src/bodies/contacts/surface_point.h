@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "query/shape/body.h"
+#include "bodies/shape/body.h"
 
 namespace sdm::contacts {
 

@@ -1,4 +1,4 @@
-#include "proximity/contacts/way_out.h"
+#include "bodies/contacts/way_out.h"
 
 #include <cmath>
 #include <limits>

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "bodies/contacts/support.h"
+#include "bodies/contacts/surface_point.h"
 #include "mesh/similarity.h"
-#include "proximity/contacts/support.h"
-#include "proximity/contacts/surface_point.h"
 
 namespace sdm::contacts {
 

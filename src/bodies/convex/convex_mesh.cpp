@@ -1,4 +1,4 @@
-#include "query/convex/convex_mesh.h"
+#include "bodies/convex/convex_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "geometry/predicates.h"
 #include "geometry/triangle.h"
-#include "query/inside/angles/solid_angle.h"
+#include "inside/angles/solid_angle.h"
 
 namespace sdm::convex {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "query/convex/support_search.h"
-#include "query/pairs/mesh_pair.h"
+#include "bodies/convex/support_search.h"
+#include "bodies/pairs/mesh_pair.h"
 
 namespace sdm::convex {
 

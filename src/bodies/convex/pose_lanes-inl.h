@@ -14,8 +14,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "bodies/convex/pose_packet.h"
 #include "geometry/lanes/vec-inl.h"
-#include "query/convex/pose_packet.h"
 
 // Lengths are in units of the size of both bodies, so that no vertex is farther from the centre of its body
 // than 1. Errors, of that unit: 4e-7 of vertices and centres, as they are rounded to single precision and

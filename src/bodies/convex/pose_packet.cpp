@@ -1,7 +1,7 @@
-#include "query/convex/pose_packet.h"
+#include "bodies/convex/pose_packet.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query/convex/pose_packet.cpp"
+#define HWY_TARGET_INCLUDE "bodies/convex/pose_packet.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -11,8 +11,8 @@
 #include <limits>
 #include <string_view>
 
+#include "bodies/convex/pose_lanes-inl.h"
 #include "geometry/vec.h"
-#include "query/convex/pose_lanes-inl.h"
 
 #ifndef SDM_POSE_PACKET_ONCE
 #define SDM_POSE_PACKET_ONCE

@@ -8,9 +8,9 @@
 #include <span>
 #include <string_view>
 
+#include "bodies/convex/convex_mesh.h"
+#include "bodies/convex/support_search.h"
 #include "mesh/similarity.h"
-#include "query/convex/convex_mesh.h"
-#include "query/convex/support_search.h"
 
 namespace sdm::convex {
 

@@ -1,7 +1,7 @@
-#include "query/convex/support_search.h"
+#include "bodies/convex/support_search.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query/convex/support_search.cpp"
+#define HWY_TARGET_INCLUDE "bodies/convex/support_search.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -10,8 +10,8 @@
 #include <cmath>
 #include <limits>
 
+#include "bodies/convex/simplex_point.h"
 #include "geometry/rounding.h"
-#include "query/convex/simplex_point.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::convex::HWY_NAMESPACE {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "bodies/convex/convex_mesh.h"
 #include "geometry/affine.h"
-#include "query/convex/convex_mesh.h"
 
 namespace sdm::convex {
 

@@ -1,4 +1,4 @@
-#include "query/convex/touching.h"
+#include "bodies/convex/touching.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "proximity/bodies/body_parts.h"
+#include "bodies/many/body_parts.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "bodies/motion/divided_motion.h"
+#include "bodies/shape/posed_body.h"
 #include "core/cancellation.h"
-#include "proximity/motion/divided_motion.h"
-#include "query/shape/posed_body.h"
 
 namespace sdm::bodies {
 

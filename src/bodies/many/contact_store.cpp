@@ -1,4 +1,4 @@
-#include "proximity/bodies/contact_store.h"
+#include "bodies/many/contact_store.h"
 
 #include <utility>
 

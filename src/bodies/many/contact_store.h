@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "proximity/bodies/near_pairs.h"
+#include "bodies/many/near_pairs.h"
 
 namespace sdm::bodies {
 

@@ -1,11 +1,11 @@
-#include "proximity/bodies/internal_contacts.h"
+#include "bodies/many/internal_contacts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "closest/closest_points.h"
 #include "geometry/vec.h"
-#include "query/closest/closest_points.h"
 #include "sites/sites_data.h"
 
 namespace sdm::bodies {

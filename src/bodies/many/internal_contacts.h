@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "proximity/bodies/near_pairs.h"
-#include "query/shape/posed_body.h"
+#include "bodies/many/near_pairs.h"
+#include "bodies/shape/posed_body.h"
 
 namespace sdm::bodies {
 

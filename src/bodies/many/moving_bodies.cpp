@@ -1,4 +1,4 @@
-#include "proximity/bodies/moving_bodies.h"
+#include "bodies/many/moving_bodies.h"
 
 #include <algorithm>
 #include <atomic>
@@ -7,11 +7,11 @@
 #include <optional>
 #include <tuple>
 
+#include "bodies/many/pool.h"
+#include "bodies/motion/moving_pair.h"
+#include "bodies/motion/swept_box.h"
+#include "bodies/pair/pair_answers.h"
 #include "core/parallel.h"
-#include "proximity/bodies/pool.h"
-#include "proximity/motion/moving_pair.h"
-#include "proximity/motion/swept_box.h"
-#include "proximity/pair/pair_answers.h"
 
 namespace sdm::bodies {
 namespace {

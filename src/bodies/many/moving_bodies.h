@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "proximity/bodies/near_pairs.h"
-#include "proximity/motion/divided_motion.h"
-#include "query/shape/posed_body.h"
+#include "bodies/many/near_pairs.h"
+#include "bodies/motion/divided_motion.h"
+#include "bodies/shape/posed_body.h"
 
 namespace sdm::bodies {
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <span>
 
+#include "bodies/many/multi_body_impl.h"
 #include "core/parallel.h"
-#include "proximity/bodies/multi_body_impl.h"
 
 namespace sdm {
 

@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "bodies/many/body_parts.h"
+#include "bodies/many/contact_store.h"
+#include "bodies/many/internal_contacts.h"
+#include "bodies/many/near_pairs.h"
+#include "bodies/many/pool.h"
+#include "bodies/pair/pair_answers.h"
+#include "bodies/shape/posed_body.h"
 #include "core/intact.h"
-#include "proximity/bodies/body_parts.h"
-#include "proximity/bodies/contact_store.h"
-#include "proximity/bodies/internal_contacts.h"
-#include "proximity/bodies/near_pairs.h"
-#include "proximity/bodies/pool.h"
-#include "proximity/pair/pair_answers.h"
-#include "query/shape/posed_body.h"
 
 namespace sdm {
 

@@ -7,14 +7,14 @@
 #include <string>
 #include <utility>
 
+#include "bodies/many/moving_bodies.h"
+#include "bodies/many/multi_body_impl.h"
+#include "bodies/many/nearest_body.h"
+#include "bodies/motion/divided_motion.h"
 #include "core/cancellation.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "mesh/similarity.h"
-#include "proximity/bodies/moving_bodies.h"
-#include "proximity/bodies/multi_body_impl.h"
-#include "proximity/bodies/nearest_body.h"
-#include "proximity/motion/divided_motion.h"
 
 namespace sdm {
 namespace {

@@ -1,4 +1,4 @@
-#include "proximity/bodies/near_pairs.h"
+#include "bodies/many/near_pairs.h"
 
 #include <algorithm>
 #include <functional>

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "bodies/pair/pair_answers.h"
+#include "bodies/shape/posed_body.h"
 #include "geometry/boxes/sweep.h"
-#include "proximity/pair/pair_answers.h"
-#include "query/shape/posed_body.h"
 
 namespace sdm::bodies {
 

@@ -1,4 +1,4 @@
-#include "proximity/bodies/nearest_body.h"
+#include "bodies/many/nearest_body.h"
 
 #include <algorithm>
 #include <array>
@@ -7,11 +7,11 @@
 #include <string>
 #include <utility>
 
+#include "closest/closest_points.h"
 #include "core/parallel.h"
 #include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
 #include "map/map_writer.h"
-#include "query/closest/closest_points.h"
 #include "surface/sample_blocks.h"
 #include "surface/surface_data.h"
 

@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "query/shape/posed_body.h"
+#include "bodies/shape/posed_body.h"
 
 namespace sdm::bodies {
 

@@ -8,13 +8,13 @@
 #include <string>
 #include <utility>
 
+#include "bodies/convex/pose_packet.h"
+#include "bodies/many/pool.h"
+#include "bodies/pair/pair_answers.h"
+#include "bodies/shape/posed_body.h"
 #include "core/cancellation.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "proximity/bodies/pool.h"
-#include "proximity/pair/pair_answers.h"
-#include "query/convex/pose_packet.h"
-#include "query/shape/posed_body.h"
 
 namespace sdm {
 namespace {

@@ -1,4 +1,4 @@
-#include "proximity/motion/divided_motion.h"
+#include "bodies/motion/divided_motion.h"
 
 #include <sdm/error.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "query/shape/posed_body.h"
+#include "bodies/shape/posed_body.h"
 
 namespace sdm::motion {
 

@@ -1,4 +1,4 @@
-#include "proximity/motion/first_contact.h"
+#include "bodies/motion/first_contact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <tuple>
 #include <vector>
 
+#include "bodies/motion/safe_time.h"
 #include "core/cancellation.h"
 #include "geometry/triangle_pair.h"
-#include "proximity/motion/safe_time.h"
 
 namespace sdm::motion {
 namespace {

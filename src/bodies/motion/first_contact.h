@@ -4,7 +4,7 @@
 #include <atomic>
 #include <functional>
 
-#include "proximity/motion/parts.h"
+#include "bodies/motion/parts.h"
 
 namespace sdm::motion {
 

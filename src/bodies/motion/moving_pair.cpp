@@ -1,7 +1,7 @@
-#include "proximity/motion/moving_pair.h"
+#include "bodies/motion/moving_pair.h"
 
+#include "bodies/motion/first_contact.h"
 #include "geometry/vec.h"
-#include "proximity/motion/first_contact.h"
 
 namespace sdm::motion {
 

@@ -7,9 +7,9 @@
 #include <atomic>
 #include <optional>
 
-#include "proximity/motion/divided_motion.h"
-#include "proximity/pair/pair_answers.h"
-#include "query/shape/posed_body.h"
+#include "bodies/motion/divided_motion.h"
+#include "bodies/pair/pair_answers.h"
+#include "bodies/shape/posed_body.h"
 
 namespace sdm::motion {
 

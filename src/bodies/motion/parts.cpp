@@ -1,4 +1,4 @@
-#include "proximity/motion/parts.h"
+#include "bodies/motion/parts.h"
 
 #include <algorithm>
 #include <cmath>

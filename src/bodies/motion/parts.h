@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "proximity/motion/divided_motion.h"
+#include "bodies/motion/divided_motion.h"
 #include "sites/sites_data.h"
 
 namespace sdm::motion {

@@ -1,4 +1,4 @@
-#include "proximity/motion/safe_time.h"
+#include "bodies/motion/safe_time.h"
 
 #include <algorithm>
 #include <cmath>

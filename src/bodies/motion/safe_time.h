@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "proximity/motion/divided_motion.h"
-#include "proximity/motion/parts.h"
+#include "bodies/motion/divided_motion.h"
+#include "bodies/motion/parts.h"
 
 namespace sdm::motion {
 

@@ -1,4 +1,4 @@
-#include "proximity/motion/swept_box.h"
+#include "bodies/motion/swept_box.h"
 
 #include <algorithm>
 #include <cmath>

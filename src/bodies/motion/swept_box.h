@@ -1,8 +1,8 @@
 // The space that a body passes through during its motion.
 #pragma once
 
-#include "proximity/motion/divided_motion.h"
-#include "query/shape/body.h"
+#include "bodies/motion/divided_motion.h"
+#include "bodies/shape/body.h"
 
 namespace sdm::motion {
 

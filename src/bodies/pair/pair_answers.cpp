@@ -1,4 +1,4 @@
-#include "proximity/pair/pair_answers.h"
+#include "bodies/pair/pair_answers.h"
 
 #include <sdm/error.h>
 
@@ -7,10 +7,10 @@
 #include <limits>
 #include <string>
 
+#include "bodies/pairs/collision.h"
 #include "core/nothing_found.h"
 #include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
-#include "query/pairs/collision.h"
 
 namespace sdm::pair {
 namespace {

@@ -7,11 +7,11 @@
 #include <optional>
 #include <span>
 
+#include "bodies/contacts/contact_finder.h"
+#include "bodies/convex/convex_pair.h"
+#include "bodies/pairs/pair_search.h"
+#include "bodies/shape/posed_body.h"
 #include "certify/depth/depth_search.h"
-#include "proximity/contacts/contact_finder.h"
-#include "query/convex/convex_pair.h"
-#include "query/pairs/pair_search.h"
-#include "query/shape/posed_body.h"
 
 namespace sdm::pair {
 

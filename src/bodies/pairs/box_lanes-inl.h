@@ -11,8 +11,8 @@
 
 #include <cmath>
 
+#include "bodies/pairs/unit_maps.h"
 #include "geometry/lanes/vec-inl.h"
-#include "query/pairs/unit_maps.h"
 #include "tree/wide_tree.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -11,7 +11,7 @@
 #include <array>
 #include <limits>
 
-#include "query/pairs/closest_faces-inl.h"
+#include "bodies/pairs/closest_faces-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::pairs::HWY_NAMESPACE {

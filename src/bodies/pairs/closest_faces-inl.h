@@ -11,10 +11,10 @@
 #include <limits>
 #include <vector>
 
+#include "bodies/pairs/face_lanes-inl.h"
+#include "bodies/pairs/pair_search.h"
 #include "core/cancellation.h"
 #include "geometry/lanes/triangle_pair-inl.h"
-#include "query/pairs/face_lanes-inl.h"
-#include "query/pairs/pair_search.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::pairs::HWY_NAMESPACE {

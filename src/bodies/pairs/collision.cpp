@@ -1,4 +1,4 @@
-#include "query/pairs/collision.h"
+#include "bodies/pairs/collision.h"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 // Whether two meshes collide.
 #pragma once
 
-#include "query/inside/inside.h"
-#include "query/pairs/pair_search.h"
+#include "bodies/pairs/pair_search.h"
+#include "inside/inside.h"
 
 namespace sdm::pairs {
 

@@ -7,7 +7,7 @@
 #define SDM_PROXIMITY_CYLINDER_LANES_INL_H
 #endif
 
-#include "query/pairs/box_lanes-inl.h"
+#include "bodies/pairs/box_lanes-inl.h"
 #include "sites/bounding_cylinders.h"
 
 HWY_BEFORE_NAMESPACE();

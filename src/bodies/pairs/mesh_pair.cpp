@@ -1,4 +1,4 @@
-#include "query/pairs/mesh_pair.h"
+#include "bodies/pairs/mesh_pair.h"
 
 namespace sdm::pairs {
 

@@ -1,13 +1,13 @@
-#include "query/pairs/near_faces.h"
+#include "bodies/pairs/near_faces.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query/pairs/near_faces.cpp"
+#define HWY_TARGET_INCLUDE "bodies/pairs/near_faces.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
 
+#include "bodies/pairs/face_lanes-inl.h"
 #include "core/parallel.h"
-#include "query/pairs/face_lanes-inl.h"
 #include "tree/visit_pairs.h"
 
 HWY_BEFORE_NAMESPACE();

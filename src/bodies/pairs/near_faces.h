@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "query/pairs/pair_search.h"
+#include "bodies/pairs/pair_search.h"
 
 namespace sdm::pairs {
 

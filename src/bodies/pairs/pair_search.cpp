@@ -1,7 +1,7 @@
-#include "query/pairs/pair_search.h"
+#include "bodies/pairs/pair_search.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query/pairs/pair_search.cpp"
+#define HWY_TARGET_INCLUDE "bodies/pairs/pair_search.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/cache_control.h>
@@ -11,9 +11,9 @@
 #include <bit>
 #include <utility>
 
-#include "query/pairs/caps-inl.h"
-#include "query/pairs/cylinder_lanes-inl.h"
-#include "query/pairs/separating_axis.h"
+#include "bodies/pairs/caps-inl.h"
+#include "bodies/pairs/cylinder_lanes-inl.h"
+#include "bodies/pairs/separating_axis.h"
 #include "tree/visit_pairs.h"
 
 HWY_BEFORE_NAMESPACE();

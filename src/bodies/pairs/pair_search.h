@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "query/pairs/mesh_pair.h"
+#include "bodies/pairs/mesh_pair.h"
 #include "tree/visit.h"
 
 namespace sdm::pairs {

@@ -1,4 +1,4 @@
-#include "query/pairs/separating_axis.h"
+#include "bodies/pairs/separating_axis.h"
 
 #include <algorithm>
 #include <array>

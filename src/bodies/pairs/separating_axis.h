@@ -1,7 +1,7 @@
 // An axis that separates two surfaces.
 #pragma once
 
-#include "query/pairs/mesh_pair.h"
+#include "bodies/pairs/mesh_pair.h"
 
 namespace sdm::pairs {
 

@@ -1,4 +1,4 @@
-#include "query/pairs/unit_maps.h"
+#include "bodies/pairs/unit_maps.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,7 +1,7 @@
 // The maps between the unit frames of two meshes, in single precision.
 #pragma once
 
-#include "query/pairs/mesh_pair.h"
+#include "bodies/pairs/mesh_pair.h"
 
 namespace sdm::pairs {
 

@@ -1,12 +1,12 @@
-#include "proximity/separate/convex_patch.h"
+#include "bodies/separate/convex_patch.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "bodies/convex/convex_mesh.h"
 #include "geometry/vec.h"
-#include "query/convex/convex_mesh.h"
 
 namespace sdm::separate {
 namespace {

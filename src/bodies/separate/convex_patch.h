@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "proximity/separate/support_feature.h"
-#include "query/shape/posed_body.h"
+#include "bodies/separate/support_feature.h"
+#include "bodies/shape/posed_body.h"
 
 namespace sdm::separate {
 

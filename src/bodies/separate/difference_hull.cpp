@@ -1,4 +1,4 @@
-#include "proximity/separate/difference_hull.h"
+#include "bodies/separate/difference_hull.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "proximity/separate/free_translations.h"
+#include "bodies/separate/free_translations.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // Short translations after which two bodies do not collide.
 #pragma once
 
+#include "bodies/separate/moved_pair.h"
 #include "geometry/vec.h"
-#include "proximity/separate/moved_pair.h"
 
 namespace sdm::separate {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "proximity/pair/pair_answers.h"
-#include "query/shape/posed_body.h"
+#include "bodies/pair/pair_answers.h"
+#include "bodies/shape/posed_body.h"
 
 namespace sdm::separate {
 

@@ -1,4 +1,4 @@
-#include "proximity/separate/overlap_cover.h"
+#include "bodies/separate/overlap_cover.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numeric>
 #include <optional>
 
-#include "query/closest/closest_points.h"
+#include "closest/closest_points.h"
 
 namespace sdm::separate {
 namespace {

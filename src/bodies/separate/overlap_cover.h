@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "proximity/separate/free_translations.h"
-#include "proximity/separate/moved_pair.h"
-#include "query/shape/posed_body.h"
+#include "bodies/separate/free_translations.h"
+#include "bodies/separate/moved_pair.h"
+#include "bodies/shape/posed_body.h"
 
 namespace sdm::separate {
 

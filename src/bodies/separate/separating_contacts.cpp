@@ -1,4 +1,4 @@
-#include "proximity/separate/separating_contacts.h"
+#include "bodies/separate/separating_contacts.h"
 
 #include <algorithm>
 #include <array>

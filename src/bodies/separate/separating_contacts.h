@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "proximity/pair/pair_answers.h"
-#include "proximity/separate/convex_patch.h"
-#include "query/shape/posed_body.h"
+#include "bodies/pair/pair_answers.h"
+#include "bodies/separate/convex_patch.h"
+#include "bodies/shape/posed_body.h"
 
 namespace sdm::separate {
 

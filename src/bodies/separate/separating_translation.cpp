@@ -1,18 +1,18 @@
-#include "proximity/separate/separating_translation.h"
+#include "bodies/separate/separating_translation.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "bodies/convex/support_search.h"
+#include "bodies/separate/difference_hull.h"
+#include "bodies/separate/free_translations.h"
+#include "bodies/separate/moved_pair.h"
+#include "bodies/separate/overlap_cover.h"
+#include "bodies/shape/convexity.h"
+#include "bodies/shape/extreme_vertex.h"
 #include "geometry/vec.h"
-#include "proximity/separate/difference_hull.h"
-#include "proximity/separate/free_translations.h"
-#include "proximity/separate/moved_pair.h"
-#include "proximity/separate/overlap_cover.h"
-#include "query/convex/support_search.h"
-#include "query/shape/convexity.h"
-#include "query/shape/extreme_vertex.h"
 
 namespace sdm::separate {
 namespace {

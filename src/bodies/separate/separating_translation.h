@@ -3,10 +3,10 @@
 
 #include <sdm/proximity_query.h>
 
-#include "proximity/pair/pair_answers.h"
-#include "proximity/separate/difference_hull.h"
-#include "proximity/separate/overlap_cover.h"
-#include "query/shape/posed_body.h"
+#include "bodies/pair/pair_answers.h"
+#include "bodies/separate/difference_hull.h"
+#include "bodies/separate/overlap_cover.h"
+#include "bodies/shape/posed_body.h"
 
 namespace sdm::separate {
 

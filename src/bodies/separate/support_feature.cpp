@@ -1,12 +1,12 @@
-#include "proximity/separate/support_feature.h"
+#include "bodies/separate/support_feature.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
+#include "bodies/convex/support_search.h"
 #include "geometry/vec.h"
-#include "query/convex/support_search.h"
 #include "sites/sites_data.h"
 
 namespace sdm::separate {

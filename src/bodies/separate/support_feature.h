@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "query/convex/convex_mesh.h"
-#include "query/shape/posed_body.h"
+#include "bodies/convex/convex_mesh.h"
+#include "bodies/shape/posed_body.h"
 
 namespace sdm::separate {
 

@@ -1,13 +1,13 @@
-#include "query/shape/body.h"
+#include "bodies/shape/body.h"
 
 #include <sdm/error.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "bodies/shape/convexity.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
-#include "query/shape/convexity.h"
 #include "surface/stored_atlas.h"
 
 namespace sdm::shape {

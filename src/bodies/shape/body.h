@@ -11,18 +11,18 @@
 #include <span>
 #include <vector>
 
+#include "bodies/convex/convex_mesh.h"
+#include "bodies/shape/contact_parts.h"
+#include "bodies/shape/inner_balls.h"
+#include "bodies/shape/node_ball.h"
+#include "bodies/shape/wall_thickness.h"
 #include "core/arrays/array.h"
 #include "core/arrays/stored_arrays.h"
 #include "core/intact.h"
 #include "core/lazy/kept.h"
 #include "core/lazy/once.h"
-#include "query/convex/convex_mesh.h"
-#include "query/inside/inside.h"
-#include "query/inside/solid_boundary.h"
-#include "query/shape/contact_parts.h"
-#include "query/shape/inner_balls.h"
-#include "query/shape/node_ball.h"
-#include "query/shape/wall_thickness.h"
+#include "inside/inside.h"
+#include "inside/solid_boundary.h"
 #include "sites/bounding_cylinders.h"
 
 namespace sdm::shape {

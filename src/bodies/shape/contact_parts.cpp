@@ -1,4 +1,4 @@
-#include "query/shape/contact_parts.h"
+#include "bodies/shape/contact_parts.h"
 
 #include "geometry/vec.h"
 #include "tree/fold.h"

@@ -1,4 +1,4 @@
-#include "query/shape/convexity.h"
+#include "bodies/shape/convexity.h"
 
 #include <algorithm>
 #include <array>
@@ -6,11 +6,11 @@
 #include <limits>
 #include <vector>
 
+#include "closest/closest_points.h"
 #include "geometry/predicates.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
-#include "query/closest/closest_points.h"
 #include "tree/visit.h"
 
 namespace sdm::shape {

@@ -1,7 +1,7 @@
 // Whether a solid is convex, and by how much it is not.
 #pragma once
 
-#include "query/inside/inside.h"
+#include "inside/inside.h"
 #include "sites/sites_data.h"
 
 namespace sdm::shape {

@@ -1,4 +1,4 @@
-#include "query/shape/extreme_vertex.h"
+#include "bodies/shape/extreme_vertex.h"
 
 #include <vector>
 

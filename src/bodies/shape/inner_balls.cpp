@@ -1,12 +1,12 @@
-#include "query/shape/inner_balls.h"
+#include "bodies/shape/inner_balls.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "closest/closest_points.h"
 #include "geometry/vec.h"
-#include "query/closest/closest_points.h"
 
 namespace sdm::shape {
 namespace {

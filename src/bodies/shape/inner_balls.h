@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "query/inside/inside.h"
-#include "query/shape/node_ball.h"
+#include "bodies/shape/node_ball.h"
+#include "inside/inside.h"
 #include "sites/sites_data.h"
 
 namespace sdm::shape {

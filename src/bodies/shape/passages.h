@@ -12,10 +12,10 @@
 #include <span>
 #include <vector>
 
+#include "bodies/shape/column_box.h"
+#include "bodies/shape/wall_column.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
-#include "query/shape/column_box.h"
-#include "query/shape/wall_column.h"
 #include "sites/sites_data.h"
 #include "tree/visit.h"
 

@@ -1,4 +1,4 @@
-#include "query/shape/posed_body.h"
+#include "bodies/shape/posed_body.h"
 
 #include <sdm/error.h>
 

@@ -7,9 +7,9 @@
 #include <span>
 #include <utility>
 
+#include "bodies/shape/body.h"
 #include "geometry/rounding.h"
 #include "mesh/similarity.h"
-#include "query/shape/body.h"
 
 namespace sdm::shape {
 

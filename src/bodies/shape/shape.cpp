@@ -3,8 +3,8 @@
 #include <new>
 #include <utility>
 
+#include "bodies/shape/body.h"
 #include "core/memory.h"
-#include "query/shape/body.h"
 
 namespace sdm {
 

@@ -1,4 +1,4 @@
-#include "query/shape/touching_balls.h"
+#include "bodies/shape/touching_balls.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <limits>
 #include <span>
 
+#include "closest/closest_points.h"
 #include "geometry/point_triangle.h"
 #include "geometry/rounding.h"
-#include "query/closest/closest_points.h"
 #include "search/mixed_bound.h"
 
 namespace sdm::shape {

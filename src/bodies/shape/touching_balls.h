@@ -3,7 +3,7 @@
 
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
-#include "query/inside/face_sides.h"
+#include "inside/face_sides.h"
 #include "sites/sites_data.h"
 
 namespace sdm::shape {

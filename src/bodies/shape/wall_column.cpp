@@ -1,4 +1,4 @@
-#include "query/shape/wall_column.h"
+#include "bodies/shape/wall_column.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "bodies/shape/passages.h"
+#include "closest/closest_points.h"
 #include "geometry/clip.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
-#include "query/closest/closest_points.h"
-#include "query/shape/passages.h"
 
 namespace sdm::shape {
 namespace {

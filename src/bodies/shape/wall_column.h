@@ -6,9 +6,9 @@
 #include <limits>
 #include <optional>
 
+#include "bodies/shape/node_ball.h"
 #include "geometry/triangle_pair.h"
-#include "query/inside/inside.h"
-#include "query/shape/node_ball.h"
+#include "inside/inside.h"
 
 namespace sdm::shape {
 

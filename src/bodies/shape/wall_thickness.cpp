@@ -1,4 +1,4 @@
-#include "query/shape/wall_thickness.h"
+#include "bodies/shape/wall_thickness.h"
 
 #include <algorithm>
 #include <array>
@@ -10,12 +10,12 @@
 #include <span>
 #include <vector>
 
+#include "bodies/shape/passages.h"
+#include "bodies/shape/wall_column.h"
 #include "geometry/point_triangle.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
-#include "query/shape/passages.h"
-#include "query/shape/wall_column.h"
 
 namespace sdm::shape {
 namespace {

@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <memory>
 
+#include "bodies/shape/node_ball.h"
+#include "bodies/shape/touching_balls.h"
 #include "geometry/triangle_pair.h"
-#include "query/inside/inside.h"
-#include "query/shape/node_ball.h"
-#include "query/shape/touching_balls.h"
+#include "inside/inside.h"
 #include "sites/sites_data.h"
 #include "tree/visit.h"
 

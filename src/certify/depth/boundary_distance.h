@@ -5,8 +5,8 @@
 
 #include <optional>
 
+#include "bodies/shape/body.h"
 #include "certify/depth/boundary_part.h"
-#include "query/shape/body.h"
 
 namespace sdm::depth {
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "closest/closest_points.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
-#include "query/closest/closest_points.h"
 #include "sites/sites_data.h"
 
 namespace sdm::depth {

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "bodies/shape/posed_body.h"
 #include "certify/depth/leaving.h"
 #include "certify/depth/part.h"
-#include "query/shape/posed_body.h"
 
 namespace sdm::depth {
 

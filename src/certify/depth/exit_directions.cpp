@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "bodies/shape/extreme_vertex.h"
 #include "geometry/vec.h"
-#include "query/shape/extreme_vertex.h"
 
 namespace sdm::depth {
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "bodies/shape/node_ball.h"
 #include "certify/depth/boundary_part.h"
 #include "geometry/triangle_pair.h"
 #include "mesh/similarity.h"
-#include "query/shape/node_ball.h"
 #include "sites/sites_data.h"
 
 namespace sdm::depth {

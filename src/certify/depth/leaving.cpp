@@ -5,9 +5,9 @@
 #include <optional>
 #include <span>
 
+#include "bodies/shape/wall_column.h"
 #include "geometry/boxes/sweep.h"
 #include "geometry/vec.h"
-#include "query/shape/wall_column.h"
 #include "sites/sites_data.h"
 
 namespace sdm::depth {

@@ -3,10 +3,10 @@
 
 #include <vector>
 
+#include "bodies/shape/posed_body.h"
 #include "certify/depth/exit_directions.h"
 #include "certify/depth/known_boundary.h"
 #include "certify/depth/part.h"
-#include "query/shape/posed_body.h"
 
 namespace sdm::depth {
 

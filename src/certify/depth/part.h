@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "bodies/shape/node_ball.h"
 #include "certify/depth/boundary_distance.h"
-#include "query/shape/node_ball.h"
 #include "search/branch_and_bound.h"
 
 namespace sdm::depth {

@@ -9,10 +9,10 @@
 
 #include "certify/hausdorff/largest_distance.h"
 #include "certify/hausdorff/matching.h"
+#include "closest/facing/facing_normals.h"
 #include "core/memory.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
-#include "query/facing/facing_normals.h"
 #include "sites/sites_data.h"
 
 namespace sdm {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "closest/exact.h"
+#include "closest/facing/facing_search.h"
 #include "geometry/vec.h"
-#include "query/closest/exact.h"
-#include "query/facing/facing_search.h"
 
 namespace sdm::hausdorff {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "certify/hausdorff/side.h"
-#include "query/inside/shape_signs.h"
+#include "inside/shape_signs.h"
 
 namespace sdm::hausdorff {
 

@@ -7,7 +7,7 @@
 #include "geometry/rounding.h"
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
-#include "query/inside/solid.h"
+#include "inside/solid.h"
 #include "tree/visit.h"
 
 namespace sdm::hausdorff {

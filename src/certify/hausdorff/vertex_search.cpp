@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "certify/hausdorff/face_distance.h"
+#include "closest/blocks.h"
+#include "closest/closest_points.h"
 #include "core/parallel.h"
 #include "geometry/rounding.h"
 #include "geometry/spatial_order.h"
 #include "geometry/vec.h"
-#include "query/closest/blocks.h"
-#include "query/closest/closest_points.h"
 
 namespace sdm::hausdorff {
 namespace {

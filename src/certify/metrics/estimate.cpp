@@ -8,14 +8,14 @@
 #include "certify/hausdorff/vertex_search.h"
 #include "certify/metrics/faces.h"
 #include "certify/metrics/intervals.h"
+#include "closest/scattered.h"
+#include "closest/single_point.h"
 #include "core/cancellation.h"
 #include "core/numbers/compensated_sum.h"
 #include "core/parallel.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
-#include "query/closest/scattered.h"
-#include "query/closest/single_point.h"
 
 namespace sdm::metrics {
 namespace {

@@ -8,11 +8,11 @@
 #include "certify/hausdorff/face_distance.h"
 #include "certify/hausdorff/nearest_face.h"
 #include "certify/hausdorff/side_cut.h"
+#include "closest/blocks.h"
+#include "closest/closest_points.h"
 #include "geometry/point_triangle.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
-#include "query/closest/blocks.h"
-#include "query/closest/closest_points.h"
 #include "tree/visit.h"
 
 namespace sdm::metrics {

@@ -17,13 +17,13 @@
 #include "certify/hausdorff/vertex_search.h"
 #include "certify/tolerance/least_distance.h"
 #include "certify/tolerance/prove_valid.h"
+#include "closest/exact.h"
+#include "closest/facing/facing_normals.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
+#include "inside/inside.h"
 #include "mesh/validate.h"
-#include "query/closest/exact.h"
-#include "query/facing/facing_normals.h"
-#include "query/inside/inside.h"
 
 namespace sdm {
 namespace {

@@ -2,9 +2,9 @@
 // vector instructions.
 #pragma once
 
-#include "engine/engine.h"
-#include "query/closest/closest_points.h"
-#include "query/closest/scattered.h"
+#include "closest/closest_points.h"
+#include "closest/engine.h"
+#include "closest/scattered.h"
 #include "sites/sites_data.h"
 
 namespace sdm::cpu {

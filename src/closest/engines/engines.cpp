@@ -6,9 +6,9 @@
 #include <new>
 #include <string>
 
+#include "closest/cpu/cpu_engine.h"
+#include "closest/reference/reference_engine.h"
 #include "core/memory.h"
-#include "engine/cpu/cpu_engine.h"
-#include "engine/reference/reference_engine.h"
 #include "gl/gl_engine.h"
 
 namespace sdm {

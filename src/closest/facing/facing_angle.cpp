@@ -1,4 +1,4 @@
-#include "query/facing/facing_angle.h"
+#include "closest/facing/facing_angle.h"
 
 #include <sdm/error.h>
 

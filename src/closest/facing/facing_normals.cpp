@@ -1,13 +1,13 @@
-#include "query/facing/facing_normals.h"
+#include "closest/facing/facing_normals.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "closest/facing/facing_angle.h"
+#include "closest/facing/outward_normals.h"
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
-#include "query/facing/facing_angle.h"
-#include "query/facing/outward_normals.h"
 
 namespace sdm::facing {
 namespace {

@@ -1,12 +1,12 @@
-#include "query/facing/facing_search.h"
+#include "closest/facing/facing_search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "closest/exact.h"
+#include "closest/facing/normal_tree.h"
 #include "geometry/vec.h"
-#include "query/closest/exact.h"
-#include "query/facing/normal_tree.h"
 #include "tree/visit.h"
 
 namespace sdm::facing {

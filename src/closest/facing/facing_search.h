@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "query/facing/facing_angle.h"
-#include "query/facing/normal_bounds.h"
+#include "closest/facing/facing_angle.h"
+#include "closest/facing/normal_bounds.h"
 #include "sites/sites_data.h"
 
 namespace sdm::facing {

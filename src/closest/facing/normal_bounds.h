@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "closest/facing/normal_cones.h"
 #include "core/lazy/kept.h"
-#include "query/facing/normal_cones.h"
 #include "sites/sites_data.h"
 #include "tree/aabb_tree.h"
 

@@ -1,12 +1,12 @@
-#include "query/facing/normal_cones.h"
+#include "closest/facing/normal_cones.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
 
+#include "closest/facing/normal_bounds.h"
 #include "geometry/vec.h"
-#include "query/facing/normal_bounds.h"
 #include "tree/fold.h"
 
 namespace sdm::facing {

@@ -1,10 +1,10 @@
-#include "query/facing/normal_tree.h"
+#include "closest/facing/normal_tree.h"
 
 #include <cstdint>
 #include <utility>
 #include <vector>
 
-#include "query/facing/normal_cones.h"
+#include "closest/facing/normal_cones.h"
 #include "sites/regions.h"
 
 namespace sdm::facing {

@@ -1,4 +1,4 @@
-#include "query/facing/outward_normals.h"
+#include "closest/facing/outward_normals.h"
 
 #include <sdm/mesh_edit.h>
 

@@ -1,4 +1,4 @@
-#include "engine/reference/reference_closest.h"
+#include "closest/reference/reference_closest.h"
 
 #include <limits>
 #include <tuple>

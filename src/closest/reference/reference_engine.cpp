@@ -1,8 +1,8 @@
-#include "engine/reference/reference_engine.h"
+#include "closest/reference/reference_engine.h"
 
 #include <algorithm>
 
-#include "engine/reference/reference_closest.h"
+#include "closest/reference/reference_closest.h"
 
 namespace sdm::reference {
 

@@ -1,7 +1,7 @@
 // The reference engine: one query at a time, the oracle for all other engines.
 #pragma once
 
-#include "engine/engine.h"
+#include "closest/engine.h"
 
 namespace sdm::reference {
 

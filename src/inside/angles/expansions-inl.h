@@ -9,7 +9,7 @@
 #include <hwy/highway.h>
 
 #include "geometry/lanes/vec-inl.h"
-#include "query/inside/angles/expansions.h"
+#include "inside/angles/expansions.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::inside::HWY_NAMESPACE {

@@ -1,4 +1,4 @@
-#include "query/inside/angles/expansions.h"
+#include "inside/angles/expansions.h"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "query/inside/angles/oriented_faces.h"
+#include "inside/angles/oriented_faces.h"
 #include "tree/wide_tree.h"
 
 namespace sdm::inside {

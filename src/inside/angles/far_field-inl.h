@@ -16,8 +16,8 @@
 
 #include "geometry/lanes/vec-inl.h"
 #include "geometry/vec.h"
-#include "query/inside/angles/expansions-inl.h"
-#include "query/inside/angles/solid_angles.h"
+#include "inside/angles/expansions-inl.h"
+#include "inside/angles/solid_angles.h"
 
 #ifndef SDM_FAR_FIELD_ONCE
 #define SDM_FAR_FIELD_ONCE

@@ -1,7 +1,7 @@
-#include "query/inside/angles/packet_angles.h"
+#include "inside/angles/packet_angles.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query/inside/angles/packet_angles.cpp"
+#define HWY_TARGET_INCLUDE "inside/angles/packet_angles.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -15,8 +15,8 @@
 #include "core/cancellation.h"
 #include "geometry/lanes/vec-inl.h"
 #include "geometry/vec.h"
-#include "query/inside/angles/far_field-inl.h"
-#include "query/inside/angles/solid_angle.h"
+#include "inside/angles/far_field-inl.h"
+#include "inside/angles/solid_angle.h"
 
 #ifndef SDM_PACKET_ANGLES_ONCE
 #define SDM_PACKET_ANGLES_ONCE

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "query/inside/angles/solid_angles.h"
+#include "inside/angles/solid_angles.h"
 
 namespace sdm::inside {
 

@@ -1,7 +1,7 @@
-#include "query/inside/angles/solid_angles.h"
+#include "inside/angles/solid_angles.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "query/inside/angles/solid_angles.cpp"
+#define HWY_TARGET_INCLUDE "inside/angles/solid_angles.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
@@ -17,7 +17,7 @@
 #include "geometry/lanes/vec-inl.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
-#include "query/inside/angles/expansions-inl.h"
+#include "inside/angles/expansions-inl.h"
 
 #ifndef SDM_SOLID_ANGLES_ONCE
 #define SDM_SOLID_ANGLES_ONCE

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "query/inside/angles/expansions.h"
-#include "query/inside/angles/oriented_faces.h"
-#include "query/inside/angles/solid_angle.h"
+#include "inside/angles/expansions.h"
+#include "inside/angles/oriented_faces.h"
+#include "inside/angles/solid_angle.h"
 
 namespace sdm::inside {
 

@@ -6,13 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "closest/facing/facing_normals.h"
+#include "closest/facing/facing_search.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "map/match/ray_matches.h"
 #include "map/match/texel_match.h"
 #include "map/transfer/closest_of_texels.h"
-#include "query/facing/facing_normals.h"
-#include "query/facing/facing_search.h"
 
 namespace sdm {
 namespace {

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "closest/facing/facing_normals.h"
+#include "closest/facing/facing_search.h"
 #include "core/parallel.h"
 #include "geometry/barycentric.h"
 #include "geometry/triangle.h"
@@ -15,9 +17,7 @@
 #include "map/match/corner_normals.h"
 #include "map/match/texel_match.h"
 #include "map/transfer/closest_of_texels.h"
-#include "query/facing/facing_normals.h"
-#include "query/facing/facing_search.h"
-#include "query/rays/trace.h"
+#include "rays/trace.h"
 #include "surface/tiles.h"
 
 namespace sdm::map {

@@ -7,8 +7,8 @@
 #include "core/memory.h"
 #include "map/along_measure.h"
 #include "map/measure.h"
-#include "proximity/self/self_measure.h"
-#include "proximity/thickness/thickness_measure.h"
+#include "map/self/self_measure.h"
+#include "map/thickness/thickness_measure.h"
 
 namespace sdm {
 namespace {

@@ -15,7 +15,7 @@
 #include "core/parallel.h"
 #include "geometry/point_triangle.h"
 #include "geometry/triangle_pair.h"
-#include "proximity/self/patches.h"
+#include "map/self/patches.h"
 
 namespace sdm {
 namespace {

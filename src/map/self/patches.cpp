@@ -1,4 +1,4 @@
-#include "proximity/self/patches.h"
+#include "map/self/patches.h"
 
 #include <algorithm>
 #include <limits>

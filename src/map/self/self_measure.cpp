@@ -1,4 +1,4 @@
-#include "proximity/self/self_measure.h"
+#include "map/self/self_measure.h"
 
 #include <sdm/error.h>
 

@@ -4,7 +4,7 @@
 #include <sdm/self_proximity_query.h>
 
 #include "map/measure.h"
-#include "proximity/self/self_search.h"
+#include "map/self/self_search.h"
 
 namespace sdm::self {
 

@@ -8,12 +8,12 @@
 #include <new>
 #include <utility>
 
+#include "bodies/contacts/contact_patches.h"
 #include "core/cancellation.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
-#include "proximity/contacts/contact_patches.h"
-#include "proximity/self/self_search.h"
+#include "map/self/self_search.h"
 
 namespace sdm {
 

@@ -1,4 +1,4 @@
-#include "proximity/self/self_search.h"
+#include "map/self/self_search.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,8 +9,8 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
-#include "proximity/thickness/thickness_search.h"
-#include "proximity/thickness/wall_lengths.h"
+#include "map/thickness/thickness_search.h"
+#include "map/thickness/wall_lengths.h"
 
 namespace sdm {
 namespace {

@@ -1,4 +1,4 @@
-#include "proximity/thickness/thickness_measure.h"
+#include "map/thickness/thickness_measure.h"
 
 #include <sdm/error.h>
 

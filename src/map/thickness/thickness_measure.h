@@ -4,7 +4,7 @@
 #include <sdm/thickness.h>
 
 #include "map/measure.h"
-#include "proximity/thickness/thickness_search.h"
+#include "map/thickness/thickness_search.h"
 
 namespace sdm::thickness {
 

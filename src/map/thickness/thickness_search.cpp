@@ -1,4 +1,4 @@
-#include "proximity/thickness/thickness_search.h"
+#include "map/thickness/thickness_search.h"
 
 #include <sdm/error.h>
 #include <sdm/thickness.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "closest/facing/outward_normals.h"
 #include "core/parallel.h"
-#include "query/facing/outward_normals.h"
 #include "tree/fold.h"
 #include "tree/visit.h"
 

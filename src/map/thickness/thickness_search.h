@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "proximity/thickness/touching_ball.h"
-#include "query/rays/trace.h"
+#include "map/thickness/touching_ball.h"
+#include "rays/trace.h"
 #include "sites/sites_data.h"
 #include "tree/aabb_tree.h"
 

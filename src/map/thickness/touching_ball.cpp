@@ -1,4 +1,4 @@
-#include "proximity/thickness/touching_ball.h"
+#include "map/thickness/touching_ball.h"
 
 #include <algorithm>
 #include <cmath>

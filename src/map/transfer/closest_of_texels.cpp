@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "closest/facing/outward_normals.h"
 #include "geometry/triangle.h"
-#include "query/facing/outward_normals.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::map {

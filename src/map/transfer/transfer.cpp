@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "closest/facing/facing_normals.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "map/transfer/closest_of_texels.h"
 #include "map/transfer/fill_texels.h"
-#include "query/facing/facing_normals.h"
 
 namespace sdm {
 namespace {

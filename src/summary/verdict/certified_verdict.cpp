@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "certify/tolerance/prove_valid.h"
-#include "query/facing/outward_normals.h"
+#include "closest/facing/outward_normals.h"
 #include "summary/verdict/certify.h"
 #include "summary/verdict/evidence.h"
 #include "summary/verdict/missing_signs.h"

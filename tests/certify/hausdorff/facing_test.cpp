@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "closest/facing/facing_search.h"
 #include "geometry/point_triangle.h"
 #include "geometry/vec.h"
-#include "query/facing/facing_search.h"
 #include "sites/sites_data.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
