@@ -51,7 +51,7 @@ def main() -> None:
     xml = cpp_pages.run_doxygen(source / "include/sdm", build / "doxygen")
     pages |= cpp_pages.pages(source / "include/sdm", xml)
     pages["javascript.md"] = subprocess.check_output(
-        ["node", SITE / "js_types.cjs", source / "js"], env=os.environ | {"NODE_PATH": str(node_modules)})  # fmt: skip
+        ["node", SITE / "js_types.cjs", source / "js", source / "build/wasm/package/declared.d.ts"], env=os.environ | {"NODE_PATH": str(node_modules)})  # fmt: skip
     if (source / "build/wasm/live.html").exists():
         pages["docs/live.md"] += b'\n```{raw} html\n<p><a href="../live.html"><strong>Open the live page</strong></a></p>\n```\n'
     for name, content in pages.items():

@@ -1,8 +1,10 @@
-// Prints the reference of the package for npm, from its types: node js_types.cjs JS_FOLDER. TypeScript is found by NODE_PATH.
+// Prints the reference of the package for npm, from its types: node js_types.cjs JS_FOLDER DECLARED, the declared.d.ts of the package, if
+// there is one. TypeScript is found by NODE_PATH.
+const { existsSync, readFileSync } = require('fs');
 const { join, resolve } = require('path');
 const ts = require('typescript');
 
-const folder = resolve(process.argv[2]);
+const folder = resolve(process.argv[2]), declared = process.argv[3];
 const entries = { sdm: 'index.ts', 'sdm/three': 'three.ts' };
 const options = {
   target: ts.ScriptTarget.ES2022, module: ts.ModuleKind.ESNext, moduleResolution: ts.ModuleResolutionKind.Bundler, declaration: true,
@@ -14,13 +16,14 @@ function declarations() {
   const program = ts.createProgram(Object.values(entries).map((file) => join(folder, 'src', file)), options);
   const files = new Map();
   program.emit(undefined, (name, text) => files.set(resolve(name).replace(/\.d\.ts$/, ''), ts.createSourceFile(name, text, options.target, true)));
+  if (existsSync(declared)) files.set(join(folder, 'src/declared'), ts.createSourceFile(declared, readFileSync(declared, 'utf8'), options.target, true));
   return files;
 }
 
 /** The names that a file exports, its own and those of others, each with its declaration. */
 function exported(files, file) {
   const found = new Map();
-  const declared = (from, name) => {
+  const declaredIn = (from, name) => {
     for (const statement of files.get(from).statements)
       if (statement.name?.text === name || statement.declarationList?.declarations.some((one) => one.name.text === name)) return [from, statement];
   };
@@ -29,7 +32,7 @@ function exported(files, file) {
       if (!statement.moduleSpecifier) continue;
       const from = join(file, '..', statement.moduleSpecifier.text.replace(/\.js$/, ''));
       if (!statement.exportClause) for (const [name, found_] of exported(files, from)) found.set(name, found_);
-      else for (const { name } of statement.exportClause.elements) found.set(name.text, declared(from, name.text));
+      else if (files.has(from)) for (const { name } of statement.exportClause.elements) found.set(name.text, declaredIn(from, name.text));
     } else if (ts.getCombinedModifierFlags(statement) & ts.ModifierFlags.Export) {
       const name = statement.name?.text ?? statement.declarationList.declarations[0].name.text;
       found.set(name, [file, statement]);
@@ -57,5 +60,11 @@ for (const [entry, file] of Object.entries(entries)) {
     const { words, code } = parts(found, files);
     page += `\n### ${name}\n\n${words ? `${words}\n\n` : ''}\`\`\`typescript\n${code}\n\`\`\`\n`;
   }
+}
+const generated = join(folder, 'src/declared');
+if (files.has(generated)) {
+  page += '\n## Options and results that are declared in C++\n';
+  for (const [name, found] of exported(files, generated))
+    if (ts.isInterfaceDeclaration(found[1])) page += `\n### declared.${name}\n\n\`\`\`typescript\n${parts(found, files).code}\n\`\`\`\n`;
 }
 process.stdout.write(page);

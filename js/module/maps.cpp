@@ -14,6 +14,7 @@
 
 #include "module/arguments.h"
 #include "module/lengths.h"
+#include "module/options.h"
 #include "module/result.h"
 #include "module/transferred.h"
 
@@ -48,19 +49,16 @@ SDM_EXPORT(sdm_words) Result* words() {
 
 SDM_EXPORT(sdm_new_surface)
 Result* new_surface(const double* positions, std::uint32_t vertices, const std::uint32_t* indices,
-                    std::uint32_t triangles, const double* corner_uvs, std::uint32_t kind,
-                    std::uint32_t resolution, std::uint32_t gutter, const std::uint8_t* stored_atlas,
-                    std::uint32_t stored_bytes) {
+                    std::uint32_t triangles, const double* corner_uvs, const char* lines, std::uint32_t bytes,
+                    const double* numbers, const std::uint8_t* stored_atlas, std::uint32_t stored_bytes) {
   return guarded([&](Result& result) {
+    auto options = read_options<AtlasOptions>({lines, bytes, numbers});
+    options.progress = host_progress();
     Mesh made = mesh(positions, vertices, indices, triangles);
     if (corner_uvs) {
       const std::span uvs(reinterpret_cast<const std::array<Vec2, 3>*>(corner_uvs), triangles);
       made.corner_uvs.assign(uvs.begin(), uvs.end());
     }
-    const AtlasOptions options{.kind = static_cast<AtlasKind>(kind),
-                               .resolution = resolution,
-                               .gutter = gutter,
-                               .progress = host_progress()};
     result.add_object(stored_atlas ? std::make_unique<Surface>(std::move(made), options,
                                                                std::span(stored_atlas, stored_bytes))
                                    : std::make_unique<Surface>(std::move(made), options));
@@ -140,10 +138,9 @@ Result* refit_sites(Sites* sites, const double* positions, std::uint32_t vertice
 
 namespace {
 
-MapOptions map_options(std::uint32_t sign, double max_distance, double facing) {
-  MapOptions options{
-      .sign = static_cast<SignMethod>(sign), .max_distance = max_distance, .progress = host_progress()};
-  if (!std::isnan(facing)) options.facing = facing;
+MapOptions map_options(const GivenOptions& given) {
+  auto options = read_options<MapOptions>(given);
+  options.progress = host_progress();
   return options;
 }
 
@@ -165,19 +162,19 @@ SDM_EXPORT(sdm_new_map) Result* new_map(const Surface* surface) {
 }
 
 SDM_EXPORT(sdm_compute_map)
-Result* compute_whole_map(DistanceMap* map, const Surface* surface, const Sites* sites, std::uint32_t sign,
-                          double max_distance, double facing) {
+Result* compute_whole_map(DistanceMap* map, const Surface* surface, const Sites* sites, const char* lines,
+                          std::uint32_t bytes, const double* numbers) {
   return guarded([&](Result& result) {
-    compute_map(*surface, *sites, map_options(sign, max_distance, facing), *map);
+    compute_map(*surface, *sites, map_options({lines, bytes, numbers}), *map);
     add_sign(result, *map);
   });
 }
 
 SDM_EXPORT(sdm_compute_samples)
-Result* compute_range(DistanceMap* map, const Surface* surface, const Sites* sites, std::uint32_t sign,
-                      double max_distance, double facing, std::uint32_t first, std::uint32_t count) {
+Result* compute_range(DistanceMap* map, const Surface* surface, const Sites* sites, const char* lines,
+                      std::uint32_t bytes, const double* numbers, std::uint32_t first, std::uint32_t count) {
   return guarded([&](Result& result) {
-    compute_samples(*surface, *sites, map_options(sign, max_distance, facing), {first, count}, *map);
+    compute_samples(*surface, *sites, map_options({lines, bytes, numbers}), {first, count}, *map);
     add_sign(result, *map);
   });
 }
@@ -230,10 +227,12 @@ Result* transfer_values(const Surface* surface, const Sites* sites, const Distan
   return transferred(surface, sites, map, values, count, components, domain, fill);
 }
 
-SDM_EXPORT(sdm_hausdorff) Result* hausdorff(const Sites* a, const Sites* b, double precision) {
+SDM_EXPORT(sdm_hausdorff)
+Result* hausdorff(const Sites* a, const Sites* b, const char* lines, std::uint32_t bytes,
+                  const double* numbers) {
   return guarded([&](Result& result) {
-    HausdorffOptions options{.progress = host_progress()};
-    if (precision > 0) options.precision = precision;
+    auto options = read_options<HausdorffOptions>({lines, bytes, numbers});
+    options.progress = host_progress();
     const SymmetricHausdorff both = symmetric_hausdorff(*a, *b, options);
     for (const HausdorffDistance* one : {&both.from[0], &both.from[1], &both.larger}) {
       add_length(result, one->distance);

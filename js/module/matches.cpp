@@ -14,6 +14,7 @@
 #include "io/mesh/model/model_vertices.h"
 #include "module/arguments.h"
 #include "module/looks.h"
+#include "module/options.h"
 #include "module/result.h"
 #include "module/transferred.h"
 
@@ -44,15 +45,12 @@ struct Frames {
 
 /// Matches, and how many texels have a point by the kinds of MatchKind.
 SDM_EXPORT(sdm_match)
-Result* match(const Surface* surface, const Sites* sites, std::uint32_t method, double facing, double cage,
-              double max_distance) {
+Result* match(const Surface* surface, const Sites* sites, const char* lines, std::uint32_t bytes,
+              const double* numbers) {
   return guarded([&](Result& result) {
-    auto matches = std::make_unique<TexelMatches>(match_texels(*surface, *sites,
-                                                               {.method = static_cast<MatchMethod>(method),
-                                                                .facing = facing,
-                                                                .cage = cage,
-                                                                .max_distance = max_distance,
-                                                                .progress = host_progress()}));
+    auto options = read_options<MatchOptions>({lines, bytes, numbers});
+    options.progress = host_progress();
+    auto matches = std::make_unique<TexelMatches>(match_texels(*surface, *sites, options));
     const auto count = [&](MatchKind kind) { return matches->count(kind); };
     const std::array counts{count(MatchKind::closest), count(MatchKind::facing), count(MatchKind::ray),
                             count(MatchKind::too_far), count(MatchKind::facing_away)};

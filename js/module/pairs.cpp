@@ -4,6 +4,7 @@
 
 #include "module/arguments.h"
 #include "module/lengths.h"
+#include "module/options.h"
 #include "module/result.h"
 
 namespace sdm::js {
@@ -11,11 +12,13 @@ namespace sdm::js {
 SDM_EXPORT(sdm_new_pair)
 Result* new_pair(const double* positions1, std::uint32_t vertices1, const std::uint32_t* indices1,
                  std::uint32_t triangles1, const double* positions2, std::uint32_t vertices2,
-                 const std::uint32_t* indices2, std::uint32_t triangles2, double margin) {
+                 const std::uint32_t* indices2, std::uint32_t triangles2, const char* lines,
+                 std::uint32_t bytes, const double* numbers) {
   return guarded([&](Result& result) {
+    const auto options = read_options<ProximityOptions>({lines, bytes, numbers});
     result.add_object(std::make_unique<ProximityQuery>(mesh(positions1, vertices1, indices1, triangles1),
                                                        mesh(positions2, vertices2, indices2, triangles2),
-                                                       ProximityOptions{.contact_margin = margin}));
+                                                       options));
   });
 }
 

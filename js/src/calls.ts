@@ -1,5 +1,6 @@
 // What the calls of the package take. All are checked by one table; those of workers, too, which end in the same methods.
 import { Animation } from './animation.js';
+import { shown } from './given.js';
 import { Look } from './look.js';
 import { Matches } from './matches.js';
 import { Pair } from './pair.js';
@@ -15,15 +16,8 @@ interface Call {
   /** By their names, in their order. */
   values: Checks;
   options: Checks;
-}
-
-function shown(value: unknown): string {
-  if (typeof value === 'string') return JSON.stringify(value.length > 40 ? `${value.slice(0, 40)}…` : value);
-  if (typeof value === 'function') return 'a function';
-  if (typeof value !== 'object' || value === null) return String(value);
-  const name = (value as object).constructor?.name ?? 'Object';
-  if (name === 'Object') return 'an object';
-  return name.endsWith('s') ? name : `${/^[AEIOU]/.test(name) ? 'an' : 'a'} ${name}`;
+  /** Whether there are others, which C++ declares and the module checks. */
+  declared: boolean;
 }
 
 const refuse = (name: string, value: unknown, needed: string) => {
@@ -96,13 +90,14 @@ const list = (words: string[]) =>
   words.length > 1 ? `${words.slice(0, -1).join(', ')} and ${words.at(-1)}` : words[0];
 
 /** Throws SdmError for options that there are not, and for wrong ones. */
-function checkOptions(call: string, given: unknown, options: Checks): void {
+function checkOptions(call: string, given: unknown, options: Checks, declared = false): void {
   if (given === undefined) return;
   if (!isObject(given) || Array.isArray(given) || ArrayBuffer.isView(given))
     refuse(`the last argument of ${call}`, given, 'an object of options');
   for (const [name, value] of Object.entries(given as object)) {
     if (value === undefined) continue;
     if (!Object.hasOwn(options, name)) {
+      if (declared) continue;
       const known = Object.keys(options).filter((one) => one !== 'progress');
       throw new SdmError(
         'input',
@@ -113,28 +108,27 @@ function checkOptions(call: string, given: unknown, options: Checks): void {
   }
 }
 
-function checkCall(name: string, { values, options }: Call, given: unknown[]): void {
+function checkCall(name: string, { values, options, declared }: Call, given: unknown[]): void {
   const entries = Object.entries(values);
   entries.forEach(([value, one], i) => one(given[i], value, name));
-  checkOptions(name, given[entries.length], options);
+  checkOptions(name, given[entries.length], options, declared);
 }
 
 const progress = callback;
 export const take = (values: Checks, options: Checks = {}): Call => ({
   values,
   options: { ...options, progress },
+  declared: false,
+});
+/** With options that C++ declares. */
+export const takeDeclared = (values: Checks, options: Checks = {}): Call => ({
+  ...take(values, options),
+  declared: true,
 });
 
 export const mesh = { positions: numbers, indices: optional(numbers) };
 const file = { bytes, name: word };
-export const ofMap = { sign: anything, maxDistance: number, facing: number };
-export const ofSurface = {
-  resolution: whole(0),
-  atlas: anything,
-  gutter: whole(0),
-  uvs: numbers,
-  storedAtlas: bytes,
-};
+export const ofSurface = { uvs: numbers, storedAtlas: bytes };
 const ofTransfer = { components: whole(1), domain: anything, fill: flag };
 const ofSummary = {
   tolerance: anything,
@@ -149,9 +143,9 @@ const aSurface = object(Surface, 'a Surface');
 const sites = object(Sites, 'Sites');
 
 const kNew: Record<string, Call> = {
-  Surface: take(mesh, ofSurface),
+  Surface: takeDeclared(mesh, ofSurface),
   Sites: take(mesh),
-  Pair: take({ first: body, second: body }, { contactMargin: number }),
+  Pair: takeDeclared({ first: body, second: body }),
 };
 /** Of the library itself. */
 export const kLibraryCalls: Record<string, Call> = {
@@ -161,10 +155,7 @@ export const kLibraryCalls: Record<string, Call> = {
   readMesh: take(file, { files }),
   readLook: take(file, { files }),
   readAnimation: take(file, { files, rate: number }),
-  match: take(
-    { surface: aSurface, sites },
-    { method: anything, facing: number, cage: number, maxDistance: number },
-  ),
+  match: takeDeclared({ surface: aSurface, sites }),
 };
 const kCalls: [Kind: { prototype: object }, calls: Record<string, Call>][] = [
   [
@@ -174,15 +165,15 @@ const kCalls: [Kind: { prototype: object }, calls: Record<string, Call>][] = [
       closestPoints: take({ points: numbers }, { maxDistance: number }),
       signedDistance: take({ points: numbers }, { sign: anything }),
       firstHits: take({ origins: numbers, directions: numbers }, { tMin: number, tMax: number }),
-      hausdorff: take({ other: sites }, { precision: number }),
+      hausdorff: takeDeclared({ other: sites }),
     },
   ],
-  [Surface, { refit: take({ positions: numbers }), map: take({ sites }, ofMap), emptyMap: take({ sites }) }],
+  [Surface, { refit: take({ positions: numbers }), map: takeDeclared({ sites }), emptyMap: take({ sites }) }],
   [
     DistanceMap,
     {
-      compute: take({}, ofMap),
-      computeSamples: take({ first: whole(0), count: whole(0) }, ofMap),
+      compute: takeDeclared({}),
+      computeSamples: takeDeclared({ first: whole(0), count: whole(0) }),
       valuesOfSamples: take({ first: whole(0), count: whole(0) }),
       transfer: take({ values: numbers }, ofTransfer),
       summary: take({}, ofSummary),

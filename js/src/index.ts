@@ -19,7 +19,6 @@ export type {
   DrawnModel,
   MatchArrays,
   MatchCounts,
-  MatchMethod,
   MatchOptions,
   Matches,
   NormalOptions,
@@ -28,7 +27,7 @@ export type { FaceNames, MeshFile, ReadMeshOptions } from './mesh_file.js';
 export type { PoolMap, PoolMapOptions, PoolSites, PoolSurface, SdmPool } from './pool.js';
 export type { Colormap, MapSummary, ReportOptions, SummaryOptions } from './report.js';
 export type { Contacts, Pair } from './pair.js';
-export type { ClosestPoints, Hausdorff, RayHits, SignedDistances, Sites } from './sites.js';
+export type { ClosestPoints, Hausdorff, HausdorffOptions, RayHits, SignedDistances, Sites } from './sites.js';
 export type { Atlas, DistanceMap, MapOptions, Surface, SurfaceOptions } from './surface.js';
 export type { CallOptions } from './connection.js';
 export type { WorkerMap, WorkerPair, WorkerSites, WorkerSurface } from './remote.js';

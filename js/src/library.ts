@@ -1,6 +1,7 @@
 // The library in one module, for those who may wait.
 import { Animation, type ReadAnimationOptions } from './animation.js';
 import { checkMethods, constructorIn, kLibraryCalls } from './calls.js';
+import { type ProximityOptions } from './declared.js';
 import { Look } from './look.js';
 import { type MatchOptions, Matches } from './matches.js';
 import { type MeshFile, type ReadMeshOptions, readMesh } from './mesh_file.js';
@@ -27,7 +28,7 @@ export class Sdm {
   readonly Pair: new (
     first: Body,
     second: Body,
-    options?: { contactMargin?: number },
+    options?: ProximityOptions,
   ) => Pair;
 
   /** @internal */
@@ -85,7 +86,7 @@ export class Sdm {
     return new this.Sites(positions, indices);
   }
   /** @internal */
-  pair(first: Body, second: Body, options: { contactMargin?: number }): Pair {
+  pair(first: Body, second: Body, options: ProximityOptions): Pair {
     return new this.Pair(first, second, options);
   }
   /** @internal */

@@ -1,5 +1,7 @@
 // The points of O2 that belong to the texels of O1, and what O2 has there.
 import { type Bytes, float32, float64, uint32 } from './bytes.js';
+import type * as declared from './declared.js';
+import { declaredOptions } from './given.js';
 import { type Look } from './look.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
@@ -8,18 +10,7 @@ import { type Surface } from './surface.js';
 import { type TransferOptions, transferred } from './transfer.js';
 import { type Progress, SdmError } from './types.js';
 
-/** `closest`: the closest point; `facing`: the closest one of the faces that face as the texel does; `ray`: the nearest hit along the normal. */
-export type MatchMethod = 'closest' | 'facing' | 'ray';
-
-export interface MatchOptions {
-  /** `facing` by default: unlike `closest`, it does not find the other skin of a thin wall. */
-  method?: MatchMethod;
-  /** Of `facing` and `ray`, in degrees: the normals of the faces that are allowed are within it of the texel's; 90 by default. */
-  facing?: number;
-  /** Of `ray`: how far along the normal, to either side, hits are searched for. */
-  cage?: number;
-  /** Points farther away do not match. */
-  maxDistance?: number;
+export interface MatchOptions extends declared.MatchOptions {
   progress?: Progress;
 }
 
@@ -108,19 +99,9 @@ export class Matches extends Owned {
   ) {
     if (!module.has('sdm_match'))
       throw new SdmError('input', 'matches need the module of start({ full: true })');
-    const method = module.number('method', options.method ?? 'facing');
-    const [address, numbers] = module.call(
-      'sdm_match',
-      [
-        surface.handleIn(module),
-        sites.handleIn(module),
-        method,
-        options.facing ?? 90,
-        options.cage ?? Infinity,
-        options.maxDistance ?? Infinity,
-      ],
-      options.progress,
-    );
+    const { progress, ...given } = options;
+    const values = [surface.handleIn(module), sites.handleIn(module), ...declaredOptions(given)];
+    const [address, numbers] = module.call('sdm_match', values, progress);
     super(module, float64(address!)[0]!, 'sdm_free_matches');
     const [resolution, rows, closest, facing, ray, tooFar, facingAway] = Array.from(float64(numbers!)) as [
       number,

@@ -1,6 +1,8 @@
 // Two bodies that move.
 import { type Bytes, float64, uint32 } from './bytes.js';
+import type * as declared from './declared.js';
 import { boundedLength, coordinates, corners } from './geometry.js';
+import { declaredOptions } from './given.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
 import { type BoundedLength, type Indices, type Points, SdmError } from './types.js';
@@ -22,7 +24,7 @@ export class Pair extends Owned {
     module: Module,
     first: { positions: Points; indices?: Indices },
     second: { positions: Points; indices?: Indices },
-    options: { contactMargin?: number } = {},
+    options: declared.ProximityOptions = {},
   ) {
     if (!module.has('sdm_new_pair'))
       throw new SdmError('input', 'Pair needs the module of start({ full: true })');
@@ -31,7 +33,7 @@ export class Pair extends Owned {
       const triangles = corners(indices ?? null, at.length / 3);
       return [at, at.length / 3, triangles, triangles.length / 3];
     });
-    const [address] = module.call('sdm_new_pair', [...bodies, options.contactMargin ?? 0]);
+    const [address] = module.call('sdm_new_pair', [...bodies, ...declaredOptions(options)]);
     super(module, float64(address!)[0]!, 'sdm_free_pair');
   }
 

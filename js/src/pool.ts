@@ -1,5 +1,5 @@
 // Maps by several workers that share no memory.
-import { anything, checkMethods, mesh, object, ofMap, ofSurface, take } from './calls.js';
+import { anything, checkMethods, mesh, object, ofSurface, take, takeDeclared } from './calls.js';
 import { type CallOptions, unlessAborted } from './connection.js';
 import { type WorkerMap, type WorkerSites, type WorkerSurface } from './remote.js';
 import { type SdmWorker } from './sdm_worker.js';
@@ -219,16 +219,17 @@ export class SdmPool {
 
 // Before anything is sent: what the workers get is a copy, in which wrong values are others.
 const ofCalls = { signal: anything, transfer: anything };
-checkMethods(SdmPool, { surface: take(mesh, { ...ofSurface, ...ofCalls }), sites: take(mesh, ofCalls) }, [
-  'surface',
-  'sites',
-]);
+checkMethods(
+  SdmPool,
+  { surface: takeDeclared(mesh, { ...ofSurface, ...ofCalls }), sites: take(mesh, ofCalls) },
+  ['surface', 'sites'],
+);
 checkMethods(PoolSites, { refit: take({ positions: mesh.positions }) }, ['refit']);
 checkMethods(
   PoolSurface,
   {
     refit: take({ positions: mesh.positions }),
-    map: take({ sites: object(PoolSites, 'PoolSites') }, { ...ofMap, ...ofCalls }),
+    map: takeDeclared({ sites: object(PoolSites, 'PoolSites') }, ofCalls),
   },
   ['refit', 'map'],
 );

@@ -2,7 +2,13 @@
 import { type CallOptions, type Connection, type Made, type Options, Remote } from './connection.js';
 import { type MapSummary, type ReportOptions, type SummaryOptions } from './report.js';
 import { type Contacts } from './pair.js';
-import { type ClosestPoints, type Hausdorff, type RayHits, type SignedDistances } from './sites.js';
+import {
+  type ClosestPoints,
+  type Hausdorff,
+  type HausdorffOptions,
+  type RayHits,
+  type SignedDistances,
+} from './sites.js';
 import { type Atlas, type MapOptions } from './surface.js';
 import { type TransferOptions } from './transfer.js';
 import {
@@ -41,7 +47,7 @@ export class WorkerSites extends Remote {
   ): Promise<RayHits> {
     return this.call('firstHits', [origins, directions], options);
   }
-  hausdorff(other: WorkerSites, options?: { precision?: number } & CallOptions): Promise<Hausdorff> {
+  hausdorff(other: WorkerSites, options?: Options<HausdorffOptions>): Promise<Hausdorff> {
     return this.call('hausdorff', [other], options);
   }
 }

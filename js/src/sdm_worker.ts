@@ -1,6 +1,7 @@
 // The library in a worker: calls return promises, and signals abort them.
 import { type ReadAnimationOptions } from './animation.js';
 import { type CallOptions, Connection, type Options } from './connection.js';
+import { type ProximityOptions } from './declared.js';
 import { type MatchOptions } from './matches.js';
 import { type MeshFile, type ReadMeshOptions } from './mesh_file.js';
 import { type WorkerStart } from './protocol.js';
@@ -55,11 +56,7 @@ export class SdmWorker {
     );
   }
   /** Of the module `full` only. */
-  async pair(
-    first: Body,
-    second: Body,
-    options: { contactMargin?: number } & CallOptions = {},
-  ): Promise<WorkerPair> {
+  async pair(first: Body, second: Body, options: ProximityOptions & CallOptions = {}): Promise<WorkerPair> {
     return new WorkerPair(
       this.connection,
       await this.connection.call(null, 'pair', [first, second], { ...options }),

@@ -1,6 +1,8 @@
 // Sites (O2), and what is asked of any points.
 import { float64, text, uint32 } from './bytes.js';
+import type * as declared from './declared.js';
 import { boundedLength, coordinates, corners } from './geometry.js';
+import { declaredOptions } from './given.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
 import {
@@ -43,6 +45,10 @@ export interface Hausdorff {
   from: [BoundedLength, BoundedLength];
   /** The larger of both. */
   larger: BoundedLength;
+}
+
+export interface HausdorffOptions extends declared.HausdorffOptions {
+  progress?: Progress;
 }
 
 /** What distances are measured to (O2): the vertices, edges and faces of a mesh, in a tree. */
@@ -124,15 +130,12 @@ export class Sites extends Owned {
     return { t: float64(t!), faces: uint32(faces!), barycentric: float64(barycentric!) };
   }
 
-  /**
-   * The Hausdorff distance to another mesh, with certified bounds. `precision`: how far they are apart at most, by default
-   * 10⁻⁶ of the diagonal of both meshes.
-   */
-  hausdorff(other: Sites, options: { precision?: number; progress?: Progress } = {}): Hausdorff {
+  /** The Hausdorff distance to another mesh, with certified bounds. */
+  hausdorff(other: Sites, { progress, ...given }: HausdorffOptions = {}): Hausdorff {
     const result = this.module.call(
       'sdm_hausdorff',
-      [this.handle, other.handleIn(this.module), options.precision ?? 0],
-      options.progress,
+      [this.handle, other.handleIn(this.module), ...declaredOptions(given)],
+      progress,
     );
     return {
       from: [boundedLength(this.module, result[0]!), boundedLength(this.module, result[2]!)],

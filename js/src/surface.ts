@@ -1,13 +1,14 @@
 // Surfaces (O1) and their distance maps.
 import { type Bytes, fields, float32, float64, text, uint32 } from './bytes.js';
 import { coordinates, corners } from './geometry.js';
+import type * as declared from './declared.js';
+import { declaredOptions } from './given.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
 import { type MapSummary, type ReportOptions, type SummaryOptions, reportOf, summaryOf } from './report.js';
 import { type Sites } from './sites.js';
 import { type TransferOptions, transferred } from './transfer.js';
 import {
-  type AtlasKind,
   type Indices,
   type MapStatistics,
   type MapValues,
@@ -17,16 +18,7 @@ import {
   type SignMethod,
 } from './types.js';
 
-export interface SurfaceOptions {
-  /** Texels per row of the atlas, 16 to 32768; 1024 by default. */
-  resolution?: number;
-  /**
-   * `charts`: of similar normals (the default). `triangles`: pairs of triangles, without distortion. `uv`: the texture
-   * coordinates of the mesh.
-   */
-  atlas?: AtlasKind;
-  /** Free texels around charts. */
-  gutter?: number;
+export interface SurfaceOptions extends declared.AtlasOptions {
   /** Texture coordinates of the vertices, two each, for `uv`; (0, 0) is the lower left of the texture. */
   uvs?: ArrayLike<number>;
   /** What storedAtlas() of a surface of the same mesh and options returned, perhaps in another worker: nothing is laid out again. */
@@ -49,12 +41,7 @@ export interface Atlas {
   corners: Float32Array;
 }
 
-export interface MapOptions {
-  sign?: SignMethod;
-  /** Texels farther away have no value. */
-  maxDistance?: number;
-  /** Degrees: to the closest of the faces whose normal is within this angle of that of the sample's face. */
-  facing?: number;
+export interface MapOptions extends declared.MapOptions {
   progress?: Progress;
 }
 
@@ -64,9 +51,9 @@ export class Surface extends Owned {
   constructor(module: Module, positions: Points, indices: Indices = null, options: SurfaceOptions = {}) {
     const at = coordinates(positions, 'positions');
     const triangles = corners(indices, at.length / 3);
+    const { uvs: of, storedAtlas, progress, ...given } = options;
     let uvs: Float64Array | null = null;
-    if (options.uvs) {
-      const of = options.uvs;
+    if (of) {
       if (of.length * 3 !== at.length * 2)
         throw new SdmError(
           'input',
@@ -77,22 +64,12 @@ export class Surface extends Owned {
         (_, i) => of[triangles[i >> 1]! * 2 + (i & 1)]!,
       );
     }
-    const kind = module.number('atlas', options.atlas ?? 'charts');
+    const mesh = [at, at.length / 3, triangles, triangles.length / 3, uvs];
+    const stored = [storedAtlas ?? null, storedAtlas?.length ?? 0];
     const [address] = module.call(
       'sdm_new_surface',
-      [
-        at,
-        at.length / 3,
-        triangles,
-        triangles.length / 3,
-        uvs,
-        kind,
-        options.resolution ?? 1024,
-        options.gutter ?? 1,
-        options.storedAtlas ?? null,
-        options.storedAtlas?.length ?? 0,
-      ],
-      options.progress,
+      [...mesh, ...declaredOptions(given), ...stored],
+      progress,
     );
     super(module, float64(address!)[0]!, 'sdm_free_surface');
   }
@@ -182,18 +159,19 @@ export class DistanceMap extends Owned {
   }
 
   /** Computes all values, again after refit() of the surface or the sites; takes no more memory. */
-  compute(options: MapOptions = {}): void {
-    this.take(this.module.call('sdm_compute_map', this.arguments(options), options.progress));
+  compute({ progress, ...given }: MapOptions = {}): void {
+    this.take(
+      this.module.call('sdm_compute_map', [...this.addresses(), ...declaredOptions(given)], progress),
+    );
   }
   /**
    * Computes the values of some samples, `first` to `first + count` of Surface.samples(), which must be multiples of
    * sampleCounts().grain or the end. The other texels keep theirs. Ranges that cover all samples, computed in any order and in
    * any number of modules, are the whole map to the bit.
    */
-  computeSamples(first: number, count: number, options: MapOptions = {}): void {
-    this.take(
-      this.module.call('sdm_compute_samples', [...this.arguments(options), first, count], options.progress),
-    );
+  computeSamples(first: number, count: number, { progress, ...given }: MapOptions = {}): void {
+    const values = [...this.addresses(), ...declaredOptions(given), first, count];
+    this.take(this.module.call('sdm_compute_samples', values, progress));
   }
   /** The values of samples, in their order, as those of the arrays of the map. */
   valuesOfSamples(first: number, count: number): MapValues {
@@ -211,10 +189,6 @@ export class DistanceMap extends Owned {
     };
   }
 
-  private arguments(options: MapOptions): number[] {
-    const method = this.module.number('sign', options.sign ?? 'automatic');
-    return [...this.addresses(), method, options.maxDistance ?? Infinity, options.facing ?? NaN];
-  }
   private take([used, reason]: Bytes[]): void {
     this.sign = this.module.words('sign')[float64(used!)[0]!] as SignMethod;
     this.signReason = text(reason!);

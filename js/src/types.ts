@@ -1,4 +1,7 @@
 // Types of arguments and results.
+import { type Certainty, type DistanceStatistics } from './declared.js';
+
+export type { AtlasKind, Certainty, MatchMethod, SignMethod } from './declared.js';
 
 export type NumberArray = Float64Array | Float32Array | Uint32Array | Int32Array | Uint16Array | Uint8Array;
 
@@ -26,10 +29,7 @@ export class SdmError extends Error {
   }
 }
 
-export type SignMethod = 'automatic' | 'none' | 'exact' | 'winding' | 'side';
-export type AtlasKind = 'charts' | 'triangles' | 'uv';
 export type SiteType = 'vertex' | 'edge' | 'face';
-export type Certainty = 'exact' | 'bounded' | 'estimate';
 
 export type Point = [number, number, number];
 
@@ -44,26 +44,7 @@ export interface BoundedLength {
 }
 
 /** Statistics of the texels that have a value, each weighted by its area; NaN if there are none. */
-export interface MapStatistics {
-  texels: number;
-  negativeTexels: number;
-  min: number;
-  max: number;
-  mean: number;
-  rms: number;
-  stddev: number;
-  p01: number;
-  p05: number;
-  p50: number;
-  p95: number;
-  p99: number;
-  meanAbs: number;
-  maxAbs: number;
-  p50Abs: number;
-  p95Abs: number;
-  p99Abs: number;
-  negativeAreaFraction: number;
-}
+export type MapStatistics = DistanceStatistics;
 
 /** Values of texels, or of samples. */
 export interface MapValues {

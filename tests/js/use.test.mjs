@@ -36,8 +36,8 @@ test('signs, rays and maps of a ball', () => {
   const statistics = map.statistics();
   assert.ok(statistics.max < -0.49 && statistics.min >= -0.5 - 1e-6, JSON.stringify(statistics));
   assert.ok(statistics.p50 <= statistics.p95 && statistics.p95Abs === -statistics.p05 && statistics.negativeAreaFraction === 1);
-  // Names come from the library, types from types.ts.
-  const [, type] = /interface MapStatistics \{([^}]*)\}/.exec(readFileSync(join(process.env.SDM_PACKAGE, 'types.d.ts'), 'utf8'));
+  // Names come from the library, types from the same declaration.
+  const [, type] = /interface DistanceStatistics \{([^}]*)\}/.exec(readFileSync(join(process.env.SDM_PACKAGE, 'declared.d.ts'), 'utf8'));
   assert.deepEqual(Object.keys(statistics), [...type.matchAll(/(\w+): number/g)].map(([, name]) => name));
   const heights = map.transfer(positions.filter((_, i) => i % 3 === 2));
   assert.equal(heights.length, 128 * 128);
@@ -79,8 +79,15 @@ test('arguments of another kind are errors that name them, and leave the module 
     [() => sites.closestPoints([0, 0, 1], 5), 'the last argument of closestPoints is 5: it must be an object of options'],
     [() => new full.Sites(triangle, { resolution: 16 }), 'indices is an object: it must be an array of numbers'],
     [() => new full.Sites(triangle, ['0', '1', '2']), 'indices[0] is "0": it must be a number'],
-    [() => new full.Surface(triangle, null, { gutter: -1 }), 'gutter is -1: it must be an integer of at least 0'],
-    [() => new full.Surface(triangle, null, { resolution: '64' }), 'resolution is "64": it must be an integer of at least 0'],
+    [() => new full.Surface(triangle, null, { gutter: -1 }), 'gutter is -1: it must be a whole number from 0 to 8192'],
+    [() => new full.Surface(triangle, null, { resolution: '64' }), 'resolution is "64": it must be a whole number from 16 to 32768'],
+    [() => new full.Surface(triangle, null, { resolution: 64.5 }), 'resolution is 64.5: it must be a whole number from 16 to 32768'],
+    [() => new full.Surface(triangle, null, { resolutoin: 64 }), 'unknown option resolutoin; did you mean resolution?'],
+    [() => new full.Surface(triangle, null, { strictUv: 1 }), 'strictUv is 1: it must be true or false'],
+    [() => surface.map(sites, { maxDistance: NaN }), 'maxDistance is NaN: it must be a number greater than 0'],
+    [() => surface.map(sites, { facing: () => 90 }), 'facing is a function: it must be a number of degrees greater than 0 and at most 180'],
+    [() => surface.map(sites, { facing: 90, sign: 'winding' }), 'facing excludes sign winding: distances have the sign of the side of the faces'],
+    [() => sites.hausdorff(sites, { precision: 0 }), 'precision is 0: it must be a number greater than 0'],
     [() => map.transfer([0, 1, 2], { components: 0 }), 'components is 0: it must be an integer of at least 1'],
     [() => pair.setPose(2, []), 'body is 2: it must be an integer from 0 to 1'],
     [() => new full.Pair(triangle, triangle), 'positions of the first body is undefined: it must be an array of numbers'],
@@ -126,7 +133,7 @@ test('a callback sees progress, and cancels', () => {
   };
   assert.throws(() => surface.map(sites, { progress: fail }), RangeError);
   assert.throws(() => surface.map(sites, { progress: () => sites.dispose() }), isInputError(/callback of progress/));
-  assert.throws(() => surface.map(sites, { sign: 'exakt' }), isInputError(/sign is "exakt": it must be one of automatic, none/));
+  assert.throws(() => surface.map(sites, { sign: 'exakt' }), isInputError(/sign is "exakt": it must be automatic, none, exact, winding or side/));
   assert.ok(surface.map(sites).statistics().texels > 0);
 });
 

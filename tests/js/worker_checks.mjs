@@ -157,7 +157,7 @@ export async function namesFaults(worker) {
     [sites.closestPoints(['0', '0', '1']), /^points\[0\] is "0": it must be a number$/],
     [sites.closestPoints([0, 0, 1], { maxDistance: '5' }), /^maxDistance is "5": it must be a number$/],
     [sites.closestPoints([0, 0, 1], { maxdistance: 5 }), /^closestPoints has no option maxdistance; it has maxDistance$/],
-    [worker.surface(triangle, null, { gutter: -1 }), /^gutter is -1: it must be an integer of at least 0$/],
+    [worker.surface(triangle, null, { gutter: -1 }), /^gutter is -1: it must be a whole number from 0 to 8192$/],
     [worker.sites(triangle, null, { resolution: 16 }), /^sites has no option resolution$/],
     [map.arrays('distance'), /^an array is "distance": it must be one of distances, /],
   ];

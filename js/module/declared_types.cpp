@@ -1,0 +1,92 @@
+// The types of what is declared, in TypeScript: js/declared_types.mjs writes them into the package.
+#include <sdm/atlas.h>
+#include <sdm/bounds.h>
+#include <sdm/hausdorff.h>
+#include <sdm/map.h>
+#include <sdm/match.h>
+#include <sdm/proximity_query.h>
+#include <sdm/statistics.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "module/options.h"
+#include "module/result.h"
+
+namespace sdm::js {
+namespace {
+
+using Words = std::vector<std::string>;
+
+template <Worded Enum>
+Words words_of() {
+  return {kWords<Enum>.begin(), kWords<Enum>.end()};
+}
+
+const std::vector<std::pair<std::string, Words>>& enumerations() {
+  static const std::vector<std::pair<std::string, Words>> all{{"SignMethod", words_of<SignMethod>()},
+                                                              {"AtlasKind", words_of<AtlasKind>()},
+                                                              {"MatchMethod", words_of<MatchMethod>()},
+                                                              {"Certainty", words_of<Certainty>()}};
+  return all;
+}
+
+std::string type_of(const OptionInfo& option) {
+  if (option.type == "flag") return "boolean";
+  if (option.type != "word") return "number";
+  for (const auto& [name, words] : enumerations())
+    if (words == option.words) return name;
+  return "string";
+}
+
+std::string comment_of(const OptionInfo& option) {
+  std::string text = option.text;
+  const bool limited = option.range.least > OptionRange{}.least || option.range.most < OptionRange{}.most;
+  if (limited && (option.type == "number" || option.type == "integer"))
+    text += " Must be " + needed(option) + (option.unit == "length" ? ", in units of the meshes." : ".");
+  if (!option.default_value.empty())
+    text += " Default: " + (option.default_value == "inf" ? "Infinity" : option.default_value) + ".";
+  return text;
+}
+
+template <class Struct>
+std::string options_interface(const char* name) {
+  std::string text = std::string("export interface ") + name + " {\n";
+  for (const OptionInfo& option : options_of<Struct>())
+    text += "  /** " + comment_of(option) + " */\n  " + spelled(option.name, Spelling::camel_case) +
+            "?: " + type_of(option) + ";\n";
+  return text + "}\n";
+}
+
+template <class Struct>
+std::string results_interface(const char* name) {
+  std::string text = std::string("export interface ") + name + " {\n";
+  for_each_field<Struct>([&](const auto& field) {
+    text += std::string("  /** ") + field.text + " */\n  " + spelled(field.name, Spelling::camel_case) +
+            ": number;\n";
+  });
+  return text + "}\n";
+}
+
+}  // namespace
+
+SDM_EXPORT(sdm_declared_types) Result* declared_types() {
+  return guarded([](Result& result) {
+    std::string text = "// Made of the declarations of C++ by js/declared_types.mjs.\n";
+    for (const auto& [name, words] : enumerations()) {
+      text += "export type " + name + " =";
+      for (const std::string& word : words) text += " | '" + word + "'";
+      text += ";\n";
+    }
+    text += options_interface<AtlasOptions>("AtlasOptions");
+    text += options_interface<MapOptions>("MapOptions");
+    text += options_interface<HausdorffOptions>("HausdorffOptions");
+    text += options_interface<MatchOptions>("MatchOptions");
+    text += options_interface<ProximityOptions>("ProximityOptions");
+    text += results_interface<DistanceStatistics>("DistanceStatistics");
+    result.add_text(text);
+  });
+}
+
+}  // namespace sdm::js

@@ -1,0 +1,75 @@
+// Options as JavaScript gives them, by the names that structs declare (sdm/options.h).
+#pragma once
+
+#include <sdm/error.h>
+#include <sdm/options.h>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace sdm::js {
+
+/// What js/src/given.ts makes of an object: for each property a line of its name, "=" and its value in words,
+/// a string in quotes; and a number, NaN if the value is none.
+struct GivenOptions {
+  const char* lines;
+  std::uint32_t bytes;
+  const double* numbers;
+};
+
+struct GivenValue {
+  std::string_view name, words;
+  double number;
+
+  /// The string; empty if the value is none.
+  [[nodiscard]] std::string_view text() const {
+    return words.starts_with('"') ? words.substr(1, words.size() - 2) : std::string_view();
+  }
+};
+
+[[nodiscard]] std::vector<GivenValue> values_of(const GivenOptions& given);
+
+/// Sets the option of a struct. Returns false, and changes nothing, for a value of another kind or out of
+/// range.
+template <class Struct, class Value>
+[[nodiscard]] bool set(const Option<Struct, Value>& option, const GivenValue& given, Struct& options) {
+  using Type = typename detail::OptionalOf<Value>::Type;
+  if constexpr (std::is_same_v<Type, bool>) {
+    return read_value(option, given.words, options);
+  } else if constexpr (std::is_arithmetic_v<Type>) {
+    if (!in_range(given.number, option.range)) return false;
+    if (std::is_integral_v<Type> && given.number != std::floor(given.number)) return false;
+    options.*option.member = static_cast<Type>(given.number);
+    return true;
+  } else {
+    return read_value(option, given.text(), options);
+  }
+}
+
+/// The options of a struct. Throws sdm::Error for a name that it does not have, for a value that it does not
+/// take, and for two that exclude each other.
+template <class Struct>
+[[nodiscard]] Struct read_options(const GivenOptions& given) {
+  constexpr auto kSpelling = Spelling::camel_case;
+  Struct options{};
+  std::vector<std::string> known;
+  for_each_option<Struct>([&](const auto& option) { known.push_back(spelled(option.name, kSpelling)); });
+  std::vector<GivenOption> read;
+  for (const GivenValue& value : values_of(given)) {
+    const std::size_t before = read.size();
+    for_each_option<Struct>([&](const auto& option) {
+      if (spelled(option.name, kSpelling) != value.name) return;
+      if (!set(option, value, options)) throw Error(refused(info_of(option), value.words, kSpelling));
+      read.push_back({option.name, std::string(value.text())});
+    });
+    if (read.size() == before) throw Error(unknown_name("option", value.name, known));
+  }
+  check_exclusions(options_of<Struct>(), read, kSpelling);
+  return options;
+}
+
+}  // namespace sdm::js
