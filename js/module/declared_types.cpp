@@ -5,6 +5,7 @@
 #include <sdm/map.h>
 #include <sdm/match.h>
 #include <sdm/proximity_query.h>
+#include <sdm/sampling_bound.h>
 #include <sdm/statistics.h>
 
 #include <string>
@@ -50,10 +51,10 @@ std::string comment_of(const OptionInfo& option) {
   return text;
 }
 
-template <class Struct>
+template <class... Structs>
 std::string options_interface(const char* name) {
   std::string text = std::string("export interface ") + name + " {\n";
-  for (const OptionInfo& option : options_of<Struct>())
+  for (const OptionInfo& option : options_of<Structs...>())
     text += "  /** " + comment_of(option) + " */\n  " + spelled(option.name, Spelling::camel_case) +
             "?: " + type_of(option) + ";\n";
   return text + "}\n";
@@ -79,7 +80,7 @@ SDM_EXPORT(sdm_declared_types) Result* declared_types() {
       for (const std::string& word : words) text += " | '" + word + "'";
       text += ";\n";
     }
-    text += options_interface<AtlasOptions>("AtlasOptions");
+    text += options_interface<AtlasOptions, PrecisionOptions>("AtlasOptions");
     text += options_interface<MapOptions>("MapOptions");
     text += options_interface<HausdorffOptions>("HausdorffOptions");
     text += options_interface<MatchOptions>("MatchOptions");

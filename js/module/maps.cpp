@@ -4,6 +4,7 @@
 #include <sdm/io.h>
 #include <sdm/map.h>
 #include <sdm/map_samples.h>
+#include <sdm/sampling_bound.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
 #include <sdm/surface.h>
@@ -52,13 +53,14 @@ Result* new_surface(const double* positions, std::uint32_t vertices, const std::
                     std::uint32_t triangles, const double* corner_uvs, const char* lines, std::uint32_t bytes,
                     const double* numbers, const std::uint8_t* stored_atlas, std::uint32_t stored_bytes) {
   return guarded([&](Result& result) {
-    auto options = read_options<AtlasOptions>({lines, bytes, numbers});
+    auto [options, fit] = read_all_options<AtlasOptions, PrecisionOptions>({lines, bytes, numbers});
     options.progress = host_progress();
     Mesh made = mesh(positions, vertices, indices, triangles);
     if (corner_uvs) {
       const std::span uvs(reinterpret_cast<const std::array<Vec2, 3>*>(corner_uvs), triangles);
       made.corner_uvs.assign(uvs.begin(), uvs.end());
     }
+    options.resolution = resolution_for(made, fit, options);
     result.add_object(stored_atlas ? std::make_unique<Surface>(std::move(made), options,
                                                                std::span(stored_atlas, stored_bytes))
                                    : std::make_unique<Surface>(std::move(made), options));

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -50,26 +51,37 @@ template <class Struct, class Value>
   }
 }
 
-/// The options of a struct. Throws sdm::Error for a name that it does not have, for a value that it does not
-/// take, and for two that exclude each other.
-template <class Struct>
-[[nodiscard]] Struct read_options(const GivenOptions& given) {
+/// The options of several structs. Throws sdm::Error for a name that none of them has, for a value that they
+/// do not take, and for two that exclude each other.
+template <class... Structs>
+[[nodiscard]] std::tuple<Structs...> read_all_options(const GivenOptions& given) {
   constexpr auto kSpelling = Spelling::camel_case;
-  Struct options{};
-  std::vector<std::string> known;
-  for_each_option<Struct>([&](const auto& option) { known.push_back(spelled(option.name, kSpelling)); });
+  const std::vector<OptionInfo> declared = options_of<Structs...>();
+  std::tuple<Structs...> all;
   std::vector<GivenOption> read;
   for (const GivenValue& value : values_of(given)) {
     const std::size_t before = read.size();
-    for_each_option<Struct>([&](const auto& option) {
-      if (spelled(option.name, kSpelling) != value.name) return;
-      if (!set(option, value, options)) throw Error(refused(info_of(option), value.words, kSpelling));
-      read.push_back({option.name, std::string(value.text())});
-    });
-    if (read.size() == before) throw Error(unknown_name("option", value.name, known));
+    const auto read_into = [&]<class Struct>(Struct& options) {
+      for_each_option<Struct>([&](const auto& option) {
+        if (spelled(option.name, kSpelling) != value.name) return;
+        if (!set(option, value, options)) throw Error(refused(info_of(option), value.words, kSpelling));
+        read.push_back({option.name, std::string(value.text())});
+      });
+    };
+    std::apply([&](auto&... options) { (read_into(options), ...); }, all);
+    if (read.size() > before) continue;
+    std::vector<std::string> known;
+    for (const OptionInfo& option : declared) known.push_back(spelled(option.name, kSpelling));
+    throw Error(unknown_name("option", value.name, known));
   }
-  check_exclusions(options_of<Struct>(), read, kSpelling);
-  return options;
+  check_exclusions(declared, read, kSpelling);
+  return all;
+}
+
+/// The same of one struct.
+template <class Struct>
+[[nodiscard]] Struct read_options(const GivenOptions& given) {
+  return std::get<0>(read_all_options<Struct>(given));
 }
 
 }  // namespace sdm::js
