@@ -28,7 +28,7 @@
 #include "io/points/measured_rows.h"
 #include "io/points/point_cells.h"
 #include "map/statistics/tolerance_limits.h"
-#include "map/statistics/weighted_percentiles.h"
+#include "map/statistics/weighted_statistics.h"
 #include "summary/verdict/sample_evidence.h"
 
 namespace sdm {
@@ -87,7 +87,7 @@ class Measurement {
     if (result_.points == 0) throw Error(cloud_ + ": there are no points");
     file.stream().flush();
     file.check();
-    find_percentiles(file.temporary(), rows_begin);
+    find_statistics(file.temporary(), rows_begin);
     result_.accuracy = accuracy();
     finish(file.temporary(), rows_begin);
     file.commit();
@@ -95,10 +95,6 @@ class Measurement {
   }
 
  private:
-  struct Sums {
-    double distance = 0, square = 0, magnitude = 0;
-  };
-
   // What is measured, and its sign.
   void choose_distance() {
     const MapOptions& map = options_.map;
@@ -283,9 +279,7 @@ class Measurement {
     signs_.add(d, has_sign);
     if (groups_) groups_->add(chunk.faces[i], d, has_sign);
     if (by_facing_) add_facing(chunk.faces[i], chunk.facing[i]);
-    DistanceStatistics& s = result_.distance;
-    ++s.texels, s.negative_texels += d < 0;
-    sums_.distance += d, sums_.square += double{d} * d, sums_.magnitude += std::abs(d);
+    sums_.add(d, 1);
     if (!result_.min || d < result_.min->distance) result_.min = {d, point, index};
     if (!result_.max || d > result_.max->distance) result_.max = {d, point, index};
   }
@@ -318,23 +312,9 @@ class Measurement {
     }
   }
 
-  void find_percentiles(const std::filesystem::path& written, std::uint64_t rows_begin) {
-    DistanceStatistics& s = result_.distance;
-    if (s.texels == 0) {
-      s.min = s.max = s.mean = s.rms = s.stddev = s.p01 = s.p05 = s.p50 = s.p95 = s.p99 = kNan;
-      s.mean_abs = s.max_abs = s.p50_abs = s.p95_abs = s.p99_abs = kNan;
-      return;
-    }
-    const auto count = static_cast<double>(s.texels);
-    s.min = result_.min->distance, s.max = result_.max->distance;
-    s.max_abs = std::max(std::abs(s.min), std::abs(s.max));
-    s.negative_area_fraction = static_cast<double>(s.negative_texels) / count;
-    s.mean = sums_.distance / count, s.rms = std::sqrt(sums_.square / count),
-    s.mean_abs = sums_.magnitude / count;
-    s.stddev = std::sqrt(std::max(0.0, sums_.square / count - s.mean * s.mean));
+  void find_statistics(const std::filesystem::path& written, std::uint64_t rows_begin) {
     constexpr std::size_t kParts = 16;
-    constexpr std::array kShares{0.01, 0.05, 0.50, 0.95, 0.99};
-    const auto find = [&](bool magnitudes) {
+    result_.distance = map::statistics_of(sums_, [&](bool magnitudes, std::span<const double> shares) {
       const auto for_each = [&](std::size_t part, const auto& visit) {
         std::ifstream file(written, std::ios::binary);
         for_each_row(file, rows_begin, part * result_.points / kParts, (part + 1) * result_.points / kParts,
@@ -343,11 +323,8 @@ class Measurement {
                        if (!std::isnan(d)) visit(magnitudes ? std::abs(d) : d, 1.0f);
                      });
       };
-      return map::WeightedPercentiles::find(kParts, for_each, kShares);
-    };
-    const std::vector<float> values = find(false), magnitudes = s.negative_texels == 0 ? values : find(true);
-    s.p01 = values[0], s.p05 = values[1], s.p50 = values[2], s.p95 = values[3], s.p99 = values[4];
-    s.p50_abs = magnitudes[2], s.p95_abs = magnitudes[3], s.p99_abs = magnitudes[4];
+      return map::WeightedPercentiles::find(kParts, for_each, shares);
+    });
   }
 
   // Relative to the box of both, which is known once all points are read.
@@ -412,7 +389,7 @@ class Measurement {
   bool without_facing_ = false;
   std::optional<CloudGroups> groups_;
   std::uint64_t counted_ = 0;
-  Sums sums_;
+  map::WeightedSums sums_;
 };
 
 }  // namespace

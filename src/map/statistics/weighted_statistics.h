@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 #include "core/parallel.h"
@@ -32,6 +34,39 @@ struct WeightedSums {
   }
 };
 
+/// The shares of the weight whose distances are part of statistics, and those of magnitudes.
+inline constexpr std::array kShares{0.01, 0.05, 0.50, 0.95, 0.99};
+inline constexpr std::array kMagnitudeShares{0.50, 0.95, 0.99};
+
+/// The statistics of `all` distances. `percentiles(magnitudes, shares)`: the distances, or their magnitudes.
+template <class Percentiles>
+DistanceStatistics statistics_of(const WeightedSums& all, const Percentiles& percentiles) {
+  DistanceStatistics result{.texels = all.texels, .negative_texels = all.negative};
+  if (all.texels == 0) {
+    for_each_field<DistanceStatistics>([&](const auto& field) {
+      if constexpr (std::is_same_v<decltype(result.*field.member), double&>)
+        result.*field.member = std::numeric_limits<double>::quiet_NaN();
+    });
+    result.negative_area_fraction = 0;
+    return result;
+  }
+  result.negative_area_fraction = all.area > 0 ? all.negative_area / all.area : 0;
+  result.min = all.least;
+  result.max = all.most;
+  result.mean = all.distance / all.area;
+  result.rms = std::sqrt(all.square / all.area);
+  result.stddev = std::sqrt(std::max(0.0, all.square / all.area - result.mean * result.mean));
+  result.mean_abs = all.magnitude / all.area;
+  result.max_abs = std::max(std::abs(result.min), std::abs(result.max));
+  const std::vector<float> values = percentiles(false, std::span(kShares)),
+                           magnitudes = all.negative > 0 ? percentiles(true, std::span(kMagnitudeShares))
+                                                         : std::vector(values.begin() + 2, values.end());
+  result.p01 = values[0], result.p05 = values[1], result.p50 = values[2];
+  result.p95 = values[3], result.p99 = values[4];
+  result.p50_abs = magnitudes[0], result.p95_abs = magnitudes[1], result.p99_abs = magnitudes[2];
+  return result;
+}
+
 /// `for_each(part, visit)` must call visit(distance, weight) for all finite distances of a part, the same
 /// ones each time; parts may be visited concurrently. Cost: linear, all cores.
 template <class ForEach>
@@ -46,38 +81,12 @@ DistanceStatistics weighted_statistics(std::size_t parts, const ForEach& for_eac
   });
   WeightedSums all;
   for (const WeightedSums& part : of_part) all += part;
-
-  DistanceStatistics result{.texels = all.texels, .negative_texels = all.negative};
-  if (all.texels == 0) {
-    for (double* value : {&result.min, &result.max, &result.mean, &result.rms, &result.stddev, &result.p01,
-                          &result.p05, &result.p50, &result.p95, &result.p99, &result.mean_abs,
-                          &result.max_abs, &result.p50_abs, &result.p95_abs, &result.p99_abs})
-      *value = std::numeric_limits<double>::quiet_NaN();
-    return result;
-  }
-  result.negative_area_fraction = all.area > 0 ? all.negative_area / all.area : 0;
-  result.min = all.least;
-  result.max = all.most;
-  result.mean = all.distance / all.area;
-  result.rms = std::sqrt(all.square / all.area);
-  result.stddev = std::sqrt(std::max(0.0, all.square / all.area - result.mean * result.mean));
-  result.mean_abs = all.magnitude / all.area;
-  result.max_abs = std::max(std::abs(result.min), std::abs(result.max));
-
-  constexpr std::array kShares{0.01, 0.05, 0.50, 0.95, 0.99};
-  const auto signed_values = WeightedPercentiles::find(parts, for_each, kShares);
-  result.p01 = signed_values[0], result.p05 = signed_values[1], result.p50 = signed_values[2];
-  result.p95 = signed_values[3], result.p99 = signed_values[4];
-  result.p50_abs = result.p50, result.p95_abs = result.p95, result.p99_abs = result.p99;
-  if (all.negative > 0) {
-    const auto for_each_magnitude = [&](std::size_t part, const auto& visit) {
-      for_each(part, [&](float d, float weight) { visit(std::abs(d), weight); });
+  return statistics_of(all, [&](bool magnitudes, std::span<const double> shares) {
+    const auto for_each_value = [&](std::size_t part, const auto& visit) {
+      for_each(part, [&](float d, float weight) { visit(magnitudes ? std::abs(d) : d, weight); });
     };
-    const auto magnitudes =
-        WeightedPercentiles::find(parts, for_each_magnitude, std::span(kShares).subspan(2));
-    result.p50_abs = magnitudes[0], result.p95_abs = magnitudes[1], result.p99_abs = magnitudes[2];
-  }
-  return result;
+    return WeightedPercentiles::find(parts, for_each_value, shares);
+  });
 }
 
 }  // namespace sdm::map
