@@ -23,7 +23,7 @@ struct DistanceStatistics {
   double min = 0, max = 0, mean = 0, rms = 0, stddev = 0;
   double p01 = 0, p05 = 0, p50 = 0, p95 = 0, p99 = 0;
   double mean_abs = 0, max_abs = 0;
-  double p50_abs = 0, p95_abs = 0, p99_abs = 0;
+  double p50_abs = 0, p95_abs = 0, p99_abs = 0, p999_abs = 0;
   double negative_area_fraction = 0;
 };
 
@@ -49,6 +49,8 @@ inline constexpr std::tuple kFields<DistanceStatistics>{
           "The absolute distance that 95 % of the area is at or below."},
     Field{"p99_abs", &DistanceStatistics::p99_abs,
           "The absolute distance that 99 % of the area is at or below."},
+    Field{"p999_abs", &DistanceStatistics::p999_abs,
+          "The absolute distance that 99.9 % of the area is at or below: the largest one but for outliers."},
     Field{"negative_area_fraction", &DistanceStatistics::negative_area_fraction,
           "The fraction of the area with a value, in [0, 1], where it is negative."}};
 

@@ -70,7 +70,7 @@ void expect_as_naive(const DistanceStatistics& found, const Naive& expected) {
   for (const auto& [share, value] : percentiles)
     EXPECT_NEAR(value, expected.percentile(expected.values, share), close) << share;
   const std::vector<std::pair<double, double>> magnitudes{
-      {0.5, found.p50_abs}, {0.95, found.p95_abs}, {0.99, found.p99_abs}};
+      {0.5, found.p50_abs}, {0.95, found.p95_abs}, {0.99, found.p99_abs}, {0.999, found.p999_abs}};
   for (const auto& [share, value] : magnitudes)
     EXPECT_NEAR(value, expected.percentile(expected.magnitudes, share), close) << share;
 }

@@ -35,8 +35,8 @@ struct WeightedSums {
 };
 
 /// The shares of the weight whose distances are part of statistics, and those of magnitudes.
-inline constexpr std::array kShares{0.01, 0.05, 0.50, 0.95, 0.99};
-inline constexpr std::array kMagnitudeShares{0.50, 0.95, 0.99};
+inline constexpr std::array kShares{0.01, 0.05, 0.50, 0.95, 0.99, 0.999};
+inline constexpr std::array kMagnitudeShares{0.50, 0.95, 0.99, 0.999};
 
 /// The statistics of `all` distances. `percentiles(magnitudes, shares)`: the distances, or their magnitudes.
 template <class Percentiles>
@@ -64,6 +64,7 @@ DistanceStatistics statistics_of(const WeightedSums& all, const Percentiles& per
   result.p01 = values[0], result.p05 = values[1], result.p50 = values[2];
   result.p95 = values[3], result.p99 = values[4];
   result.p50_abs = magnitudes[0], result.p95_abs = magnitudes[1], result.p99_abs = magnitudes[2];
+  result.p999_abs = magnitudes[3];
   return result;
 }
 
