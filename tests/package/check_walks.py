@@ -53,7 +53,7 @@ def files_that_name(name: str) -> list[str]:
 def main() -> None:
     page = (ROOT / "docs/design/house.md").read_text()
     faults = path_of_a_map(page) + named_files(page)
-    for name in ("texel_size",):
+    for name in ("texel_size", "p999_abs"):
         files = files_that_name(name)
         if not 3 <= len(files) <= MOST_FILES:
             faults.append(f"{name} is named in {len(files)} files: {', '.join(files)}")
