@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "certify/hausdorff/vertex_search.h"
 #include "certify/metrics/faces.h"
@@ -17,7 +18,7 @@
 namespace sdm::metrics {
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kGrain = 256, kSummed = 4096;
 constexpr double kLeastSize = 1e-9;  // of the diagonal: smaller parts are not divided
 // Parts that are smaller beside their distance, squared, have a close bound by their size.
 constexpr double kNear = 1e-4;
@@ -46,6 +47,18 @@ std::vector<MeasuredPoint> measure_vertices(const Mesh& a, const sites::SitesDat
   std::vector<MeasuredPoint> result(a.positions.size());
   for (std::size_t i = 0; i < order.size(); ++i) result[vertex[order[i]]] = measured[i];
   return result;
+}
+
+/// Calls add(sum, part) for all parts, and merge(sum, other): the same, whatever the number of threads.
+template <class Sum, class Add, class Merge>
+void sum_parts(std::span<const Part> parts, Sum& sum, const Add& add, const Merge& merge) {
+  std::vector<Sum> sums((parts.size() + kSummed - 1) / kSummed);
+  parallel_for(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n)
+      for (const Part& part : parts.subspan(n * kSummed).first(std::min(kSummed, parts.size() - n * kSummed)))
+        add(sums[n], part);
+  });
+  for (const Sum& other : sums) merge(sum, other);
 }
 
 BoundedNumber between(double lower, double upper) {
@@ -81,8 +94,12 @@ DirectedMetrics DirectedSearch::run() {
 
 double DirectedSearch::consistency() const {
   double sum = 0;
-  for (const Part& part : parts_)
-    sum += part.area * std::abs(dot(unit_normal(a_, part.face), unit_normal(b_.mesh, part.nearest)));
+  sum_parts(
+      parts_, sum,
+      [this](double& s, const Part& part) {
+        s += part.area * std::abs(dot(unit_normal(a_, part.face), unit_normal(b_.mesh, part.nearest)));
+      },
+      [](double& s, double other) { s += other; });
   return sum;
 }
 
@@ -166,12 +183,19 @@ void DirectedSearch::make_parts() {
 
 // All sums are in the order of the parts, whatever the number of threads.
 void DirectedSearch::add_means(const std::vector<Part>& parts, Means& means) {
-  for (const Part& part : parts) {
-    const TwoSided low = part.lower(), high = part.upper();
-    means.largest = std::max(means.largest, high.largest());
-    means.low += part.area * low.mean(), means.high += part.area * high.mean();
-    means.square_low += part.area * low.mean_square(), means.square_high += part.area * high.mean_square();
-  }
+  sum_parts(
+      parts, means,
+      [](Means& m, const Part& part) {
+        const TwoSided low = part.lower(), high = part.upper();
+        m.largest = std::max(m.largest, high.largest());
+        m.low += part.area * low.mean(), m.high += part.area * high.mean();
+        m.square_low += part.area * low.mean_square(), m.square_high += part.area * high.mean_square();
+      },
+      [](Means& m, const Means& other) {
+        m.largest = std::max(m.largest, other.largest);
+        m.low += other.low.value(), m.high += other.high.value();
+        m.square_low += other.square_low.value(), m.square_high += other.square_high.value();
+      });
 }
 
 // With areas that are off by a fraction of the whole, a mean is off by that fraction of the largest distance,
@@ -183,11 +207,13 @@ void DirectedSearch::sum_up() {
   const auto rounded = [&](double low, double high) {
     return between(std::max(0.0, low - scale_.rounding), high > 0 ? high + scale_.rounding : 0);
   };
+  largest_ = means.largest;
   const double off = rounding_ * means.largest;
   sums_.mean = rounded(means.low.value() / sums_.area - off, means.high.value() / sums_.area + off);
   sums_.rms = rounded(std::sqrt(std::max(0.0, means.square_low.value() / sums_.area - off * means.largest)),
                       std::sqrt(means.square_high.value() / sums_.area + off * means.largest));
-  sums_.percentiles.clear(), sums_.within.clear();
+  known_percentiles_ = std::exchange(sums_.percentiles, {});
+  sums_.within.clear();
   for (std::size_t i = 0; i < options_.percentiles.size(); ++i) sums_.percentiles.push_back(percentile(i));
   for (std::size_t i = 0; i < options_.tolerances.size(); ++i) sums_.within.push_back(within(i));
 }
@@ -198,11 +224,18 @@ double DirectedSearch::limit(double tolerance) const {
 }
 
 void DirectedSearch::add_within(const std::vector<Part>& parts, double limit, Within& sum) {
-  for (const Part& part : parts) {
-    const double surely = part.upper().fraction_within(limit), maybe = part.lower().fraction_within(limit);
-    sum.low += part.area * surely, sum.high += part.area * maybe;
-    sum.all = sum.all && surely == 1, sum.any = sum.any || maybe > 0;
-  }
+  sum_parts(
+      parts, sum,
+      [limit](Within& w, const Part& part) {
+        const double surely = part.upper().fraction_within(limit),
+                     maybe = part.lower().fraction_within(limit);
+        w.low += part.area * surely, w.high += part.area * maybe;
+        w.all = w.all && surely == 1, w.any = w.any || maybe > 0;
+      },
+      [](Within& w, const Within& other) {
+        w.low += other.low.value(), w.high += other.high.value();
+        w.all = w.all && other.all, w.any = w.any || other.any;
+      });
 }
 
 BoundedNumber DirectedSearch::within(std::size_t tolerance) const {
@@ -224,7 +257,9 @@ BoundedNumber DirectedSearch::percentile(std::size_t number) const {
   const double fraction = options_.percentiles[number] / 100;
   const double least = std::max(0.0, fraction - rounding_), most = std::min(1.0, fraction + rounding_);
   if (!settled_.percentiles.empty()) return percentile(settled_.percentiles[number], least, most);
-  const double low = quantile(least, &Part::lower), high = quantile(most, &Part::upper);
+  const BoundedNumber known =
+      number < known_percentiles_.size() ? known_percentiles_[number] : between(0, largest_);
+  const double low = quantile(least, &Part::lower, known), high = quantile(most, &Part::upper, known);
   return between(std::max(0.0, low - scale_.rounding), high > 0 ? high + scale_.rounding : 0);
 }
 
@@ -243,30 +278,42 @@ BoundedNumber DirectedSearch::percentile(const Steps& steps, double least, doubl
   return between(lower, upper);
 }
 
-double DirectedSearch::quantile(double fraction, TwoSided (Part::*bound)() const) const {
+double DirectedSearch::quantile(double fraction, TwoSided (Part::*bound)() const,
+                                const BoundedNumber& known) const {
   struct Piece {
     TwoSided bound;
     double area;
   };
-  std::vector<Piece> open;
-  double lo = kInfinity, hi = 0;
-  CompensatedSum below;
-  for (const Part& part : parts_) {
-    open.push_back({(part.*bound)(), part.area});
-    lo = std::min(lo, std::max(0.0, open.back().bound.least())),
-    hi = std::max(hi, open.back().bound.largest());
-  }
+  struct Open {
+    std::vector<Piece> pieces;
+    CompensatedSum below;
+  };
+  // Pieces that are wholly below `lo` count from now on, those above `hi` do not.
+  double lo = known.lower, hi = known.upper;
+  Open open;
+  sum_parts(
+      parts_, open,
+      [&](Open& some, const Part& part) {
+        const TwoSided distance = (part.*bound)();
+        if (distance.largest() <= lo)
+          some.below += part.area;
+        else if (distance.least() <= hi)
+          some.pieces.push_back({distance, part.area});
+      },
+      [](Open& all, const Open& some) {
+        all.below += some.below.value();
+        all.pieces.insert(all.pieces.end(), some.pieces.begin(), some.pieces.end());
+      });
   const double asked = fraction * sums_.area;
   constexpr int kHalvings = 60;
   for (int n = 0; n < kHalvings && lo < hi; ++n) {
     poll();
     const double middle = lo + (hi - lo) / 2;
-    CompensatedSum area = below;
-    for (const Piece& piece : open) area += piece.area * piece.bound.fraction_within(middle);
+    CompensatedSum area = open.below;
+    for (const Piece& piece : open.pieces) area += piece.area * piece.bound.fraction_within(middle);
     (area.value() >= asked ? hi : lo) = middle;
-    // Pieces that are wholly below `lo` count from now on, those above `hi` do not.
-    std::erase_if(open, [&](const Piece& piece) {
-      if (piece.bound.largest() <= lo) below += piece.area;
+    std::erase_if(open.pieces, [&](const Piece& piece) {
+      if (piece.bound.largest() <= lo) open.below += piece.area;
       return piece.bound.largest() <= lo || piece.bound.least() > hi;
     });
   }
@@ -281,11 +328,12 @@ void DirectedSearch::choose_by_share(const std::vector<double>& contributions, d
   for (const double c : contributions) total += c;
   if (total <= target) return;
   const double share = target / (2 * static_cast<double>(contributions.size()));
+  Chosen is_large(contributions.size());
+  for_each_part([&](std::size_t i) { is_large[i] = contributions[i] > share && can_be_closer(parts_[i]); });
   std::vector<std::uint32_t> large;
   double of_large = 0;
   for (std::uint32_t i = 0; i < contributions.size(); ++i)
-    if (contributions[i] > share && can_be_closer(parts_[i]))
-      large.push_back(i), of_large += contributions[i];
+    if (is_large[i]) large.push_back(i), of_large += contributions[i];
   constexpr double kLess = 0.8, kLeft = 0.5;  // of what is asked for; of the contribution of a part
   const double surplus = total - kLess * target;
   if (kLeft * of_large > surplus)
@@ -305,12 +353,12 @@ void DirectedSearch::choose_around(const BoundedNumber& percentile, Chosen& chos
   const double found = percentile.upper - percentile.lower, asked = width(percentile);
   if (found <= asked) return;
   const double enough = std::max(asked / 2, in_runs_ ? 0 : found / 4);
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
+  for_each_part([&](std::size_t i) {
     const Part& part = parts_[i];
-    if (part.gap() > enough && part.upper().largest() >= percentile.lower &&
-        part.lower().least() <= percentile.upper)
+    if (!chosen[i] && part.upper().largest() >= percentile.lower &&
+        part.lower().least() <= percentile.upper && part.gap() > enough)
       chosen[i] = 1;
-  }
+  });
 }
 
 DirectedSearch::Chosen DirectedSearch::choose() const {
@@ -318,8 +366,9 @@ DirectedSearch::Chosen DirectedSearch::choose() const {
   Chosen chosen(parts_.size());
   std::vector<double> contributions(parts_.size());
   const auto choose = [&](double target, const auto& difference) {
-    for (std::size_t i = 0; i < parts_.size(); ++i)
+    for_each_part([&](std::size_t i) {
       contributions[i] = parts_[i].area * difference(parts_[i].lower(), parts_[i].upper());
+    });
     choose_by_share(contributions, target * area_, chosen);
   };
   if (const double found = sums_.mean.upper - sums_.mean.lower, asked = width(sums_.mean);
@@ -338,6 +387,12 @@ DirectedSearch::Chosen DirectedSearch::choose() const {
   return chosen;
 }
 
+void DirectedSearch::for_each_part(const std::function<void(std::size_t)>& visit) const {
+  parallel_for(parts_.size(), kSummed, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) visit(i);
+  });
+}
+
 bool DirectedSearch::can_be_thorough(const Part& part) {
   return !part.thorough && part.squared_size() > kNear * part.upper().least() * part.upper().least();
 }
@@ -350,8 +405,10 @@ bool DirectedSearch::can_be_closer(const Part& part) const {
 
 DirectedSearch::Refined DirectedSearch::refine(const Chosen& chosen, std::size_t most) {
   std::vector<std::size_t> thorough, divided;
+  Chosen closer(parts_.size());
+  for_each_part([&](std::size_t i) { closer[i] = chosen[i] && can_be_closer(parts_[i]); });
   for (std::size_t i = 0; i < parts_.size(); ++i)
-    if (chosen[i] && can_be_closer(parts_[i])) (can_be_thorough(parts_[i]) ? thorough : divided).push_back(i);
+    if (closer[i]) (can_be_thorough(parts_[i]) ? thorough : divided).push_back(i);
   parallel_for(thorough.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) bound_thoroughly(b_, parts_[thorough[n]]);
   });
@@ -363,12 +420,14 @@ DirectedSearch::Refined DirectedSearch::refine(const Chosen& chosen, std::size_t
 }
 
 void DirectedSearch::divide(const std::vector<std::size_t>& divided) {
-  std::vector<Cut> cuts;
+  std::vector<Cut> cuts(divided.size());
+  parallel_for(divided.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) cuts[n] = choose_cut(b_, parts_[divided[n]]);
+  });
   std::vector<Vec3> points;
-  for (const std::size_t i : divided) {
-    const Cut& cut = cuts.emplace_back(choose_cut(b_, parts_[i]));
-    const std::array<Vec3, 2> at = cut.of(parts_[i]);
-    points.insert(points.end(), at.begin(), at.begin() + cut.points);
+  for (std::size_t n = 0; n < divided.size(); ++n) {
+    const std::array<Vec3, 2> at = cuts[n].of(parts_[divided[n]]);
+    points.insert(points.end(), at.begin(), at.begin() + cuts[n].points);
   }
   const std::vector<MeasuredPoint> measured = measure(b_, points, scale_.accuracy, options_.progress);
   std::vector<std::size_t> changed;
@@ -386,7 +445,8 @@ void DirectedSearch::bound_by_middles(const std::vector<std::size_t>& numbers) {
   std::vector<Vec3> points;
   points.reserve(numbers.size());
   for (const std::size_t i : numbers) points.push_back(parts_[i].middle());
-  const std::vector<MeasuredPoint> middles = measure(b_, points, scale_.accuracy, options_.progress);
+  const std::vector<MeasuredPoint> middles =
+      measure(b_, points, scale_.accuracy, options_.progress, kFarFace);
   parallel_for(numbers.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       Part& part = parts_[numbers[n]];

@@ -3,6 +3,7 @@
 
 #include <sdm/metrics.h>
 
+#include <functional>
 #include <vector>
 
 #include "certify/metrics/part.h"
@@ -65,12 +66,16 @@ class DirectedSearch {
   [[nodiscard]] BoundedNumber within(std::size_t tolerance) const;
   [[nodiscard]] BoundedNumber percentile(std::size_t number) const;
   [[nodiscard]] BoundedNumber percentile(const Steps& steps, double least, double most) const;
-  /// The least t such that `bound` is at most t on this fraction of the area.
-  [[nodiscard]] double quantile(double fraction, TwoSided (Part::*bound)() const) const;
+  /// The least t such that `bound` is at most t on this fraction of the area, or the end of what is known of
+  /// it if it is beyond.
+  [[nodiscard]] double quantile(double fraction, TwoSided (Part::*bound)() const,
+                                const BoundedNumber& known) const;
   [[nodiscard]] double width(const BoundedNumber& number) const;
   [[nodiscard]] Chosen choose() const;
   void choose_by_share(const std::vector<double>& contributions, double target, Chosen& chosen) const;
   void choose_around(const BoundedNumber& percentile, Chosen& chosen) const;
+  /// On all cores.
+  void for_each_part(const std::function<void(std::size_t)>& visit) const;
   [[nodiscard]] static bool can_be_thorough(const Part& part);
   [[nodiscard]] bool can_be_closer(const Part& part) const;
   /// Returns whether a bound may have changed; `too_many`: there are `most` parts already.
@@ -90,6 +95,8 @@ class DirectedSearch {
   bool in_runs_ = false;  // whether they are a run of all
   Settled settled_;
   DirectedMetrics sums_;
+  std::vector<BoundedNumber> known_percentiles_;  // before the present sums
+  double largest_ = 0;                            // bound on all distances
 };
 
 }  // namespace sdm::metrics

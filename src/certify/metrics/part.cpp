@@ -24,6 +24,10 @@ double sum(const Vec3& v) {
   return v[0] + v[1] + v[2];
 }
 
+double square(double x) {
+  return x * x;
+}
+
 double largest(const Vec3& v) {
   return std::max({v[0], v[1], v[2]});
 }
@@ -48,50 +52,104 @@ Vec3 lower_by_size(const Part& part) {
   return low;
 }
 
-// g·x − max of g·y over the face, at the corners x of the part.
-Vec3 along(const Vec3& g, const Part& part, const Corners& face) {
-  Vec3 low;
-  for (int i = 0; i < 3; ++i) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Vec3& y : face) {
-      const Vec3 r = part.corner[i].at - y;
-      const double rounding =
-          kProductRounding * (std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]));  // of g and of the product
-      least = std::min(least, dot(g, r) - rounding);
-    }
-    low[i] = least;
-  }
-  return low;
-}
-
-// A linear lower bound on the distance to a face: of those along its normal and along the way from its
-// closest point to the middle, the one that is the least below `high`.
-Vec3 lower_bound(const Part& part, const Corners& face) {
-  const Vec3 middle = part.middle();
-  const auto loss = [&](const Vec3& low) {
-    double total = 0;
-    for (int i = 0; i < 3; ++i) total += std::max(0.0, part.corner[i].upper - low[i]);
-    return total;
-  };
-  Vec3 best{};
-  double least = loss(best);
-  const auto offer = [&](const Vec3& direction) {
-    const double length = norm(direction);
-    if (!(length > kLeastLength)) return;
-    const Vec3 low = along((1 / length) * direction, part, face);
-    if (const double l = loss(low); l < least) best = low, least = l;
-  };
-  const Vec3 normal = cross(face[1] - face[0], face[2] - face[0]);
-  offer(dot(normal, middle - face[0]) < 0 ? -1.0 * normal : normal);
-  if (least > 0) offer(middle - core::closest_on_triangle(middle, face));
-  return best;
-}
-
 Vec3 unit_normal(const Corners& face) {
   const Vec3 normal = cross(face[1] - face[0], face[2] - face[0]);
   const double length = norm(normal);
   return length > kLeastLength ? (1 / length) * normal : Vec3{};
 }
+
+/// From the corners of a face of B to those of a part.
+class Offsets {
+ public:
+  Offsets(const Part& part, const Corners& face) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const Vec3 r = part.corner[i].at - face[j];
+        from_[i][j] = r;
+        rounding_[i][j] = kProductRounding * (std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2]));
+      }
+  }
+  /// g·x − max of g·y over the face, at the corners x of the part; and the same for −g. Rounded downwards,
+  /// also for a unit vector that is rounded.
+  [[nodiscard]] std::array<Vec3, 2> along(const Vec3& g) const {
+    std::array<Vec3, 2> low;
+    for (int i = 0; i < 3; ++i) {
+      double least = kInfinity, most = -kInfinity;
+      for (int j = 0; j < 3; ++j) {
+        const double d = dot(g, from_[i][j]);
+        least = std::min(least, d - rounding_[i][j]);
+        most = std::max(most, d + rounding_[i][j]);
+      }
+      low[0][i] = least, low[1][i] = -most;
+    }
+    return low;
+  }
+
+ private:
+  Vec3 from_[3][3];
+  double rounding_[3][3];
+};
+
+/// Lower bounds on the distance of a part from the faces that are added.
+class LowerBounds {
+ public:
+  /// `nearest` separates the sides of B; no face that is not added is closer than `most`.
+  LowerBounds(const Part& part, const Corners& nearest, double most)
+      : part_(part),
+        middle_(part.middle()),
+        normal_(unit_normal(nearest)),
+        low_{most, most, most},
+        sides_{low_, low_} {
+    add_to_sides(Offsets(part, nearest), normal_);  // so that both sides are not positive at once
+  }
+
+  void add(const Corners& face) {
+    const Offsets offsets(part_, face);
+    const Vec3 normal = unit_normal(face);
+    const std::array<Vec3, 2> along = add_to_sides(offsets, normal);
+    const bool above = dot(normal, middle_ - face[0]) >= 0, same = dot(normal, normal_) >= 0;
+    Vec3 best{};
+    double least = loss(best);
+    const auto offer = [&](const Vec3& low) {
+      if (const double l = loss(low); l < least) best = low, least = l;
+    };
+    if (normal != Vec3{}) offer(along[above == same ? 0 : 1]);
+    if (least > 0) {
+      const Vec3 way = middle_ - core::closest_on_triangle(middle_, face);
+      if (const double length = norm(way); length > kLeastLength) offer(offsets.along((1 / length) * way)[0]);
+    }
+    for (int i = 0; i < 3; ++i) low_[i] = std::min(low_[i], best[i]);
+  }
+
+  /// A linear bound: of those along the normals of the faces and along the way from their closest point to
+  /// the middle, the ones that are the least below `high`.
+  [[nodiscard]] const Vec3& low() const { return low_; }
+  /// On the distance to each side of B.
+  [[nodiscard]] const std::array<Vec3, 2>& of_sides() const { return sides_; }
+
+ private:
+  [[nodiscard]] double loss(const Vec3& low) const {
+    double total = 0;
+    for (int i = 0; i < 3; ++i) total += std::max(0.0, part_.corner[i].upper - low[i]);
+    return total;
+  }
+  /// Returns the bounds along the normal of the face, turned to the side of that of the nearest one, and
+  /// along its opposite.
+  std::array<Vec3, 2> add_to_sides(const Offsets& offsets, Vec3 normal) {
+    if (dot(normal, normal_) < 0) normal = -1.0 * normal;
+    const std::array<Vec3, 2> own = offsets.along(normal), nearest = offsets.along(normal_);
+    for (const int side : {0, 1}) {
+      const Vec3& bound = sum(own[side]) > sum(nearest[side]) ? own[side] : nearest[side];
+      for (int i = 0; i < 3; ++i) sides_[side][i] = std::min(sides_[side][i], bound[i]);
+    }
+    return own;
+  }
+
+  const Part& part_;
+  const Vec3 middle_, normal_;
+  Vec3 low_;
+  std::array<Vec3, 2> sides_;
+};
 
 /// The bounds |s| + p by the plane of a face, if the part crosses it. `distances`: of the corners to the
 /// face.
@@ -123,33 +181,6 @@ void offer(const sites::SitesData& b, std::uint32_t face, Part& part) {
   if (const auto high = upper_by_plane(part, corners_of(b.mesh, face), distances)) take(*high);
 }
 
-/// Lower bounds on the distance to each side of B, as `low`, from the faces that may be the closest.
-class SideBounds {
- public:
-  /// `most`: no face that is not added is closer.
-  SideBounds(const Part& part, const Corners& nearest, double most)
-      : part_(part), normal_(unit_normal(nearest)), low_{Vec3{most, most, most}, Vec3{most, most, most}} {
-    add(nearest);  // so that both sides are not positive at once
-  }
-
-  void add(const Corners& face) {
-    Vec3 normal = unit_normal(face);
-    if (dot(normal, normal_) < 0) normal = -1.0 * normal;
-    for (const int side : {0, 1}) {
-      const double sign = side == 0 ? 1 : -1;
-      Vec3 bound = along(sign * normal_, part_, face);
-      if (const Vec3 other = along(sign * normal, part_, face); sum(other) > sum(bound)) bound = other;
-      for (int i = 0; i < 3; ++i) low_[side][i] = std::min(low_[side][i], bound[i]);
-    }
-  }
-  [[nodiscard]] const std::array<Vec3, 2>& low() const { return low_; }
-
- private:
-  const Part& part_;
-  Vec3 normal_;
-  std::array<Vec3, 2> low_;
-};
-
 void raise(Part& part, const std::array<Vec3, 2>& low) {
   if (TwoSided(low[0], low[1]).mean() > part.lower().mean()) part.low = low;
 }
@@ -157,7 +188,7 @@ void raise(Part& part, const std::array<Vec3, 2>& low) {
 }  // namespace
 
 std::vector<MeasuredPoint> measure(const sites::SitesData& b, std::span<const Vec3> points, double accuracy,
-                                   const Progress& progress) {
+                                   const Progress& progress, double far) {
   std::vector<MeasuredPoint> result(points.size());
   closest::for_each_block(points.size(), progress, "parts", [&](std::size_t begin, std::size_t end) {
     closest::closest_points(
@@ -169,7 +200,7 @@ std::vector<MeasuredPoint> measure(const sites::SitesData& b, std::span<const Ve
             const double upper = hausdorff::upper_face_distance(p, corners_of(b.mesh, face));
             MeasuredPoint& point = result[begin + first + i];
             point = {p, face, std::max(0.0, closest.distance[i] - accuracy), upper};
-            if (upper >= kFar * accuracy) continue;
+            if (upper >= far * accuracy) continue;
             const hausdorff::NearestFace nearest = hausdorff::nearest_face(b, p, face);
             point.nearest = nearest.face, point.lower = nearest.lower, point.upper = nearest.upper;
           }
@@ -223,34 +254,41 @@ void bound_thoroughly(const sites::SitesData& b, Part& part) {
   part.thorough = true;
   const double most = part.upper().largest();
   if (most == 0) return;
-  Box box;
+  Box box, unit_box;
   double size = 1;
   for (const MeasuredPoint& corner : part.corner) {
     const Vec3 unit = b.frame.to_unit(corner.at);
-    extend(box, unit);
+    extend(box, corner.at);
+    extend(unit_box, unit);
     for (const double x : unit) size = std::max(size, std::abs(x));
   }
-  const tree::FloatBox around = tree::FloatBox::around(box);
+  const tree::FloatBox around = tree::FloatBox::around(unit_box);
   const double reach = (1 + kProductRounding) * most * b.frame.scale + kProductRounding * size;
   // Faces farther than `reach` are closest nowhere, or as far as `high` is anyway.
-  Vec3 low{most, most, most};
-  SideBounds sides(part, corners_of(b.mesh, part.nearest), most);
+  const auto is_far = [&, most_squared = square(reach / b.frame.scale)](const Corners& face) {
+    double squared = 0;
+    for (int k = 0; k < 3; ++k) {
+      const auto [lo, hi] = std::minmax({face[0][k], face[1][k], face[2][k]});
+      squared += square(std::max({0.0, lo - box.hi[k], box.lo[k] - hi}));
+    }
+    return squared > most_squared;
+  };
+  LowerBounds bounds(part, corners_of(b.mesh, part.nearest), most);
   int faces = 0;
   const auto gap_to = [&](const tree::FloatBox& other) { return norm(tree::gap(around, other)); };
   const auto enter = [&](double distance) { return faces <= kMostFaces && distance <= reach; };
   const auto leaf = [&](std::uint32_t node) {
     for (const std::uint32_t face : b.tree.items_of(node)) {
-      if (++faces > kMostFaces) return;
       const Corners corners = corners_of(b.mesh, face);
-      const Vec3 bound = lower_bound(part, corners);
-      sides.add(corners);
-      for (int i = 0; i < 3; ++i) low[i] = std::min(low[i], bound[i]);
+      if (is_far(corners)) continue;
+      if (++faces > kMostFaces) return;
+      bounds.add(corners);
     }
   };
   tree::visit(b.tree, tree::NearestFirst{gap_to, enter, leaf});
   if (faces > kMostFaces) return;
-  raise(part, {low, Vec3{}});
-  raise(part, sides.low());
+  raise(part, {bounds.low(), Vec3{}});
+  raise(part, bounds.of_sides());
 }
 
 std::array<Vec3, 2> Cut::of(const Part& part) const {

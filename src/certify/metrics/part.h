@@ -23,12 +23,15 @@ struct MeasuredPoint {
 
 /// Points that are farther than so many times the accuracy of the cpu engine are measured by it alone.
 inline constexpr double kFar = 1000;
+/// The same for points of which only some near face is needed.
+inline constexpr double kFarFace = 30;
 
 /// Measures points, which should be near each other if they are in the order, by the cpu engine, whose
-/// distances are as accurate as `accuracy`, and near points to rounding. Cost: one or two searches for each,
-/// all cores.
+/// distances are as accurate as `accuracy`, and those nearer than `far` times that to rounding. Cost: one or
+/// two searches for each, all cores.
 [[nodiscard]] std::vector<MeasuredPoint> measure(const sites::SitesData& b, std::span<const Vec3> points,
-                                                 double accuracy, const Progress& progress);
+                                                 double accuracy, const Progress& progress,
+                                                 double far = kFar);
 
 /// A triangle of A or a part of one. The bounds on the distance d(x) of its points x are the larger of 0 and
 /// of two linear functions each, with the values `low` and `high` at the corners; one function is 0 if the

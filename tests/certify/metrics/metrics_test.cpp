@@ -221,7 +221,7 @@ TEST(SurfaceMetrics, OfANoisyScanAreClose) {
   for (const int n : {1, 6}) {
     SCOPED_TRACE(n);
     const Mesh part = measured_block(n, 0);
-    const SurfaceMetrics certified = surface_metrics(scan, part, {.most_parts = 60'000});
+    const SurfaceMetrics certified = surface_metrics(scan, part, {.most_parts = 20'000});
     for (const BoundedNumber& number : {certified.percentiles[0], certified.assd, certified.rmsd})
       EXPECT_LE(number.upper - number.lower, 0.03 * number.lower) << number.lower << " " << number.upper;
   }
