@@ -9,7 +9,10 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "report.h"
 
 /// Which files of a map are written.
 struct MapFiles {
@@ -43,6 +46,12 @@ void add_write_option(CLI::App& app, std::vector<std::string> choices,
 
 /// --channels, which sets `layers`; its default is what they are.
 void add_channels_option(CLI::App& app, std::vector<std::string>& layers);
+
+/// What map.exr says about itself; `units` may be empty.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> exr_attributes(const Input& on,
+                                                                              const Input& to,
+                                                                              const sdm::DistanceMap& map,
+                                                                              const std::string& units);
 
 /// Writes the files but report.html concurrently. `at_vertices`: the distance at each vertex of the surface's
 /// mesh. `other`: the other mesh of the views, or null. `picture`: as given, of the texture; `fixed`: the

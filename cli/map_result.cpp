@@ -29,23 +29,6 @@ sdm::AtlasOptions atlas_options(const MapCommand& command, const sdm::Mesh& mesh
   return options;
 }
 
-/// What map.exr says about itself.
-std::vector<std::pair<std::string, std::string>> exr_attributes(const MapTask& task,
-                                                                const sdm::DistanceMap& map) {
-  const sdm::SignUsed& sign = map.sign;
-  const Input &on = task.on, &to = task.to;
-  std::vector<std::pair<std::string, std::string>> attributes{{"measuredOn", on.file},
-                                                              {"distanceTo", to.file},
-                                                              {"sign", sdm::name_of(sign.method)},
-                                                              {"signReason", sign.reason}};
-  if (map.measured.kind != sdm::DistanceKind::closest) attributes.emplace_back("measured", map.measured.text);
-  if (!on.transform.empty()) attributes.emplace_back("measuredOnTransform", on.transform);
-  if (!to.transform.empty()) attributes.emplace_back("distanceToTransform", to.transform);
-  if (const std::string& units = task.command.picture.units; !units.empty())
-    attributes.emplace_back("units", units);
-  return attributes;
-}
-
 sdm::Measure measure_of(const MapCommand& command, const sdm::Progress& progress) {
   if (command.along)
     return sdm::AlongOptions{.direction = command.along->direction,
@@ -109,7 +92,7 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
   const sdm::ExrOptions exr{.layers = command.output.layers,
                             .boundary = boundary,
                             .sites = task.sites.get(),
-                            .attributes = exr_attributes(task, map)};
+                            .attributes = exr_attributes(task.on, task.to, map, command.picture.units)};
   MapFiles files = command.output.files;
   const bool views = std::exchange(files.views, false);  // they state the verdict
   sdm::run_concurrently({

@@ -15,6 +15,7 @@
 #include "map_files.h"
 #include "part_file.h"
 #include "report.h"
+#include "report_fields.h"
 #include "stopwatch.h"
 
 /// The options of every such command.
@@ -24,6 +25,8 @@ struct PartMapCommand : RunOptions {
   sdm::AtlasOptions atlas;
   sdm::PictureOptions picture;
   MapFiles files;
+  std::vector<std::string> layers = sdm::default_channel_layers();
+  ReportFields fields;
 };
 
 /// Adds those options that do not depend on what is measured.
@@ -45,13 +48,14 @@ struct PartMap {
 
 /// What a command adds to the outputs of all such maps.
 struct PartMapOutputs {
-  std::function<void()> write = [] {};  ///< further files
+  std::function<void(const sdm::ExrOptions& exr)> write = [](auto&) {};  ///< further files
   std::function<void(nlohmann::ordered_json& report)> extend = [](auto&) {};
   sdm::HtmlOptions page{};
 };
 
-/// Completes the notes of the summary, writes all files into `folder`, and returns the report.
+/// Completes the notes of the summary, writes all files into `folder`, and returns the report. `sites`: of
+/// the map.
 [[nodiscard]] nlohmann::ordered_json write_part_map(const PartMapCommand& command, PartMap& part,
-                                                    sdm::Summary& summary,
+                                                    const sdm::Sites& sites, sdm::Summary& summary,
                                                     const std::filesystem::path& folder,
                                                     const PartMapOutputs& outputs);

@@ -53,7 +53,7 @@ Json measure(const SelfCommand& command, const LoadedPart& loaded, const std::fi
                            {"geodesic", rule.geodesic ? Json(*rule.geodesic) : Json(nullptr)}};
     report["separation"] = separation ? to_json(*separation) : Json(nullptr);
   };
-  return write_part_map(command, part, summary, folder,
+  return write_part_map(command, part, query.sites(), summary, folder,
                         {.extend = extend, .page = {.up = command.picture.up, .thinnest = true}});
 }
 

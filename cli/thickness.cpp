@@ -131,16 +131,17 @@ ThicknessResult measure(const ThicknessCommand& command, const LoadedPart& loade
                                                    .range = command.picture.range,
                                                    .names = part.input.names}),
                          {}};
-  const auto write = [&] {
-    if (command.files.exr)
-      sdm::write_exr(folder / fmt::format("{}.exr", name_of(other_method(command))), part.surface, other);
+  const auto write = [&](sdm::ExrOptions exr) {
+    if (!command.files.exr) return;
+    exr.attributes = exr_attributes(part.input, part.input, other, command.picture.units);
+    sdm::write_exr(folder / fmt::format("{}.exr", name_of(other_method(command))), part.surface, other, exr);
   };
   const auto extend = [&](Json& report) {
     report["thickness"] = thickness_json(command, part.surface, part.map, of_other);
     if (result.summary.tolerance) report["tolerance"]["text"] = verdict_in_words(command, result.summary);
   };
   result.report = write_part_map(
-      command, part, result.summary, folder,
+      command, part, sites, result.summary, folder,
       {.write = write,
        .extend = extend,
        .page = {.up = command.picture.up, .thinnest = !only_most(command), .thickest = only_most(command)}});

@@ -12,6 +12,7 @@ namespace sdm::test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 using Json = nlohmann::json;
 
@@ -71,6 +72,24 @@ TEST_F(SelfCommand, TellsInWordsWhatItFound) {
   run = run_sdm(self({"--transform", "fit", "--max-distance", "1e-3", "--rings", "3"}));
   EXPECT_THAT(run.out, HasSubstr("separation  none"));
   EXPECT_THAT(run.out, HasSubstr("nothing in range"));
+}
+
+TEST_F(SelfCommand, HasTheLayersAttributesAndFieldsOfAMap) {
+  ASSERT_EQ(run_sdm(self({"--write", "exr", "--channels", "distance,closest", "--field", "part=4711",
+                          "--transform", "fit", "--units", "mm"}))
+                .code,
+            0);
+  const std::string exr = contents(out + "/map.exr");
+  for (const char* text : {"measuredOn", "distanceTo", "measuredOnTransform", "signReason", "measured",
+                           "units", "closest.face", "distance.D"})
+    EXPECT_THAT(exr, HasSubstr(text));
+  EXPECT_THAT(exr, Not(HasSubstr("vector.X")));
+  EXPECT_THAT(exr, Not(HasSubstr("boundary.M"))) << "it is closed";
+  EXPECT_EQ(Json::parse(contents(out + "/report.json"))["fields"], Json({{"part", "4711"}}));
+  write_obj(o1, height_field(8));
+  ASSERT_EQ(run_sdm(self({"--write", "exr"})).code, 0);
+  EXPECT_THAT(contents(out + "/map.exr"), HasSubstr("boundary.M"));
+  EXPECT_EQ(run_sdm(self({"--channels", "depth"})).code, 2);
 }
 
 TEST_F(SelfCommand, NothingInRangeIsReportedWithNulls) {

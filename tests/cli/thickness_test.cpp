@@ -71,6 +71,18 @@ TEST_F(ThicknessCommandTest, WritesTheNumbersOfTheLibrary) {
   }
 }
 
+TEST_F(ThicknessCommandTest, HasTheLayersAndAttributesOfAMapByEitherMethod) {
+  ASSERT_EQ(run(part, {"--write", "exr", "--channels", "distance,position", "--field", "part=4711"}).code, 0);
+  for (const auto& [file, text] :
+       {std::pair("map.exr", "largest ball"), std::pair("ray.exr", "the ray along")}) {
+    const std::string exr = contents(out + "/" + file);
+    for (const char* found : {"measuredOn", "signReason", text, "position.X", "distance.D"})
+      EXPECT_THAT(exr, HasSubstr(found)) << file;
+    EXPECT_EQ(exr.find("vector.X"), std::string::npos) << file;
+  }
+  EXPECT_EQ(Json::parse(contents(out + "/report.json"))["fields"]["part"], "4711");
+}
+
 TEST_F(ThicknessCommandTest, JudgesLimitsByItsTexels) {
   Outcome outcome = run(part, {"--min", "0.4", "--units", "mm"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
