@@ -112,10 +112,10 @@ ThicknessResult measure(const ThicknessCommand& command, const LoadedPart& loade
   progress.step("sites");
   const sdm::Sites sites(part.input.mesh);
   part.times.sites = part.watch.lap();
-  sdm::ThicknessMaps maps = sdm::thickness_maps(part.surface, sites, command.thickness);
-  const bool ball = command.thickness.method == ThicknessMethod::ball;
-  part.map = std::move(ball ? maps.ball : maps.ray);
-  const sdm::DistanceMap& other = ball ? maps.ray : maps.ball;
+  part.map = sdm::compute_map(part.surface, sites, command.thickness);
+  sdm::ThicknessOptions by_other = command.thickness;
+  by_other.method = other_method(command);
+  const sdm::DistanceMap other = sdm::compute_map(part.surface, sites, by_other);
   part.at_vertices = sdm::distances_at_vertices(part.input.mesh, sites, command.thickness);
   part.times.map = part.watch.lap();
 

@@ -108,7 +108,7 @@ struct GeometryOptions {
                                                            const TexelMatches& matches,
                                                            const AmbientOcclusionOptions& options = {});
 
-/// Returns the wall thickness of O2 at the matches, as of thickness_maps(); NaN where nothing ends it. Also
+/// Returns the wall thickness of O2 at the matches, as of ThicknessOptions; NaN where nothing ends it. Also
 /// throws unless O2 is closed and orientable. Cost: a ray for each texel; of balls, also a search.
 [[nodiscard]] SDM_API std::vector<float> matched_thickness(const Surface& surface, const Sites& sites,
                                                            const TexelMatches& matches,

@@ -181,7 +181,7 @@ struct SummaryOptions {
 [[nodiscard]] SDM_API Summary summarize_self(const Surface& surface, const DistanceMap& map,
                                              const SummaryOptions& options = {});
 
-/// Sums up one of thickness_maps(): statistics, the extremes of the texels, colours, distribution, and the
+/// Sums up a map of thickness: statistics, the extremes of the texels, colours, distribution, and the
 /// verdict on the texels, which between them is an estimate: without a bound, pass is not certified. Errors
 /// and cost as of summarize().
 [[nodiscard]] SDM_API Summary summarize_thickness(const Surface& surface, const DistanceMap& map,

@@ -48,6 +48,9 @@ inline constexpr std::array kWords<ThicknessMethod>{"ball", "ray"};
 /// balls that nothing stops, have no value (NaN, kNone), and count as beyond_max_distance. At a vertex, balls
 /// have 0 where faces meet at an edge that is sharper than the angle allows.
 ///
+/// `vector` of the map leads from the texel's surface point to the point that stops the ball or the ray, on
+/// the face `site`. Of the ball, the vector is shorter than the diameter unless both ends are opposite.
+///
 /// Surface and Sites must be built from the same mesh and positions. Throws sdm::Error if their numbers of
 /// faces differ, unless the mesh is closed and orientable, for an angle out of range, or if there is not
 /// enough memory; Cancelled. Cost: a ray and a search in the tree for each sample, all cores.
@@ -78,18 +81,6 @@ inline constexpr auto kOptions<ThicknessOptions> = std::tuple{
 
 /// Returns what a thickness with these options is.
 [[nodiscard]] SDM_API MeasuredDistance measured_distance(const ThicknessOptions& options);
-
-/// Maps of the thickness by either method. `distance` is the thickness; `vector` leads from the texel's
-/// surface point to the point that stops the ball or the ray, on the face `site`. Of the ball, the vector is
-/// shorter than the diameter unless both ends are opposite.
-struct ThicknessMaps {
-  DistanceMap ball, ray;
-};
-
-/// Computes the thickness by both methods at once, whatever options.method is: the ball starts from the ray.
-/// Errors and cost as of the measure.
-[[nodiscard]] SDM_API ThicknessMaps thickness_maps(const Surface& surface, const Sites& sites,
-                                                   const ThicknessOptions& options = {});
 
 /// The walls of a solid, by rays from a sample of its surface. An estimate.
 struct WallEstimate {

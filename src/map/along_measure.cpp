@@ -52,7 +52,7 @@ class LineSearch final : public FaceSearch {
     rays::first_hits(sites_, rays_, rays::filter(faces_alike), scratch_, hits_.data());
   }
 
-  Value value(std::size_t i, std::size_t) override {
+  Value value(std::size_t i) override {
     const bool ahead = hits_[2 * i].t <= hits_[2 * i + 1].t;
     const RayHit& hit = hits_[ahead ? 2 * i : 2 * i + 1];
     if (hit.face == kNone) return {.unmatched = true};

@@ -19,7 +19,7 @@ class MatchSearch final : public FaceSearch {
   explicit MatchSearch(const FacingMeasure& measure) : measure_(measure) {}
 
   void start(const Samples& samples) override { samples_ = samples; }
-  Value value(std::size_t i, std::size_t) override {
+  Value value(std::size_t i) override {
     return measure_.value(samples_.points[i], *samples_.normal, samples_.closest[i]);
   }
 

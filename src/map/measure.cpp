@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <utility>
 
 #include "core/arrays/rows.h"
 #include "core/parallel.h"
@@ -118,12 +117,10 @@ void TexelStore::finish() {
   if (map_.without_match == 0 && std::ranges::count(map_.unmatched, 1) == 0) map_.unmatched.clear();
 }
 
-void measure_texels(const Surface& surface, const FaceMeasure& measure, std::span<DistanceMap* const> maps) {
+void measure_texels(const Surface& surface, const FaceMeasure& measure, DistanceMap& map) {
   const surface::Tiles tiles(surface);
   const Array<std::uint32_t> order = order_of(tiles, measure);
-  std::vector<std::unique_ptr<TexelStore>> stores;
-  for (DistanceMap* map : maps)
-    stores.push_back(std::make_unique<TexelStore>(*map, surface, measure.description, tiles.texels));
+  TexelStore store(map, surface, measure.description, tiles.texels);
   // Groups are large enough where there are many tiles that few of them are divided: each division costs what
   // it takes to start with a group.
   const std::size_t grain =
@@ -131,7 +128,7 @@ void measure_texels(const Surface& surface, const FaceMeasure& measure, std::spa
   parallel_for(tiles.count(), grain, measure.progress, "map", [&](std::size_t begin, std::size_t end) {
     const std::unique_ptr<FaceSearch> search = measure.search();
     std::vector<Vec3> points;
-    std::vector<sites::ClosestPacket> packets(maps.size());
+    sites::ClosestPacket packet;
     for (std::size_t place = begin; place < end; ++place) {
       const std::uint32_t tile = order.empty() ? static_cast<std::uint32_t>(place) : order[place];
       const std::span<const std::uint32_t> texels = tiles.of(tile);
@@ -140,24 +137,20 @@ void measure_texels(const Surface& surface, const FaceMeasure& measure, std::spa
       for (const std::uint32_t texel : texels) points.push_back(surface.texel_point(texel));
       search->start({face, normal_of(measure, face), points});
       for (std::size_t i = 0; i < points.size(); i += sites::ClosestPacket::kSize) {
-        const std::size_t count = std::min(sites::ClosestPacket::kSize, points.size() - i);
-        for (std::size_t m = 0; m < maps.size(); ++m) {
-          sites::ClosestPacket& packet = packets[m];
-          packet.count = count;
-          std::uint32_t negative = 0, unmatched = 0;
-          for (std::size_t k = 0; k < count; ++k) {
-            const Value value = search->value(i + k, m);
-            for (int axis = 0; axis < 3; ++axis) packet.vector[axis][k] = value.vector[axis];
-            packet.distance[k] = value.closest.distance;
-            packet.site[k] = value.closest.site, packet.type[k] = value.closest.type;
-            negative |= std::uint32_t{value.negative} << k, unmatched |= std::uint32_t{value.unmatched} << k;
-          }
-          (*stores[m])(tiles.offsets[tile] + i, packet, negative, unmatched);
+        packet.count = std::min(sites::ClosestPacket::kSize, points.size() - i);
+        std::uint32_t negative = 0, unmatched = 0;
+        for (std::size_t k = 0; k < packet.count; ++k) {
+          const Value value = search->value(i + k);
+          for (int axis = 0; axis < 3; ++axis) packet.vector[axis][k] = value.vector[axis];
+          packet.distance[k] = value.closest.distance;
+          packet.site[k] = value.closest.site, packet.type[k] = value.closest.type;
+          negative |= std::uint32_t{value.negative} << k, unmatched |= std::uint32_t{value.unmatched} << k;
         }
+        store(tiles.offsets[tile] + i, packet, negative, unmatched);
       }
     }
   });
-  for (const auto& store : stores) store->finish();
+  store.finish();
 }
 
 std::vector<float> measure_vertices(const Mesh& mesh, const FaceMeasure& measure) {
@@ -178,7 +171,7 @@ std::vector<float> measure_vertices(const Mesh& mesh, const FaceMeasure& measure
           }
           search->start({face, normal_of(measure, face), points, closest});
           for (std::size_t k = 0; k < points.size(); ++k) {
-            const Value value = search->value(k, 0);
+            const Value value = search->value(k);
             const double distance = value.closest.distance;
             values[i + k] = value.closest.type == SiteType::none ? measure.description.no_value.distance
                             : value.negative                     ? -distance
@@ -214,7 +207,7 @@ FacingPoints measure_points(std::span<const Vec3> points, std::span<const Vec3> 
                    Samples sample{.normal = normal, .points = points.subspan(i, 1)};
                    if (!measure.closest.empty()) sample.closest = std::span(measure.closest).subspan(i, 1);
                    search->start(sample);
-                   const Value value = search->value(0, 0);
+                   const Value value = search->value(0);
                    result.closest[i] = value.closest;
                    result.behind[i] = value.negative, result.unmatched[i] = value.unmatched;
                  }

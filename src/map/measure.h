@@ -82,8 +82,8 @@ class FaceSearch {
   FaceSearch& operator=(const FaceSearch&) = delete;
 
   virtual void start(const Samples& samples) = 0;
-  /// The value of each of these points, in their order, in the map with this number.
-  virtual Value value(std::size_t point, std::size_t map) = 0;
+  /// The value of each of these points, in their order.
+  virtual Value value(std::size_t point) = 0;
 };
 
 /// A measure of samples by their faces, which an engine's closest points of O2 may precede.
@@ -109,8 +109,8 @@ class FaceMeasure {
   std::size_t vertices_at_once = 3;  ///< for which one call of start() is fast
 };
 
-/// Computes the maps of a measure: one, or several that it measures at once. Throws Cancelled.
-void measure_texels(const Surface& surface, const FaceMeasure& measure, std::span<DistanceMap* const> maps);
+/// Computes the map of a measure. Throws Cancelled.
+void measure_texels(const Surface& surface, const FaceMeasure& measure, DistanceMap& map);
 
 /// Returns, for each vertex, the value of least absolute value that its faces have there, of the first face
 /// that has it; NaN for a vertex without one, or what is without a value. Throws Cancelled.

@@ -16,6 +16,7 @@
 #include "support/run_sdm.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"
+#include "support/thickness.h"
 
 namespace sdm::test {
 namespace {

@@ -4,7 +4,6 @@
 #include <sdm/sdm.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -111,20 +110,6 @@ TEST(Measure, AtVerticesIsTheLeastOfTheFacesAround) {
   for (const float d :
        distances_at_vertices(parts.o1, parts.own, ThicknessOptions{.method = ThicknessMethod::ray}))
     EXPECT_NEAR(d, 0.5, 1e-6);
-}
-
-TEST(Measure, OfThicknessHasTheBitsOfBothMethodsAtOnce) {
-  const Parts parts;
-  const ThicknessMaps both = thickness_maps(parts.surface, parts.own);
-  for (const auto& [method, map] :
-       {std::pair(ThicknessMethod::ball, &both.ball), std::pair(ThicknessMethod::ray, &both.ray)}) {
-    const DistanceMap one = compute_map(parts.surface, parts.own, ThicknessOptions{.method = method});
-    EXPECT_EQ(one.measured.text, map->measured.text);
-    EXPECT_EQ(one.site, map->site);
-    for (const std::uint32_t texel : parts.surface.sample_texels())
-      ASSERT_EQ(std::bit_cast<std::uint32_t>(one.distance[texel]),
-                std::bit_cast<std::uint32_t>(map->distance[texel]));
-  }
 }
 
 TEST(Measure, SamplesBoundOnlyTheClosestPoint) {

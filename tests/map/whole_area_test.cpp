@@ -23,6 +23,7 @@
 #include "map/statistics/texel_areas.h"
 #include "support/made_up_maps.h"
 #include "support/shapes.h"
+#include "support/thickness.h"
 
 namespace sdm::test {
 namespace {
@@ -211,7 +212,7 @@ TEST_F(OwnPoints, HaveTheDistancesOfQueriesThere) {
     const Vec3f& v = along.vector[first + i];
     ASSERT_NEAR(norm(cross(Vec3{v[0], v[1], v[2]}, normals[i])), 0, 1e-5);
   }
-  const ThicknessMaps walls = thickness_maps(surface_, own_);
+  const test::ThicknessMaps walls = test::thickness_maps(surface_, own_);
   const Exclusion exclusion(mesh_);
   const DistanceMap self = compute_map(surface_, own_, SelfOptions{.exclusion = exclusion});
   for (std::size_t i = 0; i < points.size(); ++i) {

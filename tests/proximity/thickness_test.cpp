@@ -13,6 +13,7 @@
 #include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/shapes.h"
+#include "support/thickness.h"
 
 namespace sdm {
 namespace {
@@ -55,13 +56,13 @@ Mesh box(const Vec3& half) {
 }
 
 struct Measured {
-  Measured(const Mesh& mesh, std::uint32_t resolution, const ThicknessOptions& options = {})
+  Measured(const Mesh& mesh, std::uint32_t resolution, double angle = 90)
       : surface(mesh, {.resolution = resolution}),
         sites(mesh),
-        maps(thickness_maps(surface, sites, options)) {}
+        maps(test::thickness_maps(surface, sites, angle)) {}
   Surface surface;
   Sites sites;
-  ThicknessMaps maps;
+  test::ThicknessMaps maps;
 };
 
 // Facets of an outer and an inner polygon are parallel, and cos(π/n) of the difference of the radii apart.
@@ -156,7 +157,7 @@ Real largest_radius(const Point& p, const Point& n, const std::array<Point, 3>& 
 
 // The ball and the ray of each texel, over all faces of a mesh of one solid that is oriented outwards.
 void expect_brute_force(const Mesh& mesh, double angle, std::uint32_t resolution) {
-  const Measured map(mesh, resolution, {.angle = angle});
+  const Measured map(mesh, resolution, angle);
   const double size = norm(bounds(mesh).hi - bounds(mesh).lo);
   std::vector<Vec3> normals;
   std::vector<std::array<Point, 3>> faces;
@@ -215,7 +216,8 @@ TEST(Thickness, MovesWithThePart) {
   const Mesh laid_out = test::with_own_uvs(mesh, 64), moved = test::moved(laid_out, {1e5, -2e5, 3e5});
   const AtlasOptions options{.kind = AtlasKind::uv, .resolution = 64};
   const Surface here(laid_out, options), there(moved, options);
-  const ThicknessMaps a = thickness_maps(here, Sites(laid_out)), b = thickness_maps(there, Sites(moved));
+  const test::ThicknessMaps a = test::thickness_maps(here, Sites(laid_out)),
+                            b = test::thickness_maps(there, Sites(moved));
   ASSERT_GT(here.sample_texels().size(), 1000u);
   for (const std::uint32_t texel : here.sample_texels())
     ASSERT_NEAR(a.ball.distance[texel], b.ball.distance[texel], 1e-6);
@@ -248,15 +250,16 @@ TEST(Thickness, DoesNotDependOnTheOrientationOfTheFile) {
 
 TEST(Thickness, RefusesWhatIsNoSolid) {
   const auto error = [](const Mesh& mesh, double angle) {
-    return test::error_of([&] { (void)Measured(mesh, 64, {.angle = angle}); });
+    return test::error_of([&] { (void)Measured(mesh, 64, angle); });
   };
   EXPECT_NE(error(test::square(1, 0), 90).find("open"), std::string::npos);
   for (const double angle : {0.0, 180.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_NE(error(test::cube(), angle).find("angle is "), std::string::npos);
   const Surface surface(test::cube(), {.resolution = 64});
   const Sites sites(test::tetrahedron());
-  EXPECT_NE(test::error_of([&] { (void)thickness_maps(surface, sites); }).find("different meshes"),
-            std::string::npos);
+  EXPECT_NE(
+      test::error_of([&] { (void)compute_map(surface, sites, ThicknessOptions{}); }).find("different meshes"),
+      std::string::npos);
 }
 
 TEST(Thickness, JudgesItsTexelsAndCertifiesNoPass) {
@@ -295,7 +298,7 @@ TEST(EstimateWalls, FindsTheShareOfThinWalls) {
 TEST(Thickness, MapsStateWhatTheyMeasure) {
   const Mesh mesh = test::cube();
   const Surface surface(mesh, {.resolution = 32});
-  const ThicknessMaps maps = thickness_maps(surface, Sites(mesh));
+  const test::ThicknessMaps maps = test::thickness_maps(surface, Sites(mesh));
   EXPECT_EQ(maps.ball.measured.kind, DistanceKind::thickness);
   EXPECT_EQ(maps.ray.measured.kind, DistanceKind::thickness);
   EXPECT_NE(maps.ball.measured.text, maps.ray.measured.text);

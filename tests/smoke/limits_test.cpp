@@ -310,8 +310,10 @@ TEST(SmokeLimits, WrongArgumentsAreRefused) {
       },
       [&] { (void)match_texels(surface, sites, {.method = MatchMethod::ray, .cage = -1}); },
       [&] { (void)matches_of(surface, sites, of_other); },
-      [&] { (void)thickness_maps(surface, Sites(mesh), {.angle = 0}); },
-      [&] { (void)thickness_maps(Surface(square(1, 0), {.resolution = 32}), Sites(square(1, 0))); },
+      [&] { (void)compute_map(surface, Sites(mesh), ThicknessOptions{.angle = 0}); },
+      [&] {
+        (void)compute_map(Surface(square(1, 0), {.resolution = 32}), Sites(square(1, 0)), ThicknessOptions{});
+      },
       [&] { (void)compute_map(surface, sites, SelfOptions{.exclusion = Exclusion(cube())}); },
       [&] { (void)Exclusion(mesh, {.rule = {.rings = 0}}); },
       [&] { (void)Exclusion(mesh, {.rule = {.geodesic = -1}}); },

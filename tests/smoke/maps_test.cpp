@@ -25,6 +25,7 @@
 #include "support/map_checks.h"
 #include "support/oracle.h"
 #include "support/shapes.h"
+#include "support/thickness.h"
 
 namespace sdm::test {
 namespace {
@@ -265,7 +266,7 @@ TEST(SmokeMaps, ThicknessOfAPlateIsItsHeight) {
   // Balls and rays of a part of two shells, of which one is a cavity.
   const Mesh shell = joined(sphere(2), flipped(mapped_by(sphere(2), [](const Vec3& p) { return 0.8 * p; })));
   const Surface skin(shell, {.resolution = 64});
-  const ThicknessMaps of_shell = thickness_maps(skin, Sites(shell), {.angle = 60});
+  const ThicknessMaps of_shell = thickness_maps(skin, Sites(shell), 60);
   for (const std::uint32_t t : skin.sample_texels()) {
     EXPECT_NEAR(of_shell.ray.distance[t], 0.2, 0.06);
     EXPECT_LE(of_shell.ball.distance[t], of_shell.ray.distance[t] + 1e-6);

@@ -1,6 +1,5 @@
 #include <sdm/measure.h>
 
-#include <array>
 #include <new>
 #include <type_traits>
 
@@ -23,7 +22,7 @@ self::SelfMeasure face_measure(const Mesh& mesh, const Sites& sites, const SelfO
 
 thickness::ThicknessMeasure face_measure(const Mesh& mesh, const Sites& sites,
                                          const ThicknessOptions& options) {
-  return {mesh, sites, options, {options.method}};
+  return {mesh, sites, options};
 }
 
 template <class Options>
@@ -38,8 +37,7 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const Measur
           return compute_map(surface, sites, options);
         } else {
           DistanceMap map;
-          const std::array maps{&map};
-          map::measure_texels(surface, face_measure(surface.mesh(), sites, options), maps);
+          map::measure_texels(surface, face_measure(surface.mesh(), sites, options), map);
           return map;
         }
       },
@@ -59,19 +57,6 @@ std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, c
       measure);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the distances of vertices");
-}
-
-ThicknessMaps thickness_maps(const Surface& surface, const Sites& sites,
-                             const ThicknessOptions& options) try {
-  using enum ThicknessMethod;
-  ThicknessMaps maps;
-  const std::array both{&maps.ball, &maps.ray};
-  map::measure_texels(surface, thickness::ThicknessMeasure(surface.mesh(), sites, options, {ball, ray}),
-                      both);
-  maps.ray.measured = measured_distance(ThicknessOptions{.method = ray});
-  return maps;
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("a map");
 }
 
 }  // namespace sdm

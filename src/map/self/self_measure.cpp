@@ -35,7 +35,7 @@ class FaceSelfSearch final : public map::FaceSearch {
     for (const Vec3& p : points_) squared = std::max(squared, squared_norm(p - centre(box)));
     search_.gather(centre(box), std::sqrt(squared), max_distance_);
   }
-  map::Value value(std::size_t i, std::size_t) override {
+  map::Value value(std::size_t i) override {
     map::Value value{.closest = search_.closest_to(points_[i])};
     value.vector = value.closest.point - points_[i];
     return value;

@@ -2,8 +2,6 @@
 
 #include <sdm/error.h>
 
-#include <utility>
-
 #include "geometry/vec.h"
 
 namespace sdm {
@@ -18,18 +16,18 @@ const Sites& checked(const Mesh& mesh, const Sites& sites) {
 
 class FaceWallSearch final : public map::FaceSearch {
  public:
-  FaceWallSearch(const Walls& walls, const std::vector<ThicknessMethod>& methods)
-      : walls_(walls), methods_(methods), search_(walls) {}
+  FaceWallSearch(const Walls& walls, ThicknessMethod method)
+      : walls_(walls), method_(method), search_(walls) {}
 
   void start(const map::Samples& samples) override {
     points_ = samples.points;
     measured_ = walls_.measures(samples.face);
     if (measured_) search_.start(samples.face, points_);
   }
-  map::Value value(std::size_t i, std::size_t map) override {
+  map::Value value(std::size_t i) override {
     if (!measured_) return {};
     const WallEnd& ray = search_.rays()[i];
-    const WallEnd end = methods_[map] == ThicknessMethod::ray ? ray : search_.ball(points_[i], ray);
+    const WallEnd end = method_ == ThicknessMethod::ray ? ray : search_.ball(points_[i], ray);
     if (end.face == kNone) return {};
     return {.closest = {.point = end.point,
                         .distance = end.thickness,
@@ -41,7 +39,7 @@ class FaceWallSearch final : public map::FaceSearch {
 
  private:
   const Walls& walls_;
-  const std::vector<ThicknessMethod>& methods_;
+  ThicknessMethod method_;
   WallSearch search_;
   bool measured_ = false;
   std::span<const Vec3> points_;
@@ -49,16 +47,15 @@ class FaceWallSearch final : public map::FaceSearch {
 
 }  // namespace
 
-ThicknessMeasure::ThicknessMeasure(const Mesh& mesh, const Sites& sites, const ThicknessOptions& options,
-                                   std::vector<ThicknessMethod> methods)
-    : walls_(internals(checked(mesh, sites)), options.angle), methods_(std::move(methods)) {
-  description.measured = measured_distance(ThicknessOptions{.method = methods_.front()});
+ThicknessMeasure::ThicknessMeasure(const Mesh& mesh, const Sites& sites, const ThicknessOptions& options)
+    : walls_(internals(checked(mesh, sites)), options.angle), method_(options.method) {
+  description.measured = measured_distance(options);
   description.sign.reason = "a thickness has no sign";
   progress = options.progress;
 }
 
 std::unique_ptr<map::FaceSearch> ThicknessMeasure::search() const {
-  return std::make_unique<FaceWallSearch>(walls_, methods_);
+  return std::make_unique<FaceWallSearch>(walls_, method_);
 }
 
 }  // namespace thickness

@@ -10,16 +10,14 @@ namespace sdm::thickness {
 
 class ThicknessMeasure final : public map::FaceMeasure {
  public:
-  /// `methods`: of the maps that are measured at once. All must outlive this. Throws sdm::Error for options
-  /// that do not apply.
-  ThicknessMeasure(const Mesh& mesh, const Sites& sites, const ThicknessOptions& options,
-                   std::vector<ThicknessMethod> methods);
+  /// All must outlive this. Throws sdm::Error for options that do not apply.
+  ThicknessMeasure(const Mesh& mesh, const Sites& sites, const ThicknessOptions& options);
 
   [[nodiscard]] std::unique_ptr<map::FaceSearch> search() const override;
 
  private:
   Walls walls_;
-  std::vector<ThicknessMethod> methods_;
+  ThicknessMethod method_;
 };
 
 }  // namespace sdm::thickness
