@@ -21,10 +21,11 @@ Json optional_json(const std::optional<double>& value) {
 }
 
 // The measured range, and by what a group passes or fails.
-std::string group_text(const sdm::GroupVerdict& g, const std::string& units, bool is_signed, bool of_points) {
-  const std::string unit = unit_suffix(units);
-  std::string text = fmt::format("{} ({}): {}, {}", g.group, g.kind, sdm::name_of(g.verdict.verdict),
-                                 sdm::limits_text(g.verdict.tolerance, units, is_signed));
+std::string group_text(const sdm::GroupVerdict& g, const sdm::Summary& summary) {
+  const std::string unit = unit_suffix(summary.units);
+  std::string text =
+      fmt::format("{} ({}): {}, {}", g.group, g.kind, sdm::name_of(g.verdict.verdict),
+                  sdm::limits_text(g.verdict.tolerance, summary.units, summary.evidence.is_signed));
   if (g.lowest) text += fmt::format(", measured {} to {}{}", number(*g.lowest), number(*g.highest), unit);
   if (g.verdict.reason == sdm::VerdictReason::without_match ||
       g.verdict.reason == sdm::VerdictReason::beyond_max_distance ||
@@ -32,7 +33,7 @@ std::string group_text(const sdm::GroupVerdict& g, const std::string& units, boo
     text += fmt::format(", {}", sdm::name_of(g.verdict.reason));
   if (g.verdict.verdict == sdm::Verdict::fail)
     text += fmt::format(", {} % of its {} out", number(100 * g.verdict.exceeded_area_fraction),
-                        of_points ? "points are" : "area is");
+                        summary.of_points ? "points are" : "area is");
   if (g.verdict.proof && g.verdict.proof->witness)
     text += fmt::format(
         ", {}{} {}", number(g.verdict.proof->witness->distance), unit,
@@ -50,15 +51,76 @@ std::string points_are(std::uint64_t points) {
 }
 
 // Why all groups together fail, whatever the single ones do.
-std::string without_group_text(const sdm::PointsWithoutGroup& points) {
+std::string without_group_text(const sdm::PointsWithoutGroup& points, const sdm::Summary& summary) {
   std::vector<std::string> reasons;
   if (points.beyond_max_distance > 0)
-    reasons.push_back(fmt::format("{} of no group, as O2 is farther than --max-distance",
-                                  points_are(points.beyond_max_distance)));
+    reasons.push_back(fmt::format(
+        "{} of no group, as the reference is farther than the maximum distance ({}{})",
+        points_are(points.beyond_max_distance), number(summary.max_distance), unit_suffix(summary.units)));
   if (points.without_match > 0)
-    reasons.push_back(
-        fmt::format("{} of no group, as no face of O2 faces the same way", points_are(points.without_match)));
-  return fmt::format("{}", fmt::join(reasons, "; "));
+    reasons.push_back(fmt::format("{} of no group, as no face of the reference faces the same way",
+                                  points_are(points.without_match)));
+  return fmt::format("{}", fmt::join(reasons, ". "));
+}
+
+// The value that is farthest beyond the limits of its group.
+std::string worst_text(const sdm::GroupVerdicts& verdicts, const sdm::Summary& summary) {
+  std::string text;
+  double most = 0;
+  const bool is_signed = summary.evidence.is_signed;
+  for (const sdm::GroupVerdict& g : verdicts.groups) {
+    std::vector<double> values;
+    if (g.lowest) values = {*g.lowest, *g.highest};
+    if (g.verdict.proof && g.verdict.proof->witness) values.push_back(g.verdict.proof->witness->distance);
+    const sdm::Tolerance& limits = g.verdict.tolerance;
+    for (const double value : values) {
+      const double beyond = std::max(value - limits.hi, limits.lo - value);
+      if (!(beyond > most)) continue;
+      most = beyond;
+      text = fmt::format(". Worst: {}{}{} in {}, for which {} is allowed", is_signed && value > 0 ? "+" : "",
+                         number(value), unit_suffix(summary.units), g.group,
+                         sdm::limits_text(limits, summary.units, is_signed));
+    }
+  }
+  return text;
+}
+
+// The groups that have the verdict of all: "2 of 3 groups ... fail: “a”, “b”".
+std::string some_groups_text(const sdm::GroupVerdicts& verdicts, const char* does, const char* do_) {
+  constexpr std::size_t kMost = 5;
+  std::vector<std::string> names;
+  for (const sdm::GroupVerdict& g : verdicts.groups)
+    if (g.verdict.verdict == verdicts.verdict) names.push_back(g.group);
+  if (names.empty()) return {};
+  const std::size_t count = names.size();
+  if (count > 1)  // a name may be several words
+    for (std::string& name : names) name = fmt::format("“{}”", name);
+  names.resize(std::min(count, kMost));
+  return fmt::format("{} of {} groups of the table of tolerances {}: {}{}", count, verdicts.groups.size(),
+                     count > 1 ? do_ : does, fmt::join(names, ", "), count > kMost ? " and others" : "");
+}
+
+// The verdict on all groups in words, which the page shows too.
+std::string all_groups_text(const sdm::GroupVerdicts& verdicts, const sdm::Summary& summary) {
+  const std::string within = "every group of the table of tolerances is within its limits";
+  switch (verdicts.verdict) {
+    case sdm::Verdict::pass:
+      return within;
+    case sdm::Verdict::doubtful: {
+      std::vector<std::string> doubts;
+      for (const sdm::Doubt& doubt : summary.doubts) doubts.push_back(doubt.text);
+      return fmt::format("{}, but {}", within,
+                         doubts.empty() ? "in doubt" : fmt::format("{}", fmt::join(doubts, "; ")));
+    }
+    case sdm::Verdict::not_decided:
+      return some_groups_text(verdicts, "is not decided", "are not decided");
+    case sdm::Verdict::fail:
+      break;
+  }
+  std::string text = some_groups_text(verdicts, "fails", "fail");
+  if (!text.empty()) text += worst_text(verdicts, summary);
+  if (!text.empty() && verdicts.without_group.any()) text += ". ";
+  return text + without_group_text(verdicts.without_group, summary);
 }
 
 // Null unless points are without a group.
@@ -129,7 +191,8 @@ std::optional<std::string> note_on_unjudged(const GroupTolerances& table, const 
                      number(100 * (all - judged) / all, 3), input.file);
 }
 
-Json to_json(const sdm::GroupVerdicts& verdicts, bool of_points) {
+Json to_json(const sdm::GroupVerdicts& verdicts, const sdm::Summary& summary) {
+  const bool of_points = summary.of_points;
   Json groups = Json::array();
   for (const sdm::GroupVerdict& g : verdicts.groups) {
     const sdm::CertifiedVerdict& v = g.verdict;
@@ -151,7 +214,7 @@ Json to_json(const sdm::GroupVerdicts& verdicts, bool of_points) {
                                                             : Json()}});
     groups.push_back(std::move(group));
   }
-  Json all{{"verdict", sdm::name_of(verdicts.verdict)}};
+  Json all{{"verdict", sdm::name_of(verdicts.verdict)}, {"text", all_groups_text(verdicts, summary)}};
   if (of_points)
     all.update({{"reason", reason_json(verdicts.without_group)},
                 {"beyond_max_distance", verdicts.without_group.beyond_max_distance},
@@ -160,13 +223,12 @@ Json to_json(const sdm::GroupVerdicts& verdicts, bool of_points) {
   return all;
 }
 
-std::string group_lines(const sdm::GroupVerdicts& verdicts, const std::string& units, bool is_signed,
-                        bool of_points) {
+std::string group_lines(const sdm::GroupVerdicts& verdicts, const sdm::Summary& summary) {
   std::string text = fmt::format("  groups    {}", sdm::name_of(verdicts.verdict));
-  if (verdicts.without_group.any()) text += ": " + without_group_text(verdicts.without_group);
+  if (verdicts.without_group.any()) text += ": " + without_group_text(verdicts.without_group, summary);
   text += '\n';
   for (const sdm::GroupVerdict& g : verdicts.groups)
-    text += fmt::format("            {}\n", group_text(g, units, is_signed, of_points));
+    text += fmt::format("            {}\n", group_text(g, summary));
   return text;
 }
 

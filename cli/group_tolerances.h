@@ -34,11 +34,11 @@ void add_tolerance_table_option(CLI::App& app, GroupTolerances& table,
 /// Throws sdm::Error for a row whose group none of the meshes has, naming groups that they have.
 void check_groups(const GroupTolerances& table, std::initializer_list<const Input*> meshes);
 
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::GroupVerdicts& verdicts, bool of_points = false);
+/// `summary`: of the same map or cloud.
+[[nodiscard]] nlohmann::ordered_json to_json(const sdm::GroupVerdicts& verdicts, const sdm::Summary& summary);
 
 /// One line for each group.
-[[nodiscard]] std::string group_lines(const sdm::GroupVerdicts& verdicts, const std::string& units,
-                                      bool is_signed, bool of_points = false);
+[[nodiscard]] std::string group_lines(const sdm::GroupVerdicts& verdicts, const sdm::Summary& summary);
 
 /// Adds the doubt that thin walls leave, if one of the groups has it.
 void add_group_doubts(const sdm::GroupVerdicts& groups, std::vector<sdm::Doubt>& doubts);

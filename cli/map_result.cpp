@@ -165,7 +165,7 @@ Json report_of(const MapTask& task, const AtlasPart& part, const ComputedMap& co
     if (input->islands) report[input->role]["ignored_islands"] = to_json(*input->islands);
   if (task.aligned) report["alignment"] = to_json(*task.aligned, command.picture.units);
   if (outcome.groups) {
-    report["group_tolerances"] = to_json(*outcome.groups);
+    report["group_tolerances"] = to_json(*outcome.groups, outcome.summary);
     report["colors"]["by_group"] = command.picture.colormap == sdm::Colormap::automatic;
   }
   if (outcome.raster) report["raster"] = to_json(*outcome.raster);

@@ -83,7 +83,7 @@ nlohmann::ordered_json report_of(const PointsCommand& command, const Input& o2,
   if (outcome.aligned) report["alignment"] = to_json(*outcome.aligned, command.picture.units);
   report["engine"] = "cpu";
   report.update(Json::parse(sdm::summary_json(outcome.summary)));
-  if (found.groups) report["group_tolerances"] = to_json(*found.groups, true);
+  if (found.groups) report["group_tolerances"] = to_json(*found.groups, outcome.summary);
   put_fields(report, command.fields);
   report["time_ms"] = {
       {"import", outcome.import_ms}, {"align", outcome.align_ms}, {"points", outcome.points_ms}};
@@ -122,6 +122,6 @@ std::string text_of(const PointsCommand& command, const PointsOutcome& outcome) 
     text += "            signs are estimates; points closest to the boundary of O2 have none: |d|\n";
   if (s.tolerance) text += fmt::format("  tolerance {}\n", tolerance_line(outcome, unit));
   text += place_lines(s, size_of(found.bounds));
-  if (found.groups) text += group_lines(*found.groups, s.units, s.evidence.is_signed, true);
+  if (found.groups) text += group_lines(*found.groups, s);
   return text + coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
 }

@@ -254,7 +254,7 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
         number(s.evidence.error_bound), unit);
   if (s.tolerance) add("  tolerance {}\n", tolerance_line(outcome, unit));
   text += place_lines(s, outcome.size);
-  if (outcome.groups) text += group_lines(*outcome.groups, s.units, s.evidence.is_signed);
+  if (outcome.groups) text += group_lines(*outcome.groups, s);
   text += coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
   if (outcome.raster)
     add("  raster    {}, {} polygons, overdraw {}\n", outcome.raster->device.name, outcome.raster->polygons,

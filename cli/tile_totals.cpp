@@ -46,7 +46,8 @@ Json TileTotals::report() const {
   report["tiles"] = Json::array();
   for (const Tile& tile : tiles_) report["tiles"].push_back(tile.udim);
   report.update(Json::parse(sdm::summary_json(combined_.summary())));
-  if (const Outcome total = finish(); total.groups) report["group_tolerances"] = to_json(*total.groups);
+  if (const Outcome total = finish(); total.groups)
+    report["group_tolerances"] = to_json(*total.groups, total.summary);
   std::vector<Tile> worst = tiles_;
   std::erase_if(worst, [](const Tile& tile) { return !tile.extremes; });
   std::ranges::stable_sort(worst, std::ranges::greater(),

@@ -88,6 +88,7 @@ export interface Report {
   };
   group_tolerances?: {
     verdict: string;
+    text: string; ///< the verdict as clauses
     beyond_max_distance?: number; ///< points of a cloud that are of no group
     without_match?: number; ///< the same
     groups: {

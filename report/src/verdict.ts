@@ -207,57 +207,9 @@ function ofPart(report: Report): Stated | null {
   return { verdict, sentence: sentence(verdict === 'FAIL' ? failure(report) : (t.text ?? '')) };
 }
 
-/// The points of a cloud that have no value, and so no group, as sentences.
-function withoutGroup(report: Report): string[] {
-  const { beyond_max_distance: beyond = 0, without_match: unmatched = 0 } = report.group_tolerances!;
-  const points = (count: number) => (count === 1 ? '1 point is' : `${count} points are`);
-  const most = report.max_distance ? ` (${text(report.max_distance)}${unitOf(report)})` : '';
-  const sentences: string[] = [];
-  if (beyond > 0)
-    sentences.push(
-      `${points(beyond)} of no group, as the reference is farther than the largest distance that was measured${most}.`,
-    );
-  if (unmatched > 0)
-    sentences.push(`${points(unmatched)} of no group, as no face of the reference faces the same way.`);
-  return sentences;
-}
-
-/// The value that is farthest beyond the limits of its group, as a sentence.
-function worstOf(report: Report, { groups }: NonNullable<Report['group_tolerances']>): string {
-  let [worst, most] = ['', 0];
-  for (const { group, lower, upper, lowest, highest, witness } of groups) {
-    const limits = { lower: lower ?? -Infinity, upper: upper ?? Infinity };
-    for (const value of [lowest, highest, witness?.distance ?? null]) {
-      if (value === null || Math.max(value - limits.upper, limits.lower - value) <= most) continue;
-      most = Math.max(value - limits.upper, limits.lower - value);
-      worst = ` Worst: ${distanceText(value, report, isSigned(report))}${unitOf(report)} in ${group}, for which ${limitsText(limits, report)} is allowed.`;
-    }
-  }
-  return worst;
-}
-
-/// The verdict by the table of tolerances, in words.
-function ofGroups(report: Report): Stated | null {
-  const table = report.group_tolerances;
-  if (!table) return null;
-  const verdict = table.verdict as Verdict;
-  const some = table.groups.filter((g) => g.verdict === verdict).map((g) => g.group);
-  const kMost = 5;
-  const quoted = some.length > 1 ? some.map((name) => `“${name}”`) : some; // a name may be several words
-  const names = quoted.slice(0, kMost).join(', ') + (some.length > kMost ? ' and others' : '');
-  const count = `${some.length} of ${table.groups.length} groups of the table of tolerances`;
-  const words: Partial<Record<Verdict, string>> = {
-    FAIL: [
-      ...(some.length > 0
-        ? [`${count} ${some.length > 1 ? 'fail' : 'fails'}: ${names}.${worstOf(report, table)}`]
-        : []),
-      ...withoutGroup(report),
-    ].join(' '),
-    'NOT DECIDED': `${count} ${some.length > 1 ? 'are' : 'is'} not decided: ${names}.`,
-    DOUBTFUL: `Every group of the table of tolerances is within its limits, but ${report.doubts?.map((d) => d.text).join('; ') ?? 'in doubt'}.`,
-    PASS: 'Every group of the table of tolerances is within its limits.',
-  };
-  return { verdict, sentence: words[verdict] ?? '' };
+/// The verdict by the table of tolerances, in the words of the report.
+function ofGroups({ group_tolerances: table }: Report): Stated | null {
+  return table ? { verdict: table.verdict as Verdict, sentence: sentence(table.text) } : null;
 }
 
 const kFromBestToWorst: Verdict[] = ['MEASURED', 'PASS', 'DOUBTFUL', 'NOT DECIDED', 'FAIL'];

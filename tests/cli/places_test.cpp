@@ -269,12 +269,15 @@ TEST_F(PlacesOutput, PointsOfNoGroupFail) {
   const Json all = Json::parse(json.out)["group_tolerances"];
   EXPECT_EQ(all["verdict"], "FAIL");
   EXPECT_EQ(all["reason"], "beyond max distance");
+  EXPECT_EQ(all["text"],
+            "60 points are of no group, as the reference is farther than the maximum distance (1)");
   EXPECT_EQ(all["beyond_max_distance"], 60);
   EXPECT_EQ(all["without_match"], 0);
   for (const Json& group : all["groups"]) EXPECT_EQ(group["verdict"], "PASS");
-  EXPECT_THAT(run(file, {"--max-distance", "1", "--accept-doubts"}).out,
-              AllOf(HasSubstr("FAIL: "), HasSubstr("  groups    FAIL: 60 points are of no group, as O2 is "
-                                                   "farther than --max-distance\n")));
+  EXPECT_THAT(
+      run(file, {"--max-distance", "1", "--accept-doubts"}).out,
+      AllOf(HasSubstr("FAIL: "), HasSubstr("  groups    FAIL: 60 points are of no group, as the reference is "
+                                           "farther than the maximum distance (1)\n")));
   const Outcome islands = run(file, {"--max-distance", "1", "--ignore-islands", "10", "--json"});
   EXPECT_EQ(islands.code, 0) << "islands are not judged";
   EXPECT_EQ(Json::parse(islands.out)["group_tolerances"]["reason"], nullptr);
@@ -282,7 +285,8 @@ TEST_F(PlacesOutput, PointsOfNoGroupFail) {
   std::ofstream(folder / "normals.xyz") << "x y z nx ny nz\n2 2 0.1 0 0 1\n3 3 0.1 0 0 -1\n";
   const Outcome facing = run(folder / "normals.xyz", {"--facing", "60"});
   EXPECT_EQ(facing.code, 3) << facing.err;
-  EXPECT_THAT(facing.out, HasSubstr("FAIL: 1 point is of no group, as no face of O2 faces the same way\n"));
+  EXPECT_THAT(facing.out,
+              HasSubstr("FAIL: 1 point is of no group, as no face of the reference faces the same way\n"));
 }
 
 // Points beside an open reference have no side: only |d| is known.

@@ -474,9 +474,7 @@ TEST_F(CloudPage, StatesThePointsOfNoGroup) {
   measure({"--tolerance-table", table, "--max-distance", "4"});
   EXPECT_TRUE(
       passes("says", page(),
-             {"FAIL",
-              "1 point is of no group, as the reference is farther than the largest distance that was "
-              "measured (4).",
+             {"FAIL", "1 point is of no group, as the reference is farther than the maximum distance (4).",
               "Points out of tolerance"}));
 }
 
