@@ -20,18 +20,15 @@
 
 namespace sdm::python {
 
-/// The members of a struct that declares its fields; nullptr of another.
+/// A std::tuple of the members that a value is stored by: those of its fields if it declares any; of another,
+/// beside its binding. Those of a base class are listed like its own.
 template <class Value>
-inline constexpr auto kDeclaredMembers = [] {
+inline constexpr auto kMembers = [] {
   if constexpr (std::is_null_pointer_v<std::remove_cv_t<decltype(kFields<Value>)>>)
     return nullptr;
   else
     return std::apply([](const auto&... field) { return std::tuple{field.member...}; }, kFields<Value>);
 }();
-/// A std::tuple of the members that a value is stored by, those of its fields if it declares any. Those of a
-/// base class are listed like its own.
-template <class Value>
-inline constexpr auto kMembers = kDeclaredMembers<Value>;
 /// The last enumerator of an enumeration that starts at 0; of one without words, beside its binding.
 template <class Enum>
 inline constexpr auto kLast = [] {

@@ -1,10 +1,10 @@
 #include <sdm/unit_check.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
+#include "core/larger_units.h"
 #include "geometry/vec.h"
 #include "mesh/validate.h"
 #include "registration/correspondences.h"
@@ -14,7 +14,6 @@ namespace sdm {
 namespace {
 
 constexpr std::size_t kUnitSamples = 1024;
-constexpr std::array kUnitRatios{10.0, 25.4, 304.8, 1000.0};
 constexpr double kFits = 0.02, kMuchBetter = 0.25;  // misfits, as fractions of the radius of gyration
 
 double misfit_of(const Alignment& alignment) {
@@ -33,7 +32,7 @@ std::optional<OtherUnit> best_unit(const registration::Samples& samples, const S
   const double size = diagonal(box), most = kTooLarge * diagonal(bounds(o2.mesh()));
   options.samples = kUnitSamples;
   if (options.start == AlignStart::automatic) options.start = AlignStart::pose;
-  for (const double ratio : kUnitRatios)
+  for (const auto& [ratio, name] : kLargerUnits)
     for (const double factor : {ratio, 1 / ratio}) {
       if (!(factor * size <= most)) continue;
       std::vector<Vec3> scaled = samples.points;
@@ -104,7 +103,7 @@ std::optional<OtherUnit> unit_in_place(const registration::Samples& samples, con
   const double as_given = misfit_in_place(samples, target);
   std::optional<OtherUnit> best;
   double least = as_given > kFits ? std::min(kMuchBetter * as_given, kFits) : 0;
-  for (const double ratio : kUnitRatios)
+  for (const auto& [ratio, name] : kLargerUnits)
     for (const double factor : {ratio, 1 / ratio}) {
       const double apart = distance_of_corners({factor * box.lo, factor * box.hi}, to);
       const bool same = apart <= kSame;

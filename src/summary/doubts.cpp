@@ -1,19 +1,13 @@
 #include <sdm/doubts.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "core/larger_units.h"
 #include "core/numbers/number_text.h"
 
 namespace sdm {
 namespace {
-
-/// Two units, the first one larger.
-struct UnitNames {
-  double factor;
-  const char *larger, *smaller;
-};
 
 /// What was found, of an O1 that is so many times too small or too large.
 std::string found_text(const OtherUnit& unit, const std::string& times) {
@@ -26,14 +20,12 @@ std::string found_text(const OtherUnit& unit, const std::string& times) {
 }
 
 Doubt unit_doubt(const OtherUnit& unit) {
-  constexpr std::array kNames{
-      UnitNames{10, "centimetres", "millimetres"}, UnitNames{25.4, "inches", "millimetres"},
-      UnitNames{304.8, "feet", "millimetres"}, UnitNames{1000, "metres", "millimetres"}};
   const bool grows = unit.factor > 1;
   const double ratio = grows ? unit.factor : 1 / unit.factor;
-  const UnitNames& names =
-      *std::ranges::min_element(kNames, {}, [&](const UnitNames& n) { return std::abs(n.factor - ratio); });
-  const std::string o1 = grows ? names.larger : names.smaller, o2 = grows ? names.smaller : names.larger;
+  const LargerUnit& larger = *std::ranges::min_element(
+      kLargerUnits, {}, [&](const LargerUnit& l) { return std::abs(l.millimetres - ratio); });
+  const char* const smaller = "millimetres";
+  const std::string o1 = grows ? larger.name : smaller, o2 = grows ? smaller : larger.name;
   constexpr int kExact = 15;  // digits: ratios of units are decimal numbers, or their inverses
   return {DoubtReason::other_unit,
           found_text(unit, number_text(ratio, 4) + " times as " + (grows ? "large" : "small") +

@@ -3,10 +3,10 @@
 #include <sdm/thickness.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "closest/facing/facing_normals.h"
+#include "core/larger_units.h"
 #include "core/numbers/number_text.h"
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
@@ -29,11 +29,6 @@ std::string text_of(double number, int digits) {
 bool is_empty(const Box& box) {
   return !(box.lo[0] <= box.hi[0]);
 }
-
-struct Unit {
-  double times;
-  const char* question;
-};
 
 std::optional<std::string> note_of_lengths(std::span<const double> lengths, double limit,
                                            const std::string& units) {
@@ -67,16 +62,20 @@ std::optional<double> largest_of(const std::optional<Tolerance>& tolerance, std:
 
 std::optional<std::string> note_on_sizes(const Box& a, const Box& b) {
   constexpr double kTolerance = 0.05;
-  constexpr std::array kUnits{Unit{10, "millimetres and centimetres"}, Unit{25.4, "millimetres and inches"},
-                              Unit{100, "centimetres and metres"}, Unit{304.8, "millimetres and feet"},
-                              Unit{1000, "millimetres and metres"}};
+  constexpr LargerUnit kCentimetre = kLargerUnits.front(), kMetre = kLargerUnits.back();
   const double sizes[] = {diagonal(a), diagonal(b)};
   const double times = std::max(sizes[0], sizes[1]) / std::min(sizes[0], sizes[1]);
   if (!std::isfinite(times)) return std::nullopt;
-  for (const Unit& unit : kUnits)
-    if (std::abs(times / unit.times - 1) <= kTolerance)
-      return "one mesh is about " + text_of(unit.times, 6) + " times the other; " + unit.question + "?";
-  if (times > kUnits.back().times)
+  const auto question = [&](double ratio, const std::string& smaller,
+                            const char* larger) -> std::optional<std::string> {
+    if (!(std::abs(times / ratio - 1) <= kTolerance)) return std::nullopt;
+    return "one mesh is about " + text_of(ratio, 6) + " times the other; " + smaller + " and " + larger + "?";
+  };
+  for (const auto& [ratio, name] : kLargerUnits)
+    if (auto note = question(ratio, "millimetres", name)) return note;
+  if (auto note = question(kMetre.millimetres / kCentimetre.millimetres, kCentimetre.name, kMetre.name))
+    return note;
+  if (times > kMetre.millimetres)
     return "one mesh is about " + text_of(times, 2) + " times the other; are both in the same units?";
   return std::nullopt;
 }

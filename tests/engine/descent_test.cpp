@@ -2,14 +2,17 @@
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <random>
+#include <tuple>
 #include <vector>
 
 #include "closest/finish.h"
 #include "closest/reference/reference_closest.h"
 #include "geometry/vec.h"
+#include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
 #include "support/map_checks.h"
 #include "support/points.h"
@@ -165,6 +168,31 @@ TEST(Descent, AgreesWithTheReferenceOnRandomScenes) {
   EXPECT_EQ(wrong, 0u);
   EXPECT_GT(within, 50000u);
   EXPECT_GT(beyond, 1000u);
+}
+
+TEST(Reference, IsTheFirstOfAllFacesOneByOne) {
+  for (const Mesh& mesh : {test::sphere(3), test::needles(1e-4), test::fan(300)}) {
+    const Sites sites(mesh);
+    const Box box = bounds(mesh);
+    std::mt19937 random(4);
+    for (int i = 0; i < 40; ++i) {
+      const Vec3 q = test::random_point({2 * box.lo - box.hi, 2 * box.hi - box.lo}, random);
+      const auto order = [](const ClosestPoint& c) { return std::tuple(c.distance, c.type, c.site, c.face); };
+      ClosestPoint expected;
+      for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face)
+        expected =
+            std::min(expected, sites::closest_on_face(internals(sites), face, q),
+                     [&](const ClosestPoint& a, const ClosestPoint& b) { return order(a) < order(b); });
+      for (const double limit : {0.9, 1.0, 1.1}) {
+        const ClosestPoint found =
+            reference::reference_closest(internals(sites), q, limit * expected.distance);
+        if (limit < 1)
+          EXPECT_EQ(found.type, SiteType::none);
+        else
+          EXPECT_EQ(order(found), order(expected));
+      }
+    }
+  }
 }
 
 // A packet of points that are far apart has no use for a candidate list: each is searched for by itself.

@@ -143,7 +143,6 @@ endforeach()
 # Searches are policies of tree/visit.h and tree/visit_pairs.h. Only these files outside of tree/ read the nodes of
 # a tree by themselves.
 set(readers_of_nodes
-  closest/reference/reference_closest.cpp  # the oracle shares no search with what it tests
   certify/depth/leaving.cpp            # the children of a node are parts of its branch and bound
   closest/descent.cpp            # appends all leaves within reach to a list, by vector instructions
   bodies/motion/parts.h             # nodes are divided into faces too, by time

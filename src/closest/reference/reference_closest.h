@@ -1,5 +1,6 @@
 // The closest point in plain code that is easy to verify: the oracle for all other searches, which nothing
-// but tests and the engine `reference` may call.
+// but tests and the engine `reference` may call. It shares the order in which a tree is visited with them,
+// but neither bounds nor what decides between faces; a test compares it with all faces, one by one.
 #pragma once
 
 #include <sdm/sites.h>
