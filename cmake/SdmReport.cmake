@@ -22,7 +22,7 @@ if(NOT NPM)
   endif()
 endif()
 set(SDM_REPORT_FOLDER ${PROJECT_BINARY_DIR}/report)
-set(SDM_RULES ${PROJECT_SOURCE_DIR}/src/core/rules.h ${PROJECT_SOURCE_DIR}/report/rules.cjs)
+set(SDM_RULES ${PROJECT_SOURCE_DIR}/src/core/rules.h ${PROJECT_SOURCE_DIR}/include/sdm/summary.h ${PROJECT_SOURCE_DIR}/report/rules.cjs)
 
 # sdm_npm_ci(<folder> <argument>...): installs the packages of report/package-lock.json into the folder, again only when
 # that file changes.

@@ -1,4 +1,4 @@
-// The module sdm-rules, by the text of src/core/rules.h: node rules.cjs FOLDER writes rules.js and rules.d.ts.
+// The module sdm-rules, by the text of src/core/rules.h, and the words of Colormap: node rules.cjs FOLDER writes rules.js and rules.d.ts.
 const { readFileSync, writeFileSync } = require('fs');
 const { join } = require('path');
 
@@ -47,6 +47,9 @@ function translated() {
   });
   const declarations = source.match(/^inline /gm).length;
   if (js.length !== declarations) throw new Error(`src/core/rules.h: ${js.length} of ${declarations} declarations are translated`);
+  const [, words] = readFileSync(join(__dirname, '../include/sdm/summary.h'), 'utf8').match(/kWords<Colormap>\{([^}]*)\}/);
+  const [names, declared] = ofList('std::array<const char*, 0>', 'kColormapNames', `{${words}}`);
+  js.push(names), types.push(declared);
   js.push(`export const kColorRule = ${JSON.stringify(glsl.join('\n'))};`);
   types.push('/** The functions and numbers of colours, in GLSL. */\nexport declare const kColorRule: string;');
   return { js: `${js.join('\n')}\n`, types: `${types.join('\n')}\n` };

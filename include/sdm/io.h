@@ -138,6 +138,9 @@ struct PictureOptions {
                                                   const DistanceStatistics& distances);
 /// Returns `options` with these colours.
 [[nodiscard]] SDM_API PictureOptions fixed_colors(const PictureOptions& options, const ColorRange& colors);
+/// Returns the colour of a distance in sRGB, by options that fixed_colors() returned; of NaN, that of samples
+/// without a value. Cost: O(1).
+[[nodiscard]] SDM_API std::array<std::uint8_t, 3> color_of(const PictureOptions& fixed, double distance);
 /// Returns what the options choose of the colours.
 [[nodiscard]] SDM_API ColorChoice color_choice(const PictureOptions& options);
 

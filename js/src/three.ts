@@ -13,10 +13,18 @@ import {
   type WebGLProgramParametersWithUniforms,
 } from 'three';
 import {
+  automaticColormap,
+  automaticHi,
+  automaticLo,
+  colormapOfRange,
+  fewAbove,
+  fewBelow,
+  isLongerAbove,
   kAbove,
   kBands,
   kBelow,
   kCentred,
+  kColormapNames,
   kColorRule,
   kDiverging,
   kEndToEnd,
@@ -27,7 +35,15 @@ import {
   kUnjudged,
   kViridis,
   kWithin,
+  leastShown,
+  limitsHi,
+  limitsLo,
+  mostShown,
+  roundedHi,
+  roundedLo,
+  scaleReach,
 } from './rules.js';
+import { type Colormap } from './report.js';
 import { type Atlas } from './surface.js';
 import { SdmError } from './types.js';
 
@@ -73,14 +89,17 @@ export function withAtlas(geometry: BufferGeometry, atlas: Atlas): BufferGeometr
 }
 
 export interface DistanceMaterialOptions extends MeshStandardMaterialParameters {
-  /** The distances at the ends of the colours; by default the 99th percentile, symmetric if some are negative. */
+  /** The distances at the ends of the colours; by default as in all pictures: round numbers around 99 % of the texels, and the tolerance. */
   range?: [number, number];
   /** Distances allowed: green within, warm above, blue below. One of them may be infinite: no limit. */
   tolerance?: [least: number, largest: number];
   /** The error of the distances: those that exceed the tolerance, or 0, by less are within it. */
   accuracy?: number;
-  /** By default `diverging` if the range has negative distances; `sequential`: viridis from 0 to the longer side, reds for the other one. */
-  colormap?: 'viridis' | 'sequential' | 'diverging' | 'paper2006';
+  /**
+   * By default as in all pictures: `viridis` if no distance is negative, `sequential` (viridis from 0 to the longer side, reds for the other one)
+   * if few are on one side of 0, or else `diverging`.
+   */
+  colormap?: Exclude<Colormap, 'automatic'>;
 }
 
 const kLut = 256;
@@ -120,9 +139,9 @@ export class DistanceMaterial extends MeshStandardMaterial {
     [this.texture.minFilter, this.texture.magFilter] = [NearestFilter, NearestFilter];
     this.uniformsOfDistances.sdmDistances.value = this.texture;
     this.setDistances(map.distances);
-    const shown = range ?? defaultRange(map.distances);
-    this.range = shown;
-    this.colormap = colormap ?? (shown[0] < 0 ? 'diverging' : 'viridis');
+    const colors = colorsOf(map.distances, { range, tolerance, accuracy, colormap });
+    this.range = colors.range;
+    this.colormap = colors.colormap;
     this.tolerance = tolerance ?? null;
     this.accuracy = accuracy ?? 0;
     this.uniformsOfDistances.sdmColors.value = colorTexture(this.colormap);
@@ -262,15 +281,39 @@ function fillBorders(data: Float32Array, texelFaces: Uint32Array, width: number)
     }
 }
 
-function defaultRange(distances: Float32Array): [number, number] {
+/** The colormap and the range that are not given, by the rule of all pictures. */
+function colorsOf(
+  distances: Float32Array,
+  given: Pick<DistanceMaterialOptions, 'range' | 'tolerance' | 'accuracy' | 'colormap'>,
+): { colormap: keyof typeof kModes; range: [number, number] } {
+  const { range, tolerance } = given;
+  const accuracy = Number.isFinite(given.accuracy) ? given.accuracy! : 0;
   const step = Math.max(1, Math.floor(distances.length / 65536));
-  const sizes: number[] = [];
-  let negative = false;
-  for (let i = 0; i < distances.length; i += step) {
-    if (Number.isNaN(distances[i])) continue;
-    sizes.push(Math.abs(distances[i]!));
-    negative ||= distances[i]! < 0;
+  const sample: number[] = [];
+  let lowest = Infinity;
+  let highest = -Infinity;
+  for (let i = 0; i < distances.length; ++i) {
+    const d = distances[i]!;
+    if (!Number.isFinite(d)) continue;
+    [lowest, highest] = [Math.min(lowest, d), Math.max(highest, d)];
+    if (i % step === 0) sample.push(d);
   }
-  const p99 = sizes.sort((a, b) => a - b)[Math.floor(0.99 * (sizes.length - 1))] || 1;
-  return [negative ? -p99 : 0, p99];
+  if (lowest > highest) [lowest, highest] = [0, 0];
+  const quantile = (values: number[], q: number) =>
+    values.sort((a, b) => a - b)[Math.floor(q * (values.length - 1))] ?? NaN;
+  const least = leastShown(lowest, highest, accuracy);
+  const most = mostShown(lowest, highest, accuracy);
+  const reach = scaleReach(least, most, quantile(sample.map(Math.abs), 0.99), accuracy);
+  const below = fewBelow(least, quantile(sample, 0.05), reach, accuracy);
+  const above = fewAbove(most, quantile(sample, 0.95), reach, accuracy);
+  let map = given.colormap ? kColormapNames.indexOf(given.colormap) : automaticColormap(least, below, above);
+  if (range && !given.colormap) map = colormapOfRange(map, ...range);
+  const longerAbove = isLongerAbove(least, most, below, above);
+  const [lo, hi] = tolerance
+    ? [limitsLo(least, reach, ...tolerance), limitsHi(most, reach, ...tolerance)]
+    : [automaticLo(map, least, most, reach, longerAbove), automaticHi(map, least, most, reach, longerAbove)];
+  return {
+    colormap: kColormapNames[map] as keyof typeof kModes,
+    range: range ?? [roundedLo(lo, hi), roundedHi(lo, hi)],
+  };
 }

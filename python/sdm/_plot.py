@@ -8,19 +8,13 @@ from ._core import Error
 
 
 def _colours(distance_map: Any, cmap: "str | None") -> tuple[Any, ...]:
-    """A colour map and its range, which is that of all pictures of the map."""
+    """A colour map, its range and the colour of no value, which are those of all pictures of the map."""
     from matplotlib import colormaps
     from matplotlib.colors import ListedColormap, Normalize
 
-    name, low, high = distance_map._core.colors()
-    if cmap or name != "sequential":
-        return colormaps[cmap or ("RdBu_r" if name == "diverging" else "viridis")], Normalize(low, high)
-    up = high >= -low  # the longer side
-    values = np.linspace(low, high, 1024) * (1 if up else -1)
-    longer, shorter = (high, -low) if up else (-low, high)
-    reds = colormaps["Reds"](0.45 + 0.55 * np.clip(-values / (shorter or 1), 0, 1))
-    viridis = colormaps["viridis"](np.clip(values / longer, 0, 1))
-    return ListedColormap(np.where(values[:, None] < 0, reds, viridis)), Normalize(low, high)
+    _, low, high, colours = distance_map._core.colors()
+    *shown, none = colours / 255
+    return colormaps[cmap] if cmap else ListedColormap(shown), Normalize(low, high), (*none, 1.0)
 
 
 def plot(distance_map: Any, ax: Any, kind: str, cmap: "str | None", units: str) -> Any:
@@ -35,7 +29,7 @@ def plot(distance_map: Any, ax: Any, kind: str, cmap: "str | None", units: str) 
     label = f"distance [{units}]" if units else "distance"
     if kind == "atlas":
         ax = ax or plt.figure().add_subplot()
-        colours, norm = _colours(distance_map, cmap)
+        colours, norm, _ = _colours(distance_map, cmap)
         picture = ax.imshow(distance_map.distance, cmap=colours, norm=norm)
         ax.figure.colorbar(picture, ax=ax, label=label)
         ax.set_axis_off()
@@ -46,13 +40,13 @@ def plot(distance_map: Any, ax: Any, kind: str, cmap: "str | None", units: str) 
     ax = ax or plt.figure().add_subplot(projection="3d")
     corners = distance_map.surface.vertices[distance_map.surface.faces]
     values = distance_map.at_vertices()[distance_map.surface.faces].mean(axis=1)
-    colours, norm = _colours(distance_map, cmap)
-    # Lambertian shading from above the viewer's left; faces without a value are grey.
+    colours, norm, none = _colours(distance_map, cmap)
+    # Lambertian shading from above the viewer's left.
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     light = np.array([0.4, -0.5, 0.77])
     shade = 0.6 + 0.4 * np.abs(np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0) @ light)
-    rgba = np.where(np.isfinite(values)[:, None], colours(norm(np.nan_to_num(values))), (0.6, 0.6, 0.6, 1.0))
+    rgba = np.where(np.isfinite(values)[:, None], colours(norm(np.nan_to_num(values))), none)
     rgba[:, :3] *= shade[:, None]
     ax.add_collection3d(Poly3DCollection(corners, facecolors=rgba, linewidths=0, antialiased=False))
     low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)

@@ -11,12 +11,14 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "map.h"
 #include "signatures.h"
@@ -74,7 +76,7 @@ void write(const PyMap& self, const std::string& format, nb::handle file, const 
       found->second(path, file_vertices(surface.mesh()), self.vertex_distances(report));
     } else if (format == "exr") {
       std::vector<std::uint8_t> boundary;
-      if (!self.of_itself() && !self.to->sites.closed()) boundary = boundary_mask(self.to->sites, self.map);
+      if (!self.to->sites.closed()) boundary = boundary_mask(self.to->sites, self.map);
       write_exr(path, surface, self.map, {.boundary = boundary});
     } else if (format == "glb") {
       write_glb(path, surface, self.map, self.vertex_distances(report), picture);
@@ -157,13 +159,20 @@ std::string report(const PyMap& self, const VertexDistances& at_vertices, const 
   return text;
 }
 
-// The colours of pictures: the name of the colour map, and the distances at its ends.
+// The colours of pictures: the name of the colour map, the distances at its ends, and the colours from one to
+// the other; the last one is that of no value.
 nb::object colors(const PyMap& self) {
+  constexpr int kSteps = 1024;
   const auto lock = self.use_surface();
   const PictureOptions picture = picture_of(self, {"automatic", {}, nb::none(), ""});
-  const ColorRange result =
-      run_short([&] { return color_range(color_choice(picture), statistics(self.on->surface, self.map)); });
-  return nb::make_tuple(sdm::name_of(result.colormap), result.range[0], result.range[1]);
+  const PictureOptions fixed =
+      run_short([&] { return fixed_colors(picture, statistics(self.on->surface, self.map)); });
+  const auto [low, high] = *fixed.range;
+  std::vector<std::array<std::uint8_t, 3>> colors;
+  for (int i = 0; i < kSteps; ++i) colors.push_back(color_of(fixed, low + (i + 0.5) / kSteps * (high - low)));
+  colors.push_back(color_of(fixed, std::numeric_limits<double>::quiet_NaN()));
+  return nb::make_tuple(sdm::name_of(fixed.colormap), low, high,
+                        array_of<std::uint8_t>(std::move(colors), {kSteps + 1, 3}));
 }
 
 void write_page(const PyMap& self, nb::handle file, const VertexDistances& at_vertices,
@@ -213,7 +222,8 @@ void bind_map_files(nb::module_& module, nb::class_<PyMap>& map) {
                   "'automatic', range: "
                   "tuple[float, float] | None = None, tolerance: float | tuple[float, float] | None = None, "
                   "units: str = '') -> str"))
-      .def("colors", &colors, nb::sig("def colors(self) -> tuple[str, float, float]"))
+      .def("colors", &colors,
+           nb::sig("def colors(self) -> tuple[str, float, float, numpy.typing.NDArray[numpy.uint8]]"))
       .def("write_view", &write_view, nb::arg("file"), nb::arg("at_vertices"), nb::arg("towards"),
            nb::arg("other").none(), nb::kw_only(), nb::arg("colormap"), nb::arg("range").none(),
            nb::arg("tolerance").none(), nb::arg("units"), nb::arg("size"), nb::arg("up"), nb::arg("legend"),

@@ -460,10 +460,14 @@ def test_plots_the_short_side_of_zero_in_red():
     # A ball that is 0.1 deep in a block.
     balls, block = meshes.sphere(center=(0, 0, 1.9), steps=4), meshes.box((-4, -4, -2), (4, 4, 1))
     found = sdm.map(balls, block, resolution=128)
-    name, low, high = found._core.colors()
+    name, low, high, colours = found._core.colors()
     assert (name, low, high) == ("sequential", -0.2, 2.0)
     picture = found.plot(kind="atlas").images[0]
     assert (picture.norm.vmin, picture.norm.vmax) == (low, high)
+    # The colours are those of src/core/rules.h: of no value, of the lower end and of the upper one.
+    assert colours[-1].tolist() == [128, 130, 134]
+    for at, expected in ((0.0, [130, 0, 20]), (1.0, [253, 231, 37])):
+        assert 255 * np.array(picture.cmap(at)[:3]) == pytest.approx(expected, abs=2)
     for value in (-0.09, -0.02):
         red, green, blue, _ = picture.cmap(picture.norm(value))
         assert red > 0.5 and red > 0.25 + max(green, blue)

@@ -1,4 +1,5 @@
 // The colours and the limits of the form.
+import { kShorterSide } from 'sdm-rules';
 import { kViridisInWords, type Mode, type Scale } from './color_scale';
 import { select } from './fields';
 import type { AreaByValue } from './area_by_value';
@@ -61,7 +62,7 @@ export function makeScaleControls(
   /// The range up to `x`: on both sides, or of a sequential scale the shorter one as far as it was, relative to the longer one.
   const setReach = (x: number) => {
     const of = scale();
-    const shorter = Math.min(0.5, Math.max(0, Math.min(-of.lo, of.hi)) / reach());
+    const shorter = Math.min(kShorterSide, Math.max(0, Math.min(-of.lo, of.hi)) / reach());
     if (of.mode !== 'sequential') [of.lo, of.hi] = [signs || of.mode === 'diverging' ? -x : 0, x];
     else if (of.hi >= -of.lo) [of.lo, of.hi] = [-shorter * x, x];
     else [of.lo, of.hi] = [-x, shorter * x];

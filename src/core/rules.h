@@ -154,6 +154,131 @@ inline double step_digit(double least) {
          : least <= most * step_multiple(1.0, 5.0, exponent) ? 5.0
                                                              : 10.0;
 }
+/// The multiples of a round step, which is not smaller than `least`, next to a number.
+inline double round_below(double x, double least) {
+  const double digit = step_digit(least);
+  const double exponent = step_exponent(least);
+  return step_multiple(std::floor(x / step_multiple(1.0, digit, exponent) + 1e-9), digit, exponent) + 0.0;
+}
+inline double round_above(double x, double least) {
+  const double digit = step_digit(least);
+  const double exponent = step_exponent(least);
+  return step_multiple(std::ceil(x / step_multiple(1.0, digit, exponent) - 1e-9), digit, exponent) + 0.0;
+}
+/// The ends of a range, the upper one beyond the lower one, moved outwards to round numbers.
+inline double widened_hi(double lo, double hi) {
+  return lo < hi ? hi : lo + (lo != 0.0 ? std::abs(lo) : 1.0);
+}
+inline bool can_round(double lo, double hi) {
+  const double least = (hi - lo) / kScaleSteps;
+  const double below = round_below(lo, least);
+  const double above = round_above(hi, least);
+  // Far from zero, steps of the range may be too small to be numbers.
+  return below < above && std::abs(below) < kInfinity && std::abs(above) < kInfinity;
+}
+inline double rounded_lo(double lo, double hi) {
+  const double end = widened_hi(lo, hi);
+  return can_round(lo, end) ? round_below(lo, (end - lo) / kScaleSteps) : lo;
+}
+inline double rounded_hi(double lo, double hi) {
+  const double end = widened_hi(lo, hi);
+  return can_round(lo, end) ? round_above(end, (end - lo) / kScaleSteps) : end;
+}
+
+// The scale of colours of distances from `least` to `most`, where it is not given.
+
+inline constexpr double kVanishing = 0.1;    ///< part of a range in which a diverging scale is nearly white
+inline constexpr double kShorterSide = 0.5;  ///< of a sequential scale, of the longer one
+
+/// Of Colormap, in its order.
+inline constexpr double kViridisMap = 1.0;
+inline constexpr double kSequentialMap = 2.0;
+inline constexpr double kDivergingMap = 3.0;
+
+/// The least and the largest distance, at least as far apart as they are accurate: what is nearer to 0 is 0.
+inline double least_shown(double least, double most, double accuracy) {
+  if (std::max(std::abs(least), std::abs(most)) <= accuracy) return 0.0;
+  return least < 0.0 && least >= -accuracy ? 0.0 : least;
+}
+inline double most_shown(double least, double most, double accuracy) {
+  if (std::max(std::abs(least), std::abs(most)) <= accuracy) return accuracy;
+  return most > 0.0 && most <= accuracy && least < -accuracy ? 0.0 : most;
+}
+/// How far a scale goes to either side: as far as 99 % of the area.
+inline double scale_reach(double least, double most, double p99_abs, double accuracy) {
+  return p99_abs > accuracy ? p99_abs : std::max(std::abs(least), std::abs(most));
+}
+/// Whether on that side of 0 is less than 5 % of the area, or nothing far from it.
+inline bool few_below(double least, double p05, double reach, double accuracy) {
+  return least >= 0.0 || p05 >= -accuracy || -least < kVanishing * reach;
+}
+inline bool few_above(double most, double p95, double reach, double accuracy) {
+  return most <= 0.0 || p95 <= accuracy || most < kVanishing * reach;
+}
+inline double automatic_colormap(double least, bool below_few, bool above_few) {
+  if (least >= 0.0) return kViridisMap;
+  return below_few || above_few ? kSequentialMap : kDivergingMap;
+}
+/// That of a range that was given: both sides of 0 have their colours if neither is short.
+inline double colormap_of_range(double automatic, double lo, double hi) {
+  const bool both = std::min(-lo, hi) > kShorterSide * std::max(-lo, hi);
+  return automatic == kSequentialMap && both ? kDivergingMap : automatic;
+}
+
+/// From the end of the longer side to that of the shorter one.
+inline bool is_longer_above(double least, double most, bool below_few, bool above_few) {
+  return below_few == above_few ? most >= -least : below_few && most > 0.0;
+}
+inline double longer_side(double least, double most, double reach, bool above) {
+  return std::min(reach, above ? most : -least);
+}
+inline double shorter_side(double least, double most, double reach, bool above) {
+  return std::min(kShorterSide * longer_side(least, most, reach, above),
+                  std::max(0.0, above ? -least : most));
+}
+inline double sequential_lo(double least, double most, double reach, bool above) {
+  return above ? -shorter_side(least, most, reach, above) : -longer_side(least, most, reach, above);
+}
+inline double sequential_hi(double least, double most, double reach, bool above) {
+  return above ? longer_side(least, most, reach, above) : shorter_side(least, most, reach, above);
+}
+
+/// x, not farther from 0 than that.
+inline double within_reach(double x, double reach) {
+  return std::min(std::max(x, -reach), reach);
+}
+/// The distances as far as the scale goes, unless nearly all of the area has one distance.
+inline double cut_hi(double least, double most, double reach) {
+  return within_reach(least, reach) < within_reach(most, reach) ? within_reach(most, reach) : most;
+}
+inline double cut_lo(double least, double most, double reach) {
+  const double hi = cut_hi(least, most, reach);
+  const double lo =
+      within_reach(least, reach) < within_reach(most, reach) ? within_reach(least, reach) : least;
+  return lo > 0.0 && (lo < hi / 2.0 || !(lo < hi)) ? 0.0 : lo;
+}
+
+/// The ends by a colormap, before they are rounded.
+inline double automatic_lo(double map, double least, double most, double reach, bool above) {
+  if (map == kDivergingMap) return -reach;
+  return map == kSequentialMap ? sequential_lo(least, most, reach, above) : cut_lo(least, most, reach);
+}
+inline double automatic_hi(double map, double least, double most, double reach, bool above) {
+  if (map == kDivergingMap) return reach;
+  return map == kSequentialMap ? sequential_hi(least, most, reach, above) : cut_hi(least, most, reach);
+}
+/// The same of bands: the limits are in the scale, and as much beyond them as the larger one.
+inline double limits_margin(double lower, double upper) {
+  return std::max(std::abs(lower > -kInfinity ? lower : upper), std::abs(upper < kInfinity ? upper : lower));
+}
+inline double limits_lo(double least, double reach, double lower, double upper) {
+  const double edge = (lower > -kInfinity ? lower : upper) - limits_margin(lower, upper);
+  return least < 0.0 ? std::min(std::max(least, -reach), edge) : 0.0;
+}
+inline double limits_hi(double most, double reach, double lower, double upper) {
+  const double edge = (upper < kInfinity ? upper : lower) + limits_margin(lower, upper);
+  return std::max(within_reach(most, reach), edge);
+}
 
 struct Unit {
   const char* name;
@@ -182,14 +307,12 @@ inline double limits_form(double lower, double upper, bool is_signed) {
   return lower != -upper ? kBetween : is_signed ? kPlusMinus : kUpTo;
 }
 
-/// Of Verdict, VerdictReason and Colormap, in their order.
+/// Of Verdict and VerdictReason, in their order.
 inline constexpr std::array<const char*, 4> kVerdictNames{"PASS", "FAIL", "NOT DECIDED", "DOUBTFUL"};
 inline constexpr std::array<const char*, 12> kReasonNames{
     "all within",       "exceeded",         "beyond max distance", "without match",
     "between samples",  "within rounding",  "guard band",          "estimated signs",
     "unknown accuracy", "nothing measured", "thin walls",          "in doubt"};
-inline constexpr std::array<const char*, 5> kColormapNames{"automatic", "viridis", "sequential", "diverging",
-                                                           "paper2006"};
 
 inline constexpr double kPass = 0.0;
 inline constexpr double kFail = 1.0;

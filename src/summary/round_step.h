@@ -1,8 +1,6 @@
 // Steps between round numbers.
 #pragma once
 
-#include <cmath>
-
 #include "core/rules.h"
 
 namespace sdm {
@@ -18,8 +16,6 @@ class RoundStep {
   [[nodiscard]] double size() const { return multiple(1); }
   /// The double that is nearest to n steps, where the power of ten is one.
   [[nodiscard]] double multiple(double n) const { return rules::step_multiple(n, digit_, exponent_); }
-  [[nodiscard]] double below(double x) const { return multiple(std::floor(x / size() + 1e-9)) + 0.0; }
-  [[nodiscard]] double above(double x) const { return multiple(std::ceil(x / size() - 1e-9)) + 0.0; }
 
  private:
   double digit_, exponent_;

@@ -4,6 +4,7 @@
 #include <sdm/error.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -183,6 +184,17 @@ TEST(ColorScale, FixedOptionsStayAsTheyAre) {
     const PictureOptions once = fixed_colors(options, d), twice = fixed_colors(once, DistanceStatistics{});
     EXPECT_EQ(once.range, twice.range);
     EXPECT_EQ(once.colormap, twice.colormap);
+  }
+}
+
+TEST(ColorScale, IsThatOfSingleColours) {
+  for (const PictureOptions& options : {PictureOptions{}, PictureOptions{.tolerance = 0.3}}) {
+    const PictureOptions fixed = fixed_colors(options, statistics_of({-1, 0.2f, 0.5f, 2}));
+    const ColorScale scale = color_scale(fixed);
+    for (const double d : {-3.0, -0.5, 0.0, 0.25, 1.9, std::numeric_limits<double>::quiet_NaN()}) {
+      const Rgb expected = scale(d);
+      EXPECT_EQ(color_of(fixed, d), (std::array{expected.r, expected.g, expected.b})) << d;
+    }
   }
 }
 

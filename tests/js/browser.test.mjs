@@ -139,5 +139,16 @@ test('a map on a mesh of three.js', { timeout: 120000 }, async () => {
     Object.entries(expected).forEach(([d, color], i) =>
       color.forEach((x, k) => assert.ok(Math.abs(x - colors[i][k]) <= 3, `${d} is ${colors[i]}, not ${color}`)));
   }
+  // Without a range, the scale is that of all pictures.
+  const above = Array.from({ length: 100 }, (_, i) => i / 50), few = [...above, -0.1, -0.1];
+  for (const [distances, options, expected] of [
+    [above, {}, ['viridis', 0, 2]],
+    [few, {}, ['sequential', -0.5, 2]],
+    [few, { accuracy: 0.2 }, ['viridis', 0, 2]],
+    [few, { range: [-1, 1] }, ['diverging', -1, 1]],
+    [[...above, ...above.map((d) => -d)], {}, ['diverging', -2, 2]],
+    [few, { tolerance: [-1, 3] }, ['sequential', -4, 6]],
+  ])
+    assert.deepEqual(await page.evaluate(([d, o]) => window.scaleOf(d, o), [distances, options]), expected);
   assert.deepEqual(faults, []);
 });

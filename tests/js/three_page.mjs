@@ -42,6 +42,13 @@ window.seen = async () => {
   return { above: above / all, within: within / all };
 };
 
+// The colormap and the range of distances.
+window.scaleOf = (distances, options) => {
+  const atlas = { resolution: distances.length, rows: 1, texelFaces: Uint32Array.from(distances, (_, i) => i) };
+  const material = new DistanceMaterial({ distances: Float32Array.from(distances) }, atlas, options);
+  return [material.colormap, ...material.range];
+};
+
 // The colours of distances, seen in front of a light that leaves them as they are.
 window.colorsOf = (distances, options) => {
   const atlas = { resolution: distances.length, rows: 1, texelFaces: Uint32Array.from(distances, (_, i) => i) };

@@ -122,4 +122,9 @@ PictureOptions fixed_colors(const PictureOptions& options, const DistanceStatist
   return fixed_colors(options, color_range(color_choice(options), distances));
 }
 
+std::array<std::uint8_t, 3> color_of(const PictureOptions& fixed, double distance) {
+  const io::Rgb color = io::color_scale(fixed)(distance);
+  return {color.r, color.g, color.b};
+}
+
 }  // namespace sdm
