@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "bodies/convex/difference_hull.h"
 #include "bodies/convex/support_search.h"
-#include "bodies/separate/difference_hull.h"
 #include "bodies/separate/free_translations.h"
 #include "bodies/separate/moved_pair.h"
 #include "bodies/separate/overlap_cover.h"
@@ -69,11 +69,11 @@ class TranslationSearch {
   }
 
   SeparatingTranslation find() {
-    const ConvexExit exit = exit_of_hulls(
-        [this](const Vec3& u, const VertexPair& near) {
-          SupportPair found{.vertices = near};
-          found.x1 = farthest(o1_, convex_[0], u, found.vertices[0]);
-          found.x2 = farthest(o2_, convex_[1], -u, found.vertices[1]);
+    const convex::ConvexExit exit = convex::exit_of_hulls(
+        [this](const Vec3& u, const std::array<std::uint32_t, 2>& near) {
+          convex::SimplexPoint found{near, {}};
+          found.w = farthest(o1_, convex_[0], u, found.vertices[0]) -
+                    farthest(o2_, convex_[1], -u, found.vertices[1]);
           return found;
         },
         normalized(o2_.ball().centre - o1_.ball().centre), size_, workspace_.exit);
@@ -91,14 +91,12 @@ class TranslationSearch {
 
  private:
   // Those between which convex solids are closest after the exit.
-  [[nodiscard]] convex::Simplex closest_vertices(const ConvexExit& exit) const {
-    convex::Simplex simplex;
-    if (!convex_[0] || !convex_[1]) return simplex;
+  [[nodiscard]] convex::Simplex closest_vertices(const convex::ConvexExit& exit) const {
+    if (!convex_[0] || !convex_[1]) return {};
+    convex::Simplex simplex = exit.touching;
     const auto& rows = o1_.pose().map.rows;
     const Vec3& u = exit.direction;
     simplex.away = -normalized(u[0] * rows[0] + u[1] * rows[1] + u[2] * rows[2]);
-    for (const VertexPair& vertices : exit.vertices)
-      if (vertices[0] != kNone) simplex.vertices[simplex.count++] = vertices;
     return simplex;
   }
   // A translation without a collision, by a little more than one after which the bodies touch at most.

@@ -3,8 +3,8 @@
 
 #include <sdm/proximity_query.h>
 
+#include "bodies/convex/difference_hull.h"
 #include "bodies/pair/pair_answers.h"
-#include "bodies/separate/difference_hull.h"
 #include "bodies/separate/overlap_cover.h"
 #include "bodies/shape/posed_body.h"
 
@@ -12,7 +12,7 @@ namespace sdm::separate {
 
 /// Memory that searches reuse; results do not depend on it.
 struct TranslationWorkspace {
-  ExitWorkspace exit;
+  convex::ExitWorkspace exit;
   OverlapCover cover;
   pair::PairAnswers moved{0, std::nullopt};
 };

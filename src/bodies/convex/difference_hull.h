@@ -9,40 +9,31 @@
 #include <utility>
 #include <vector>
 
+#include "bodies/convex/simplex_point.h"
+#include "bodies/convex/support_search.h"
 #include "geometry/vec.h"
 
-namespace sdm::separate {
+namespace sdm::convex {
 
-/// A vertex of O1 and one of O2; kNone if they are not known.
-using VertexPair = std::array<std::uint32_t, 2>;
-inline constexpr VertexPair kNoVertices{kNone, kNone};
-
-/// Support points in the direction u, |u| = 1: a point of O1 with the largest u·x, and one of O2 with the
-/// least. `near`: those of a similar direction, which may make it shorter to find them.
-struct SupportPair {
-  Vec3 x1{}, x2{};
-  VertexPair vertices = kNoVertices;
-  [[nodiscard]] Vec3 difference() const { return x1 - x2; }
-};
-using Support = std::function<SupportPair(const Vec3& u, const VertexPair& near)>;
+/// The point of the difference that is farthest along u, |u| = 1: of a point of O1 with the largest u·x, and
+/// one of O2 with the least. `near`: the vertices of a similar direction, which may make it shorter to find
+/// them; kNone where they are not known, also of the result.
+using Support = std::function<SimplexPoint(const Vec3& u, const std::array<std::uint32_t, 2>& near)>;
 
 /// Moving O1 by −upper · direction separates the convex hulls of both bodies; nothing shorter than `lower`
 /// does.
 struct ConvexExit {
   double lower = 0, upper = 0;
   Vec3 direction{};
-  std::array<VertexPair, 3> vertices{kNoVertices, kNoVertices,
-                                     kNoVertices};  ///< between which they touch then
+  Simplex touching{};  ///< the vertices between which they touch then, if known, without a direction
 };
 
 /// Memory that searches reuse; results do not depend on it.
 struct ExitWorkspace {
-  /// A point of a grid, so fine that it is one of the difference, to rounding.
-  struct Point {
-    Vec3 at{};
+  /// A point of the difference, rounded to a fine grid.
+  struct Point : SimplexPoint {
     std::array<std::int64_t, 3> grid{};
     double distance = 0;  ///< from the origin
-    VertexPair vertices{};
   };
   struct Facet {
     std::array<std::uint32_t, 3> corner{};
@@ -72,4 +63,4 @@ struct ExitWorkspace {
 [[nodiscard]] ConvexExit exit_of_hulls(const Support& support, const Vec3& first, double size,
                                        ExitWorkspace& workspace);
 
-}  // namespace sdm::separate
+}  // namespace sdm::convex

@@ -1,4 +1,4 @@
-#include "bodies/separate/difference_hull.h"
+#include "bodies/convex/difference_hull.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include "geometry/point_triangle.h"
 
-namespace sdm::separate {
+namespace sdm::convex {
 namespace {
 
 constexpr double kPrecision = 1e-10;    // of the exit, relative to the size
@@ -43,14 +43,14 @@ class Grid {
  public:
   explicit Grid(double size) : to_(std::ldexp(1, 39 - std::ilogb(size))), from_(1 / to_) {}
 
-  [[nodiscard]] GridPoint operator()(const Vec3& p, const VertexPair& vertices = kNoVertices) const {
-    GridPoint point{.vertices = vertices};
+  [[nodiscard]] GridPoint operator()(const SimplexPoint& p) const {
+    GridPoint point{p, {}, 0};
     for (int k = 0; k < 3; ++k) {
       constexpr double kShift = 0x3p51;  // numbers of this size are integers
-      const double rounded = (to_ * p[k] + kShift) - kShift;
-      point.at[k] = from_ * rounded, point.grid[k] = static_cast<std::int64_t>(rounded);
+      const double rounded = (to_ * p.w[k] + kShift) - kShift;
+      point.w[k] = from_ * rounded, point.grid[k] = static_cast<std::int64_t>(rounded);
     }
-    point.distance = norm(point.at);
+    point.distance = norm(point.w);
     return point;
   }
 
@@ -75,9 +75,15 @@ class DifferenceHull {
   }
 
   [[nodiscard]] double least(std::uint32_t f) const { return w_.facets[f].least; }
-  [[nodiscard]] std::array<VertexPair, 3> vertices_of(std::uint32_t f) const {
-    const auto& [a, b, c] = w_.facets[f].corner;
-    return {w_.points[a].vertices, w_.points[b].vertices, w_.points[c].vertices};
+  [[nodiscard]] std::array<std::uint32_t, 2> vertices_of(std::uint32_t f) const {
+    return w_.points[w_.facets[f].corner[0]].vertices;
+  }
+  [[nodiscard]] Simplex simplex_of(std::uint32_t f) const {
+    Simplex simplex;
+    for (const std::uint32_t corner : w_.facets[f].corner)
+      if (const auto& vertices = w_.points[corner].vertices; vertices[0] != kNone)
+        simplex.vertices[simplex.count++] = vertices;
+    return simplex;
   }
   // A unit vector away from the origin: the normal, or to the closest point of a sliver.
   [[nodiscard]] Vec3 out_of(std::uint32_t f) const {
@@ -126,14 +132,14 @@ class DifferenceHull {
   [[nodiscard]] bool sees(const GridPoint& p, std::uint32_t face) const {
     const Facet& facet = w_.facets[face];
     const auto& [a, b, c] = facet.corner;
-    const double height = dot(facet.normal, p.at - w_.points[a].at);
+    const double height = dot(facet.normal, p.w - w_.points[a].w);
     if (std::abs(height) > facet.doubt) return height > 0;
     return side_of_plane(w_.points[a], w_.points[b], w_.points[c], p) > 0;
   }
 
   void add(const std::array<std::uint32_t, 3>& corner, const std::array<std::uint32_t, 3>& across) {
     const GridPoint &p = w_.points[corner[0]], &q = w_.points[corner[1]], &r = w_.points[corner[2]];
-    const Vec3 u = q.at - p.at, v = r.at - p.at;
+    const Vec3 u = q.w - p.w, v = r.w - p.w;
     Facet facet{.corner = corner, .across = across, .normal = cross(u, v)};
     const double area = norm(facet.normal),
                  sides = std::max({squared_norm(u), squared_norm(v), squared_norm(v - u)});
@@ -141,7 +147,7 @@ class DifferenceHull {
     facet.doubt = kHeightError * sides * size_;
     facet.reliable = sides < kSliver * area;
     if (facet.reliable)
-      facet.least = (dot(facet.normal, p.at) - kNormalError * far * (area + sides)) / area;
+      facet.least = (dot(facet.normal, p.w) - kNormalError * far * (area + sides)) / area;
     else
       facet.least = (origin_beyond(facet) ? -1 : 1) * norm(closest_to_origin(facet)) - kRounding * far;
     const auto number = static_cast<std::uint32_t>(w_.facets.size());
@@ -153,7 +159,7 @@ class DifferenceHull {
   // The nearest face of all is as far as its closest point is.
   [[nodiscard]] Vec3 closest_to_origin(const Facet& facet) const {
     const auto& [a, b, c] = facet.corner;
-    return closest_on_triangle({}, {w_.points[a].at, w_.points[b].at, w_.points[c].at});
+    return closest_on_triangle({}, {w_.points[a].w, w_.points[b].w, w_.points[c].w});
   }
   [[nodiscard]] bool origin_beyond(const Facet& facet) const {
     const auto& [a, b, c] = facet.corner;
@@ -216,12 +222,12 @@ class ExitSearch {
         exit_.lower = exit_.upper;
         break;
       }
-      exit_.vertices = hull.vertices_of(nearest);
+      exit_.touching = hull.simplex_of(nearest);
       exit_.lower = hull.least(nearest) - kOffGrid * size_;
       if (exit_.upper - exit_.lower <= kPrecision * size_ || exit_.upper < 0) break;
       const Vec3 out = hull.out_of(nearest);
       if (out == Vec3{}) break;
-      const GridPoint p = farthest(out, exit_.vertices[0]);
+      const GridPoint p = farthest(out, hull.vertices_of(nearest));
       hull.leave_out_beyond(exit_.upper + kOffGrid * size_);
       if (hull.size() >= kMostPoints || !hull.add_point(nearest, p)) break;
     }
@@ -231,37 +237,36 @@ class ExitSearch {
 
  private:
   // The point of the difference that is farthest along u, which bounds the exit.
-  GridPoint farthest(const Vec3& u, const VertexPair& near = kNoVertices) {
-    const SupportPair found = support_(u, near);
-    const Vec3 p = found.difference();
-    if (const double along = dot(u, p); along < exit_.upper) exit_.upper = along, exit_.direction = u;
-    return grid_(p, found.vertices);
+  GridPoint farthest(const Vec3& u, const std::array<std::uint32_t, 2>& near = {kNone, kNone}) {
+    const SimplexPoint p = support_(u, near);
+    if (const double along = dot(u, p.w); along < exit_.upper) exit_.upper = along, exit_.direction = u;
+    return grid_(p);
   }
   // Some point along u, or along −u, for which far(p) is more than `enough`, if there is one.
   template <class Far>
   bool find_far(const Vec3& u, const Far& far, double enough, GridPoint& p) {
     p = farthest(u);
-    if (far(p.at) > enough) return true;
+    if (far(p.w) > enough) return true;
     p = farthest(-u);
-    return far(p.at) > enough;
+    return far(p.w) > enough;
   }
 
   // The first two points are the farthest ones towards and away from the origin.
   bool find_simplex(std::array<GridPoint, 4>& corner) {
     const double flat = kFlat * size_;
-    const auto from_first = [&](const Vec3& p) { return norm(p - corner[0].at); };
+    const auto from_first = [&](const Vec3& p) { return norm(p - corner[0].w); };
     corner[0] = farthest(first_);
     const Vec3 beside = across(first_);
     if (!find_far(-first_, from_first, flat, corner[1]) && !find_far(beside, from_first, flat, corner[1]) &&
         !find_far(cross(first_, beside), from_first, flat, corner[1]))
       return false;
-    const Vec3 line = normalized(corner[1].at - corner[0].at), side = across(line);
-    const auto from_line = [&](const Vec3& p) { return norm(cross(line, p - corner[0].at)); };
+    const Vec3 line = normalized(corner[1].w - corner[0].w), side = across(line);
+    const auto from_line = [&](const Vec3& p) { return norm(cross(line, p - corner[0].w)); };
     if (!find_far(side, from_line, flat, corner[2]) &&
         !find_far(cross(line, side), from_line, flat, corner[2]))
       return false;
-    const Vec3 normal = normalized(cross(corner[1].at - corner[0].at, corner[2].at - corner[0].at));
-    const auto from_plane = [&](const Vec3& p) { return std::abs(dot(normal, p - corner[0].at)); };
+    const Vec3 normal = normalized(cross(corner[1].w - corner[0].w, corner[2].w - corner[0].w));
+    const auto from_plane = [&](const Vec3& p) { return std::abs(dot(normal, p - corner[0].w)); };
     return find_far(normal, from_plane, flat, corner[3]) &&
            side_of_plane(corner[0], corner[1], corner[2], corner[3]) != 0;
   }
@@ -280,4 +285,4 @@ ConvexExit exit_of_hulls(const Support& support, const Vec3& first, double size,
   return ExitSearch(support, first == Vec3{} ? Vec3{1, 0, 0} : first, size, workspace).find();
 }
 
-}  // namespace sdm::separate
+}  // namespace sdm::convex
