@@ -51,7 +51,8 @@ struct ProximityOptions {
   /// The bounds on the penetration depth are at most this far apart, by default kDepthPrecision of the
   /// diagonal of the smaller body's box, that of its mesh times the scale of the pose; > 0, in units of the
   /// meshes. This includes errors of computed distances, unless they are half of it. Added are, where faces
-  /// of a solid that intersects itself nearly coincide, bounds on distances to its boundary.
+  /// of a solid that intersects itself nearly coincide, bounds on distances to its boundary. The search
+  /// measures at most 2¹⁸ parts of the surfaces: bounds may be farther apart where it ends there.
   std::optional<double> depth_precision{};
   static constexpr double kDepthPrecision = 1e-3;
   /// Contacts are reported for points inside the other body or within this distance of it; ≥ 0, in units of
@@ -171,8 +172,9 @@ class SDM_API ProximityQuery {
   /// The contacts of both bodies: none, at the cost of colliding(), if they are farther apart than the
   /// margin. Otherwise one for
   ///  - each vertex that lies inside the other body or within the margin of its surface. Of vertices within
-  ///    1/16 of the size of their mesh from each other, in the same node of the tree, only the deepest one,
-  ///    and of a node that is inside by more than its own diameter, only the deepest one, too;
+  ///    1/16 of the size of their mesh from each other, in the same node of the tree, only the deepest one
+  ///    and the corners of the surface that are as deep, to about 3 degrees, at most eight of their convex
+  ///    hull; of a node that is inside by more than its own diameter, only the deepest one;
   ///  - both ends of each part of an edge that lies along a face of the other body, within the margin above
   ///    it, or below it inside the body;
   ///  - each other part of an edge inside the other body or within the margin that reaches no end in contact,
@@ -196,9 +198,10 @@ class SDM_API ProximityQuery {
   ///
   /// Contacts of a point inside a body that intersects itself are with the closest point of its boundary, or,
   /// if many faces meet there, with that of its surface. Sorted by patch, the patch with
-  /// the deepest contact first, and by decreasing depth within a patch. Contacts belong to the same patch if
-  /// the boxes of the faces at their vertices and edges intersect: a connected contact region is never
-  /// divided. Uses all cores; the result does not depend on how many.
+  /// the deepest contact first, and by decreasing depth within a patch; depths that differ by at most 10⁻⁶ of
+  /// the size of both bodies are ordered by id, which does not change from frame to frame. Contacts belong to
+  /// the same patch if the boxes of the faces at their vertices and edges intersect: a connected contact
+  /// region is never divided. Uses all cores; the result does not depend on how many.
   [[nodiscard]] std::span<const Contact> contacts();
 
   /// Contacts along which the bodies leave each other, for solvers: where they overlap by much, contacts()

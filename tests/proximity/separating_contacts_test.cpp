@@ -12,6 +12,7 @@
 #include "bodies/separate/separating_contacts.h"
 #include "geometry/vec.h"
 #include "support/allocations.h"
+#include "support/blocks.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 
@@ -70,6 +71,30 @@ TEST(SeparatingContacts, PushSpheresAndBoxesApart) {
   for (const Contact& c : boxes.separating_contacts()) {
     EXPECT_NEAR(c.depth, 0.6, 1e-6);
     EXPECT_NEAR(c.normal[0], -1, 1e-6);
+  }
+}
+
+// A body at rest moves by little, and all of its contacts are as deep.
+TEST(SeparatingContacts, OfABodyAtRestKeepTheirOrder) {
+  const Mesh floor = union_of({{{-5, -5, -2}, {5, 5, -0.99}}});
+  const Mesh bodies[]{cube(), union_of({{{-1, -1, -1}, {1, 1, 1}}, {{-1, -1, 1}, {0.2, 0.2, 2}}})};
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> little(-1e-7, 1e-7);
+  for (const Mesh& body : bodies) {
+    ProximityQuery query(body, floor);
+    std::array<std::vector<std::uint64_t>, 2> first;
+    for (int frame = 0; frame < 20; ++frame) {
+      query.set_pose(0, Transform::translation({little(random), little(random), little(random)}) *
+                            Transform::rotation({little(random), little(random), little(random)}));
+      for (const int separating : {0, 1}) {
+        std::vector<std::uint64_t> ids;
+        for (const Contact& c : separating == 1 ? query.separating_contacts() : query.contacts())
+          ids.push_back(c.id);
+        if (frame == 0) first[separating] = ids;
+        EXPECT_EQ(ids, first[separating]) << frame;
+      }
+    }
+    EXPECT_GE(first[0].size(), 4u);
   }
 }
 

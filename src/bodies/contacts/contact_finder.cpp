@@ -77,7 +77,8 @@ std::span<const Contact> ContactFinder::find(const Bodies& bodies, const pairs::
   }
   for (const FeatureContacts& of : found)
     boxes_.insert(boxes_.end(), of.bridges().begin(), of.bridges().end());
-  return patches_.sort(contacts_, boxes_);
+  patches_.sort(contacts_, boxes_, length);
+  return contacts_;
 }
 
 }  // namespace sdm::contacts

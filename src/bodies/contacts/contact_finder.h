@@ -17,8 +17,8 @@ class ContactFinder {
  public:
   /// See ProximityQuery::contacts. `meshes`: of both, in the frame of O1. `to_other`: from the frame of each
   /// body to that of the other. `length`: below this length, the vector to the other body does not determine
-  /// the normal. Cost: of the pairs of faces within the margin, on two cores, and of a few closest points for
-  /// each contact, on all.
+  /// the normal, nor a difference of depths the order. Cost: of the pairs of faces within the margin, on two
+  /// cores, and of a few closest points for each contact, on all.
   [[nodiscard]] std::span<const Contact> find(const Bodies& bodies, const pairs::MeshPair& meshes,
                                               const std::array<mesh::Similarity, 2>& to_other, double margin,
                                               double length);

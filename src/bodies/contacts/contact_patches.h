@@ -3,9 +3,11 @@
 
 #include <sdm/proximity_query.h>
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "bodies/contacts/contact_order.h"
 #include "core/disjoint_sets.h"
 #include "geometry/boxes/box_groups.h"
 
@@ -14,15 +16,12 @@ namespace sdm::contacts {
 /// Sorts contacts; reuses its memory between calls.
 class ContactPatches {
  public:
-  /// Numbers the patches. Contacts whose boxes meet, directly or through others, are in one patch; patches
-  /// are in the order of their deepest contacts, deepest first. Returns the contacts by patch, and by depth
-  /// within a patch; valid until the next call. Boxes beyond those of the contacts connect contacts only.
-  std::span<const Contact> sort(std::span<Contact> contacts, std::span<const Box> boxes);
+  /// Numbers the patches and sorts the contacts by ContactOrder. Contacts whose boxes meet, directly or
+  /// through others, are in one patch. Boxes beyond those of the contacts connect contacts only.
+  void sort(std::vector<Contact>& contacts, std::span<const Box> boxes, double same);
 
  private:
-  std::vector<Contact> sorted_;
-  std::vector<std::uint32_t> order_;
-  std::vector<std::uint32_t> patch_of_;  ///< of the representative of a set of boxes
+  ContactOrder order_;
   DisjointSets patches_;
   BoxGroups groups_;
 };

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
-#include <tuple>
-#include <utility>
 
 #include "geometry/barycentric.h"
 #include "geometry/vec.h"
@@ -62,13 +59,11 @@ bool SeparatingContacts::find_of_convex(const shape::PosedBody& o1, const shape:
   const double size = size_of(o1, o2);
   const std::span<const Contact> patch = patch_.find(o1, o2, out.translation, size, kGapOfSize * size);
   if (patch.empty()) return false;
-  contacts_.push_back(patch.front());
-  contacts_.back().id = ProximityQuery::kExitContact;
-  for (Contact contact : patch) {
-    if (!(contact.depth > -contact_margin_)) break;
-    contact.patch = 1;  // the exit is one by itself
-    contacts_.push_back(contact);
-  }
+  for (const Contact& contact : patch)
+    if (contact.depth > -contact_margin_) contacts_.push_back(contact);
+  Contact exit = patch.front();
+  exit.id = ProximityQuery::kExitContact;
+  sort_after(exit, size);
   return true;
 }
 
@@ -81,42 +76,24 @@ void SeparatingContacts::find_after(const shape::PosedBody& o1, const shape::Pos
   bodies[0].set_pose(Transform::translation(t) * o1.pose().transform());
   apart_.begin(bodies[0], bodies[1]);
   const BoundedLength separation = apart_.separation();
-  contacts_.push_back(exit_contact(bodies, apart_.known().closest_faces, *separation.witness, t));
+  const Contact exit = exit_contact(bodies, apart_.known().closest_faces, *separation.witness, t);
+  const double size = size_of(o1, o2);
   const std::span<const Contact> all = apart_.contacts_within(
-      contact_margin_ + separation.value + kGapOfTranslation * out.value + kGapOfSize * size_of(o1, o2));
+      contact_margin_ + separation.value + kGapOfTranslation * out.value + kGapOfSize * size);
   for (Contact c : filter ? filter(bodies, all) : all) {
     c.point1 = c.point1 - t;
     c.normal += Vec3{};  // no −0
     c.depth = depth_along(c, t);
-    c.patch += 1;  // the exit is one by itself
     if (c.depth > -contact_margin_) contacts_.push_back(c);
   }
-  sort();
+  sort_after(exit, size);
 }
 
-// Sorts by patch, that with the deepest contact first, and by depth.
-void SeparatingContacts::sort() {
-  std::uint32_t patches = 0;
-  for (const Contact& c : contacts_) patches = std::max(patches, c.patch + 1);
-  deepest_.assign(patches, -std::numeric_limits<double>::infinity());
-  for (const Contact& c : contacts_) deepest_[c.patch] = std::max(deepest_[c.patch], c.depth);
-  order_.resize(contacts_.size());
-  std::iota(order_.begin(), order_.end(), 0u);
-  // Distinct keys make the order unique; a stable sort would allocate memory.
-  std::ranges::sort(order_, {}, [&](std::uint32_t i) {
-    const Contact& c = contacts_[i];
-    return std::tuple(-deepest_[c.patch], c.patch, -c.depth, i);
-  });
-  number_.assign(patches, kNone);
-  std::uint32_t next = 0;
-  sorted_.clear();
-  for (const std::uint32_t i : order_) {
-    Contact contact = contacts_[i];
-    if (number_[contact.patch] == kNone) number_[contact.patch] = next++;
-    contact.patch = number_[contact.patch];
-    sorted_.push_back(contact);
-  }
-  std::swap(contacts_, sorted_);
+// Sorts the contacts, after the exit, which is a patch by itself.
+void SeparatingContacts::sort_after(const Contact& exit, double size) {
+  order_.sort(contacts_, kGapOfSize * size);
+  for (Contact& c : contacts_) ++c.patch;
+  contacts_.insert(contacts_.begin(), exit);
 }
 
 void SeparatingContacts::keep_per_patch(std::size_t most) {

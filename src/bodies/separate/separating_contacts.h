@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "bodies/contacts/contact_order.h"
 #include "bodies/pair/pair_answers.h"
 #include "bodies/separate/convex_patch.h"
 #include "bodies/shape/posed_body.h"
@@ -39,15 +40,15 @@ class SeparatingContacts {
                                     const SeparatingTranslation& out);
   void find_after(const shape::PosedBody& o1, const shape::PosedBody& o2, const SeparatingTranslation& out,
                   const ContactFilter& filter);
-  void sort();
+  void sort_after(const Contact& exit, double size);
   void choose(std::span<const Contact> patch, std::size_t most);
 
   double contact_margin_;
   pair::PairAnswers apart_{0, std::nullopt};
   ConvexPatch patch_;
-  std::vector<Contact> contacts_, sorted_;
-  std::vector<double> deepest_, distances_;
-  std::vector<std::uint32_t> order_, number_;
+  contacts::ContactOrder order_;
+  std::vector<Contact> contacts_;
+  std::vector<double> distances_;
   std::vector<std::uint8_t> chosen_;
 };
 

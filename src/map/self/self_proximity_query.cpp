@@ -136,7 +136,8 @@ std::span<const Contact> SelfProximityQuery::contacts(double margin) try {
   if (!(margin >= 0 && std::isfinite(margin)))
     throw Error("a contact margin of " + std::to_string(margin) + " is out of range; use 0 or more");
   impl_->find_contacts(margin);
-  return impl_->patches.sort(impl_->contacts, impl_->boxes);
+  impl_->patches.sort(impl_->contacts, impl_->boxes, 0);
+  return impl_->contacts;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a proximity query of a mesh with itself");
 }
