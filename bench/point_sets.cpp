@@ -37,6 +37,19 @@ std::vector<Vec3> far_away(const Mesh& mesh, std::size_t count) {
   return points;
 }
 
+/// 30 diagonals from the centre of its box, in all directions.
+std::vector<Vec3> remote(const Mesh& mesh, std::size_t count) {
+  const Box box = bounds(mesh);
+  std::mt19937 random(7);
+  std::normal_distribution<double> coordinate;
+  std::vector<Vec3> points(count);
+  for (Vec3& p : points) {
+    for (double& x : p) x = coordinate(random);
+    p = 0.5 * (box.lo + box.hi) + 30 * diagonal(box) / norm(p) * p;
+  }
+  return points;
+}
+
 /// The nodes of a grid that fills the box, row by row; about `count` of them.
 std::vector<Vec3> grid(const Mesh& mesh, std::size_t count) {
   const Box box = bounds(mesh);
@@ -104,6 +117,7 @@ std::vector<Vec3> points_around_box(const Mesh& mesh, std::size_t count) {
 std::span<const PointSet> point_sets() {
   static constexpr PointSet kSets[] = {
       {"far", "uniform in [-5, 5]^3", far_away},
+      {"remote", "30 diagonals away", remote},
       {"box-1.5", "uniform in 1.5 times the box", points_around_box},
       {"box", "uniform in the box", in_box},
       {"grid", "a grid in the box", grid},

@@ -8,6 +8,8 @@
 #endif
 
 #include <span>
+#include <tuple>
+#include <utility>
 
 #include "closest/single_point.h"
 #include "geometry/lanes/closest_feature-inl.h"
@@ -23,15 +25,18 @@ class Settled {
 
   explicit Settled(const sites::SitesData& sites) : sites_(sites) {}
 
-  // Compares the candidates that are within the squared limits of their points. Of several at the same
-  // distance, the first one counts.
-  void compare(std::span<const Vec3> queries, const float* squared_limit,
-               std::span<const SinglePointMemory::Candidate> candidates) {
+  // Of several candidates at the same distance: the first one counts, and tied() is set; or the first one by
+  // type, site and face, which does not depend on the search.
+  enum class Equal { in_order, by_name };
+
+  // Compares the candidates that are within the limits of their points.
+  void compare(std::span<const Vec3> queries, const float* limit,
+               std::span<const SinglePointMemory::Candidate> candidates, Equal equal) {
     for (size_t i = 0; i < queries.size(); ++i) best_[i].distance = std::numeric_limits<double>::infinity();
-    tied_ = 0;
+    tied_ = 0, equal_ = equal;
     size_t count = 0;
     for (const SinglePointMemory::Candidate& candidate : candidates) {
-      if (!(candidate.squared <= squared_limit[candidate.point])) continue;
+      if (!(candidate.bound <= limit[candidate.point])) continue;
       const auto [a, b, c] = corners_of(sites_.mesh, candidate.face);
       features_.set(count, queries[candidate.point], a, b, c, sites_.sliver[candidate.face] == 0);
       chosen_[count++] = &candidate;
@@ -76,6 +81,10 @@ class Settled {
             sites_.topology.face_edges[best.face][static_cast<size_t>(best.feature - Features::kSides)]};
   }
 
+  [[nodiscard]] std::tuple<SiteType, uint32_t, uint32_t> name_of(const Best& best) const {
+    return std::tuple_cat(site_of(best), std::tuple(best.face));
+  }
+
   void take(size_t count) {
     features_.compute(count);
     for (size_t lane = 0; lane < count; ++lane) {
@@ -90,6 +99,8 @@ class Settled {
       const uint32_t bit = 1u << from.point;
       if (here.distance < best.distance)
         best = here, tied_ &= ~bit;
+      else if (equal_ == Equal::by_name)
+        best = name_of(here) < name_of(best) ? here : best;
       else if (here.leaf != best.leaf && (here.point != best.point || site_of(here) != site_of(best)))
         tied_ |= bit;
     }
@@ -100,6 +111,7 @@ class Settled {
   const SinglePointMemory::Candidate* chosen_[kLanes];
   Best best_[kMost];
   uint32_t tied_ = 0;
+  Equal equal_ = Equal::in_order;
 };
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "closest/candidates-inl.h"
 #include "closest/exact.h"
 #include "closest/face_distances-inl.h"
+#include "closest/far_search-inl.h"
 #include "core/nothing_found.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -35,18 +36,12 @@ class PointSearch {
         max_distance_(max_distance),
         m_(memory) {}
 
-  ClosestPoint operator()(const Vec3& query) {
-    const Vec3 unit = sites_.frame.to_unit(query);
-    if (!is_near(unit)) return exact_closest(sites_, query, max_distance_);
-    for (int k = 0; k < 3; ++k) point_[k] = static_cast<float>(unit[k]);
-    error_ = distance_error(std::max({std::abs(point_[0]), std::abs(point_[1]), std::abs(point_[2])}),
-                            sites_.regions.largest_radius);
-    const float limit = unit_limit(max_distance_, sites_.frame.scale) + error_;
-    squared_limit_ = limit * limit;
-    m_.candidates.clear();
-    tree::visit(sites_.wide, m_.stack, *this);
-    settled_.compare({&query, 1}, &squared_limit_, m_.candidates);
-    return settled_.closest(0, max_distance_);
+  // `known`: points of O2 in the unit frame, which may be close to the query.
+  ClosestPoint operator()(const Vec3& query, std::span<const float[3]> known = {}) {
+    const ClosestPoint found = search(query, known);
+    if (found.type == SiteType::none && max_distance_ == std::numeric_limits<double>::infinity())
+      throw_nothing_found();
+    return found;
   }
 
   static bool before(float first, float second) { return first < second; }
@@ -62,6 +57,33 @@ class PointSearch {
   }
 
  private:
+  ClosestPoint search(const Vec3& query, std::span<const float[3]> known) {
+    const Vec3 unit = sites_.frame.to_unit(query);
+    if (!is_near(unit)) return from_afar(query, unit, known);
+    for (int k = 0; k < 3; ++k) point_[k] = static_cast<float>(unit[k]);
+    error_ = distance_error(std::max({std::abs(point_[0]), std::abs(point_[1]), std::abs(point_[2])}),
+                            sites_.regions.largest_radius);
+    const float limit = unit_limit(max_distance_, sites_.frame.scale) + error_;
+    squared_limit_ = limit * limit;
+    m_.candidates.clear();
+    tree::visit(sites_.wide, m_.stack, *this);
+    settled_.compare({&query, 1}, &squared_limit_, m_.candidates, Settled::Equal::in_order);
+    return settled_.closest(0, max_distance_);
+  }
+
+  // The result of exact_closest().
+  ClosestPoint from_afar(const Vec3& query, const Vec3& unit, std::span<const float[3]> known) {
+    if (!(squared_norm(unit) <= FarSearch::kFarthest * FarSearch::kFarthest))
+      return exact_closest(sites_, query, max_distance_);
+    if (lower_bound(sites_.tree.box(0), unit) > max_distance_ * sites_.frame.scale) return {};
+    m_.candidates.clear();
+    FarSearch search(frames_, unit, m_.candidates);
+    search.start_from(known);
+    tree::visit(sites_.wide, m_.stack, search);
+    settled_.compare({&query, 1}, &search.limit(), m_.candidates, Settled::Equal::by_name);
+    return settled_.closest(0, max_distance_);
+  }
+
   const sites::SitesData& sites_;
   sites::LeafFrames::View frames_;
   Settled settled_;
@@ -83,6 +105,7 @@ class PacketSearch {
       : sites_(sites),
         frames_(sites.frames, frame_source(sites)),
         settled_(sites),
+        alone_(sites, max_distance, memory),
         max_distance_(max_distance),
         m_(memory) {}
 
@@ -95,12 +118,13 @@ class PacketSearch {
     limit();
     m_.candidates.clear();
     tree::visit(sites_.wide, m_.open, *this);
-    settled_.compare({packet, count}, squared_limit_, m_.candidates);
+    settled_.compare({packet, count}, squared_limit_, m_.candidates, Settled::Equal::in_order);
     const uint32_t alone = far_ | settled_.tied();
+    work_.far += static_cast<size_t>(std::popcount(far_ & ((1u << count) - 1)));
     for (size_t i = 0; i < count; ++i) {
       ClosestPoint& closest = found[order[i]];
-      closest = (alone >> i & 1) != 0 ? closest_point(sites_, packet[i], max_distance_)
-                                      : settled_.closest(i, max_distance_);
+      closest =
+          (alone >> i & 1) != 0 ? alone_(packet[i], {last_, known_}) : settled_.closest(i, max_distance_);
       if (closest.type != SiteType::none) remember(i, closest.point);
     }
   }
@@ -211,6 +235,7 @@ class PacketSearch {
   const sites::SitesData& sites_;
   sites::LeafFrames::View frames_;
   Settled settled_;
+  PointSearch alone_;
   const double max_distance_;
   SinglePointMemory& m_;
   alignas(64) float point_[3][kSize];       // in the unit frame
@@ -250,10 +275,7 @@ HWY_EXPORT(SearchEach);
 
 ClosestPoint closest_point(const sites::SitesData& sites, const Vec3& query, double max_distance) {
   thread_local SinglePointMemory memory;
-  const ClosestPoint found = HWY_DYNAMIC_DISPATCH(SearchOne)(sites, query, max_distance, memory);
-  if (found.type == SiteType::none && max_distance == std::numeric_limits<double>::infinity())
-    throw_nothing_found();
-  return found;
+  return HWY_DYNAMIC_DISPATCH(SearchOne)(sites, query, max_distance, memory);
 }
 
 PacketWork closest_of_each(const sites::SitesData& sites, std::span<const Vec3> queries,

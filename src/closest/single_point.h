@@ -15,9 +15,10 @@ namespace sdm::closest {
 struct SinglePointMemory {
   static constexpr std::size_t kPacket = 16;  ///< points that are searched together
 
-  /// A face whose distance from one of the points, in single precision, may be that of the closest one.
+  /// A face that may be the closest one of one of the points, by a bound on its distance in single precision:
+  /// the squared distance, or what a search from afar has in its place.
   struct Candidate {
-    float squared;
+    float bound;
     std::uint32_t face, leaf, point;
   };
   /// A node or leaf whose turn has not come, by its place in the node above, where its box is.
@@ -50,6 +51,7 @@ struct SinglePointMemory {
 struct PacketWork {
   std::size_t leaves = 0;  ///< that were near to any point of their packets
   std::size_t pairs = 0;   ///< of a point and a leaf near to it
+  std::size_t far = 0;     ///< points many sizes of O2 away, which are searched one by one
 };
 
 /// Sets found[i] to closest_point(queries[i]) for each i of `order`; `face` may be another one of the same

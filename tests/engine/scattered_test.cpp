@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 #include "closest/scattered.h"
@@ -166,6 +167,60 @@ TEST_P(ScatteredPoints, MaxDistance) {
   }
   EXPECT_GT(beyond, 0u);
   EXPECT_LT(beyond, queries.size());
+}
+
+// Of faces at the same distance, the first one by type, site and face.
+ClosestPoint first_of_all_faces(const sites::SitesData& sites, const Vec3& q) {
+  const auto order = [](const ClosestPoint& c) { return std::tuple(c.distance, c.type, c.site, c.face); };
+  ClosestPoint best;
+  for (const std::uint32_t face : sites.tree.items)
+    if (const ClosestPoint c = sites::closest_on_face(sites, face, q); order(c) < order(best)) best = c;
+  return best;
+}
+
+// From 16 sizes on, by distances relative to that of the mesh; from a million on, in double precision.
+TEST_P(ScatteredPoints, ManySizesAway) {
+  std::mt19937 random(12);
+  std::normal_distribution<double> coordinate;
+  const Mesh all[] = {test::soup(200, random), degenerate(random), test::sphere(3), test::cube(),
+                      moved(test::soup(200, random), 1e-9, 1e-3)};
+  for (const Mesh& mesh : all) {
+    const Sites sites(mesh);
+    const Box box = bounds(mesh);
+    std::vector<Vec3> queries;
+    for (const double away : {17.0, 40.0, 1e3, 1e5, 4e5, 1e6, 1e8})
+      for (int i = 0; i < 30; ++i) {
+        Vec3 direction;
+        for (double& x : direction) x = coordinate(random);
+        if (i < 6) direction = {}, direction[i % 3] = i < 3 ? 1 : -1;  // where faces tie
+        queries.push_back(0.5 * (box.lo + box.hi) +
+                          away * norm(box.hi - box.lo) / norm(direction) * direction);
+      }
+    expect_least(sites, queries);
+    for (const Vec3& q : queries) {
+      const ClosestPoint found = closest_point(internals(sites), q, kAnywhere),
+                         expected = first_of_all_faces(internals(sites), q);
+      ASSERT_EQ(found.type, expected.type);
+      ASSERT_EQ(found.site, expected.site);
+      ASSERT_EQ(found.face, expected.face);
+      ASSERT_EQ(closest_point(internals(sites), q, found.distance).site, found.site);
+      ASSERT_EQ(closest_point(internals(sites), q, std::nextafter(found.distance, 0.0)).type, SiteType::none);
+    }
+  }
+}
+
+// Many of them are searched one by one, too, though no leaf is near to their packets.
+TEST(Scattered, ManyPointsManySizesAway) {
+  std::mt19937 random(13);
+  const Sites sites(test::sphere(3));
+  std::vector<Vec3> queries(10'000);
+  for (Vec3& q : queries) q = Vec3{100, 0, 0} + test::random_point({{0, -50, -50}, {50, 50, 50}}, random);
+  const std::vector<ClosestPoint> found = closest_points(sites, queries);
+  for (std::size_t i = 0; i < queries.size(); i += 49) {
+    const ClosestPoint expected = first_of_all_faces(internals(sites), queries[i]);
+    ASSERT_EQ(found[i].distance, expected.distance);
+    ASSERT_EQ(found[i].site, expected.site);
+  }
 }
 
 TEST(Scattered, SameInAnyOrderNumberAndThreads) {
