@@ -103,7 +103,7 @@ Outcome points_case(const Trial& trial, const Mesh& mesh, SignMethod method, std
   const Sites sites(mesh);
   for (const PointSet& set : point_sets()) {
     const std::string name = set.name;
-    if (name.starts_with("map") || name == "far") continue;
+    if (name.starts_with("map") || name == "far" || name == "remote") continue;
     const std::vector<Vec3> points = set.points(mesh, count);
     outcome.verified = outcome.verified && verify(sites, points, method);
     const Times times = take_times(
@@ -112,6 +112,20 @@ Outcome points_case(const Trial& trial, const Mesh& mesh, SignMethod method, std
     outcome.rows.push_back({name, times.figures(static_cast<double>(points.size()))});
   }
   return outcome;
+}
+
+// Points asked for one at a time, as in a loop of a script.
+Outcome single_points_case(const Trial& trial, const Mesh& mesh, SignMethod method, std::size_t count) {
+  const ThreadLimit limit(1);
+  const Sites sites(mesh);
+  const std::vector<Vec3> points = points_around_box(mesh, count);
+  const auto one_by_one = [&](const Sites& of, SignMethod sign) {
+    for (const Vec3& p : points) query_points(of, {p}, sign);
+  };
+  const Times times = take_times(
+      trial.repetitions, method, [&] { return Sites(mesh); }, one_by_one);
+  return {.verified = verify(sites, points, method),
+          .rows = {{"", times.figures(static_cast<double>(points.size()))}}};
 }
 
 Outcome map_case(const Trial& trial, const Mesh& o1, const Mesh& o2, SignMethod method) {
@@ -175,6 +189,17 @@ std::vector<Case> cases() {
                    return points_case(trial, shape.of(armadillo(parts)), shape.method, count);
                  },
              .repetitions = parts == 1 ? 5 : 3});
+  for (const Shape& shape : kShapes)
+    for (const std::uint32_t parts : {1u, 5u})
+      result.push_back({.name = std::string(shape.name) + (parts == 1 ? "-52k" : "-1.3m") + "-single",
+                        .description = std::string("5000 points, each by a call of its own; an armadillo ") +
+                                       shape.description,
+                        .run =
+                            [=](const Trial& trial) {
+                              return single_points_case(trial, shape.of(armadillo(parts)), shape.method,
+                                                        5000);
+                            },
+                        .repetitions = 3});
   for (const char* name : {"armadillo.off", "elephant.off", "cow.off", "bunny.obj"})
     for (const Shape& shape : kShapes)
       result.push_back(

@@ -13,6 +13,8 @@ namespace {
 constexpr std::uint32_t kAxisBits = 10, kDigitBits = 10, kDigits = 1 << kDigitBits;
 constexpr std::uint32_t kPasses = 3 * kAxisBits / kDigitBits;
 constexpr std::size_t kPart = 1 << 16;  // points whose digits are counted together
+// Fewer points than this are compared: a radix sort counts all digits that there are.
+constexpr std::size_t kFewest = 512;
 
 struct Coded {
   std::uint32_t code, index;
@@ -60,7 +62,7 @@ std::vector<std::uint32_t> morton_order(std::span<const Vec3> points, const Box&
     const double size = std::clamp(cells.hi[k], box.lo[k], box.hi[k]) - cells.lo[k];
     if (size > 0) cells_per_unit[k] = (1 << kAxisBits) / size;
   }
-  std::vector<Coded> items(points.size()), sorted(points.size());
+  std::vector<Coded> items(points.size());
   parallel_for(points.size(), kPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::uint32_t code = 0;
@@ -72,9 +74,14 @@ std::vector<std::uint32_t> morton_order(std::span<const Vec3> points, const Box&
       items[i] = {code, static_cast<std::uint32_t>(i)};
     }
   });
-  for (std::uint32_t pass = 0; pass < kPasses; ++pass) {
-    sort_by_digit(items, kDigitBits * pass, sorted);
-    items.swap(sorted);
+  if (items.size() < kFewest) {
+    std::ranges::sort(items, {}, [](const Coded& item) { return std::pair(item.code, item.index); });
+  } else {
+    std::vector<Coded> sorted(items.size());
+    for (std::uint32_t pass = 0; pass < kPasses; ++pass) {
+      sort_by_digit(items, kDigitBits * pass, sorted);
+      items.swap(sorted);
+    }
   }
   std::vector<std::uint32_t> order(points.size());
   std::ranges::transform(items, order.begin(), &Coded::index);

@@ -16,10 +16,13 @@ constexpr std::size_t kOneByOne = 256;
 }  // namespace
 
 double offset_beside_faces(const sites::SitesData& sites) {
-  const Box box = bounds(sites.mesh);
+  const double unit = 1 / sites.frame.scale;
+  const tree::FloatBox& box = sites.tree.box(0);
   double largest = 0;
-  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
-  const double unit = 1 / sites.frame.scale, rounding = 1e-14 * largest;
+  for (int k = 0; k < 3; ++k)
+    largest = std::max({largest, std::abs(sites.frame.origin[k] + unit * box.lo[k]),
+                        std::abs(sites.frame.origin[k] + unit * box.hi[k])});
+  const double rounding = 1e-14 * largest;
   const double offset = std::max(1e-9 * unit, rounding);
   return offset > 0.25 * kClearance * unit ? 0 : offset;
 }

@@ -20,7 +20,7 @@ enum class Sides : std::uint8_t {
 };
 
 /// How far beside a face that no other one meets its sides are determined: more than rounding, less than the
-/// distance of other faces. 0 if no such length exists, in a mesh that is far from the origin. Cost: linear.
+/// distance of other faces. 0 if no such length exists, in a mesh that is far from the origin.
 [[nodiscard]] double offset_beside_faces(const sites::SitesData& sites);
 
 /// Those of a face, by the winding number on its outer side: that of the inner side is larger by 1.

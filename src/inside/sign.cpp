@@ -47,11 +47,14 @@ std::vector<std::uint8_t> inside_flags(const Sites& sites, std::span<const Vec3>
                                        std::span<const ClosestPoint> closest, SignMethod method) try {
   if (queries.size() != closest.size()) throw Error("inside_flags() needs one closest point for each query");
   mesh::validate_queries(queries);
-  const inside::InsideTest test(internals(sites), choose_sign(sites, method).method);
-  const bool few = queries.size() < sites.mesh().triangles.size();
   std::vector<std::uint8_t> result(queries.size());
+  const SignMethod used = choose_sign(sites, method).method;
+  if (used == SignMethod::none) return result;
+  const sites::SitesData& data = internals(sites);
+  const inside::InsideTest test(data, used);
+  const bool few = queries.size() < data.mesh.triangles.size();
   // Neighbours take over answers, and meet the same parts of the mesh.
-  const std::vector<std::uint32_t> order = morton_order(queries, bounds(sites.mesh()));
+  const std::vector<std::uint32_t> order = morton_order(queries, inside::signs_of(data).box);
   parallel_for(queries.size(), 1024, [&](std::size_t begin, std::size_t end) {
     std::array<Vec3, inside::kPacket> points;
     std::array<ClosestPoint, inside::kPacket> closest_of;

@@ -11,6 +11,7 @@
 #include <sdm/io.h>
 #include <sdm/map.h>
 #include <sdm/proximity_query.h>
+#include <sdm/sign.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
 #include <sdm/threads.h>
@@ -187,6 +188,80 @@ bool far_points() {
   return scattered_points(sites, points);
 }
 
+/// 30 diagonals from the centre of the box.
+bool remote_points() {
+  const Sites sites(load("armadillo.off"));
+  const double away = 30 * diagonal_of(sites.mesh());
+  std::mt19937 random(1);
+  std::normal_distribution<double> coordinate;
+  std::vector<Vec3> points(10'000);
+  for (Vec3& p : points) {
+    for (double& x : p) x = coordinate(random);
+    p = away / norm(p) * p;
+  }
+  return scattered_points(sites, points);
+}
+
+/// Without its lowest tenth.
+Mesh opened(Mesh mesh) {
+  const Box box = bounds(mesh);
+  const double least = box.lo[2] + 0.1 * (box.hi[2] - box.lo[2]);
+  std::erase_if(mesh.triangles, [&](const Triangle& t) { return mesh.positions[t[0]][2] < least; });
+  return mesh;
+}
+
+/// The cost of a point does not depend on the number of faces.
+bool single_signs(const Mesh& mesh, SignMethod method) {
+  constexpr int kCount = 1000;
+  const Sites sites(mesh);
+  std::mt19937 random(1);
+  std::normal_distribution<double> offset(0, 0.05);
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i <= kCount; ++i) {
+    Vec3 p = mesh.positions[mesh.triangles[37 * i][0]];
+    for (double& x : p) x += offset(random);
+    points.push_back(p);
+  }
+  const auto inside = [&](const Vec3& p) {
+    const std::vector<ClosestPoint> closest = closest_points(sites, {&p, 1});
+    return inside_flags(sites, {&p, 1}, closest, method)[0];
+  };
+  (void)inside(points.back());
+  points.pop_back();
+  std::vector<std::uint8_t> found;
+  count([&] {
+    for (const Vec3& p : points) found.push_back(inside(p));
+  });
+  const auto closest = closest_points(sites, points);
+  return found == inside_flags(sites, points, closest, method) &&
+         std::ranges::count(found, 1) > kCount / 10 && std::ranges::count(found, 0) > kCount / 10;
+}
+
+bool single_signs_of_solid() {
+  return single_signs(load("armadillo.off"), SignMethod::exact);
+}
+
+bool single_signs_by_winding() {
+  return single_signs(opened(load("armadillo.off")), SignMethod::winding);
+}
+
+/// The first signs of a solid, as near as `near points` are.
+bool near_signs() {
+  const Sites sites(load("armadillo.off"));
+  std::mt19937 random(1);
+  std::normal_distribution<double> offset(0, 0.01);
+  std::vector<Vec3> points = sites.mesh().positions;
+  std::ranges::shuffle(points, random);
+  for (Vec3& p : points)
+    for (double& x : p) x += offset(random);
+  const auto closest = closest_points(sites, points);
+  std::vector<std::uint8_t> first;
+  count([&] { first = inside_flags(sites, points, closest, SignMethod::exact); });
+  std::ranges::reverse(points);
+  std::ranges::reverse(first);
+  return first == inside_flags(sites, points, closest_points(sites, points), SignMethod::exact);
+}
+
 /// Rotations of O2, which then is `distance` from the origin, each time in another direction.
 std::vector<Transform> poses(int count, double distance) {
   std::vector<Transform> result;
@@ -285,6 +360,11 @@ constexpr Call kCalls[] = {
     {"near points", "`closest_points` of 26 thousand points a hundredth of the size from the armadillo",
      near_points},
     {"far points", "`closest_points` of 50 thousand points in a box of ten times its size", far_points},
+    {"remote points", "`closest_points` of 10 thousand points 30 diagonals away", remote_points},
+    {"single signs", "`closest_points` and `inside_flags` of one point, 1000 times, armadillo",
+     single_signs_of_solid},
+    {"single winding signs", "the same of an open armadillo, by winding numbers", single_signs_by_winding},
+    {"near signs", "`inside_flags` of the points of `near points`, the first call", near_signs},
     {"separation", "`ProximityQuery::separation` of bunny and armadillo, 200 poses", separation},
     {"penetration depth", "`ProximityQuery::penetration_depth` of elephant and dinosaur, 20 poses",
      penetration_depth},

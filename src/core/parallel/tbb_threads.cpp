@@ -59,6 +59,13 @@ class Order {
 // takes any work, as otherwise its core would do nothing until the longest step has finished.
 
 void run_parallel_for(std::size_t count, std::size_t grain, const RangeBody& body) {
+  // One part: there is nothing to share, and calls for single points have several such loops.
+  if (count <= grain) {
+    if (count == 0) return;
+    const Alone alone;
+    poll();
+    return body(0, count);
+  }
   tbb::task_group_context context(tbb::task_group_context::isolated);
   Order order;
   order.part_added();
