@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "format.h"
+#include "src/io/json/report_json.h"
 #include "stopwatch.h"
 
 using Json = nlohmann::ordered_json;
@@ -157,18 +158,14 @@ void add_choices(Json& json, const AlignOutcome& outcome) {
   json["allowed"] = by_points ? std::vector<std::string>() : names_of(command.freedoms);
   json["about"] = command.freedoms.about;
   json["mirrored"] = json["scale"] = nullptr;
-  if (const auto& m = outcome.mirrored)
-    json["mirrored"] = {{"misfit", m->misfit}, {"misfit_as_given", m->misfit_as_given}};
-  if (const auto& s = outcome.scale)
-    json["scale"] = {{"factor", s->factor},
-                     {"standard_error", s->standard_error},
-                     {"residual", s->residual},
-                     {"residual_as_given", s->residual_as_given}};
+  if (outcome.mirrored) json["mirrored"] = sdm::fields_json(*outcome.mirrored);
+  if (outcome.scale) json["scale"] = sdm::fields_json(*outcome.scale);
   json["group_kind"] = outcome.group_kind;
   json["groups"] = Json::array();
-  for (const auto& [name, group] : named_residuals(outcome))
-    json["groups"].push_back(
-        {{"name", name}, {"samples", group.samples}, {"rms", group.rms}, {"largest", group.largest}});
+  for (const auto& [name, group] : named_residuals(outcome)) {
+    json["groups"].push_back({{"name", name}});
+    json["groups"].back().update(sdm::fields_json(group));
+  }
 }
 
 }  // namespace
@@ -205,18 +202,8 @@ std::vector<std::string> in_words(const AlignOutcome& outcome, const std::string
 Json to_json(const AlignOutcome& outcome, const std::string& units) {
   const sdm::Alignment& a = outcome.alignment;
   const auto [degrees, shift] = sizes(a);
-  const auto residuals = [](const sdm::AlignResiduals& r) {
-    return Json{{"rms", r.rms}, {"trimmed_rms", r.trimmed_rms}};
-  };
   Json freedoms = Json::array();
-  for (const sdm::DegreeOfFreedom& f : a.freedoms)
-    freedoms.push_back({{"translation", f.translation},
-                        {"rotation", f.rotation},
-                        {"axis_point", f.axis_point ? Json(*f.axis_point) : Json()},
-                        {"determined", f.determined},
-                        {"standard_error", f.standard_error ? Json(*f.standard_error) : Json()},
-                        {"free", f.free},
-                        {"locked", f.locked}});
+  for (const sdm::DegreeOfFreedom& f : a.freedoms) freedoms.push_back(sdm::fields_json(f));
   Json json{{"matrix", a.transform.rows},
             {"order", "row-major, for column vectors"},
             {"from", nullptr},
@@ -228,8 +215,8 @@ Json to_json(const AlignOutcome& outcome, const std::string& units) {
             {"fraction_used", a.fraction_used},
             {"fraction_fitting", a.fraction_fitting},
             {"residuals_kind", "estimate"},
-            {"before", residuals(a.before)},
-            {"after", residuals(a.after)},
+            {"before", sdm::fields_json(a.before)},
+            {"after", sdm::fields_json(a.after)},
             {"centre", a.centre},
             {"gyration_radius", a.gyration_radius},
             {"degrees_of_freedom", freedoms}};

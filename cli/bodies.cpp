@@ -22,6 +22,7 @@
 #include "print.h"
 #include "progress_line.h"
 #include "report.h"
+#include "src/io/json/report_json.h"
 #include "stopwatch.h"
 #include "unit_options.h"
 

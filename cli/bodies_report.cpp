@@ -7,7 +7,7 @@
 
 #include "bounds_text.h"
 #include "format.h"
-#include "proximity_report.h"
+#include "src/io/json/report_json.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -52,20 +52,10 @@ std::vector<PairResults> results_of(sdm::MultiBodyQuery& bodies, double max_dist
 Json to_json(const PairResults& pair) {
   return {{"first", pair.separation.first},
           {"second", pair.separation.second},
-          {"separation", to_json(pair.separation.separation)},
-          {"colliding", collision_json(pair.separation.colliding)},
-          {"penetration_depth", pair.penetration_depth ? to_json(*pair.penetration_depth) : Json(nullptr)}};
-}
-
-Json to_json(std::span<const sdm::PairContacts> pairs) {
-  Json contacts = Json::array();
-  for (const sdm::PairContacts& pair : pairs)
-    for (const sdm::Contact& contact : pair.contacts) {
-      Json json{{"first", pair.first}, {"second", pair.second}};
-      json.update(to_json(contact));
-      contacts.push_back(std::move(json));
-    }
-  return contacts;
+          {"separation", sdm::fields_json(pair.separation.separation)},
+          {"colliding", sdm::collision_json(pair.separation.colliding)},
+          {"penetration_depth",
+           pair.penetration_depth ? sdm::fields_json(*pair.penetration_depth) : Json(nullptr)}};
 }
 
 std::string table(std::span<const PairResults> pairs) {

@@ -19,8 +19,6 @@ struct PairResults {
 [[nodiscard]] std::vector<PairResults> results_of(sdm::MultiBodyQuery& bodies, double max_distance);
 
 [[nodiscard]] nlohmann::ordered_json to_json(const PairResults& pair);
-/// An array of all contacts of all pairs.
-[[nodiscard]] nlohmann::ordered_json to_json(std::span<const sdm::PairContacts> pairs);
 
 /// A table with one line per pair, below a heading.
 [[nodiscard]] std::string table(std::span<const PairResults> pairs);

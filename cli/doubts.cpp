@@ -6,8 +6,6 @@
 
 #include "option_checks.h"
 
-using Json = nlohmann::ordered_json;
-
 void add_accept_doubts(CLI::App& app, bool& accept, const char* what) {
   app.add_flag("--accept-doubts", accept,
                std::string("PASS stays PASS where ") + what + ", instead of DOUBTFUL");
@@ -40,23 +38,4 @@ void check_doubts(const DoubtCommand& command, const std::optional<sdm::Toleranc
 std::vector<sdm::Doubt> doubts_in_place(const std::optional<sdm::OtherUnit>& unit) {
   if (!unit) return {};
   return {sdm::doubt_of(*unit)};
-}
-
-Json to_json(std::span<const sdm::Doubt> doubts) {
-  Json json = Json::array();
-  for (const sdm::Doubt& doubt : doubts)
-    json.push_back({{"reason", name_of(doubt.reason)}, {"text", doubt.text}, {"remedy", doubt.remedy}});
-  return json;
-}
-
-std::vector<sdm::Doubt> doubts_from(const Json& json) {
-  using enum sdm::DoubtReason;
-  std::vector<sdm::Doubt> doubts;
-  for (const Json& doubt : json) {
-    doubts.push_back({.text = doubt.at("text"), .remedy = doubt.at("remedy")});
-    for (const sdm::DoubtReason reason :
-         {other_unit, mirrored, poor_fit, undetermined, low_coverage, thin_walls})
-      if (doubt.at("reason") == name_of(reason)) doubts.back().reason = reason;
-  }
-  return doubts;
 }

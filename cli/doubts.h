@@ -29,8 +29,6 @@ void check_doubts(const DoubtCommand& command, const std::optional<sdm::Toleranc
 [[nodiscard]] std::vector<sdm::Doubt> doubts_in_place(const std::optional<sdm::OtherUnit>& unit);
 
 /// The value of the key `doubts` of reports, and its inverse.
-[[nodiscard]] nlohmann::ordered_json to_json(std::span<const sdm::Doubt> doubts);
-[[nodiscard]] std::vector<sdm::Doubt> doubts_from(const nlohmann::ordered_json& json);
 
 /// The reach of a measured point.
 [[nodiscard]] double reach_of(const DoubtCommand& command, const std::optional<sdm::Tolerance>& tolerance);

@@ -13,6 +13,7 @@
 #include "format.h"
 #include "option_checks.h"
 #include "report.h"
+#include "src/io/json/report_json.h"
 #include "unit_options.h"
 
 namespace {
@@ -63,7 +64,7 @@ nlohmann::ordered_json field_json(const sdm::DistanceField& field) {
   json["grid"] = {
       {"points", field.grid.dims}, {"origin", field.grid.origin}, {"spacing", field.grid.spacing}};
   json["max_distance"] = field.max_distance;  // null: no limit
-  json["sign"] = {{"method", sdm::name_of(field.sign.method)}, {"reason", field.sign.reason}};
+  json["sign"] = sdm::fields_json(field.sign);
   json["distance"] = {{"min", range.min}, {"max", range.max}};  // null: no point has a value
   json["beyond_max_distance"] = field.beyond_max_distance;
   json["accuracy"] = field.accuracy;

@@ -11,14 +11,11 @@
 
 #include "format.h"
 #include "option_checks.h"
+#include "src/io/json/report_json.h"
 
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-Json optional_json(const std::optional<double>& value) {
-  return value ? Json(*value) : Json();
-}
 
 // The measured range, and by what a group passes or fails.
 std::string group_text(const sdm::GroupVerdict& g, const sdm::Summary& summary) {
@@ -123,13 +120,6 @@ std::string all_groups_text(const sdm::GroupVerdicts& verdicts, const sdm::Summa
   return text + without_group_text(verdicts.without_group, summary);
 }
 
-// Null unless points are without a group.
-Json reason_json(const sdm::PointsWithoutGroup& points) {
-  if (!points.any()) return nullptr;
-  return sdm::name_of(points.without_match > 0 ? sdm::VerdictReason::without_match
-                                               : sdm::VerdictReason::beyond_max_distance);
-}
-
 }  // namespace
 
 std::string no_group(const std::string& name, const Input& mesh) {
@@ -191,35 +181,9 @@ std::optional<std::string> note_on_unjudged(const GroupTolerances& table, const 
                      number(100 * (all - judged) / all, 3), input.file);
 }
 
-Json to_json(const sdm::GroupVerdicts& verdicts, const sdm::Summary& summary) {
-  const bool of_points = summary.of_points;
-  Json groups = Json::array();
-  for (const sdm::GroupVerdict& g : verdicts.groups) {
-    const sdm::CertifiedVerdict& v = g.verdict;
-    Json group{{"kind", g.kind}, {"group", g.group}, {"triangles", g.faces}};
-    if (of_points) group["points"] = g.points;
-    group.update(
-        {{"lower", v.tolerance.lo},
-         {"upper", v.tolerance.hi},
-         {"verdict", sdm::name_of(v.verdict)},
-         {"reason", sdm::name_of(v.reason)},
-         {"certified", v.certified},
-         {"lowest", optional_json(g.lowest)},
-         {"highest", optional_json(g.highest)},
-         {of_points ? "exceeded_point_fraction" : "exceeded_area_fraction", v.exceeded_area_fraction}});
-    if (!of_points)
-      group.update({{"undecided_by", v.proof ? optional_json(v.proof->undecided_by) : Json()},
-                    {"witness", v.proof && v.proof->witness ? Json{{"distance", v.proof->witness->distance},
-                                                                   {"point", v.proof->witness->point}}
-                                                            : Json()}});
-    groups.push_back(std::move(group));
-  }
+Json groups_json(const sdm::GroupVerdicts& verdicts, const sdm::Summary& summary) {
   Json all{{"verdict", sdm::name_of(verdicts.verdict)}, {"text", all_groups_text(verdicts, summary)}};
-  if (of_points)
-    all.update({{"reason", reason_json(verdicts.without_group)},
-                {"beyond_max_distance", verdicts.without_group.beyond_max_distance},
-                {"without_match", verdicts.without_group.without_match}});
-  all["groups"] = std::move(groups);
+  all.update(sdm::to_json(verdicts, summary.of_points));
   return all;
 }
 

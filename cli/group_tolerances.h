@@ -34,8 +34,9 @@ void add_tolerance_table_option(CLI::App& app, GroupTolerances& table,
 /// Throws sdm::Error for a row whose group none of the meshes has, naming groups that they have.
 void check_groups(const GroupTolerances& table, std::initializer_list<const Input*> meshes);
 
-/// `summary`: of the same map or cloud.
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::GroupVerdicts& verdicts, const sdm::Summary& summary);
+/// The verdicts and the sentence on all of them; `summary`: of the same map or cloud.
+[[nodiscard]] nlohmann::ordered_json groups_json(const sdm::GroupVerdicts& verdicts,
+                                                 const sdm::Summary& summary);
 
 /// One line for each group.
 [[nodiscard]] std::string group_lines(const sdm::GroupVerdicts& verdicts, const sdm::Summary& summary);

@@ -20,8 +20,8 @@
 #include "option_checks.h"
 #include "print.h"
 #include "progress_line.h"
-#include "proximity_report.h"
 #include "report.h"
+#include "src/io/json/report_json.h"
 #include "stopwatch.h"
 #include "unit_options.h"
 
@@ -108,21 +108,6 @@ HausdorffAnswer decide(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o1
   return answer;
 }
 
-Json hausdorff_json(const sdm::HausdorffDistance& h) {
-  Json json = to_json(h.distance);
-  json["faces"] = h.faces;
-  return json;
-}
-
-/// The distance of a single direction, whose measured mesh may have faces without a match.
-Json direction_json(const HausdorffCommand& command, const sdm::HausdorffDistance& h) {
-  Json json = hausdorff_json(h);
-  if (!command.options.facing) return json;
-  json["faces_without_match"] = h.faces_without_match;
-  json["area_without_match"] = h.area_without_match;
-  return json;
-}
-
 std::string distance_line(const std::string& what, const sdm::HausdorffDistance& h, const std::string& unit) {
   const sdm::BoundedLength& d = h.distance;
   constexpr int kDigits = 9;
@@ -182,11 +167,12 @@ std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAn
 
 Json report_of(const HausdorffCommand& command, const InputPair& pair, const HausdorffAnswer& answer) {
   Json json = report_on(pair, command.units);
-  if (command.options.facing) json["facing"] = *command.options.facing;
-  json["hausdorff"] = hausdorff_json(answer.distance);
+  const bool facing = command.options.facing.has_value();
+  if (facing) json["facing"] = *command.options.facing;
+  json["hausdorff"] = to_json(answer.distance);
   json["from"] = answer.from == 0 ? "o1" : "o2";
-  json["o1_to_o2"] = direction_json(command, answer.directions[0]);
-  json["o2_to_o1"] = command.both ? direction_json(command, answer.directions[1]) : Json(nullptr);
+  json["o1_to_o2"] = to_json(answer.directions[0], facing);
+  json["o2_to_o1"] = command.both ? to_json(answer.directions[1], facing) : Json(nullptr);
   if (command.tolerance) {
     const HausdorffVerdict v = verdict(answer, command);
     json["tolerance"] = {{"value", *command.tolerance},
@@ -195,7 +181,7 @@ Json report_of(const HausdorffCommand& command, const InputPair& pair, const Hau
                          {"certified", v.certified},
                          {"guard", answer.guard}};
   }
-  json["doubts"] = to_json(answer.doubts);
+  json["doubts"] = sdm::to_json(answer.doubts);
   json["notes"] = answer.notes;
   return json;
 }

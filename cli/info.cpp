@@ -21,6 +21,7 @@
 #include "notes.h"
 #include "output_folder.h"
 #include "report.h"
+#include "src/io/json/report_json.h"
 
 namespace fs = std::filesystem;
 
@@ -94,9 +95,7 @@ nlohmann::ordered_json info_json(const std::string& file, const Info& all) {
           {"volume", all.volume
                          ? nlohmann::ordered_json{{"lower", all.volume->lower}, {"upper", all.volume->upper}}
                          : nlohmann::ordered_json()},
-          {"tessellation", all.tessellation
-                               ? nlohmann::ordered_json::parse(sdm::tessellation_json(*all.tessellation))
-                               : nlohmann::ordered_json()},
+          {"tessellation", all.tessellation ? sdm::to_json(*all.tessellation) : nlohmann::ordered_json()},
           {"notes", all.notes}};
 }
 

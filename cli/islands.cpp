@@ -96,13 +96,6 @@ std::optional<std::string> note_on_islands(const std::string& cloud, const sdm::
                      : "; there are no other points with coordinates");
 }
 
-nlohmann::ordered_json to_json(const sdm::PointIslands& islands, std::uint64_t points) {
-  return {{"islands", islands.islands},
-          {"points", islands.points},
-          {"point_fraction", static_cast<double>(islands.points) / static_cast<double>(points)},
-          {"reach", islands.reach}};
-}
-
 sdm::IslandReport ignore_islands(Input& input, const sdm::IslandLimits& limits) try {
   sdm::WithoutIslands rest = sdm::remove_islands(input.mesh, limits);
   if (rest.islands > 0) input.island_vertices = vertices_left(input.mesh, rest.mesh);
@@ -121,11 +114,4 @@ sdm::IslandReport ignore_islands(Input& input, const sdm::IslandLimits& limits) 
   return rest;
 } catch (const sdm::Error& error) {
   throw sdm::Error(input.file + ": " + error.what());
-}
-
-nlohmann::ordered_json to_json(const sdm::IslandReport& islands) {
-  return {{"islands", islands.islands},
-          {"triangles", islands.faces},
-          {"area", islands.area},
-          {"area_fraction", islands.area_fraction}};
 }

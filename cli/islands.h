@@ -25,7 +25,3 @@ void add_point_island_option(CLI::App& app, std::uint64_t& points);
 /// A note on the islands of a cloud that were left out; nothing without islands.
 [[nodiscard]] std::optional<std::string> note_on_islands(const std::string& cloud,
                                                          const sdm::PointDistances& found);
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::PointIslands& islands, std::uint64_t points);
-
-/// The value of `ignored_islands` in reports.
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::IslandReport& islands);

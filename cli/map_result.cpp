@@ -16,6 +16,7 @@
 #include "islands.h"
 #include "map_files.h"
 #include "notes.h"
+#include "src/io/json/report_json.h"
 #include "stopwatch.h"
 #include "weld.h"
 
@@ -150,22 +151,22 @@ Notes all_notes(const MapTask& task, const AtlasPart& part, const sdm::Summary& 
 Json report_of(const MapTask& task, const AtlasPart& part, const ComputedMap& computed,
                const Outcome& outcome) {
   const MapCommand& command = task.command;
-  Json report = Json::parse(sdm::report_json({.on = reported(task.on),
-                                              .to = reported(task.to),
-                                              .on_o1 = task.on.role == "o1",
-                                              .embedded = outcome.embedded,
-                                              .engine = std::string(command.engine.name),
-                                              .precision = command.layout.fit.precision,
-                                              .udim = part.udim,
-                                              .cut_faces = part.cut_faces,
-                                              .time_ms = outcome.time},
-                                             *computed.surface, outcome.summary));
+  Json report = sdm::to_json({.on = reported(task.on),
+                              .to = reported(task.to),
+                              .on_o1 = task.on.role == "o1",
+                              .embedded = outcome.embedded,
+                              .engine = std::string(command.engine.name),
+                              .precision = command.layout.fit.precision,
+                              .udim = part.udim,
+                              .cut_faces = part.cut_faces,
+                              .time_ms = outcome.time},
+                             *computed.surface, outcome.summary);
   put_fields(report, command.fields);
   for (const Input* input : {&task.on, &task.to})
     if (input->islands) report[input->role]["ignored_islands"] = to_json(*input->islands);
   if (task.aligned) report["alignment"] = to_json(*task.aligned, command.picture.units);
   if (outcome.groups) {
-    report["group_tolerances"] = to_json(*outcome.groups, outcome.summary);
+    report["group_tolerances"] = groups_json(*outcome.groups, outcome.summary);
     report["colors"]["by_group"] = command.picture.colormap == sdm::Colormap::automatic;
   }
   if (outcome.raster) report["raster"] = to_json(*outcome.raster);

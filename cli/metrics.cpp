@@ -19,7 +19,7 @@
 #include "option_checks.h"
 #include "print.h"
 #include "progress_line.h"
-#include "proximity_report.h"
+#include "src/io/json/report_json.h"
 #include "stopwatch.h"
 #include "unit_options.h"
 
@@ -86,40 +86,12 @@ MetricsAnswer decide_metrics(const InputPair& pair, const MetricsCommand& comman
   return answer;
 }
 
-/// An estimate with the confidence of its bounds.
-Json number_json(const sdm::BoundedNumber& number, std::optional<double> confidence) {
-  Json json = to_json(number);
-  if (number.certainty == sdm::Certainty::estimate && confidence) json["confidence"] = *confidence;
-  return json;
-}
-
-Json direction_metrics_json(const sdm::DirectedMetrics& m, const sdm::MetricsOptions& options,
-                            double confidence) {
-  Json json{{"area", m.area},
-            {"hausdorff", to_json(m.hausdorff)},
-            {"mean", number_json(m.mean, confidence)},
-            {"rms", number_json(m.rms, confidence)}};
-  if (options.estimate) json["points"] = m.points;
-  json["percentiles"] = Json::array(), json["within"] = Json::array();
-  for (std::size_t i = 0; i < m.percentiles.size(); ++i) {
-    json["percentiles"].push_back({{"percent", options.percentiles[i]}});
-    json["percentiles"].back().update(number_json(m.percentiles[i], confidence));
-  }
-  for (std::size_t i = 0; i < m.within.size(); ++i) {
-    json["within"].push_back({{"tolerance", options.tolerances[i]}});
-    json["within"].back().update(number_json(m.within[i], confidence));
-  }
-  json["normal_consistency"] = m.normal_consistency;
-  return json;
-}
-
 Json metrics_report(const MetricsCommand& command, const InputPair& pair, const MetricsAnswer& answer) {
   Json json = report_on(pair, command.units);
-  for (const sdm::NamedMetric& m : answer.named)
-    json["metrics"][m.name] = number_json(m.number, m.confidence);
+  for (const sdm::NamedMetric& m : answer.named) json["metrics"][m.name] = to_json(m.number, m.confidence);
   const double confidence = answer.metrics.confidence;
-  json["o1_to_o2"] = direction_metrics_json(answer.metrics.from[0], command.options, confidence);
-  json["o2_to_o1"] = direction_metrics_json(answer.metrics.from[1], command.options, confidence);
+  json["o1_to_o2"] = to_json(answer.metrics.from[0], command.options, confidence);
+  json["o2_to_o1"] = to_json(answer.metrics.from[1], command.options, confidence);
   if (!command.conditions.empty()) {
     json["verdict"] = sdm::name_of(answer.verdict());
     json["fail_if"] = Json::array();

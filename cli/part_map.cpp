@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "option_checks.h"
+#include "src/io/json/report_json.h"
 #include "unit_options.h"
 
 void add_part_map_options(CLI::App& app, PartMapCommand& command) {
@@ -51,8 +52,8 @@ nlohmann::ordered_json write_part_map(const PartMapCommand& command, PartMap& pa
                          }});
   part.times.output = part.watch.lap();
   part.times.total = *part.times.import + part.total.lap();
-  auto report = nlohmann::ordered_json::parse(sdm::report_json(
-      {.on = reported(input), .engine = "cpu", .time_ms = part.times}, part.surface, summary));
+  auto report =
+      sdm::to_json({.on = reported(input), .engine = "cpu", .time_ms = part.times}, part.surface, summary);
   outputs.extend(report);
   put_fields(report, command.fields);
   write_report(folder, command.files, part.surface, part.map, part.at_vertices, to_text(report),

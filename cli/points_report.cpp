@@ -5,19 +5,11 @@
 #include "format.h"
 #include "islands.h"
 #include "places.h"
+#include "src/io/json/report_json.h"
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// How text was read; null for a cloud that is not text.
-Json text_json(const std::optional<sdm::TextDialect>& text) {
-  if (!text) return nullptr;
-  return {{"separator", sdm::name_of(text->separator)},
-          {"decimal", sdm::name_of(text->decimal)},
-          {"columns", text->columns},
-          {"header_line", text->header_line ? Json(*text->header_line) : Json()}};
-}
 
 // How text was read, unless that is the plain way: x, y and z first, between blanks.
 std::string text_summary(const sdm::TextDialect& text) {
@@ -76,14 +68,14 @@ nlohmann::ordered_json report_of(const PointsCommand& command, const Input& o2,
       {"points", found.points}, {"invalid_points", found.invalid},       {"normals", found.has_normals}};
   if (found.islands) report["o1"]["ignored_islands"] = to_json(*found.islands, found.points);
   report["o1"]["format"] = found.format;
-  report["o1"]["text"] = text_json(found.text);
+  report["o1"]["text"] = found.text ? sdm::fields_json(*found.text) : Json();
   report["o2"] = to_json(o2);
   if (o2.islands) report["o2"]["ignored_islands"] = to_json(*o2.islands);
   report["measured_on"] = "o1";
   if (outcome.aligned) report["alignment"] = to_json(*outcome.aligned, command.picture.units);
   report["engine"] = "cpu";
-  report.update(Json::parse(sdm::summary_json(outcome.summary)));
-  if (found.groups) report["group_tolerances"] = to_json(*found.groups, outcome.summary);
+  report.update(sdm::to_json(outcome.summary));
+  if (found.groups) report["group_tolerances"] = groups_json(*found.groups, outcome.summary);
   put_fields(report, command.fields);
   report["time_ms"] = {
       {"import", outcome.import_ms}, {"align", outcome.align_ms}, {"points", outcome.points_ms}};

@@ -2,44 +2,9 @@
 
 #include "bounds_text.h"
 #include "format.h"
+#include "src/io/json/report_json.h"
 
 using Json = nlohmann::ordered_json;
-
-Json to_json(const sdm::BoundedNumber& number) {
-  return {{"value", number.value},
-          {"kind", sdm::name_of(number.certainty)},
-          {"lower", number.lower},
-          {"upper", number.upper}};
-}
-
-Json to_json(const sdm::BoundedLength& length) {
-  Json json = to_json(static_cast<const sdm::BoundedNumber&>(length));
-  json["witness"] = length.witness ? Json(*length.witness) : Json(nullptr);
-  return json;
-}
-
-Json to_json(const sdm::Contact& contact) {
-  return {{"point1", contact.point1},
-          {"point2", contact.point2},
-          {"normal", contact.normal},
-          {"depth", contact.depth},
-          {"patch", contact.patch},
-          {"faces", {contact.on[0].face, contact.on[1].face}},
-          {"barycentric", {contact.on[0].barycentric, contact.on[1].barycentric}},
-          {"id", contact.id}};
-}
-
-Json to_json(const sdm::SeparatingTranslation& found) {
-  return {{"value", found.value},
-          {"kind", sdm::name_of(found.certainty)},
-          {"lower", found.lower},
-          {"upper", found.upper},
-          {"translation", found.translation}};
-}
-
-Json collision_json(bool colliding) {
-  return {{"value", colliding}, {"kind", sdm::name_of(sdm::Certainty::exact)}};
-}
 
 namespace {
 
@@ -78,15 +43,15 @@ std::string between(const sdm::BoundedLength& length, double size) {
 
 Json to_json(sdm::ProximityQuery& query) {
   Json json;
-  json["separation"] = to_json(query.separation());
-  json["colliding"] = collision_json(query.colliding());
+  json["separation"] = sdm::fields_json(query.separation());
+  json["colliding"] = sdm::collision_json(query.colliding());
   if (const auto& depth = query.penetration_depth()) {
-    json["penetration_depth"] = to_json(*depth);
+    json["penetration_depth"] = sdm::fields_json(*depth);
   } else {
     json["penetration_depth"] = nullptr;
     json["no_penetration_depth"] = no_solid(query);
   }
-  json["separating_translation"] = to_json(query.separating_translation());
+  json["separating_translation"] = sdm::fields_json(query.separating_translation());
   json["contacts"] = Json::array();
   for (const sdm::Contact& contact : query.contacts()) json["contacts"].push_back(to_json(contact));
   json["patches"] = patch_count(query.contacts());

@@ -6,13 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedNumber& number);
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::BoundedLength& length);
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::SeparatingTranslation& found);
-/// The result of ProximityQuery::colliding(), which is exact.
-[[nodiscard]] nlohmann::ordered_json collision_json(bool colliding);
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::Contact& contact);
-
 /// All results of the query, which are computed if necessary.
 [[nodiscard]] nlohmann::ordered_json to_json(sdm::ProximityQuery& query);
 

@@ -10,6 +10,7 @@
 #include "notes.h"
 #include "places.h"
 #include "scenes/placement.h"
+#include "src/io/json/report_json.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -105,7 +106,7 @@ sdm::ReportedMesh reported(const Input& input) {
 }
 
 Json to_json(const Input& input) {
-  return Json::parse(sdm::mesh_json(reported(input)));
+  return sdm::to_json(reported(input));
 }
 
 void add_symmetric_hausdorff(Json& o1, Json& o2) {

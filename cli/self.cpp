@@ -13,7 +13,7 @@
 #include "part_map.h"
 #include "print.h"
 #include "progress_line.h"
-#include "proximity_report.h"
+#include "src/io/json/report_json.h"
 #include "unit_options.h"
 
 #include <memory>
@@ -51,7 +51,7 @@ Json measure(const SelfCommand& command, const LoadedPart& loaded, const std::fi
     const sdm::ExclusionRule& rule = command.self.exclusion;
     report["exclusion"] = {{"rings", rule.geodesic ? Json(nullptr) : Json(rule.rings)},
                            {"geodesic", rule.geodesic ? Json(*rule.geodesic) : Json(nullptr)}};
-    report["separation"] = separation ? to_json(*separation) : Json(nullptr);
+    report["separation"] = separation ? sdm::fields_json(*separation) : Json(nullptr);
   };
   return write_part_map(command, part, query.sites(), summary, folder,
                         {.extend = extend, .page = {.up = command.picture.up, .thinnest = true}});

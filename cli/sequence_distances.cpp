@@ -54,9 +54,7 @@ FrameDistances distances_from(const Json& json) {
   };
   FrameDistances d{.min = number("min"), .mean = number("mean"), .max = number("max")};
   if (!json.contains("verdict")) return d;
-  for (const sdm::Verdict verdict :
-       {sdm::Verdict::pass, sdm::Verdict::fail, sdm::Verdict::not_decided, sdm::Verdict::doubtful})
-    if (json.at("verdict") == sdm::name_of(verdict)) d.verdict = verdict;
+  d.verdict = sdm::value_of<sdm::Verdict>(json.at("verdict").get<std::string>());
   d.exceeded_area_fraction = json.at("exceeded_area_fraction");
   d.certified = json.value("certified", false);
   d.guard = json.value("guard", 0.0);

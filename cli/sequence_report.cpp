@@ -10,8 +10,8 @@
 #include "doubts.h"
 #include "format.h"
 #include "notes.h"
-#include "proximity_report.h"
 #include "report.h"
+#include "src/io/json/report_json.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -87,9 +87,9 @@ std::string topology_summary(const std::vector<Frame>& frames) {
 Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
   Json json;
   json["frame"] = frame.index;
-  json["separation"] = to_json(frame.separation);
-  json["colliding"] = collision_json(frame.colliding);
-  json["penetration_depth"] = frame.depth ? to_json(*frame.depth) : Json(nullptr);
+  json["separation"] = sdm::fields_json(frame.separation);
+  json["colliding"] = sdm::collision_json(frame.colliding);
+  json["penetration_depth"] = frame.depth ? sdm::fields_json(*frame.depth) : Json(nullptr);
   json["contacts"] = frame.contacts;
   json["patches"] = Json::array();  // for each patch its deepest contact, which comes first
   for (const sdm::Contact& contact : contacts)
@@ -166,7 +166,7 @@ Frame frame_from(const Json& line) {
   for (int b = 0; b < 2 && line.contains("distance"); ++b)
     if (const Json& all = line.at("distance"); all.contains(kBodies[b]))
       frame.distances[b] = distances_from(all.at(kBodies[b]));
-  frame.doubts = doubts_from(line.value("doubts", Json::array()));
+  frame.doubts = sdm::doubts_from(line.value("doubts", Json::array()));
   for (int b = 0; b < 2 && line.contains("topology"); ++b)
     if (const Json& all = line.at("topology"); all.contains(kBodies[b])) {
       const Json& body = all.at(kBodies[b]);

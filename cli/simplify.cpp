@@ -25,8 +25,8 @@
 #include "output_folder.h"
 #include "print.h"
 #include "progress_line.h"
-#include "proximity_report.h"
 #include "report.h"
+#include "src/io/json/report_json.h"
 #include "stopwatch.h"
 #include "unit_options.h"
 #include "weld.h"
@@ -151,7 +151,7 @@ Json level_json(const SimplifyCommand& command, std::size_t level, const sdm::Si
   return {{"file", command.file(level).string()},
           {"vertices", simplified.mesh.positions.size()},
           {"triangles", simplified.mesh.triangles.size()},
-          {"deviation", to_json(simplified.deviation)},
+          {"deviation", sdm::fields_json(simplified.deviation)},
           {"estimate", {{"value", simplified.estimate}, {"kind", "estimate"}, {"of", "meshoptimizer"}}},
           {"stopped", simplified.stopped}};
 }

@@ -15,6 +15,7 @@
 #include "part_map.h"
 #include "print.h"
 #include "progress_line.h"
+#include "src/io/json/report_json.h"
 #include "unit_options.h"
 #include "weld.h"
 
@@ -101,7 +102,7 @@ Json thickness_json(const ThicknessCommand& command, const sdm::Surface& surface
   if (command.most) json["thickest"] = listed(sdm::thickest_texels(surface, map));
   json["other"] = {{"method", name},
                    {"file", command.files.exr ? Json(name + ".exr") : Json()},
-                   {"distance", Json::parse(sdm::summary_json(other))["distance"]}};
+                   {"distance", sdm::to_json(other.distance)}};
   return json;
 }
 

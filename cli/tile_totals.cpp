@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "group_tolerances.h"
+#include "src/io/json/report_json.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -45,9 +46,9 @@ Json TileTotals::report() const {
   Json report;
   report["tiles"] = Json::array();
   for (const Tile& tile : tiles_) report["tiles"].push_back(tile.udim);
-  report.update(Json::parse(sdm::summary_json(combined_.summary())));
+  report.update(sdm::to_json(combined_.summary()));
   if (const Outcome total = finish(); total.groups)
-    report["group_tolerances"] = to_json(*total.groups, total.summary);
+    report["group_tolerances"] = groups_json(*total.groups, total.summary);
   std::vector<Tile> worst = tiles_;
   std::erase_if(worst, [](const Tile& tile) { return !tile.extremes; });
   std::ranges::stable_sort(worst, std::ranges::greater(),

@@ -5,6 +5,7 @@
 
 #include <sdm/api.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/transform.h>
@@ -15,6 +16,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -90,17 +92,44 @@ struct DegreeOfFreedom {
   bool locked = false;  ///< AlignOptions::freedoms does not allow it; the alignment leaves it as at the start
 };
 
+template <>
+inline constexpr std::tuple kFields<DegreeOfFreedom>{
+    Field{"translation", &DegreeOfFreedom::translation, "The translation."},
+    Field{"rotation", &DegreeOfFreedom::rotation, "Along the axis."},
+    Field{"axis_point", &DegreeOfFreedom::axis_point,
+          "The point of the axis that is closest to the centre of O1; nothing without a rotation."},
+    Field{"determined", &DegreeOfFreedom::determined,
+          "The rms distance by which the samples move along the normals of O2, per unit of motion: 0 for a "
+          "plane that moves in itself, 1 for one that moves along its normal."},
+    Field{"standard_error", &DegreeOfFreedom::standard_error,
+          "An estimate: the standard error of the motion, as a length, if residuals are independent noise; "
+          "nothing if it is free."},
+    Field{"free", &DegreeOfFreedom::free, "O2 is nearly unchanged by the motion: O1 fits as well after it."},
+    Field{"locked", &DegreeOfFreedom::locked, "The alignment was not allowed to use it."}};
+
 /// Distances of the samples to O2, in units of the meshes; NaN if there are none.
 struct AlignResiduals {
   double rms = 0;          ///< of all samples
   double trimmed_rms = 0;  ///< of the smallest ones, `fraction_used` of all
 };
 
+template <>
+inline constexpr std::tuple kFields<AlignResiduals>{
+    Field{"rms", &AlignResiduals::rms, "The rms distance of the samples to O2."},
+    Field{"trimmed_rms", &AlignResiduals::trimmed_rms,
+          "The same of the samples with the smallest distances."}};
+
 /// Distances of the samples whose closest point is on a group of faces of O2.
 struct GroupResiduals {
   std::size_t samples = 0;
   double rms = 0, largest = 0;  ///< in units of the meshes; 0 without samples
 };
+
+template <>
+inline constexpr std::tuple kFields<GroupResiduals>{
+    Field{"samples", &GroupResiduals::samples, "The number of samples."},
+    Field{"rms", &GroupResiduals::rms, "Their rms distance to O2."},
+    Field{"largest", &GroupResiduals::largest, "Their largest one."}};
 
 /// A rigid motion that aligns O1 to O2, and how good it is. With a region, samples are those whose closest
 /// point is in it.

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <optional>
+#include <tuple>
 
 namespace sdm {
 
@@ -28,11 +29,27 @@ struct BoundedNumber {
   double lower = 0, upper = 0;  ///< lower ≤ truth ≤ upper, unless an estimate
 };
 
+template <>
+inline constexpr std::tuple kFields<BoundedNumber>{
+    Field{"value", &BoundedNumber::value, "The number."},
+    Field{"certainty", &BoundedNumber::certainty,
+          "'exact': computed from the triangles, accurate to 1e-6 of the diagonal of both bodies' box; "
+          "'bounded': the true value lies between the bounds; 'estimate': no guarantee."},
+    Field{"lower", &BoundedNumber::lower, "lower ≤ truth."},
+    Field{"upper", &BoundedNumber::upper, "truth ≤ upper."}};
+
 /// A length with its bounds.
 struct BoundedLength : BoundedNumber {
   /// A point of O1 and a point of O2 that are `value` apart; nothing where no pair of points attains the
   /// value.
   std::optional<std::array<Vec3, 2>> witness{};
 };
+
+template <>
+inline constexpr auto kFields<BoundedLength> = std::tuple_cat(
+    kFields<BoundedNumber>,
+    std::tuple{Field{"witness", &BoundedLength::witness,
+                     "A point of O1 and a point of O2 that are that far apart; nothing where no pair of "
+                     "points attains the value."}});
 
 }  // namespace sdm

@@ -7,10 +7,13 @@
 #include <sdm/api.h>
 #include <sdm/coverage.h>
 #include <sdm/fit_check.h>
+#include <sdm/names.h>
 #include <sdm/unit_check.h>
 
+#include <array>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -25,12 +28,21 @@ enum class DoubtReason {
   thin_walls,    ///< the closest point may be on the other skin of a wall, and nothing else decides
 };
 
+template <>
+inline constexpr std::array kWords<DoubtReason>{"other unit",   "mirrored",     "poor fit",
+                                                "undetermined", "low coverage", "thin walls"};
+
 /// A reason not to trust that all distances are within a tolerance, although they are.
 struct Doubt {
   DoubtReason reason = DoubtReason::other_unit;
   std::string text{};    ///< a clause: what was found
   std::string remedy{};  ///< a clause: what mends it, by the options of the command
 };
+
+template <>
+inline constexpr std::tuple kFields<Doubt>{
+    Field{"reason", &Doubt::reason, "What it is about."}, Field{"text", &Doubt::text, "What was found."},
+    Field{"remedy", &Doubt::remedy, "What mends it, by the options of the command."}};
 
 /// Returns the doubts that an alignment leaves: O1 fits in another unit, or mirrored, less than half of the
 /// samples fit (Alignment::fraction_fitting), or a degree of freedom is free.
@@ -43,8 +55,5 @@ struct Doubt {
 
 /// Returns the doubt that a coverage below `least` leaves: by its value, not by its bounds.
 [[nodiscard]] SDM_API std::optional<Doubt> doubt_of(const Coverage& coverage, double least);
-
-/// "other unit", "mirrored", "poor fit", "undetermined", "low coverage" or "thin walls".
-[[nodiscard]] SDM_API const char* name_of(DoubtReason reason);
 
 }  // namespace sdm

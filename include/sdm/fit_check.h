@@ -6,10 +6,12 @@
 #include <sdm/align.h>
 #include <sdm/api.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
 #include <sdm/sites.h>
 
 #include <optional>
 #include <span>
+#include <tuple>
 
 namespace sdm {
 
@@ -19,6 +21,12 @@ struct MirroredFit {
   double misfit = 0;
   double misfit_as_given = 0;
 };
+
+template <>
+inline constexpr std::tuple kFields<MirroredFit>{
+    Field{"misfit", &MirroredFit::misfit,
+          "The mean distance of samples of the mirror image to O2, as a fraction of the radius of gyration."},
+    Field{"misfit_as_given", &MirroredFit::misfit_as_given, "The same of O1 as it is."}};
 
 /// Places the mirror image of O1 on O2 by principal axes, and returns its misfit, if it is at most a quarter
 /// of that of O1 as `found` aligned it, and of that of O1 itself where its principal axes agree with those of
@@ -42,6 +50,14 @@ struct OtherScale {
   double residual = 0;        ///< rms distance of the samples, of which each counts at most as a trimmed one
   double residual_as_given = 0;  ///< the same of O1 as it is
 };
+
+template <>
+inline constexpr std::tuple kFields<OtherScale>{
+    Field{"factor", &OtherScale::factor, "The factor by which O1 fits best."},
+    Field{"standard_error", &OtherScale::standard_error,
+          "The standard error of the factor, if residuals are independent noise."},
+    Field{"residual", &OtherScale::residual, "The rms distance of the samples of the scaled O1."},
+    Field{"residual_as_given", &OtherScale::residual_as_given, "The same of O1 as it is."}};
 
 /// Moves and scales the aligned O1, by at most a fifth, to minimise its distances to O2, and returns the
 /// factor if it is significant: beyond five standard errors from 1, and at most half of the squared residuals

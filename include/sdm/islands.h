@@ -5,9 +5,11 @@
 
 #include <sdm/api.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -25,6 +27,13 @@ struct IslandReport {
   double area = 0;
   double area_fraction = 0;  ///< of the area of the mesh, in [0, 1]
 };
+
+template <>
+inline constexpr std::tuple kFields<IslandReport>{
+    Field{"islands", &IslandReport::islands, "The number of components."},
+    Field{"faces", &IslandReport::faces, "The number of their faces."},
+    Field{"area", &IslandReport::area, "Their area."},
+    Field{"area_fraction", &IslandReport::area_fraction, "That as a fraction of the area of the mesh."}};
 
 /// A mesh without its islands. Its vertices have the numbers that they had; some may have no face.
 struct WithoutIslands : IslandReport {

@@ -25,6 +25,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -60,6 +61,13 @@ struct TextDialect {
   /// The line of the header in a file that was opened, from 1; nothing if it has none.
   std::optional<std::uint64_t> header_line{};
 };
+
+template <>
+inline constexpr std::tuple kFields<TextDialect>{
+    Field{"separator", &TextDialect::separator, "What separates columns."},
+    Field{"decimal", &TextDialect::decimal, "What stands before the fraction of a number."},
+    Field{"columns", &TextDialect::columns, "What each column holds."},
+    Field{"header_line", &TextDialect::header_line, "The line of the header, from 1; nothing without one."}};
 
 /// Throws sdm::Error if no file can be read in this way, as its columns are not as TextDialect requires.
 SDM_API void validate(const TextDialect& dialect);

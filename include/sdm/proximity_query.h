@@ -5,6 +5,7 @@
 #include <sdm/bounds.h>
 #include <sdm/map.h>
 #include <sdm/mesh_edit.h>
+#include <sdm/names.h>
 #include <sdm/options.h>
 #include <sdm/shape.h>
 #include <sdm/transform.h>
@@ -45,6 +46,19 @@ struct SeparatingTranslation : BoundedNumber {
   /// The translation of O1; |translation| = value = upper, to rounding. After it the bodies do not collide.
   Vec3 translation{};
 };
+
+template <>
+inline constexpr std::tuple kFields<SeparatingTranslation>{
+    Field{"value", &SeparatingTranslation::value,
+          "The length of the translation; the same as the upper bound."},
+    Field{
+        "certainty", &SeparatingTranslation::certainty,
+        "'exact': the bounds are at most 1e-6 of the diagonal of both bodies' box apart, as those of convex "
+        "solids are; 'bounded': the shortest translation is between the bounds."},
+    Field{"lower", &SeparatingTranslation::lower, "No shorter translation separates the bodies."},
+    Field{"upper", &SeparatingTranslation::upper, "The translation is that long, and separates them."},
+    Field{"translation", &SeparatingTranslation::translation,
+          "Moving O1 by it ends the collision: verified by the exact test. 0 without a collision."}};
 
 /// Options of a ProximityQuery and a MultiBodyQuery.
 struct ProximityOptions {

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -49,6 +50,10 @@ struct SignUsed {
   SignMethod method = SignMethod::none;
   std::string reason;
 };
+
+template <>
+inline constexpr std::tuple kFields<SignUsed>{Field{"method", &SignUsed::method, "The method that was used."},
+                                              Field{"reason", &SignUsed::reason, "Why, in words."}};
 
 /// Returns the sign method that compute_map uses for `asked`, with the reason. Throws sdm::Error if O2 does
 /// not allow it.

@@ -244,9 +244,4 @@ SDM_API void withhold_pass(Summary& summary, bool accept_doubts);
 /// not decided or doubtful. Empty without a tolerance.
 [[nodiscard]] SDM_API std::string verdict_text(const Summary& summary);
 
-/// "PASS", "FAIL", "NOT DECIDED" or "DOUBTFUL".
-[[nodiscard]] SDM_API const char* name_of(Verdict verdict);
-/// The enumerator in words, such as "all within" or "between samples".
-[[nodiscard]] SDM_API const char* name_of(VerdictReason reason);
-
 }  // namespace sdm

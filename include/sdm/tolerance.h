@@ -7,11 +7,14 @@
 #include <sdm/engine.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
 #include <sdm/surface.h>
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <span>
+#include <tuple>
 
 namespace sdm {
 
@@ -41,6 +44,13 @@ struct ToleranceShares {
   double without_value = 0;  ///< farther than the maximum distance of the map
 };
 
+template <>
+inline constexpr std::tuple kFields<ToleranceShares>{
+    Field{"below", &ToleranceShares::below, "The fraction with smaller distances."},
+    Field{"within", &ToleranceShares::within, "The fraction within the tolerance."},
+    Field{"above", &ToleranceShares::above, "The fraction with larger distances."},
+    Field{"without_value", &ToleranceShares::without_value, "The fraction without a distance."}};
+
 /// `accuracy`: the error of a distance, as of engine_accuracy(): rounding exceeds no tolerance. Throws
 /// sdm::Error if the map belongs to another surface. Cost: linear in texels, all cores.
 [[nodiscard]] SDM_API ToleranceShares tolerance_shares(const Surface& surface, const DistanceMap& map,
@@ -53,6 +63,9 @@ enum class Verdict {
   not_decided,  ///< all samples are, but that does not prove it for every point
   doubtful,     ///< every point is, but there are doubts whether what was measured is what was meant
 };
+
+template <>
+inline constexpr std::array kWords<Verdict>{"PASS", "FAIL", "NOT DECIDED", "DOUBTFUL"};
 
 /// Why a verdict is what it is.
 enum class VerdictReason {
@@ -69,6 +82,12 @@ enum class VerdictReason {
   thin_walls,           ///< not decided: the closest point may be on the other skin of a wall
   in_doubt,             ///< doubtful: see Doubt
 };
+
+template <>
+inline constexpr std::array kWords<VerdictReason>{
+    "all within",       "exceeded",         "beyond max distance", "without match",
+    "between samples",  "within rounding",  "guard band",          "estimated signs",
+    "unknown accuracy", "nothing measured", "thin walls",          "in doubt"};
 
 /// All that a verdict depends on besides the tolerance. Samples are the texels of a map and the vertices of
 /// its faces, or the points of a cloud.
@@ -93,6 +112,23 @@ struct Evidence {
   /// point.
   double thin_walls = std::numeric_limits<double>::infinity();
 };
+
+template <>
+inline constexpr std::tuple kFields<Evidence>{
+    Field{"lowest", &Evidence::lowest, "The smallest distance of the samples."},
+    Field{"highest", &Evidence::highest, "The largest one."},
+    Field{"complete", &Evidence::complete, "Every sample has a value."},
+    Field{"estimated_signs", &Evidence::estimated_signs,
+          "Between samples a distance may have the other sign."},
+    Field{"accuracy", &Evidence::accuracy, "The error of a distance."},
+    Field{"error_bound", &Evidence::error_bound,
+          "How much the distance at any point can differ from those of the samples."},
+    Field{"signed", &Evidence::is_signed, "Distances can be negative."},
+    Field{"unmatched", &Evidence::unmatched, "Some sample has no face of O2 that faces the same way."},
+    Field{"samples_only", &Evidence::samples_only, "Nothing bounds the distances between samples."},
+    Field{"guard", &Evidence::guard, "How far the meshes may be from the surfaces that are meant."},
+    Field{"thin_walls", &Evidence::thin_walls,
+          "The thickness that walls of O2 are below on more than a small part of it; infinite if none are."}};
 
 /// The larger one of the limits that are finite; 0 without any.
 [[nodiscard]] SDM_API double largest_limit(const Tolerance& tolerance);

@@ -6,6 +6,7 @@
 
 #include <sdm/api.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
 #include <sdm/progress.h>
 #include <sdm/sign.h>
 #include <sdm/sites.h>
@@ -16,6 +17,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <tuple>
 
 namespace sdm {
 
@@ -32,6 +34,15 @@ struct ToleranceWitness {
   std::uint32_t face = kNone, closest_face = kNone;  ///< that contain these
   double distance = 0;                               ///< |closest − point|, negative inside O2
 };
+
+template <>
+inline constexpr std::tuple kFields<ToleranceWitness>{
+    Field{"distance", &ToleranceWitness::distance, "Its distance, negative inside O2."},
+    Field{"point", &ToleranceWitness::point, "Where it is."},
+    Field{"closest", &ToleranceWitness::closest, "The point of O2 closest to it."},
+    Field{"face", &ToleranceWitness::face, "The face of O1 that contains it."},
+    Field{"closest_face", &ToleranceWitness::closest_face,
+          "The face of O2 that contains the closest point."}};
 
 /// The answer of prove_tolerance().
 struct ToleranceProof {

@@ -6,11 +6,13 @@
 
 #include <sdm/api.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
 #include <sdm/progress.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -34,6 +36,18 @@ struct WeldReport {
   /// meets several, and joining vertices closes no such gap.
   std::size_t t_junctions = 0;
 };
+
+template <>
+inline constexpr std::tuple kFields<WeldReport>{
+    Field{"tolerance", &WeldReport::tolerance,
+          "The largest distance between the ends of two edges that were joined."},
+    Field{"largest_move", &WeldReport::largest_move,
+          "The largest move of a vertex: distances to the welded mesh differ from those to the mesh by at "
+          "most this."},
+    Field{"joined_vertices", &WeldReport::joined_vertices, "The vertices that have no face any more."},
+    Field{"boundary_edges", &WeldReport::boundary_edges, "The boundary edges that are left."},
+    Field{"t_junctions", &WeldReport::t_junctions,
+          "Their vertices that lie in the middle of another one, within the tolerance."}};
 
 /// A mesh whose boundary edges were joined, and how.
 struct Welded : WeldReport {

@@ -81,22 +81,4 @@ std::optional<Doubt> doubt_of(const Coverage& coverage, double least) {
                "measure the rest, or choose a lower --min-coverage"};
 }
 
-const char* name_of(DoubtReason reason) {
-  switch (reason) {
-    case DoubtReason::other_unit:
-      return "other unit";
-    case DoubtReason::mirrored:
-      return "mirrored";
-    case DoubtReason::poor_fit:
-      return "poor fit";
-    case DoubtReason::undetermined:
-      return "undetermined";
-    case DoubtReason::low_coverage:
-      return "low coverage";
-    case DoubtReason::thin_walls:
-      return "thin walls";
-  }
-  return "";
-}
-
 }  // namespace sdm

@@ -1,6 +1,7 @@
 #include <sdm/summary.h>
 
-#include <cstddef>
+#include <algorithm>
+#include <string_view>
 
 #include "core/rules.h"
 
@@ -13,12 +14,15 @@ static_assert(rules::kPass == static_cast<int>(Verdict::pass) &&
               rules::kViridisMap == static_cast<int>(Colormap::viridis) &&
               rules::kDivergingMap == static_cast<int>(Colormap::diverging));
 
-const char* name_of(Verdict verdict) {
-  return rules::kVerdictNames[static_cast<std::size_t>(verdict)];
-}
+namespace {
 
-const char* name_of(VerdictReason reason) {
-  return rules::kReasonNames[static_cast<std::size_t>(reason)];
+template <class Enum>
+constexpr bool has_words(const auto& rule) {
+  return std::ranges::equal(
+      kWords<Enum>, rule, {}, [](std::string_view word) { return word; },
+      [](std::string_view word) { return word; });
 }
+static_assert(has_words<Verdict>(rules::kVerdictNames) && has_words<VerdictReason>(rules::kReasonNames));
 
+}  // namespace
 }  // namespace sdm

@@ -65,6 +65,7 @@ set(order
   summary/verdict
   summary
   io/file
+  io/json
   io/shape
   io/image/textures
   io/mesh/polygons

@@ -1,58 +1,23 @@
-#include <sdm/report.h>
+#include "io/json/report_json.h"
+
 #include <sdm/version.h>
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/parse_number.h"
 
 namespace sdm {
-namespace {
 
 using Json = nlohmann::ordered_json;
 
+namespace {
+
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::ignore);
-}
-
-template <class Value>
-Json optional(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json();
-}
-
-Json to_json(const WeldReport& weld) {
-  return {{"tolerance", weld.tolerance},
-          {"largest_move", weld.largest_move},
-          {"joined_vertices", weld.joined_vertices},
-          {"boundary_edges", weld.boundary_edges},
-          {"t_junctions", weld.t_junctions}};
-}
-
-Json to_json(const Tessellation& t) {
-  return {{"format", t.format},
-          {"file_unit", t.file_unit.empty() ? Json() : Json(t.file_unit)},
-          {"unit", "mm"},
-          {"faces", t.faces},
-          {"omitted_faces", t.omitted_faces},
-          {"deflection", t.deflection},
-          {"angle", t.angle},
-          {"largest_deviation",
-           {{"value", t.largest_deviation}, {"kind", "estimate"}, {"points", t.measured_points}}}};
-}
-
-Json to_json(const ReportedMesh& mesh) {
-  Json json{{"file", mesh.file},
-            {"xxh3", mesh.xxh3.empty() ? Json() : Json(mesh.xxh3)},
-            {"transform", mesh.transform},
-            {"vertices", mesh.info.vertices},
-            {"triangles", mesh.info.triangles},
-            {"closed", mesh.info.closed},
-            {"degenerate_faces", mesh.info.degenerate_faces},
-            {"duplicate_faces", mesh.info.duplicate_faces}};
-  if (mesh.weld) json["weld"] = to_json(*mesh.weld);
-  if (mesh.tessellation) json["tessellation"] = to_json(*mesh.tessellation);
-  return json;
 }
 
 Json to_json(const Surface& surface) {
@@ -66,16 +31,6 @@ Json to_json(const Surface& surface) {
           {"gutter", surface.gutter()},
           {"overlapping_texels", surface.overlapping_texels()},
           {"area_fraction_without_texels", area_fraction_without_texels(surface)}};
-}
-
-Json to_json(const DistanceStatistics& statistics) {
-  Json json{{"kind", "estimate"}};
-  for_each_field<DistanceStatistics>([&](const auto& field) {
-    const auto value = statistics.*field.member;
-    // The numbers of texels are in the report itself.
-    if constexpr (std::is_floating_point_v<decltype(value)>) json[field.name] = value;
-  });
-  return json;
 }
 
 Json to_json(const ColorRange& colors) {
@@ -98,22 +53,6 @@ Json extremes_json(const Summary& summary) {
        {std::pair("min", summary.extreme_points[0]), std::pair("max", summary.extreme_points[1])})
     json[key]["at"] = "point", json[key]["index"] = index;
   return json;
-}
-
-Json to_json(const Evidence& evidence) {
-  return {{"lowest", optional(evidence.lowest)},   {"highest", optional(evidence.highest)},
-          {"complete", evidence.complete},         {"estimated_signs", evidence.estimated_signs},
-          {"accuracy", evidence.accuracy},         {"error_bound", evidence.error_bound},
-          {"signed", evidence.is_signed},          {"unmatched", evidence.unmatched},
-          {"samples_only", evidence.samples_only}, {"guard", evidence.guard},
-          {"thin_walls", evidence.thin_walls}};  // null: none
-}
-
-Json to_json(const ToleranceShares& shares) {
-  return {{"below", shares.below},
-          {"within", shares.within},
-          {"above", shares.above},
-          {"without_value", shares.without_value}};
 }
 
 /// Keys are those of a surface; a cloud has points in place of texels and areas.
@@ -158,22 +97,11 @@ Json to_json(const Places& places, bool of_points) {
 /// What was proven where the samples did not decide.
 Json to_json(const ToleranceProof& proof) {
   Json json{{"witness", nullptr},
-            {"undecided_by", optional(proof.undecided_by)},
+            {"undecided_by", optional_json(proof.undecided_by)},
             {"depends_on_signs", proof.depends_on_signs},
             {"faces_without_match", proof.faces_without_match}};
   if (const auto& witness = proof.witness)
-    json["witness"] = {{"distance", witness->distance},
-                       {"point", witness->point},
-                       {"closest", witness->closest},
-                       {"triangle", witness->face},
-                       {"closest_triangle", witness->closest_face}};
-  return json;
-}
-
-Json to_json(const std::vector<Doubt>& doubts) {
-  Json json = Json::array();
-  for (const Doubt& doubt : doubts)
-    json.push_back({{"reason", name_of(doubt.reason)}, {"text", doubt.text}, {"remedy", doubt.remedy}});
+    json["witness"] = fields_json(*witness, {{"face", "triangle"}, {"closest_face", "closest_triangle"}});
   return json;
 }
 
@@ -192,11 +120,11 @@ Json tolerance_json(const Summary& summary) {
     json["exceeded_point_fraction"] = summary.exceeding_point_fraction;
   } else {
     json["exceeded_area_fraction"] = verdict.exceeded_area_fraction;
-    json["area_fractions"] = to_json(verdict.shares);
+    json["area_fractions"] = fields_json(verdict.shares);
   }
   json["within"] = verdict.within;
   json["certified"] = verdict.certified;
-  json["margin"] = optional(verdict.margin);
+  json["margin"] = optional_json(verdict.margin);
   json["nearest_limit"] = verdict.nearest_is_lower ? "lower" : "upper";
   json["proof"] = verdict.proof ? to_json(*verdict.proof) : Json();
   json["by_facing"] = verdict.by_facing ? Json(*verdict.by_facing) : Json();
@@ -214,7 +142,7 @@ Json to_json(const PartTable& table) {
     row["area_fraction"] = part.area_fraction;
     row["distance"] = to_json(part.distance);
     row["texels_with_value"] = part.distance.texels;
-    if (part.tolerance) row["tolerance"] = to_json(*part.tolerance);
+    if (part.tolerance) row["tolerance"] = fields_json(*part.tolerance);
     rows.push_back(std::move(row));
   }
   return {{"kind", table.kind}, {"count", table.count}, {"largest", std::move(rows)}};
@@ -236,10 +164,10 @@ void add(Json& json, const Distribution& distribution) {
 
 Json largest_json(const Summary& summary) {
   const LargestDistance& d = summary.hausdorff;
-  return {{"lower", optional(d.lower)},
-          {"upper", optional(d.upper)},
+  return {{"lower", optional_json(d.lower)},
+          {"upper", optional_json(d.upper)},
           {"kind", d.lower ? "bounded" : "unknown"},
-          {"point", optional(d.point)}};
+          {"point", optional_json(d.point)}};
 }
 
 /// The options of a measure by name, as numbers, flags and words; null: absent, or no limit.
@@ -267,6 +195,57 @@ void add_surface(Json& json, const Summary& summary) {
   json["hausdorff"] = {{"one_sided", largest_json(summary)}};
 }
 
+Json to_json(const ReportTimes& t) {
+  return {{"import", optional_json(t.import)}, {"atlas", optional_json(t.atlas)},
+          {"sites", optional_json(t.sites)},   {"map", optional_json(t.map)},
+          {"export", optional_json(t.output)}, {"total", optional_json(t.total)}};
+}
+
+/// Null unless points are without a group.
+Json reason_json(const PointsWithoutGroup& points) {
+  if (!points.any()) return nullptr;
+  return name_of(points.without_match > 0 ? VerdictReason::without_match
+                                          : VerdictReason::beyond_max_distance);
+}
+
+}  // namespace
+
+Json to_json(const Tessellation& t) {
+  return {{"format", t.format},
+          {"file_unit", t.file_unit.empty() ? Json() : Json(t.file_unit)},
+          {"unit", "mm"},
+          {"faces", t.faces},
+          {"omitted_faces", t.omitted_faces},
+          {"deflection", t.deflection},
+          {"angle", t.angle},
+          {"largest_deviation",
+           {{"value", t.largest_deviation}, {"kind", "estimate"}, {"points", t.measured_points}}}};
+}
+
+Json to_json(const ReportedMesh& mesh) {
+  Json json{{"file", mesh.file},
+            {"xxh3", mesh.xxh3.empty() ? Json() : Json(mesh.xxh3)},
+            {"transform", mesh.transform},
+            {"vertices", mesh.info.vertices},
+            {"triangles", mesh.info.triangles},
+            {"closed", mesh.info.closed},
+            {"degenerate_faces", mesh.info.degenerate_faces},
+            {"duplicate_faces", mesh.info.duplicate_faces}};
+  if (mesh.weld) json["weld"] = fields_json(*mesh.weld);
+  if (mesh.tessellation) json["tessellation"] = to_json(*mesh.tessellation);
+  return json;
+}
+
+Json to_json(const DistanceStatistics& statistics) {
+  Json json{{"kind", "estimate"}};
+  for_each_field<DistanceStatistics>([&](const auto& field) {
+    const auto value = statistics.*field.member;
+    // The numbers of texels are in the report itself.
+    if constexpr (std::is_floating_point_v<decltype(value)>) json[field.name] = value;
+  });
+  return json;
+}
+
 Json to_json(const Summary& summary) {
   const DistanceStatistics& d = summary.distance;
   Json json;
@@ -283,7 +262,7 @@ Json to_json(const Summary& summary) {
   }
   json["measured"] = {{"kind", name_of(summary.measured.kind)}, {"text", summary.measured.text}};
   json["measured"]["settings"] = settings_json(summary.measured.settings);
-  json["sign"] = {{"method", name_of(summary.sign.method)}, {"reason", summary.sign.reason}};
+  json["sign"] = fields_json(summary.sign);
   json["distance"] = to_json(d);
   if (summary.of_points) json["distance"]["kind"] = "bounded", json["distance"]["weights"] = "points";
   json["extremes"] = extremes_json(summary);
@@ -296,7 +275,7 @@ Json to_json(const Summary& summary) {
   json["accuracy"] = summary.evidence.accuracy;  // null: unknown
   json["accuracy_kind"] = std::isfinite(summary.evidence.accuracy) ? "bounded" : "unknown";
   if (!summary.of_points && !summary.of_thickness) add_surface(json, summary);
-  json["evidence"] = to_json(summary.evidence);
+  json["evidence"] = fields_json(summary.evidence);
   if (summary.tolerance) json["tolerance"] = tolerance_json(summary);
   if (!summary.of_thickness)
     json["places"] = summary.places ? to_json(*summary.places, summary.of_points) : Json();
@@ -312,12 +291,149 @@ Json to_json(const Summary& summary) {
   return json;
 }
 
-Json to_json(const ReportTimes& t) {
-  return {{"import", optional(t.import)}, {"atlas", optional(t.atlas)},   {"sites", optional(t.sites)},
-          {"map", optional(t.map)},       {"export", optional(t.output)}, {"total", optional(t.total)}};
+Json to_json(const MapReport& report, const Surface& surface, const Summary& summary) {
+  Json json;
+  json["version"] = kVersion;
+  if (summary.of_itself) {
+    json["mesh"] = to_json(report.on);
+  } else {
+    json["o1"] = to_json(report.on_o1 ? report.on : report.to);
+    json["o2"] = to_json(report.on_o1 ? report.to : report.on);
+    json[report.on_o1 ? "o2" : "o1"]["embedded"] = optional_json(report.embedded);
+    json["measured_on"] = report.on_o1 ? "o1" : "o2";
+  }
+  json["units"] = summary.units;
+  json["atlas"] = to_json(surface);
+  if (!summary.of_itself) {
+    json["atlas"]["udim"] = optional_json(report.udim);
+    json["atlas"]["cut_faces"] = report.cut_faces;
+    json["precision"] = optional_json(report.precision);
+  }
+  if (!report.engine.empty()) json["engine"] = report.engine;
+  json.update(to_json(summary));
+  json["time_ms"] = to_json(report.time_ms);
+  return json;
 }
 
-}  // namespace
+Json to_json(std::span<const Doubt> doubts) {
+  Json json = Json::array();
+  for (const Doubt& doubt : doubts) json.push_back(fields_json(doubt));
+  return json;
+}
+
+std::vector<Doubt> doubts_from(const Json& json) {
+  std::vector<Doubt> doubts;
+  for (const Json& doubt : json)
+    doubts.push_back(
+        {.reason =
+             value_of<DoubtReason>(doubt.at("reason").get<std::string>()).value_or(DoubtReason::other_unit),
+         .text = doubt.at("text"),
+         .remedy = doubt.at("remedy")});
+  return doubts;
+}
+
+Json to_json(const GroupVerdicts& verdicts, bool of_points) {
+  Json groups = Json::array();
+  for (const GroupVerdict& g : verdicts.groups) {
+    const CertifiedVerdict& v = g.verdict;
+    Json group{{"kind", g.kind}, {"group", g.group}, {"triangles", g.faces}};
+    if (of_points) group["points"] = g.points;
+    group.update(
+        {{"lower", v.tolerance.lo},
+         {"upper", v.tolerance.hi},
+         {"verdict", name_of(v.verdict)},
+         {"reason", name_of(v.reason)},
+         {"certified", v.certified},
+         {"lowest", optional_json(g.lowest)},
+         {"highest", optional_json(g.highest)},
+         {of_points ? "exceeded_point_fraction" : "exceeded_area_fraction", v.exceeded_area_fraction}});
+    if (!of_points)
+      group.update({{"undecided_by", v.proof ? optional_json(v.proof->undecided_by) : Json()},
+                    {"witness", v.proof && v.proof->witness ? Json{{"distance", v.proof->witness->distance},
+                                                                   {"point", v.proof->witness->point}}
+                                                            : Json()}});
+    groups.push_back(std::move(group));
+  }
+  Json all{{"verdict", name_of(verdicts.verdict)}};
+  if (of_points)
+    all.update({{"reason", reason_json(verdicts.without_group)},
+                {"beyond_max_distance", verdicts.without_group.beyond_max_distance},
+                {"without_match", verdicts.without_group.without_match}});
+  all["groups"] = std::move(groups);
+  return all;
+}
+
+Json to_json(const IslandReport& islands) {
+  return fields_json(islands, {{"faces", "triangles"}});
+}
+
+Json to_json(const PointIslands& islands, std::uint64_t points) {
+  return {{"islands", islands.islands},
+          {"points", islands.points},
+          {"point_fraction", static_cast<double>(islands.points) / static_cast<double>(points)},
+          {"reach", islands.reach}};
+}
+
+Json to_json(const HausdorffDistance& distance, bool facing) {
+  Json json = fields_json(distance.distance);
+  json["faces"] = distance.faces;
+  if (!facing) return json;
+  json["faces_without_match"] = distance.faces_without_match;
+  json["area_without_match"] = distance.area_without_match;
+  return json;
+}
+
+Json to_json(const BoundedNumber& number, std::optional<double> confidence) {
+  Json json = fields_json(number);
+  if (number.certainty == Certainty::estimate && confidence) json["confidence"] = *confidence;
+  return json;
+}
+
+Json to_json(const DirectedMetrics& metrics, const MetricsOptions& options, double confidence) {
+  Json json{{"area", metrics.area},
+            {"hausdorff", fields_json(metrics.hausdorff)},
+            {"mean", to_json(metrics.mean, confidence)},
+            {"rms", to_json(metrics.rms, confidence)}};
+  if (options.estimate) json["points"] = metrics.points;
+  json["percentiles"] = Json::array();
+  json["within"] = Json::array();
+  for (std::size_t i = 0; i < metrics.percentiles.size(); ++i) {
+    json["percentiles"].push_back({{"percent", options.percentiles[i]}});
+    json["percentiles"].back().update(to_json(metrics.percentiles[i], confidence));
+  }
+  for (std::size_t i = 0; i < metrics.within.size(); ++i) {
+    json["within"].push_back({{"tolerance", options.tolerances[i]}});
+    json["within"].back().update(to_json(metrics.within[i], confidence));
+  }
+  json["normal_consistency"] = metrics.normal_consistency;
+  return json;
+}
+
+Json collision_json(bool colliding) {
+  return {{"value", colliding}, {"kind", name_of(Certainty::exact)}};
+}
+
+Json to_json(const Contact& contact) {
+  return {{"point1", contact.point1},
+          {"point2", contact.point2},
+          {"normal", contact.normal},
+          {"depth", contact.depth},
+          {"patch", contact.patch},
+          {"faces", {contact.on[0].face, contact.on[1].face}},
+          {"barycentric", {contact.on[0].barycentric, contact.on[1].barycentric}},
+          {"id", contact.id}};
+}
+
+Json to_json(std::span<const PairContacts> pairs) {
+  Json contacts = Json::array();
+  for (const PairContacts& pair : pairs)
+    for (const Contact& contact : pair.contacts) {
+      Json json{{"first", pair.first}, {"second", pair.second}};
+      json.update(to_json(contact));
+      contacts.push_back(std::move(json));
+    }
+  return contacts;
+}
 
 std::string tessellation_json(const Tessellation& tessellation) {
   return text_of(to_json(tessellation));
@@ -332,27 +448,7 @@ std::string summary_json(const Summary& summary) {
 }
 
 std::string report_json(const MapReport& report, const Surface& surface, const Summary& summary) {
-  Json json;
-  json["version"] = kVersion;
-  if (summary.of_itself) {
-    json["mesh"] = to_json(report.on);
-  } else {
-    json["o1"] = to_json(report.on_o1 ? report.on : report.to);
-    json["o2"] = to_json(report.on_o1 ? report.to : report.on);
-    json[report.on_o1 ? "o2" : "o1"]["embedded"] = optional(report.embedded);
-    json["measured_on"] = report.on_o1 ? "o1" : "o2";
-  }
-  json["units"] = summary.units;
-  json["atlas"] = to_json(surface);
-  if (!summary.of_itself) {
-    json["atlas"]["udim"] = optional(report.udim);
-    json["atlas"]["cut_faces"] = report.cut_faces;
-    json["precision"] = optional(report.precision);
-  }
-  if (!report.engine.empty()) json["engine"] = report.engine;
-  json.update(to_json(summary));
-  json["time_ms"] = to_json(report.time_ms);
-  return text_of(json);
+  return text_of(to_json(report, surface, summary));
 }
 
 }  // namespace sdm
