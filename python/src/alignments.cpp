@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "fields.h"
 #include "signatures.h"
 #include "sites_in_use.h"
 
@@ -60,32 +61,15 @@ void restrict(AlignOptions& options, nb::handle free, nb::handle about, nb::hand
 
 void bind_freedom(nb::module_& module) {
   using F = DegreeOfFreedom;
-  nb::class_<F>(
+  nb::class_<F> freedom(
       module, "DegreeOfFreedom", nb::is_weak_referenceable(),
       R"(A rigid motion of the aligned O1, and how well O2 determines it: a translation and a rotation
 about an axis through the centre of O1, with |translation|² + |rotation|² = 1. A rotation of r moves O1 by r
-divided by its radius of gyration, in radians.)")
-      .def_prop_ro(
-          "translation", [](const F& self) { return vector_of(self.translation); },
-          nb::sig("def translation(self) -> numpy.typing.NDArray[numpy.float64]"), "(3,) float64.")
-      .def_prop_ro(
-          "rotation", [](const F& self) { return vector_of(self.rotation); },
-          nb::sig("def rotation(self) -> numpy.typing.NDArray[numpy.float64]"),
-          "Along the axis, (3,) float64.")
-      .def_ro(
-          "determined", &F::determined,
-          "The rms distance by which the samples move along the normals of O2, per unit of motion: 0 for a "
-          "plane that moves in itself, 1 for one that moves along its normal.")
-      .def_ro(
-          "standard_error", &F::standard_error,
-          "An estimate: the standard error of the motion, as a length, if residuals are independent noise; "
-          "None if it is free.")
-      .def_ro("free", &F::free, "O2 is nearly unchanged by the motion: O1 fits as well after it.")
-      .def_ro("locked", &F::locked, "The alignment was not allowed to use it.")
-      .def("__repr__", [](const F& self) {
-        return nb::str("sdm.DegreeOfFreedom(determined={:.3g}{})")
-            .format(self.determined, self.free ? ", free" : "");
-      });
+divided by its radius of gyration, in radians.)");
+  bind_fields(freedom).def("__repr__", [](const F& self) {
+    return nb::str("sdm.DegreeOfFreedom(determined={:.3g}{})")
+        .format(self.determined, self.free ? ", free" : "");
+  });
 }
 
 void bind_alignment(nb::module_& module) {
@@ -245,16 +229,11 @@ True)");
 }
 
 void bind_doubts(nb::module_& module) {
-  nb::class_<Doubt>(module, "Doubt", nb::is_weak_referenceable(),
-                    "Why it should not be trusted that all distances are within a tolerance.")
-      .def_prop_ro(
-          "reason", [](const Doubt& self) { return name_of(self.reason); },
-          "'other unit', 'mirrored', 'poor fit', 'undetermined' or 'low coverage'.")
-      .def_ro("text", &Doubt::text, "What was found.")
-      .def_ro("remedy", &Doubt::remedy, "What mends it, by the options of the command.")
-      .def("__repr__", [](const Doubt& self) {
-        return nb::str("sdm.Doubt({}: {})").format(name_of(self.reason), self.text);
-      });
+  nb::class_<Doubt> type(module, "Doubt", nb::is_weak_referenceable(),
+                         "Why it should not be trusted that all distances are within a tolerance.");
+  bind_fields(type).def("__repr__", [](const Doubt& self) {
+    return nb::str("sdm.Doubt({}: {})").format(name_of(self.reason), self.text);
+  });
   module.def(
       "alignment_doubts",
       [](nb::handle o1, nb::handle o2, const Alignment& alignment, const char* start, nb::handle pose) {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "arrays.h"
+#include "fields.h"
 #include "map.h"
 #include "signatures.h"
 
@@ -138,8 +139,7 @@ void bind_statistics(nb::module_& module) {
       module, "DistanceStatistics", nb::is_weak_referenceable(),
       "Statistics of the texels of a map that have a value, each weighted by its area on the surface. "
       "Distances are NaN if there are none. Estimates for the surface: DistanceMap.bounds holds everywhere.");
-  for_each_field<S>([&](const auto& field) { statistics.def_ro(field.name, field.member, field.text); });
-  statistics.def("__repr__", [](const S& s) {
+  bind_fields(statistics).def("__repr__", [](const S& s) {
     return nb::str("sdm.DistanceStatistics(min={:.6g}, max={:.6g}, mean={:.6g}, rms={:.6g}, texels={})")
         .format(s.min, s.max, s.mean, s.rms, s.texels);
   });

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "fields.h"
 #include "objects.h"
 #include "src/geometry/stretch.h"
 
@@ -187,20 +188,11 @@ sdm.Error: ...
 }
 
 void bind_weld(nb::module_& module) {
-  nb::class_<WeldReport>(module, "WeldReport", nb::is_weak_referenceable(), "What weld() did.")
-      .def_ro("tolerance", &WeldReport::tolerance,
-              "The largest distance between the ends of two edges that were joined.")
-      .def_ro("largest_move", &WeldReport::largest_move,
-              "The largest move of a vertex: distances to the welded mesh differ from those to the mesh by "
-              "at most this.")
-      .def_ro("joined_vertices", &WeldReport::joined_vertices, "The vertices that have no face any more.")
-      .def_ro("boundary_edges", &WeldReport::boundary_edges, "The boundary edges that are left.")
-      .def_ro("t_junctions", &WeldReport::t_junctions,
-              "Their vertices that lie in the middle of another one, within the tolerance.")
-      .def("__repr__", [](const WeldReport& self) {
-        return nb::str("sdm.WeldReport(joined_vertices={}, largest_move={:.3g}, boundary_edges={})")
-            .format(self.joined_vertices, self.largest_move, self.boundary_edges);
-      });
+  nb::class_<WeldReport> type(module, "WeldReport", nb::is_weak_referenceable(), "What weld() did.");
+  bind_fields(type).def("__repr__", [](const WeldReport& self) {
+    return nb::str("sdm.WeldReport(joined_vertices={}, largest_move={:.3g}, boundary_edges={})")
+        .format(self.joined_vertices, self.largest_move, self.boundary_edges);
+  });
   module.def(
       "weld",
       [](nb::handle mesh, std::optional<double> tolerance) {
@@ -252,16 +244,12 @@ by ProximityQuery, PoseQuery and MultiBodyQuery. Raises Error for a mesh whose c
 }
 
 void bind_islands(nb::module_& module) {
-  nb::class_<IslandReport>(module, "IslandReport", nb::is_weak_referenceable(),
-                           "What remove_islands() removed.")
-      .def_ro("islands", &IslandReport::islands, "The number of components.")
-      .def_ro("faces", &IslandReport::faces, "The number of their faces.")
-      .def_ro("area", &IslandReport::area, "Their area.")
-      .def_ro("area_fraction", &IslandReport::area_fraction, "That as a fraction of the area of the mesh.")
-      .def("__repr__", [](const IslandReport& self) {
-        return nb::str("sdm.IslandReport(islands={}, faces={}, area={:.3g})")
-            .format(self.islands, self.faces, self.area);
-      });
+  nb::class_<IslandReport> type(module, "IslandReport", nb::is_weak_referenceable(),
+                                "What remove_islands() removed.");
+  bind_fields(type).def("__repr__", [](const IslandReport& self) {
+    return nb::str("sdm.IslandReport(islands={}, faces={}, area={:.3g})")
+        .format(self.islands, self.faces, self.area);
+  });
   module.def(
       "remove_islands",
       [](nb::handle mesh, std::size_t faces, double area, double area_fraction) {

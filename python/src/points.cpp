@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "fields.h"
 #include "groups.h"
 #include "map.h"
 #include "options.h"
@@ -32,16 +33,6 @@ TextDialect dialect_of(const std::optional<std::vector<std::string>>& columns, c
   if (columns) dialect.columns = *columns;
   validate(dialect);
   return dialect;
-}
-
-nb::object dict_of(const std::optional<TextDialect>& text) {
-  if (!text) return nb::none();
-  nb::dict result;
-  result["separator"] = sdm::name_of(text->separator);
-  result["decimal"] = sdm::name_of(text->decimal);
-  result["columns"] = text->columns;
-  result["header_line"] = text->header_line ? nb::cast(*text->header_line) : nb::none();
-  return result;
 }
 
 nb::object read_points(nb::handle file, const std::optional<std::vector<std::string>>& columns,
@@ -92,7 +83,10 @@ void bind_distances(nb::module_& module) {
       .def_ro("has_normals", &D::has_normals, "Whether the file has normals.")
       .def_ro("format", &D::format, "The format of the file: 'PLY', 'PCD', 'LAS', 'PTX' or 'text'.")
       .def_prop_ro(
-          "text", [](const D& self) { return dict_of(self.text); },
+          "text",
+          [](const D& self) -> nb::object {
+            return self.text ? nb::object(dict_of_fields(*self.text)) : nb::none();
+          },
           nb::sig("def text(self) -> dict[str, object] | None"),
           "How text was read: ``separator``, ``decimal``, ``columns`` ('_': ignored) and ``header_line`` "
           "(from 1; "

@@ -1,5 +1,6 @@
 // Proximity of two bodies.
 #include "proximity.h"
+#include "fields.h"
 #include "options.h"
 #include "signatures.h"
 #include "stored.h"
@@ -22,27 +23,10 @@ int checked(int body) {
 }
 
 void bind_lengths(nb::module_& module) {
-  nb::class_<BoundedLength>(
+  nb::class_<BoundedLength> length(
       module, "BoundedLength", nb::is_weak_referenceable(),
-      "A length with its bounds, in units of the meshes. ``float()`` of it is the value.")
-      .def_ro("value", &BoundedLength::value)
-      .def_prop_ro(
-          "certainty", [](const BoundedLength& self) { return name_of(self.certainty); },
-          nb::sig("def certainty(self) -> " SDM_CERTAINTY),
-          "'exact': computed from the triangles, accurate to 1e-6 of the diagonal of both bodies' box; "
-          "'bounded': the true value lies between the bounds.")
-      .def_ro("lower", &BoundedLength::lower, "lower ≤ truth.")
-      .def_ro("upper", &BoundedLength::upper, "truth ≤ upper.")
-      .def_prop_ro(
-          "witness",
-          [](const BoundedLength& self) -> nb::object {
-            if (!self.witness) return nb::none();
-            std::vector<std::array<Vec3, 2>> rows{*self.witness};
-            return array_of<double>(std::move(rows), {2, 3});
-          },
-          nb::sig("def witness(self) -> numpy.typing.NDArray[numpy.float64] | None"),
-          R"(A point of O1 and a point of O2 that are ``value`` apart, (2, 3) float64; None where no pair
-of points attains the value.)")
+      "A length with its bounds, in units of the meshes. ``float()`` of it is the value.");
+  bind_fields(length)
       .def("__float__", [](const BoundedLength& self) { return self.value; })
       .def("__repr__", [](const BoundedLength& self) {
         if (self.certainty == Certainty::exact)
@@ -54,23 +38,11 @@ of points attains the value.)")
 
 void bind_separating_translation(nb::module_& module) {
   using T = SeparatingTranslation;
-  nb::class_<T>(module, "SeparatingTranslation", nb::is_weak_referenceable(),
-                R"(How far O1 must be moved to leave O2, in units of the meshes. ``float()`` of it is the
-value.)")
-      .def_ro("value", &T::value, "The length of ``translation``; the same as ``upper``.")
-      .def_prop_ro(
-          "certainty", [](const T& self) { return name_of(self.certainty); },
-          nb::sig("def certainty(self) -> " SDM_CERTAINTY),
-          "'exact': the bounds are at most 1e-6 of the diagonal of both bodies' box apart, as those of "
-          "convex "
-          "solids are; 'bounded': the shortest translation is between the bounds.")
-      .def_ro("lower", &T::lower, "No shorter translation separates the bodies.")
-      .def_ro("upper", &T::upper, "``translation`` is that long, and separates them.")
-      .def_prop_ro(
-          "translation", [](const T& self) { return vector_of(self.translation); },
-          nb::sig("def translation(self) -> numpy.typing.NDArray[numpy.float64]"),
-          "Moving O1 by it ends the collision, (3,) float64: verified by the exact test. 0 without a "
-          "collision.")
+  nb::class_<T> translation(
+      module, "SeparatingTranslation", nb::is_weak_referenceable(),
+      R"(How far O1 must be moved to leave O2, in units of the meshes. ``float()`` of it is the
+value.)");
+  bind_fields(translation)
       .def("__float__", [](const T& self) { return self.value; })
       .def("__repr__", [](const T& self) {
         return nb::str("sdm.SeparatingTranslation({:.9g}, in [{:.9g}, {:.9g}])")

@@ -14,10 +14,6 @@
 namespace sdm::python {
 
 template <>
-inline constexpr auto kMembers<SeparatingTranslation> = std::tuple{
-    &SeparatingTranslation::value, &SeparatingTranslation::certainty, &SeparatingTranslation::lower,
-    &SeparatingTranslation::upper, &SeparatingTranslation::translation};
-template <>
 inline constexpr auto kMembers<CoverageMap> =
     std::tuple{&CoverageMap::value, &CoverageMap::lower,   &CoverageMap::upper,
                &CoverageMap::reach, &CoverageMap::of_face, &CoverageMap::pieces};
@@ -27,21 +23,9 @@ inline constexpr auto kMembers<CoveragePiece> =
 
 // Verdicts.
 template <>
-inline constexpr auto kLast<Verdict> = Verdict::doubtful;
-template <>
-inline constexpr auto kLast<VerdictReason> = VerdictReason::in_doubt;
-template <>
 inline constexpr auto kLast<Proof> = Proof::undecided;
 template <>
 inline constexpr auto kMembers<Tolerance> = std::tuple{&Tolerance::lo, &Tolerance::hi};
-template <>
-inline constexpr auto kMembers<ToleranceShares> =
-    std::tuple{&ToleranceShares::below, &ToleranceShares::within, &ToleranceShares::above,
-               &ToleranceShares::without_value};
-template <>
-inline constexpr auto kMembers<ToleranceWitness> =
-    std::tuple{&ToleranceWitness::point, &ToleranceWitness::closest, &ToleranceWitness::face,
-               &ToleranceWitness::closest_face, &ToleranceWitness::distance};
 template <>
 inline constexpr auto kMembers<ToleranceProof> = std::tuple{
     &ToleranceProof::proof,        &ToleranceProof::witness,          &ToleranceProof::at_lower,
@@ -84,9 +68,6 @@ inline constexpr auto kMembers<Places> =
 
 // Point clouds.
 template <>
-inline constexpr auto kMembers<TextDialect> = std::tuple{&TextDialect::separator, &TextDialect::decimal,
-                                                         &TextDialect::columns, &TextDialect::header_line};
-template <>
 inline constexpr auto kMembers<PointExtreme> =
     std::tuple{&PointExtreme::distance, &PointExtreme::point, &PointExtreme::index};
 template <>
@@ -118,34 +99,10 @@ inline constexpr auto kMembers<PointDistances> = std::tuple{&PointDistances::poi
 
 // Alignments.
 template <>
-inline constexpr auto kLast<DoubtReason> = DoubtReason::thin_walls;
-template <>
-inline constexpr auto kMembers<Doubt> = std::tuple{&Doubt::reason, &Doubt::text, &Doubt::remedy};
-template <>
-inline constexpr auto kMembers<DegreeOfFreedom> =
-    std::tuple{&DegreeOfFreedom::translation, &DegreeOfFreedom::rotation,       &DegreeOfFreedom::axis_point,
-               &DegreeOfFreedom::determined,  &DegreeOfFreedom::standard_error, &DegreeOfFreedom::free,
-               &DegreeOfFreedom::locked};
-template <>
-inline constexpr auto kMembers<AlignResiduals> =
-    std::tuple{&AlignResiduals::rms, &AlignResiduals::trimmed_rms};
-template <>
-inline constexpr auto kMembers<GroupResiduals> =
-    std::tuple{&GroupResiduals::samples, &GroupResiduals::rms, &GroupResiduals::largest};
-template <>
 inline constexpr auto kMembers<Alignment> = std::tuple{
     &Alignment::transform,     &Alignment::before,           &Alignment::after,      &Alignment::samples,
     &Alignment::fraction_used, &Alignment::fraction_fitting, &Alignment::iterations, &Alignment::converged,
     &Alignment::centre,        &Alignment::gyration_radius,  &Alignment::freedoms,   &Alignment::groups};
-
-// Meshes.
-template <>
-inline constexpr auto kMembers<WeldReport> =
-    std::tuple{&WeldReport::tolerance, &WeldReport::largest_move, &WeldReport::joined_vertices,
-               &WeldReport::boundary_edges, &WeldReport::t_junctions};
-template <>
-inline constexpr auto kMembers<IslandReport> = std::tuple{&IslandReport::islands, &IslandReport::faces,
-                                                          &IslandReport::area, &IslandReport::area_fraction};
 
 void bind_result_states() {
   bind_value<DistanceStatistics>();

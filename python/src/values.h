@@ -192,21 +192,13 @@ void bind_value() {
 
 // What several objects consist of.
 template <>
-inline constexpr auto kLast<Certainty> = Certainty::estimate;
-template <>
 inline constexpr auto kMembers<Transform> = std::tuple{&Transform::rows};
 template <>
 inline constexpr auto kMembers<Mesh> = std::tuple{&Mesh::positions, &Mesh::triangles, &Mesh::corner_uvs};
 template <>
-inline constexpr auto kMembers<BoundedLength> =
-    std::tuple{&BoundedLength::value, &BoundedLength::certainty, &BoundedLength::lower, &BoundedLength::upper,
-               &BoundedLength::witness};
-template <>
 inline constexpr auto kMembers<TimeOfContact> = std::tuple{
     &TimeOfContact::contact, &TimeOfContact::time,  &TimeOfContact::separation, &TimeOfContact::certainty,
     &TimeOfContact::witness, &TimeOfContact::faces, &TimeOfContact::normal};
-template <>
-inline constexpr auto kMembers<SignUsed> = std::tuple{&SignUsed::method, &SignUsed::reason};
 template <>
 inline constexpr auto kMembers<GivenOption> = std::tuple{&GivenOption::name, &GivenOption::value};
 template <>

@@ -89,6 +89,7 @@ def test_align_finds_the_pose_of_a_copy(target):
     for freedom in alignment.freedoms:
         length = np.hypot(np.linalg.norm(freedom.translation), np.linalg.norm(freedom.rotation))
         assert length == pytest.approx(1) and freedom.determined > 0.02
+        assert freedom.axis_point.shape == (3,) if np.linalg.norm(freedom.rotation) > 0 else freedom.axis_point is None
     # From the pose itself nothing is left to do.
     again = sdm.align((vertices @ pose[:3, :3].T + pose[:3, 3], faces), lumpy(), pose=np.linalg.inv(pose))
     np.testing.assert_allclose(again.transform @ pose, np.eye(4), atol=1e-9)
