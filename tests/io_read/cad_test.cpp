@@ -270,6 +270,15 @@ TEST(Cad, IgesHasTheSameTube) {
   EXPECT_NEAR(volume_of(iges.mesh), volume_of(step.mesh), 1e-3 * volume_of(step.mesh));
 }
 
+// Surfaces that have no edges in common.
+TEST(Cad, IgesSurfacesThatMeetAreJoined) {
+  const MeshFile solid = read_mesh_file(cad_file("tube.igs")),
+                 surfaces = read_mesh_file(cad_file("surfaces.igs"));
+  EXPECT_EQ(surfaces.tessellation->faces, solid.tessellation->faces);
+  EXPECT_TRUE(inspect(surfaces.mesh).closed);
+  EXPECT_NEAR(std::abs(volume_of(surfaces.mesh)), volume_of(solid.mesh), 1e-3 * volume_of(solid.mesh));
+}
+
 TEST(Cad, FormatsAreRecognisedByTheirContent) {
   const TemporaryFolder folder;
   for (const auto& [name, format] : {std::pair("box.step", "STEP"), std::pair("tube.igs", "IGES")}) {

@@ -54,8 +54,9 @@ void write_step(const TopoDS_Shape& shape, const std::string& name, const std::s
   write_step(document, file, unit);
 }
 
-void write_iges(const TopoDS_Shape& shape, const std::string& file) {
-  IGESControl_Writer writer("IN", 1);  // solids rather than surfaces
+enum class Iges { surfaces, solids };
+void write_iges(const TopoDS_Shape& shape, const std::string& file, Iges as) {
+  IGESControl_Writer writer("IN", as == Iges::solids ? 1 : 0);
   require(writer.AddShape(shape), file);
   writer.ComputeModel();
   require(writer.Write(file.c_str()), file);
@@ -126,7 +127,8 @@ int main(int count, char** arguments) {
   write_step(tube, "tube", folder + "tube.step");
   write_step(BRepPrimAPI_MakeSphere(10).Shape(), "sphere", folder + "sphere.step");
   write_step(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 0, 0)).Shape(), "line", folder + "line.step");
-  write_iges(tube, folder + "tube.igs");
+  write_iges(tube, folder + "tube.igs", Iges::solids);
+  write_iges(tube, folder + "surfaces.igs", Iges::surfaces);
   write_two(folder + "two.step");
   write_assembly(folder + "assembly.step");
   write_external(folder + "external.step");

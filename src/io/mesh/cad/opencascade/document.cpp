@@ -42,6 +42,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/mesh/cad/opencascade/sew.h"
+
 namespace sdm::io::cad {
 namespace {
 
@@ -365,6 +367,7 @@ Document read_document(const CadRequest& request) {
   if (request.format == CadFormat::iges) {
     result.unit = read_iges(request, open.document);
     (void)FaceCollector(open.document, {}).collect(result, [](const TDF_Label&) { return true; });
+    if (request.labels) sew(result);  // not where a first attempt has crashed
     return result;
   }
   StepReader reader;
