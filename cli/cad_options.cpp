@@ -19,8 +19,12 @@ void add_deflection_option(CLI::App& app, sdm::TessellationOptions& options) {
 }
 
 void check_deflection(const sdm::TessellationOptions& options, std::initializer_list<const Input*> inputs) {
-  if (!options.deflection) return;
-  if (std::ranges::none_of(inputs, [](const Input* input) { return input->tessellation.has_value(); }))
+  check_deflection(options, std::ranges::any_of(
+                                inputs, [](const Input* input) { return input->tessellation.has_value(); }));
+}
+
+void check_deflection(const sdm::TessellationOptions& options, bool some_are_cad) {
+  if (options.deflection && !some_are_cad)
     throw CLI::ValidationError("--deflection", "applies to STEP and IGES, and no input is one of these");
 }
 

@@ -21,6 +21,7 @@ void add_deflection_option(CLI::App& app, sdm::TessellationOptions& options);
 
 /// Throws CLI::ValidationError if a deflection was given but none of the inputs is CAD.
 void check_deflection(const sdm::TessellationOptions& options, std::initializer_list<const Input*> inputs);
+void check_deflection(const sdm::TessellationOptions& options, bool some_are_cad);
 
 /// The deflection that a tolerance needs, in its unit: a tenth of half of the distance of the limits, or of
 /// the only limit. Nothing without a finite limit other than 0.

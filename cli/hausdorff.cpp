@@ -244,6 +244,7 @@ void add_hausdorff_command(CLI::App& app) {
                      {fmt::format("The mesh whose points are measured ({})", sdm::mesh_format_names()),
                       "The mesh that distances are measured to"});
   add_pair_transforms(*hausdorff, c);
+  add_pair_reading(*hausdorff, c);
   add_declared_options(*hausdorff, c.options);
   hausdorff->add_flag("--both", c.both, "Measure in both directions");
   hausdorff

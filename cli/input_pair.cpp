@@ -19,6 +19,9 @@ void add_pair_arguments(CLI::App& app, PairFiles& files, const std::array<std::s
 void add_pair_transforms(CLI::App& app, PairFiles& files) {
   add_transform_option(app, "--transform-o1", "O1", files.transform_o1);
   add_transform_option(app, "--transform-o2", "O2", files.transform_o2);
+}
+
+void add_pair_reading(CLI::App& app, PairFiles& files) {
   add_weld_option(app, files.weld, "both meshes");
   add_deflection_option(app, files.tessellation);
 }

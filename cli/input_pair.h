@@ -18,8 +18,10 @@ struct PairFiles {
 
 /// Adds O1 and O2, both required, with these descriptions.
 void add_pair_arguments(CLI::App& app, PairFiles& files, const std::array<std::string, 2>& descriptions);
-/// Adds --transform-o1, --transform-o2, --weld and --deflection.
+/// Adds --transform-o1 and --transform-o2.
 void add_pair_transforms(CLI::App& app, PairFiles& files);
+/// Adds --weld and --deflection, which load_pair() follows.
+void add_pair_reading(CLI::App& app, PairFiles& files);
 
 /// Both meshes, after their transforms.
 struct InputPair {

@@ -38,6 +38,7 @@ void add_options(CLI::App& app, MapCommand& c) {
       app.add_flag("--both", c.both, "Also compute the map of O2; results in DIR/o1 and DIR/o2");
 
   add_pair_transforms(app, c);
+  add_pair_reading(app, c);
   add_unit_options(app, c.file_units);
   add_island_option(app, c.islands);
   add_island_option_o2(app, c.islands_o2);

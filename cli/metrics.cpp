@@ -185,6 +185,7 @@ void add_metrics_command(CLI::App& app) {
                      {fmt::format("The mesh that is compared ({})", sdm::mesh_format_names()),
                       "The mesh that it is compared with, the truth"});
   add_pair_transforms(*metrics, c);
+  add_pair_reading(*metrics, c);
   add_numbers(*metrics, "--percentile", c.options.percentiles,
               "Percentiles P for hdP, separated by commas; by default 95",
               number("a number between 0 and 100", [](double p) { return p > 0 && p < 100; }))

@@ -69,6 +69,7 @@ void add_proximity_command(CLI::App& app) {
       "  sdm proximity bunny.obj armadillo.off --transform-o1 fit --transform-o2 fit,translate:0.1:0:0");
   const auto command = std::make_shared<PairCommand>();
   add_options(*proximity, *command, {fmt::format("A mesh ({})", sdm::mesh_format_names()), "The other mesh"});
+  add_pair_reading(*proximity, *command);
   const auto align = std::make_shared<AlignCommand>();
   add_align_options(*proximity, *align);
   proximity->callback([command, align] {

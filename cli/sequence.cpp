@@ -133,6 +133,8 @@ int run(SequenceCommand command) {
     command.reading.tessellation.at_most = deflection_for(*command.picture.tolerance);
 
   std::array<Body, 2> bodies = open_bodies(command);
+  check_deflection(command.reading.tessellation,
+                   std::ranges::any_of(bodies, [](const Body& b) { return b.tessellation().has_value(); }));
   const std::size_t count = common_frames(bodies[0], bodies[1]);
   const auto engine = make_engine(command.engine, {}, command.atlas);
   const std::array<sdm::Mesh, 2> first{bodies[0].mesh(), bodies[1].mesh()};

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "cad_options.h"
 #include "common_options.h"
 #include "doubts.h"
 #include "option_checks.h"
@@ -30,6 +31,7 @@ void add_output_options(CLI::App& app, SequenceCommand& c) {
 }
 
 void add_reading_options(CLI::App& app, SequenceCommand& c) {
+  add_deflection_option(app, c.reading.tessellation);
   app.add_option("--rate", c.reading.rate, "glTF animations: frames per second; by default one frame per key")
       ->check(positive_number())
       ->type_name("FPS");
@@ -87,6 +89,7 @@ Json options_json(const SequenceCommand& c) {
           {"--map-precision", c.map_precision},
           {"--maps", c.outputs.maps_every},
           {"--rate", optional(c.reading.rate)},
+          {"--deflection", optional(c.reading.tessellation.deflection)},
           {"--allow-topology", c.reading.allow_topology},
           {"--engine", c.engine.name},
           {"--no-temporal", !c.outputs.temporal},

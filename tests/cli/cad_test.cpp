@@ -13,6 +13,7 @@
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
 #include "support/run_sdm.h"
+#include "support/shapes.h"
 #include "support/temporary_folder.h"
 
 namespace sdm::test {
@@ -228,10 +229,27 @@ TEST(CadCommand, FramesKeepTheirDistanceFromTheLimits) {
   EXPECT_LT(perfect["guard"], 0.01);
   const nlohmann::json dent = run("dented.ply", "0.07");
   EXPECT_EQ(dent["verdict"], "FAIL");
+  const nlohmann::json fine = run("perfect.ply", "0.04", {"--deflection", "0.001"});
+  EXPECT_EQ(fine["verdict"], "PASS");
+  EXPECT_LT(fine["guard"], 0.5 * perfect["guard"].get<double>());
   const nlohmann::json metres =
       run("dented.ply", "7e-5", {"--transform-o1", "scale:0.001", "--transform-o2", "scale:0.001"});
   EXPECT_EQ(metres["verdict"], "FAIL");
   EXPECT_NEAR(metres["guard"].get<double>(), 1e-3 * dent["guard"].get<double>(), 1e-9);
+}
+
+// Options that change nothing are refused.
+TEST(CadCommand, ASequenceWithoutCadHasNoDeflection) {
+  const TemporaryFolder folder;
+  write_ply(folder / "cube.ply", cube());
+  const std::string mesh = folder / "cube.ply";
+  const auto run = [&](const char* option, const char* value) {
+    return run_sdm({"sequence", mesh, mesh, "-o", folder / "out", option, value});
+  };
+  const Outcome cad = run("--deflection", "0.01"), welded = run("--weld", "auto");
+  EXPECT_EQ(cad.code, 2) << cad.out;
+  EXPECT_THAT(cad.err, HasSubstr("--deflection: applies to STEP and IGES, and no input is one of these"));
+  EXPECT_EQ(welded.code, 2) << welded.out;
 }
 
 // The files of an assembly are inputs, which are not replaced.
