@@ -73,8 +73,7 @@ std::optional<std::string> precision_note(const PointsCommand& command, const sd
 }
 
 /// What users probably did not intend.
-void add_notes(const PointsCommand& command, const Input& o2, const sdm::Sites& sites,
-               PointsOutcome& outcome) {
+void add_notes(const PointsCommand& command, const Input& o2, PointsOutcome& outcome) {
   Notes& all = outcome.summary.notes;
   const sdm::Box& box = outcome.found.bounds;
   if (const auto note = precision_note(command, box)) all.push_back(*note);
@@ -86,10 +85,6 @@ void add_notes(const PointsCommand& command, const Input& o2, const sdm::Sites& 
   if (outcome.aligned) std::ranges::copy(notes(*outcome.aligned), std::back_inserter(all));
   if (!command.picture.tolerance)
     if (auto note = note_on_unjudged(command.groups, o2)) all.push_back(std::move(*note));
-  if (sdm::may_cross_walls(outcome.found.measured.kind))
-    if (auto note = sdm::note_on_walls(sites, command.picture.tolerance, o2.names, command.groups.rows,
-                                       command.picture.units))
-      all.push_back(std::move(*note));
 }
 
 std::string files(const PointsCommand& command) {
@@ -200,7 +195,7 @@ int run(PointsCommand command) {
     if (!outcome.summary.tolerance && outcome.found.groups)
       add_group_doubts(*outcome.found.groups, outcome.summary.doubts);
     judge_doubts(command, options, o2, outcome, progress);
-    add_notes(command, o2, sites, outcome);
+    add_notes(command, o2, outcome);
     outcome.points_ms = watch.lap();
     report = report_of(command, o2, outcome);
     if (command.html) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/points.h>
+#include <sdm/thickness.h>
 
 #include <fmt/format.h>
 #include <lzf.h>
@@ -177,6 +178,18 @@ TEST_F(PointsCommand, WritesTheFilesThatAreAsked) {
   }
   ASSERT_EQ(run(xyz(points), {"--write", "html"}).code, 0);
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"report.html", "report.json"}));
+}
+
+// The walls are looked at once, for the verdict and for the note, which is in all summaries.
+TEST_F(PointsCommand, SummariesHaveTheNoteOnWalls) {
+  const Sites sites(mesh);
+  const PointDistancesOptions options{.picture = {.tolerance = 1.1, .units = "mm"}};
+  const PointDistances found =
+      measure_points(with("a.xyz", "0 0 2\n0 0 1.5\n"), sites, folder / "found.ply", options);
+  EXPECT_DOUBLE_EQ(found.thin_walls, thin_walls(sites));
+  const auto note = note_on_walls(sites, Tolerance(1.1), "mm");
+  ASSERT_TRUE(note);
+  EXPECT_THAT(summarize(found, options).notes, ::testing::ElementsAre(*note));
 }
 
 // A distance at a limit may be on either side of it, and signs may be estimates.

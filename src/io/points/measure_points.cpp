@@ -4,7 +4,6 @@
 #include <sdm/facing.h>
 #include <sdm/points.h>
 #include <sdm/sign.h>
-#include <sdm/thickness.h>
 #include <sdm/threads.h>
 
 #include <algorithm>
@@ -29,7 +28,9 @@
 #include "io/points/point_cells.h"
 #include "map/statistics/tolerance_limits.h"
 #include "map/statistics/weighted_statistics.h"
+#include "map/thickness/wall_lengths.h"
 #include "summary/verdict/sample_evidence.h"
+#include "summary/wall_note.h"
 
 namespace sdm {
 
@@ -120,7 +121,10 @@ class Measurement {
     for (const GroupTolerance& row : options_.table)
       largest = std::max(largest, largest_limit(row.tolerance));
     if (largest == 0) return;
-    result_.thin_walls = thin_walls(sites_);
+    const std::vector<double> walls = thickness::wall_lengths(sites_);
+    result_.thin_walls = thickness::thin_walls(walls);
+    result_.note_on_walls = summary::note_on_walls(walls, options_.picture.tolerance, options_.names,
+                                                   options_.table, options_.picture.units);
     by_facing_ = 2 * largest > result_.thin_walls && result_.has_normals;
   }
 

@@ -35,6 +35,7 @@ Summary summarize(const PointDistances& found, const PointDistancesOptions& opti
     summary.extreme_points = {found.min->index, found.max->index};
     summary.evidence.lowest = found.min->distance, summary.evidence.highest = found.max->distance;
   }
+  if (found.note_on_walls) summary.notes.push_back(*found.note_on_walls);
   if (!picture.tolerance) return summary;
   Judgement judgement =
       found.sign.method == SignMethod::side
