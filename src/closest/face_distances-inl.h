@@ -13,15 +13,21 @@
 #include "closest/region_kernels-inl.h"
 #include "geometry/lanes/vec-inl.h"
 #include "sites/frames/face_frames.h"
+#include "sites/sites_data.h"
 
 #ifndef SDM_FACE_DISTANCES_ONCE
 #define SDM_FACE_DISTANCES_ONCE
 namespace sdm::closest {
 namespace {
 
+inline sites::FrameSource frame_source(const sites::SitesData& sites) {
+  static_assert(sites::FaceFrames::kWidth == sites::FaceBounds::kWidth);
+  return {sites.mesh.positions, sites.mesh.triangles, sites.frame, sites.tree.items, sites.regions.leaves};
+}
+
 // Whether single precision resolves the point well enough to select faces near it: it is within a few sizes
 // of O2.
-bool is_near(const Vec3& unit_point) {
+inline bool is_near(const Vec3& unit_point) {
   constexpr double kNear = 16;
   return std::abs(unit_point[0]) <= kNear && std::abs(unit_point[1]) <= kNear &&
          std::abs(unit_point[2]) <= kNear;
@@ -35,11 +41,11 @@ bool is_near(const Vec3& unit_point) {
 // double precision, the normals of all but slivers are accurate to 1e-7, and a sliver is as close as its
 // sides to 2e-9 R. Twice the sum, rounded up.
 constexpr float kFarther = 1 + 3e-6f;
-float distance_error(float m, float largest_radius) {
+inline float distance_error(float m, float largest_radius) {
   return 5e-7f * std::max(1.0f, m) + 5e-6f * largest_radius;
 }
 // Beyond this in the unit frame, nothing is within max_distance.
-float unit_limit(double max_distance, double scale) {
+inline float unit_limit(double max_distance, double scale) {
   return static_cast<float>(std::min(1.00001 * max_distance * scale, 1e18));
 }
 
@@ -108,15 +114,16 @@ HWY_INLINE BlockVec squared_to_faces(const sites::FaceFrames& faces, size_t i, c
 }
 
 // Compares the faces of a leaf with a point: calls take(squared, lane) for those that may be closest, after
-// it has reduced the squared limit by them. Returns whether it did.
-template <class Take>
+// it has reduced the squared limit by them. Returns whether it did. Of the faces that are near enough from
+// lane i on, keep(i, mask) says which count.
+template <class Keep, class Take>
 HWY_INLINE bool compare_faces(const sites::FaceFrames& faces, const float (&point)[3], float error,
-                              float& squared_limit, const Take& take) {
+                              float& squared_limit, const Keep& keep, const Take& take) {
   const Block d;
   bool reduced = false;
   for (size_t i = 0; i < SiteBlock::kWidth; i += hn::Lanes(d)) {
     const BlockVec squared = squared_to_faces(faces, i, point);
-    const auto within = hn::Le(squared, hn::Set(d, squared_limit));  // false in unused lanes
+    const auto within = keep(i, hn::Le(squared, hn::Set(d, squared_limit)));  // false in unused lanes
     uint32_t near = bits_of(d, within);
     if (near == 0) continue;
     const float least = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(within, squared, hn::Inf(d))));

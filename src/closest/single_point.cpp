@@ -7,6 +7,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -21,39 +22,69 @@ HWY_BEFORE_NAMESPACE();
 namespace sdm::closest::HWY_NAMESPACE {
 namespace {
 
-sites::FrameSource frame_source(const sites::SitesData& sites) {
-  static_assert(sites::FaceFrames::kWidth == sites::FaceBounds::kWidth);
-  return {sites.mesh.positions, sites.mesh.triangles, sites.frame, sites.tree.items, sites.regions.leaves};
-}
+// What a search may find: all faces, or those that a point does not exclude.
+struct AllFaces {
+  static constexpr bool kAll = true;
+  // Whether a face does not count for a point.
+  bool excludes(size_t, uint32_t) const { return false; }
+  // The lanes that count for a point.
+  BlockMask kept(size_t, const sites::FaceFrames&, size_t, BlockMask mask) const { return mask; }
+  // The children of a node below which there are faces that count.
+  uint32_t open_children(uint32_t) const { return ~0u; }
+};
+struct NotExcluded {
+  static constexpr bool kAll = false;
+  const ExcludedFaces& excluded;
+
+  bool excludes(size_t point, uint32_t face) const { return excluded.excludes(point, face); }
+  HWY_INLINE BlockMask kept(size_t point, const sites::FaceFrames& faces, size_t i, BlockMask mask) const {
+    const Block d;
+    uint32_t bits = bits_of(d, mask);
+    for (uint32_t left = bits; left != 0; left &= left - 1)
+      if (excludes(point, faces.face[i + static_cast<size_t>(std::countr_zero(left))])) bits ^= left & -left;
+    const uint8_t bytes[8] = {static_cast<uint8_t>(bits)};
+    return hn::LoadMaskBits(d, bytes);
+  }
+  uint32_t open_children(uint32_t node) const { return ~uint32_t{excluded.closed[node]}; }
+};
 
 // Searches for one point at a time; the policy of its search of the tree, nearest box first.
+template <class Faces>
 class PointSearch {
  public:
-  PointSearch(const sites::SitesData& sites, double max_distance, SinglePointMemory& memory)
+  PointSearch(const sites::SitesData& sites, const Faces& faces, double max_distance,
+              SinglePointMemory& memory)
       : sites_(sites),
+        faces_(faces),
         frames_(sites.frames, frame_source(sites)),
         settled_(sites),
         max_distance_(max_distance),
         m_(memory) {}
 
-  // `known`: points of O2 in the unit frame, which may be close to the query.
-  ClosestPoint operator()(const Vec3& query, std::span<const float[3]> known = {}) {
+  // `number`: of the point in the packet that excludes faces; `known`: points of O2 in the unit frame, which
+  // may be close to the query.
+  ClosestPoint operator()(const Vec3& query, size_t number, std::span<const float[3]> known = {}) {
+    number_ = number;
     const ClosestPoint found = search(query, known);
-    if (found.type == SiteType::none && max_distance_ == std::numeric_limits<double>::infinity())
-      throw_nothing_found();
+    if constexpr (Faces::kAll)
+      if (found.type == SiteType::none && max_distance_ == std::numeric_limits<double>::infinity())
+        throw_nothing_found();
     return found;
   }
 
   static bool before(float first, float second) { return first < second; }
   bool enter(const tree::OpenNode& open) const { return open.bound <= squared_limit_; }
-  uint32_t bound(const tree::OpenNode&, const tree::WideTree::Node& node, float* squared) const {
-    return near_children(node, point_, squared_limit_, squared);
+  uint32_t bound(const tree::OpenNode& open, const tree::WideTree::Node& node, float* squared) const {
+    return near_children(node, point_, squared_limit_, squared) & faces_.open_children(open.child);
   }
   void leaf(const tree::OpenNode& open) {
     const sites::FaceFrames& faces = frames_[open.leaf_number()];
-    compare_faces(faces, point_, error_, squared_limit_, [&](float squared, size_t lane) {
-      m_.candidates.push_back({squared, faces.face[lane], open.leaf_number(), 0});
-    });
+    compare_faces(
+        faces, point_, error_, squared_limit_,
+        [&](size_t i, BlockMask mask) HWY_ATTR { return faces_.kept(number_, faces, i, mask); },
+        [&](float squared, size_t lane) {
+          m_.candidates.push_back({squared, faces.face[lane], open.leaf_number(), 0});
+        });
   }
 
  private:
@@ -73,6 +104,10 @@ class PointSearch {
 
   // The result of exact_closest().
   ClosestPoint from_afar(const Vec3& query, const Vec3& unit, std::span<const float[3]> known) {
+    if constexpr (!Faces::kAll)
+      return exact_closest(
+          sites_, query, max_distance_, [](uint32_t) { return true; },
+          [&](uint32_t face) { return !faces_.excludes(number_, face); });
     if (!(squared_norm(unit) <= FarSearch::kFarthest * FarSearch::kFarthest))
       return exact_closest(sites_, query, max_distance_);
     if (lower_bound(sites_.tree.box(0), unit) > max_distance_ * sites_.frame.scale) return {};
@@ -85,10 +120,12 @@ class PointSearch {
   }
 
   const sites::SitesData& sites_;
+  const Faces faces_;
   sites::LeafFrames::View frames_;
   Settled settled_;
   const double max_distance_;
   SinglePointMemory& m_;
+  size_t number_ = 0;
   float point_[3] = {};      // the query in the unit frame
   float error_ = 0;          // see distance_error()
   float squared_limit_ = 0;  // nothing beyond this in the unit frame is closest
@@ -97,15 +134,18 @@ class PointSearch {
 // Searches for a packet of points that are near each other; the policy of its search of the tree. The node
 // nearest to the centre of the points comes first, boxes are compared with all points at once, and the faces
 // of a leaf with each point that is near enough to its box.
+template <class Faces>
 class PacketSearch {
  public:
   static constexpr size_t kSize = SinglePointMemory::kPacket;
 
-  PacketSearch(const sites::SitesData& sites, double max_distance, SinglePointMemory& memory)
+  PacketSearch(const sites::SitesData& sites, const Faces& faces, double max_distance,
+               SinglePointMemory& memory)
       : sites_(sites),
+        faces_(faces),
         frames_(sites.frames, frame_source(sites)),
         settled_(sites),
-        alone_(sites, max_distance, memory),
+        alone_(sites, faces, max_distance, memory),
         max_distance_(max_distance),
         m_(memory) {}
 
@@ -124,9 +164,15 @@ class PacketSearch {
     for (size_t i = 0; i < count; ++i) {
       ClosestPoint& closest = found[order[i]];
       closest =
-          (alone >> i & 1) != 0 ? alone_(packet[i], {last_, known_}) : settled_.closest(i, max_distance_);
-      if (closest.type != SiteType::none) remember(i, closest.point);
+          (alone >> i & 1) != 0 ? alone_(packet[i], i, {last_, known_}) : settled_.closest(i, max_distance_);
+      if (closest.type != SiteType::none) remember(i, closest);
     }
+  }
+
+  // The closest points that are found from now on are near these.
+  void remember(std::span<const ClosestPoint> found) {
+    for (const ClosestPoint& closest : found)
+      if (closest.type != SiteType::none) remember(known_, closest);
   }
 
   [[nodiscard]] const PacketWork& work() const { return work_; }
@@ -149,8 +195,8 @@ class PacketSearch {
     }
     return near_ != 0;
   }
-  uint32_t bound(const Open&, const tree::WideTree::Node& node, float* squared) const {
-    return near_children(node, centre_, squared_reach_, squared);
+  uint32_t bound(const Open& open, const tree::WideTree::Node& node, float* squared) const {
+    return near_children(node, centre_, squared_reach_, squared) & faces_.open_children(open.child);
   }
   void leaf(const Open& open) {
     const sites::FaceFrames& faces = frames_[open.leaf_number()];
@@ -160,9 +206,12 @@ class PacketSearch {
     for (uint32_t near = near_; near != 0; near &= near - 1) {
       const auto i = static_cast<uint32_t>(std::countr_zero(near));
       const float point[3] = {point_[0][i], point_[1][i], point_[2][i]};
-      reduced |= compare_faces(faces, point, error_, squared_limit_[i], [&](float squared, size_t lane) {
-        m_.candidates.push_back({squared, faces.face[lane], open.leaf_number(), i});
-      });
+      reduced |= compare_faces(
+          faces, point, error_, squared_limit_[i],
+          [&](size_t first, BlockMask mask) HWY_ATTR { return faces_.kept(i, faces, first, mask); },
+          [&](float squared, size_t lane) {
+            m_.candidates.push_back({squared, faces.face[lane], open.leaf_number(), i});
+          });
     }
     if (reduced) find_reach();
   }
@@ -203,7 +252,16 @@ class PacketSearch {
     for (size_t i = 0; i < kSize; i += hn::Lanes(d)) {
       hn::Store(hn::Sqrt(squared_from(centre_, i)), d, from_centre_ + i);
       PointVec least = hn::Inf(d);
-      for (size_t k = 0; k < known_; ++k) least = hn::Min(least, squared_from(last_[k], i));
+      for (size_t k = 0; k < known_; ++k) {
+        PointVec squared = squared_from(last_[k], i);
+        if constexpr (!Faces::kAll) {
+          const uint32_t excluding =
+              uint32_t{faces_.excluded.by[faces_.excluded.group_of[last_face_[k]]]} >> i;
+          const uint8_t bytes[8] = {static_cast<uint8_t>(excluding), static_cast<uint8_t>(excluding >> 8)};
+          squared = hn::IfThenElse(hn::LoadMaskBits(d, bytes), hn::Inf(d), squared);
+        }
+        least = hn::Min(least, squared);
+      }
       const PointVec limit =
           hn::Min(hn::MulAdd(hn::Sqrt(least), hn::Set(d, kFarther), hn::Set(d, error_)), hn::Set(d, within));
       hn::Store(hn::Mul(limit, limit), d, squared_limit_ + i);
@@ -226,16 +284,18 @@ class PacketSearch {
     squared_reach_ = reach * reach;
   }
 
-  void remember(size_t i, const Vec3& point) {
-    const Vec3 unit = sites_.frame.to_unit(point);
+  void remember(size_t i, const ClosestPoint& closest) {
+    const Vec3 unit = sites_.frame.to_unit(closest.point);
     for (int k = 0; k < 3; ++k) last_[i][k] = static_cast<float>(unit[k]);
+    last_face_[i] = closest.face;
     if (i == known_) ++known_;
   }
 
   const sites::SitesData& sites_;
+  const Faces faces_;
   sites::LeafFrames::View frames_;
   Settled settled_;
-  PointSearch alone_;
+  PointSearch<Faces> alone_;
   const double max_distance_;
   SinglePointMemory& m_;
   alignas(64) float point_[3][kSize];       // in the unit frame
@@ -244,6 +304,7 @@ class PacketSearch {
   float centre_[3], squared_reach_, error_;
   uint32_t used_, far_, near_;  // points, as bits
   float last_[kSize][3];        // closest points found before
+  uint32_t last_face_[kSize];
   size_t known_ = 0;
   PacketWork work_;
 };
@@ -252,16 +313,26 @@ class PacketSearch {
 
 ClosestPoint SearchOne(const sites::SitesData& sites, const Vec3& query, double max_distance,
                        SinglePointMemory& memory) {
-  return PointSearch(sites, max_distance, memory)(query);
+  return PointSearch(sites, AllFaces(), max_distance, memory)(query, 0);
 }
 
 PacketWork SearchEach(const sites::SitesData& sites, std::span<const Vec3> queries,
                       std::span<const uint32_t> order, double max_distance, std::span<ClosestPoint> found,
                       SinglePointMemory& memory) {
-  PacketSearch search(sites, max_distance, memory);
-  for (size_t i = 0; i < order.size(); i += PacketSearch::kSize)
-    search(queries, order.subspan(i, std::min(PacketSearch::kSize, order.size() - i)), found);
+  PacketSearch search(sites, AllFaces(), max_distance, memory);
+  constexpr size_t kSize = SinglePointMemory::kPacket;
+  for (size_t i = 0; i < order.size(); i += kSize)
+    search(queries, order.subspan(i, std::min(kSize, order.size() - i)), found);
   return search.work();
+}
+
+void SearchPacket(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
+                  const ExcludedFaces& excluded, std::span<ClosestPoint> found, SinglePointMemory& memory) {
+  static constexpr std::array<uint32_t, SinglePointMemory::kPacket> kOrder{0, 1, 2,  3,  4,  5,  6,  7,
+                                                                           8, 9, 10, 11, 12, 13, 14, 15};
+  PacketSearch search(sites, NotExcluded{excluded}, max_distance, memory);
+  search.remember(found);
+  search(points, std::span(kOrder).first(points.size()), found);
 }
 
 }  // namespace sdm::closest::HWY_NAMESPACE
@@ -272,6 +343,7 @@ namespace sdm::closest {
 
 HWY_EXPORT(SearchOne);
 HWY_EXPORT(SearchEach);
+HWY_EXPORT(SearchPacket);
 
 ClosestPoint closest_point(const sites::SitesData& sites, const Vec3& query, double max_distance) {
   thread_local SinglePointMemory memory;
@@ -283,6 +355,12 @@ PacketWork closest_of_each(const sites::SitesData& sites, std::span<const Vec3> 
                            std::span<ClosestPoint> found) {
   thread_local SinglePointMemory memory;
   return HWY_DYNAMIC_DISPATCH(SearchEach)(sites, queries, order, max_distance, found, memory);
+}
+
+void closest_of_packet(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
+                       const ExcludedFaces& excluded, std::span<ClosestPoint> found) {
+  thread_local SinglePointMemory memory;
+  HWY_DYNAMIC_DISPATCH(SearchPacket)(sites, points, max_distance, excluded, found, memory);
 }
 
 }  // namespace sdm::closest

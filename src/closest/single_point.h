@@ -47,6 +47,24 @@ struct SinglePointMemory {
 [[nodiscard]] ClosestPoint closest_point(const sites::SitesData& sites, const Vec3& query,
                                          double max_distance);
 
+/// Which faces each point of a packet excludes: groups of faces, as bits.
+struct ExcludedFaces {
+  std::span<const std::uint32_t> group_of;  ///< of each face
+  std::span<const std::uint16_t> by;        ///< of each group: a bit for each point that excludes it
+  std::span<const std::uint8_t>
+      closed;  ///< of each wide node: a bit for each child whose faces all points exclude
+
+  [[nodiscard]] bool excludes(std::size_t point, std::uint32_t face) const {
+    return (by[group_of[face]] >> point & 1) != 0;
+  }
+};
+
+/// Sets found[i] to the closest point of the faces that points[i] does not exclude, as closest_point() does,
+/// or to the type none. Of at most a packet of points. Before, `found` has the type none, or closest points
+/// that were found for others nearby, which bound the search.
+void closest_of_packet(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
+                       const ExcludedFaces& excluded, std::span<ClosestPoint> found);
+
 /// What packets of points were compared with.
 struct PacketWork {
   std::size_t leaves = 0;  ///< that were near to any point of their packets

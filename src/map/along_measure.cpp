@@ -33,21 +33,21 @@ class LineSearch final : public FaceSearch {
       : sites_(sites), direction_(direction), max_distance_(max_distance) {}
 
   // Of points along a direction without a normal, among all faces.
-  void start(const Samples& samples) override {
-    const std::optional<Vec3>& normal = samples.normal;
-    const std::span<const Vec3> points = samples.points;
-    const Vec3 u = direction_ ? *direction_ : *normal, m = normal.value_or(u);
-    points_ = points, line_ = u;
-    hits_.assign(2 * points.size(), {});
-    if (u == Vec3{} || !(std::abs(dot(m, u)) > kParallel)) return;
-    const Vec3 towards = dot(m, u) > 0 ? u : -1.0 * u;
+  void start(std::span<const Sample> samples) override {
+    samples_ = samples;
+    hits_.resize(2 * samples.size());
     rays_.clear();
-    for (const Vec3& p : points) {
-      rays_.push_back({.origin = p, .direction = u});
-      rays_.push_back({.origin = p, .direction = -1.0 * u});
+    towards_.clear();
+    for (const Sample& sample : samples) {
+      const Vec3 u = line_of(sample), m = sample.normal.value_or(u);
+      const bool measured = u != Vec3{} && std::abs(dot(m, u)) > kParallel;
+      const double t_max = measured ? std::numeric_limits<double>::infinity() : -1;  // -1: no hit
+      rays_.push_back({.origin = sample.point, .direction = u, .t_max = t_max});
+      rays_.push_back({.origin = sample.point, .direction = -1.0 * u, .t_max = t_max});
+      towards_.push_back(dot(m, u) > 0 ? u : -1.0 * u);
     }
-    const auto faces_alike = [&](std::size_t, std::uint32_t face) {
-      return !normal || dot(normal_of(face), towards) > kParallel;
+    const auto faces_alike = [&](std::size_t ray, std::uint32_t face) {
+      return !samples_[ray / 2].normal || dot(normal_of(face), towards_[ray / 2]) > kParallel;
     };
     rays::first_hits(sites_, rays_, rays::filter(faces_alike), scratch_, hits_.data());
   }
@@ -57,8 +57,8 @@ class LineSearch final : public FaceSearch {
     const RayHit& hit = hits_[ahead ? 2 * i : 2 * i + 1];
     if (hit.face == kNone) return {.unmatched = true};
     if (!(hit.t <= max_distance_)) return {};
-    const Vec3 vector = (ahead ? hit.t : -hit.t) * line_;
-    return {.closest = {.point = points_[i] + vector,
+    const Vec3 vector = (ahead ? hit.t : -hit.t) * line_of(samples_[i]);
+    return {.closest = {.point = samples_[i].point + vector,
                         .distance = hit.t,
                         .site = hit.face,
                         .type = SiteType::face,
@@ -70,14 +70,16 @@ class LineSearch final : public FaceSearch {
 
  private:
   [[nodiscard]] Vec3 normal_of(std::uint32_t face) const { return facing::outward_normal(sites_, face); }
+  [[nodiscard]] Vec3 line_of(const Sample& sample) const { return direction_ ? *direction_ : *sample.normal; }
 
   const sites::SitesData& sites_;
   const std::optional<Vec3>& direction_;
   double max_distance_;
-  Vec3 line_{};
-  std::span<const Vec3> points_;
+  std::span<const Sample> samples_;
   rays::Scratch scratch_;
   std::vector<Ray> rays_;
+  std::vector<Vec3>
+      towards_;  // of each sample: products of normals with it are positive where faces face alike
   std::vector<RayHit> hits_;
 };
 

@@ -18,14 +18,15 @@ class MatchSearch final : public FaceSearch {
  public:
   explicit MatchSearch(const FacingMeasure& measure) : measure_(measure) {}
 
-  void start(const Samples& samples) override { samples_ = samples; }
+  void start(std::span<const Sample> samples) override { samples_ = samples; }
   Value value(std::size_t i) override {
-    return measure_.value(samples_.points[i], *samples_.normal, samples_.closest[i]);
+    const Sample& sample = samples_[i];
+    return measure_.value(sample.point, *sample.normal, *sample.closest);
   }
 
  private:
   const FacingMeasure& measure_;
-  Samples samples_;
+  std::span<const Sample> samples_;
 };
 
 }  // namespace

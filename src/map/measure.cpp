@@ -13,6 +13,7 @@ namespace sdm::map {
 namespace {
 
 constexpr std::size_t kTilesAtOnce = 16, kCornersAtOnce = 768, kPointsAtOnce = 256;
+constexpr std::size_t kSamplesAtOnce = 256;  // about, of one call of start()
 
 DistanceMap& described(DistanceMap& map, const Description& description) {
   map.sign = description.sign, map.measured = description.measured;
@@ -48,6 +49,10 @@ Array<std::uint32_t> order_of(const surface::Tiles& tiles, const FaceMeasure& me
 std::optional<Vec3> normal_of(const FaceMeasure& measure, std::uint32_t face) {
   if (measure.normals.empty()) return std::nullopt;
   return measure.normals[face];
+}
+
+const ClosestPoint* closest_of(const FaceMeasure& measure, std::size_t point) {
+  return measure.closest.empty() ? nullptr : &measure.closest[point];
 }
 
 // The vertices of all groups: each once in a group.
@@ -120,37 +125,48 @@ void TexelStore::finish() {
 void measure_texels(const Surface& surface, const FaceMeasure& measure, DistanceMap& map) {
   const surface::Tiles tiles(surface);
   const Array<std::uint32_t> order = order_of(tiles, measure);
-  TexelStore store(map, surface, measure.description, tiles.texels);
+  TexelStore texels(map, surface, measure.description, tiles.texels);
   // Groups are large enough where there are many tiles that few of them are divided: each division costs what
   // it takes to start with a group.
   const std::size_t grain =
       order.empty() ? kTilesAtOnce : std::clamp<std::size_t>(order.size() / 256, kTilesAtOnce * 16, 16384);
   parallel_for(tiles.count(), grain, measure.progress, "map", [&](std::size_t begin, std::size_t end) {
     const std::unique_ptr<FaceSearch> search = measure.search();
-    std::vector<Vec3> points;
+    std::vector<Sample> samples;
     sites::ClosestPacket packet;
-    for (std::size_t place = begin; place < end; ++place) {
-      const std::uint32_t tile = order.empty() ? static_cast<std::uint32_t>(place) : order[place];
-      const std::span<const std::uint32_t> texels = tiles.of(tile);
-      const std::uint32_t face = tiles.faces[tile];
-      points.clear();
-      for (const std::uint32_t texel : texels) points.push_back(surface.texel_point(texel));
-      search->start({face, normal_of(measure, face), points});
-      for (std::size_t i = 0; i < points.size(); i += sites::ClosestPacket::kSize) {
-        packet.count = std::min(sites::ClosestPacket::kSize, points.size() - i);
+    const auto tile_at = [&](std::size_t place) {
+      return order.empty() ? static_cast<std::uint32_t>(place) : order[place];
+    };
+    // Stores the values of a tile, whose samples start at this one. Returns how many there are.
+    const auto store = [&](std::uint32_t tile, std::size_t first) {
+      const std::size_t count = tiles.of(tile).size();
+      for (std::size_t i = 0; i < count; i += sites::ClosestPacket::kSize) {
+        packet.count = std::min(sites::ClosestPacket::kSize, count - i);
         std::uint32_t negative = 0, unmatched = 0;
         for (std::size_t k = 0; k < packet.count; ++k) {
-          const Value value = search->value(i + k);
+          const Value value = search->value(first + i + k);
           for (int axis = 0; axis < 3; ++axis) packet.vector[axis][k] = value.vector[axis];
           packet.distance[k] = value.closest.distance;
           packet.site[k] = value.closest.site, packet.type[k] = value.closest.type;
           negative |= std::uint32_t{value.negative} << k, unmatched |= std::uint32_t{value.unmatched} << k;
         }
-        store(tiles.offsets[tile] + i, packet, negative, unmatched);
+        texels(tiles.offsets[tile] + i, packet, negative, unmatched);
       }
+      return count;
+    };
+    for (std::size_t place = begin, last = begin; place < end; place = last) {
+      samples.clear();
+      for (; last < end && samples.size() < kSamplesAtOnce; ++last) {
+        const std::uint32_t tile = tile_at(last), face = tiles.faces[tile];
+        for (const std::uint32_t texel : tiles.of(tile))
+          samples.push_back({surface.texel_point(texel), face, normal_of(measure, face)});
+      }
+      search->start(samples);
+      std::size_t first = 0;
+      for (std::size_t i = place; i < last; ++i) first += store(tile_at(i), first);
     }
   });
-  store.finish();
+  texels.finish();
 }
 
 std::vector<float> measure_vertices(const Mesh& mesh, const FaceMeasure& measure) {
@@ -159,18 +175,16 @@ std::vector<float> measure_vertices(const Mesh& mesh, const FaceMeasure& measure
   parallel_for(
       values.size(), kCornersAtOnce, measure.progress, "vertices", [&](std::size_t begin, std::size_t end) {
         const std::unique_ptr<FaceSearch> search = measure.search();
-        std::vector<Vec3> points;
-        std::vector<ClosestPoint> closest;
-        for (std::size_t i = begin; i < end; i += points.size()) {
-          const std::uint32_t face = at.faces[i];
-          points.clear(), closest.clear();
-          for (std::size_t k = i;
-               k < end && points.size() < measure.vertices_at_once && (k == i || at.faces[k] == face); ++k) {
-            points.push_back(mesh.positions[at.vertices[k]]);
-            if (!measure.closest.empty()) closest.push_back(measure.closest[at.vertices[k]]);
+        std::vector<Sample> samples;
+        for (std::size_t i = begin; i < end; i += samples.size()) {
+          samples.clear();
+          for (std::size_t k = i; k < std::min(end, i + kSamplesAtOnce); ++k) {
+            const std::uint32_t vertex = at.vertices[k], face = at.faces[k];
+            samples.push_back(
+                {mesh.positions[vertex], face, normal_of(measure, face), closest_of(measure, vertex)});
           }
-          search->start({face, normal_of(measure, face), points, closest});
-          for (std::size_t k = 0; k < points.size(); ++k) {
+          search->start(samples);
+          for (std::size_t k = 0; k < samples.size(); ++k) {
             const Value value = search->value(k);
             const double distance = value.closest.distance;
             values[i + k] = value.closest.type == SiteType::none ? measure.description.no_value.distance
@@ -202,11 +216,9 @@ FacingPoints measure_points(std::span<const Vec3> points, std::span<const Vec3> 
                [&](std::size_t begin, std::size_t end) {
                  const std::unique_ptr<FaceSearch> search = measure.search();
                  for (std::size_t i = begin; i < end; ++i) {
-                   std::optional<Vec3> normal;
-                   if (!normals.empty()) normal = finite(normals[i]) ? normalized(normals[i]) : Vec3{};
-                   Samples sample{.normal = normal, .points = points.subspan(i, 1)};
-                   if (!measure.closest.empty()) sample.closest = std::span(measure.closest).subspan(i, 1);
-                   search->start(sample);
+                   Sample sample{.point = points[i], .closest = closest_of(measure, i)};
+                   if (!normals.empty()) sample.normal = finite(normals[i]) ? normalized(normals[i]) : Vec3{};
+                   search->start({&sample, 1});
                    const Value value = search->value(0);
                    result.closest[i] = value.closest;
                    result.behind[i] = value.negative, result.unmatched[i] = value.unmatched;

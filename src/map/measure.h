@@ -57,7 +57,15 @@ class TexelStore {
   std::array<Counter, 64> counters_;
 };
 
-/// What a face finds for one sample.
+/// A point to measure from.
+struct Sample {
+  Vec3 point{};
+  std::uint32_t face = kNone;             ///< of O1, that it is on; kNone: a point of none
+  std::optional<Vec3> normal{};           ///< if the measure asks for it
+  const ClosestPoint* closest = nullptr;  ///< that of FaceMeasure::closest, if there is one
+};
+
+/// What is found for one sample.
 struct Value {
   ClosestPoint closest{};  ///< type none: no value
   Vec3 vector{};           ///< closest point − sample
@@ -65,15 +73,7 @@ struct Value {
   bool unmatched = false;  ///< there is nothing to measure to, at any distance
 };
 
-/// Samples of one face, or a point.
-struct Samples {
-  std::uint32_t face = kNone;               ///< kNone: of a point
-  std::optional<Vec3> normal{};             ///< of the face or the point, if there is one
-  std::span<const Vec3> points{};           ///< which must outlive the calls of value()
-  std::span<const ClosestPoint> closest{};  ///< those of FaceMeasure::closest, if there are any
-};
-
-/// Measures from the samples of one face after another. At most one per thread at a time.
+/// Measures from one block of samples after another. At most one per thread at a time.
 class FaceSearch {
  public:
   FaceSearch() = default;
@@ -81,9 +81,11 @@ class FaceSearch {
   FaceSearch(const FaceSearch&) = delete;
   FaceSearch& operator=(const FaceSearch&) = delete;
 
-  virtual void start(const Samples& samples) = 0;
-  /// The value of each of these points, in their order.
-  virtual Value value(std::size_t point) = 0;
+  /// Begins with these samples, which must outlive the calls of value(). It costs less if samples that follow
+  /// each other are near each other.
+  virtual void start(std::span<const Sample> samples) = 0;
+  /// The value of each of these samples, in their order.
+  virtual Value value(std::size_t sample) = 0;
 };
 
 /// A measure of samples by their faces, which an engine's closest points of O2 may precede.
@@ -106,7 +108,6 @@ class FaceMeasure {
   /// The group of each face. Faces of a group measure alike from a point that they share; groups are measured
   /// in their order. Empty: each face is a group.
   std::vector<std::uint32_t> groups;
-  std::size_t vertices_at_once = 3;  ///< for which one call of start() is fast
 };
 
 /// Computes the map of a measure. Throws Cancelled.

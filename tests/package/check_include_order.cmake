@@ -148,6 +148,7 @@ set(readers_of_nodes
   closest/descent.cpp            # appends all leaves within reach to a list, by vector instructions
   bodies/motion/parts.h             # nodes are divided into faces too, by time
   map/self/self_search.cpp       # marks the nodes whose faces are all excluded
+  map/thickness/thickness_search.cpp  # bounds the normals below each child of a node
   inside/angles/expansions.cpp  # computes an expansion for each child of a node
   inside/angles/far_field-inl.h  # one search for several points, eight children at a time
   inside/angles/solid_angles.cpp  # nodes whose errors are too large are opened again

@@ -49,9 +49,8 @@ std::vector<float> matched_thickness(const Surface& surface, const Sites& sites,
         const SurfacePoint point = matches.point(texel);
         if (point.face == kNone || !walls.measures(point.face)) return;
         const Vec3 from = baking::position_of(data.mesh, point);
-        search.start(point.face, {&from, 1});
-        const thickness::WallEnd& ray = search.rays()[0];
-        const auto end = method == ThicknessMethod::ray ? ray : search.ball(from, ray);
+        const auto end =
+            method == ThicknessMethod::ray ? search.ray(point.face, from) : search.ball(point.face, from);
         if (end.face != kNone) values[texel] = static_cast<float>(end.thickness);
       });
   return values;

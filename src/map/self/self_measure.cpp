@@ -3,7 +3,6 @@
 #include <sdm/error.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "geometry/vec.h"
@@ -26,25 +25,34 @@ class FaceSelfSearch final : public map::FaceSearch {
                  double max_distance)
       : search_(sites, exclusion, patches), max_distance_(max_distance) {}
 
-  void start(const map::Samples& samples) override {
-    search_.start_from(samples.face);
-    points_ = samples.points;
-    Box box;
-    for (const Vec3& p : points_) extend(box, p);
-    double squared = 0;
-    for (const Vec3& p : points_) squared = std::max(squared, squared_norm(p - centre(box)));
-    search_.gather(centre(box), std::sqrt(squared), max_distance_);
+  void start(std::span<const map::Sample> samples) override {
+    samples_ = samples;
+    found_.clear();
+    for (std::size_t i = 0; i < samples.size(); i += SelfSearch::kPacket) {
+      points_.clear();
+      faces_.clear();
+      for (const map::Sample& s : samples.subspan(i, std::min(SelfSearch::kPacket, samples.size() - i))) {
+        points_.push_back(s.point);
+        faces_.push_back(s.face);
+      }
+      search_.start_from(faces_);
+      const std::span<const ClosestPoint> found = search_.closest_to(points_, max_distance_);
+      found_.insert(found_.end(), found.begin(), found.end());
+    }
   }
   map::Value value(std::size_t i) override {
-    map::Value value{.closest = search_.closest_to(points_[i])};
-    value.vector = value.closest.point - points_[i];
+    map::Value value{.closest = found_[i]};
+    value.vector = value.closest.point - samples_[i].point;
     return value;
   }
 
  private:
   SelfSearch search_;
   double max_distance_;
-  std::span<const Vec3> points_;
+  std::span<const map::Sample> samples_;
+  std::vector<Vec3> points_;          // of a packet
+  std::vector<std::uint32_t> faces_;  // of these
+  std::vector<ClosestPoint> found_;   // of all samples
 };
 
 }  // namespace
@@ -65,7 +73,6 @@ SelfMeasure::SelfMeasure(const Mesh& mesh, const Sites& sites, const SelfOptions
   for (std::uint32_t i = 0; i < place.size(); ++i) place[patches_.order[i]] = i;
   groups.resize(exclusion_.faces());
   for (std::uint32_t face = 0; face < groups.size(); ++face) groups[face] = place[exclusion_.patch_of(face)];
-  vertices_at_once = 1;
 }
 
 std::unique_ptr<map::FaceSearch> SelfMeasure::search() const {

@@ -46,7 +46,7 @@ struct SelfProximityQuery::Impl {
                    for (std::size_t i = begin; i < end; ++i)
                      for (const std::uint32_t face : exclusion.faces_of(patch_tree.order[i])) {
                        if (internals(sites).topology.ignored(face)) continue;
-                       search.start_from(face);
+                       search.start_from({&face, 1});
                        body(search, face);
                      }
                  });

@@ -7,7 +7,6 @@
 
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
-#include "sites/closest_on_face.h"
 #include "tree/visit.h"
 
 namespace sdm::self {
@@ -16,10 +15,9 @@ using tree::WideTree;
 
 struct SelfSearch::Scratch {
   std::vector<tree::OpenNode> stack;
-  std::vector<std::pair<double, std::uint32_t>> candidates;  ///< with their distance from the ball's centre
   // All 0 between searches.
-  std::vector<std::uint8_t> excluded;  ///< for each patch
-  std::vector<std::uint8_t> taken;     ///< of each leaf: the number of its faces that are excluded
+  std::vector<std::uint16_t> excluded;  ///< of each patch: a bit for each face of the packet that excludes it
+  std::vector<std::uint8_t> taken;      ///< of each leaf: the number of its faces that all of these exclude
   std::vector<std::uint8_t> closed;  ///< of each wide node: a bit for each child with nothing but such faces
 
   static Scratch& of_this_thread() {
@@ -31,6 +29,19 @@ struct SelfSearch::Scratch {
 namespace {
 
 constexpr double kAbove = 1 + 1e-12;  // larger than the rounding error of squares: ties must be compared
+constexpr std::uint16_t kAllOfPacket = 0xFFFF;
+static_assert(SelfSearch::kPacket == 16);
+
+// Calls visit(row, bits) for rows of patches and which faces of the packet exclude them; a row may come
+// several times, with other faces.
+template <class Rows, class Visit>
+void for_each_row(const Rows& rows, const Visit& visit) {
+  for (std::size_t i = 0, end = 0; i < rows.size(); i = end) {
+    std::uint32_t bits = 0;
+    for (; end < rows.size() && rows[end].data() == rows[i].data(); ++end) bits |= 1u << end;
+    visit(rows[i], static_cast<std::uint16_t>(bits));
+  }
+}
 
 }  // namespace
 
@@ -78,6 +89,8 @@ PatchTree::PatchTree(const sites::SitesData& sites, const Exclusion& exclusion) 
       for (std::uint32_t i = leaf_begin[leaf]; of_leaf[leaf] == kNone && i < leaf_begin[leaf + 1]; ++i)
         put(patch_at(i), leaf);
   });
+  patch_of.resize(exclusion.faces());
+  for (std::uint32_t face = 0; face < patch_of.size(); ++face) patch_of[face] = exclusion.patch_of(face);
   std::vector<std::uint8_t> listed(exclusion.patches());
   order.reserve(exclusion.patches());
   const auto list = [&](std::uint32_t patch) {
@@ -89,7 +102,7 @@ PatchTree::PatchTree(const sites::SitesData& sites, const Exclusion& exclusion) 
 
 SelfSearch::SelfSearch(const sites::SitesData& sites, const Exclusion& exclusion, const PatchTree& patches)
     : sites_(sites), exclusion_(exclusion), patches_(patches), scratch_(Scratch::of_this_thread()) {
-  const auto at_least = [](std::vector<std::uint8_t>& marks, std::size_t size) {
+  const auto at_least = [](auto& marks, std::size_t size) {
     if (marks.size() < size) marks.resize(size);
   };
   at_least(scratch_.excluded, exclusion.patches());
@@ -98,26 +111,29 @@ SelfSearch::SelfSearch(const sites::SitesData& sites, const Exclusion& exclusion
 }
 
 SelfSearch::~SelfSearch() {
-  start_from(kNone);
+  admit_patches();
 }
 
-void SelfSearch::start_from(std::uint32_t face) {
-  face_ = face;
-  const std::uint32_t patch = face == kNone ? kNone : exclusion_.patch_of(face);
-  if (patch == patch_) return;
-  if (patch != kNone && patch_ != kNone &&
-      exclusion_.excluded_by(patch).data() == exclusion_.excluded_by(patch_).data()) {
-    patch_ = patch;  // around a vertex of many faces
-    return;
+void SelfSearch::start_from(std::span<const std::uint32_t> faces) {
+  face_ = faces.front();
+  Rows rows;
+  bool same = true;
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    rows[i] = exclusion_.excluded_by(exclusion_.patch_of(faces[std::min(i, faces.size() - 1)]));
+    same = same && rows[i].data() == rows_[i].data();
   }
-  if (patch_ != kNone) admit_patches();
-  patch_ = patch;
-  if (patch_ != kNone) exclude_patches();
+  if (same) return;
+  admit_patches();
+  rows_ = rows;
+  exclude_patches();
 }
 
 void SelfSearch::exclude_patches() {
-  for (const std::uint32_t patch : exclusion_.excluded_by(patch_)) {
-    scratch_.excluded[patch] = 1;
+  for_each_row(rows_, [&](std::span<const std::uint32_t> row, std::uint16_t bits) {
+    for (const std::uint32_t patch : row) scratch_.excluded[patch] |= bits;
+  });
+  for (const std::uint32_t patch : rows_[0]) {
+    if (scratch_.excluded[patch] != kAllOfPacket) continue;
     for (const std::uint32_t place : patches_.whole.of(patch)) close(place);
     for (const std::uint32_t leaf : patches_.part.of(patch))
       if (++scratch_.taken[leaf] == sites_.regions.leaves[leaf + 1] - sites_.regions.leaves[leaf])
@@ -126,14 +142,17 @@ void SelfSearch::exclude_patches() {
 }
 
 void SelfSearch::admit_patches() {
-  for (const std::uint32_t patch : exclusion_.excluded_by(patch_)) {
-    scratch_.excluded[patch] = 0;
+  for (const std::uint32_t patch : rows_[0]) {
+    if (scratch_.excluded[patch] != kAllOfPacket) continue;
     for (const std::uint32_t place : patches_.whole.of(patch)) open(place);
     for (const std::uint32_t leaf : patches_.part.of(patch)) {
       scratch_.taken[leaf] = 0;
       open(patches_.place_of_leaf[leaf]);
     }
   }
+  for_each_row(rows_, [&](std::span<const std::uint32_t> row, std::uint16_t) {
+    for (const std::uint32_t patch : row) scratch_.excluded[patch] = 0;
+  });
 }
 
 // Closes a child, and the nodes above it that have no other open child.
@@ -184,43 +203,11 @@ void SelfSearch::visit_near(const Box& box, double& limit, const Visit& visit) c
   tree::visit(sites_.wide, scratch_.stack, tree::NearestFirst{bound, enter, faces});
 }
 
-bool SelfSearch::beyond(std::uint32_t face, const Vec3& q, double limit) const {
-  return squared_box_distance(corners_of(sites_.mesh, face), {q, q, q}) > kAbove * limit * limit;
-}
-
-// A bound on the distance from the centre c to a face g that is closest to a point q of the ball: with d_c =
-// min d(c, ·), d(c, g) ≤ d(q, g) + r ≤ d_c + 2r.
-void SelfSearch::gather(const Vec3& centre, double radius, double max_distance) {
-  centre_ = centre, max_distance_ = max_distance;
-  auto& candidates = scratch_.candidates;
-  candidates.clear();
-  double limit = max_distance + radius;
-  // The closest face of the search before is a good first bound: searches near each other follow each other.
-  if (before_ != kNone && scratch_.excluded[exclusion_.patch_of(before_)] == 0)
-    limit = std::min(limit, sites::closest_on_face(sites_, before_, centre).distance + 2 * radius);
-  visit_near({centre, centre}, limit, [&](std::uint32_t face) {
-    if (beyond(face, centre, limit)) return;
-    const double distance = sites::closest_on_face(sites_, face, centre).distance;
-    if (distance > limit) return;
-    candidates.push_back({distance, face});
-    limit = std::min(limit, distance + 2 * radius);
-  });
-  std::ranges::sort(candidates);
-  if (!candidates.empty()) before_ = candidates[0].second;
-}
-
-ClosestPoint SelfSearch::closest_to(const Vec3& q) const {
-  ClosestPoint best;
-  double limit = max_distance_;
-  const double from_centre = norm(q - centre_);
-  for (const auto& [at_centre, face] : scratch_.candidates) {
-    if (best.distance == 0) break;               // as in a stack of coplanar faces
-    if (at_centre - from_centre > limit) break;  // d(q, g) ≥ d(c, g) − |q − c|
-    if (beyond(face, q, limit)) continue;
-    const ClosestPoint c = sites::closest_on_face(sites_, face, q);
-    if (c.distance < best.distance && c.distance <= limit) best = c, limit = c.distance;
-  }
-  return best;
+std::span<const ClosestPoint> SelfSearch::closest_to(std::span<const Vec3> points, double max_distance) {
+  const std::span found = std::span(closest_).first(points.size());
+  const closest::ExcludedFaces excluded{patches_.patch_of, scratch_.excluded, scratch_.closed};
+  closest::closest_of_packet(sites_, points, max_distance, excluded, found);
+  return found;
 }
 
 FacePair SelfSearch::nearest(double max_distance, const FacePair& known) const {

@@ -1,11 +1,14 @@
-// Finds the nearest face of a mesh that a given face does not exclude.
+// Finds what is nearest of the faces of a mesh that a given face does not exclude.
 #pragma once
 
 #include <sdm/self_proximity_query.h>
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <vector>
 
+#include "closest/single_point.h"
 #include "core/arrays/rows.h"
 #include "sites/sites_data.h"
 
@@ -32,7 +35,8 @@ struct PatchTree {
   CompressedRows<std::uint32_t> part;  ///< of each patch, the leaf of each of its other faces
   /// The places of each leaf and each wide node; kNone for the root.
   std::vector<std::uint32_t> place_of_leaf, place_of_node;
-  std::vector<std::uint32_t> order;  ///< patches, in the order in which the tree has their first faces
+  std::vector<std::uint32_t> patch_of;  ///< of each face
+  std::vector<std::uint32_t> order;     ///< patches, in the order in which the tree has their first faces
 };
 
 /// A grain for loops over patches, which have as many faces on average as there are.
@@ -41,36 +45,40 @@ struct PatchTree {
   return std::clamp<std::size_t>(kFaces * exclusion.patches() / exclusion.faces(), 1, kFaces);
 }
 
-/// Per-thread searches, each starting from a face. The memory is kept between searches and between objects.
+/// Per-thread searches, each starting from one face or a few. The memory is kept between searches and between
+/// objects.
 class SelfSearch {
  public:
+  static constexpr std::size_t kPacket = closest::SinglePointMemory::kPacket;
+
   /// The arguments must outlive it. At most one per thread at a time.
   SelfSearch(const sites::SitesData& sites, const Exclusion& exclusion, const PatchTree& patches);
   ~SelfSearch();
   SelfSearch(const SelfSearch&) = delete;
   SelfSearch& operator=(const SelfSearch&) = delete;
 
-  /// Sets the face whose neighbourhood is excluded. Cost: that of the tree above this neighbourhood, or
-  /// nothing if the face before was of the same patch.
-  void start_from(std::uint32_t face);
+  /// Sets the faces whose neighbourhoods are excluded, 1 to kPacket. Cost: those of these neighbourhoods, and
+  /// of the tree above what all of them exclude, or nothing if the faces before excluded the same.
+  void start_from(std::span<const std::uint32_t> faces);
 
-  /// Collects the faces that can be closest to any point of a ball.
-  void gather(const Vec3& centre, double radius, double max_distance);
-  /// The closest point to a point of that ball, within the same distance.
-  [[nodiscard]] ClosestPoint closest_to(const Vec3& q) const;
+  /// The closest points to points on these faces, within max_distance; type none where there is none. Costs
+  /// less if they are near each other and near those before. The result is valid until the next call.
+  [[nodiscard]] std::span<const ClosestPoint> closest_to(std::span<const Vec3> points, double max_distance);
 
-  /// The nearest face to the face of start_from(), within max_distance; of pairs that touch, the first one.
-  /// None where it is not before `known`, a pair that touches.
+  /// The nearest face to the one face of start_from(), within max_distance; of pairs that touch, the first
+  /// one. None where it is not before `known`, a pair that touches.
   [[nodiscard]] FacePair nearest(double max_distance, const FacePair& known = {}) const;
 
  private:
   struct Scratch;
+  /// The patches that each face of a packet excludes; several faces may have the same. Empty before the first
+  /// packet.
+  using Rows = std::array<std::span<const std::uint32_t>, kPacket>;
+
   void exclude_patches();
   void admit_patches();
   void close(std::uint32_t place);
   void open(std::uint32_t place);
-  /// Whether the box of a face shows that it is farther than this.
-  [[nodiscard]] bool beyond(std::uint32_t face, const Vec3& q, double limit) const;
   template <class Visit>
   void visit_near(const Box& box, double& limit, const Visit& visit) const;
 
@@ -78,10 +86,9 @@ class SelfSearch {
   const Exclusion& exclusion_;
   const PatchTree& patches_;
   Scratch& scratch_;
-  std::uint32_t face_ = kNone, patch_ = kNone;
-  Vec3 centre_{};
-  double max_distance_ = 0;
-  std::uint32_t before_ = kNone;  ///< the closest face that gather() last found
+  std::uint32_t face_ = kNone;  ///< the first one of start_from()
+  Rows rows_{};
+  std::array<ClosestPoint, kPacket> closest_{};  ///< that closest_to() last found
 };
 
 }  // namespace sdm::self

@@ -55,9 +55,7 @@ std::vector<double> thickness::wall_lengths(const Sites& sites, std::size_t samp
       const auto found = std::ranges::upper_bound(sums, (static_cast<double>(i) + 0.5) * step);
       const auto face = static_cast<std::uint32_t>(std::min(found, sums.end() - 1) - sums.begin());
       if (!walls.measures(face)) continue;
-      const std::array<Vec3, 1> point{point_in(corners_of(data.mesh, face), i)};
-      search.start(face, point);
-      lengths[i] = search.rays()[0].thickness;
+      lengths[i] = search.ray(face, point_in(corners_of(data.mesh, face), i)).thickness;
     }
   });
   std::ranges::sort(lengths);

@@ -19,30 +19,26 @@ class FaceWallSearch final : public map::FaceSearch {
   FaceWallSearch(const Walls& walls, ThicknessMethod method)
       : walls_(walls), method_(method), search_(walls) {}
 
-  void start(const map::Samples& samples) override {
-    points_ = samples.points;
-    measured_ = walls_.measures(samples.face);
-    if (measured_) search_.start(samples.face, points_);
-  }
+  void start(std::span<const map::Sample> samples) override { samples_ = samples; }
   map::Value value(std::size_t i) override {
-    if (!measured_) return {};
-    const WallEnd& ray = search_.rays()[i];
-    const WallEnd end = method_ == ThicknessMethod::ray ? ray : search_.ball(points_[i], ray);
+    const map::Sample& sample = samples_[i];
+    if (!walls_.measures(sample.face)) return {};
+    const WallEnd end = method_ == ThicknessMethod::ray ? search_.ray(sample.face, sample.point)
+                                                        : search_.ball(sample.face, sample.point);
     if (end.face == kNone) return {};
     return {.closest = {.point = end.point,
                         .distance = end.thickness,
                         .site = end.face,
                         .type = SiteType::face,
                         .face = end.face},
-            .vector = end.point - points_[i]};
+            .vector = end.point - sample.point};
   }
 
  private:
   const Walls& walls_;
   ThicknessMethod method_;
   WallSearch search_;
-  bool measured_ = false;
-  std::span<const Vec3> points_;
+  std::span<const map::Sample> samples_;
 };
 
 }  // namespace
@@ -52,6 +48,12 @@ ThicknessMeasure::ThicknessMeasure(const Mesh& mesh, const Sites& sites, const T
   description.measured = measured_distance(options);
   description.sign.reason = "a thickness has no sign";
   progress = options.progress;
+  // Faces in the order of the tree: those that follow each other are near each other.
+  groups.assign(mesh.triangles.size(), kNone);
+  std::uint32_t place = 0;
+  for (const std::uint32_t face : internals(sites).tree.items) groups[face] = place++;
+  for (std::uint32_t& group : groups)
+    if (group == kNone) group = place++;  // of ignored faces
 }
 
 std::unique_ptr<map::FaceSearch> ThicknessMeasure::search() const {

@@ -9,8 +9,8 @@
 
 #include "closest/facing/outward_normals.h"
 #include "core/parallel.h"
+#include "geometry/line_triangle.h"
 #include "tree/fold.h"
-#include "tree/visit.h"
 
 namespace sdm::thickness {
 namespace {
@@ -45,7 +45,7 @@ Walls::Walls(const sites::SitesData& sites, double angle)
       largest = std::max({largest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
   back_ = 8 * std::numeric_limits<double>::epsilon() * largest;
   find_cavities();
-  bound_normals();
+  arrange_normals();
 }
 
 // A cavity is oriented into itself, so that its volume is negative.
@@ -66,18 +66,35 @@ void Walls::find_cavities() {
   });
 }
 
-void Walls::bound_normals() {
-  directions_.resize(sites_.tree.nodes.size());
+void Walls::arrange_normals() {
+  std::vector<tree::FloatBox> below(sites_.tree.nodes.size());
   tree::for_each_bottom_up(
       sites_.tree,
       [&](std::uint32_t leaf) {
         Box box;
         for (const std::uint32_t f : sites_.tree.items_of(leaf)) extend(box, outward_[f]);
-        directions_[leaf] = tree::FloatBox::around(box);
+        below[leaf] = tree::FloatBox::around(box);
       },
       [&](std::uint32_t node, std::uint32_t left, std::uint32_t right) {
-        directions_[node] = unite(directions_[left], directions_[right]);
+        below[node] = unite(below[left], below[right]);
       });
+  const auto& nodes = sites_.wide.nodes;
+  normals_.lo.resize(nodes.size());
+  normals_.hi.resize(nodes.size());
+  for (std::size_t node = 0; node < nodes.size(); ++node)
+    for (std::uint32_t slot = 0; slot < nodes[node].count; ++slot) {
+      const tree::FloatBox& box = below[nodes[node].source[slot]];
+      normals_.lo[node].set(slot, box.lo);
+      normals_.hi[node].set(slot, box.hi);
+    }
+  const auto& leaves = sites_.regions.leaves;
+  normals_.of_leaf.resize(leaves.size() - 1);
+  for (std::size_t leaf = 0; leaf + 1 < leaves.size(); ++leaf)
+    for (std::uint32_t i = leaves[leaf]; i < leaves[leaf + 1]; ++i) {
+      const Vec3& n = outward_[sites_.tree.items[i]];
+      normals_.of_leaf[leaf].set(
+          i - leaves[leaf], {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])});
+    }
 }
 
 bool Walls::measures(std::uint32_t face) const {
@@ -90,65 +107,63 @@ bool Walls::same_solid(std::uint32_t face, std::uint32_t other) const {
   return a == b || cavity_[a] != 0 || cavity_[b] != 0;
 }
 
-void WallSearch::start(std::uint32_t face, std::span<const Vec3> points) {
-  face_ = face, stopped_by_ = kNone;
+WallEnd WallSearch::ray(std::uint32_t face, const Vec3& point) {
   const Vec3 n = walls_.inward(face);
-  starts_.clear();
-  for (const Vec3& p : points) starts_.push_back({.origin = p - walls_.back_ * n, .direction = n});
-  hits_.resize(points.size());
   const auto leaves_by = [&](std::size_t, std::uint32_t other) {
     return dot(walls_.outward_[other], n) > kParallel && walls_.same_solid(face, other);
   };
-  rays::first_hits(walls_.sites_, starts_, rays::filter(leaves_by), scratch_, hits_.data());
-  ends_.assign(points.size(), {});
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (hits_[i].face != kNone) {
-      const double length = std::max(0.0, hits_[i].t - walls_.back_);
-      ends_[i] = {length, points[i] + length * n, hits_[i].face};
-    }
+  Ray ray{.origin = point - walls_.back_ * n, .direction = n};
+  // Nothing behind the face that the ray before hit, if this one hits it too.
+  if (hit_ != kNone && leaves_by(0, hit_))
+    if (const auto known = line_meets_triangle(ray.origin, n, corners_of(walls_.sites_.mesh, hit_));
+        known && known->last >= 0)
+      ray.t_max = std::max(known->first, 0.0);
+  RayHit hit;
+  rays::first_hits(walls_.sites_, {&ray, 1}, rays::filter(leaves_by), scratch_, &hit);
+  hit_ = hit.face;
+  if (hit.face == kNone) return {};
+  const double length = std::max(0.0, hit.t - walls_.back_);
+  return {length, point + length * n, hit.face};
 }
 
-void WallSearch::stop(const Touching& ball, std::uint32_t face, Reached& least) {
-  if (!(dot(walls_.outward_[face], ball.n) > walls_.least_turn_) || !walls_.same_solid(face_, face)) return;
-  const Reached reached = reach(ball, corners_of(walls_.sites_.mesh, face));
-  if (reached.radius < least.radius) least = reached, stopped_by_ = face;
-}
+struct WallSearch::Stops {
+  const Walls& walls;
+  std::uint32_t from;
+  Touching ball;
+  Reached least{};
+  std::uint32_t face = kNone;
 
-// Balls of larger radii contain those of smaller ones, so that a box that the present one does not meet stops
-// none of the smaller ones.
-WallEnd WallSearch::ball(const Vec3& point, const WallEnd& ray) {
-  const sites::SitesData& sites = walls_.sites_;
-  const Touching ball{point, walls_.inward(face_)};
-  Reached least;
-  const std::uint32_t before = std::exchange(stopped_by_, kNone);
-  if (ray.face != kNone && dot(walls_.outward_[ray.face], ball.n) > walls_.ray_turn_)
-    least = {ray.thickness / 2, ray.point}, stopped_by_ = ray.face;
-  if (before != kNone) stop(ball, before, least);
-  const Vec3 p = sites.frame.to_unit(point), n = ball.n;
-  constexpr double kSlack = 1e-9;  // in the unit frame; more than the rounding of p and of r
-  const auto met = [&](const tree::FloatBox& box) {
-    const double radius = sites.frame.scale * least.radius;
-    double highest = 0;
-    for (int k = 0; k < 3; ++k) highest += std::max((box.lo[k] - p[k]) * n[k], (box.hi[k] - p[k]) * n[k]);
-    if (highest < -kSlack) return false;
-    if (!(radius < 1e6)) return true;
-    const double within = radius + kSlack * (1 + radius);
-    return squared_norm(tree::gap(box, p + radius * n)) <= within * within;
+  // The first one by (radius, face), so that the order of the search does not matter.
+  void offer(const Reached& reached, std::uint32_t other) {
+    if (reached.radius < least.radius || (reached.radius == least.radius && face != kNone && other < face))
+      least = reached, face = other;
+  }
+  void stop(std::uint32_t other) {
+    if (dot(walls.outward_[other], ball.n) > walls.least_turn_ && walls.same_solid(from, other))
+      offer(reach(ball, corners_of(walls.sites_.mesh, other)), other);
+  }
+};
+
+WallEnd WallSearch::ball(std::uint32_t face, const Vec3& point) {
+  Stops stops{walls_, face, {point, walls_.inward(face)}};
+  // Otherwise the face that ends the ray stops the ball there by itself.
+  if (walls_.ray_turn_ < walls_.least_turn_)
+    if (const WallEnd end = ray(face, point);
+        end.face != kNone && dot(walls_.outward_[end.face], stops.ball.n) > walls_.ray_turn_)
+      stops.offer({end.thickness / 2, end.point}, end.face);
+  for (const std::uint32_t before : stopped_by_)
+    if (before != kNone) stops.stop(before);
+  const auto stop = [](void* data, std::uint32_t other) {
+    auto& by = *static_cast<Stops*>(data);
+    by.stop(other);
+    return by.least.radius;
   };
-  const auto turned = [&](const tree::FloatBox& directions) {
-    double most = 0;
-    for (int k = 0; k < 3; ++k) most += std::max(directions.lo[k] * n[k], directions.hi[k] * n[k]);
-    return most > walls_.least_turn_;
-  };
-  const auto enter = [&](tree::Subtree below) {
-    return turned(walls_.directions_[below.root]) && met(sites.tree.box(below.root));
-  };
-  const auto leaf = [&](std::uint32_t node) {
-    for (const std::uint32_t f : sites.tree.items_of(node)) stop(ball, f, least);
-  };
-  tree::visit(sites.tree, tree::InOrder{enter, leaf});
-  if (stopped_by_ == kNone) return {};
-  return {2 * least.radius, least.point, stopped_by_};
+  for_each_near_wall(walls_.sites_, walls_.normals_, stops.ball, walls_.least_turn_, stops.least.radius,
+                     {stop, &stops}, scratch_.stack);
+  if (stops.face == kNone) return {};
+  if (std::ranges::find(stopped_by_, stops.face) == stopped_by_.end())
+    stopped_by_[next_++ % stopped_by_.size()] = stops.face;
+  return {2 * stops.least.radius, stops.least.point, stops.face};
 }
 
 }  // namespace sdm::thickness

@@ -3,14 +3,15 @@
 
 #include <sdm/rays.h>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
+#include "map/thickness/near_walls.h"
 #include "map/thickness/touching_ball.h"
 #include "rays/trace.h"
 #include "sites/sites_data.h"
-#include "tree/aabb_tree.h"
 
 namespace sdm::thickness {
 
@@ -31,15 +32,15 @@ class Walls {
   /// Whether face `other` can stop anything that starts at `face`.
   [[nodiscard]] bool same_solid(std::uint32_t face, std::uint32_t other) const;
   void find_cavities();
-  void bound_normals();
+  void arrange_normals();
 
   const sites::SitesData& sites_;
-  double least_turn_;                       ///< n·(outward normal) of a face that stops the ball is above it
-  double ray_turn_;                         ///< the same of a face that ends the ray, at any angle
-  double back_;                             ///< rays start so far outside of a face
-  std::vector<Vec3> outward_;               ///< of each face, of length 1; 0 without an area
-  std::vector<std::uint8_t> cavity_;        ///< of each shell
-  std::vector<tree::FloatBox> directions_;  ///< of the outward normals below each node of the tree
+  double least_turn_;                 ///< n·(outward normal) of a face that stops the ball is above it
+  double ray_turn_;                   ///< the same of the face that ends the ray, and stops the ball there
+  double back_;                       ///< rays start so far outside of a face
+  std::vector<Vec3> outward_;         ///< of each face, of length 1; 0 without an area
+  std::vector<std::uint8_t> cavity_;  ///< of each shell
+  WallNormals normals_;
 };
 
 /// Where the ray or the ball of a sample ends.
@@ -49,27 +50,26 @@ struct WallEnd {
   std::uint32_t face = kNone;
 };
 
-/// Searches from the samples of one face after another. At most one per thread at a time.
+/// Searches from one sample after another; it costs less if they are near each other. At most one per thread
+/// at a time.
 class WallSearch {
  public:
   explicit WallSearch(const Walls& walls) : walls_(walls) {}
 
-  /// Finds rays() of these points of a face that is measured.
-  void start(std::uint32_t face, std::span<const Vec3> points);
-  [[nodiscard]] std::span<const WallEnd> rays() const { return ends_; }
-  /// The ball at a point of start(), given the end of its ray. Of consecutive points that are close together,
-  /// the ball of the last one bounds the search.
-  [[nodiscard]] WallEnd ball(const Vec3& point, const WallEnd& ray);
+  /// Where the ray or the ball ends that starts at a point of a face that is measured.
+  [[nodiscard]] WallEnd ray(std::uint32_t face, const Vec3& point);
+  [[nodiscard]] WallEnd ball(std::uint32_t face, const Vec3& point);
 
  private:
-  void stop(const Touching& ball, std::uint32_t face, Reached& least);
+  /// What a ball has met.
+  struct Stops;
 
   const Walls& walls_;
-  std::uint32_t face_ = kNone, stopped_by_ = kNone;
+  std::uint32_t hit_ = kNone;  ///< by the ray before
+  /// What has stopped balls before bounds the search.
+  std::array<std::uint32_t, 4> stopped_by_{kNone, kNone, kNone, kNone};
+  std::size_t next_ = 0;  ///< of these, to be replaced
   rays::Scratch scratch_;
-  std::vector<Ray> starts_;
-  std::vector<RayHit> hits_;
-  std::vector<WallEnd> ends_;
 };
 
 }  // namespace sdm::thickness
