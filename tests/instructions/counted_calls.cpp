@@ -10,6 +10,7 @@
 #include <sdm/engine.h>
 #include <sdm/io.h>
 #include <sdm/map.h>
+#include <sdm/measure.h>
 #include <sdm/proximity_query.h>
 #include <sdm/sign.h>
 #include <sdm/sites.h>
@@ -156,6 +157,35 @@ bool dense_map() {
 
 bool sparse_map() {
   return map("cow.off", 192, "armadillo.off");
+}
+
+/// A map of a part to what belongs to it: vectors end on the surface, and none is longer than its distance.
+bool map_of_part(const Surface& surface, const Sites& sites, const Measure& measure, bool reaches) {
+  DistanceMap map;
+  count([&] { map = compute_map(surface, sites, measure); });
+  std::vector<Vec3> ends;
+  bool good = map.beyond_max_distance == 0;
+  for (const std::uint32_t texel : surface.sample_texels()) {
+    const Vec3f& v = map.vector[texel];
+    const Vec3 vector{v[0], v[1], v[2]};
+    ends.push_back(surface.texel_point(texel) + vector);
+    const double shorter = map.distance[texel] - norm(vector);
+    good = good && shorter > -1e-5 && (!reaches || shorter < 1e-5) && map.distance[texel] > 0;
+  }
+  const std::vector<ClosestPoint> closest = closest_points(sites, ends);
+  return good && std::ranges::all_of(closest, [](const ClosestPoint& c) { return c.distance < 1e-5; });
+}
+
+bool self_map() {
+  const Mesh mesh = load("armadillo.off");
+  const Exclusion exclusion(mesh);
+  return map_of_part(Surface(mesh, {.resolution = 192}), Sites(mesh), SelfOptions{.exclusion = exclusion},
+                     true);
+}
+
+bool thickness_map() {
+  const Mesh mesh = load("armadillo.off");
+  return map_of_part(Surface(mesh, {.resolution = 192}), Sites(mesh), ThicknessOptions{}, false);
 }
 
 bool scattered_points(const Sites& sites, const std::vector<Vec3>& points) {
@@ -357,6 +387,8 @@ constexpr Call kCalls[] = {
     {"dense map", "`compute_map`, 768², cow to elephant: 70 samples for each of 6 thousand faces", dense_map},
     {"sparse map", "`compute_map`, 192², cow to armadillo: a sample for three of 52 thousand faces",
      sparse_map},
+    {"self map", "`compute_map`, 192², the armadillo to itself, faces at a vertex excluded", self_map},
+    {"thickness map", "`compute_map`, 192², the thickness of the armadillo by balls", thickness_map},
     {"near points", "`closest_points` of 26 thousand points a hundredth of the size from the armadillo",
      near_points},
     {"far points", "`closest_points` of 50 thousand points in a box of ten times its size", far_points},
