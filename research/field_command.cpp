@@ -20,10 +20,10 @@
 #include "cli/output_folder.h"
 #include "cli/print.h"
 #include "cli/progress_line.h"
-#include "cli/proximity_report.h"
 #include "cli/report.h"
 #include "cli/stopwatch.h"
 #include "research/fields/fields.h"
+#include "src/io/json/report_json.h"
 
 namespace {
 
@@ -58,8 +58,8 @@ Json work_json(const fields::Field& field) {
 Json proximity_json(const Command& command, const fields::Proximity& found) {
   Json json;
   json["o1"] = {{"file", command.o1}, {"transform", command.transform_o1}};
-  json["separation"] = to_json(found.separation);
-  json["depth"] = found.depth ? to_json(*found.depth) : Json(nullptr);
+  json["separation"] = sdm::fields_json(found.separation);
+  json["depth"] = found.depth ? sdm::fields_json(*found.depth) : Json(nullptr);
   json["colliding"] = Json{{"value", found.colliding}, {"kind", sdm::name_of(found.colliding_certainty)}};
   json["samples"] = found.samples;
   json["samples_without_value"] = found.without_value;

@@ -67,7 +67,7 @@ template <class Struct>
 /// The doubts of to_json().
 [[nodiscard]] SDM_API std::vector<Doubt> doubts_from(const nlohmann::ordered_json& json);
 /// `of_points`: of a cloud, whose groups have points in place of areas.
-[[nodiscard]] SDM_API nlohmann::ordered_json to_json(const GroupVerdicts& verdicts, bool of_points = false);
+[[nodiscard]] SDM_API nlohmann::ordered_json to_json(const GroupVerdicts& verdicts, bool of_points);
 [[nodiscard]] SDM_API nlohmann::ordered_json to_json(const IslandReport& islands);
 /// `points`: the number of points of the cloud.
 [[nodiscard]] SDM_API nlohmann::ordered_json to_json(const PointIslands& islands, std::uint64_t points);
