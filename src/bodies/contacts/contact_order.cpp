@@ -14,24 +14,30 @@ void ContactOrder::sort(std::vector<Contact>& contacts, double same) {
   std::ranges::sort(order_, {}, [&](std::uint32_t c) { return std::pair(-contacts[c].depth, c); });
   const std::span<std::uint32_t> all = order_;
   for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+    ++end;
     while (end < all.size() && contacts[all[end]].depth >= contacts[all[begin]].depth - same) ++end;
     std::ranges::sort(all.subspan(begin, end - begin), {},
                       [&](std::uint32_t c) { return std::pair(contacts[c].id, c); });
   }
-  std::uint32_t patches = 0;
-  for (const Contact& c : contacts) patches = std::max(patches, c.patch + 1);
-  number_.assign(patches, kNone);
-  std::uint32_t next = 0;
-  sorted_.clear();
+  // Numbers the patches by their first contacts, and puts the contacts of each together.
+  std::uint32_t labels = 0;
+  for (const Contact& c : contacts) labels = std::max(labels, c.patch + 1);
+  number_.assign(labels, kNone);
+  place_.clear();
   for (const std::uint32_t c : order_) {
     std::uint32_t& number = number_[contacts[c].patch];
-    if (number == kNone) number = next++;
-    sorted_.push_back(contacts[c]);
-    sorted_.back().patch = number;
+    if (number == kNone) number = static_cast<std::uint32_t>(place_.size()), place_.push_back(0);
+    ++place_[number];
   }
-  for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
-  std::ranges::sort(order_, {}, [&](std::uint32_t i) { return std::pair(sorted_[i].patch, i); });
-  for (std::size_t i = 0; i < order_.size(); ++i) contacts[i] = sorted_[order_[i]];
+  std::exclusive_scan(place_.begin(), place_.end(), place_.begin(), 0u);
+  sorted_.resize(contacts.size());
+  for (const std::uint32_t c : order_) {
+    const std::uint32_t number = number_[contacts[c].patch];
+    Contact& contact = sorted_[place_[number]++];
+    contact = contacts[c];
+    contact.patch = number;
+  }
+  std::ranges::copy(sorted_, contacts.begin());  // spans of them stay valid
 }
 
 }  // namespace sdm::contacts

@@ -18,6 +18,7 @@ class ContactOrder {
 
  private:
   std::vector<std::uint32_t> order_, number_;
+  std::vector<std::uint32_t> place_;  // of the next contact of each patch
   std::vector<Contact> sorted_;
 };
 

@@ -87,7 +87,7 @@ void FeatureContacts::find_deepest(Regions part) {
 }
 
 void FeatureContacts::add_deepest(Regions part, const DeepestVertex::Found& deepest, const Box& box) {
-  find_corners(part, deepest.point);
+  find_corners(part, deepest);
   const auto is_deepest = [&](const Corner& corner) { return corner.vertex == deepest.vertex; };
   // By itself it is named by the part, whose deepest vertex is another one at times; a corner by its number.
   if (corners_.size() < 2 || std::ranges::none_of(corners_, is_deepest))
@@ -111,10 +111,17 @@ void FeatureContacts::add_deepest(Regions part, const DeepestVertex::Found& deep
 
 // The corners of a part that are as deep as its deepest vertex, but for a small angle: those of a foot on a
 // floor. A body stands on the hull of such points, which may be much smaller than the body.
-void FeatureContacts::find_corners(Regions part, const SurfacePoint& deepest) {
+void FeatureContacts::find_corners(Regions part, const DeepestVertex::Found& deepest) {
   const SitesData& sites = internals(on().sites());
   const OneSidedVertices& vertices = candidates_->vertices();
-  const Vec3 up = outwards_at(deepest);
+  const Vec3 up = normalized(from_other().map.linear(outwards_at(deepest.point)));
+  const Vec3 x = normalized(cross(up, std::abs(up[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+  const std::array<Vec3, 3> across{up, x, cross(up, x)};
+  const auto at = [&](std::uint32_t vertex) {
+    const auto& point = sites.regions.points[vertex].point;
+    return Vec3{point[0], point[1], point[2]};
+  };
+  const Vec3 from = at(deepest.vertex);
   const auto owned = [&](std::uint32_t leaf) {
     return sites.regions.owners[sites.regions.leaves[leaf]].vertices;
   };
@@ -123,35 +130,42 @@ void FeatureContacts::find_corners(Regions part, const SurfacePoint& deepest) {
     if (region.kind == ContactRegion::Kind::deep) continue;  // smaller than its depth
     const std::uint32_t first = owned(region.first_leaf), last = owned(region.last_leaf);
     for (std::uint32_t vertex = first; vertex < last; ++vertex) {
-      if (!region.is_inside() && vertices.is_free(vertex)) continue;
-      const std::uint32_t site = sites.regions.points[vertex].vertex;
-      const Vec3 offset = to_other().map(sites.mesh.positions[site]) - deepest.at;
+      const Vec3 offset = at(vertex) - from;
       const double height = dot(up, offset);
-      if (height * height <= kPushSine * kPushSine * squared_norm(offset) && is_corner(site, up))
-        corners_.push_back({vertex, site, offset - height * up});
+      if (height * height > kPushSine * kPushSine * squared_norm(offset)) continue;
+      if (!region.is_inside() && vertices.is_free(vertex)) continue;
+      if (const std::uint32_t site = sites.regions.points[vertex].vertex; is_corner(site, across))
+        corners_.push_back({vertex, site, offset});
     }
   }
   keep_hull(corners_, up);
 }
 
-// Whether a vertex is one of the outline of the faces that lie across a direction: it can be pushed, and seen
-// along that direction, all edges there are in less than a half-plane.
-bool FeatureContacts::is_corner(std::uint32_t vertex, const Vec3& up) {
-  find_spokes(vertex);
-  if (!can_push(up, spokes_)) return false;
-  const Vec3 axis = std::abs(up[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 x = normalized(cross(up, axis)), y = cross(up, x);
-  angles_.clear();
-  for (const Vec3& spoke : spokes_) {
-    const Vec2 seen{dot(x, spoke), dot(y, spoke)};
-    if (dot(seen, seen) > kPushSine * kPushSine * squared_norm(spoke))
-      angles_.push_back(std::atan2(seen[1], seen[0]));
-  }
-  if (angles_.empty()) return true;  // a needle
-  std::ranges::sort(angles_);
-  double gap = angles_.front() + 2 * std::numbers::pi - angles_.back();
-  for (std::size_t i = 1; i < angles_.size(); ++i) gap = std::max(gap, angles_[i] - angles_[i - 1]);
-  return gap > std::numbers::pi + kStraight;
+// Whether a vertex is one of the outline of the faces that lie across `up`, a direction in the frame of the
+// body: it can be pushed, and seen along that direction, all edges there are in less than a half-plane.
+// `across`: that direction and two others.
+bool FeatureContacts::is_corner(std::uint32_t vertex, const std::array<Vec3, 3>& across) const {
+  const SitesData& sites = internals(on().sites());
+  const auto& [up, x, y] = across;
+  // The cone of the edges, from `right` to `left`.
+  Vec2 right{}, left{};
+  for (const std::uint32_t face : sites.vertex_faces.of(vertex))
+    for (const std::uint32_t corner : sites.mesh.triangles[face]) {
+      if (corner == vertex) continue;
+      const Vec3 spoke = sites.mesh.positions[corner] - sites.mesh.positions[vertex];
+      if (!can_push(up, std::span(&spoke, 1))) return false;
+      const Vec2 seen{dot(x, spoke), dot(y, spoke)};
+      if (dot(seen, seen) <= kPushSine * kPushSine * squared_norm(spoke)) continue;
+      if (right == Vec2{}) right = left = seen;
+      const double from_right = cross(right, seen), from_left = cross(left, seen);
+      const bool straight =
+          (from_right == 0 && dot(right, seen) < 0) || (from_left == 0 && dot(left, seen) < 0);
+      if (straight || (from_right < 0 && from_left > 0)) return false;
+      if (from_right < 0) right = seen;
+      if (from_left > 0) left = seen;
+    }
+  const double sine = cross(right, left), cosine = dot(right, left);
+  return cosine >= 0 || sine > -kStraight * cosine;
 }
 
 // Of more points than kMostCorners, keeps those that are farthest in as many directions, which are spread by
@@ -159,12 +173,14 @@ bool FeatureContacts::is_corner(std::uint32_t vertex, const Vec3& up) {
 void FeatureContacts::keep_hull(std::vector<Corner>& corners, const Vec3& up) {
   if (corners.size() <= kMostCorners) return;
   const auto farthest = [&](const auto& along) { return *std::ranges::max_element(corners, {}, along); };
-  const Vec3 from = farthest([](const Corner&c) { return squared_norm(c.offset); }).offset,
-             to = farthest([&](const Corner&c) { return squared_norm(c.offset - from); }).offset;
+  const auto squared = [](const Corner& c) { return squared_norm(c.offset); };
+  const Vec3 from = farthest(squared).offset;
+  const auto squared_from = [&](const Corner& c) { return squared_norm(c.offset - from); };
+  const Vec3 to = farthest(squared_from).offset;
   const Vec3 length = to - from, across = cross(up, length);
   const auto side = [&](const Corner& c) { return dot(across, c.offset - from); };
-  const double width = std::max(std::abs(side(farthest(side))),
-                                std::abs(side(farthest([&](const Corner& c) { return -side(c); }))));
+  const auto width_at = [&](const Corner& c) { return std::abs(side(c)); };
+  const double width = width_at(farthest(width_at));
   const double along_unit = 1 / squared_norm(length), side_unit = width > 0 ? 1 / width : 0;
   std::array<std::uint32_t, kMostCorners> kept;
   for (std::size_t i = 0; i < kMostCorners; ++i) {
@@ -257,16 +273,6 @@ Vec3 FeatureContacts::outwards_at(const SurfacePoint& point) const {
   return (point.distance < 0 ? 1 / distance : -1 / distance) * point.vector;
 }
 
-// Sets spokes_, from a vertex to the corners of its faces.
-void FeatureContacts::find_spokes(std::uint32_t vertex) {
-  const SitesData& sites = internals(on().sites());
-  spokes_.clear();
-  for (const std::uint32_t face : sites.vertex_faces.of(vertex))
-    for (const std::uint32_t corner : sites.mesh.triangles[face])
-      if (corner != vertex)
-        spokes_.push_back(to_other().map.linear(sites.mesh.positions[corner] - sites.mesh.positions[vertex]));
-}
-
 // A corner that is flush with a face that cannot push it is carried by another one.
 void FeatureContacts::find_support(Feature& feature) {
   const SitesData& sites = internals(on().sites());
@@ -274,7 +280,12 @@ void FeatureContacts::find_support(Feature& feature) {
   const double distance = norm(closest.vector);
   if (distance > std::max(query().limit, kFlush * query().size) || !at_boundary(other(), closest)) return;
   const Vec3 outwards = outwards_at(closest);
-  find_spokes(feature.site);
+  spokes_.clear();
+  for (const std::uint32_t face : sites.vertex_faces.of(feature.site))
+    for (const std::uint32_t corner : sites.mesh.triangles[face])
+      if (corner != feature.site)
+        spokes_.push_back(
+            to_other().map.linear(sites.mesh.positions[corner] - sites.mesh.positions[feature.site]));
   if (can_push(outwards, spokes_)) return;
   // A vertex in a smooth surface has no other direction in which nothing else of the body is in contact
   // sooner.

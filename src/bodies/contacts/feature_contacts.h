@@ -3,6 +3,7 @@
 
 #include <sdm/proximity_query.h>
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -43,7 +44,7 @@ class FeatureContacts {
   /// A corner of the outline of what lies along the other body.
   struct Corner {
     std::uint32_t vertex = 0, site = 0;  ///< its numbers among the regions and in the mesh
-    Vec3 offset{};                       ///< from the deepest vertex, across the way out
+    Vec3 offset{};                       ///< from the deepest vertex, in the unit frame
   };
   static constexpr std::size_t kMostCorners = 8;  ///< of a part that have contacts
   using Regions = std::span<const ContactRegion>;
@@ -51,11 +52,10 @@ class FeatureContacts {
   void start(ContactCandidates& candidates);
   void find_deepest(Regions part);
   void add_deepest(Regions part, const DeepestVertex::Found& deepest, const Box& box);
-  void find_corners(Regions part, const SurfacePoint& deepest);
-  [[nodiscard]] bool is_corner(std::uint32_t vertex, const Vec3& up);
+  void find_corners(Regions part, const DeepestVertex::Found& deepest);
+  [[nodiscard]] bool is_corner(std::uint32_t vertex, const std::array<Vec3, 3>& across) const;
   static void keep_hull(std::vector<Corner>& corners, const Vec3& up);
   [[nodiscard]] Vec3 outwards_at(const SurfacePoint& point) const;
-  void find_spokes(std::uint32_t vertex);
   void find_each(const ContactRegion& region);
   void find_on_edge(std::uint32_t edge, bool a_touches, bool b_touches, double reach);
   void find_support(Feature& feature);
@@ -84,7 +84,6 @@ class FeatureContacts {
   std::vector<Feature> features_;
   std::vector<Vec3> spokes_;
   std::vector<Corner> corners_;
-  std::vector<double> angles_;
 
   std::vector<Contact> contacts_;
   std::vector<Box> boxes_, bridges_;
