@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "notes.h"
 #include "option_checks.h"
 #include "src/io/json/report_json.h"
 #include "unit_options.h"

@@ -4,6 +4,7 @@
 
 #include "format.h"
 #include "islands.h"
+#include "notes.h"
 #include "places.h"
 #include "src/io/json/report_json.h"
 
