@@ -104,6 +104,14 @@ test('arguments of another kind are errors that name them, and leave the module 
   assert.ok(surface instanceof full.Surface && !(sites instanceof full.Surface));
 });
 
+test('options are stated as they were given, large ones with all digits', () => {
+  const { positions, indices } = ball(8), map = new full.Surface(positions, indices, { resolution: 16 }).map(new full.Sites(positions, indices));
+  for (const maxDistance of [0.1, 2 ** 53 + 2, 2 ** 70, 1e300]) {
+    map.compute({ maxDistance });
+    assert.equal(map.summary().measured.settings.max_distance, maxDistance);
+  }
+});
+
 test('closest points of many points are as close as promised, and of few as if each were alone', () => {
   const at = [-0.5, 0.5], vertices = at.flatMap((z) => at.flatMap((y) => at.map((x) => [x, y, z])));
   const faces = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
