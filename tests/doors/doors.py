@@ -28,8 +28,8 @@ def camel(name: str) -> str:
 
 
 def meshes(folder: Path) -> list[Path]:
-    """A tetrahedron, and a bent square, which is open."""
-    tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    """A tetrahedron, of which no two edges are equal, so that rounding decides nothing of its atlas, and a bent square, which is open."""
+    tetrahedron = "v .05 .01 .03\nv 1.2 .1 0\nv .2 .9 .1\nv .3 .25 1.4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
     square = "v -1 -1 .2\nv 2 -1 .3\nv 2 2 .2\nv -1 2 .5\nf 1 2 3\nf 1 3 4\n"
     files = [folder / "on.obj", folder / "open.obj"]
     for file, text in zip(files, (tetrahedron, square)):
@@ -86,12 +86,13 @@ def by_lines(program: list, files: list[Path], sets: list[dict[str, str]]) -> li
 
 def plain(sentence: str) -> str:
     """Without what differs by door: the spelling of names, quotes around values, and which option of the door is a remedy."""
+    sentence = re.sub(r" \(--[\w ./-]+\)$", "", sentence)
     for name in ALLOWED:
         for text in {"--" + name.replace("_", "-"), camel(name)} - {name}:
             sentence = re.sub(re.escape(text) + r"(?![\w-])", name, sentence)
     sentence = re.sub(r"\bauto,", "automatic,", sentence).replace("'", "").replace('"', "").replace("NaN", "nan")
     sentence = re.sub(r"(?<=unknown option )\S+?(?=;|$)", lambda match: re.sub(r"[-_]", "", match[0]).lower(), sentence)
-    return re.sub(r" \(--[\w ./-]+\)$", "", sentence.removeprefix("map() has an "))
+    return sentence.removeprefix("map() has an ")
 
 
 def same(a: "list | str", b: "list | str") -> bool:

@@ -15,7 +15,7 @@ ALLOWED = {
 }
 REFUSED = {
     "resolution": ["15", "32769", "-16"],
-    "atlas": ["chart", "UV", ""],
+    "atlas": ["chart", "UV", "none"],
     "gutter": ["-1", "8193"],
     "max_stretch": ["1", "0.5", "100.5", "nan"],
     "max_distance": ["0", "-0.5", "nan"],
