@@ -29,9 +29,10 @@ struct OptionRange {
   bool above = false;                                    ///< whether `least` itself is excluded
   bool below = false;                                    ///< whether `most` itself is excluded
 };
-inline constexpr OptionRange kPositive{.least = 0, .above = true};
-inline constexpr OptionRange kPositiveOrInfinite{
-    .least = 0, .most = std::numeric_limits<double>::infinity(), .above = true};
+/// The finite numbers greater than 0.
+inline constexpr OptionRange kPositive{0, std::numeric_limits<double>::max(), true};
+/// The same, and infinity.
+inline constexpr OptionRange kPositiveOrInfinite{0, std::numeric_limits<double>::infinity(), true};
 
 /// Another option that may not be given beside one.
 struct ExcludedOption {
