@@ -9,9 +9,11 @@ export function shown(value: unknown): string {
   return name.endsWith('s') ? name : `${/^[AEIOU]/.test(name) ? 'an' : 'a'} ${name}`;
 }
 
-/** Options that C++ declares: their names with their values in words, how many bytes these are, and the numbers. */
+/** Options that C++ declares, all but progress: their names with their values in words, how many bytes these are, and the numbers. */
 export function declaredOptions(given: object): [Uint8Array, number, Float64Array] {
-  const entries = Object.entries(given).filter(([, value]) => value !== undefined && value !== null);
+  const entries = Object.entries(given).filter(
+    ([name, value]) => value !== undefined && value !== null && name !== 'progress',
+  );
   const lines = entries.map(([name, value]) => `${name.replace(/[=\n]/g, ' ')}=${shown(value)}\n`);
   const bytes = new TextEncoder().encode(lines.join(''));
   const numbers = entries.map(([, value]) => (typeof value === 'number' ? value : Number.NaN));
