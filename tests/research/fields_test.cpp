@@ -97,7 +97,7 @@ TEST(FieldMethods, OfWrongOptionsAreErrors) {
   const auto error = [&](const fields::Options& options) {
     return error_of([&] { return fields::compute_field(sites, grid, options); });
   };
-  EXPECT_THAT(error({.method = Method::difi, .max_distance = 0}), HasSubstr("maximum distance"));
+  EXPECT_THAT(error({.method = Method::difi, .max_distance = 0}), HasSubstr("max_distance is 0"));
   EXPECT_THAT(error({.method = Method::csc}), HasSubstr("needs a maximum distance"));
   EXPECT_THAT(error({.method = static_cast<Method>(99)}), HasSubstr("unknown method"));
 }
