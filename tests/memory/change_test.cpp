@@ -63,8 +63,9 @@ const Calls<Sites> kSites{
       return numbers_of(map.distance, map.vector, map.site, map.site_type);
     }};
 
+// Refits allocate nothing but tasks, of which loops of one part have none.
 TEST(FailedAllocations, LeaveSitesAsTheyWereOrBrokenByARefit) {
-  for (const Mesh& mesh : meshes()) {
+  for (const Mesh& mesh : {sphere(4), height_field(50)}) {
     const auto make = [&] { return std::make_unique<Sites>(mesh); };
     const std::vector<Vec3> positions = bent(mesh);
     const std::function<void(Sites&)> refit = [&](Sites& s) { s.refit(positions); };
@@ -114,13 +115,13 @@ std::vector<Atlas> atlases() {
 }
 
 TEST(FailedAllocations, LeaveASurfaceAsItWasOrBrokenByARefit) {
-  for (const auto& [mesh, options] : atlases()) {
-    const std::vector<Vec3> positions = bent(mesh);
-    const std::function<void(Surface&)> refit = [&](Surface& s) { s.refit(positions); };
-    EXPECT_GT(expect_all_or_nothing([&] { return std::make_unique<Surface>(mesh, options); }, refit, kSurface,
-                                    Guarantee::unchanged_or_broken, FailingAllocation::Tasks::all),
-              0u);
-  }
+  const Mesh mesh = sphere(4);
+  const std::vector<Vec3> positions = bent(mesh);
+  const std::function<void(Surface&)> refit = [&](Surface& s) { s.refit(positions); };
+  const auto make = [&] { return std::make_unique<Surface>(mesh, AtlasOptions{.resolution = 64}); };
+  EXPECT_GT(expect_all_or_nothing(make, refit, kSurface, Guarantee::unchanged_or_broken,
+                                  FailingAllocation::Tasks::all),
+            0u);
 }
 
 // Once, 42 of 518 failures changed the mesh.
@@ -162,7 +163,7 @@ TEST(FailedAllocations, LeaveAMeshAsItWasByAnEdit) {
 }
 
 TEST(FailedAllocations, LeaveASamplingBoundAsItWasOrBroken) {
-  Surface moved(sphere(1), {.resolution = 48});
+  Surface moved(sphere(1), {.resolution = 256});
   const auto make = [&] {
     moved.refit(sphere(1).positions);
     auto bound = std::make_unique<SamplingBound>(moved);
