@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
