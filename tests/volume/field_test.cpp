@@ -56,7 +56,7 @@ TEST(Fields, OfWrongOptionsAreErrors) {
     return error_of([&] { return compute_field(sites, grid, options); });
   };
   EXPECT_THAT(error(closed, {.max_distance = 0}), HasSubstr("max_distance is 0"));
-  EXPECT_THAT(error(closed, {.max_distance = kNaN}), HasSubstr("maximum distance"));
+  EXPECT_THAT(error(closed, {.max_distance = kNaN}), HasSubstr("max_distance is nan"));
   EXPECT_THAT(error(open, {.sign = SignMethod::exact}), HasSubstr("open"));
   Grid wrong = grid;
   wrong.dims[1] = 0;
