@@ -157,7 +157,12 @@ void add_options(CLI::App& app, BakeCommand& c) {
   add_layout(app, c.layout);
   add_channels(app, c);
   add_samples(app, c);
-  add_declared_options(app, c.map, {"sign"});
+  add_declared_options(
+      app, c.map, {"sign"},
+      {{"max_distance", "Texels farther than this from HIGH have no match, and are filled from others."},
+       {"facing",
+        "Match the closest of the faces of HIGH that face the same way: whose normal is within this angle of "
+        "that of the texel's face. For thin walls, where the closest point may be on the other skin."}});
   add_matching(app, c);
   app.add_option("--units", c.units, "Units of the meshes; m, cm, mm, um, in, ft scale baked.glb to metres")
       ->type_name("NAME");

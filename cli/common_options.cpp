@@ -33,8 +33,8 @@ namespace {
 
 const auto& kResolution = std::get<0>(sdm::kOptions<sdm::AtlasOptions>);
 
-sdm::OptionInfo resolution_of(const std::string& maps) {
-  sdm::OptionInfo info = sdm::info_of(kResolution);
+sdm::OptionInfo resolution_of(const sdm::AtlasOptions& atlas, const std::string& maps) {
+  sdm::OptionInfo info = info_of(kResolution, atlas);
   info.text = "Texels along each side of " + maps;
   return info;
 }
@@ -42,13 +42,13 @@ sdm::OptionInfo resolution_of(const std::string& maps) {
 }  // namespace
 
 CLI::Option* add_side_option(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& maps) {
-  return add_declared_option(app, resolution_of(maps), [&atlas](const std::string& text) {
+  return add_declared_option(app, resolution_of(atlas, maps), [&atlas](const std::string& text) {
     return sdm::read_value(kResolution, text, atlas);
   });
 }
 
 CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& maps) {
-  sdm::OptionInfo info = resolution_of(maps);
+  sdm::OptionInfo info = resolution_of(atlas, maps);
   info.text += "; with --atlas uv also WxH, those of a row and of a column";
   info.value = "N|WxH";
   return add_declared_option(app, std::move(info), [&atlas](const std::string& text) {

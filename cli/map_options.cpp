@@ -24,6 +24,7 @@ void add_map_layout(CLI::App& app, MapLayout& layout, CLI::Option* both) {
          "of the same mesh, transform and layout")
       ->type_name("FILE")
       ->excludes(app.get_option("--precision"))
+      ->excludes(app.get_option("--texel-size"))
       ->excludes(both);
 }
 

@@ -119,8 +119,8 @@ class SDM_API RelativeError {
 
 /// What decides the resolution of an atlas in place of a number.
 struct PrecisionOptions {
-  std::optional<double> precision{};   ///< as of resolution_for()
-  std::optional<double> texel_size{};  ///< a precision of 1/√2 of it, that of square texels of this side
+  std::optional<double> precision{};   ///< as of resolution_for(); > 0, in units of the mesh
+  std::optional<double> texel_size{};  ///< a precision of 1/√2 of it; > 0, in units of the mesh
 };
 
 inline constexpr std::array kPrecisionExcludes{

@@ -98,6 +98,17 @@ TEST(Usage, CompletionsAndTheManualNameAllOptions) {
   EXPECT_EQ(run_sdm({"completion", "tcsh"}).code, 2);
 }
 
+// A declared option has the default and the words of the command that it is an option of.
+TEST(Usage, HelpStatesTheDefaultsOfTheCommand) {
+  const auto help = [](const char* command) {
+    return run_sdm({command, "--help"}, {.environment = {"COLUMNS=120"}}).out;
+  };
+  EXPECT_THAT(help("map"), HasSubstr("--resolution N|WxH=1024"));
+  EXPECT_THAT(help("sequence"), HasSubstr("--resolution N|WxH=512"));
+  EXPECT_THAT(help("bodies"), HasSubstr("--resolution N=128"));
+  EXPECT_THAT(help("bake"), HasSubstr("farther than this from HIGH have no match"));
+}
+
 // The options of a command that are whole numbers, and how many of them each takes.
 std::map<std::string, std::size_t> whole_number_options(const std::string& command) {
   const std::string help = run_sdm({command, "--help"}, {.environment = {"COLUMNS=200"}}).out;
