@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "format.h"
 #include "src/io/json/report_json.h"
@@ -69,19 +68,6 @@ AlignOutcome timed(const Input& o2, const AlignCommand& command, const sdm::Prog
     if (command.from == "auto" || command.from == "none" || command.from == "pca") throw;
     throw sdm::Error(command.from + ": " + error.what());
   }
-}
-
-// The rotation angle in degrees, and how far the centre of O1 moves.
-std::pair<double, double> sizes(const sdm::Alignment& a) {
-  const auto& r = a.transform.rows;
-  // The antisymmetric part is accurate for small angles, unlike the trace alone.
-  const double sine = 0.5 * std::hypot(r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]);
-  const double angle = std::atan2(sine, 0.5 * (r[0][0] + r[1][1] + r[2][2] - 1));
-  sdm::Vec3 before{};  // the inverse of a rotation is its transpose
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) before[i] += r[j][i] * (a.centre[j] - r[j][3]);
-  return {angle * 180 / std::numbers::pi,
-          length({a.centre[0] - before[0], a.centre[1] - before[1], a.centre[2] - before[2]})};
 }
 
 // A direction in words: its sign does not matter.
@@ -157,9 +143,8 @@ void add_choices(Json& json, const AlignOutcome& outcome) {
   json["on"] = command.region;
   json["allowed"] = by_points ? std::vector<std::string>() : names_of(command.freedoms);
   json["about"] = command.freedoms.about;
-  json["mirrored"] = json["scale"] = nullptr;
-  if (outcome.mirrored) json["mirrored"] = sdm::fields_json(*outcome.mirrored);
-  if (outcome.scale) json["scale"] = sdm::fields_json(*outcome.scale);
+  json["mirrored"] = sdm::value_json(outcome.mirrored);
+  json["scale"] = sdm::value_json(outcome.scale);
   json["group_kind"] = outcome.group_kind;
   json["groups"] = Json::array();
   for (const auto& [name, group] : named_residuals(outcome)) {
@@ -181,7 +166,7 @@ std::string names_in_words(const std::vector<std::string>& names) {
 std::vector<std::string> in_words(const AlignOutcome& outcome, const std::string& units) {
   const sdm::Alignment& a = outcome.alignment;
   const std::string unit = unit_suffix(units);
-  const auto [degrees, shift] = sizes(a);
+  const auto [degrees, shift] = sdm::motion_of(a);
   const auto rms = [](double value) { return std::isnan(value) ? "unknown" : number(value, 3); };
   std::vector<std::string> words{
       fmt::format("turned O1 by {}° and moved it by {}{}; residual rms {} -> {}{} ({} % of samples)",
@@ -200,26 +185,7 @@ std::vector<std::string> in_words(const AlignOutcome& outcome, const std::string
 }  // namespace
 
 Json to_json(const AlignOutcome& outcome, const std::string& units) {
-  const sdm::Alignment& a = outcome.alignment;
-  const auto [degrees, shift] = sizes(a);
-  Json freedoms = Json::array();
-  for (const sdm::DegreeOfFreedom& f : a.freedoms) freedoms.push_back(sdm::fields_json(f));
-  Json json{{"matrix", a.transform.rows},
-            {"order", "row-major, for column vectors"},
-            {"from", nullptr},
-            {"rotation_degrees", degrees},
-            {"translation", shift},
-            {"converged", a.converged},
-            {"iterations", a.iterations},
-            {"samples", a.samples},
-            {"fraction_used", a.fraction_used},
-            {"fraction_fitting", a.fraction_fitting},
-            {"residuals_kind", "estimate"},
-            {"before", sdm::fields_json(a.before)},
-            {"after", sdm::fields_json(a.after)},
-            {"centre", a.centre},
-            {"gyration_radius", a.gyration_radius},
-            {"degrees_of_freedom", freedoms}};
+  Json json = sdm::to_json(outcome.alignment);
   add_choices(json, outcome);
   json["text"] = fmt::format("{}", fmt::join(in_words(outcome, units), ", "));
   json["time_ms"] = outcome.time_ms;

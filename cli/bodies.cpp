@@ -76,7 +76,8 @@ nlohmann::ordered_json report_of(const BodiesCommand& command, const std::vector
   if (!command.out.empty()) report["resolution"] = command.atlas.resolution;
   report["max_distance"] = command.max_distance;  // null: no limit
   report["pairs"] = nlohmann::ordered_json::array();
-  for (const PairResults& pair : pairs) report["pairs"].push_back(to_json(pair));
+  for (const PairResults& pair : pairs)
+    report["pairs"].push_back(sdm::to_json(pair.separation, pair.penetration_depth));
   report["candidate_pairs"] = bodies.candidate_pairs();
   report["contacts"] = to_json(bodies.contacts());
   return report;

@@ -7,9 +7,6 @@
 
 #include "bounds_text.h"
 #include "format.h"
-#include "src/io/json/report_json.h"
-
-using Json = nlohmann::ordered_json;
 
 namespace {
 
@@ -47,15 +44,6 @@ std::vector<PairResults> results_of(sdm::MultiBodyQuery& bodies, double max_dist
                                               : sdm::BoundedLength{{.certainty = sdm::Certainty::exact}};
   }
   return results;
-}
-
-Json to_json(const PairResults& pair) {
-  return {{"first", pair.separation.first},
-          {"second", pair.separation.second},
-          {"separation", sdm::fields_json(pair.separation.separation)},
-          {"colliding", sdm::collision_json(pair.separation.colliding)},
-          {"penetration_depth",
-           pair.penetration_depth ? sdm::fields_json(*pair.penetration_depth) : Json(nullptr)}};
 }
 
 std::string table(std::span<const PairResults> pairs) {

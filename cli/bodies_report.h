@@ -1,9 +1,8 @@
-// The results of multi-body queries, as JSON and as a table. The keys are documented in docs/proximity.md.
+// The results of multi-body queries as a table.
 #pragma once
 
 #include <sdm/multi_body_query.h>
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,8 +16,6 @@ struct PairResults {
 
 /// Those of all pairs that collide or whose separation is at most `max_distance`.
 [[nodiscard]] std::vector<PairResults> results_of(sdm::MultiBodyQuery& bodies, double max_distance);
-
-[[nodiscard]] nlohmann::ordered_json to_json(const PairResults& pair);
 
 /// A table with one line per pair, below a heading.
 [[nodiscard]] std::string table(std::span<const PairResults> pairs);

@@ -11,16 +11,16 @@
 #include <vector>
 
 #include "format.h"
+#include "src/io/json/report_json.h"
 
 namespace {
 
 nlohmann::ordered_json devices_json(const std::vector<sdm::GlDevice>& devices) {
   auto list = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < devices.size(); ++i)
-    list.push_back({{"index", i},
-                    {"name", devices[i].name},
-                    {"driver", devices[i].driver},
-                    {"software", devices[i].software}});
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    list.push_back({{"index", i}});
+    list.back().update(sdm::fields_json(devices[i]));
+  }
   return list;
 }
 

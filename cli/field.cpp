@@ -13,7 +13,6 @@
 #include "format.h"
 #include "option_checks.h"
 #include "report.h"
-#include "src/io/json/report_json.h"
 #include "unit_options.h"
 
 namespace {
@@ -23,21 +22,6 @@ void extend(sdm::Box& box, const sdm::Box& other) {
     box.lo[k] = std::min(box.lo[k], other.lo[k]);
     box.hi[k] = std::max(box.hi[k], other.hi[k]);
   }
-}
-
-struct Range {
-  double min = std::numeric_limits<double>::quiet_NaN(), max = min;
-};
-
-// The least and the largest distance of the points with a value.
-Range range_of(const sdm::DistanceField& field) {
-  Range range;
-  for (const float d : field.distance) {
-    if (std::isnan(d)) continue;
-    range.min = std::isnan(range.min) ? double{d} : std::min(range.min, double{d});
-    range.max = std::isnan(range.max) ? double{d} : std::max(range.max, double{d});
-  }
-  return range;
 }
 
 }  // namespace
@@ -58,31 +42,17 @@ sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2, const sdm::B
   return sdm::make_grid(box, {command.points[0], command.points[1], command.points[2]});
 }
 
-nlohmann::ordered_json field_json(const sdm::DistanceField& field) {
-  const Range range = range_of(field);
-  nlohmann::ordered_json json;
-  json["grid"] = {
-      {"points", field.grid.dims}, {"origin", field.grid.origin}, {"spacing", field.grid.spacing}};
-  json["max_distance"] = field.max_distance;  // null: no limit
-  json["sign"] = sdm::fields_json(field.sign);
-  json["distance"] = {{"min", range.min}, {"max", range.max}};  // null: no point has a value
-  json["beyond_max_distance"] = field.beyond_max_distance;
-  json["accuracy"] = field.accuracy;
-  json["accuracy_kind"] = "bounded";
-  return json;
-}
-
 std::string field_lines(const FieldCommand& command, const sdm::DistanceField& field) {
   const std::string unit = unit_suffix(command.units);
   const sdm::Grid& grid = field.grid;
   std::string text = fmt::format("{}\n  grid       {} x {} x {} points, {} {} {}{} apart\n", command.o2,
                                  grid.dims[0], grid.dims[1], grid.dims[2], number(grid.spacing[0]),
                                  number(grid.spacing[1]), number(grid.spacing[2]), unit);
-  const Range range = range_of(field);
+  const auto [min, max] = sdm::distance_range(field);
   if (field.beyond_max_distance == field.distance.size())
     text += "  distance   no point is within the maximum distance\n";
   else
-    text += fmt::format("  distance   min {}   max {}{}, to {}\n", number(range.min), number(range.max), unit,
+    text += fmt::format("  distance   min {}   max {}{}, to {}\n", number(min), number(max), unit,
                         number(field.accuracy, 2));
   if (field.sign.method == sdm::SignMethod::none)
     text += fmt::format("             unsigned: {}\n", field.sign.reason);

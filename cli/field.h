@@ -31,7 +31,5 @@ void check_field_options(const FieldCommand& command);
 /// tenth of O2's diagonal, and around `more`, which may be empty.
 [[nodiscard]] sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2, const sdm::Box& more);
 
-/// Keys that describe the field, without `work`.
-[[nodiscard]] nlohmann::ordered_json field_json(const sdm::DistanceField& field);
 /// The first lines of the text, up to the points beyond the maximum distance.
 [[nodiscard]] std::string field_lines(const FieldCommand& command, const sdm::DistanceField& field);

@@ -67,36 +67,22 @@ std::string not_determined(const Info& info) {
 }
 
 nlohmann::ordered_json info_json(const std::string& file, const Info& all) {
-  const sdm::MeshInfo& info = all.mesh;
-  return {{"file", file},
-          {"vertices", info.vertices},
-          {"edges", info.edges},
-          {"triangles", info.triangles},
-          {"bounds", {{"lo", info.bounds.lo}, {"hi", info.bounds.hi}}},
-          {"components", info.components},
-          {"closed", info.closed},
-          {"orientable", info.orientable},
-          {"oriented", info.oriented},
-          {"manifold", info.manifold},
-          {"boundary_edges", info.boundary_edges},
-          {"nonmanifold_edges", info.nonmanifold_edges},
-          {"nonmanifold_vertices", info.nonmanifold_vertices},
-          {"degenerate_faces", info.degenerate_faces},
-          {"duplicate_faces", info.duplicate_faces},
-          {"unused_vertices", info.unused_vertices},
-          {"self_intersections", all.self_intersections.all
-                                     ? nlohmann::ordered_json(all.self_intersections.pairs.size())
-                                     : nlohmann::ordered_json()},
-          {"least_self_intersections", all.self_intersections.pairs.size()},
-          {"not_determined", all.self_intersections.all ? nlohmann::ordered_json()
-                                                        : nlohmann::ordered_json(not_determined(all))},
-          {"uvs", info.has_uvs},
-          {"area", info.area},
-          {"volume", all.volume
-                         ? nlohmann::ordered_json{{"lower", all.volume->lower}, {"upper", all.volume->upper}}
-                         : nlohmann::ordered_json()},
-          {"tessellation", all.tessellation ? sdm::to_json(*all.tessellation) : nlohmann::ordered_json()},
-          {"notes", all.notes}};
+  const sdm::SelfIntersections& found = all.self_intersections;
+  nlohmann::ordered_json json{{"file", file}};
+  json.update(sdm::fields_json(all.mesh));
+  json["self_intersections"] = nullptr;
+  json["least_self_intersections"] = found.pairs.size();
+  json["not_determined"] = nullptr;
+  if (found.all)
+    json["self_intersections"] = found.pairs.size();
+  else
+    json["not_determined"] = not_determined(all);
+  json["volume"] = nullptr;
+  if (all.volume) json["volume"] = {{"lower", all.volume->lower}, {"upper", all.volume->upper}};
+  json["tessellation"] = nullptr;
+  if (all.tessellation) json["tessellation"] = sdm::to_json(*all.tessellation);
+  json["notes"] = all.notes;
+  return json;
 }
 
 std::string text(bool value) {

@@ -169,7 +169,7 @@ Json report_of(const MapTask& task, const AtlasPart& part, const ComputedMap& co
     report["group_tolerances"] = groups_json(*outcome.groups, outcome.summary);
     report["colors"]["by_group"] = command.picture.colormap == sdm::Colormap::automatic;
   }
-  if (outcome.raster) report["raster"] = to_json(*outcome.raster);
+  if (outcome.raster) report["raster"] = sdm::to_json(*outcome.raster);
   return report;
 }
 

@@ -88,10 +88,7 @@ MetricsAnswer decide_metrics(const InputPair& pair, const MetricsCommand& comman
 
 Json metrics_report(const MetricsCommand& command, const InputPair& pair, const MetricsAnswer& answer) {
   Json json = report_on(pair, command.units);
-  for (const sdm::NamedMetric& m : answer.named) json["metrics"][m.name] = to_json(m.number, m.confidence);
-  const double confidence = answer.metrics.confidence;
-  json["o1_to_o2"] = to_json(answer.metrics.from[0], command.options, confidence);
-  json["o2_to_o1"] = to_json(answer.metrics.from[1], command.options, confidence);
+  json.update(sdm::to_json(answer.metrics, command.options));
   if (!command.conditions.empty()) {
     json["verdict"] = sdm::name_of(answer.verdict());
     json["fail_if"] = Json::array();

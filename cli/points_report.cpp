@@ -69,7 +69,7 @@ nlohmann::ordered_json report_of(const PointsCommand& command, const Input& o2,
       {"points", found.points}, {"invalid_points", found.invalid},       {"normals", found.has_normals}};
   if (found.islands) report["o1"]["ignored_islands"] = to_json(*found.islands, found.points);
   report["o1"]["format"] = found.format;
-  report["o1"]["text"] = found.text ? sdm::fields_json(*found.text) : Json();
+  report["o1"]["text"] = sdm::value_json(found.text);
   report["o2"] = to_json(o2);
   if (o2.islands) report["o2"]["ignored_islands"] = to_json(*o2.islands);
   report["measured_on"] = "o1";

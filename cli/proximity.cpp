@@ -17,6 +17,7 @@
 #include "print.h"
 #include "progress_line.h"
 #include "proximity_report.h"
+#include "src/io/json/report_json.h"
 #include "stopwatch.h"
 #include "unit_options.h"
 
@@ -39,7 +40,7 @@ void run(const PairCommand& command, const AlignCommand& align) {
   sdm::ProximityQuery query(pair.o1.mesh, pair.o2.mesh, command.options);
   const double build_ms = watch.lap();
   progress.step("queries");
-  const Json answers = to_json(query);
+  const Json answers = sdm::to_json(query);
   const double query_ms = watch.lap();
 
   const auto report = [&] {

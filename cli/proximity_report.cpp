@@ -4,23 +4,7 @@
 #include "format.h"
 #include "src/io/json/report_json.h"
 
-using Json = nlohmann::ordered_json;
-
 namespace {
-
-// The reason why there is no penetration depth.
-std::string no_solid(const sdm::ProximityQuery& query) {
-  const auto reason = [&](int body) {
-    std::string text = sdm::choose_sign(query.sites(body), sdm::SignMethod::automatic).reason;
-    if (body == 0) text.replace(text.find("O2"), 2, "O1");
-    return text;
-  };
-  return reason(0) + "; " + reason(1);
-}
-
-std::size_t patch_count(std::span<const sdm::Contact> contacts) {
-  return contacts.empty() ? 0 : contacts.back().patch + 1;
-}
 
 std::string direction(const sdm::Vec3& v) {
   return fmt::format("({} {} {})", number(v[0]), number(v[1]), number(v[2]));
@@ -41,23 +25,6 @@ std::string between(const sdm::BoundedLength& length, double size) {
 
 }  // namespace
 
-Json to_json(sdm::ProximityQuery& query) {
-  Json json;
-  json["separation"] = sdm::fields_json(query.separation());
-  json["colliding"] = sdm::collision_json(query.colliding());
-  if (const auto& depth = query.penetration_depth()) {
-    json["penetration_depth"] = sdm::fields_json(*depth);
-  } else {
-    json["penetration_depth"] = nullptr;
-    json["no_penetration_depth"] = no_solid(query);
-  }
-  json["separating_translation"] = sdm::fields_json(query.separating_translation());
-  json["contacts"] = Json::array();
-  for (const sdm::Contact& contact : query.contacts()) json["contacts"].push_back(to_json(contact));
-  json["patches"] = patch_count(query.contacts());
-  return json;
-}
-
 std::string summary(sdm::ProximityQuery& query, const std::string& units, double size) {
   const std::string unit = unit_suffix(units);
   std::string text = fmt::format("  colliding  {} ({})\n", query.colliding() ? "yes" : "no",
@@ -66,7 +33,7 @@ std::string summary(sdm::ProximityQuery& query, const std::string& units, double
   if (const auto& depth = query.penetration_depth())
     text += "  depth      " + words(*depth, unit) + between(*depth, size);
   else
-    text += fmt::format("  depth      none: {}\n", no_solid(query));
+    text += fmt::format("  depth      none: {}\n", sdm::no_depth_text(query));
   if (query.colliding()) {
     const sdm::SeparatingTranslation& found = query.separating_translation();
     text += "  to leave   " + words(found, unit);
@@ -74,7 +41,7 @@ std::string summary(sdm::ProximityQuery& query, const std::string& units, double
   }
   const std::span<const sdm::Contact> contacts = query.contacts();
   if (contacts.empty()) return text + "  contacts   0\n";
-  const std::size_t patches = patch_count(contacts);
+  const std::size_t patches = sdm::patch_count(contacts);
   const sdm::Contact& deepest = contacts.front();
   return text + fmt::format("  contacts   {} in {} {}; the deepest, {}{}, pushes O1 along {}\n",
                             contacts.size(), patches, patches == 1 ? "patch" : "patches",

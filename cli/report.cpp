@@ -14,58 +14,6 @@
 
 using Json = nlohmann::ordered_json;
 
-namespace {
-
-const char* clip_name(sdm::GlClip clip) {
-  return clip == sdm::GlClip::planes ? "planes" : "stencil";
-}
-
-double overdraw(const sdm::GlReport& r) {
-  return r.texels == 0 ? 0 : static_cast<double>(r.fragments) / static_cast<double>(r.texels);
-}
-
-// Milliseconds, rounded to microseconds.
-double rounded(double ms) {
-  return std::round(1000 * ms) / 1000;
-}
-
-}  // namespace
-
-Json to_json(const sdm::GlReport& r) {
-  const sdm::GlReport::Times& t = r.time_ms;
-  return {{"device", {{"name", r.device.name}, {"driver", r.device.driver}, {"software", r.device.software}}},
-          {"clip", clip_name(r.clip)},
-          {"sites", r.sites},
-          {"sites_dropped", r.sites_dropped},
-          {"faces", r.faces},
-          {"tiles", r.tiles},
-          {"pairs", r.pairs},
-          {"bound_tests", r.bound_tests},
-          {"obb_tests", r.obb_tests},
-          {"culled_by_bound", r.culled_by_bound},
-          {"culled_by_obb", r.culled_by_obb},
-          {"clipped_away", r.clipped_away},
-          {"polygons", r.polygons},
-          {"fragments", r.fragments},
-          {"texels", r.texels},
-          {"overdraw", overdraw(r)},
-          {"batches", r.batches},
-          {"unconfirmed", r.unconfirmed},
-          {"stencil_lookups", r.stencil_lookups},
-          {"stencil_hits", r.stencil_hits},
-          {"stencil_misses", r.stencil_misses},
-          {"stencil_evictions", r.stencil_evictions},
-          {"stencil_clears", r.stencil_clears},
-          {"time_ms",
-           {{"context", rounded(t.context)},
-            {"refit", rounded(t.refit)},
-            {"bounds", rounded(t.bounds)},
-            {"cull", rounded(t.cull)},
-            {"draw", rounded(t.draw)},
-            {"read_back", rounded(t.read_back)},
-            {"finish", rounded(t.finish)}}}};
-}
-
 Input load_input(const std::string& role, const std::string& file, const std::string& transform,
                  const sdm::MeshFileOptions& options) {
   const std::vector<sdm::scenes::PlacementStep> steps = sdm::scenes::parse_placement(transform);
@@ -259,6 +207,6 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
   text += coverage_line(s) + doubt_lines(s.doubts, 12) + note_lines(s.notes, 12);
   if (outcome.raster)
     add("  raster    {}, {} polygons, overdraw {}\n", outcome.raster->device.name, outcome.raster->polygons,
-        number(overdraw(*outcome.raster)));
+        number(outcome.raster->overdraw()));
   return text;
 }

@@ -61,8 +61,6 @@ struct Outcome {
 /// The mesh with what inspect() found, for the functions of sdm/report.h.
 [[nodiscard]] sdm::ReportedMesh reported(const Input& input);
 [[nodiscard]] nlohmann::ordered_json to_json(const Input& input);
-/// The counters of the gl engine.
-[[nodiscard]] nlohmann::ordered_json to_json(const sdm::GlReport& raster);
 
 /// Adds the symmetric Hausdorff distance, the larger one of both directions, to the reports on both meshes.
 void add_symmetric_hausdorff(nlohmann::ordered_json& o1, nlohmann::ordered_json& o2);

@@ -51,7 +51,7 @@ Json measure(const SelfCommand& command, const LoadedPart& loaded, const std::fi
     const sdm::ExclusionRule& rule = command.self.exclusion;
     report["exclusion"] = {{"rings", rule.geodesic ? Json(nullptr) : Json(rule.rings)},
                            {"geodesic", rule.geodesic ? Json(*rule.geodesic) : Json(nullptr)}};
-    report["separation"] = separation ? sdm::fields_json(*separation) : Json(nullptr);
+    report["separation"] = sdm::value_json(separation);
   };
   return write_part_map(command, part, query.sites(), summary, folder,
                         {.extend = extend, .page = {.up = command.picture.up, .thinnest = true}});

@@ -89,7 +89,7 @@ Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
   json["frame"] = frame.index;
   json["separation"] = sdm::fields_json(frame.separation);
   json["colliding"] = sdm::collision_json(frame.colliding);
-  json["penetration_depth"] = frame.depth ? sdm::fields_json(*frame.depth) : Json(nullptr);
+  json["penetration_depth"] = sdm::value_json(frame.depth);
   json["contacts"] = frame.contacts;
   json["patches"] = Json::array();  // for each patch its deepest contact, which comes first
   for (const sdm::Contact& contact : contacts)

@@ -148,12 +148,9 @@ SimplifyOutcome simplify_mesh(const SimplifyCommand& command, const sdm::Progres
 }
 
 Json level_json(const SimplifyCommand& command, std::size_t level, const sdm::Simplified& simplified) {
-  return {{"file", command.file(level).string()},
-          {"vertices", simplified.mesh.positions.size()},
-          {"triangles", simplified.mesh.triangles.size()},
-          {"deviation", sdm::fields_json(simplified.deviation)},
-          {"estimate", {{"value", simplified.estimate}, {"kind", "estimate"}, {"of", "meshoptimizer"}}},
-          {"stopped", simplified.stopped}};
+  Json json{{"file", command.file(level).string()}};
+  json.update(sdm::to_json(simplified));
+  return json;
 }
 
 Json report_of(const SimplifyCommand& command, const SimplifyOutcome& outcome) {

@@ -15,6 +15,7 @@
 #include "print.h"
 #include "progress_line.h"
 #include "report.h"
+#include "src/io/json/report_json.h"
 #include "stopwatch.h"
 
 namespace {
@@ -31,7 +32,7 @@ nlohmann::ordered_json report_of(const FieldCommand& command, const Input& o2, c
   json["version"] = sdm::kVersion;
   json["o2"] = to_json(o2);
   json["units"] = command.units;
-  json.update(field_json(outcome.field));
+  json.update(sdm::to_json(outcome.field));
   json["work"] = {{"field_bytes", report.field_bytes}, {"working_bytes", report.working_bytes}};
   json["notes"] = o2.notes;
   json["file"] = command.out.string();

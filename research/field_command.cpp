@@ -74,7 +74,7 @@ Json report_of(const Command& command, const Input& o2, const Outcome& outcome) 
   json["o2"] = to_json(o2);
   json["units"] = command.units;
   json["method"] = fields::info(command.method).name;
-  json.update(field_json(outcome.field));
+  json.update(sdm::to_json(outcome.field));
   json["work"] = work_json(outcome.field);
   if (outcome.proximity) json["proximity"] = proximity_json(command, *outcome.proximity);
   json["notes"] = outcome.notes;

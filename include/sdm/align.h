@@ -152,6 +152,27 @@ struct Alignment {
   std::vector<GroupResiduals> groups{};       ///< by AlignOptions::group_of_face, of all samples
 };
 
+template <>
+inline constexpr std::tuple kFields<Alignment>{
+    Field{"transform", &Alignment::transform,
+          "Maps O1, as it was given, to its place on O2: a rotation and a translation, for column vectors."},
+    Field{"converged", &Alignment::converged,
+          "The last step moved O1 by less than 1e-6 of its radius of gyration."},
+    Field{"iterations", &Alignment::iterations, "Steps, of all levels."},
+    Field{"samples", &Alignment::samples, "The number of samples."},
+    Field{"fraction_used", &Alignment::fraction_used,
+          "Of the samples, in the last step; the others are taken for outliers."},
+    Field{"fraction_fitting", &Alignment::fraction_fitting,
+          "Of the samples: those used, and those within 1e-5 of the radius of gyration of O2, since rounding "
+          "of "
+          "coordinates makes no outliers."},
+    Field{"before", &Alignment::before, "Distances of samples of O1, as it was given, to O2."},
+    Field{"after", &Alignment::after, "Those of the aligned samples."},
+    Field{"centre", &Alignment::centre,
+          "The centre of the aligned O1: the median of its samples along each axis."},
+    Field{"gyration_radius", &Alignment::gyration_radius, "The radius of gyration of O1 about its centre."},
+    Field{"freedoms", &Alignment::freedoms, "The six degrees of freedom, the best determined one first."}};
+
 /// Finds the rotation and the translation that move the surface of `o1` onto O2, by iterated closest points:
 /// each step minimises the squared distances of samples to the tangent planes of O2 at their closest points.
 /// Samples are refined from 1024 to options.samples. Without weight are residuals above three times their
@@ -173,6 +194,20 @@ struct Alignment {
 /// NaN or beyond 1e37, without points, and if the number of normals differs.
 [[nodiscard]] SDM_API Alignment align(std::span<const Vec3> points, std::span<const Vec3> normals,
                                       const Sites& o2, const AlignOptions& options = {});
+
+/// How far an alignment has moved O1.
+struct AlignMotion {
+  double rotation_degrees = 0;  ///< the angle of the rotation, in [0, 180]
+  double translation = 0;       ///< of the centre of O1
+};
+
+template <>
+inline constexpr std::tuple kFields<AlignMotion>{
+    Field{"rotation_degrees", &AlignMotion::rotation_degrees, "The angle of the rotation."},
+    Field{"translation", &AlignMotion::translation, "How far the centre of O1 moved."}};
+
+/// Returns the sizes of the motion. Cost: O(1).
+[[nodiscard]] SDM_API AlignMotion motion_of(const Alignment& alignment);
 
 /// Returns the motion of a 3-2-1 alignment, in closed form: it moves the plane of the first three `points` of
 /// O1, the primary ones, onto that of their `places` on O2; the line of the next two, the secondary ones,

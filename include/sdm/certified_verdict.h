@@ -7,6 +7,7 @@
 #include <sdm/api.h>
 #include <sdm/doubts.h>
 #include <sdm/map.h>
+#include <sdm/names.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
@@ -26,6 +27,10 @@ struct CertifiedVerdict : ToleranceVerdict {
   /// of these.
   std::optional<bool> by_facing{};
 };
+
+/// What is known of every verdict.
+template <>
+inline constexpr auto kFields<CertifiedVerdict> = kFields<ToleranceVerdict>;
 
 /// Returns the doubt about a pass by the closest points where walls are thin, and faces that face the same
 /// way do not decide.

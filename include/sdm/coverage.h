@@ -5,6 +5,7 @@
 
 #include <sdm/api.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 
@@ -12,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -22,6 +24,12 @@ struct Coverage {
   double lower = 0, upper = 1;  ///< certified
   double reach = 0;
 };
+
+template <>
+inline constexpr std::tuple kFields<Coverage>{
+    Field{"value", &Coverage::value, "In [0, 1]; an estimate within the bounds."},
+    Field{"lower", &Coverage::lower, "Certified."}, Field{"upper", &Coverage::upper, "Certified."},
+    Field{"reach", &Coverage::reach, "How near."}};
 
 /// A part of a face of O2.
 struct CoveragePiece {
@@ -35,6 +43,12 @@ struct CoverageMap : Coverage {
   std::vector<float> of_face{};  ///< of each face of O2, the covered share of its area; NaN without area
   std::vector<CoveragePiece> pieces{};  ///< those of the faces that are covered in part, by face
 };
+
+template <>
+inline constexpr auto kFields<CoverageMap> = std::tuple_cat(
+    kFields<Coverage>, std::tuple{Field{"of_face", &CoverageMap::of_face,
+                                        "Of each face of O2, the share of its area: an estimate; NaN without "
+                                        "area."}});
 
 /// Options of coverage() and coverage_map().
 struct CoverageOptions {

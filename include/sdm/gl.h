@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -22,6 +23,12 @@ struct GlDevice {
   std::string driver;  ///< its GL_VERSION
   bool software = false;
 };
+
+template <>
+inline constexpr std::tuple kFields<GlDevice>{
+    Field{"name", &GlDevice::name, "The driver's GL_RENDERER."},
+    Field{"driver", &GlDevice::driver, "Its GL_VERSION."},
+    Field{"software", &GlDevice::software, "Whether it draws on the processor."}};
 
 /// All devices that can run the gl engine, in order of preference: hardware first. Needs neither a window nor
 /// a display server. Throws sdm::Error if there is none, or if sdm was built without OpenGL (SDM_BUILD_GL).
@@ -100,7 +107,51 @@ struct GlReport {
     double read_back = 0;  ///< waiting for the device, reading
     double finish = 0;     ///< closest points in double precision, sign
   } time_ms;
+
+  /// Fragments per texel; 0 without texels.
+  [[nodiscard]] double overdraw() const {
+    return texels == 0 ? 0 : static_cast<double>(fragments) / static_cast<double>(texels);
+  }
 };
+
+template <>
+inline constexpr std::tuple kFields<GlReport::Times>{
+    Field{"context", &GlReport::Times::context, "Device and shaders."},
+    Field{"refit", &GlReport::Times::refit, "Affine maps, boxes of O1's tree."},
+    Field{"bounds", &GlReport::Times::bounds, "Upper bounds on the distance."},
+    Field{"cull", &GlReport::Times::cull, "Bounds, oriented boxes, clipping."},
+    Field{"draw", &GlReport::Times::draw, "Upload, stencil, draw calls."},
+    Field{"read_back", &GlReport::Times::read_back, "Waiting for the device, reading."},
+    Field{"finish", &GlReport::Times::finish, "Closest points in double precision, sign."}};
+
+template <>
+inline constexpr std::tuple kFields<GlReport>{
+    Field{"device", &GlReport::device, "The device."},
+    Field{"clip", &GlReport::clip, "How polygons were clipped."},
+    Field{"sites", &GlReport::sites, "The sites of O2."},
+    Field{"sites_dropped", &GlReport::sites_dropped, "Those whose region of influence has no interior."},
+    Field{"faces", &GlReport::faces, "The faces of O1 that own a texel."},
+    Field{"tiles", &GlReport::tiles, "The tiles of these."},
+    Field{"pairs", &GlReport::pairs, "A site that was not dropped and a tile."},
+    Field{"bound_tests", &GlReport::bound_tests,
+          "Tests of sites, or groups of them, against a node of O1's tree."},
+    Field{"obb_tests", &GlReport::obb_tests, "Tests of a region's oriented box against a node of O1's tree."},
+    Field{"culled_by_bound", &GlReport::culled_by_bound, "Pairs that upper bounds on the distance exclude."},
+    Field{"culled_by_obb", &GlReport::culled_by_obb, "Pairs that oriented boxes exclude."},
+    Field{"clipped_away", &GlReport::clipped_away, "Pairs whose region does not intersect the tile."},
+    Field{"polygons", &GlReport::polygons, "Pairs that were drawn."},
+    Field{"fragments", &GlReport::fragments, "Fragments that were shaded, and are inside their region."},
+    Field{"texels", &GlReport::texels, "The texels that a face owns."},
+    Field{"batches", &GlReport::batches, "Batches of polygons sent to the device."},
+    Field{"unconfirmed", &GlReport::unconfirmed,
+          "Texels whose site is farther than the distance drawn: 0 unless the driver is faulty."},
+    Field{"stencil_lookups", &GlReport::stencil_lookups, "Faces looked up in the cache of stencil values."},
+    Field{"stencil_hits", &GlReport::stencil_hits, "Those that were found."},
+    Field{"stencil_misses", &GlReport::stencil_misses, "Those that were not."},
+    Field{"stencil_evictions", &GlReport::stencil_evictions, "Faces whose value was given to another one."},
+    Field{"stencil_clears", &GlReport::stencil_clears,
+          "Clears of the texels of a face, and of the whole buffer."},
+    Field{"time_ms", &GlReport::time_ms, "Wall-clock milliseconds."}};
 
 /// Returns a gl engine with these options. The first map opens the device; a process draws one map at a time.
 /// Throws sdm::Error for stencil_values out of range, or if sdm was built without OpenGL.

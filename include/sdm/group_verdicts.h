@@ -6,6 +6,7 @@
 #include <sdm/api.h>
 #include <sdm/certified_verdict.h>
 #include <sdm/map.h>
+#include <sdm/names.h>
 #include <sdm/part_statistics.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
@@ -16,6 +17,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -47,6 +49,18 @@ struct GroupVerdict {
   CertifiedVerdict verdict;                   ///< shares are those of the area of the group, or of its points
 };
 
+template <>
+inline constexpr std::tuple kFields<GroupVerdict>{
+    Field{"kind", &GroupVerdict::kind, "The kind of the name."},
+    Field{"group", &GroupVerdict::group, "The name."},
+    Field{"faces", &GroupVerdict::faces, "The number of its faces."},
+    Field{"points", &GroupVerdict::points, "Of a cloud: the number of points closest to these faces."},
+    Field{"area", &GroupVerdict::area, "The area of its texels, in squared units; 0 of a cloud."},
+    Field{"lowest", &GroupVerdict::lowest, "The least distance of its samples; nothing without a value."},
+    Field{"highest", &GroupVerdict::highest, "The largest one."},
+    Field{"verdict", &GroupVerdict::verdict,
+          "Fractions of the area are those of the group, or of its points."}};
+
 /// The points of a cloud that have coordinates but no value, and so no closest face: they are of no group.
 struct PointsWithoutGroup {
   std::uint64_t beyond_max_distance = 0;  ///< O2 is farther than the maximum distance
@@ -54,6 +68,14 @@ struct PointsWithoutGroup {
 
   [[nodiscard]] bool any() const { return beyond_max_distance + without_match > 0; }  ///< whether some are
 };
+
+template <>
+inline constexpr std::tuple kFields<PointsWithoutGroup>{
+    Field{"beyond_max_distance", &PointsWithoutGroup::beyond_max_distance,
+          "Of a cloud: the number of points that are of no group, as the mesh is farther than the maximum "
+          "distance."},
+    Field{"without_match", &PointsWithoutGroup::without_match,
+          "Of a cloud: the number of points that are of no group, as no face of the mesh faces as they do."}};
 
 /// The verdicts on all groups of a table.
 struct GroupVerdicts {
@@ -64,6 +86,14 @@ struct GroupVerdicts {
   /// Verdict::doubtful instead if there are doubts.
   Verdict verdict = Verdict::pass;
 };
+
+template <>
+inline constexpr std::tuple kFields<GroupVerdicts>{
+    Field{
+        "verdict", &GroupVerdicts::verdict,
+        "'fail' if that of one group is, or if points of a cloud are of no group; else 'not decided' if that "
+        "of one is, else 'pass'."},
+    Field{"groups", &GroupVerdicts::groups, "In the order of the table."}};
 
 /// What the points of a cloud show of a group, which are those that are closest to its faces.
 struct GroupPoints {

@@ -6,6 +6,7 @@
 #include <sdm/api.h>
 #include <sdm/bounds.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
 #include <sdm/options.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
@@ -65,6 +66,15 @@ struct HausdorffDistance {
   std::size_t faces_without_match = 0;
   double area_without_match = 0;
 };
+
+template <>
+inline constexpr std::tuple kFields<HausdorffDistance>{
+    Field{"distance", &HausdorffDistance::distance, "The distance, with its witness."},
+    Field{"faces", &HausdorffDistance::faces, "The faces that contain the points of the witness."},
+    Field{"faces_without_match", &HausdorffDistance::faces_without_match,
+          "The number of faces that no face of the other surface faces: they are left out."},
+    Field{"area_without_match", &HausdorffDistance::area_without_match,
+          "The fraction of the area that these have."}};
 
 /// Distances in both directions; the symmetric Hausdorff distance is the larger one.
 struct SymmetricHausdorff {

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/names.h>
 #include <sdm/types.h>
 
 #include <cstddef>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -47,6 +49,28 @@ struct MeshInfo {
   bool has_uvs = false;
   double area = 0;
 };
+
+template <>
+inline constexpr std::tuple kFields<MeshInfo>{
+    Field{"vertices", &MeshInfo::vertices, "The number of vertices."},
+    Field{"edges", &MeshInfo::edges, "The number of edges."},
+    Field{"triangles", &MeshInfo::triangles, "The number of triangles."},
+    Field{"bounds", &MeshInfo::bounds, "The box of the vertices."},
+    Field{"components", &MeshInfo::components, "Sets of faces that are connected by shared vertices."},
+    Field{"closed", &MeshInfo::closed, "There is no boundary edge and no non-manifold edge."},
+    Field{"orientable", &MeshInfo::orientable, "The faces can be oriented consistently."},
+    Field{"oriented", &MeshInfo::oriented, "The faces are oriented consistently."},
+    Field{"manifold", &MeshInfo::manifold, "There is no non-manifold edge or vertex."},
+    Field{"boundary_edges", &MeshInfo::boundary_edges, "Edges of exactly one face."},
+    Field{"nonmanifold_edges", &MeshInfo::nonmanifold_edges, "Edges of three faces or more."},
+    Field{"nonmanifold_vertices", &MeshInfo::nonmanifold_vertices,
+          "Vertices whose faces do not form one fan."},
+    Field{"degenerate_faces", &MeshInfo::degenerate_faces, "Faces without area, repeated corners included."},
+    Field{"duplicate_faces", &MeshInfo::duplicate_faces,
+          "Faces with the same three vertices as an earlier face."},
+    Field{"unused_vertices", &MeshInfo::unused_vertices, "Vertices of no face."},
+    Field{"uvs", &MeshInfo::has_uvs, "There are texture coordinates."},
+    Field{"area", &MeshInfo::area, "The area of the surface."}};
 
 /// Computes the counts and the topology of a mesh. Duplicate faces, and degenerate faces with repeated
 /// corners, do not count as incident to edges. Cost: O(n log n).

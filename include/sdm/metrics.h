@@ -7,6 +7,7 @@
 #include <sdm/api.h>
 #include <sdm/bounds.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
 #include <sdm/options.h>
 #include <sdm/progress.h>
 
@@ -88,6 +89,20 @@ struct DirectedMetrics {
   /// estimate from the middles of all parts, as normals jump.
   double normal_consistency = 0;
 };
+
+template <>
+inline constexpr std::tuple kFields<DirectedMetrics>{
+    Field{"area", &DirectedMetrics::area, "The area of the surface that is measured from."},
+    Field{"hausdorff", &DirectedMetrics::hausdorff, "The largest distance."},
+    Field{"mean", &DirectedMetrics::mean, "The mean of the distances."},
+    Field{"rms", &DirectedMetrics::rms, "The root of the mean of their squares."},
+    Field{"points", &DirectedMetrics::points, "The number of random points that estimates are from."},
+    Field{"percentiles", &DirectedMetrics::percentiles,
+          "For each percentile, the least distance that so much of the area is within."},
+    Field{"within", &DirectedMetrics::within,
+          "For each tolerance, the fraction of the area that is within it."},
+    Field{"normal_consistency", &DirectedMetrics::normal_consistency,
+          "An estimate: the mean of the absolute cosines between the normals of both surfaces."}};
 
 /// Measures of two surfaces A and B. M(A, B) is the mean of the distances from A to B, |A| the area of A.
 struct SurfaceMetrics {

@@ -17,12 +17,17 @@ template <class Struct, class Value>
 struct Field {
   const char* name;  ///< in JSON and Python; JavaScript has it in camel case
   Value Struct::*member;
-  const char* text;  ///< what it is, one sentence
+  const char* text;    ///< what it is, one sentence
+  bool index = false;  ///< kNone stands for none: null in JSON, None in Python
 };
 
 /// The fields of a struct, a std::tuple of Field in the order of outputs; nullptr of one that declares none.
 template <class Struct>
 inline constexpr auto kFields = nullptr;
+
+/// A struct that declares its fields.
+template <class Struct>
+concept Declared = !std::is_null_pointer_v<std::remove_cv_t<decltype(kFields<Struct>)>>;
 
 /// Calls visit(field) for each field of a struct.
 template <class Struct, class Visit>

@@ -7,6 +7,7 @@
 #include <sdm/api.h>
 #include <sdm/group_verdicts.h>
 #include <sdm/map.h>
+#include <sdm/names.h>
 #include <sdm/part_statistics.h>
 #include <sdm/surface.h>
 #include <sdm/tolerance.h>
@@ -16,6 +17,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -37,11 +39,36 @@ struct Place {
   std::string kind{}, group{};   ///< of the first name that the face has, as of FaceNames; empty without one
 };
 
+template <>
+inline constexpr std::tuple kFields<Place>{
+    Field{"distance", &Place::distance,
+          "Of its samples the one that is farthest beyond the limit; NaN where a tolerance asks for values, "
+          "and there are none."},
+    Field{"point", &Place::point, "Where that is."},
+    Field{"sample", &Place::sample,
+          "The texel of that sample, and nothing for a vertex; of a cloud its place in the file, from 0.",
+          true},
+    Field{"face", &Place::face, "The face that has this sample; of a cloud the closest one of O2.", true},
+    Field{"samples", &Place::samples, "The number of its texels, without vertices; or of its points."},
+    Field{"area", &Place::area, "An estimate of its area, in squared units; 0 of a cloud."},
+    Field{"fraction", &Place::fraction, "Of the area of all texels, or of all points."},
+    Field{"kind", &Place::kind, "The kind of the group."},
+    Field{"group", &Place::group, "The first name that its face has; empty without one."},
+    Field{"small", &Place::small, "Whether it is below the least fraction of all places."},
+    Field{"limits", &Place::limits, "The limits of that sample: those of the tolerance, and of its group."}};
+
 /// Together, without a list: no place is left out of the counts.
 struct PlaceTotals {
   std::size_t count = 0, samples = 0;
   double area = 0, fraction = 0;
 };
+
+template <>
+inline constexpr std::tuple kFields<PlaceTotals>{
+    Field{"count", &PlaceTotals::count, "The number of places."},
+    Field{"samples", &PlaceTotals::samples, "The number of their texels, or points."},
+    Field{"area", &PlaceTotals::area, "An estimate of their area, in squared units; 0 of a cloud."},
+    Field{"fraction", &PlaceTotals::fraction, "Of the area of all texels, or of all points."}};
 
 /// The places of a map or a cloud.
 struct Places {
@@ -57,6 +84,21 @@ struct Places {
 
   static constexpr std::size_t kListed = 10;
 };
+
+template <>
+inline constexpr std::tuple kFields<Places>{
+    Field{
+        "limits", &Places::limits,
+        "Distances out of these belong to places, but for groups with a tolerance of their own. Infinite if "
+        "only these are judged."},
+    Field{"by_tolerance", &Places::by_tolerance,
+          "The limits are the tolerance; otherwise nothing is out of it, and they are the 99th percentile of "
+          "the absolute distance."},
+    Field{"least_fraction", &Places::least_fraction, "Places below it are small."},
+    Field{"large", &Places::large, "All places that are not small."},
+    Field{"small", &Places::small, "All places that are small."},
+    Field{"largest", &Places::largest,
+          "At most ten: by how far they are beyond the limits, the small ones last."}};
 
 /// Options of find_places().
 struct PlacesOptions {

@@ -124,6 +124,14 @@ struct PointIslands {
   double reach = 0;  ///< points farther apart are in separate clusters, unless others are between them
 };
 
+template <>
+inline constexpr std::tuple kFields<PointIslands>{
+    Field{"islands", &PointIslands::islands, "The number of islands that were left out."},
+    Field{"points", &PointIslands::points, "The number of their points."},
+    Field{"apart", &PointIslands::apart, "The least distance between a point of an island and one of none."},
+    Field{"reach", &PointIslands::reach,
+          "Points farther apart are of separate clusters, unless others are between them."}};
+
 /// Options of CloudIslands.
 struct CloudIslandsOptions {
   TextDialect text{};           ///< of a cloud in text, as of PointReader
@@ -196,6 +204,12 @@ struct PointExtreme {
   std::uint64_t index = 0;
 };
 
+template <>
+inline constexpr std::tuple kFields<PointExtreme>{
+    Field{"distance", &PointExtreme::distance, "In units of the mesh."},
+    Field{"point", &PointExtreme::point, "The point."},
+    Field{"index", &PointExtreme::index, "Its place in the file, from 0."}};
+
 /// The distances of the points of a file, in numbers.
 struct PointDistances {
   std::uint64_t points = 0;
@@ -234,6 +248,29 @@ struct PointDistances {
   /// All points with coordinates but those of islands: what fractions of points are of.
   [[nodiscard]] std::uint64_t counted() const { return points - invalid - (islands ? islands->points : 0); }
 };
+
+template <>
+inline constexpr std::tuple kFields<PointDistances>{
+    Field{"points", &PointDistances::points, "The number of points of the file."},
+    Field{"invalid", &PointDistances::invalid,
+          "The number of those with a coordinate that is NaN or infinite."},
+    Field{"beyond_max_distance", &PointDistances::beyond_max_distance,
+          "The number of those without a value, besides the invalid ones and those without a match."},
+    Field{"without_match", &PointDistances::without_match,
+          "The number of those without a value, as no face of the mesh faces as they do."},
+    Field{"beyond_tolerance", &PointDistances::beyond_tolerance,
+          "The number of points that are out of the tolerance, or without a value."},
+    Field{"has_normals", &PointDistances::has_normals, "Whether the file has normals."},
+    Field{"format", &PointDistances::format, "The format of the file: 'PLY', 'PCD', 'LAS', 'PTX' or 'text'."},
+    Field{
+        "text", &PointDistances::text,
+        "How text was read: ``separator``, ``decimal``, ``columns`` ('_': ignored) and ``header_line`` (from "
+        "1; nothing without a header). Nothing for other formats."},
+    Field{"min", &PointDistances::min, "The point with the smallest distance; nothing if no point has one."},
+    Field{"max", &PointDistances::max, "The point with the largest distance; nothing if no point has one."},
+    Field{"places", &PointDistances::places, "Where it deviates most; nothing if no point has a value."},
+    Field{"groups", &PointDistances::groups,
+          "The verdicts on the groups of the table of tolerances; nothing without one."}};
 
 /// Computes the distance of each point of a file to O2, and writes the points in their order as binary PLY:
 /// x, y, z (double), nx, ny, nz (float, if the file has normals), distance (float; NaN if there is none),

@@ -41,6 +41,25 @@ struct Contact {
   std::uint64_t id = 0;
 };
 
+/// `on` is in two parts, the faces and the barycentric coordinates.
+template <>
+inline constexpr std::tuple kFields<Contact>{
+    Field{"point1", &Contact::point1, "The point of O1."},
+    Field{"point2", &Contact::point2, "The point of O2."},
+    Field{
+        "normal", &Contact::normal,
+        "Unit vector along which moving O1 separates it from O2: (point2 - point1) / depth; where depth is "
+        "0, "
+        "O2's outward normal. Those of separating_contacts() have their own direction and depth, see there."},
+    Field{"depth", &Contact::depth,
+          "±|point2 - point1|; positive if the point in contact is inside the other body. At most "
+          "penetration_depth().upper; of separating_contacts(), at most separating_translation().upper."},
+    Field{"patch", &Contact::patch,
+          "The patch of the contact: contacts on connected parts of a surface share one."},
+    Field{"id", &Contact::id,
+          "Identifies what is in contact: unique among the contacts of a pair of bodies, or of their parts, "
+          "and the same in all frames."}};
+
 /// How far a body must be moved to leave another one: see ProximityQuery::separating_translation().
 struct SeparatingTranslation : BoundedNumber {
   /// The translation of O1; |translation| = value = upper, to rounding. After it the bodies do not collide.

@@ -7,6 +7,7 @@
 
 #include <sdm/api.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
 #include <sdm/summary.h>
 #include <sdm/surface.h>
 #include <sdm/tessellation.h>
@@ -15,6 +16,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <tuple>
 
 namespace sdm {
 
@@ -31,6 +33,14 @@ struct ReportedMesh {
 struct ReportTimes {
   std::optional<double> import{}, atlas{}, sites{}, map{}, output{}, total{};
 };
+
+template <>
+inline constexpr std::tuple kFields<ReportTimes>{Field{"import", &ReportTimes::import, "Reading the meshes."},
+                                                 Field{"atlas", &ReportTimes::atlas, "Making the atlas."},
+                                                 Field{"sites", &ReportTimes::sites, "Making the sites."},
+                                                 Field{"map", &ReportTimes::map, "Computing the map."},
+                                                 Field{"export", &ReportTimes::output, "Writing the files."},
+                                                 Field{"total", &ReportTimes::total, "All together."}};
 
 /// What a map was computed from, and how.
 struct MapReport {

@@ -7,11 +7,13 @@
 #include <sdm/api.h>
 #include <sdm/bounds.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
 #include <sdm/progress.h>
 
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 namespace sdm {
 
@@ -31,6 +33,13 @@ struct Simplified {
   /// left permit no collapse, or none keeps the deviation.
   bool stopped = false;
 };
+
+template <>
+inline constexpr std::tuple kFields<Simplified>{
+    Field{"deviation", &Simplified::deviation,
+          "The symmetric Hausdorff distance of the mesh and the input, with certified bounds."},
+    Field{"estimate", &Simplified::estimate, "What meshoptimizer says of the same: no bound."},
+    Field{"stopped", &Simplified::stopped, "No more triangles could go, although more were to."}};
 
 /// Options of Simplifier::to_deviation() and to_triangles().
 struct SimplifyOptions {

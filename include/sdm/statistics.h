@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -91,6 +92,12 @@ struct DistanceBand {
   double area_fraction = 0;
 };
 
+template <>
+inline constexpr std::tuple kFields<DistanceBand>{
+    Field{"lower", &DistanceBand::lo, "The least distance; infinite for the first band."},
+    Field{"upper", &DistanceBand::hi, "The largest one; infinite for the last band."},
+    Field{"area_fraction", &DistanceBand::area_fraction, "The fraction of the area that has them."}};
+
 /// Options of distance_bands().
 struct DistanceBandOptions {
   double accuracy = 0;  ///< of a distance
@@ -113,6 +120,16 @@ struct DistanceHistogram {
                                        ///< bin, `hi` to the last
   double below = 0, above = 0, without_value = 0;
 };
+
+template <>
+inline constexpr std::tuple kFields<DistanceHistogram>{
+    Field{"lower", &DistanceHistogram::lo, "Where the first bin begins."},
+    Field{"upper", &DistanceHistogram::hi, "Where the last bin ends."},
+    Field{"area_fractions", &DistanceHistogram::area_fractions,
+          "The fraction of the area in each bin, of equal width."},
+    Field{"below", &DistanceHistogram::below, "The fraction below the first bin."},
+    Field{"above", &DistanceHistogram::above, "The fraction above the last one."},
+    Field{"without_value", &DistanceHistogram::without_value, "The fraction without a distance."}};
 
 /// Throws sdm::Error unless lo < hi are finite and there is a bin, and if the map belongs to another surface.
 /// Cost: linear in texels, all cores.

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/names.h>
 
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <tuple>
 
 namespace sdm {
 
@@ -37,6 +39,18 @@ struct Tessellation {
   double largest_deviation = 0;
   std::size_t measured_points = 0;
 };
+
+template <>
+inline constexpr std::tuple kFields<Tessellation>{
+    Field{"format", &Tessellation::format, "'STEP' or 'IGES'."},
+    Field{"file_unit", &Tessellation::file_unit, "The unit of the file; empty if it has none."},
+    Field{"faces", &Tessellation::faces, "The faces of all instances of all parts."},
+    Field{"omitted_faces", &Tessellation::omitted_faces, "Those that could not be tessellated."},
+    Field{"deflection", &Tessellation::deflection, "The deflection that was aimed at."},
+    Field{"angle", &Tessellation::angle, "The angle that was aimed at."},
+    Field{"largest_deviation", &Tessellation::largest_deviation,
+          "An estimate: how far the triangles were found to be from the exact surfaces."},
+    Field{"measured_points", &Tessellation::measured_points, "The points that this is from."}};
 
 /// Returns a sentence that distances are to the triangles, by how much these were found to deviate from the
 /// surface of `file`, and that verdicts keep so far from the limits.

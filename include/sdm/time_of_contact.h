@@ -5,12 +5,14 @@
 
 #include <sdm/api.h>
 #include <sdm/bounds.h>
+#include <sdm/names.h>
 #include <sdm/shape.h>
 #include <sdm/transform.h>
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <tuple>
 
 namespace sdm {
 
@@ -45,6 +47,33 @@ struct TimeOfContact {
   /// opposite where one body contains part of the other at time 0. Nothing if the surfaces intersect then.
   std::optional<Vec3> normal{};
 };
+
+template <>
+inline constexpr std::tuple kFields<TimeOfContact>{
+    Field{
+        "contact", &TimeOfContact::contact,
+        "Whether the bodies collide at ``time``, or are at most the tolerance apart; or, where ``certainty`` "
+        "is 'bounded', may be about to: a motion that must be free of contact ends at ``time`` in either "
+        "case."},
+    Field{"time", &TimeOfContact::time,
+          "In [0, 1]. The bodies do not touch before this: they are more than half of the tolerance apart. 1 "
+          "without contact."},
+    Field{"separation", &TimeOfContact::separation,
+          "The smallest distance between the surfaces at ``time``, in units of space; exact."},
+    Field{
+        "certainty", &TimeOfContact::certainty,
+        "'exact'; or 'bounded': free of contact until ``time`` for certain, but not decided beyond it, as "
+        "the "
+        "next step that is safe is less than what rounding resolves: of the time, whose unit is 1e-16, or of "
+        "coordinates in space. The bodies are ``separation`` apart then, more than the tolerance."},
+    Field{"witness", &TimeOfContact::witness,
+          "A point of O1 and a point of O2 that are ``separation`` apart at ``time``, in space."},
+    Field{"faces", &TimeOfContact::faces, "A face of O1 and one of O2 that contain these points."},
+    Field{
+        "normal", &TimeOfContact::normal,
+        "Unit vector along which moving O1 separates it from O2: (witness[0] - witness[1]) / separation, or "
+        "the opposite where one body contains part of the other at time 0; nothing if the surfaces intersect "
+        "then."}};
 
 /// Finds the first contact by controlled conservative advancement (Tang, Kim & Manocha 2009): two parts of
 /// the bodies, nodes of their trees or faces, that a direction separates need at least the distance along it,

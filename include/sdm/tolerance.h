@@ -170,6 +170,29 @@ struct ToleranceVerdict : Judgement {
   ToleranceShares shares{};
 };
 
+template <>
+inline constexpr std::tuple kFields<ToleranceVerdict>{
+    Field{"tolerance", &ToleranceVerdict::tolerance, "The least and the most accepted distance."},
+    Field{
+        "verdict", &ToleranceVerdict::verdict,
+        "'pass': every point of the surface is within the tolerance; 'fail': some point is not; 'not "
+        "decided': neither is proven, as a distance is within the accuracy, or Mesh.deviation, of a limit, "
+        "or "
+        "signs are estimates; 'doubtful': a 'pass', but walls are thinner than twice the tolerance, and the "
+        "faces that face the same way do not decide."},
+    Field{"reason", &ToleranceVerdict::reason, "Why, in words."},
+    Field{"exceeded_area_fraction", &ToleranceVerdict::exceeded_area_fraction,
+          "An estimate: the fraction of the area that is out of the tolerance, in [0, 1]."},
+    Field{"within", &ToleranceVerdict::within, "No point is known to be out of the tolerance."},
+    Field{"certified", &ToleranceVerdict::certified,
+          "The verdict holds for every point of the surface; a 'pass' without it is an estimate."},
+    Field{"margin", &ToleranceVerdict::margin,
+          "How far the distances of texels and vertices stay from the limits, less the accuracy and the "
+          "deviations of both meshes; negative if they do not. Nothing if one of them has no value, or none "
+          "has."},
+    Field{"largest", &ToleranceVerdict::largest,
+          "The largest absolute distance of all texels and vertices; nothing if one has no value."}};
+
 /// What a map shows of its surface. `vertex_distances`: the distance at each vertex of surface.mesh(), NaN if
 /// it has no value. Throws sdm::Error if the map or the distances belong to another surface. Cost: linear in
 /// texels and faces.

@@ -63,6 +63,17 @@ struct ToleranceProof {
   std::size_t faces_without_match = 0;
 };
 
+template <>
+inline constexpr std::tuple kFields<ToleranceProof>{
+    Field{"witness", &ToleranceProof::witness,
+          "A point between texels and vertices that is out of the tolerance, if the verdict depends on one."},
+    Field{"undecided_by", &ToleranceProof::undecided_by,
+          "If not decided: no point is out of the tolerance by more than this. Nothing if it is not known."},
+    Field{"depends_on_signs", &ToleranceProof::depends_on_signs,
+          "It is not decided because of signs that are estimates."},
+    Field{"faces_without_match", &ToleranceProof::faces_without_match,
+          "The number of faces that no face of O2 faces: they have no distance."}};
+
 /// Options of prove_tolerance().
 struct ToleranceProofOptions {
   SignMethod sign = SignMethod::automatic;  ///< as of a map

@@ -3,11 +3,14 @@
 /// Threads: plain values.
 #pragma once
 
+#include <sdm/names.h>
 #include <sdm/vec.h>
 
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <tuple>
+#include <type_traits>
 
 namespace sdm {
 
@@ -32,5 +35,18 @@ struct Box {
   Vec3 hi{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
           -std::numeric_limits<double>::infinity()};
 };
+
+/// Whether a field is an index, and there is none.
+template <class Struct, class Value>
+[[nodiscard]] constexpr bool is_no_index(const Field<Struct, Value>& field, const Value& value) {
+  if constexpr (std::is_same_v<Value, std::uint32_t> || std::is_same_v<Value, std::uint64_t>)
+    return field.index && value == kNone;
+  else
+    return false;
+}
+
+template <>
+inline constexpr std::tuple kFields<Box>{Field{"lo", &Box::lo, "The corner with the least coordinates."},
+                                         Field{"hi", &Box::hi, "The corner with the largest ones."}};
 
 }  // namespace sdm

@@ -6,6 +6,7 @@
 #include <sdm/api.h>
 #include <sdm/bounds.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
 #include <sdm/options.h>
 #include <sdm/progress.h>
 #include <sdm/sign.h>
@@ -41,6 +42,12 @@ struct Grid {
   }
   friend bool operator==(const Grid&, const Grid&) = default;
 };
+
+template <>
+inline constexpr std::tuple kFields<Grid>{
+    Field{"points", &Grid::dims, "The numbers of points along x, y and z."},
+    Field{"origin", &Grid::origin, "The first point."},
+    Field{"spacing", &Grid::spacing, "Between points along x, y and z."}};
 
 /// Returns the grid whose first and last points are the corners of the box; along an axis with one point, it
 /// is in the middle. Throws sdm::Error for a number of points out of range, or a box that is empty or flat
@@ -91,6 +98,19 @@ struct DistanceField {
   SignUsed sign;
   std::size_t beyond_max_distance = 0;  ///< points without a value
 };
+
+template <>
+inline constexpr std::tuple kFields<DistanceField>{
+    Field{"grid", &DistanceField::grid, "Where the points are."},
+    Field{"max_distance", &DistanceField::max_distance, "Points farther away have no value."},
+    Field{"sign", &DistanceField::sign, "How inside and outside are distinguished, and why."},
+    Field{"beyond_max_distance", &DistanceField::beyond_max_distance,
+          "The number of points without a value."},
+    Field{"accuracy", &DistanceField::accuracy,
+          "Upper bound on the error of a distance, in units of the mesh, rounding to float32 included."}};
+
+/// Returns the least and the largest distance of the points with a value; NaN if none has one. Cost: linear.
+[[nodiscard]] SDM_API std::array<double, 2> distance_range(const DistanceField& field);
 
 /// Computes the field, whose sites and distances are the closest ones to within DistanceField::accuracy.
 /// Throws sdm::Error for a grid out of range, with a coordinate beyond 1e37 or with spacings that vanish by

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -270,6 +271,19 @@ Alignment align(std::span<const Vec3> points, std::span<const Vec3> normals, con
   return align_samples(cloud_source(points, normals), o2, options);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the alignment");
+}
+
+AlignMotion motion_of(const Alignment& alignment) {
+  const auto& r = alignment.transform.rows;
+  // The antisymmetric part is accurate for small angles, unlike the trace alone.
+  const double sine = 0.5 * std::hypot(r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]);
+  const double angle = std::atan2(sine, 0.5 * (r[0][0] + r[1][1] + r[2][2] - 1));
+  const Vec3& centre = alignment.centre;
+  Vec3 before{};  // the inverse of a rotation is its transpose
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) before[i] += r[j][i] * (centre[j] - r[j][3]);
+  return {angle * 180 / std::numbers::pi,
+          std::hypot(centre[0] - before[0], centre[1] - before[1], centre[2] - before[2])};
 }
 
 }  // namespace sdm

@@ -1,6 +1,9 @@
 #include <sdm/error.h>
 #include <sdm/volume.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <new>
 
@@ -21,6 +24,18 @@ DistanceField compute_field(const Sites& sites, const Grid& grid, const FieldOpt
   return volume::field_by_engine(sites, grid, options, cpu::CpuEngine(), only_near, report);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a distance field");
+}
+
+std::array<double, 2> distance_range(const DistanceField& field) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  double min = kNaN;
+  double max = kNaN;
+  for (const float d : field.distance) {
+    if (std::isnan(d)) continue;
+    min = std::isnan(min) ? double{d} : std::min(min, double{d});
+    max = std::isnan(max) ? double{d} : std::max(max, double{d});
+  }
+  return {min, max};
 }
 
 }  // namespace sdm

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,34 @@ TEST(Fields, AreTheKeysOfJson) {
   const TextDialect text{.separator = TextSeparator::tab, .columns = {"x", "y", "z"}};
   EXPECT_EQ(fields_json(text).dump(),
             R"({"separator":"tab","decimal":"automatic","columns":["x","y","z"],"header_line":null})");
+}
+
+TEST(Fields, HoldResultsAndIndices) {
+  const Place place{.distance = 2, .limits = {-1, 1.5}, .point = {1, 2, 3}, .samples = 4, .kind = "group"};
+  EXPECT_EQ(fields_json(place, {{"samples", "texels"}, {"area", ""}, {"fraction", ""}}).dump(),
+            R"({"distance":2.0,"point":[1.0,2.0,3.0],"sample":null,"face":null,"texels":4,"kind":"group",)"
+            R"("group":"","small":false,"lower":-1.0,"upper":1.5})")
+      << "an index that is none is null; limits are two keys";
+  Places places;
+  places.large = {.count = 1, .samples = 2, .area = 3, .fraction = 0.5};
+  places.largest = {place};
+  const nlohmann::ordered_json json = fields_json(places, {{"samples", "texels"}});
+  EXPECT_EQ(json["large"].dump(), R"({"count":1,"texels":2,"area":3.0,"fraction":0.5})")
+      << "keys are those of results in results, too";
+  EXPECT_EQ(json["largest"][0]["texels"], 4);
+  const ToleranceProof proof{.witness = ToleranceWitness{.distance = 3}, .undecided_by = 0.5};
+  EXPECT_EQ(value_json(std::optional(proof))["witness"]["distance"], 3);
+  EXPECT_TRUE(value_json(std::optional<ToleranceProof>()).is_null());
+  const Alignment alignment;
+  EXPECT_EQ(to_json(alignment)["degrees_of_freedom"].size(), 6u);
+  EXPECT_EQ(to_json(alignment)["matrix"].size(), 4u);
+  EXPECT_EQ(to_json(alignment)["rotation_degrees"], 0);
+}
+
+TEST(Fields, AreAddedBehindOthers) {
+  nlohmann::ordered_json json{{"a", 1}, {"b", 2}};
+  insert_after(json, "a", "new", "x");
+  EXPECT_EQ(json.dump(), R"({"a":1,"new":"x","b":2})");
 }
 
 TEST(Fields, EnumeratorsAreWords) {

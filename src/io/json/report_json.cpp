@@ -55,79 +55,65 @@ Json extremes_json(const Summary& summary) {
   return json;
 }
 
-/// Keys are those of a surface; a cloud has points in place of texels and areas.
-Json to_json(const Place& place, bool of_points) {
-  Json json{{"distance", place.distance},
-            {"point", place.point},
-            {"at", of_points               ? "point"
-                   : place.sample == kNone ? "vertex"
-                                           : "texel"}};
-  if (of_points) json["index"] = place.sample;
-  json["triangle"] = place.face == kNone ? Json() : Json(place.face);
-  json[of_points ? "points" : "texels"] = place.samples;
-  if (!of_points) json["area"] = place.area;
-  json[of_points ? "point_fraction" : "area_fraction"] = place.fraction;
-  json["kind"] = place.kind.empty() ? Json() : Json(place.kind);
-  json["group"] = place.group.empty() ? Json() : Json(place.group);
-  json["small"] = place.small;
-  json["lower"] = place.limits.lo, json["upper"] = place.limits.hi;
-  return json;
+/// What is counted of a place: texels and their area or, of a cloud, points.
+OtherKeys place_keys(bool of_points) {
+  OtherKeys keys{{"face", "triangle"}, {"by_tolerance", ""}, {"largest", ""}};
+  if (of_points)
+    keys.insert(keys.end(), {{"sample", "index"},
+                             {"samples", "points"},
+                             {"area", ""},
+                             {"fraction", "point_fraction"},
+                             {"least_fraction", "least_point_fraction"}});
+  else
+    keys.insert(keys.end(), {{"sample", ""},
+                             {"samples", "texels"},
+                             {"fraction", "area_fraction"},
+                             {"least_fraction", "least_area_fraction"}});
+  return keys;
 }
 
-Json totals_json(const PlaceTotals& totals, bool of_points) {
-  Json json{{"count", totals.count}, {of_points ? "points" : "texels", totals.samples}};
-  if (!of_points) json["area"] = totals.area;
-  json[of_points ? "point_fraction" : "area_fraction"] = totals.fraction;
+Json to_json(const Place& place, bool of_points) {
+  Json json = fields_json(place, place_keys(of_points));
+  insert_after(json, "point", "at", of_points ? "point" : place.sample == kNone ? "vertex" : "texel");
+  for (const char* name : {"kind", "group"})
+    if (json[name] == "") json[name] = nullptr;
   return json;
 }
 
 Json to_json(const Places& places, bool of_points) {
-  Json largest = Json::array();
-  for (const Place& place : places.largest) largest.push_back(to_json(place, of_points));
-  return {{"kind", "estimate"},
-          {"lower", places.limits.lo},
-          {"upper", places.limits.hi},
-          {"limits_from", places.by_tolerance ? "tolerance" : "p99_abs"},
-          {of_points ? "least_point_fraction" : "least_area_fraction", places.least_fraction},
-          {"large", totals_json(places.large, of_points)},
-          {"small", totals_json(places.small, of_points)},
-          {"largest", std::move(largest)}};
+  Json json{{"kind", name_of(Certainty::estimate)}};
+  json.update(fields_json(places, place_keys(of_points)));
+  insert_after(json, "upper", "limits_from", places.by_tolerance ? "tolerance" : "p99_abs");
+  json["largest"] = Json::array();
+  for (const Place& place : places.largest) json["largest"].push_back(to_json(place, of_points));
+  return json;
+}
+
+/// `exceeded`: the key of the fraction that is out of the tolerance.
+Json to_json(const ToleranceVerdict& verdict, std::string_view exceeded) {
+  return fields_json(verdict, {{"exceeded_area_fraction", exceeded}, {"largest", ""}});
 }
 
 /// What was proven where the samples did not decide.
 Json to_json(const ToleranceProof& proof) {
-  Json json{{"witness", nullptr},
-            {"undecided_by", optional_json(proof.undecided_by)},
-            {"depends_on_signs", proof.depends_on_signs},
-            {"faces_without_match", proof.faces_without_match}};
-  if (const auto& witness = proof.witness)
-    json["witness"] = fields_json(*witness, {{"face", "triangle"}, {"closest_face", "closest_triangle"}});
-  return json;
+  return fields_json(proof, {{"face", "triangle"}, {"closest_face", "closest_triangle"}});
 }
 
 Json tolerance_json(const Summary& summary) {
   const CertifiedVerdict& verdict = *summary.tolerance;
   const auto [lo, hi] = verdict.tolerance;
-  Json json;
-  json["value"] = lo == -hi ? Json(hi) : Json();
-  json["lower"] = lo;
-  json["upper"] = hi;
-  json["verdict"] = name_of(verdict.verdict);
-  json["reason"] = name_of(verdict.reason);
-  json["text"] = verdict_text(summary);
+  Json json{{"value", lo == -hi ? Json(hi) : Json()}};
+  json.update(to_json(verdict, summary.of_points ? "" : "exceeded_area_fraction"));
+  insert_after(json, "reason", "text", verdict_text(summary));
   if (summary.of_points) {
-    json["exceeded_points"] = summary.exceeding_points;
-    json["exceeded_point_fraction"] = summary.exceeding_point_fraction;
+    insert_after(json, "text", "exceeded_points", summary.exceeding_points);
+    insert_after(json, "exceeded_points", "exceeded_point_fraction", summary.exceeding_point_fraction);
   } else {
-    json["exceeded_area_fraction"] = verdict.exceeded_area_fraction;
-    json["area_fractions"] = fields_json(verdict.shares);
+    insert_after(json, "exceeded_area_fraction", "area_fractions", fields_json(verdict.shares));
   }
-  json["within"] = verdict.within;
-  json["certified"] = verdict.certified;
-  json["margin"] = optional_json(verdict.margin);
   json["nearest_limit"] = verdict.nearest_is_lower ? "lower" : "upper";
   json["proof"] = verdict.proof ? to_json(*verdict.proof) : Json();
-  json["by_facing"] = verdict.by_facing ? Json(*verdict.by_facing) : Json();
+  json["by_facing"] = value_json(verdict.by_facing);
   return json;
 }
 
@@ -138,7 +124,7 @@ Json to_json(const PartTable& table) {
     if (table.kind != "component") row["name"] = name.empty() ? Json() : Json(name);
     row["triangles"] = part.faces;
     row["first_triangle"] = first_face;
-    row["bounds"] = {{"lo", part.box.lo}, {"hi", part.box.hi}};
+    row["bounds"] = fields_json(part.box);
     row["area_fraction"] = part.area_fraction;
     row["distance"] = to_json(part.distance);
     row["texels_with_value"] = part.distance.texels;
@@ -149,13 +135,8 @@ Json to_json(const PartTable& table) {
 }
 
 void add(Json& json, const Distribution& distribution) {
-  json["histogram"] = nullptr;
-  if (const auto& h = distribution.histogram)
-    json["histogram"] = {{"lower", h->lo},    {"upper", h->hi},    {"area_fractions", h->area_fractions},
-                         {"below", h->below}, {"above", h->above}, {"without_value", h->without_value}};
-  json["bands"] = Json::array();
-  for (const DistanceBand& band : distribution.bands)  // null: no limit
-    json["bands"].push_back({{"lower", band.lo}, {"upper", band.hi}, {"area_fraction", band.area_fraction}});
+  json["histogram"] = value_json(distribution.histogram);
+  json["bands"] = value_json(distribution.bands);  // null: no limit
   json["components"] = to_json(distribution.parts.front());
   json["groups"] = Json::array();
   for (std::size_t i = 1; i < distribution.parts.size(); ++i)
@@ -164,10 +145,10 @@ void add(Json& json, const Distribution& distribution) {
 
 Json largest_json(const Summary& summary) {
   const LargestDistance& d = summary.hausdorff;
-  return {{"lower", optional_json(d.lower)},
-          {"upper", optional_json(d.upper)},
+  return {{"lower", value_json(d.lower)},
+          {"upper", value_json(d.upper)},
           {"kind", d.lower ? "bounded" : "unknown"},
-          {"point", optional_json(d.point)}};
+          {"point", value_json(d.point)}};
 }
 
 /// The options of a measure by name, as numbers, flags and words; null: absent, or no limit.
@@ -195,12 +176,6 @@ void add_surface(Json& json, const Summary& summary) {
   json["hausdorff"] = {{"one_sided", largest_json(summary)}};
 }
 
-Json to_json(const ReportTimes& t) {
-  return {{"import", optional_json(t.import)}, {"atlas", optional_json(t.atlas)},
-          {"sites", optional_json(t.sites)},   {"map", optional_json(t.map)},
-          {"export", optional_json(t.output)}, {"total", optional_json(t.total)}};
-}
-
 /// Null unless points are without a group.
 Json reason_json(const PointsWithoutGroup& points) {
   if (!points.any()) return nullptr;
@@ -211,15 +186,12 @@ Json reason_json(const PointsWithoutGroup& points) {
 }  // namespace
 
 Json to_json(const Tessellation& t) {
-  return {{"format", t.format},
-          {"file_unit", t.file_unit.empty() ? Json() : Json(t.file_unit)},
-          {"unit", "mm"},
-          {"faces", t.faces},
-          {"omitted_faces", t.omitted_faces},
-          {"deflection", t.deflection},
-          {"angle", t.angle},
-          {"largest_deviation",
-           {{"value", t.largest_deviation}, {"kind", "estimate"}, {"points", t.measured_points}}}};
+  Json json = fields_json(t, {{"measured_points", ""}});
+  if (t.file_unit.empty()) json["file_unit"] = nullptr;
+  insert_after(json, "file_unit", "unit", "mm");
+  json["largest_deviation"] = {
+      {"value", t.largest_deviation}, {"kind", name_of(Certainty::estimate)}, {"points", t.measured_points}};
+  return json;
 }
 
 Json to_json(const ReportedMesh& mesh) {
@@ -280,12 +252,10 @@ Json to_json(const Summary& summary) {
   if (!summary.of_thickness)
     json["places"] = summary.places ? to_json(*summary.places, summary.of_points) : Json();
   json["doubts"] = to_json(summary.doubts);
-  if (const auto& c = summary.coverage)
-    json["coverage"] = {{"value", c->value},
-                        {"kind", "estimate"},
-                        {"lower", c->lower},
-                        {"upper", c->upper},
-                        {"reach", c->reach}};
+  if (summary.coverage) {
+    json["coverage"] = fields_json(*summary.coverage);
+    insert_after(json["coverage"], "value", "kind", name_of(Certainty::estimate));
+  }
   if (summary.distribution) add(json, *summary.distribution);
   if (summary.colors) json["notes"] = summary.notes;
   return json;
@@ -299,19 +269,19 @@ Json to_json(const MapReport& report, const Surface& surface, const Summary& sum
   } else {
     json["o1"] = to_json(report.on_o1 ? report.on : report.to);
     json["o2"] = to_json(report.on_o1 ? report.to : report.on);
-    json[report.on_o1 ? "o2" : "o1"]["embedded"] = optional_json(report.embedded);
+    json[report.on_o1 ? "o2" : "o1"]["embedded"] = value_json(report.embedded);
     json["measured_on"] = report.on_o1 ? "o1" : "o2";
   }
   json["units"] = summary.units;
   json["atlas"] = to_json(surface);
   if (!summary.of_itself) {
-    json["atlas"]["udim"] = optional_json(report.udim);
+    json["atlas"]["udim"] = value_json(report.udim);
     json["atlas"]["cut_faces"] = report.cut_faces;
-    json["precision"] = optional_json(report.precision);
+    json["precision"] = value_json(report.precision);
   }
   if (!report.engine.empty()) json["engine"] = report.engine;
   json.update(to_json(summary));
-  json["time_ms"] = to_json(report.time_ms);
+  json["time_ms"] = fields_json(report.time_ms);
   return json;
 }
 
@@ -335,104 +305,25 @@ std::vector<Doubt> doubts_from(const Json& json) {
 Json to_json(const GroupVerdicts& verdicts, bool of_points) {
   Json groups = Json::array();
   for (const GroupVerdict& g : verdicts.groups) {
-    const CertifiedVerdict& v = g.verdict;
-    Json group{{"kind", g.kind}, {"group", g.group}, {"triangles", g.faces}};
-    if (of_points) group["points"] = g.points;
-    group.update(
-        {{"lower", v.tolerance.lo},
-         {"upper", v.tolerance.hi},
-         {"verdict", name_of(v.verdict)},
-         {"reason", name_of(v.reason)},
-         {"certified", v.certified},
-         {"lowest", optional_json(g.lowest)},
-         {"highest", optional_json(g.highest)},
-         {of_points ? "exceeded_point_fraction" : "exceeded_area_fraction", v.exceeded_area_fraction}});
-    if (!of_points)
-      group.update({{"undecided_by", v.proof ? optional_json(v.proof->undecided_by) : Json()},
-                    {"witness", v.proof && v.proof->witness ? Json{{"distance", v.proof->witness->distance},
-                                                                   {"point", v.proof->witness->point}}
-                                                            : Json()}});
+    Json group = fields_json(
+        g, {{"faces", "triangles"}, {"points", of_points ? "points" : ""}, {"area", ""}, {"verdict", ""}});
+    group.update(to_json(g.verdict, of_points ? "exceeded_point_fraction" : "exceeded_area_fraction"));
+    if (!of_points) {
+      const std::optional<ToleranceProof>& proof = g.verdict.proof;
+      group["undecided_by"] = proof ? value_json(proof->undecided_by) : Json();
+      group["witness"] = nullptr;
+      if (proof && proof->witness)
+        group["witness"] = {{"distance", proof->witness->distance}, {"point", proof->witness->point}};
+    }
     groups.push_back(std::move(group));
   }
-  Json all{{"verdict", name_of(verdicts.verdict)}};
-  if (of_points)
-    all.update({{"reason", reason_json(verdicts.without_group)},
-                {"beyond_max_distance", verdicts.without_group.beyond_max_distance},
-                {"without_match", verdicts.without_group.without_match}});
+  Json all = fields_json(verdicts, {{"groups", ""}});
+  if (of_points) {
+    all["reason"] = reason_json(verdicts.without_group);
+    all.update(fields_json(verdicts.without_group));
+  }
   all["groups"] = std::move(groups);
   return all;
-}
-
-Json to_json(const IslandReport& islands) {
-  return fields_json(islands, {{"faces", "triangles"}});
-}
-
-Json to_json(const PointIslands& islands, std::uint64_t points) {
-  return {{"islands", islands.islands},
-          {"points", islands.points},
-          {"point_fraction", static_cast<double>(islands.points) / static_cast<double>(points)},
-          {"reach", islands.reach}};
-}
-
-Json to_json(const HausdorffDistance& distance, bool facing) {
-  Json json = fields_json(distance.distance);
-  json["faces"] = distance.faces;
-  if (!facing) return json;
-  json["faces_without_match"] = distance.faces_without_match;
-  json["area_without_match"] = distance.area_without_match;
-  return json;
-}
-
-Json to_json(const BoundedNumber& number, std::optional<double> confidence) {
-  Json json = fields_json(number);
-  if (number.certainty == Certainty::estimate && confidence) json["confidence"] = *confidence;
-  return json;
-}
-
-Json to_json(const DirectedMetrics& metrics, const MetricsOptions& options, double confidence) {
-  Json json{{"area", metrics.area},
-            {"hausdorff", fields_json(metrics.hausdorff)},
-            {"mean", to_json(metrics.mean, confidence)},
-            {"rms", to_json(metrics.rms, confidence)}};
-  if (options.estimate) json["points"] = metrics.points;
-  json["percentiles"] = Json::array();
-  json["within"] = Json::array();
-  for (std::size_t i = 0; i < metrics.percentiles.size(); ++i) {
-    json["percentiles"].push_back({{"percent", options.percentiles[i]}});
-    json["percentiles"].back().update(to_json(metrics.percentiles[i], confidence));
-  }
-  for (std::size_t i = 0; i < metrics.within.size(); ++i) {
-    json["within"].push_back({{"tolerance", options.tolerances[i]}});
-    json["within"].back().update(to_json(metrics.within[i], confidence));
-  }
-  json["normal_consistency"] = metrics.normal_consistency;
-  return json;
-}
-
-Json collision_json(bool colliding) {
-  return {{"value", colliding}, {"kind", name_of(Certainty::exact)}};
-}
-
-Json to_json(const Contact& contact) {
-  return {{"point1", contact.point1},
-          {"point2", contact.point2},
-          {"normal", contact.normal},
-          {"depth", contact.depth},
-          {"patch", contact.patch},
-          {"faces", {contact.on[0].face, contact.on[1].face}},
-          {"barycentric", {contact.on[0].barycentric, contact.on[1].barycentric}},
-          {"id", contact.id}};
-}
-
-Json to_json(std::span<const PairContacts> pairs) {
-  Json contacts = Json::array();
-  for (const PairContacts& pair : pairs)
-    for (const Contact& contact : pair.contacts) {
-      Json json{{"first", pair.first}, {"second", pair.second}};
-      json.update(to_json(contact));
-      contacts.push_back(std::move(json));
-    }
-  return contacts;
 }
 
 std::string tessellation_json(const Tessellation& tessellation) {

@@ -3,9 +3,11 @@
 // these functions from a shared library, too.
 #pragma once
 
+#include <sdm/align.h>
 #include <sdm/api.h>
 #include <sdm/bounds.h>
 #include <sdm/doubts.h>
+#include <sdm/gl.h>
 #include <sdm/group_verdicts.h>
 #include <sdm/hausdorff.h>
 #include <sdm/islands.h>
@@ -15,45 +17,84 @@
 #include <sdm/points.h>
 #include <sdm/proximity_query.h>
 #include <sdm/report.h>
+#include <sdm/simplify.h>
+#include <sdm/tolerance.h>
+#include <sdm/transform.h>
+#include <sdm/volume.h>
 
+#include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace sdm {
 
-/// An optional value; null if there is none.
+/// Keys in place of the names of fields; an empty one leaves the field out.
+using OtherKeys = std::vector<std::pair<std::string_view, std::string_view>>;
+
+template <Declared Struct>
+[[nodiscard]] nlohmann::ordered_json fields_json(const Struct& of, const OtherKeys& other_keys = {});
+
+/// A value, an array or a result that declares its fields. An enumerator is its word, an optional value
+/// without one null, and a transform the rows of its matrix.
 template <class Value>
-[[nodiscard]] nlohmann::ordered_json optional_json(const std::optional<Value>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+[[nodiscard]] nlohmann::ordered_json value_json(const Value& value, const OtherKeys& other_keys = {}) {
+  if constexpr (Worded<Value>) {
+    return name_of(value);
+  } else if constexpr (Declared<Value>) {
+    return fields_json(value, other_keys);
+  } else if constexpr (std::is_same_v<Value, Transform>) {
+    return value.rows;
+  } else if constexpr (requires { value.has_value(); }) {
+    return value ? value_json(*value, other_keys) : nlohmann::ordered_json();
+  } else if constexpr (requires { requires Declared<typename Value::value_type>; }) {
+    auto array = nlohmann::ordered_json::array();
+    for (const auto& element : value) array.push_back(fields_json(element, other_keys));
+    return array;
+  } else {
+    return value;
+  }
 }
 
-/// The declared fields of a result (sdm/names.h), by their names but for `other_keys`. Enumerators are words;
-/// how certain a number is, is its `kind`.
-template <class Struct>
-[[nodiscard]] nlohmann::ordered_json fields_json(
-    const Struct& of, std::initializer_list<std::pair<std::string_view, std::string_view>> other_keys = {}) {
+/// The declared fields of a result (sdm/names.h) and of the results that it holds, by their names but for
+/// `other_keys`. How certain a number is, is its `kind`; the limits of a tolerance are `lower` and `upper`.
+template <Declared Struct>
+nlohmann::ordered_json fields_json(const Struct& of, const OtherKeys& other_keys) {
   auto json = nlohmann::ordered_json::object();
   for_each_field<Struct>([&](const auto& field) {
-    using Value = std::remove_cvref_t<decltype(of.*field.member)>;
+    const auto& value = of.*field.member;
+    using Value = std::remove_cvref_t<decltype(value)>;
     std::string_view key = field.name;
     if constexpr (std::is_same_v<Value, Certainty>) key = "kind";
     for (const auto& [name, other] : other_keys)
       if (key == name) key = other;
-    nlohmann::ordered_json& value = json[std::string(key)];
-    if constexpr (Worded<Value>)
-      value = name_of(of.*field.member);
-    else if constexpr (requires { (of.*field.member).has_value(); })
-      value = optional_json(of.*field.member);
-    else
-      value = of.*field.member;
+    if (key.empty()) return;
+    if constexpr (std::is_same_v<Value, Tolerance>) {
+      json["lower"] = value.lo;
+      json["upper"] = value.hi;
+    } else {
+      json[std::string(key)] = value_json(value, other_keys);
+    }
+    if (is_no_index(field, value)) json[std::string(key)] = nullptr;
   });
   return json;
+}
+
+/// Adds a key behind another one, whose objects are in the order of the declared fields.
+inline void insert_after(nlohmann::ordered_json& json, std::string_view before, const char* key,
+                         const nlohmann::ordered_json& value) {
+  auto result = nlohmann::ordered_json::object();
+  for (const auto& [name, of] : json.items()) {
+    result[name] = of;
+    if (name == before) result[key] = value;
+  }
+  json = std::move(result);
 }
 
 [[nodiscard]] SDM_API nlohmann::ordered_json to_json(const Tessellation& tessellation);
@@ -77,13 +118,32 @@ template <class Struct>
 /// An estimate has the confidence of its bounds.
 [[nodiscard]] SDM_API nlohmann::ordered_json to_json(const BoundedNumber& number,
                                                      std::optional<double> confidence);
-/// `options`, `confidence`: those of the metrics.
-[[nodiscard]] SDM_API nlohmann::ordered_json to_json(const DirectedMetrics& metrics,
-                                                     const MetricsOptions& options, double confidence);
+/// All measures by their names, as `metrics`, and those of each direction, as `o1_to_o2` and `o2_to_o1`.
+/// `options`: those of the metrics.
+[[nodiscard]] SDM_API nlohmann::ordered_json to_json(const SurfaceMetrics& metrics,
+                                                     const MetricsOptions& options);
 
 /// Whether two bodies collide.
 [[nodiscard]] SDM_API nlohmann::ordered_json collision_json(bool colliding);
 [[nodiscard]] SDM_API nlohmann::ordered_json to_json(const Contact& contact);
 [[nodiscard]] SDM_API nlohmann::ordered_json to_json(std::span<const PairContacts> pairs);
+/// `penetration_depth`: null if neither body is a solid.
+[[nodiscard]] SDM_API nlohmann::ordered_json to_json(const PairSeparation& pair,
+                                                     const std::optional<BoundedLength>& penetration_depth);
+/// All results of the query, which are computed if necessary.
+[[nodiscard]] SDM_API nlohmann::ordered_json to_json(ProximityQuery& query);
+/// Why there is no penetration depth, as neither body is a solid.
+[[nodiscard]] SDM_API std::string no_depth_text(const ProximityQuery& query);
+/// The number of patches of the contacts of two bodies.
+[[nodiscard]] SDM_API std::size_t patch_count(std::span<const Contact> contacts);
+
+/// With the sizes of the motion; what was asked for is not in it.
+[[nodiscard]] SDM_API nlohmann::ordered_json to_json(const Alignment& alignment);
+/// A mesh with fewer triangles, by its numbers.
+[[nodiscard]] SDM_API nlohmann::ordered_json to_json(const Simplified& simplified);
+/// The numbers of a field, without its points.
+[[nodiscard]] SDM_API nlohmann::ordered_json to_json(const DistanceField& field);
+/// The counters of the gl engine.
+[[nodiscard]] SDM_API nlohmann::ordered_json to_json(const GlReport& report);
 
 }  // namespace sdm
