@@ -74,13 +74,9 @@ divided by its radius of gyration, in radians.)");
 
 void bind_alignment(nb::module_& module) {
   using A = Alignment;
-  nb::class_<A>(module, "Alignment", nb::is_weak_referenceable(),
-                "A rigid motion that aligns O1 to O2, and how good it is.")
-      .def_prop_ro(
-          "transform", [](const A& self) { return matrix(self.transform); },
-          nb::sig("def transform(self) -> numpy.typing.NDArray[numpy.float64]"),
-          "Maps O1, as it was given, to its place on O2: a rotation and a translation, (4, 4) float64, for "
-          "column vectors.")
+  nb::class_<A> alignment(module, "Alignment", nb::is_weak_referenceable(),
+                          "A rigid motion that aligns O1 to O2, and how good it is.");
+  bind_fields(alignment)
       .def_prop_ro(
           "rms_before", [](const A& self) { return self.before.rms; },
           "The rms distance of samples of O1, as it was given, to O2, in units of the meshes.")
@@ -90,24 +86,6 @@ void bind_alignment(nb::module_& module) {
       .def_prop_ro(
           "trimmed_rms", [](const A& self) { return self.after.trimmed_rms; },
           "The same of the samples with the smallest distances, ``fraction_used`` of all.")
-      .def_ro("samples", &A::samples, "The number of samples.")
-      .def_ro("fraction_used", &A::fraction_used,
-              "Of the samples, in the last step; the others are taken for outliers.")
-      .def_ro("fraction_fitting", &A::fraction_fitting,
-              "Of the samples: those used, and those within 1e-5 of the radius of gyration of O2, since "
-              "rounding of coordinates makes no outliers.")
-      .def_ro("iterations", &A::iterations, "Steps, of all levels.")
-      .def_ro("converged", &A::converged,
-              "The last step moved O1 by less than 1e-6 of its radius of gyration.")
-      .def_prop_ro(
-          "freedoms",
-          [](const A& self) {
-            nb::list freedoms;
-            for (const DegreeOfFreedom& freedom : self.freedoms) freedoms.append(nb::cast(freedom));
-            return freedoms;
-          },
-          nb::sig("def freedoms(self) -> list[DegreeOfFreedom]"),
-          "The six degrees of freedom, the best determined one first.")
       .def("__repr__", [](const A& self) {
         return nb::str("sdm.Alignment(rms {:.6g}, before {:.6g}, {} iterations)")
             .format(self.after.rms, self.before.rms, self.iterations);

@@ -32,31 +32,8 @@ auto pair_column_of_contacts(LazyArray PyContacts::*array,
   };
 }
 
-void bind_contact_geometry(nb::class_<PyContacts>& type) {
-  type.def_prop_ro("point1", contacts_column(&PyContacts::point1, [](const Contact& c) { return c.point1; }),
-                   nb::sig("def point1(self) -> numpy.typing.NDArray[numpy.float64]"),
-                   "The points of O1, (n, 3) float64.")
-      .def_prop_ro("point2", contacts_column(&PyContacts::point2, [](const Contact& c) { return c.point2; }),
-                   nb::sig("def point2(self) -> numpy.typing.NDArray[numpy.float64]"),
-                   "The points of O2, (n, 3) float64.")
-      .def_prop_ro("normal", contacts_column(&PyContacts::normal, [](const Contact& c) { return c.normal; }),
-                   nb::sig("def normal(self) -> numpy.typing.NDArray[numpy.float64]"),
-                   R"(Unit vectors along which moving O1 separates it from O2, (n, 3) float64:
-(point2 - point1) / depth; where depth is 0, O2's outward normal. Those of separating_contacts() have their
-own direction and depth, see there.)")
-      .def_prop_ro(
-          "depth", contacts_column(&PyContacts::depth, [](const Contact& c) { return c.depth; }),
-          nb::sig("def depth(self) -> numpy.typing.NDArray[numpy.float64]"),
-          R"(±|point2 - point1|, (n,) float64; positive if the point in contact is inside the other body.
-At most penetration_depth().upper; of separating_contacts(), at most separating_translation().upper.)");
-}
-
 void bind_contact_features(nb::class_<PyContacts>& type) {
-  type.def_prop_ro(
-          "patch", contacts_column(&PyContacts::patch, [](const Contact& c) { return c.patch; }),
-          nb::sig("def patch(self) -> numpy.typing.NDArray[numpy.uint32]"),
-          "The patch of each contact, (n,) uint32: contacts on connected parts of a surface share one.")
-      .def_prop_ro("faces",
+  type.def_prop_ro("faces",
                    contacts_column(&PyContacts::faces,
                                    [](const Contact& c) {
                                      return std::array{c.on[0].face, c.on[1].face};
@@ -69,12 +46,7 @@ void bind_contact_features(nb::class_<PyContacts>& type) {
                                      return std::array{c.on[0].barycentric, c.on[1].barycentric};
                                    }),
                    nb::sig("def barycentric(self) -> numpy.typing.NDArray[numpy.float64]"),
-                   "The barycentric coordinates of the points in these faces, (n, 2, 3) float64.")
-      .def_prop_ro(
-          "id", contacts_column(&PyContacts::id, [](const Contact& c) { return c.id; }),
-          nb::sig("def id(self) -> numpy.typing.NDArray[numpy.uint64]"),
-          R"(Identifies what is in contact, (n,) uint64: unique among the contacts of a pair of bodies, or of
-their parts, and the same in all frames.)");
+                   "The barycentric coordinates of the points in these faces, (n, 2, 3) float64.");
 }
 
 }  // namespace
@@ -84,7 +56,8 @@ void bind_contacts(nb::module_& module) {
       module, "Contacts", nb::is_weak_referenceable(),
       R"(Contacts as arrays with one row each, sorted by patch, the patch with the deepest contact
 first, and by decreasing depth within a patch; those of many bodies first by pair of bodies.)");
-  bind_contact_geometry(type);
+  bind_columns<Contact>(
+      type, &PyContacts::columns, [](const PyContacts& self) -> auto& { return self.contacts; });
   bind_contact_features(type);
   type.def_prop_ro("bodies", pair_column_of_contacts(&PyContacts::body, &PyContacts::bodies),
                    nb::sig("def bodies(self) -> numpy.typing.NDArray[numpy.uint32] | None"),

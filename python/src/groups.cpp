@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "arrays.h"
+#include "fields.h"
 #include "map.h"
 #include "run.h"
 #include "signatures.h"
@@ -93,41 +94,18 @@ sdm.Error: ...
 }
 
 void bind_places(nb::module_& module) {
-  nb::class_<Place>(module, "Place", nb::is_weak_referenceable(),
-                    "A region whose distances are all beyond the same limit.")
-      .def_ro(
-          "distance", &Place::distance,
-          "Of its samples the one that is farthest beyond the limit; NaN where a tolerance asks for values, "
-          "and there are none.")
-      .def_prop_ro(
-          "limits", [](const Place& self) { return nb::make_tuple(self.limits.lo, self.limits.hi); },
-          nb::sig("def limits(self) -> tuple[float, float]"),
-          "The limits of that sample: those of the tolerance, and of its group.")
+  nb::class_<Place> place(module, "Place", nb::is_weak_referenceable(),
+                          "A region whose distances are all beyond the same limit.");
+  bind_fields(place, {"point"})
       .def_prop_ro(
           "point", [](const Place& self) { return tuple_of(self.point); },
-          nb::sig("def point(self) -> tuple[float, float, float]"), "Where that is.")
-      .def_ro("samples", &Place::samples, "The number of its texels, without vertices; or of its points.")
-      .def_ro("area", &Place::area, "An estimate of its area, in squared units; 0 of a cloud.")
-      .def_ro("fraction", &Place::fraction, "Of the area of all texels, or of all points.")
-      .def_ro("small", &Place::small, "Whether it is below Places.least_fraction.")
-      .def_ro("kind", &Place::kind, "The kind of ``group``.")
-      .def_ro("group", &Place::group, "The first name that its face has; empty without one.")
+          nb::sig("def point(self) -> tuple[float, float, float]"), text_of_field<Place>("point").c_str())
       .def("__repr__", [](const Place& self) {
         return nb::str("sdm.Place(distance={:.6g}, fraction={:.3g})").format(self.distance, self.fraction);
       });
-  nb::class_<Places>(module, "Places", nb::is_weak_referenceable(),
-                     "Where a map or a cloud deviates most, as regions.")
-      .def_prop_ro(
-          "limits", [](const Places& self) { return nb::make_tuple(self.limits.lo, self.limits.hi); },
-          nb::sig("def limits(self) -> tuple[float, float]"),
-          "Distances out of these belong to places, but for groups with a tolerance of their own. Infinite "
-          "if "
-          "only these are judged.")
-      .def_ro(
-          "by_tolerance", &Places::by_tolerance,
-          "The limits are the tolerance; otherwise nothing is out of it, and they are the 99th percentile "
-          "of the absolute distance.")
-      .def_ro("least_fraction", &Places::least_fraction, "Places below it are small.")
+  nb::class_<Places> places(module, "Places", nb::is_weak_referenceable(),
+                            "Where a map or a cloud deviates most, as regions.");
+  bind_fields(places)
       .def_prop_ro(
           "count", [](const Places& self) { return self.large.count; },
           "The number of places that are not small.")
@@ -136,47 +114,25 @@ void bind_places(nb::module_& module) {
           "fraction", [](const Places& self) { return self.large.fraction; },
           "Theirs of the area or the points, without the small ones.")
       .def_prop_ro("small_fraction", [](const Places& self) { return self.small.fraction; })
-      .def_ro("largest", &Places::largest,
-              "At most ten: by how far they are beyond the limits, the small ones last.")
       .def("__repr__", [](const Places& self) {
         return nb::str("sdm.Places({} places, {} small ones)").format(self.large.count, self.small.count);
       });
 }
 
 void bind_verdicts(nb::module_& module) {
-  nb::class_<GroupVerdict>(module, "GroupVerdict", nb::is_weak_referenceable(),
-                           "The verdict on a group of faces.")
-      .def_ro("kind", &GroupVerdict::kind, "Of the name.")
-      .def_ro("group", &GroupVerdict::group, "The name.")
-      .def_ro("faces", &GroupVerdict::faces, "The number of its faces.")
-      .def_ro("points", &GroupVerdict::points, "Of a cloud: the number of points closest to these faces.")
-      .def_ro("lowest", &GroupVerdict::lowest, "The least distance of its samples; None without a value.")
-      .def_ro("highest", &GroupVerdict::highest, "The largest one.")
-      .def_ro("verdict", &GroupVerdict::verdict,
-              "Fractions of the area are those of the group, or of its points.")
-      .def("__repr__", [](const GroupVerdict& self) {
-        return nb::str("sdm.GroupVerdict({!r}, {!r})").format(self.group, word_of(self.verdict.verdict));
-      });
-  nb::class_<GroupVerdicts>(module, "GroupVerdicts", nb::is_weak_referenceable(),
-                            "The verdicts on the groups of a table.")
-      .def_ro("groups", &GroupVerdicts::groups, "In the order of the table.")
-      .def_prop_ro(
-          "verdict", [](const GroupVerdicts& self) { return word_of(self.verdict); },
-          nb::sig("def verdict(self) -> " SDM_VERDICT),
-          "'fail' if that of one group is, or if points of a cloud are of no group; else 'not decided' if "
-          "that of one is, else 'pass'.")
-      .def_prop_ro(
-          "beyond_max_distance",
-          [](const GroupVerdicts& self) { return self.without_group.beyond_max_distance; },
-          "Of a cloud: the number of points that are of no group, as the mesh is farther than the maximum "
-          "distance.")
-      .def_prop_ro(
-          "without_match", [](const GroupVerdicts& self) { return self.without_group.without_match; },
-          "Of a cloud: the number of points that are of no group, as no face of the mesh faces as they do.")
-      .def("__repr__", [](const GroupVerdicts& self) {
-        return nb::str("sdm.GroupVerdicts({!r}, {} groups)")
-            .format(word_of(self.verdict), self.groups.size());
-      });
+  nb::class_<GroupVerdict> group(module, "GroupVerdict", nb::is_weak_referenceable(),
+                                 "The verdict on a group of faces.");
+  bind_fields(group).def("__repr__", [](const GroupVerdict& self) {
+    return nb::str("sdm.GroupVerdict({!r}, {!r})").format(self.group, word_of(self.verdict.verdict));
+  });
+  nb::class_<GroupVerdicts> groups(module, "GroupVerdicts", nb::is_weak_referenceable(),
+                                   "The verdicts on the groups of a table.");
+  bind_fields(groups);
+  bind_fields_of<PointsWithoutGroup>(groups, [](const GroupVerdicts& self) -> const PointsWithoutGroup& {
+    return self.without_group;
+  }).def("__repr__", [](const GroupVerdicts& self) {
+    return nb::str("sdm.GroupVerdicts({!r}, {} groups)").format(word_of(self.verdict), self.groups.size());
+  });
 }
 
 GroupVerdicts check_groups(const PyMap& self, nb::handle table, nb::handle names, nb::handle progress) {

@@ -100,8 +100,6 @@ struct PyMap {
 /// The accepted distances: a number, or the least and the most. Throws sdm::Error for others, and for a
 /// tolerance that needs signs if distances have none.
 [[nodiscard]] Tolerance tolerance_of(nb::handle value, SignMethod sign);
-/// The word for a verdict: that of the command, in small letters.
-[[nodiscard]] std::string word_of(Verdict verdict);
 [[nodiscard]] std::optional<std::array<double, 2>> range_of(
     const std::optional<std::pair<double, double>>& range);
 

@@ -155,51 +155,21 @@ nb::object witness_of(const CertifiedVerdict& verdict) {
 
 void bind_verdict(nb::module_& module) {
   using V = CertifiedVerdict;
-  nb::class_<V>(module, "ToleranceVerdict", nb::is_weak_referenceable(),
-                "Whether the distances of all points of a surface are within a tolerance.")
-      .def_prop_ro(
-          "verdict", [](const V& self) { return word_of(self.verdict); },
-          nb::sig("def verdict(self) -> " SDM_VERDICT),
-          "'pass': every point of the surface is within the tolerance; 'fail': some point is not; 'not "
-          "decided': "
-          "neither is proven, as a distance is within the accuracy, or Mesh.deviation, of a limit, or signs "
-          "are "
-          "estimates; "
-          "'doubtful': a 'pass', but walls are thinner than twice the tolerance, and the faces that face the "
-          "same way do not decide.")
-      .def_prop_ro(
-          "reason", [](const V& self) { return sdm::name_of(self.reason); },
-          "Why, in words: 'all within', 'exceeded', 'beyond max distance', 'without match', 'within "
-          "rounding', 'guard band', 'estimated "
-          "signs', 'unknown accuracy', 'nothing measured' or 'in doubt'.")
-      .def_ro("margin", &V::margin,
-              "How far the distances of texels and vertices stay from the limits, less the accuracy and the "
-              "deviations of both meshes; negative "
-              "if they do not. None if one of them has no value, or none has.")
-      .def_prop_ro(
-          "tolerance", [](const V& self) { return nb::make_tuple(self.tolerance.lo, self.tolerance.hi); },
-          nb::sig("def tolerance(self) -> tuple[float, float]"), "The least and the most accepted distance.")
-      .def_ro("largest", &V::largest,
-              "The largest absolute distance of all texels and vertices; None if one has no value.")
-      .def_ro("within", &V::within, "No point is known to be out of the tolerance.")
-      .def_ro("certified", &V::certified,
-              "The verdict holds for every point of the surface; a 'pass' without it is an estimate.")
-      .def_ro("exceeded_area_fraction", &V::exceeded_area_fraction,
-              "An estimate: the fraction of the area that is out of the tolerance, in [0, 1].")
+  nb::class_<V> verdict(module, "ToleranceVerdict", nb::is_weak_referenceable(),
+                        "Whether the distances of all points of a surface are within a tolerance.");
+  bind_fields(verdict)
       .def_prop_ro(
           "above_area_fraction", [](const V& self) { return self.shares.above; },
-          "The fraction with larger distances.")
+          text_of_field<ToleranceShares>("above").c_str())
       .def_prop_ro(
           "below_area_fraction", [](const V& self) { return self.shares.below; },
-          "The fraction with smaller ones.")
+          text_of_field<ToleranceShares>("below").c_str())
       .def_prop_ro("witness", &witness_of,
                    nb::sig("def witness(self) -> tuple[float, tuple[float, float, float]] | None"),
-                   "A point between texels and vertices that is out of the tolerance, if the verdict depends "
-                   "on one: its "
-                   "distance, and where it is.")
+                   (text_of_field<ToleranceProof>("witness") + " Its distance, and where it is.").c_str())
       .def_prop_ro(
           "undecided_by", [](const V& self) { return self.proof ? self.proof->undecided_by : std::nullopt; },
-          "If not decided: no point is out of the tolerance by more than this. None if it is not known.")
+          text_of_field<ToleranceProof>("undecided_by").c_str())
       .def("__repr__", [](const V& self) {
         if (!self.largest) return nb::str("sdm.ToleranceVerdict({!r})").format(word_of(self.verdict));
         return nb::str("sdm.ToleranceVerdict({!r}, largest={:.6g})")

@@ -57,50 +57,23 @@ nb::object read_points(nb::handle file, const std::optional<std::vector<std::str
 
 void bind_distances(nb::module_& module) {
   using E = PointExtreme;
-  nb::class_<E>(module, "PointExtreme", nb::is_weak_referenceable(), "The distance of a point of a cloud.")
-      .def_ro("distance", &E::distance, "In units of the mesh.")
-      .def_prop_ro(
-          "point", [](const E& self) { return vector_of(self.point); },
-          nb::sig("def point(self) -> numpy.typing.NDArray[numpy.float64]"), "The point, (3,) float64.")
-      .def_ro("index", &E::index, "Its place in the file, from 0.")
-      .def("__repr__", [](const E& self) {
-        return nb::str("sdm.PointExtreme({:.6g}, index={})").format(self.distance, self.index);
-      });
+  nb::class_<E> extreme(module, "PointExtreme", nb::is_weak_referenceable(),
+                        "The distance of a point of a cloud.");
+  bind_fields(extreme).def("__repr__", [](const E& self) {
+    return nb::str("sdm.PointExtreme({:.6g}, index={})").format(self.distance, self.index);
+  });
   using D = PointDistances;
-  nb::class_<D>(module, "PointDistances", nb::is_weak_referenceable(),
-                "The numbers of the distances of a point cloud to a mesh.")
-      .def_ro("points", &D::points, "The number of points of the file.")
-      .def_ro("invalid", &D::invalid, "The number of those with a coordinate that is NaN or infinite.")
-      .def_ro("beyond_max_distance", &D::beyond_max_distance,
-              "The number of those without a value, besides the invalid ones and those without a match.")
-      .def_ro("without_match", &D::without_match,
-              "The number of those without a value, as no face of the mesh faces as they do.")
+  nb::class_<D> distances(module, "PointDistances", nb::is_weak_referenceable(),
+                          "The numbers of the distances of a point cloud to a mesh.");
+  bind_fields(distances)
       .def_prop_ro(
           "measured", [](const D& self) { return self.measured.text; },
           "What the distances are to, in words.")
-      .def_ro("beyond_tolerance", &D::beyond_tolerance,
-              "The number of points that are out of the tolerance, or without a value.")
-      .def_ro("has_normals", &D::has_normals, "Whether the file has normals.")
-      .def_ro("format", &D::format, "The format of the file: 'PLY', 'PCD', 'LAS', 'PTX' or 'text'.")
-      .def_prop_ro(
-          "text",
-          [](const D& self) -> nb::object {
-            return self.text ? nb::object(dict_of_fields(*self.text)) : nb::none();
-          },
-          nb::sig("def text(self) -> dict[str, object] | None"),
-          "How text was read: ``separator``, ``decimal``, ``columns`` ('_': ignored) and ``header_line`` "
-          "(from 1; "
-          "None without a header). None for other formats.")
       .def_prop_ro(
           "sign", [](const D& self) { return name_of(self.sign.method); },
           "How inside and outside are distinguished: 'none', 'exact', 'winding' or 'side'.")
       .def_prop_ro(
           "sign_reason", [](const D& self) { return self.sign.reason; }, "Why, in words.")
-      .def_ro("min", &D::min, "The point with the smallest distance; None if no point has one.")
-      .def_ro("max", &D::max, "The point with the largest distance; None if no point has one.")
-      .def_ro("places", &D::places, "Where it deviates most; None if no point has a value.")
-      .def_ro("groups", &D::groups,
-              "The verdicts on the groups of the table of tolerances; None without one.")
       .def_prop_ro(
           "islands",
           [](const D& self) -> nb::object {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "fields.h"
 #include "objects.h"
 
 namespace sdm::python {
@@ -20,7 +21,8 @@ struct PyContacts {
   std::vector<std::array<std::uint32_t, 2>> bodies;
   std::vector<PartPair> parts;
   bool has_bodies = false;
-  LazyArray point1, point2, normal, depth, patch, faces, barycentric, id, body, part;
+  Columns<Contact> columns;
+  LazyArray faces, barycentric, body, part;
 };
 
 struct PyProximityQuery {

@@ -40,13 +40,6 @@ inline constexpr auto kMembers<CertifiedVerdict> =
                &CertifiedVerdict::shares,         &CertifiedVerdict::proof,
                &CertifiedVerdict::by_facing};
 template <>
-inline constexpr auto kMembers<GroupVerdict> =
-    std::tuple{&GroupVerdict::kind, &GroupVerdict::group,  &GroupVerdict::faces,   &GroupVerdict::points,
-               &GroupVerdict::area, &GroupVerdict::lowest, &GroupVerdict::highest, &GroupVerdict::verdict};
-template <>
-inline constexpr auto kMembers<PointsWithoutGroup> =
-    std::tuple{&PointsWithoutGroup::beyond_max_distance, &PointsWithoutGroup::without_match};
-template <>
 inline constexpr auto kMembers<GroupVerdicts> =
     std::tuple{&GroupVerdicts::groups, &GroupVerdicts::without_group, &GroupVerdicts::verdict};
 
@@ -54,27 +47,8 @@ inline constexpr auto kMembers<GroupVerdicts> =
 template <>
 inline constexpr auto kMembers<FaceNames> =
     std::tuple{&FaceNames::kind, &FaceNames::names, &FaceNames::of_face};
-template <>
-inline constexpr auto kMembers<Place> = std::tuple{
-    &Place::distance, &Place::limits,   &Place::point, &Place::sample, &Place::face, &Place::samples,
-    &Place::area,     &Place::fraction, &Place::small, &Place::kind,   &Place::group};
-template <>
-inline constexpr auto kMembers<PlaceTotals> =
-    std::tuple{&PlaceTotals::count, &PlaceTotals::samples, &PlaceTotals::area, &PlaceTotals::fraction};
-template <>
-inline constexpr auto kMembers<Places> =
-    std::tuple{&Places::limits, &Places::by_tolerance, &Places::least_fraction,
-               &Places::large,  &Places::small,        &Places::largest};
 
 // Point clouds.
-template <>
-inline constexpr auto kMembers<PointExtreme> =
-    std::tuple{&PointExtreme::distance, &PointExtreme::point, &PointExtreme::index};
-template <>
-inline constexpr auto kMembers<PointIslands> =
-    std::tuple{&PointIslands::islands, &PointIslands::points, &PointIslands::apart, &PointIslands::reach};
-template <>
-inline constexpr auto kMembers<Box> = std::tuple{&Box::lo, &Box::hi};
 template <>
 inline constexpr auto kMembers<PointDistances> = std::tuple{&PointDistances::points,
                                                             &PointDistances::invalid,

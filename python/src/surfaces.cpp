@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "fields.h"
 #include "options.h"
 #include "signatures.h"
 #include "sites_in_use.h"
@@ -75,27 +76,11 @@ True
 
 void bind_coverage(nb::module_& module) {
   using C = CoverageMap;
-  nb::class_<C>(module, "Coverage", nb::is_weak_referenceable(),
-                "The share of the area of O2 that has a measured point near it.")
-      .def_prop_ro(
-          "value", [](const C& self) { return self.value; }, "In [0, 1]; an estimate within the bounds.")
-      .def_prop_ro(
-          "lower", [](const C& self) { return self.lower; }, "Certified.")
-      .def_prop_ro(
-          "upper", [](const C& self) { return self.upper; }, "Certified.")
-      .def_prop_ro(
-          "reach", [](const C& self) { return self.reach; }, "How near.")
-      .def_prop_ro(
-          "of_face",
-          [](const C& self) {
-            return array_of<float>(std::vector<float>(self.of_face), {self.of_face.size()});
-          },
-          nb::sig("def of_face(self) -> numpy.typing.NDArray[numpy.float32]"),
-          "Of each face of O2, the share of its area, (m,) float32: an estimate; NaN without area.")
-      .def("__repr__", [](const C& self) {
-        return nb::str("sdm.Coverage({:.4g}, from {:.4g} to {:.4g})")
-            .format(self.value, self.lower, self.upper);
-      });
+  nb::class_<C> coverage_class(module, "Coverage", nb::is_weak_referenceable(),
+                               "The share of the area of O2 that has a measured point near it.");
+  bind_fields(coverage_class).def("__repr__", [](const C& self) {
+    return nb::str("sdm.Coverage({:.4g}, from {:.4g} to {:.4g})").format(self.value, self.lower, self.upper);
+  });
   static const std::string coverage_signature =
       std::string("def coverage(o2: object, measured: object, reach: float, *, ") + kProgress + "Coverage";
   module.def(

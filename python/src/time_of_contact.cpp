@@ -29,45 +29,9 @@ Motion motion_of(nb::handle poses, const char* name) {
 
 void bind_result(nb::module_& module) {
   using T = PyTimeOfContact;
-  nb::class_<T>(module, "TimeOfContact", nb::is_weak_referenceable(),
-                "When two moving bodies first come into contact, if they do.")
-      .def_prop_ro(
-          "contact", [](const T& self) { return self.found.contact; },
-          R"(Whether the bodies collide at ``time``, or are at most the tolerance apart; or, where ``certainty``
-is 'bounded', may be about to: a motion that must be free of contact ends at ``time`` in either case.)")
-      .def_prop_ro(
-          "time", [](const T& self) { return self.found.time; },
-          R"(In [0, 1]. The bodies do not touch before this: they are more than half of the tolerance apart.
-1 without contact.)")
-      .def_prop_ro(
-          "separation", [](const T& self) { return self.found.separation; },
-          "The smallest distance between the surfaces at ``time``, in units of space; exact.")
-      .def_prop_ro(
-          "certainty", [](const T& self) { return name_of(self.found.certainty); },
-          nb::sig("def certainty(self) -> " SDM_CERTAINTY),
-          R"('exact'; or 'bounded': free of contact until ``time`` for certain, but not decided beyond it,
-as the next step that is safe is less than what rounding resolves: of the time, whose unit is 1e-16, or of
-coordinates in space. The bodies are ``separation`` apart then, more than the tolerance.)")
-      .def_prop_ro(
-          "witness",
-          [](const T& self) {
-            std::vector<std::array<Vec3, 2>> rows{self.found.witness};
-            return array_of<double>(std::move(rows), {2, 3});
-          },
-          nb::sig("def witness(self) -> numpy.typing.NDArray[numpy.float64]"),
-          R"(A point of O1 and a point of O2 that are ``separation`` apart at ``time``, in space, (2, 3)
-float64.)")
-      .def_prop_ro(
-          "faces", [](const T& self) { return nb::make_tuple(self.found.faces[0], self.found.faces[1]); },
-          nb::sig("def faces(self) -> tuple[int, int]"),
-          "A face of O1 and one of O2 that contain these points.")
-      .def_prop_ro(
-          "normal",
-          [](const T& self) { return self.found.normal ? vector_of(*self.found.normal) : nb::none(); },
-          nb::sig("def normal(self) -> numpy.typing.NDArray[numpy.float64] | None"),
-          R"(Unit vector along which moving O1 separates it from O2, (3,) float64:
-(witness[0] - witness[1]) / separation, or the opposite where one body contains part of the other at time 0;
-None if the surfaces intersect then.)")
+  nb::class_<T> result(module, "TimeOfContact", nb::is_weak_referenceable(),
+                       "When two moving bodies first come into contact, if they do.");
+  bind_fields_of<TimeOfContact>(result, [](const T& self) -> const TimeOfContact& { return self.found; })
       .def_prop_ro(
           "pose1", [](const T& self) { return matrix(self.poses[0]); },
           nb::sig("def pose1(self) -> numpy.typing.NDArray[numpy.float64]"),

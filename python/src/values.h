@@ -196,10 +196,6 @@ inline constexpr auto kMembers<Transform> = std::tuple{&Transform::rows};
 template <>
 inline constexpr auto kMembers<Mesh> = std::tuple{&Mesh::positions, &Mesh::triangles, &Mesh::corner_uvs};
 template <>
-inline constexpr auto kMembers<TimeOfContact> = std::tuple{
-    &TimeOfContact::contact, &TimeOfContact::time,  &TimeOfContact::separation, &TimeOfContact::certainty,
-    &TimeOfContact::witness, &TimeOfContact::faces, &TimeOfContact::normal};
-template <>
 inline constexpr auto kMembers<GivenOption> = std::tuple{&GivenOption::name, &GivenOption::value};
 template <>
 inline constexpr auto kMembers<MeasuredDistance> = std::tuple{

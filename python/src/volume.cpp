@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "arrays.h"
+#include "fields.h"
 #include "options.h"
 #include "signatures.h"
 #include "sites_in_use.h"
@@ -147,32 +148,17 @@ void bind_arrays(nb::class_<PyField>& field) {
 }
 
 void bind_grid(nb::class_<PyField>& field) {
-  field
+  bind_fields_of<Grid>(field, [](const F& self) -> const Grid& { return self.field.grid; }, {"points"});
+  bind_fields_of<DistanceField>(field, [](const F& self) -> const DistanceField& { return self.field; },
+                                {"grid", "sign"})
       .def_prop_ro(
           "transform", [](const F& self) { return matrix(index_transform(self.field.grid)); },
           nb::sig("def transform(self) -> numpy.typing.NDArray[numpy.float64]"),
           "From the indices (i, j, k, 1) of a point, i along x, to its coordinates: (4, 4) float64.")
       .def_prop_ro(
-          "origin", [](const F& self) { return vector_of(self.field.grid.origin); },
-          nb::sig("def origin(self) -> numpy.typing.NDArray[numpy.float64]"),
-          "The point [0, 0, 0], (3,) float64: x, y, z.")
-      .def_prop_ro(
-          "spacing", [](const F& self) { return vector_of(self.field.grid.spacing); },
-          nb::sig("def spacing(self) -> numpy.typing.NDArray[numpy.float64]"),
-          "Between points along x, y and z, (3,) float64.")
-      .def_prop_ro(
-          "max_distance", [](const F& self) { return self.field.max_distance; },
-          "Points farther away have no value.")
-      .def_prop_ro(
-          "accuracy", [](const F& self) { return self.field.accuracy; },
-          "Upper bound on the error of a distance, in units of the mesh, rounding to float32 included.")
-      .def_prop_ro(
           "interpolation_error",
           [](const F& self) { return interpolation_error(self.field.grid) + self.field.accuracy; },
           "Upper bound on the error of an interpolated distance.")
-      .def_prop_ro(
-          "beyond_max_distance", [](const F& self) { return self.field.beyond_max_distance; },
-          "The number of points without a value.")
       .def_prop_ro(
           "sign", [](const F& self) { return name_of(self.field.sign.method); },
           "How inside and outside are distinguished: 'none' (unsigned distances), 'exact' or 'winding'.")

@@ -59,6 +59,25 @@ def test_groups_of_a_map(tmp_path):
         m.check_groups({}, names)
 
 
+def test_results_have_the_fields_of_reports():
+    m = sdm.map(meshes.sphere(), meshes.box(), resolution=64)
+    report, places = m.report(tolerance=0.2), m.places(0.2)
+    for name, totals in {"large": places.large, "small": places.small}.items():
+        keys = {"count": "count", "samples": "texels", "area": "area", "fraction": "area_fraction"}
+        assert totals == {field: report["places"][name][key] for field, key in keys.items()}
+    assert len(places.largest) == len(report["places"]["largest"]) > 0
+    for place, row in zip(places.largest, report["places"]["largest"]):
+        assert (place.face, place.samples, place.area, place.fraction) == tuple(
+            row[key] for key in ("triangle", "texels", "area", "area_fraction")
+        )
+        assert place.point == tuple(row["point"]) and place.limits == (row["lower"], row["upper"])
+        assert (place.sample is None) == (row["at"] == "vertex")
+    verdict = m.check(0.2)
+    for name in ("within", "certified", "margin", "exceeded_area_fraction", "reason"):
+        assert getattr(verdict, name) == report["tolerance"][name], name
+    assert verdict.verdict.upper() == report["tolerance"]["verdict"]
+
+
 def test_places_of_a_map():
     vertices, faces = meshes.sphere()
     vertices = np.array(vertices)
