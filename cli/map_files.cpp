@@ -124,15 +124,9 @@ void add_channels_option(CLI::App& app, std::vector<std::string>& layers) {
 std::vector<std::pair<std::string, std::string>> exr_attributes(const Input& on, const Input& to,
                                                                 const sdm::DistanceMap& map,
                                                                 const std::string& units) {
-  std::vector<std::pair<std::string, std::string>> attributes{{"measuredOn", on.file},
-                                                              {"distanceTo", to.file},
-                                                              {"sign", sdm::name_of(map.sign.method)},
-                                                              {"signReason", map.sign.reason}};
-  if (map.measured.kind != sdm::DistanceKind::closest) attributes.emplace_back("measured", map.measured.text);
-  if (!on.transform.empty()) attributes.emplace_back("measuredOnTransform", on.transform);
-  if (!to.transform.empty()) attributes.emplace_back("distanceToTransform", to.transform);
-  if (!units.empty()) attributes.emplace_back("units", units);
-  return attributes;
+  return sdm::exr_attributes({.on = {.file = on.file, .transform = on.transform},
+                              .to = {.file = to.file, .transform = to.transform}},
+                             map, units);
 }
 
 void write_map_files(const std::filesystem::path& folder, const MapFiles& files, const sdm::Surface& surface,

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/names.h>
 #include <sdm/summary.h>
@@ -17,6 +18,8 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 namespace sdm {
 
@@ -62,6 +65,10 @@ struct MapReport {
 [[nodiscard]] SDM_API std::string summary_json(const Summary& summary);
 /// Returns the value of `o1`, `o2` or `mesh`.
 [[nodiscard]] SDM_API std::string mesh_json(const ReportedMesh& mesh);
+/// Returns what map.exr states of a map, for ExrOptions::attributes: the meshes of the report, the sign, what
+/// the distances are to unless to the closest point, and the units.
+[[nodiscard]] SDM_API std::vector<std::pair<std::string, std::string>> exr_attributes(
+    const MapReport& report, const DistanceMap& map, const std::string& units);
 /// Returns the value of `tessellation`.
 [[nodiscard]] SDM_API std::string tessellation_json(const Tessellation& tessellation);
 

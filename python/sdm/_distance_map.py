@@ -252,7 +252,7 @@ class DistanceMap(MapChannels, Texels):
         The options are those of the colours. colormap: 'automatic' (viridis if no distance is negative, 'sequential'
         if less than 5 % of the area is on one side of 0, else 'diverging'), one of these, or 'paper2006'. range: of the
         colours; by default from the map, rounded. tolerance: bands, green within ±tolerance, or from the first to the
-        second number. units: shown in the legend ('mm', ...); they scale a .glb to metres. size: the most pixels a side of pictures and textures. up: 'y' or 'z', the axis that points up in a
+        second number. units: shown in the legend ('mm', ...); they scale a .glb to metres, and are an attribute of a .exr, beside what the distances are to and their sign. size: the most pixels a side of pictures and textures. up: 'y' or 'z', the axis that points up in a
         .html. The complete file appears, or none. Raises Error, naming the file and the fault.
         """
         name = os.fsdecode(file)

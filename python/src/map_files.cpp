@@ -46,6 +46,14 @@ PictureOptions picture_of(const PyMap& self, const Colours& colours, std::uint32
   return picture;
 }
 
+// Where a map comes from, for its files: meshes of Python have no names but their roles.
+MapReport origin_of(const PyMap& self) {
+  MapReport origin{
+      .on = {.file = "O1"}, .to = {.file = self.of_itself() ? "O1" : "O2"}, .engine = self.engine};
+  origin.time_ms.map = self.ms;
+  return origin;
+}
+
 // The mesh of the surface as if it had been read from a file.
 FileVertices file_vertices(const Mesh& mesh) {
   FileVertices result{.positions = mesh.positions, .mesh_vertex = {}, .corners = {}, .ends = {}};
@@ -63,7 +71,8 @@ void write(const PyMap& self, const std::string& format, nb::handle file, const 
            std::uint32_t largest, nb::handle progress) {
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
-  const PictureOptions picture = picture_of(self, {colormap, range, tolerance, units}, largest);
+  const Colours colours{colormap, range, tolerance, units};
+  const PictureOptions picture = picture_of(self, colours, largest);
   const std::filesystem::path path = path_of(file);
   const Surface& surface = self.on->surface;
   using WriteVertices = void (*)(const std::filesystem::path&, const FileVertices&, std::span<const float>);
@@ -77,7 +86,9 @@ void write(const PyMap& self, const std::string& format, nb::handle file, const 
     } else if (format == "exr") {
       std::vector<std::uint8_t> boundary;
       if (!self.to->sites.closed()) boundary = boundary_mask(self.to->sites, self.map);
-      write_exr(path, surface, self.map, {.boundary = boundary});
+      const MapReport origin = origin_of(self);
+      write_exr(path, surface, self.map,
+                {.boundary = boundary, .attributes = exr_attributes(origin, self.map, colours.units)});
     } else if (format == "glb") {
       write_glb(path, surface, self.map, self.vertex_distances(report), picture);
     } else {
@@ -135,8 +146,7 @@ std::string report(const PyMap& self, const VertexDistances& at_vertices, const 
                                .tolerance = picture.tolerance,
                                .colormap = picture.colormap,
                                .range = picture.range};
-  MapReport origin{.on = {.file = "O1"}, .to = {.file = "O2"}, .engine = self.engine};
-  origin.time_ms.map = self.ms;
+  MapReport origin = origin_of(self);
   std::string text;
   run(nb::none(), [&](const Progress&) {
     origin.on.info = inspect(surface.mesh());

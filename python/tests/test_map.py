@@ -607,6 +607,47 @@ def test_reports_have_the_keys_of_the_command(tmp_path, tolerance):
         assert report[key] == written[key], key
 
 
+def exr_texts(file):
+    """The string attributes of an OpenEXR file: each is its name, its type, the number of its bytes, and these."""
+    content, texts, at = file.read_bytes(), {}, 8
+    while content[at]:
+        name, kind = content[at : at + 512].split(b"\0")[:2]
+        at += len(name) + len(kind) + 2
+        size = int.from_bytes(content[at : at + 4], "little")
+        if kind == b"string":
+            texts[name.decode()] = content[at + 4 : at + 4 + size].decode()
+        at += 4 + size
+    return texts
+
+
+@pytest.mark.skipif("SDM_COMMAND" not in os.environ, reason="the command is not built")
+@pytest.mark.parametrize(
+    "line, call, kind",
+    [
+        (["map", "a.obj", "b.obj"], lambda a, b: sdm.map(a, b, resolution=64), None),
+        (["map", "a.obj", "b.obj", "--facing=60"], lambda a, b: sdm.map(a, b, resolution=64, facing=60), "60°"),
+        (["self", "a.obj"], lambda a, b: sdm.self_map(a, resolution=64), "not excluded"),
+        (["thickness", "a.obj"], lambda a, b: sdm.thickness(a, resolution=64), "thickness"),
+    ],
+)
+def test_exr_has_the_attributes_of_the_command(tmp_path, line, call, kind):
+    for name, mesh in {"a": meshes.sphere(), "b": meshes.box()}.items():
+        rows = [f"v {x!r} {y!r} {z!r}" for x, y, z in mesh[0].tolist()] + ["f %d %d %d" % tuple(f + 1) for f in mesh[1]]
+        (tmp_path / f"{name}.obj").write_text("\n".join(rows))
+    options = ["-o", "out", "--resolution", "64", "--write", "exr", "--units", "mm", "--quiet"]
+    subprocess.run([os.environ["SDM_COMMAND"], *line, *options], cwd=tmp_path, check=True)
+    written = exr_texts(tmp_path / "out" / "map.exr")
+    call(sdm.read(tmp_path / "a.obj"), sdm.read(tmp_path / "b.obj")).save(tmp_path / "map.exr", units="mm")
+    saved = exr_texts(tmp_path / "map.exr")
+    # Meshes in Python have no names of files.
+    roles = {"a.obj": "O1", "b.obj": "O2"}
+    for key in ("measuredOn", "distanceTo"):
+        assert saved.pop(key) == roles[written.pop(key)]
+    assert saved == written
+    assert saved["units"] == "mm" and saved["sign"] and saved["signReason"]
+    assert (kind is None) == ("measured" not in saved) and (kind or "") in saved.get("measured", "")
+
+
 @pytest.mark.parametrize("options", [{}, {"atlas": "triangles"}, {"max_stretch": 3}])
 def test_places_of_texels(options):
     """The weights of texels and those of closest points are of the points that they stand for; texels are where uvs say."""

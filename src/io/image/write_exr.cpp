@@ -5,6 +5,7 @@
 #include <sdm/channels.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
+#include <sdm/report.h>
 
 #include <algorithm>
 #include <array>
@@ -165,6 +166,20 @@ void write_exr(const std::filesystem::path& file, const Surface& surface, const 
       });
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
+}
+
+std::vector<std::pair<std::string, std::string>> exr_attributes(const MapReport& report,
+                                                                const DistanceMap& map,
+                                                                const std::string& units) {
+  std::vector<std::pair<std::string, std::string>> attributes{{"measuredOn", report.on.file},
+                                                              {"distanceTo", report.to.file},
+                                                              {"sign", name_of(map.sign.method)},
+                                                              {"signReason", map.sign.reason}};
+  if (map.measured.kind != DistanceKind::closest) attributes.emplace_back("measured", map.measured.text);
+  if (!report.on.transform.empty()) attributes.emplace_back("measuredOnTransform", report.on.transform);
+  if (!report.to.transform.empty()) attributes.emplace_back("distanceToTransform", report.to.transform);
+  if (!units.empty()) attributes.emplace_back("units", units);
+  return attributes;
 }
 
 }  // namespace sdm
