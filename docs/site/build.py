@@ -19,6 +19,7 @@ import check_links
 import command_pages
 import cpp_pages
 import option_pages
+import result_pages
 
 SITE = Path(__file__).resolve().parent
 
@@ -48,6 +49,7 @@ def main() -> None:
     pages: dict[str, bytes | str] = {name: path.read_bytes() for name, path in staged_files(source).items()}
     pages |= command_pages.pages(subprocess.check_output([sdm, "help", "--man"], text=True))
     pages["options.rst"] = option_pages.page()
+    pages["results.rst"] = result_pages.page()
     xml = cpp_pages.run_doxygen(source / "include/sdm", build / "doxygen")
     pages |= cpp_pages.pages(source / "include/sdm", xml)
     pages["javascript.md"] = subprocess.check_output(

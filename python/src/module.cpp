@@ -33,5 +33,6 @@ NB_MODULE(_core, module) {
   bind_baking(module);
   bind_points(module);
   bind_scenes(module);
+  bind_result_tables(module);
   bind_pickle();
 }

@@ -134,5 +134,6 @@ void bind_time_of_contact(nb::module_& module);
 void bind_volume(nb::module_& module);
 void bind_points(nb::module_& module);
 void bind_scenes(nb::module_& module);
+void bind_result_tables(nb::module_& module);
 
 }  // namespace sdm::python
