@@ -8,6 +8,7 @@
 #include <sdm/names.h>
 #include <sdm/surface.h>
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -87,7 +88,7 @@ struct Extremes {
 
 /// The distances between two numbers, and the fraction of the area that has them.
 struct DistanceBand {
-  double lo = 0, hi = 0;  ///< −∞ for the first band of a table, ∞ for the last
+  double lower = 0, upper = 0;  ///< −∞ for the first band of a table, ∞ for the last
   double area_fraction = 0;
 };
 
@@ -108,15 +109,17 @@ struct DistanceBandOptions {
 
 /// Fractions of the area of all texels of a map, those without a value included.
 struct DistanceHistogram {
-  double lo = 0, hi = 0;               ///< of all bins together
+  double lower = 0, upper = 0;         ///< of all bins together
   std::vector<double> area_fractions;  ///< of bins of equal width; a distance at an edge belongs to the upper
-                                       ///< bin, `hi` to the last
+                                       ///< bin, `upper` to the last
   double below = 0, above = 0, without_value = 0;
 };
 
-/// Throws sdm::Error unless lo < hi are finite and there is a bin, and if the map belongs to another surface.
-/// Cost: linear in texels, all cores.
+/// Returns the histogram of the distances from range[0] to range[1]. Throws sdm::Error unless these are
+/// finite and increase and there is a bin, and if the map belongs to another surface. Cost: linear in texels,
+/// all cores.
 [[nodiscard]] SDM_API DistanceHistogram distance_histogram(const Surface& surface, const DistanceMap& map,
-                                                           double lo, double hi, std::size_t bins);
+                                                           const std::array<double, 2>& range,
+                                                           std::size_t bins);
 
 }  // namespace sdm

@@ -100,7 +100,7 @@ void bind_places(nb::module_& module) {
           "Of its samples the one that is farthest beyond the limit; NaN where a tolerance asks for values, "
           "and there are none.")
       .def_prop_ro(
-          "limits", [](const Place& self) { return nb::make_tuple(self.limits.lo, self.limits.hi); },
+          "limits", [](const Place& self) { return nb::make_tuple(self.limits.lower, self.limits.upper); },
           nb::sig("def limits(self) -> tuple[float, float]"),
           "The limits of that sample: those of the tolerance, and of its group.")
       .def_prop_ro(
@@ -118,7 +118,7 @@ void bind_places(nb::module_& module) {
   nb::class_<Places>(module, "Places", nb::is_weak_referenceable(),
                      "Where a map or a cloud deviates most, as regions.")
       .def_prop_ro(
-          "limits", [](const Places& self) { return nb::make_tuple(self.limits.lo, self.limits.hi); },
+          "limits", [](const Places& self) { return nb::make_tuple(self.limits.lower, self.limits.upper); },
           nb::sig("def limits(self) -> tuple[float, float]"),
           "Distances out of these belong to places, but for groups with a tolerance of their own. Infinite "
           "if "
@@ -228,7 +228,7 @@ void check_table(std::span<const GroupTolerance> table, std::span<const FaceName
   for (std::size_t i = 0; i < found.size(); ++i)
     if (found[i].faces.empty())
       throw Error("no face has the name '" + table[i].group + "' of the table of tolerances; " +
-                  known_names(names));
+                  names_text(names));
 }
 
 std::vector<GroupTolerance> table_of(nb::handle table, SignMethod sign) {

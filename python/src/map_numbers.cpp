@@ -177,7 +177,8 @@ void bind_verdict(nb::module_& module) {
               "deviations of both meshes; negative "
               "if they do not. None if one of them has no value, or none has.")
       .def_prop_ro(
-          "tolerance", [](const V& self) { return nb::make_tuple(self.tolerance.lo, self.tolerance.hi); },
+          "tolerance",
+          [](const V& self) { return nb::make_tuple(self.tolerance.lower, self.tolerance.upper); },
           nb::sig("def tolerance(self) -> tuple[float, float]"), "The least and the most accepted distance.")
       .def_ro("largest", &V::largest,
               "The largest absolute distance of all texels and vertices; None if one has no value.")
@@ -230,7 +231,7 @@ Tolerance tolerance_of(nb::handle value, SignMethod sign) {
   if (is_pair && nb::len(value) != 2) throw Error(fault());
   const Tolerance tolerance =
       is_pair ? Tolerance(number(value[0]), number(value[1])) : Tolerance(number(value));
-  if (!(tolerance.lo <= tolerance.hi) || !std::isfinite(tolerance.hi - tolerance.lo))
+  if (!(tolerance.lower <= tolerance.upper) || !std::isfinite(tolerance.upper - tolerance.lower))
     throw Error("tolerance must be a finite number that is not negative, or two, the smaller one first");
   if (tolerance.needs_sign() && sign == SignMethod::none)
     throw Error("a tolerance that differs by the sign needs signed distances, but these are unsigned");

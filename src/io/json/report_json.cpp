@@ -70,7 +70,7 @@ Json to_json(const Place& place, bool of_points) {
   json["kind"] = place.kind.empty() ? Json() : Json(place.kind);
   json["group"] = place.group.empty() ? Json() : Json(place.group);
   json["small"] = place.small;
-  json["lower"] = place.limits.lo, json["upper"] = place.limits.hi;
+  json["lower"] = place.limits.lower, json["upper"] = place.limits.upper;
   return json;
 }
 
@@ -85,8 +85,8 @@ Json to_json(const Places& places, bool of_points) {
   Json largest = Json::array();
   for (const Place& place : places.largest) largest.push_back(to_json(place, of_points));
   return {{"kind", "estimate"},
-          {"lower", places.limits.lo},
-          {"upper", places.limits.hi},
+          {"lower", places.limits.lower},
+          {"upper", places.limits.upper},
           {"limits_from", places.by_tolerance ? "tolerance" : "p99_abs"},
           {of_points ? "least_point_fraction" : "least_area_fraction", places.least_fraction},
           {"large", totals_json(places.large, of_points)},
@@ -151,11 +151,12 @@ Json to_json(const PartTable& table) {
 void add(Json& json, const Distribution& distribution) {
   json["histogram"] = nullptr;
   if (const auto& h = distribution.histogram)
-    json["histogram"] = {{"lower", h->lo},    {"upper", h->hi},    {"area_fractions", h->area_fractions},
+    json["histogram"] = {{"lower", h->lower}, {"upper", h->upper}, {"area_fractions", h->area_fractions},
                          {"below", h->below}, {"above", h->above}, {"without_value", h->without_value}};
   json["bands"] = Json::array();
   for (const DistanceBand& band : distribution.bands)  // null: no limit
-    json["bands"].push_back({{"lower", band.lo}, {"upper", band.hi}, {"area_fraction", band.area_fraction}});
+    json["bands"].push_back(
+        {{"lower", band.lower}, {"upper", band.upper}, {"area_fraction", band.area_fraction}});
   json["components"] = to_json(distribution.parts.front());
   json["groups"] = Json::array();
   for (std::size_t i = 1; i < distribution.parts.size(); ++i)
@@ -339,8 +340,8 @@ Json to_json(const GroupVerdicts& verdicts, bool of_points) {
     Json group{{"kind", g.kind}, {"group", g.group}, {"triangles", g.faces}};
     if (of_points) group["points"] = g.points;
     group.update(
-        {{"lower", v.tolerance.lo},
-         {"upper", v.tolerance.hi},
+        {{"lower", v.tolerance.lower},
+         {"upper", v.tolerance.upper},
          {"verdict", name_of(v.verdict)},
          {"reason", name_of(v.reason)},
          {"certified", v.certified},
