@@ -16,10 +16,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-const char* clip_name(sdm::GlClip clip) {
-  return clip == sdm::GlClip::planes ? "planes" : "stencil";
-}
-
 double overdraw(const sdm::GlReport& r) {
   return r.texels == 0 ? 0 : static_cast<double>(r.fragments) / static_cast<double>(r.texels);
 }
@@ -32,38 +28,17 @@ double rounded(double ms) {
 }  // namespace
 
 Json to_json(const sdm::GlReport& r) {
-  const sdm::GlReport::Times& t = r.time_ms;
-  return {{"device", {{"name", r.device.name}, {"driver", r.device.driver}, {"software", r.device.software}}},
-          {"clip", clip_name(r.clip)},
-          {"sites", r.sites},
-          {"sites_dropped", r.sites_dropped},
-          {"faces", r.faces},
-          {"tiles", r.tiles},
-          {"pairs", r.pairs},
-          {"bound_tests", r.bound_tests},
-          {"obb_tests", r.obb_tests},
-          {"culled_by_bound", r.culled_by_bound},
-          {"culled_by_obb", r.culled_by_obb},
-          {"clipped_away", r.clipped_away},
-          {"polygons", r.polygons},
-          {"fragments", r.fragments},
-          {"texels", r.texels},
-          {"overdraw", overdraw(r)},
-          {"batches", r.batches},
-          {"unconfirmed", r.unconfirmed},
-          {"stencil_lookups", r.stencil_lookups},
-          {"stencil_hits", r.stencil_hits},
-          {"stencil_misses", r.stencil_misses},
-          {"stencil_evictions", r.stencil_evictions},
-          {"stencil_clears", r.stencil_clears},
-          {"time_ms",
-           {{"context", rounded(t.context)},
-            {"refit", rounded(t.refit)},
-            {"bounds", rounded(t.bounds)},
-            {"cull", rounded(t.cull)},
-            {"draw", rounded(t.draw)},
-            {"read_back", rounded(t.read_back)},
-            {"finish", rounded(t.finish)}}}};
+  Json json{
+      {"device", {{"name", r.device.name}, {"driver", r.device.driver}, {"software", r.device.software}}},
+      {"clip", sdm::name_of(r.clip)},
+      {"polygons", r.polygons},
+      {"fragments", r.fragments},
+      {"texels", r.texels},
+      {"overdraw", overdraw(r)},
+      {"unconfirmed", r.unconfirmed}};
+  for (const auto& [name, count] : r.counts) json[std::string(name)] = count;
+  for (const auto& [name, ms] : r.time_ms) json["time_ms"][std::string(name)] = rounded(ms);
+  return json;
 }
 
 Input load_input(const std::string& role, const std::string& file, const std::string& transform,

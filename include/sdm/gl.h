@@ -12,6 +12,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace sdm {
@@ -53,53 +55,20 @@ struct GlOptions {
 /// a surface.
 [[nodiscard]] SDM_API GlDevice gl_device(std::uint32_t resolution, const GlOptions& options = {});
 
-/// Counters and times of the gl engine. Counts do not depend on the number of threads. A pair is a site of O2
-/// and a tile of O1 (the texels of one face in a square of 16 × 16 texels). Each pair has exactly one
-/// outcome:
-///   pairs = culled_by_bound + culled_by_obb + clipped_away + polygons.
+/// What the last map of a gl engine took. Counts do not depend on the number of threads.
 struct GlReport {
   GlDevice device;
   GlClip clip = GlClip::planes;
-
-  std::uint64_t sites = 0;          ///< of O2
-  std::uint64_t sites_dropped = 0;  ///< sites whose region of influence has no interior; in no pair
-  std::uint64_t faces = 0;          ///< of O1 that own a texel
-  std::uint64_t tiles = 0;          ///< of those faces
-  std::uint64_t pairs = 0;          ///< (sites − sites_dropped) × tiles
-  /// Tests of a site or group of sites against a node of O1's tree. Without bound_culling all nodes share one
-  /// bound: max_distance, or an upper bound on all distances.
-  std::uint64_t bound_tests = 0;
-  std::uint64_t obb_tests = 0;  ///< tests of a region's oriented box against a node of O1's tree
-  std::uint64_t culled_by_bound = 0;
-  std::uint64_t culled_by_obb = 0;
-  std::uint64_t clipped_away = 0;  ///< region does not intersect the tile
-  std::uint64_t polygons = 0;      ///< drawn
-  std::uint64_t fragments = 0;     ///< shaded, and inside their region (planes: and face)
-  std::uint64_t texels = 0;        ///< owned by a face: fragments / texels is the overdraw
-  std::uint64_t batches = 0;       ///< of polygons sent to the device
+  std::uint64_t polygons = 0;   ///< drawn
+  std::uint64_t fragments = 0;  ///< shaded, and inside the region of their site (planes: and face)
+  std::uint64_t texels = 0;     ///< owned by a face: fragments / texels is the overdraw
   /// Texels whose site is farther than the distance drawn; their closest site is recomputed by the cpu
   /// engine. 0 unless the driver is faulty.
   std::uint64_t unconfirmed = 0;
-
-  // GlClip::stencil only, otherwise 0. lookups = hits + misses; misses − evictions is the number of values in
-  // use at the end.
-  std::uint64_t stencil_lookups = 0;
-  std::uint64_t stencil_hits = 0;
-  std::uint64_t stencil_misses = 0;
-  std::uint64_t stencil_evictions = 0;
-  /// Clears of a face's texels, one per eviction, and of the whole buffer, once at the start.
-  std::uint64_t stencil_clears = 0;
-
-  /// Wall-clock milliseconds. The device draws while the next batch is culled and clipped.
-  struct Times {
-    double context = 0;    ///< device and shaders: close to 0 except for the first map of a process
-    double refit = 0;      ///< affine maps, boxes of O1's tree
-    double bounds = 0;     ///< upper bounds on distance
-    double cull = 0;       ///< bounds, oriented boxes, clipping
-    double draw = 0;       ///< upload, stencil, draw calls
-    double read_back = 0;  ///< waiting for the device, reading
-    double finish = 0;     ///< closest points in double precision, sign
-  } time_ms;
+  /// What else the engine counts, and the wall-clock milliseconds of its stages, by the names that the
+  /// section on `raster` in docs/report.md explains. They are those of its algorithm, and may change with it.
+  std::vector<std::pair<std::string_view, std::uint64_t>> counts{};
+  std::vector<std::pair<std::string_view, double>> time_ms{};
 };
 
 /// Returns a gl engine with these options. The first map opens the device; a process draws one map at a time.

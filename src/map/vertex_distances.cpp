@@ -31,7 +31,7 @@ Found find(const Mesh& mesh, const Sites& sites, const MapOptions& options) {
 
 std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, const MapOptions& asked) try {
   MapOptions options = asked;
-  if (options.engine && engine_info(*options.engine).maps_only) options.engine = nullptr;
+  if (options.engine && !engine_info(*options.engine).takes_points) options.engine = nullptr;
   if (options.facing) {
     map::FacingMeasure measure(mesh, sites, options);
     measure.find_closest(sites, options, mesh.positions);
@@ -48,7 +48,7 @@ std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, c
 }
 
 std::vector<std::uint8_t> boundary_vertices(const Mesh& mesh, const Sites& sites, MapOptions options) try {
-  if (options.engine && engine_info(*options.engine).maps_only) options.engine = nullptr;
+  if (options.engine && !engine_info(*options.engine).takes_points) options.engine = nullptr;
   const inside::BoundarySites boundary(internals(sites).topology, sites.mesh().positions.size());
   const std::vector<ClosestPoint> closest = closest_points(sites, mesh.positions, options);
   std::vector<std::uint8_t> result(closest.size());
