@@ -1,9 +1,10 @@
 #include "gl_counters.h"
+#include "gl/raster_report.h"
 
 namespace sdm::bench {
 
-std::vector<std::string> violated_relations(const Surface& surface, const DistanceMap& map, const GlReport& r,
-                                            const GlOptions& options) {
+std::vector<std::string> violated_relations(const Surface& surface, const DistanceMap& map,
+                                            const gl::RasterReport& r, const GlOptions& options) {
   const bool stencil = options.clip == GlClip::stencil;
   const std::uint64_t values_in_use = r.stencil_misses - r.stencil_evictions;
   std::vector<std::string> violated;

@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "gl/raster_report.h"
 #include "harness.h"
 #include "research/figures/corrections.h"
 #include "research/literal/literal_engine.h"
@@ -49,7 +50,7 @@ Outcome measure(const Trial& trial, const Mesh& o1, const Mesh& o2, std::uint32_
   for (const figures::Variant& variant : variants()) {
     const auto engine = literal::make_engine({.device = device}, variant.corrections);
     const figures::MapErrors e = figures::errors_of(map_by(engine), reference, surface, sites);
-    const GlReport report = literal::report(*engine).value();
+    const gl::RasterReport report = literal::report(*engine).value();
     const auto texels = static_cast<double>(report.texels);
     if (outcome.rows.empty() && e.wrong > 0) {
       std::fprintf(stderr, "the map with all corrections is wrong\n");

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "gl/raster_report.h"
 #include "gl_counters.h"
 #include "harness.h"
 #include "scenes.h"
@@ -43,7 +44,7 @@ bool agree(const Surface& surface, const Sites& sites, const DistanceMap& a, con
   });
 }
 
-Row row(std::string name, const GlReport& r, double ms, double ms_with_bounds) {
+Row row(std::string name, const gl::RasterReport& r, double ms, double ms_with_bounds) {
   Row result{std::move(name), {}};
   for (const auto& [key, count] :
        {std::pair("pairs", r.pairs), std::pair("bound_tests", r.bound_tests),
@@ -71,8 +72,8 @@ Outcome measure(const Trial& trial, const Mesh& o1, const Mesh& o2, GlOptions op
     verified &= good;
   };
   const DistanceMap with = map_by(with_bounds), without = map_by(without_bounds);
-  const GlReport report_with = gl_report(*with_bounds).value(),
-                 report_without = gl_report(*without_bounds).value();
+  const gl::RasterReport report_with = gl::raster_report(*with_bounds).value(),
+                         report_without = gl::raster_report(*without_bounds).value();
   std::fprintf(stderr, "on %s\n", report_with.device.name.c_str());
   check(agree(surface, sites, with, compute_map(surface, sites, {.sign = SignMethod::none})),
         "distances differ from those of the cpu engine");

@@ -24,7 +24,7 @@ Outcome scattered(const Trial& trial, const Mesh& mesh, std::span<const Vec3> po
   const ThreadLimit limit(trial.threads);
   const Sites sites(mesh);
   std::vector<ClosestPoint> ours, reference;
-  const MapOptions by_reference{.engine = make_engine("reference")};
+  const ClosestPointOptions by_reference{.engine = make_engine("reference")};
   const Contender cpu{[&] { ours = closest_points(sites, points); }, trial.threads};
   const Contender peer{[&] { reference = closest_points(sites, points, by_reference); }, trial.threads};
   cpu.work();

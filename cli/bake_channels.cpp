@@ -225,7 +225,7 @@ void ChannelBaker::add_normals(GeometryChannel channel, const std::vector<float>
 /// Makes this the occlusion of the model, unless a texture of HIGH is.
 void ChannelBaker::add_occlusion(const std::vector<float>& values) {
   const auto encode = [&](std::uint32_t resolution, const std::vector<float>& of_size) {
-    return sdm::encode_png(sdm::scalar_image(resolution, of_size, 0, 1, 8).image, false);
+    return sdm::encode_png(sdm::scalar_image(resolution, of_size, {0, 1}, 8).image, false);
   };
   std::vector<char> png = encode(texels_, values);
   write_file(file_of(sdm::name_of(GeometryChannel::ambient_occlusion), "png"), png);
@@ -244,10 +244,10 @@ void ChannelBaker::add_lengths(GeometryChannel channel, const Filled& filled) {
   float most = 0;
   for (const float value : filled.values)
     if (std::isfinite(value)) most = std::max(most, std::abs(value));
-  const double hi = most > 0 ? most : 1, lo = channel == GeometryChannel::displacement ? -hi : 0;
+  const double upper = most > 0 ? most : 1, lower = channel == GeometryChannel::displacement ? -upper : 0;
   const std::string name(sdm::name_of(channel)), file = file_of(name, "png");
-  write_file(file, sdm::encode_png(sdm::scalar_image(texels_, filled.values, lo, hi).image, false));
-  result.report[name]["picture"] = {{"file", file}, {"bits", 16}, {"lo", lo}, {"hi", hi}};
+  write_file(file, sdm::encode_png(sdm::scalar_image(texels_, filled.values, {lower, upper}).image, false));
+  result.report[name]["picture"] = {{"file", file}, {"bits", 16}, {"lower", lower}, {"upper", upper}};
 }
 
 void ChannelBaker::write_planes(GeometryChannel channel, const Filled& filled) {

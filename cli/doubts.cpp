@@ -27,7 +27,7 @@ void add_doubt_options(CLI::App& app, DoubtCommand& command) {
 
 double reach_of(const DoubtCommand& command, const std::optional<sdm::Tolerance>& tolerance) {
   if (command.reach) return *command.reach;
-  return tolerance ? std::max(std::abs(tolerance->lo), std::abs(tolerance->hi)) : 0;
+  return tolerance ? std::max(std::abs(tolerance->lower), std::abs(tolerance->upper)) : 0;
 }
 
 void check_doubts(const DoubtCommand& command, const std::optional<sdm::Tolerance>& tolerance) {

@@ -71,7 +71,7 @@ std::string worst_text(const sdm::GroupVerdicts& verdicts, const sdm::Summary& s
     if (g.verdict.proof && g.verdict.proof->witness) values.push_back(g.verdict.proof->witness->distance);
     const sdm::Tolerance& limits = g.verdict.tolerance;
     for (const double value : values) {
-      const double beyond = std::max(value - limits.hi, limits.lo - value);
+      const double beyond = std::max(value - limits.upper, limits.lower - value);
       if (!(beyond > most)) continue;
       most = beyond;
       text = fmt::format(". Worst: {}{}{} in {}, for which {} is allowed", is_signed && value > 0 ? "+" : "",
@@ -123,7 +123,7 @@ std::string all_groups_text(const sdm::GroupVerdicts& verdicts, const sdm::Summa
 }  // namespace
 
 std::string no_group(const std::string& name, const Input& mesh) {
-  return fmt::format("no face of {} has the name '{}'; {}", mesh.file, name, sdm::known_names(mesh.names));
+  return fmt::format("no face of {} has the name '{}'; {}", mesh.file, name, sdm::names_text(mesh.names));
 }
 
 namespace {
@@ -134,7 +134,7 @@ std::string no_group_of(const std::string& name, std::span<const Input* const> m
   std::vector<std::string> files, known;
   for (const Input* mesh : meshes) {
     files.push_back(mesh->file);
-    known.push_back(fmt::format("of {}, {}", mesh->file, sdm::known_names(mesh->names)));
+    known.push_back(fmt::format("of {}, {}", mesh->file, sdm::names_text(mesh->names)));
   }
   return fmt::format("no face of {} has the name '{}'; {}", fmt::join(files, " or "), name,
                      fmt::join(known, "; "));

@@ -87,7 +87,7 @@ void check_combination(const CLI::App& app, const MapCommand& c) {
   if (!std::ranges::is_sorted(c.bands, std::less_equal<>()))
     throw CLI::ValidationError("--bands", "the edges must increase");
   if (const auto& t = c.picture.tolerance;
-      t && std::max(std::abs(t->lo), std::abs(t->hi)) > c.map.max_distance)
+      t && std::max(std::abs(t->lower), std::abs(t->upper)) > c.map.max_distance)
     throw CLI::ValidationError("--tolerance",
                                "must not be greater than --max-distance, beyond which texels have no value");
   for (const char* option : {"--gl-device", "--clip", "--stencil-values", "--no-bound-culling"})

@@ -252,7 +252,7 @@ void check_points_options(const PointsCommand& command) {
     throw CLI::ValidationError("--columns", fault.what());
   }
   if (const auto& t = command.picture.tolerance;
-      t && std::max(std::abs(t->lo), std::abs(t->hi)) > command.map.max_distance)
+      t && std::max(std::abs(t->lower), std::abs(t->upper)) > command.map.max_distance)
     throw CLI::ValidationError("--tolerance",
                                "must not be greater than --max-distance, beyond which points have no value");
   check_doubts(command.doubts, command.picture.tolerance);

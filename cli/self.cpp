@@ -53,8 +53,9 @@ Json measure(const SelfCommand& command, const LoadedPart& loaded, const std::fi
                            {"geodesic", rule.geodesic ? Json(*rule.geodesic) : Json(nullptr)}};
     report["separation"] = sdm::value_json(separation);
   };
-  return write_part_map(command, part, query.sites(), summary, folder,
-                        {.extend = extend, .page = {.up = command.picture.up, .thinnest = true}});
+  return write_part_map(
+      command, part, query.sites(), summary, folder,
+      {.extend = extend, .page = {.up = command.picture.up, .places = sdm::ListedPlaces::least}});
 }
 
 std::string self_summary(const SelfCommand& command, const Json& report) {

@@ -103,6 +103,6 @@ Json options_json(const SequenceCommand& c) {
           {"--up", c.picture.up},
           {"--colormap", c.picture.colormap},
           {"--range", range ? Json(*range) : Json::array()},
-          {"--tolerance", tolerance ? Json{tolerance->lo, tolerance->hi} : Json(nullptr)},
+          {"--tolerance", tolerance ? Json{tolerance->lower, tolerance->upper} : Json(nullptr)},
           {"--accept-doubts", c.accept_doubts}};
 }

@@ -145,7 +145,8 @@ ThicknessResult measure(const ThicknessCommand& command, const LoadedPart& loade
       command, part, sites, result.summary, folder,
       {.write = write,
        .extend = extend,
-       .page = {.up = command.picture.up, .thinnest = !only_most(command), .thickest = only_most(command)}});
+       .page = {.up = command.picture.up,
+                .places = only_most(command) ? sdm::ListedPlaces::largest : sdm::ListedPlaces::least}});
   return result;
 }
 

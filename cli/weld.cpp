@@ -83,6 +83,6 @@ void check_sign(const std::optional<sdm::Tolerance>& tolerance, const sdm::SignU
   const std::string advice = weld_advice(to);
   throw sdm::Error(
       fmt::format("{}: the tolerance {}:{} differs by sign, but the distances are unsigned: {}; {}", to.file,
-                  tolerance->lo, tolerance->hi, sign.reason,
+                  tolerance->lower, tolerance->upper, sign.reason,
                   advice.empty() ? "use one number, or another --sign" : advice));
 }

@@ -1,4 +1,5 @@
 #include "research/literal_command.h"
+#include "gl/raster_report.h"
 
 #include <fmt/format.h>
 #include <sdm/io.h>
@@ -56,7 +57,7 @@ Corrections corrections_of(const Command& command) {
 }
 
 Json report_of(const Command& command, const sdm::Surface& surface, const sdm::figures::MapErrors& errors,
-               const sdm::GlReport& gl) {
+               const sdm::gl::RasterReport& gl) {
   return {{"version", sdm::kVersion},
           {"o1", command.o1},
           {"o2", command.o2},
@@ -96,7 +97,7 @@ void run(const Command& command) {
                             .sign = sdm::SignMethod::none,
                             .progress = progress.callback()};
     const sdm::DistanceMap map = compute_map(surface, sites, options);
-    const sdm::GlReport gl = sdm::literal::report(*options.engine).value();
+    const sdm::gl::RasterReport gl = sdm::literal::report(*options.engine).value();
     options.engine = sdm::make_engine("reference");
     const sdm::DistanceMap reference = compute_map(surface, sites, options);
     report = report_of(command, surface, sdm::figures::errors_of(map, reference, surface, sites), gl);

@@ -14,6 +14,7 @@
 #include <sdm/surface.h>
 #include <sdm/thickness.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -164,14 +165,15 @@ struct GeometryOptions {
 /// Lengths or shares as a picture of one component, and what its numbers stand for.
 struct ScalarImage {
   Image image;
-  double lo = 0, hi = 1;  ///< of the numbers 0 and 2^bits − 1; between them, values are linear
+  double lower = 0, upper = 1;  ///< of the numbers 0 and 2^bits − 1; between them, values are linear
 };
 
-/// Returns values, in rows of `resolution` texels, as a picture of `bits`, 8 or 16, a number. Values that are
-/// not finite are `lo`, others are clamped. Throws sdm::Error for another number of bits, values that are no
-/// whole rows, or a range that is empty or not finite.
+/// Returns values, in rows of `resolution` texels, as a picture of `bits`, 8 or 16, a number; `range`: those
+/// of the least and the greatest number. Values that are not finite are the former, others are clamped.
+/// Throws sdm::Error for another number of bits, values that are no whole rows, or a range that is empty or
+/// not finite.
 [[nodiscard]] SDM_API ScalarImage scalar_image(std::uint32_t resolution, std::span<const float> values,
-                                               double lo, double hi, std::uint32_t bits = 16);
+                                               const std::array<double, 2>& range, std::uint32_t bits = 16);
 
 /// Gives the texels of no face values, as TransferOptions::fill does. `values`: `components` numbers for each
 /// texel; those of a texel that are not all finite are none. `unmatched`: texels of a face that have none get

@@ -4,20 +4,41 @@
 #pragma once
 
 #include <sdm/api.h>
-#include <sdm/map.h>
+#include <sdm/engine.h>
+#include <sdm/options.h>
+#include <sdm/progress.h>
 #include <sdm/sites.h>
 
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
 
-/// Returns the closest point of O2 to each of `points`, which may be in any order. `distance` is unsigned;
-/// options.sign is ignored, and options.facing is an error: closest_facing_points() takes normals. Points
-/// farther than options.max_distance have no site (SiteType::none). Throws sdm::Error for a coordinate that
-/// is NaN or beyond 1e37, for a max_distance that is not positive, for an engine that computes maps only, or
-/// if there is not enough memory; Cancelled.
+/// Options of closest_points() and closest_facing_points().
+struct ClosestPointOptions {
+  std::shared_ptr<const Engine> engine{};  ///< null: the cpu engine
+  /// Greater than 0, in units of the meshes. Points farther than this have no site (SiteType::none).
+  double max_distance = std::numeric_limits<double>::infinity();
+  Progress progress{};
+};
+
+template <>
+inline constexpr auto kOptions<ClosestPointOptions> =
+    std::tuple{Option{.name = "max_distance",
+                      .member = &ClosestPointOptions::max_distance,
+                      .text = "Points farther than this have no site.",
+                      .range = kPositiveOrInfinite,
+                      .unit = "length",
+                      .value = "D"}};
+
+/// Returns the closest point of O2 to each of `points`, which may be in any order; `distance` is unsigned.
+/// Throws sdm::Error for a coordinate that is NaN or beyond 1e37, for a max_distance that is not positive,
+/// for an engine that takes no points (EngineInfo::takes_points), or if there is not enough memory;
+/// Cancelled.
 ///
 /// Of fewer than 8,192 points, the result of each is the closest point to rounding in double precision, and
 /// does not depend on the others. From there on, points that lie much closer together than the faces are
@@ -27,7 +48,7 @@ namespace sdm {
 /// space, and one search per point by the engine.
 [[nodiscard]] SDM_API std::vector<ClosestPoint> closest_points(const Sites& sites,
                                                                std::span<const Vec3> points,
-                                                               const MapOptions& options = {});
+                                                               const ClosestPointOptions& options = {});
 
 /// Returns the closest point to `query` on a face of this site, which must be a closest site of `query`, as
 /// maps and closest_points() have it, with weights that are not negative; no face for SiteType::none. Throws

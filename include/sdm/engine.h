@@ -21,7 +21,7 @@ struct EngineInfo {
   /// Upper bound on the error of a distance, including the rounding to float, as a fraction of the diagonal
   /// of the bounding box of both meshes.
   double relative_error = 0;
-  bool maps_only = false;  ///< compute_map() can use it, closest_points() cannot
+  bool takes_points = true;  ///< closest_points() can use it, not only compute_map()
 };
 
 /// All engines, the default one (cpu) first.

@@ -13,7 +13,6 @@
 
 #include <sdm/api.h>
 #include <sdm/closest_points.h>
-#include <sdm/map.h>
 #include <sdm/sites.h>
 
 #include <cstdint>
@@ -34,21 +33,22 @@ struct FacingPoints {
 };
 
 /// Returns the closest point of O2 to each of `points` among the closed faces that its normal allows, which
-/// is the normal of the sample's surface and may have any length.
+/// is the normal of the sample's surface and may have any length. `facing`: an angle in degrees, above 0 and
+/// up to 180.
 ///
 /// Allowed are the faces whose normal, oriented as Sites orients them (outwards if O2 is closed), is within
-/// options.facing degrees of the query's: n·m ≥ cos(angle), to 1e-12; at 90° exactly, n·m > 0, so that faces
+/// this angle of the query's: n·m ≥ cos(angle), to 1e-12; at 90° exactly, n·m > 0, so that faces
 /// at a right angle are not allowed. Faces without area, or so thin that their normals are rounding, have
 /// none and are never allowed; a normal of the query that is 0 or not finite allows none. Where the closest
 /// point of all of O2 lies on an allowed face, or on an edge or a vertex of one, it is the result; otherwise
 /// the first of equally close faces, in double precision.
 ///
-/// options.sign is ignored. Throws sdm::Error as closest_points() does, for options without an angle or one
-/// that is not above 0 and at most 180, and unless there is a normal for each point; Cancelled. Cost: linear
+/// Throws sdm::Error as closest_points() does, for an angle out of range, and unless there is a normal for
+/// each point; Cancelled. Cost: linear
 /// in the faces of O2, that of closest_points(), and another search for each point whose closest point is not
 /// allowed.
 [[nodiscard]] SDM_API FacingPoints closest_facing_points(const Sites& sites, std::span<const Vec3> points,
-                                                         std::span<const Vec3> normals,
-                                                         const MapOptions& options);
+                                                         std::span<const Vec3> normals, double facing,
+                                                         const ClosestPointOptions& options = {});
 
 }  // namespace sdm

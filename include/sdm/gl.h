@@ -12,7 +12,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace sdm {
@@ -60,53 +62,20 @@ struct GlOptions {
 /// a surface.
 [[nodiscard]] SDM_API GlDevice gl_device(std::uint32_t resolution, const GlOptions& options = {});
 
-/// Counters and times of the gl engine. Counts do not depend on the number of threads. A pair is a site of O2
-/// and a tile of O1 (the texels of one face in a square of 16 × 16 texels). Each pair has exactly one
-/// outcome:
-///   pairs = culled_by_bound + culled_by_obb + clipped_away + polygons.
+/// What the last map of a gl engine took. Counts do not depend on the number of threads.
 struct GlReport {
   GlDevice device;
   GlClip clip = GlClip::planes;
-
-  std::uint64_t sites = 0;          ///< of O2
-  std::uint64_t sites_dropped = 0;  ///< sites whose region of influence has no interior; in no pair
-  std::uint64_t faces = 0;          ///< of O1 that own a texel
-  std::uint64_t tiles = 0;          ///< of those faces
-  std::uint64_t pairs = 0;          ///< (sites − sites_dropped) × tiles
-  /// Tests of a site or group of sites against a node of O1's tree. Without bound_culling all nodes share one
-  /// bound: max_distance, or an upper bound on all distances.
-  std::uint64_t bound_tests = 0;
-  std::uint64_t obb_tests = 0;  ///< tests of a region's oriented box against a node of O1's tree
-  std::uint64_t culled_by_bound = 0;
-  std::uint64_t culled_by_obb = 0;
-  std::uint64_t clipped_away = 0;  ///< region does not intersect the tile
-  std::uint64_t polygons = 0;      ///< drawn
-  std::uint64_t fragments = 0;     ///< shaded, and inside their region (planes: and face)
-  std::uint64_t texels = 0;        ///< owned by a face: fragments / texels is the overdraw
-  std::uint64_t batches = 0;       ///< of polygons sent to the device
+  std::uint64_t polygons = 0;   ///< drawn
+  std::uint64_t fragments = 0;  ///< shaded, and inside the region of their site (planes: and face)
+  std::uint64_t texels = 0;     ///< owned by a face: fragments / texels is the overdraw
   /// Texels whose site is farther than the distance drawn; their closest site is recomputed by the cpu
   /// engine. 0 unless the driver is faulty.
   std::uint64_t unconfirmed = 0;
-
-  // GlClip::stencil only, otherwise 0. lookups = hits + misses; misses − evictions is the number of values in
-  // use at the end.
-  std::uint64_t stencil_lookups = 0;
-  std::uint64_t stencil_hits = 0;
-  std::uint64_t stencil_misses = 0;
-  std::uint64_t stencil_evictions = 0;
-  /// Clears of a face's texels, one per eviction, and of the whole buffer, once at the start.
-  std::uint64_t stencil_clears = 0;
-
-  /// Wall-clock milliseconds. The device draws while the next batch is culled and clipped.
-  struct Times {
-    double context = 0;    ///< device and shaders: close to 0 except for the first map of a process
-    double refit = 0;      ///< affine maps, boxes of O1's tree
-    double bounds = 0;     ///< upper bounds on distance
-    double cull = 0;       ///< bounds, oriented boxes, clipping
-    double draw = 0;       ///< upload, stencil, draw calls
-    double read_back = 0;  ///< waiting for the device, reading
-    double finish = 0;     ///< closest points in double precision, sign
-  } time_ms;
+  /// What else the engine counts, and the wall-clock milliseconds of its stages, by the names that the
+  /// section on `raster` in docs/report.md explains. They are those of its algorithm, and may change with it.
+  std::vector<std::pair<std::string_view, std::uint64_t>> counts{};
+  std::vector<std::pair<std::string_view, double>> time_ms{};
 
   /// Fragments per texel; 0 without texels.
   [[nodiscard]] double overdraw() const {
@@ -115,43 +84,14 @@ struct GlReport {
 };
 
 template <>
-inline constexpr std::tuple kFields<GlReport::Times>{
-    Field{"context", &GlReport::Times::context, "Device and shaders."},
-    Field{"refit", &GlReport::Times::refit, "Affine maps, boxes of O1's tree."},
-    Field{"bounds", &GlReport::Times::bounds, "Upper bounds on the distance."},
-    Field{"cull", &GlReport::Times::cull, "Bounds, oriented boxes, clipping."},
-    Field{"draw", &GlReport::Times::draw, "Upload, stencil, draw calls."},
-    Field{"read_back", &GlReport::Times::read_back, "Waiting for the device, reading."},
-    Field{"finish", &GlReport::Times::finish, "Closest points in double precision, sign."}};
-
-template <>
 inline constexpr std::tuple kFields<GlReport>{
     Field{"device", &GlReport::device, "The device."},
     Field{"clip", &GlReport::clip, "How polygons were clipped."},
-    Field{"sites", &GlReport::sites, "The sites of O2."},
-    Field{"sites_dropped", &GlReport::sites_dropped, "Those whose region of influence has no interior."},
-    Field{"faces", &GlReport::faces, "The faces of O1 that own a texel."},
-    Field{"tiles", &GlReport::tiles, "The tiles of these."},
-    Field{"pairs", &GlReport::pairs, "A site that was not dropped and a tile."},
-    Field{"bound_tests", &GlReport::bound_tests,
-          "Tests of sites, or groups of them, against a node of O1's tree."},
-    Field{"obb_tests", &GlReport::obb_tests, "Tests of a region's oriented box against a node of O1's tree."},
-    Field{"culled_by_bound", &GlReport::culled_by_bound, "Pairs that upper bounds on the distance exclude."},
-    Field{"culled_by_obb", &GlReport::culled_by_obb, "Pairs that oriented boxes exclude."},
-    Field{"clipped_away", &GlReport::clipped_away, "Pairs whose region does not intersect the tile."},
-    Field{"polygons", &GlReport::polygons, "Pairs that were drawn."},
+    Field{"polygons", &GlReport::polygons, "Polygons of sites that were drawn."},
     Field{"fragments", &GlReport::fragments, "Fragments that were shaded, and are inside their region."},
     Field{"texels", &GlReport::texels, "The texels that a face owns."},
-    Field{"batches", &GlReport::batches, "Batches of polygons sent to the device."},
     Field{"unconfirmed", &GlReport::unconfirmed,
-          "Texels whose site is farther than the distance drawn: 0 unless the driver is faulty."},
-    Field{"stencil_lookups", &GlReport::stencil_lookups, "Faces looked up in the cache of stencil values."},
-    Field{"stencil_hits", &GlReport::stencil_hits, "Those that were found."},
-    Field{"stencil_misses", &GlReport::stencil_misses, "Those that were not."},
-    Field{"stencil_evictions", &GlReport::stencil_evictions, "Faces whose value was given to another one."},
-    Field{"stencil_clears", &GlReport::stencil_clears,
-          "Clears of the texels of a face, and of the whole buffer."},
-    Field{"time_ms", &GlReport::time_ms, "Wall-clock milliseconds."}};
+          "Texels whose site is farther than the distance drawn: 0 unless the driver is faulty."}};
 
 /// Returns a gl engine with these options. The first map opens the device; a process draws one map at a time.
 /// Throws sdm::Error for stencil_values out of range, or if sdm was built without OpenGL.

@@ -270,15 +270,20 @@ SDM_API void write_plot_png(const std::filesystem::path& file, const std::string
 SDM_API void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                        std::span<const float> vertex_distances, const PictureOptions& options = {});
 
+/// The places that a page lists.
+enum class ListedPlaces : std::uint8_t {
+  deviating,  ///< where O1 deviates most: those of the report
+  least,      ///< thinnest_texels(): for wall thickness, and for the distance of a mesh to itself
+  largest,    ///< thickest_texels()
+};
+
 /// Options of write_html().
 struct HtmlOptions {
   const Mesh* other = nullptr;            ///< O2, shown as a ghost; none: O1 only
   UpAxis up = UpAxis::y;                  ///< the axis of the meshes that points up
   const CoverageMap* coverage = nullptr;  ///< of `other`, on which it is drawn
   std::span<const FaceNames> names{};     ///< of the faces of O1: what a click on a group shows apart
-  /// The list of places is that of the texels of least value, or of largest value: for wall thickness, and
-  /// for the distance of a mesh to itself.
-  bool thinnest = false, thickest = false;
+  ListedPlaces places = ListedPlaces::deviating;
   // The size of the page, which grows with what it shows:
   std::uint32_t largest = 1024;              ///< the most texels a side; half from 200,000 triangles on
   std::size_t triangles = 400'000;           ///< the most of O1; others are shown by a coarser copy

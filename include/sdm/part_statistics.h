@@ -46,7 +46,7 @@ struct NamedFaces {
 
 /// Returns the kinds and names of all faces as a clause for messages: "its names are a, b, ..." with the
 /// first 20 of them, or "its faces have no names". Cost: linear in names.
-[[nodiscard]] SDM_API std::string known_names(std::span<const FaceNames> names);
+[[nodiscard]] SDM_API std::string names_text(std::span<const FaceNames> names);
 
 /// Returns, for each face, the number of its component: the faces that are connected by shared vertices.
 /// Components are numbered from 0 in the order of their first faces; removed faces (see MeshEdit) have kNone.

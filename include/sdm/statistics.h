@@ -8,6 +8,7 @@
 #include <sdm/names.h>
 #include <sdm/surface.h>
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -88,14 +89,14 @@ struct Extremes {
 
 /// The distances between two numbers, and the fraction of the area that has them.
 struct DistanceBand {
-  double lo = 0, hi = 0;  ///< −∞ for the first band of a table, ∞ for the last
+  double lower = 0, upper = 0;  ///< −∞ for the first band of a table, ∞ for the last
   double area_fraction = 0;
 };
 
 template <>
 inline constexpr std::tuple kFields<DistanceBand>{
-    Field{"lower", &DistanceBand::lo, "The least distance; infinite for the first band."},
-    Field{"upper", &DistanceBand::hi, "The largest one; infinite for the last band."},
+    Field{"lower", &DistanceBand::lower, "The least distance; infinite for the first band."},
+    Field{"upper", &DistanceBand::upper, "The largest one; infinite for the last band."},
     Field{"area_fraction", &DistanceBand::area_fraction, "The fraction of the area that has them."}};
 
 /// Options of distance_bands().
@@ -115,16 +116,16 @@ struct DistanceBandOptions {
 
 /// Fractions of the area of all texels of a map, those without a value included.
 struct DistanceHistogram {
-  double lo = 0, hi = 0;               ///< of all bins together
+  double lower = 0, upper = 0;         ///< of all bins together
   std::vector<double> area_fractions;  ///< of bins of equal width; a distance at an edge belongs to the upper
-                                       ///< bin, `hi` to the last
+                                       ///< bin, `upper` to the last
   double below = 0, above = 0, without_value = 0;
 };
 
 template <>
 inline constexpr std::tuple kFields<DistanceHistogram>{
-    Field{"lower", &DistanceHistogram::lo, "Where the first bin begins."},
-    Field{"upper", &DistanceHistogram::hi, "Where the last bin ends."},
+    Field{"lower", &DistanceHistogram::lower, "Where the first bin begins."},
+    Field{"upper", &DistanceHistogram::upper, "Where the last bin ends."},
     Field{"area_fractions", &DistanceHistogram::area_fractions,
           "The fraction of the area in each bin, of equal width."},
     Field{"below", &DistanceHistogram::below, "The fraction below the first bin."},
@@ -134,6 +135,7 @@ inline constexpr std::tuple kFields<DistanceHistogram>{
 /// Throws sdm::Error unless lo < hi are finite and there is a bin, and if the map belongs to another surface.
 /// Cost: linear in texels, all cores.
 [[nodiscard]] SDM_API DistanceHistogram distance_histogram(const Surface& surface, const DistanceMap& map,
-                                                           double lo, double hi, std::size_t bins);
+                                                           const std::array<double, 2>& range,
+                                                           std::size_t bins);
 
 }  // namespace sdm

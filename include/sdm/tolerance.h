@@ -18,29 +18,30 @@
 
 namespace sdm {
 
-/// The distances that are accepted: lo ≤ d ≤ hi, in units of the meshes. A limit may be infinite where this
-/// is said.
+/// The distances that are accepted: lower ≤ d ≤ upper, in units of the meshes. A limit may be infinite where
+/// this is said.
 struct Tolerance {
-  double lo = 0, hi = 0;
+  double lower = 0, upper = 0;
 
   Tolerance() = default;
   /// −t ≤ d ≤ t; also for unsigned distances.
-  Tolerance(double t) : lo(-t), hi(t) {}  // NOLINT(google-explicit-constructor): a number is a tolerance
-  /// least ≤ d ≤ most.
-  Tolerance(double least, double most) : lo(least), hi(most) {}
+  Tolerance(double t)
+      : lower(-t), upper(t) {}  // NOLINT(google-explicit-constructor): a number is a tolerance
+  /// at_least ≤ d ≤ at_most.
+  Tolerance(double at_least, double at_most) : lower(at_least), upper(at_most) {}
 
   /// Whether it tells distances apart that differ by their sign only, which unsigned distances do not have.
   [[nodiscard]] bool needs_sign() const {
-    return lo < 0 && -lo != hi && lo > -std::numeric_limits<double>::infinity();
+    return lower < 0 && -lower != upper && lower > -std::numeric_limits<double>::infinity();
   }
   friend bool operator==(const Tolerance&, const Tolerance&) = default;
 };
 
 /// Fractions of the area of a map's texels, in [0, 1]; they add up to 1. All are 0 for a map without texels.
 struct ToleranceShares {
-  double below = 0;          ///< d < lo, by more than the accuracy of a distance
-  double within = 0;         ///< lo ≤ d ≤ hi
-  double above = 0;          ///< d > hi, by more than the accuracy
+  double below = 0;          ///< d < lower, by more than the accuracy of a distance
+  double within = 0;         ///< lower ≤ d ≤ upper
+  double above = 0;          ///< d > upper, by more than the accuracy
   double without_value = 0;  ///< farther than the maximum distance of the map
 };
 

@@ -23,8 +23,8 @@ namespace sdm {
 
 /// What has been proven of a surface and a tolerance.
 enum class Proof {
-  inside,     ///< every point of the surface is within the tolerance
-  outside,    ///< the witness is out of it by more than the accuracy
+  holds,      ///< every point of the surface is within the tolerance
+  fails,      ///< some point is out of it by more than the accuracy, or has nothing to be measured to
   undecided,  ///< neither
 };
 
@@ -47,7 +47,7 @@ inline constexpr std::tuple kFields<ToleranceWitness>{
 /// The answer of prove_tolerance().
 struct ToleranceProof {
   Proof proof = Proof::undecided;
-  /// A point out of the tolerance: of Proof::outside, unless the only reason is that faces have no match; if
+  /// A point out of the tolerance: of Proof::fails, unless the only reason is that faces have no match; if
   /// undecided, one that is out of it by no more than the accuracy, if one was found.
   std::optional<ToleranceWitness> witness{};
   bool at_lower = false;  ///< the limit that the witness exceeds or, without one, that was not proven
@@ -59,7 +59,7 @@ struct ToleranceProof {
   /// the right one is not proven.
   bool depends_on_signs = false;
   /// Set with ToleranceProofOptions::facing: the number of faces of the surface with an area, but without an
-  /// allowed face of O2. They have no distance, so that nothing is proven to be inside.
+  /// allowed face of O2. They have no distance, so that the tolerance never holds.
   std::size_t faces_without_match = 0;
 };
 
@@ -78,7 +78,7 @@ inline constexpr std::tuple kFields<ToleranceProof>{
 struct ToleranceProofOptions {
   SignMethod sign = SignMethod::automatic;  ///< as of a map
   /// Distances that exceed a limit by no more than this, in units of the meshes, are not out of the
-  /// tolerance, as rounding may be the reason; but nothing with such a distance is proven to be inside. ≥ 0
+  /// tolerance, as rounding may be the reason; but no tolerance is proven to hold with such a distance. ≥ 0
   double accuracy = 0;
   /// Distances are those of maps with MapOptions::facing, to the faces of O2 that face the same way. They are
   /// 1-Lipschitz within each face of the surface, so that symmetric limits are decided for every point.

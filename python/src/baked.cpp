@@ -353,7 +353,7 @@ Image PyBaked::image(const std::string& name) const {
   std::vector<float> filled = of->values;
   const auto free_texels = static_cast<std::uint32_t>((std::uint64_t{atlas.gutter} + 1) / side - 1);
   fill_texels(columns(), components_of(of->channel), filled, free_texels);
-  return directions ? normal_map_image(columns(), filled) : scalar_image(columns(), filled, 0, 1, 8).image;
+  return directions ? normal_map_image(columns(), filled) : scalar_image(columns(), filled, {0, 1}, 8).image;
 }
 
 void bind_baked(nb::module_& module) {

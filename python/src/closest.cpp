@@ -34,7 +34,11 @@ Vec3 Found::gradient_of(std::size_t i, const Vec3& point) const {
 }
 
 Found search(const Sites& sites, std::span<const Vec3> points, const MapOptions& options) {
-  Found found{closest_points(sites, points, options), {}};
+  Found found{
+      closest_points(
+          sites, points,
+          {.engine = options.engine, .max_distance = options.max_distance, .progress = options.progress}),
+      {}};
   if (options.sign != SignMethod::none) {
     const SignMethod sign = choose_sign(sites, options.sign).method;
     if (sign != SignMethod::none) found.inside = inside_flags(sites, points, found.closest, sign);

@@ -55,7 +55,7 @@ inline nb::object value_of_field(const Transform& value) {
   return matrix(value);
 }
 inline nb::object value_of_field(const Tolerance& value) {
-  return nb::make_tuple(value.lo, value.hi);
+  return nb::make_tuple(value.lower, value.upper);
 }
 inline nb::object value_of_field(const std::array<std::uint32_t, 2>& value) {
   return nb::make_tuple(value[0], value[1]);

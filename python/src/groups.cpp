@@ -184,7 +184,7 @@ void check_table(std::span<const GroupTolerance> table, std::span<const FaceName
   for (std::size_t i = 0; i < found.size(); ++i)
     if (found[i].faces.empty())
       throw Error("no face has the name '" + table[i].group + "' of the table of tolerances; " +
-                  known_names(names));
+                  names_text(names));
 }
 
 std::vector<GroupTolerance> table_of(nb::handle table, SignMethod sign) {

@@ -194,7 +194,8 @@ void write_page(const PyMap& self, nb::handle file, const VertexDistances& at_ve
   const auto sites_lock = self.use_sites();
   HtmlOptions options{.other = self.of_itself() ? nullptr : &self.to->sites.mesh(),
                       .up = enum_of<UpAxis>("up", up),
-                      .thinnest = self.thickness.has_value() || self.of_itself(),
+                      .places = self.thickness.has_value() || self.of_itself() ? ListedPlaces::least
+                                                                               : ListedPlaces::deviating,
                       .largest = largest,
                       .triangles = triangles};
   options.triangles_of_other = std::min(options.triangles_of_other, triangles);

@@ -200,7 +200,7 @@ Tolerance tolerance_of(nb::handle value, SignMethod sign) {
   if (is_pair && nb::len(value) != 2) throw Error(fault());
   const Tolerance tolerance =
       is_pair ? Tolerance(number(value[0]), number(value[1])) : Tolerance(number(value));
-  if (!(tolerance.lo <= tolerance.hi) || !std::isfinite(tolerance.hi - tolerance.lo))
+  if (!(tolerance.lower <= tolerance.upper) || !std::isfinite(tolerance.upper - tolerance.lower))
     throw Error("tolerance must be a finite number that is not negative, or two, the smaller one first");
   if (tolerance.needs_sign() && sign == SignMethod::none)
     throw Error("a tolerance that differs by the sign needs signed distances, but these are unsigned");

@@ -133,7 +133,6 @@ void bind_result_tables(nb::module_& module) {
                            table_of<Grid>("Grid"),
                            table_of<ReportTimes>("ReportTimes"),
                            table_of<GlReport>("GlReport"),
-                           table_of<GlReport::Times>("GlReport::Times"),
                            table_of<GlDevice>("GlDevice")};
       },
       nb::sig("def result_tables() -> list[tuple[str, list[tuple[str, str, str, str]]]]"));

@@ -25,7 +25,7 @@ inline constexpr auto kMembers<CoveragePiece> =
 template <>
 inline constexpr auto kLast<Proof> = Proof::undecided;
 template <>
-inline constexpr auto kMembers<Tolerance> = std::tuple{&Tolerance::lo, &Tolerance::hi};
+inline constexpr auto kMembers<Tolerance> = std::tuple{&Tolerance::lower, &Tolerance::upper};
 template <>
 inline constexpr auto kMembers<ToleranceProof> = std::tuple{
     &ToleranceProof::proof,        &ToleranceProof::witness,          &ToleranceProof::at_lower,

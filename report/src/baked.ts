@@ -183,7 +183,7 @@ function showTextures({ report, pictures }: BakedData): void {
   const unit = report.units ? ` ${report.units}` : '';
   const rows = Object.entries(report.textures).map(([name, { file, values, picture }]) => [
     name.replace(/_/g, ' '),
-    picture ? `${file}; ${picture.file}, ${text(picture.lo)} to ${text(picture.hi)}${unit}` : file,
+    picture ? `${file}; ${picture.file}, ${text(picture.lower)} to ${text(picture.upper)}${unit}` : file,
     values,
   ]);
   byId('textures-table').replaceChildren(table(['Channel', 'File', 'Values'], rows, 'Channels'));

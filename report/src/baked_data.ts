@@ -49,7 +49,7 @@ export interface BakedReport {
   texels: { closest: number; facing: number; ray: number; too_far: number; facing_away: number };
   textures: Record<
     string,
-    { file: string; values: string; picture?: { file: string; lo: number; hi: number } }
+    { file: string; values: string; picture?: { file: string; lower: number; upper: number } }
   >;
   notes: string[];
   time_ms: Record<string, number>;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "gl/raster_report.h"
 #include "research/figures/figures.h"
 #include "research/figures/maps.h"
 #include "research/figures/pieces.h"
@@ -42,7 +43,7 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
                             std::bit_cast<std::uint32_t, float>);
 }
 
-Json counts_json(const GlReport& r, const Times& times) {
+Json counts_json(const gl::RasterReport& r, const Times& times) {
   return {{"pairs", r.pairs},
           {"culled_by_bound", r.culled_by_bound},
           {"culled_by_obb", r.culled_by_obb},
@@ -53,7 +54,7 @@ Json counts_json(const GlReport& r, const Times& times) {
           {"map_ms", to_json(times)}};
 }
 
-std::vector<std::string> table_row(const std::string& name, const GlReport& r, const Times& times) {
+std::vector<std::string> table_row(const std::string& name, const gl::RasterReport& r, const Times& times) {
   const auto share = [&](std::uint64_t n) {
     return fmt::format("{:.3g} %", 100 * static_cast<double>(n) / static_cast<double>(r.pairs));
   };
@@ -100,7 +101,7 @@ Figure culling(Run& run) {
     };
     const std::function<void()> work[] = {[&] { map(with, a); }, [&] { map(without, b); }};
     const std::vector<Times> times = take_turns(work, run.choose(3, 1));
-    const GlReport r = gl_report(*with).value(), all = gl_report(*without).value();
+    const gl::RasterReport r = gl::raster_report(*with).value(), all = gl::raster_report(*without).value();
     const double saved = static_cast<double>(all.polygons) / static_cast<double>(r.polygons);
     least_saved = std::min(least_saved, saved), most_saved = std::max(most_saved, saved);
     same &= same_bits(a.distance, b.distance);

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "geometry/vec.h"
+#include "gl/raster_report.h"
 #include "research/figures/charts/bars.h"
 #include "research/figures/corrections.h"
 #include "research/figures/figures.h"
@@ -63,7 +64,7 @@ std::vector<Result> measure(Run& run, const Surface& surface, const Sites& sites
     run.step("literal_algorithm");
     const auto engine = literal::make_engine({}, variant.corrections);
     const MapErrors errors = errors_of(map_by(engine), reference, surface, sites);
-    const GlReport report = literal::report(*engine).value();
+    const gl::RasterReport report = literal::report(*engine).value();
     results.push_back({variant.name, errors,
                        100 * static_cast<double>(report.unconfirmed) / static_cast<double>(report.texels)});
     work.emplace_back([&map_by, engine] { (void)map_by(engine); });

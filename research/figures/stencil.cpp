@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "gl/raster_report.h"
 #include "gl/stencil_cache.h"
 #include "research/figures/charts/chart.h"
 #include "research/figures/figures.h"
@@ -40,7 +41,7 @@ Curve in_engine(Run& run, const Surface& surface, const Sites& sites) {
     curve.times.push_back(
         repeat([&] { compute_map(surface, sites, {.engine = engine, .sign = SignMethod::none}, map); },
                run.choose(3, 1)));
-    const GlReport r = gl_report(*engine).value();
+    const gl::RasterReport r = gl::raster_report(*engine).value();
     curve.values.push_back(values);
     curve.hits.push_back(100 * static_cast<double>(r.stencil_hits) / static_cast<double>(r.stencil_lookups));
     curve.lookups = r.stencil_lookups;

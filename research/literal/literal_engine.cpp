@@ -1,4 +1,5 @@
 #include "research/literal/literal_engine.h"
+#include "gl/raster_report.h"
 
 #include <sdm/error.h>
 
@@ -27,7 +28,7 @@ namespace {
 constexpr EngineInfo kUnconfirmedInfo{.name = gl::kInfo.name,
                                       .summary = gl::kInfo.summary,
                                       .relative_error = std::numeric_limits<double>::infinity(),
-                                      .maps_only = true};
+                                      .takes_points = false};
 
 struct Devices {
   gl::DevicePool<Device> pool;
@@ -58,7 +59,8 @@ std::vector<std::array<float, 2>> stencil_corners(const Surface& surface) {
   return corners;
 }
 
-Drawn draw(const Device& device, const gl::DrawTask& task, const Corrections& corrections, GlReport& report) {
+Drawn draw(const Device& device, const gl::DrawTask& task, const Corrections& corrections,
+           gl::RasterReport& report) {
   gl::MapDrawing map(task, report);
   // Vectors to sites are longer beyond their regions: within a box, up to √3 times its reach, twice.
   const double longest = corrections.region_walls ? map.reach() : 4 * map.reach();
@@ -130,7 +132,7 @@ class LiteralEngine final : public Engine {
     throw Error("the paper's algorithm computes maps only");
   }
 
-  [[nodiscard]] std::optional<GlReport> last_report() const {
+  [[nodiscard]] std::optional<gl::RasterReport> last_report() const {
     const std::lock_guard lock(mutex_);
     return last_report_;
   }
@@ -139,12 +141,12 @@ class LiteralEngine final : public Engine {
   GlOptions options_;
   Corrections corrections_;
   mutable std::mutex mutex_;
-  mutable std::optional<GlReport> last_report_;
+  mutable std::optional<gl::RasterReport> last_report_;
 };
 
 void LiteralEngine::map(const Surface& surface, const Sites& sites, const engine::EngineOptions& options,
                         const engine::SampleSink& sink) const {
-  GlReport report;
+  gl::RasterReport report;
   const Drawn drawn = devices().pool.with(options_.device, [&](const Device& device, double ms) {
     report.device = device.context().device();
     report.clip = options_.clip;
@@ -184,7 +186,7 @@ std::shared_ptr<const Engine> make_engine(const GlOptions& options, const Correc
   return std::make_shared<const LiteralEngine>(options, corrections);
 }
 
-std::optional<GlReport> report(const Engine& engine) {
+std::optional<gl::RasterReport> report(const Engine& engine) {
   const auto* literal = dynamic_cast<const LiteralEngine*>(&engine);
   return literal ? literal->last_report() : std::nullopt;
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "gl/raster_report.h"
 #include "research/literal/corrections.h"
 
 namespace sdm::literal {
@@ -17,6 +18,6 @@ namespace sdm::literal {
                                                         const Corrections& corrections);
 
 /// The report of the last map of such an engine, without fragments; without tiles, those are the faces.
-[[nodiscard]] std::optional<GlReport> report(const Engine& engine);
+[[nodiscard]] std::optional<gl::RasterReport> report(const Engine& engine);
 
 }  // namespace sdm::literal

@@ -1,4 +1,5 @@
 #include "research/literal/rasteriser.h"
+#include "gl/raster_report.h"
 
 #include <sdm/error.h>
 
@@ -236,7 +237,7 @@ Image Rasteriser::read_back() {
   return image;
 }
 
-void Rasteriser::count_into(GlReport& report) const {
+void Rasteriser::count_into(gl::RasterReport& report) const {
   const StencilCache& cache = impl_->cache;
   report.batches += impl_->batches;
   report.stencil_lookups += cache.lookups();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gl/device/context.h"
+#include "gl/raster_report.h"
 #include "gl/rasteriser.h"
 #include "research/literal/corrections.h"
 #include "research/literal/printed_polygons.h"
@@ -58,7 +59,7 @@ class Rasteriser {
   void draw(const PrintedBatch& batch);
   /// Reads the result. Waits for the device.
   [[nodiscard]] Image read_back();
-  void count_into(GlReport& report) const;
+  void count_into(gl::RasterReport& report) const;
 
  private:
   struct Impl;

@@ -1,4 +1,5 @@
 #include "gl/draw_winners.h"
+#include "gl/raster_report.h"
 
 #include <sdm/error.h>
 
@@ -29,7 +30,7 @@ struct RegionPolygons {
 };
 
 void expect_no_cracks(const Surface& surface, std::span<const std::uint32_t> winners,
-                      const GlReport& report) {
+                      const RasterReport& report) {
   const std::span<const std::uint32_t> owners = surface.texel_faces();
   for (std::size_t texel = 0; texel < owners.size(); ++texel)
     if (owners[texel] != kNone && winners[texel] == kNone)
@@ -39,7 +40,7 @@ void expect_no_cracks(const Surface& surface, std::span<const std::uint32_t> win
 
 }  // namespace
 
-RasterWinners draw_winners(const RasterDevice& device, const DrawTask& task, GlReport& report) {
+RasterWinners draw_winners(const RasterDevice& device, const DrawTask& task, RasterReport& report) {
   MapDrawing map(task, report);
   const RasterRules rules{map.slack(), depth_scale(map.reach())};
   const surface::Tiles& tiles = task.tile_tree.tiles;

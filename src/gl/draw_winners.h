@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gl/map_drawing.h"
+#include "gl/raster_report.h"
 #include "gl/rasteriser.h"
 
 namespace sdm::gl {
@@ -30,6 +31,7 @@ struct RasterWinners {
 
 /// Draws the map on a device whose context is current, and fills the report's counts and times up to
 /// read_back. Throws sdm::Error if OpenGL fails; Cancelled.
-[[nodiscard]] RasterWinners draw_winners(const RasterDevice& device, const DrawTask& task, GlReport& report);
+[[nodiscard]] RasterWinners draw_winners(const RasterDevice& device, const DrawTask& task,
+                                         RasterReport& report);
 
 }  // namespace sdm::gl

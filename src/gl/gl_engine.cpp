@@ -13,6 +13,7 @@
 #include "gl/confirm.h"
 #include "gl/device/device_pool.h"
 #include "gl/draw_winners.h"
+#include "gl/raster_report.h"
 
 namespace sdm {
 namespace gl {
@@ -46,7 +47,7 @@ class GlEngine final : public Engine {
     throw Error("the gl engine computes maps only: for closest points choose cpu or reference");
   }
 
-  [[nodiscard]] std::optional<GlReport> last_report() const {
+  [[nodiscard]] std::optional<RasterReport> last_report() const {
     const std::lock_guard lock(mutex_);
     return last_report_;
   }
@@ -54,12 +55,12 @@ class GlEngine final : public Engine {
  private:
   const GlOptions options_;
   mutable std::mutex mutex_;
-  mutable std::optional<GlReport> last_report_;
+  mutable std::optional<RasterReport> last_report_;
 };
 
 void GlEngine::map(const Surface& surface, const Sites& sites, const engine::EngineOptions& options,
                    const engine::SampleSink& sink) const {
-  GlReport report;
+  RasterReport report;
   const RasterWinners winners =
       devices().pool.with(options_.device, [&](const RasterDevice& device, double ms) {
         report.device = device.context().device();
@@ -102,9 +103,23 @@ std::shared_ptr<const Engine> make_gl_engine(const GlOptions& options) {
   return std::make_shared<const gl::GlEngine>(options);
 }
 
-std::optional<GlReport> gl_report(const Engine& engine) {
-  const auto* gl = dynamic_cast<const gl::GlEngine*>(&engine);
+std::optional<gl::RasterReport> gl::raster_report(const Engine& engine) {
+  const auto* gl = dynamic_cast<const GlEngine*>(&engine);
   return gl ? gl->last_report() : std::nullopt;
+}
+
+std::optional<GlReport> gl_report(const Engine& engine) {
+  const std::optional<gl::RasterReport> all = gl::raster_report(engine);
+  if (!all) return {};
+  GlReport result{.device = all->device,
+                  .clip = all->clip,
+                  .polygons = all->polygons,
+                  .fragments = all->fragments,
+                  .texels = all->texels,
+                  .unconfirmed = all->unconfirmed};
+  for (const auto& [name, count] : gl::kNamedCounts) result.counts.emplace_back(name, *all.*count);
+  for (const auto& [name, time] : gl::kNamedTimes) result.time_ms.emplace_back(name, all->time_ms.*time);
+  return result;
 }
 
 }  // namespace sdm

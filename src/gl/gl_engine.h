@@ -6,6 +6,6 @@
 namespace sdm::gl {
 
 inline constexpr EngineInfo kInfo{
-    .name = "gl", .summary = "the paper's, using OpenGL", .relative_error = 2e-6, .maps_only = true};
+    .name = "gl", .summary = "the paper's, using OpenGL", .relative_error = 2e-6, .takes_points = false};
 
 }  // namespace sdm::gl

@@ -1,4 +1,5 @@
 #include "gl/map_drawing.h"
+#include "gl/raster_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +39,7 @@ double depth_scale(double longest) {
   return std::exp2(-std::ceil(std::log2(longest)));
 }
 
-MapDrawing::MapDrawing(const DrawTask& task, GlReport& report)
+MapDrawing::MapDrawing(const DrawTask& task, RasterReport& report)
     : task_(task),
       report_(report),
       tree_(task.surface, task.tile_tree, task.sites.frame),

@@ -10,6 +10,7 @@
 #include "core/stopwatch.h"
 #include "gl/domain_tree.h"
 #include "gl/pair_stream.h"
+#include "gl/raster_report.h"
 #include "gl/tile_tree.h"
 #include "sites/sites_data.h"
 
@@ -31,7 +32,7 @@ class MapDrawing {
  public:
   /// Fills the report's times up to `bounds`. All references must outlive it. Throws sdm::Error if O1 is too
   /// far away for single precision.
-  MapDrawing(const DrawTask& task, GlReport& report);
+  MapDrawing(const DrawTask& task, RasterReport& report);
 
   /// No sample is farther from O2, in the unit frame of O2; no larger distance is of interest.
   [[nodiscard]] double reach() const { return tree_.bound[0]; }
@@ -69,7 +70,7 @@ class MapDrawing {
   void store(const PairCounts& counts);
 
   const DrawTask& task_;
-  GlReport& report_;
+  RasterReport& report_;
   Stopwatch watch_;
   DomainTree tree_;
   SiteIndex index_;

@@ -10,6 +10,7 @@
 #include "gl/polygons/oriented_box.h"
 #include "gl/polygons/planar_domain.h"
 #include "gl/polygons/site_region.h"
+#include "gl/raster_report.h"
 #include "tree/visit.h"
 
 namespace sdm::gl {
@@ -24,7 +25,7 @@ struct SiteIndex {
   explicit SiteIndex(const sites::SitesData& sites);
 };
 
-/// What became of the pairs; see GlReport.
+/// What became of the pairs; see RasterReport.
 struct PairCounts {
   std::uint64_t bound_tests = 0, obb_tests = 0;
   std::uint64_t culled_by_bound = 0, culled_by_obb = 0, clipped_away = 0, polygons = 0;

@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "gl/pair_culling.h"
+#include "gl/raster_report.h"
 
 namespace sdm::gl {
 
@@ -22,7 +23,7 @@ class PairStream {
  public:
   /// All references must outlive it.
   PairStream(const SiteIndex& sites, const DomainTree& tree, const Polygons& polygons, Canvas& canvas,
-             GlReport::Times& time)
+             RasterReport::Times& time)
       : sites_(sites),
         tree_(tree),
         polygons_(polygons),
@@ -91,7 +92,7 @@ class PairStream {
   const DomainTree& tree_;
   const Polygons& polygons_;
   Canvas& canvas_;
-  GlReport::Times& time_;
+  RasterReport::Times& time_;
   std::vector<Batch> parts_;  ///< one for each leaf of O2's tree
   std::vector<PairCounts> counts_;
   Batch batch_;

@@ -1,4 +1,5 @@
 #include "gl/rasteriser.h"
+#include "gl/raster_report.h"
 
 #include <sdm/error.h>
 
@@ -259,7 +260,7 @@ RasterImage Rasteriser::read_back() {
   return image;
 }
 
-void Rasteriser::count_into(GlReport& report) {
+void Rasteriser::count_into(RasterReport& report) {
   report.fragments += impl_->counters.take();
   report.batches += impl_->batches;
   if (const auto& cache = impl_->cache) {

@@ -12,6 +12,7 @@
 #include "gl/device/context.h"
 #include "gl/image_size.h"
 #include "gl/polygons/raster_polygon.h"
+#include "gl/raster_report.h"
 
 namespace sdm::gl {
 
@@ -68,7 +69,7 @@ class Rasteriser {
   [[nodiscard]] RasterImage read_back();
 
   /// Adds the fragment, batch and stencil counts so far to the report. Waits for the device.
-  void count_into(GlReport& report);
+  void count_into(RasterReport& report);
 
  private:
   struct Impl;

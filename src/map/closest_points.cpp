@@ -13,10 +13,8 @@
 namespace sdm {
 
 std::vector<ClosestPoint> closest_points(const Sites& sites, std::span<const Vec3> points,
-                                         const MapOptions& options) try {
+                                         const ClosestPointOptions& options) try {
   const std::shared_ptr<const Engine> engine = map::engine_of(options);
-  if (options.facing)
-    throw Error("closest_points() has no normals of the points; use closest_facing_points()");
   mesh::validate_queries(points);
   std::vector<ClosestPoint> result(points.size());
   engine->scattered(sites, points, {options.max_distance, options.progress}, result);

@@ -8,6 +8,7 @@
 #include "closest/facing/facing_normals.h"
 #include "core/memory.h"
 #include "geometry/vec.h"
+#include "map/engine_of.h"
 #include "sites/sites_data.h"
 
 namespace sdm {
@@ -52,9 +53,7 @@ FacingMeasure::FacingMeasure(const Surface& surface, const Sites& sites, const M
 
 void FacingMeasure::find_closest(const Sites& sites, const MapOptions& options,
                                  std::span<const Vec3> points) {
-  MapOptions of_all = options;
-  of_all.facing.reset();
-  closest = closest_points(sites, points, of_all);
+  closest = closest_points(sites, points, point_options(options));
 }
 
 std::unique_ptr<FaceSearch> FacingMeasure::search() const {
@@ -72,11 +71,15 @@ Value FacingMeasure::value(const Vec3& point, const Vec3& normal, const ClosestP
 }  // namespace map
 
 FacingPoints closest_facing_points(const Sites& sites, std::span<const Vec3> points,
-                                   std::span<const Vec3> normals, const MapOptions& options) try {
-  if (!options.facing) throw Error("closest_facing_points() needs an angle within which faces are allowed");
+                                   std::span<const Vec3> normals, double facing,
+                                   const ClosestPointOptions& options) try {
   if (normals.size() != points.size()) throw Error("closest_facing_points() needs one normal for each point");
-  map::FacingMeasure measure(sites, options);
-  measure.find_closest(sites, options, points);
+  const MapOptions of_map{.engine = options.engine,
+                          .max_distance = options.max_distance,
+                          .facing = facing,
+                          .progress = options.progress};
+  map::FacingMeasure measure(sites, of_map);
+  measure.find_closest(sites, of_map, points);
   return map::measure_points(points, normals, measure);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("closest points of faces that face the queries");

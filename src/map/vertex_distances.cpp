@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "inside/open_sides.h"
+#include "map/engine_of.h"
 #include "map/facing_measure.h"
 #include "sites/sites_data.h"
 
@@ -21,7 +22,7 @@ struct Found {
 
 Found find(const Mesh& mesh, const Sites& sites, const MapOptions& options) {
   const SignMethod sign = choose_sign(sites, options).method;
-  Found found{closest_points(sites, mesh.positions, options), {}};
+  Found found{closest_points(sites, mesh.positions, map::point_options(options)), {}};
   found.inside.resize(found.closest.size());
   if (sign != SignMethod::none) found.inside = inside_flags(sites, mesh.positions, found.closest, sign);
   return found;
@@ -31,7 +32,7 @@ Found find(const Mesh& mesh, const Sites& sites, const MapOptions& options) {
 
 std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, const MapOptions& asked) try {
   MapOptions options = asked;
-  if (options.engine && engine_info(*options.engine).maps_only) options.engine = nullptr;
+  if (options.engine && !engine_info(*options.engine).takes_points) options.engine = nullptr;
   if (options.facing) {
     map::FacingMeasure measure(mesh, sites, options);
     measure.find_closest(sites, options, mesh.positions);
@@ -48,9 +49,10 @@ std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, c
 }
 
 std::vector<std::uint8_t> boundary_vertices(const Mesh& mesh, const Sites& sites, MapOptions options) try {
-  if (options.engine && engine_info(*options.engine).maps_only) options.engine = nullptr;
+  if (options.engine && !engine_info(*options.engine).takes_points) options.engine = nullptr;
   const inside::BoundarySites boundary(internals(sites).topology, sites.mesh().positions.size());
-  const std::vector<ClosestPoint> closest = closest_points(sites, mesh.positions, options);
+  const std::vector<ClosestPoint> closest =
+      closest_points(sites, mesh.positions, map::point_options(options));
   std::vector<std::uint8_t> result(closest.size());
   for (std::size_t i = 0; i < closest.size(); ++i)
     result[i] = boundary.contains(closest[i].type, closest[i].site) ? 1 : 0;

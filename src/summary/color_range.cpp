@@ -36,14 +36,14 @@ std::array<double, 2> rounded(double lo, double hi) {
 
 /// The limits, both the only one if there is but one.
 Tolerance finite(const Tolerance& t) {
-  return {std::isfinite(t.lo) ? t.lo : t.hi, std::isfinite(t.hi) ? t.hi : t.lo};
+  return {std::isfinite(t.lower) ? t.lower : t.upper, std::isfinite(t.upper) ? t.upper : t.lower};
 }
 
 }  // namespace
 
 ColorRange color_range(const ColorChoice& choice, const DistanceStatistics& distances) {
   if (const auto& t = choice.tolerance;
-      t && !(t->lo <= t->hi && std::isfinite(finite(*t).lo) && std::isfinite(finite(*t).hi)))
+      t && !(t->lower <= t->upper && std::isfinite(finite(*t).lower) && std::isfinite(finite(*t).upper)))
     throw Error(
         "the tolerance of the picture must be two numbers, the smaller one first, one of them finite");
   if (choice.range && !(std::isfinite((*choice.range)[0]) && std::isfinite((*choice.range)[1]) &&

@@ -17,16 +17,16 @@ DistanceHistogram histogram(const Surface& surface, const DistanceMap& map, cons
   double lo = std::max(d.min, -d.p99_abs), hi = std::min(d.max, d.p99_abs);
   if (tolerance) {
     const bool is_signed = map.sign.method != SignMethod::none;
-    if (std::isfinite(tolerance->lo))
-      lo = std::min(lo, is_signed ? tolerance->lo : std::max(0.0, tolerance->lo));
-    if (std::isfinite(tolerance->hi)) hi = std::max(hi, tolerance->hi);
+    if (std::isfinite(tolerance->lower))
+      lo = std::min(lo, is_signed ? tolerance->lower : std::max(0.0, tolerance->lower));
+    if (std::isfinite(tolerance->upper)) hi = std::max(hi, tolerance->upper);
   }
   if (!(lo < hi)) {  // a single value, or all values beyond the percentile on one side
     lo = std::min(d.min, lo), hi = std::max(d.max, hi);
     const double widen = lo < hi ? 0 : lo != 0 ? std::abs(lo) / 2 : 1;
     lo -= widen, hi += widen;
   }
-  return distance_histogram(surface, map, lo, hi, kBins);
+  return distance_histogram(surface, map, {lo, hi}, kBins);
 }
 
 PartTable part_table(const Surface& surface, const DistanceMap& map, std::string kind,

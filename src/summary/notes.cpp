@@ -48,7 +48,7 @@ std::optional<double> largest_of(const std::optional<Tolerance>& tolerance, std:
                                  std::span<const GroupTolerance> table) {
   std::optional<double> largest;
   const auto add = [&](const Tolerance& limits) {
-    for (const double limit : {limits.lo, limits.hi})
+    for (const double limit : {limits.lower, limits.upper})
       if (std::isfinite(limit)) largest = std::max(largest.value_or(0), std::abs(limit));
   };
   if (tolerance) add(*tolerance);
@@ -90,7 +90,7 @@ std::optional<std::string> note_on_places(const Box& a, const Box& b) {
 
 std::optional<std::string> note_on_walls(const Sites& sites, const Tolerance& tolerance,
                                          const std::string& units) {
-  const double limit = std::max(std::abs(tolerance.lo), std::abs(tolerance.hi));
+  const double limit = std::max(std::abs(tolerance.lower), std::abs(tolerance.upper));
   return note_of_lengths(thickness::wall_lengths(sites), limit, units);
 }
 

@@ -128,11 +128,11 @@ TEST_F(BakedChannels, LengthsAndPositionsAreThoseOfTheLibrary) {
   ASSERT_EQ(d.height, 64u);
   const Image picture = read_image(out + "/displacement.png"), walls = read_image(out + "/thickness.png");
   ASSERT_EQ(picture.bits, 16u);
-  const double lo = json["textures"]["displacement"]["picture"]["lo"],
-               hi = json["textures"]["displacement"]["picture"]["hi"],
-               most = json["textures"]["thickness"]["picture"]["hi"];
+  const double lo = json["textures"]["displacement"]["picture"]["lower"],
+               hi = json["textures"]["displacement"]["picture"]["upper"],
+               most = json["textures"]["thickness"]["picture"]["upper"];
   EXPECT_EQ(lo, -hi);
-  EXPECT_EQ(json["textures"]["thickness"]["picture"]["lo"], 0);
+  EXPECT_EQ(json["textures"]["thickness"]["picture"]["lower"], 0);
   double largest = 0;
   for (const std::uint32_t i : test::owned_texels(surface)) {
     ASSERT_EQ(d.values.at("displacement.D")[i], displacements[i]) << i;

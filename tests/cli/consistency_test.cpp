@@ -136,7 +136,7 @@ TEST_F(Consistency, CloudsAreJudgedByTheRuleOfTheLibrary) {
   std::ofstream(points) << text;
   for (const Tolerance tolerance : {Tolerance(10), Tolerance(4), Tolerance(4.55), Tolerance(1, 5)}) {
     const Outcome run = run_sdm({"points", points, small, "-o", out, "--units", "mm", "--accept-doubts",
-                                 fmt::format("--tolerance={}:{}", tolerance.lo, tolerance.hi)});
+                                 fmt::format("--tolerance={}:{}", tolerance.lower, tolerance.upper)});
     const Json cloud = Json::parse(contents(out + "/report.json"));
     const Json& found = cloud["evidence"];
     const Judgement judgement = judge({.lowest = found["lowest"].get<double>(),

@@ -59,7 +59,7 @@ void expect_same_answers(const Sites& edited, const Sites& fresh, std::span<cons
   const double length = diagonal(bounds(fresh.mesh()));
   // In double precision the distances are equal to the last bit; where two sites are equally close, either
   // may be found.
-  const MapOptions exact{.engine = make_engine("reference")};
+  const ClosestPointOptions exact{.engine = make_engine("reference")};
   const auto a = closest_points(edited, points, exact), b = closest_points(fresh, points, exact);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(a[i].distance, b[i].distance) << i;

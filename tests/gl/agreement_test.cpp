@@ -1,5 +1,6 @@
 // Every texel of every map by rasterisation against the reference engine.
 #include "geometry/vec.h"
+#include "gl/raster_report.h"
 #include "gl/support.h"
 #include "support/map_checks.h"
 #include "support/oracle.h"
@@ -136,7 +137,7 @@ TEST(Agreement, WithinAMaximumDistance) {
       if (limit > 1e-3) {
         EXPECT_LT(beyond, surface.sample_texels().size());
       }
-      const GlReport& r = near.report;
+      const gl::RasterReport& r = near.report;
       EXPECT_EQ(r.pairs, r.culled_by_bound + r.culled_by_obb + r.clipped_away + r.polygons);
       EXPECT_GE(r.fragments, r.texels - texels_beyond);
     }

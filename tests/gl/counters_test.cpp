@@ -1,4 +1,5 @@
 // The options of <sdm/gl.h> change the counters of the report, but no bit of the map.
+#include "gl/raster_report.h"
 #include "gl/support.h"
 #include "support/map_checks.h"
 #include "support/points.h"
@@ -102,7 +103,7 @@ TEST_P(Counters, AreDeterministicForAnyThreadCount) {
 TEST(Counters, FragmentsOfOneTriangleCoverEachTexelOnce) {
   const Pair pair("OneTriangle");
   for (const bool bounds : {true, false}) {
-    const GlReport r = gl_map(pair.surface, pair.sites, {.bound_culling = bounds}).report;
+    const gl::RasterReport r = gl_map(pair.surface, pair.sites, {.bound_culling = bounds}).report;
     EXPECT_EQ(r.sites, 7u);
     EXPECT_EQ(r.sites_dropped, 0u);
     EXPECT_LT(static_cast<double>(r.fragments), 1.02 * static_cast<double>(r.texels));
@@ -112,7 +113,7 @@ TEST(Counters, FragmentsOfOneTriangleCoverEachTexelOnce) {
 // Of a box's edges the six diagonals of its sides lie between coplanar faces: nothing is closest to them.
 TEST(Counters, SitesBetweenCoplanarFacesAreDropped) {
   const Pair pair("FigureInBox");
-  const GlReport r = gl_map(pair.surface, pair.sites).report;
+  const gl::RasterReport r = gl_map(pair.surface, pair.sites).report;
   EXPECT_EQ(r.sites, 12u + 18u + 8u);
   EXPECT_EQ(r.sites_dropped, 6u);
 }
@@ -120,7 +121,7 @@ TEST(Counters, SitesBetweenCoplanarFacesAreDropped) {
 // The number of pairs is the product of the sizes of both meshes; the work must grow more slowly.
 TEST(Counters, BoundsCullAlmostAllPairsOfLargeMeshes) {
   const Pair pair("Apart");
-  const GlReport r = gl_map(pair.surface, pair.sites).report;
+  const gl::RasterReport r = gl_map(pair.surface, pair.sites).report;
   EXPECT_GT(r.pairs, 1000000000u);
   EXPECT_LT(static_cast<double>(r.polygons), 1e-3 * static_cast<double>(r.pairs));
 }

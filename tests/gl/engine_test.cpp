@@ -164,5 +164,21 @@ TEST(GlEngine, ReportsItsLastMap) {
   }
 }
 
+TEST(GlEngine, ReportsCountsByName) {
+  const Surface surface(test::cube(), {.resolution = 16});
+  const auto engine = make_engine("gl");
+  (void)gl_map(surface, Sites(test::sphere(1)), engine);
+  const GlReport report = gl_report(*engine).value();
+  const auto number = [](const auto& named, std::string_view name) {
+    return std::ranges::find_if(named, [&](const auto& n) { return n.first == name; })->second;
+  };
+  EXPECT_EQ(number(report.counts, "pairs"), number(report.counts, "culled_by_bound") +
+                                                number(report.counts, "culled_by_obb") +
+                                                number(report.counts, "clipped_away") + report.polygons);
+  EXPECT_GT(report.polygons, 0u);
+  EXPECT_GE(report.fragments, report.texels);
+  EXPECT_GT(number(report.time_ms, "draw"), 0);
+}
+
 }  // namespace
 }  // namespace sdm

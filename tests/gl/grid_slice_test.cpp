@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "closest/reference/reference_closest.h"
+#include "gl/raster_report.h"
 #include "gl/rasteriser.h"
 #include "sites/closest_on_face.h"
 #include "support/map_checks.h"
@@ -42,7 +43,7 @@ TEST(GridSlice, ContainsTheClosestFaces) {
     Rasteriser rasteriser(device, {kSide, kSide}, WholeImage{});
     rasteriser.draw(batch);
     const std::vector<std::uint32_t> faces = rasteriser.read_back().winners;
-    GlReport report;
+    gl::RasterReport report;
     rasteriser.count_into(report);
     EXPECT_GE(report.fragments, faces.size());
     EXPECT_EQ(report.stencil_lookups, 0u);

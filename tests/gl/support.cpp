@@ -1,4 +1,5 @@
 #include "gl/support.h"
+#include "gl/raster_report.h"
 
 #include <algorithm>
 #include <cstring>
@@ -33,7 +34,7 @@ std::size_t count_owners(const Surface& surface) {
 GlMap draw(const Surface& surface, const Sites& sites, const std::shared_ptr<const Engine>& engine,
            double max_distance) {
   GlMap map{compute_map(surface, sites, {.engine = engine, .max_distance = max_distance})};
-  map.report = gl_report(*engine).value();
+  map.report = gl::raster_report(*engine).value();
   return map;
 }
 
@@ -63,7 +64,8 @@ testing::AssertionResult identical(const DistanceMap& a, const DistanceMap& b) {
   return testing::AssertionSuccess();
 }
 
-void expect_laws(const GlReport& r, const Surface& surface, const Sites& sites, const GlOptions& options) {
+void expect_laws(const gl::RasterReport& r, const Surface& surface, const Sites& sites,
+                 const GlOptions& options) {
   EXPECT_FALSE(r.device.name.empty());
   EXPECT_FALSE(r.device.driver.empty());
   EXPECT_EQ(r.clip, options.clip);
@@ -103,7 +105,7 @@ void expect_laws(const GlReport& r, const Surface& surface, const Sites& sites, 
   EXPECT_GT(r.time_ms.draw, 0);
 }
 
-void expect_same_counts(const GlReport& a, const GlReport& b) {
+void expect_same_counts(const gl::RasterReport& a, const gl::RasterReport& b) {
   EXPECT_EQ(a.sites, b.sites);
   EXPECT_EQ(a.sites_dropped, b.sites_dropped);
   EXPECT_EQ(a.faces, b.faces);

@@ -4,12 +4,13 @@
 #include <limits>
 #include <memory>
 
+#include "gl/raster_report.h"
 #include "gl/scenes.h"
 
 namespace sdm::test {
 
 struct GlMap : DistanceMap {
-  GlReport report{};
+  gl::RasterReport report{};
 };
 
 /// Fails if any winner was not confirmed. All tests of maps use it, so that none can forget this check.
@@ -28,10 +29,10 @@ struct GlMap : DistanceMap {
 [[nodiscard]] testing::AssertionResult identical(const DistanceMap& a, const DistanceMap& b);
 
 /// Fails unless the counters obey the laws of <sdm/gl.h>, for a map without a maximum distance.
-void expect_laws(const GlReport& report, const Surface& surface, const Sites& sites,
+void expect_laws(const gl::RasterReport& report, const Surface& surface, const Sites& sites,
                  const GlOptions& options);
 
 /// Fails unless the two reports have the same counts; times may differ.
-void expect_same_counts(const GlReport& a, const GlReport& b);
+void expect_same_counts(const gl::RasterReport& a, const gl::RasterReport& b);
 
 }  // namespace sdm::test

@@ -57,7 +57,7 @@ TEST(Legend, NamesTheEndsAndTheLimits) {
       EXPECT_LT(labels[k - 1].value, labels[k].value);
       EXPECT_NE(labels[k - 1].text, labels[k].text);
     }
-    EXPECT_EQ(limits, (std::vector<double>{tolerance.lo, tolerance.hi}));
+    EXPECT_EQ(limits, (std::vector<double>{tolerance.lower, tolerance.upper}));
   }
   const std::vector<ScaleLabel> labels = scale_labels({.map = Colormap::viridis, .lo = 0, .hi = 0.137});
   EXPECT_EQ(labels.front().text, "0.00");

@@ -92,20 +92,18 @@ TEST(Facing, NeverAllowsFacesWithoutArea) {
   for (const double x : {0.2, 0.4, 0.6}) o2.positions.push_back({x, 0.5, 0.5});
   o2.triangles.push_back({first, first + 1, first + 2});
   const std::vector<Vec3> points{{0.4, 0.5, 0.6}}, normals{{0, 0, 2}};
-  const FacingPoints found = closest_facing_points(Sites(o2), points, normals, {.facing = 90});
+  const FacingPoints found = closest_facing_points(Sites(o2), points, normals, 90);
   EXPECT_NEAR(found.closest[0].distance, 0.6, 1e-12);
   const std::vector<Vec3> none{{0, 0, 0}};
-  EXPECT_EQ(closest_facing_points(Sites(o2), points, none, {.facing = 90}).unmatched[0], 1);
+  EXPECT_EQ(closest_facing_points(Sites(o2), points, none, 90).unmatched[0], 1);
 }
 
 TEST(Facing, RefusesWhatItDoesNotHave) {
   const Sites sites(cube());
   const std::vector<Vec3> points{{0, 0, 2}}, normals{{0, 0, 1}};
-  EXPECT_NE(error_of([&] { (void)closest_facing_points(sites, points, normals, {.facing = 0}); }), "");
-  EXPECT_NE(error_of([&] { (void)closest_facing_points(sites, points, normals, {.facing = 181}); }), "");
-  EXPECT_NE(error_of([&] { (void)closest_facing_points(sites, points, normals, {}); }), "");
-  EXPECT_NE(error_of([&] { (void)closest_facing_points(sites, points, {}, {.facing = 90}); }), "");
-  EXPECT_NE(error_of([&] { (void)closest_points(sites, points, {.facing = 90}); }), "");
+  EXPECT_NE(error_of([&] { (void)closest_facing_points(sites, points, normals, 0); }), "");
+  EXPECT_NE(error_of([&] { (void)closest_facing_points(sites, points, normals, 181); }), "");
+  EXPECT_NE(error_of([&] { (void)closest_facing_points(sites, points, {}, 90); }), "");
   EXPECT_NE(error_of([&] { (void)choose_sign(sites, MapOptions{.sign = SignMethod::exact, .facing = 90}); }),
             "");
 }

@@ -102,7 +102,7 @@ TEST(Measure, AtVerticesIsTheLeastOfTheFacesAround) {
   const MapOptions facing{.facing = 45};
   EXPECT_TRUE(same(distances_at_vertices(parts.o1, parts.other, Measure(facing)),
                    least([&](auto points, auto normals) {
-                     return closest_facing_points(parts.other, points, normals, facing);
+                     return closest_facing_points(parts.other, points, normals, *facing.facing);
                    })));
   // All faces of a box but two exclude each other; balls have no size at right angles.
   for (const float d : distances_at_vertices(parts.o1, parts.own, SelfOptions{.exclusion = parts.exclusion}))

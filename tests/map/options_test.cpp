@@ -18,9 +18,9 @@ using testing::HasSubstr;
 template <class Struct>
 class DeclaredOptions : public testing::Test {};
 
-using Declared = testing::Types<AtlasOptions, PrecisionOptions, MapOptions, AlongOptions, ExclusionRule,
-                                SelfProximityOptions, ThicknessOptions, MatchOptions, HausdorffOptions,
-                                MetricsOptions, FieldOptions, ProximityOptions>;
+using Declared = testing::Types<AtlasOptions, PrecisionOptions, MapOptions, ClosestPointOptions, AlongOptions,
+                                ExclusionRule, SelfProximityOptions, ThicknessOptions, MatchOptions,
+                                HausdorffOptions, MetricsOptions, FieldOptions, ProximityOptions>;
 TYPED_TEST_SUITE(DeclaredOptions, Declared);
 
 TYPED_TEST(DeclaredOptions, HaveADefaultThatIsAllowedAndCanBeRead) {

@@ -142,15 +142,15 @@ TEST(SideOfAnOpenMesh, PointsWithinTheLimitsByEitherSignAreInside) {
   const Mesh dented = sheet(4, 8, dent);
   for (const Mesh& plane : {sheet(5, 1, flat), sheet(5, 20, flat)})
     for (const Tolerance& tolerance : {Tolerance(-0.1, 0.02), Tolerance(-0.1, 0)})
-      EXPECT_EQ(prove_by_side(dented, plane, tolerance).proof, Proof::inside);
+      EXPECT_EQ(prove_by_side(dented, plane, tolerance).proof, Proof::holds);
   const Mesh plane = sheet(5, 1, flat);
   EXPECT_EQ(prove_by_side(sheet(4, 4, [](double, double) { return -0.05; }), plane, {-0.1, -0.01}).proof,
-            Proof::inside);
-  EXPECT_EQ(prove_by_side(dented, plane, {-0.04, 0.02}).proof, Proof::outside) << "with either sign";
+            Proof::holds);
+  EXPECT_EQ(prove_by_side(dented, plane, {-0.04, 0.02}).proof, Proof::fails) << "with either sign";
   // On the side that the limits do not allow; and beside the plane, at its boundary.
   EXPECT_TRUE(prove_by_side(dented, plane, {-0.02, 0.1}).depends_on_signs);
   EXPECT_TRUE(prove_by_side(sheet(5.05, 8, flat), plane, {-0.1, 0.02}).depends_on_signs);
-  EXPECT_EQ(prove_by_side(sheet(5.01, 8, flat), plane, {-0.1, 0.02}).proof, Proof::inside);
+  EXPECT_EQ(prove_by_side(sheet(5.01, 8, flat), plane, {-0.1, 0.02}).proof, Proof::holds);
   // The verdict of a map, which had no proof where samples have only one sign within the limits.
   const Sites sites(plane);
   const Surface surface(dented, {.resolution = 64});
@@ -168,14 +168,15 @@ TEST(SideOfAnOpenMesh, SidesOfRidgesAndStacksAreProvenWhereTheyAreOne) {
   for (const double offset : {0.09, -0.09}) {  // at most 0.09 away, and at least 0.028
     const Mesh moved_roof = sheet(4, 20, [&](double x, double y) { return roof(x, y) + offset; });
     const Tolerance allows = offset > 0 ? Tolerance(-0.02, 0.1) : Tolerance(-0.1, 0.02);
-    EXPECT_EQ(prove_by_side(moved_roof, sheet(5, 20, roof), allows).proof, Proof::inside);
-    EXPECT_TRUE(prove_by_side(moved_roof, sheet(5, 20, roof), {-allows.hi, -allows.lo}).depends_on_signs);
+    EXPECT_EQ(prove_by_side(moved_roof, sheet(5, 20, roof), allows).proof, Proof::holds);
+    EXPECT_TRUE(
+        prove_by_side(moved_roof, sheet(5, 20, roof), {-allows.upper, -allows.lower}).depends_on_signs);
   }
   Mesh lid = sheet(5, 1, [](double, double) { return 0.2; });
   const Mesh between = sheet(4, 8, [](double x, double) { return 0.1 + 0.02 * x; });
   EXPECT_TRUE(prove_by_side(between, joined(sheet(5, 1, flat), lid), {-0.01, 0.2}).depends_on_signs);
   for (Triangle& t : lid.triangles) std::swap(t[1], t[2]);
-  EXPECT_EQ(prove_by_side(between, joined(sheet(5, 1, flat), lid), {-0.01, 0.2}).proof, Proof::inside);
+  EXPECT_EQ(prove_by_side(between, joined(sheet(5, 1, flat), lid), {-0.01, 0.2}).proof, Proof::holds);
 }
 
 // What is proven holds at samples.
@@ -197,7 +198,7 @@ TEST(SideOfAnOpenMesh, ProofsHoldAtSamples) {
     for (Vec3& p : mesh.positions) p[2] += shift + noise * (any(random) - 0.5);
     const Tolerance tolerance(-0.1 - 0.4 * any(random), 0.1 * any(random));
     const ToleranceProof proof = prove_tolerance(mesh, sites, tolerance, {.sign = SignMethod::side});
-    if (proof.proof != Proof::inside) continue;
+    if (proof.proof != Proof::holds) continue;
     ++proven;
     std::vector<Vec3> points;
     for (const Triangle& t : mesh.triangles)
@@ -210,7 +211,7 @@ TEST(SideOfAnOpenMesh, ProofsHoldAtSamples) {
     const std::vector<std::uint8_t> behind = inside_flags(sites, points, closest, SignMethod::side);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double d = behind[i] != 0 ? -closest[i].distance : closest[i].distance;
-      EXPECT_TRUE(d >= tolerance.lo - 1e-9 && d <= tolerance.hi + 1e-9) << run << ": " << d;
+      EXPECT_TRUE(d >= tolerance.lower - 1e-9 && d <= tolerance.upper + 1e-9) << run << ": " << d;
     }
   }
   EXPECT_GT(proven, 10U);

@@ -146,9 +146,9 @@ TEST(Statistics, BandsAndHistogramsHoldTheAreaBetweenTheirEdges) {
     const std::vector<DistanceBand> bands =
         distance_bands(surface, map, edges, {.accuracy = accuracy, .centre = 0.25});
     ASSERT_EQ(bands.size(), 4u);
-    EXPECT_EQ(bands[0].lo, -std::numeric_limits<double>::infinity());
-    EXPECT_EQ(bands[1].lo, -0.5);
-    EXPECT_EQ(bands[3].hi, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(bands[0].lower, -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(bands[1].lower, -0.5);
+    EXPECT_EQ(bands[3].upper, std::numeric_limits<double>::infinity());
     const double a = accuracy;
     EXPECT_NEAR(bands[0].area_fraction, area_if([a](double d) { return d < -0.5 - a; }), 1e-6);
     EXPECT_NEAR(bands[1].area_fraction, area_if([a](double d) { return d >= -0.5 - a && d < -a; }), 1e-6);
@@ -159,7 +159,7 @@ TEST(Statistics, BandsAndHistogramsHoldTheAreaBetweenTheirEdges) {
                 accuracy == 0 ? 1e-12 : 1e-6);
   }
 
-  const DistanceHistogram histogram = distance_histogram(surface, map, -0.75, 0.5, 5);
+  const DistanceHistogram histogram = distance_histogram(surface, map, {-0.75, 0.5}, 5);
   EXPECT_NEAR(histogram.below, area_if([](double d) { return d < -0.75; }), 1e-6);
   EXPECT_NEAR(histogram.above, area_if([](double d) { return d > 0.5; }), 1e-6);
   EXPECT_NEAR(histogram.without_value, area_if([](double d) { return std::isnan(d); }), 1e-6);
@@ -173,8 +173,8 @@ TEST(Statistics, BandsAndHistogramsHoldTheAreaBetweenTheirEdges) {
   }
   EXPECT_NEAR(sum, 1, 1e-12);
   EXPECT_THROW((void)distance_bands(surface, map, std::vector<double>{0, 0}), Error);
-  EXPECT_THROW((void)distance_histogram(surface, map, 1, 1, 5), Error);
-  EXPECT_THROW((void)distance_histogram(surface, map, 0, 1, 0), Error);
+  EXPECT_THROW((void)distance_histogram(surface, map, {1, 1}, 5), Error);
+  EXPECT_THROW((void)distance_histogram(surface, map, {0, 1}, 0), Error);
 }
 
 // The statistics of a part are those of a map whose other texels have no value.

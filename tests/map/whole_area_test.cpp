@@ -203,7 +203,7 @@ TEST_F(OwnPoints, HaveTheDistancesOfQueriesThere) {
   EXPECT_EQ(map.rows(), surface_.rows());
   const std::vector<ClosestPoint> closest = closest_points(sites_, points);
   const DistanceMap facing = compute_map(surface_, sites_, {.facing = 60});
-  const FacingPoints faced = closest_facing_points(sites_, points, normals, {.facing = 60});
+  const FacingPoints faced = closest_facing_points(sites_, points, normals, 60);
   const DistanceMap along = compute_map(surface_, sites_, AlongOptions{});
   for (std::size_t i = 0; i < points.size(); ++i) {
     ASSERT_NEAR(std::abs(map.distance[first + i]), closest[i].distance, 1e-6);

@@ -52,7 +52,7 @@ const Calls<Sites> kSites{
     [](Sites& s) {
       Numbers numbers;
       for (const auto& info : engines())
-        if (!info.maps_only)
+        if (info.takes_points)
           for (const ClosestPoint& c : closest_points(s, kPoints, {.engine = make_engine(info.name)}))
             numbers.add(c.point, c.distance, c.site, c.type, c.face);
       return numbers;

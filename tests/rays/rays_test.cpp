@@ -256,7 +256,7 @@ TEST_P(Rays, StartWhereTheMapIsFree) {
     const Surface surface(test::load("elephant.off", "fit"), {.resolution = 128});
     const Sites sites(test::load("knot1.off", steps));
     for (const EngineInfo& engine : engines()) {
-      if (engine.maps_only) continue;
+      if (!engine.takes_points) continue;
       const DistanceMap map = compute_map(surface, sites, {.engine = make_engine(engine.name)});
       const std::vector<double> free = free_distances(surface, sites, map);
       std::vector<Ray> all, late;

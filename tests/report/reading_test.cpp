@@ -58,8 +58,8 @@ TEST_F(Page, ScalesAreThoseOfPictures) {
                    upper = lower + 0.2 * (scale.hi - scale.lo);
       scale.map = Colormap::viridis, scale.tolerance = Tolerance(lower, upper), mode = "tolerance";
       constexpr double kInfinity = std::numeric_limits<double>::infinity();
-      if (i % 15 == 5) scale.tolerance->lo = -kInfinity;
-      if (i % 15 == 10) scale.tolerance->hi = kInfinity;
+      if (i % 15 == 5) scale.tolerance->lower = -kInfinity;
+      if (i % 15 == 10) scale.tolerance->upper = kInfinity;
     }
     const Tolerance tolerance = scale.tolerance.value_or(Tolerance(0, 0));
     Json labels = Json::array(), distances = Json::array(), colors = Json::array();
@@ -74,8 +74,8 @@ TEST_F(Page, ScalesAreThoseOfPictures) {
                       {{"mode", mode},
                        {"lo", scale.lo},
                        {"hi", scale.hi},
-                       {"lower", tolerance.lo},
-                       {"upper", tolerance.hi},
+                       {"lower", tolerance.lower},
+                       {"upper", tolerance.upper},
                        {"accuracy", scale.accuracy}}},
                      {"labels", labels},
                      {"distances", distances},

@@ -6,6 +6,7 @@
 
 #include "cli/samples.h"
 #include "geometry/vec.h"
+#include "gl/raster_report.h"
 #include "gl/support.h"
 #include "research/literal/literal_engine.h"
 #include "research/run_sdm_paper.h"
@@ -118,7 +119,7 @@ TEST_P(PaperLiteral, AsPrintedClaimsNoAccuracy) {
   const auto printed = literal::make_engine({.device = kDevice}, Corrections::none());
   (void)compute_map(surface_, sites_, {.engine = printed, .sign = SignMethod::none});
   EXPECT_TRUE(std::isinf(engine_info(*printed).relative_error));
-  const GlReport report = literal::report(*printed).value();
+  const gl::RasterReport report = literal::report(*printed).value();
   EXPECT_EQ(report.clip, GlClip::stencil);
   EXPECT_EQ(report.unconfirmed, 0u);
   EXPECT_EQ(report.tiles, report.faces);

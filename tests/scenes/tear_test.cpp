@@ -46,7 +46,7 @@ TEST(TearScene, SitesAndSurfaceFollow) {
   Sites sites(scene.bodies()[0].mesh);
   Surface surface(scene.bodies()[0].mesh, {.resolution = 256});
   const std::vector<std::uint32_t> owners(surface.texel_faces().begin(), surface.texel_faces().end());
-  const MapOptions exact{.engine = make_engine("reference")};
+  const ClosestPointOptions exact{.engine = make_engine("reference")};
   for (int frame = 0; frame < kFrames; ++frame) {
     scene.advance();
     const Scene::Body &cloth = scene.bodies()[0], &ball = scene.bodies()[1];

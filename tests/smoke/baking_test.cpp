@@ -266,7 +266,7 @@ TEST(SmokeBake, GeometryOfAnotherMeshIsThatOfItsPoints) {
   }
   EXPECT_NEAR(bake_geometry(squares.surface, solid, of_solid, GeometryChannel::thickness)[18 * 37 + 18], 0.5,
               1e-6);
-  const ScalarImage scalar = scalar_image(37, heights, 0, 0.2, 8);
+  const ScalarImage scalar = scalar_image(37, heights, {0, 0.2}, 8);
   EXPECT_EQ(scalar.image.bytes[18 * 37 + 18], 128);
   EXPECT_EQ(normal_map_image(37, up).value(18, 18, 2), 1);
   EXPECT_EQ(normal_map_image(squares.surface, up, 16).bits, 16u);

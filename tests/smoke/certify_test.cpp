@@ -134,31 +134,30 @@ TEST(SmokeMetrics, OfCrossingMeshesHoldTheMeansOfRandomPoints) {
 TEST(SmokeTolerance, ProofsDecideOnEitherSideOfTheTruth) {
   const Mesh small = cube(1), large = cube(1.1);
   const Sites sites(large);
-  EXPECT_EQ(prove_tolerance(small, sites, Tolerance(-0.1001, 0)).proof, Proof::inside);
+  EXPECT_EQ(prove_tolerance(small, sites, Tolerance(-0.1001, 0)).proof, Proof::holds);
   const ToleranceProof outside = prove_tolerance(small, sites, Tolerance(-0.0999, 0));
-  EXPECT_EQ(outside.proof, Proof::outside);
+  EXPECT_EQ(outside.proof, Proof::fails);
   EXPECT_TRUE(outside.at_lower);
   EXPECT_NEAR(outside.witness->distance, -0.1, 1e-4);
   EXPECT_EQ(prove_tolerance(small, sites, 0.0995, {.accuracy = 1e-3}).proof, Proof::undecided);
-  EXPECT_EQ(prove_tolerance(large, Sites(small), Tolerance(0, 0.1)).proof, Proof::outside);
+  EXPECT_EQ(prove_tolerance(large, Sites(small), Tolerance(0, 0.1)).proof, Proof::fails);
   const std::vector<std::uint32_t> faces{3, 7};
   EXPECT_EQ(prove_tolerance(moved(cube(), {0, 0, 0.2}), Sites(cube()), 0.3, {.faces = faces}).proof,
-            Proof::inside);
+            Proof::holds);
   EXPECT_NE(prove_tolerance(cube(), Sites(cube()), Tolerance(-1, 1e-9), {.most_parts = 3}).proof,
-            Proof::outside);
+            Proof::fails);
   // Signs by normals of an open mesh: |d| decides, or that all points have the sign that is within the
   // limits.
   const Sites open(grid_square(4, 0.5, 5));
   const Mesh below = grid_square(1, 0, 3);
-  EXPECT_EQ(prove_tolerance(below, open, 0.6, {.sign = SignMethod::side}).proof, Proof::inside);
-  EXPECT_EQ(prove_tolerance(below, open, Tolerance(-1, 0.1), {.sign = SignMethod::side}).proof,
-            Proof::inside);
+  EXPECT_EQ(prove_tolerance(below, open, 0.6, {.sign = SignMethod::side}).proof, Proof::holds);
+  EXPECT_EQ(prove_tolerance(below, open, Tolerance(-1, 0.1), {.sign = SignMethod::side}).proof, Proof::holds);
   EXPECT_TRUE(prove_tolerance(below, open, Tolerance(-0.1, 1), {.sign = SignMethod::side}).depends_on_signs);
   // The other skin of a thin plate does not count.
   const Mesh plate = weld(grid_block({-2, -2, 0}, {2, 2, 0.1}, 3)).mesh,
              dented = weld(grid_block({-2, -2, 0}, {2, 2, 0.02}, 3)).mesh;
-  EXPECT_EQ(prove_tolerance(dented, Sites(plate), 0.05).proof, Proof::inside);
-  EXPECT_EQ(prove_tolerance(dented, Sites(plate), 0.05, {.facing = 60}).proof, Proof::outside);
+  EXPECT_EQ(prove_tolerance(dented, Sites(plate), 0.05).proof, Proof::holds);
+  EXPECT_EQ(prove_tolerance(dented, Sites(plate), 0.05, {.facing = 60}).proof, Proof::fails);
   EXPECT_EQ(prove_tolerance(cube(), Sites(first_faces(cube(), 10)), 0.5, {.facing = 20}).faces_without_match,
             2u);
 }
@@ -204,7 +203,7 @@ TEST(SmokeTolerance, VerdictsOfMapsAndGroupsAreThoseOfTheTruth) {
   EXPECT_EQ(faces_of_groups(pair.names, table)[1].faces.size(), 16u);
   EXPECT_EQ(faces_named(pair.names, "right").faces.front(), 16u);
   EXPECT_EQ(with_kinds(pair.names, table)[0].kind, "group");
-  EXPECT_THAT(known_names(pair.names), ::testing::HasSubstr("left"));
+  EXPECT_THAT(names_text(pair.names), ::testing::HasSubstr("left"));
   const std::vector<std::uint32_t> some{20, 3};
   EXPECT_EQ(names_of_part(pair.names, some)[0].of_face, (std::vector<std::uint32_t>{1, 0}));
   GroupVerdicts groups =
@@ -241,7 +240,7 @@ TEST(SmokeTolerance, PassesOfFacingMapsAreProven) {
   const CertifiedVerdict passes = certify_tolerance(surface, sites, map, vertices, 0.031, certify);
   EXPECT_EQ(passes.verdict, Verdict::pass);
   ASSERT_TRUE(passes.proof);
-  EXPECT_EQ(passes.proof->proof, Proof::inside);
+  EXPECT_EQ(passes.proof->proof, Proof::holds);
   EXPECT_EQ(certify_tolerance(surface, sites, map, vertices, 0.029, certify).verdict, Verdict::fail);
 }
 
@@ -266,7 +265,7 @@ TEST(SmokeStatistics, OfALinearFieldAreThoseOfAnInterval) {
   const std::vector<DistanceBand> bands = distance_bands(surface, map, edges);
   ASSERT_EQ(bands.size(), 4u);
   EXPECT_NEAR(bands[2].area_fraction, 0.35, 0.02);
-  const DistanceHistogram histogram = distance_histogram(surface, map, -0.6, 0.6, 7);
+  const DistanceHistogram histogram = distance_histogram(surface, map, {-0.6, 0.6}, 7);
   for (const double share : histogram.area_fractions) EXPECT_NEAR(share, 0.6 / 7, 0.02);
   EXPECT_NEAR(histogram.below, 0.2, 0.02);
   std::vector<std::uint32_t> halves;

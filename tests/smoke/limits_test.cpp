@@ -128,13 +128,13 @@ TEST(SmokeLimits, ChartsOfRoughMeshesOfManyFacesFollowTheSmoothedSurface) {
 TEST(SmokeLimits, TolerancesThatDoNotContainZeroAreProven) {
   const Mesh small = cube(1), large = cube(1.1);
   const Sites around_small(small), around_large(large);
-  EXPECT_EQ(prove_tolerance(large, around_small, Tolerance(0.09, 0.18)).proof, Proof::inside);
+  EXPECT_EQ(prove_tolerance(large, around_small, Tolerance(0.09, 0.18)).proof, Proof::holds);
   const ToleranceProof low = prove_tolerance(large, around_small, Tolerance(0.11, 0.18));
-  EXPECT_EQ(low.proof, Proof::outside);
+  EXPECT_EQ(low.proof, Proof::fails);
   EXPECT_TRUE(low.at_lower);
   EXPECT_NEAR(low.witness->distance, 0.1, 1e-6);
-  EXPECT_EQ(prove_tolerance(small, around_large, Tolerance(-0.2, -0.05)).proof, Proof::inside);
-  EXPECT_EQ(prove_tolerance(large, around_small, Tolerance(-0.2, -0.05)).proof, Proof::outside);
+  EXPECT_EQ(prove_tolerance(small, around_large, Tolerance(-0.2, -0.05)).proof, Proof::holds);
+  EXPECT_EQ(prove_tolerance(large, around_small, Tolerance(-0.2, -0.05)).proof, Proof::fails);
   EXPECT_EQ(prove_tolerance(large, around_small, Tolerance(0.105, 0.18), {.accuracy = 0.01}).proof,
             Proof::undecided);
 }
@@ -266,8 +266,8 @@ TEST(SmokeLimits, WrongArgumentsAreRefused) {
       [&] { (void)make_engine("none"); },
       [&] { (void)closest_points(sites, bad); },
       [&] { (void)closest_points(sites, one, {.max_distance = -1}); },
-      [&] { (void)closest_facing_points(sites, one, none, {.facing = 30}); },
-      [&] { (void)closest_facing_points(sites, one, one, {.facing = 200}); },
+      [&] { (void)closest_facing_points(sites, one, none, 30); },
+      [&] { (void)closest_facing_points(sites, one, one, 200); },
       [&] { (void)point_on_face(sites, SiteType::vertex, 99, {}); },
       [&] { (void)compute_map(surface, sites, {.max_distance = 0}); },
       [&] { (void)compute_map(surface, Sites(square(1, 0)), {.sign = SignMethod::exact}); },
@@ -286,7 +286,9 @@ TEST(SmokeLimits, WrongArgumentsAreRefused) {
       [&] { (void)free_distances(surface, sites, of_other); },
       [&] { (void)ambient_occlusion(surface, sites, map, {.rays = 0}); },
       [&] { (void)statistics(surface, of_other); },
-      [&] { (void)distance_histogram(surface, map, 1, 0, 3); },
+      [&] {
+        (void)distance_histogram(surface, map, {1, 0}, 3);
+      },
       [&] {
         (void)distance_bands(surface, map, std::vector<double>{1, 0});
       },
@@ -400,7 +402,9 @@ TEST(SmokeLimits, WrongArgumentsAreRefused) {
       },
       [&] { (void)sample_layout({.resolution = 32768}, 8); },
       [&] { (void)mean_of_samples({.resolution = 6, .side = 3}, 1, few); },
-      [&] { (void)scalar_image(3, few, 1, 0); },
+      [&] {
+        (void)scalar_image(3, few, {1, 0});
+      },
       [&] { (void)normal_map_image(3, few); },
       [&] { (void)smooth_normals(mesh, -1); },
       [&] {

@@ -109,7 +109,7 @@ TEST(SmokePoints, FacingPointsAgreeWithBruteForce) {
     const std::vector<Vec3> points = random_points(around(mesh), 83, 6);
     std::vector<Vec3> normals = random_points({{-1, -1, -1}, {1, 1, 1}}, points.size(), 7);
     normals[40] = {};
-    const FacingPoints found = closest_facing_points(sites, points, normals, {.facing = angle});
+    const FacingPoints found = closest_facing_points(sites, points, normals, angle);
     ASSERT_EQ(found.closest.size(), points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       double least = std::numeric_limits<double>::infinity();

@@ -62,12 +62,16 @@ Image normal_map_image(const Surface& surface, std::span<const float> normals, s
   return normal_map_image(surface.resolution(), normals, bits);
 }
 
-ScalarImage scalar_image(std::uint32_t resolution, std::span<const float> values, double lo, double hi,
-                         std::uint32_t bits) try {
-  if (!(hi > lo && std::isfinite(hi - lo))) throw Error("the range of a picture of lengths is empty");
-  ScalarImage result{empty_image(resolution, values.size(), 1, bits), lo, hi};
+ScalarImage scalar_image(std::uint32_t resolution, std::span<const float> values,
+                         const std::array<double, 2>& range, std::uint32_t bits) try {
+  const auto [lower, upper] = range;
+  if (!(upper > lower && std::isfinite(upper - lower)))
+    throw Error("the range of a picture of lengths is empty");
+  ScalarImage result{empty_image(resolution, values.size(), 1, bits), lower, upper};
   set_numbers(result.image, [&](std::size_t i) {
-    return std::isfinite(values[i]) ? std::clamp((values[i] - lo) / (hi - lo), 0.0, 1.0) : 0.0;
+    return std::isfinite(values[i])
+               ? std::clamp((values[i] - result.lower) / (result.upper - result.lower), 0.0, 1.0)
+               : 0.0;
   });
   return result;
 } catch (const std::bad_alloc&) {

@@ -56,8 +56,8 @@ Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> faces) {
 
 /// All answers together.
 ToleranceProof operator&(const ToleranceProof& a, const ToleranceProof& b) {
-  if (a.proof == Proof::outside || b.proof == Proof::inside) return a;
-  if (b.proof == Proof::outside || a.proof == Proof::inside) return b;
+  if (a.proof == Proof::fails || b.proof == Proof::holds) return a;
+  if (b.proof == Proof::fails || a.proof == Proof::holds) return b;
   ToleranceProof worse = a.undecided_by < b.undecided_by ? b : a;
   worse.depends_on_signs = a.depends_on_signs || b.depends_on_signs;
   worse.faces_without_match = std::max(a.faces_without_match, b.faces_without_match);
@@ -78,14 +78,14 @@ class Prover {
         scale_(hausdorff::scale_of(a, box)) {}
 
   ToleranceProof operator()(const Tolerance& tolerance) const {
-    const double lo = std::max(tolerance.lo, -kFarthest), hi = std::min(tolerance.hi, kFarthest);
+    const double lo = std::max(tolerance.lower, -kFarthest), hi = std::min(tolerance.upper, kFarthest);
     const double least = std::max({lo, -hi, 0.0}), most = std::max(-lo, hi), tight = std::min(-lo, hi);
     if (sign_ == SignMethod::none) return at_least(least, true) & at_most(hi);
     const bool has_estimate = matching_ != nullptr || is_estimate(sign_);  // of the sign
     if (has_estimate && lo != -hi) return by_either_sign(lo, hi);
     if (tight < 0) {
       const ToleranceProof apart = at_least(least, lo > 0);
-      return apart.proof == Proof::inside ? on_side(hi < 0) & at_most(most) : apart;
+      return apart.proof == Proof::holds ? on_side(hi < 0) & at_most(most) : apart;
     }
     return tight == most ? at_most(most) : at_most(tight, -lo < hi) & at_most(most);
   }
@@ -96,7 +96,7 @@ class Prover {
 
   /// Whether no distance is larger, of the points on one side of O2 or of all.
   ToleranceProof at_most(double limit, std::optional<bool> inside = {}) const {
-    if (limit == kFarthest && matching_ == nullptr) return {.proof = Proof::inside};
+    if (limit == kFarthest && matching_ == nullptr) return {.proof = Proof::holds};
     std::optional<SolidSide> side;
     if (inside) side.emplace(b_, *inside);
     const hausdorff::Decision decision{.limit = limit, .forgiven = limit + options_.accuracy};
@@ -112,11 +112,11 @@ class Prover {
       result.at_lower = result.witness->distance < 0;
     }
     if (result.witness && norm(found.lower.closest - found.lower.point) > decision.forgiven)
-      result.proof = Proof::outside;
+      result.proof = Proof::fails;
     else if (!found.unmatched.empty())
-      result.proof = Proof::outside, result.witness.reset();
+      result.proof = Proof::fails, result.witness.reset();
     else if (!result.witness && found.upper <= limit + scale_.precision)
-      result.proof = Proof::inside;
+      result.proof = Proof::holds;
     else
       result.undecided_by = std::max(found.upper - limit, 0.0);
     return result;
@@ -124,16 +124,16 @@ class Prover {
 
   /// Whether no |distance| is smaller; `at_lower`: that is the lower limit.
   ToleranceProof at_least(double limit, bool at_lower) const {
-    if (!(limit > 0)) return {.proof = Proof::inside};
+    if (!(limit > 0)) return {.proof = Proof::holds};
     const tolerance::LeastDistance found = tolerance::least_distance(a_, b_, limit, matching_);
     ToleranceProof result{.at_lower = at_lower};
     if (found.face == kNone || found.value >= limit - scale_.precision) {
-      result.proof = Proof::inside;
+      result.proof = Proof::holds;
       return result;
     }
     result.witness = {found.point, found.closest, found.face, found.closest_face, found.value};
     if (limit - found.value > options_.accuracy)
-      result.proof = Proof::outside;
+      result.proof = Proof::fails;
     else
       result.undecided_by = limit - found.value;
     return result;
@@ -150,12 +150,12 @@ class Prover {
       }
     });
     const auto found = std::ranges::find(wrong, 1);
-    if (found == wrong.end()) return {.proof = Proof::inside};
+    if (found == wrong.end()) return {.proof = Proof::holds};
     const auto face = static_cast<std::uint32_t>(found - wrong.begin());
     const Vec3& p = a_.positions[a_.triangles[face][0]];
     LowerBound at;
     at.raise(p, 0, face, hausdorff::nearest_face(b_, p, b_.tree.items[0]));
-    return {.proof = Proof::outside, .witness = witness(at), .at_lower = !inside};
+    return {.proof = Proof::fails, .witness = witness(at), .at_lower = !inside};
   }
 
   /// What |d| decides alone: within the tolerance with either sign, or with neither. And of SignMethod::side,
@@ -164,12 +164,12 @@ class Prover {
     const double tight = std::min(-lo, hi);
     if (tight >= 0) {
       const ToleranceProof within = at_most(tight);
-      if (within.proof == Proof::inside) return within;
+      if (within.proof == Proof::holds) return within;
     }
     ToleranceProof result = at_most(std::max(-lo, hi));
-    if (result.proof == Proof::outside) return result;
-    if (result.proof == Proof::inside && sign_ == SignMethod::side && matching_ == nullptr &&
-        (tight >= 0 || at_least(-tight, lo > 0).proof == Proof::inside) &&
+    if (result.proof == Proof::fails) return result;
+    if (result.proof == Proof::holds && sign_ == SignMethod::side && matching_ == nullptr &&
+        (tight >= 0 || at_least(-tight, lo > 0).proof == Proof::holds) &&
         none_beyond(std::max(tight, 0.0), -lo < hi))
       return result;
     result.proof = Proof::undecided;
@@ -217,10 +217,10 @@ class Prover {
 };
 
 void check_question(const Tolerance& tolerance, const ToleranceProofOptions& options) {
-  const bool has_limit = std::isfinite(tolerance.lo) || std::isfinite(tolerance.hi);
-  if (!(tolerance.lo <= tolerance.hi && has_limit &&
-        tolerance.hi > -std::numeric_limits<double>::infinity() &&
-        tolerance.lo < std::numeric_limits<double>::infinity()))
+  const bool has_limit = std::isfinite(tolerance.lower) || std::isfinite(tolerance.upper);
+  if (!(tolerance.lower <= tolerance.upper && has_limit &&
+        tolerance.upper > -std::numeric_limits<double>::infinity() &&
+        tolerance.lower < std::numeric_limits<double>::infinity()))
     throw Error("the tolerance to prove must be two numbers, the smaller one first, of which one is finite");
   if (!(options.accuracy >= 0)) throw Error("the accuracy of a tolerance's proof must be at least 0");
 }

@@ -76,8 +76,8 @@ nlohmann::ordered_json fields_json(const Struct& of, const OtherKeys& other_keys
       if (key == name) key = other;
     if (key.empty()) return;
     if constexpr (std::is_same_v<Value, Tolerance>) {
-      json["lower"] = value.lo;
-      json["upper"] = value.hi;
+      json["lower"] = value.lower;
+      json["upper"] = value.upper;
     } else {
       json[std::string(key)] = value_json(value, other_keys);
     }

@@ -158,7 +158,9 @@ Json to_json(const DistanceField& field) {
 Json to_json(const GlReport& report) {
   Json json = fields_json(report);
   insert_after(json, "texels", "overdraw", report.overdraw());
-  for (Json& ms : json["time_ms"]) ms = std::round(1000 * ms.get<double>()) / 1000;  // to microseconds
+  for (const auto& [name, count] : report.counts) json[std::string(name)] = count;
+  for (const auto& [name, ms] : report.time_ms)
+    json["time_ms"][std::string(name)] = std::round(1000 * ms) / 1000;  // to microseconds
   return json;
 }
 

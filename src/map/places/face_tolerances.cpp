@@ -21,7 +21,7 @@ FaceTolerances::FaceTolerances(const std::optional<Tolerance>& of_all, std::span
           joined.try_emplace({number_[face], row}, static_cast<std::uint32_t>(tolerances_.size()));
       if (is_new) {
         const Tolerance before = tolerances_[number_[face]], &more = table[row].tolerance;
-        tolerances_.emplace_back(std::max(before.lo, more.lo), std::min(before.hi, more.hi));
+        tolerances_.emplace_back(std::max(before.lower, more.lower), std::min(before.upper, more.upper));
       }
       number_[face] = place->second;
     }

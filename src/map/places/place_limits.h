@@ -15,7 +15,7 @@ namespace sdm::map {
 
 /// How far a distance is beyond the limits; not positive within them.
 [[nodiscard]] inline double excess(double distance, const Tolerance& limits) {
-  return std::max(distance - limits.hi, limits.lo - distance);
+  return std::max(distance - limits.upper, limits.lower - distance);
 }
 
 /// Which samples belong to places: those that a tolerance refuses, or where it refuses none, those at or
@@ -38,7 +38,7 @@ class PlaceLimits {
   [[nodiscard]] int side(double d, std::uint32_t face) const {
     if (by_tolerance_) return refusal(d, face);
     if (!std::isfinite(d) || !(std::abs(d) > accuracy_)) return 0;
-    return d >= of_all_.hi ? 1 : d <= of_all_.lo ? 2 : 0;
+    return d >= of_all_.upper ? 1 : d <= of_all_.lower ? 2 : 0;
   }
   /// What samples of one place have in common: side() and the rows that judge the face; 0 if the sample
   /// belongs to no place.

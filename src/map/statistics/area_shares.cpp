@@ -87,26 +87,27 @@ std::vector<DistanceBand> distance_bands(const Surface& surface, const DistanceM
   });
   std::vector<DistanceBand> bands;
   for (std::size_t i = 0; i <= edges.size(); ++i)
-    bands.push_back({.lo = i > 0 ? edges[i - 1] : -kInfinity,
-                     .hi = i < edges.size() ? edges[i] : kInfinity,
+    bands.push_back({.lower = i > 0 ? edges[i - 1] : -kInfinity,
+                     .upper = i < edges.size() ? edges[i] : kInfinity,
                      .area_fraction = of[i]});
   return bands;
 }
 
-DistanceHistogram distance_histogram(const Surface& surface, const DistanceMap& map, double lo, double hi,
-                                     std::size_t bins) {
-  if (!(std::isfinite(lo) && std::isfinite(hi) && lo < hi) || bins == 0)
+DistanceHistogram distance_histogram(const Surface& surface, const DistanceMap& map,
+                                     const std::array<double, 2>& range, std::size_t bins) {
+  const double lower = range[0], upper = range[1];
+  if (!(std::isfinite(lower) && std::isfinite(upper) && lower < upper) || bins == 0)
     throw Error("a histogram needs a bin and a range of two finite numbers, the smaller one first");
-  const double per_unit = static_cast<double>(bins) / (hi - lo);
+  const double per_unit = static_cast<double>(bins) / (upper - lower);
   const auto of = shares(surface, map, bins + 3, [&](float d) -> std::size_t {
     if (!std::isfinite(d)) return bins + 2;
-    if (d < lo) return bins;
-    if (d > hi) return bins + 1;
-    return std::min(static_cast<std::size_t>((d - lo) * per_unit), bins - 1);
+    if (d < lower) return bins;
+    if (d > upper) return bins + 1;
+    return std::min(static_cast<std::size_t>((d - lower) * per_unit), bins - 1);
   });
   const auto bins_end = of.begin() + static_cast<std::ptrdiff_t>(bins);
-  return {.lo = lo,
-          .hi = hi,
+  return {.lower = lower,
+          .upper = upper,
           .area_fractions = {of.begin(), bins_end},
           .below = of[bins],
           .above = of[bins + 1],

@@ -165,7 +165,7 @@ std::vector<FaceNames> names_of_part(std::span<const FaceNames> names,
   return result;
 }
 
-std::string known_names(std::span<const FaceNames> names) {
+std::string names_text(std::span<const FaceNames> names) {
   constexpr std::size_t kMost = 20;
   std::string text;
   std::size_t count = 0;

@@ -11,8 +11,8 @@ class ToleranceLimits {
  public:
   ToleranceLimits(const Tolerance& tolerance, double accuracy) : limits_(tolerance), accuracy_(accuracy) {}
 
-  [[nodiscard]] bool below(double d) const { return rules::is_below(d, limits_.lo, accuracy_); }
-  [[nodiscard]] bool above(double d) const { return rules::is_above(d, limits_.hi, accuracy_); }
+  [[nodiscard]] bool below(double d) const { return rules::is_below(d, limits_.lower, accuracy_); }
+  [[nodiscard]] bool above(double d) const { return rules::is_above(d, limits_.upper, accuracy_); }
 
  private:
   Tolerance limits_;

@@ -42,11 +42,11 @@ Judgement judge(const Judgement& of_samples, const ToleranceProof& proof) {
   result.deciding_bound = 0;  // the proof does not depend on the map
   result.nearest_is_lower = proof.witness ? proof.at_lower : of_samples.nearest_is_lower;
   switch (proof.proof) {
-    case Proof::inside:
+    case Proof::holds:
       result.verdict = Verdict::pass, result.reason = VerdictReason::all_within;
       result.certified = true;
       break;
-    case Proof::outside:
+    case Proof::fails:
       result.verdict = Verdict::fail;
       result.reason = proof.witness ? VerdictReason::exceeded : VerdictReason::without_match;
       result.certified = true, result.within = false;
@@ -63,8 +63,9 @@ Judgement judge(const Judgement& of_samples, const ToleranceProof& proof) {
 
 Tolerance summary::Certifier::real_limits(const Tolerance& tolerance) const {
   const bool is_signed = map_.sign.method != SignMethod::none;
-  return is_signed || tolerance.lo > 0 ? tolerance
-                                       : Tolerance(-std::numeric_limits<double>::infinity(), tolerance.hi);
+  return is_signed || tolerance.lower > 0
+             ? tolerance
+             : Tolerance(-std::numeric_limits<double>::infinity(), tolerance.upper);
 }
 
 bool summary::Certifier::are_walls_thin(const Tolerance& tolerance) {
@@ -93,8 +94,8 @@ std::optional<ToleranceProof> summary::Certifier::prove(const Tolerance& toleran
                                                         const Faces& faces) {
   const Tolerance limits = real_limits(tolerance);
   const double guard = options_.guard;
-  const Tolerance inner(limits.lo + guard, limits.hi - guard);
-  if (!(inner.lo <= inner.hi)) return std::nullopt;
+  const Tolerance inner(limits.lower + guard, limits.upper - guard);
+  if (!(inner.lower <= inner.upper)) return std::nullopt;
   if (!box_) box_ = bounds(sites_.mesh());
   const bool by_side = facing && map_.sign.method != SignMethod::none;
   ToleranceProof proof = tolerance::prove_valid(surface_, sites_, guard > 0 ? inner : tolerance,
@@ -112,10 +113,10 @@ std::optional<ToleranceProof> summary::Certifier::prove(const Tolerance& toleran
 /// within them the other way round.
 void summary::Certifier::decide_by_facing(CertifiedVerdict& verdict, const Faces& faces) {
   verdict.proof = prove(verdict.tolerance, kSameWay, &matching(kSameWay), faces);
-  if (verdict.proof && verdict.proof->proof == Proof::outside) {
+  if (verdict.proof && verdict.proof->proof == Proof::fails) {
     if (!has_outside_) has_outside_ = facing::has_outside(surface_);
     if (!*has_outside_ &&
-        prove(verdict.tolerance, kSameWay, &reversed_matching(kSameWay), faces)->proof == Proof::inside)
+        prove(verdict.tolerance, kSameWay, &reversed_matching(kSameWay), faces)->proof == Proof::holds)
       verdict.proof = ToleranceProof{.depends_on_signs = true};
   }
   verdict.by_facing = verdict.proof && verdict.proof->proof != Proof::undecided;

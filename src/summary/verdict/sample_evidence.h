@@ -42,7 +42,8 @@ class SignedSamples {
 
   /// Whether a sample without a sign is not within the tolerance with either one.
   [[nodiscard]] bool missing_signs_matter(const Tolerance& tolerance, double accuracy) const {
-    return unsigned_.highest && !(*unsigned_.highest + accuracy <= std::min(-tolerance.lo, tolerance.hi));
+    return unsigned_.highest &&
+           !(*unsigned_.highest + accuracy <= std::min(-tolerance.lower, tolerance.upper));
   }
 
  private:

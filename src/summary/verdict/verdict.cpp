@@ -14,7 +14,7 @@ Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
   const double lowest = evidence.lowest.value_or(rules::kInfinity),
                highest = evidence.highest.value_or(-rules::kInfinity);
   const double accuracy = evidence.accuracy + evidence.guard, farthest = std::max(-lowest, highest);
-  const double lower = rules::lower_of(tolerance.lo, evidence.is_signed), upper = tolerance.hi;
+  const double lower = rules::lower_of(tolerance.lower, evidence.is_signed), upper = tolerance.upper;
   const double margin = evidence.estimated_signs
                             ? rules::margin_of(-farthest, farthest, lower, upper, accuracy)
                             : rules::margin_of(lowest, highest, lower, upper, accuracy);
@@ -28,7 +28,7 @@ Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
   if (evidence.complete && std::isfinite(margin)) result.margin = margin;
   if (!result.within)
     result.certified = !evidence.estimated_signs || !evidence.complete ||
-                       farthest - accuracy > std::max(-tolerance.lo, tolerance.hi);
+                       farthest - accuracy > std::max(-tolerance.lower, tolerance.upper);
   else
     result.certified = result.verdict == Verdict::pass && evidence.error_bound <= margin;
   if (result.verdict == Verdict::not_decided && result.reason != VerdictReason::thin_walls &&
@@ -38,7 +38,7 @@ Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
 }
 
 double largest_limit(const Tolerance& tolerance) {
-  return rules::largest_limit(tolerance.lo, tolerance.hi);
+  return rules::largest_limit(tolerance.lower, tolerance.upper);
 }
 
 ToleranceVerdict summary::check_evidence(const Surface& surface, const DistanceMap& map,

@@ -147,11 +147,11 @@ TEST(FacingHausdorff, FindsADentDeeperThanHalfOfAWall) {
 
   const ToleranceProof fails = prove_tolerance(dented, sites, 0.6 * wall, {.facing = 90}),
                        passes = prove_tolerance(dented, sites, 0.81 * wall, {.facing = 90});
-  EXPECT_EQ(fails.proof, Proof::outside);
+  EXPECT_EQ(fails.proof, Proof::fails);
   ASSERT_TRUE(fails.witness);
   EXPECT_LT(fails.witness->distance, -0.6 * wall) << "behind the face that it is matched with";
-  EXPECT_EQ(passes.proof, Proof::inside);
-  EXPECT_EQ(prove_tolerance(dented, sites, 0.6 * wall).proof, Proof::inside) << "to the other skin";
+  EXPECT_EQ(passes.proof, Proof::holds);
+  EXPECT_EQ(prove_tolerance(dented, sites, 0.6 * wall).proof, Proof::holds) << "to the other skin";
   const ToleranceProof one_sided = prove_tolerance(dented, sites, {-0.9 * wall, 0.1 * wall}, {.facing = 90});
   EXPECT_EQ(one_sided.proof, Proof::undecided);
   EXPECT_TRUE(one_sided.depends_on_signs);
@@ -164,10 +164,10 @@ TEST(FacingHausdorff, ProvesALowerLimitOfUnsignedDistances) {
   const auto prove = [&](double lo, double hi) {
     return prove_tolerance(over, sites, {lo, hi}, {.sign = SignMethod::none, .facing = 90});
   };
-  EXPECT_EQ(prove(0.4, 0.6).proof, Proof::inside);
-  EXPECT_EQ(prove(0.1, 0.45).proof, Proof::outside);
+  EXPECT_EQ(prove(0.4, 0.6).proof, Proof::holds);
+  EXPECT_EQ(prove(0.1, 0.45).proof, Proof::fails);
   const ToleranceProof low = prove(0.55, 0.6);
-  EXPECT_EQ(low.proof, Proof::outside);
+  EXPECT_EQ(low.proof, Proof::fails);
   EXPECT_FALSE(low.depends_on_signs);
   EXPECT_TRUE(low.at_lower);
   ASSERT_TRUE(low.witness);
@@ -175,7 +175,7 @@ TEST(FacingHausdorff, ProvesALowerLimitOfUnsignedDistances) {
   Mesh turned = over;
   for (Triangle& t : turned.triangles) std::swap(t[0], t[1]);
   EXPECT_EQ(prove_tolerance(turned, sites, {2.4, 2.6}, {.sign = SignMethod::none, .facing = 90}).proof,
-            Proof::inside)
+            Proof::holds)
       << "to the lower side";
 }
 
@@ -187,14 +187,14 @@ TEST(FacingHausdorff, StatesFacesWithoutAMatch) {
   EXPECT_EQ(found.faces_without_match, 10U);
   EXPECT_NEAR(found.area_without_match, 5.0 / 6, 1e-12);
   const ToleranceProof proof = prove_tolerance(box, sites, 100, {.facing = 30});
-  EXPECT_EQ(proof.proof, Proof::outside) << "they have no distance";
+  EXPECT_EQ(proof.proof, Proof::fails) << "they have no distance";
   EXPECT_EQ(proof.faces_without_match, 10U);
   EXPECT_FALSE(proof.witness);
   // Of the top alone.
   std::vector<std::uint32_t> top;
   for (std::uint32_t f = 0; f < box.triangles.size(); ++f)
     if (unit_normal(box, f)[2] > 0.9) top.push_back(f);
-  EXPECT_EQ(prove_tolerance(box, sites, 100, {.facing = 30, .faces = top}).proof, Proof::inside);
+  EXPECT_EQ(prove_tolerance(box, sites, 100, {.facing = 30, .faces = top}).proof, Proof::holds);
 }
 
 /// n × n squares of 1 / n with noise of their size.

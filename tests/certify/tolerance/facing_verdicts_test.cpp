@@ -85,7 +85,7 @@ TEST(FacingVerdicts, APassIsProven) {
     EXPECT_EQ(passes.verdict, Verdict::pass);
     EXPECT_TRUE(passes.certified);
     ASSERT_TRUE(passes.proof);
-    EXPECT_EQ(passes.proof->proof, Proof::inside);
+    EXPECT_EQ(passes.proof->proof, Proof::holds);
     // What it claims: the scan is the graph of a function, of which the upper side is the closest that faces
     // up.
     for (const Vec3& p : dent.scan.positions) EXPECT_LE(std::abs(p[2]), 0.8);
@@ -218,7 +218,7 @@ TEST(FacingVerdicts, GroupsAreProven) {
   for (const GroupVerdict& group : found.groups) {
     EXPECT_EQ(group.verdict.verdict, Verdict::pass) << group.group;
     EXPECT_TRUE(group.verdict.certified);
-    EXPECT_EQ(group.verdict.proof->proof, Proof::inside);
+    EXPECT_EQ(group.verdict.proof->proof, Proof::holds);
   }
   const std::vector<GroupTolerance> tight{{"rim", 0.01}, {"dent", 0.6}};
   EXPECT_EQ(dent.verdicts(names, tight).groups[1].verdict.verdict, Verdict::fail);

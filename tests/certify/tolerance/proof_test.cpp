@@ -61,22 +61,22 @@ Extent extent_of(const Mesh& a, const SignedOracle& distance, int n) {
 void check(const ToleranceProof& found, const Tolerance& tolerance, const Extent& extent, const Mesh& a,
            const SignedOracle& distance, bool is_signed) {
   constexpr double kRounding = 1e-9;
-  const double lo = is_signed || tolerance.lo > 0 ? tolerance.lo : -1e300;
+  const double lo = is_signed || tolerance.lower > 0 ? tolerance.lower : -1e300;
   const bool surely_inside =
-      extent.lowest - extent.spacing > lo && extent.highest + extent.spacing < tolerance.hi;
-  const bool surely_outside = extent.lowest < lo - kRounding || extent.highest > tolerance.hi + kRounding;
+      extent.lowest - extent.spacing > lo && extent.highest + extent.spacing < tolerance.upper;
+  const bool surely_outside = extent.lowest < lo - kRounding || extent.highest > tolerance.upper + kRounding;
   ASSERT_NE(found.proof, Proof::undecided)
-      << tolerance.lo << ":" << tolerance.hi << " by " << found.undecided_by.value_or(-1);
+      << tolerance.lower << ":" << tolerance.upper << " by " << found.undecided_by.value_or(-1);
   if (surely_inside) {
-    EXPECT_EQ(found.proof, Proof::inside);
+    EXPECT_EQ(found.proof, Proof::holds);
   }
   if (surely_outside) {
-    EXPECT_EQ(found.proof, Proof::outside);
+    EXPECT_EQ(found.proof, Proof::fails);
   }
-  if (found.proof == Proof::inside) return;
+  if (found.proof == Proof::holds) return;
   ASSERT_TRUE(found.witness);
   const double d = found.witness->distance;
-  EXPECT_TRUE(d < lo || d > tolerance.hi) << d;
+  EXPECT_TRUE(d < lo || d > tolerance.upper) << d;
   EXPECT_EQ(found.at_lower, d < lo);
   EXPECT_NEAR(distance(found.witness->point), d, kRounding);
   EXPECT_NEAR(norm(found.witness->closest - found.witness->point), std::abs(d), kRounding);
@@ -95,8 +95,8 @@ void check_all(const Mesh& a, const Mesh& b, int n) {
   for (const double below : {-step, -0.01 * step, 0.01 * step, step})
     for (const double above : {-step, -0.01 * step, 0.01 * step, step}) {
       const Tolerance tolerance(extent.lowest + below, extent.highest + above);
-      if (tolerance.lo > tolerance.hi || (!is_signed && tolerance.needs_sign())) continue;
-      if (std::abs(tolerance.lo) < 1e-6 || std::abs(tolerance.hi) < 1e-6) continue;
+      if (tolerance.lower > tolerance.upper || (!is_signed && tolerance.needs_sign())) continue;
+      if (std::abs(tolerance.lower) < 1e-6 || std::abs(tolerance.upper) < 1e-6) continue;
       check(prove_tolerance(a, sites, tolerance), tolerance, extent, a, distance, is_signed);
     }
   const double farthest = std::max(std::abs(extent.lowest), std::abs(extent.highest));
@@ -135,11 +135,11 @@ TEST(ToleranceProof, OfPartsAndTheirCopies) {
     const Mesh mesh = load(name, "fit");
     const Sites sites(mesh);
     for (const double limit : {0.0, 1e-6, 0.1})
-      EXPECT_EQ(prove_tolerance(mesh, sites, limit).proof, Proof::inside) << name;
+      EXPECT_EQ(prove_tolerance(mesh, sites, limit).proof, Proof::holds) << name;
     const Mesh away = moved(mesh, {0, 0, 0.01});
-    EXPECT_EQ(prove_tolerance(away, sites, 0.01).proof, Proof::inside) << name;
-    EXPECT_EQ(prove_tolerance(away, sites, 0.02).proof, Proof::inside) << name;
-    EXPECT_EQ(prove_tolerance(away, sites, 0.005).proof, Proof::outside) << name;
+    EXPECT_EQ(prove_tolerance(away, sites, 0.01).proof, Proof::holds) << name;
+    EXPECT_EQ(prove_tolerance(away, sites, 0.02).proof, Proof::holds) << name;
+    EXPECT_EQ(prove_tolerance(away, sites, 0.005).proof, Proof::fails) << name;
   }
 }
 
@@ -150,22 +150,22 @@ TEST(ToleranceProof, OfOneSideOfAPart) {
   const auto prove = [&](double z, const Tolerance& tolerance) {
     return prove_tolerance(moved(part, {0, 0, z}), sites, tolerance).proof;
   };
-  EXPECT_EQ(prove(0.01, {-0.011, 0.02}), Proof::inside);
-  EXPECT_EQ(prove(0.01, {-0.02, 0.011}), Proof::inside);
-  EXPECT_EQ(prove(0.01, {-0.001, 0.02}), Proof::outside);
-  EXPECT_EQ(prove(0.01, {-0.02, 0.001}), Proof::outside);
-  EXPECT_EQ(prove(5, {1, 10}), Proof::inside);
-  EXPECT_EQ(prove(5, {-10, -1}), Proof::outside);
-  EXPECT_EQ(prove(5, {4.9, 10}), Proof::outside);
+  EXPECT_EQ(prove(0.01, {-0.011, 0.02}), Proof::holds);
+  EXPECT_EQ(prove(0.01, {-0.02, 0.011}), Proof::holds);
+  EXPECT_EQ(prove(0.01, {-0.001, 0.02}), Proof::fails);
+  EXPECT_EQ(prove(0.01, {-0.02, 0.001}), Proof::fails);
+  EXPECT_EQ(prove(5, {1, 10}), Proof::holds);
+  EXPECT_EQ(prove(5, {-10, -1}), Proof::fails);
+  EXPECT_EQ(prove(5, {4.9, 10}), Proof::fails);
 }
 
 // Unsigned distances are never negative.
 TEST(ToleranceProof, OfUnsignedDistancesFromZero) {
   const Sites sites(square(4, 0));
   const Mesh on = square(2, 0);
-  EXPECT_EQ(prove_tolerance(on, sites, Tolerance(0, 0.1)).proof, Proof::inside);
-  EXPECT_EQ(prove_tolerance(square(2, 0.2), sites, Tolerance(0, 0.1)).proof, Proof::outside);
-  EXPECT_EQ(prove_tolerance(on, sites, Tolerance(0.01, 0.1)).proof, Proof::outside);
+  EXPECT_EQ(prove_tolerance(on, sites, Tolerance(0, 0.1)).proof, Proof::holds);
+  EXPECT_EQ(prove_tolerance(square(2, 0.2), sites, Tolerance(0, 0.1)).proof, Proof::fails);
+  EXPECT_EQ(prove_tolerance(on, sites, Tolerance(0.01, 0.1)).proof, Proof::fails);
   EXPECT_THROW((void)prove_tolerance(on, sites, Tolerance(-0.1, 0.2)), Error);
 }
 
@@ -182,8 +182,8 @@ TEST(ToleranceProof, ForgivesTheAccuracy) {
   EXPECT_LE(*open.undecided_by, 0.01 + 1e-12);
   ASSERT_TRUE(open.witness);
   EXPECT_NEAR(open.witness->distance, 0.1, 1e-12);
-  EXPECT_EQ(prove(0.099, 0.0009).proof, Proof::outside);
-  EXPECT_EQ(prove(0.1001, 0.01).proof, Proof::inside) << "proven, however accurate a map is";
+  EXPECT_EQ(prove(0.099, 0.0009).proof, Proof::fails);
+  EXPECT_EQ(prove(0.1001, 0.01).proof, Proof::holds) << "proven, however accurate a map is";
   const ToleranceProof below = prove({0.101, 0.2}, 0.01);
   EXPECT_EQ(below.proof, Proof::undecided);
   EXPECT_NEAR(below.undecided_by.value_or(0), 0.001, 1e-12);
@@ -199,10 +199,10 @@ TEST(ToleranceProof, WithEstimatedSigns) {
   const auto prove = [&](const Tolerance& tolerance) {
     return prove_tolerance(inner, sites, tolerance, {.sign = SignMethod::winding});
   };
-  EXPECT_EQ(prove(0.6).proof, Proof::inside);
-  EXPECT_EQ(prove(0.4).proof, Proof::outside);
-  EXPECT_EQ(prove({-0.7, 0.6}).proof, Proof::inside);
-  EXPECT_EQ(prove({-0.3, 0.4}).proof, Proof::outside);
+  EXPECT_EQ(prove(0.6).proof, Proof::holds);
+  EXPECT_EQ(prove(0.4).proof, Proof::fails);
+  EXPECT_EQ(prove({-0.7, 0.6}).proof, Proof::holds);
+  EXPECT_EQ(prove({-0.3, 0.4}).proof, Proof::fails);
   const ToleranceProof by_sign = prove({-0.6, 0.1});
   EXPECT_EQ(by_sign.proof, Proof::undecided);
   EXPECT_TRUE(by_sign.depends_on_signs);
@@ -213,11 +213,11 @@ TEST(ToleranceProof, OfSomeFaces) {
   const Mesh both = joined(square(2, 0.1), square(2, 1));
   const Sites sites(square(4, 0));
   const std::vector<std::uint32_t> low{0, 1}, high{2, 3}, none{9};
-  EXPECT_EQ(prove_tolerance(both, sites, 0.2, {.faces = low}).proof, Proof::inside);
+  EXPECT_EQ(prove_tolerance(both, sites, 0.2, {.faces = low}).proof, Proof::holds);
   const ToleranceProof found = prove_tolerance(both, sites, 0.2, {.faces = high});
-  EXPECT_EQ(found.proof, Proof::outside);
+  EXPECT_EQ(found.proof, Proof::fails);
   EXPECT_GE(found.witness->face, 2u);
-  EXPECT_EQ(prove_tolerance(both, sites, 0.2).proof, Proof::outside);
+  EXPECT_EQ(prove_tolerance(both, sites, 0.2).proof, Proof::fails);
   EXPECT_THROW((void)prove_tolerance(both, sites, 0.2, {.faces = none}), Error);
 }
 
@@ -248,12 +248,12 @@ TEST(ToleranceProof, OfALimitOfZeroWhereSurfacesTouch) {
     const auto prove = [&](double height, const Tolerance& tolerance) {
       return prove_tolerance(part(height), sites, tolerance, {.most_parts = 20000}).proof;
     };
-    EXPECT_EQ(prove(3.08, {0, 0.1}), Proof::inside);
-    EXPECT_EQ(prove(3.08, {0, 0.05}), Proof::outside);
-    EXPECT_EQ(prove(3.08, {-0.1, 0}), Proof::outside);
-    EXPECT_EQ(prove(2.92, {-0.1, 0}), Proof::inside);
-    EXPECT_EQ(prove(2.92, {0, 0.1}), Proof::outside);
-    EXPECT_EQ(prove(3, {0, 0}), Proof::inside);
+    EXPECT_EQ(prove(3.08, {0, 0.1}), Proof::holds);
+    EXPECT_EQ(prove(3.08, {0, 0.05}), Proof::fails);
+    EXPECT_EQ(prove(3.08, {-0.1, 0}), Proof::fails);
+    EXPECT_EQ(prove(2.92, {-0.1, 0}), Proof::holds);
+    EXPECT_EQ(prove(2.92, {0, 0.1}), Proof::fails);
+    EXPECT_EQ(prove(3, {0, 0}), Proof::holds);
   }
 }
 
@@ -261,9 +261,9 @@ TEST(ToleranceProof, OfALimitOfZeroWhereSurfacesTouch) {
 TEST(ToleranceProof, EndsAfterTheMostParts) {
   const Sites sites(cube(1));
   const Mesh part = moved(cube(1), {2, 0.3, 0.2});
-  EXPECT_EQ(prove_tolerance(part, sites, {0, 5}, {.most_parts = 1000}).proof, Proof::inside);
-  EXPECT_EQ(prove_tolerance(moved(part, {-0.01, 0, 0}), sites, {0, 5}).proof, Proof::outside);
-  EXPECT_EQ(prove_tolerance(moved(part, {0.01, 0, 0}), sites, {0, 5}).proof, Proof::inside);
+  EXPECT_EQ(prove_tolerance(part, sites, {0, 5}, {.most_parts = 1000}).proof, Proof::holds);
+  EXPECT_EQ(prove_tolerance(moved(part, {-0.01, 0, 0}), sites, {0, 5}).proof, Proof::fails);
+  EXPECT_EQ(prove_tolerance(moved(part, {0.01, 0, 0}), sites, {0, 5}).proof, Proof::holds);
 }
 
 // Cubes of 2 and 3 have their faces 0.5 apart: the smaller one is inside.
@@ -273,22 +273,22 @@ TEST(ToleranceProof, OfALimitOnOneSide) {
   const auto prove = [](const Mesh& a, const Mesh& b, double lo, double hi) {
     return prove_tolerance(a, Sites(b), Tolerance(lo, hi)).proof;
   };
-  EXPECT_EQ(prove(small, large, -kNone, 0.1), Proof::inside);
-  EXPECT_EQ(prove(small, large, -0.4, kNone), Proof::outside);
-  EXPECT_EQ(prove(small, large, -0.6, kNone), Proof::inside);
-  EXPECT_EQ(prove(small, large, -kNone, -0.4), Proof::inside);
-  EXPECT_EQ(prove(small, large, -kNone, -0.55), Proof::outside);
-  EXPECT_EQ(prove(large, small, 0.4, kNone), Proof::inside);
-  EXPECT_EQ(prove(large, small, 0.55, kNone), Proof::outside);
-  EXPECT_EQ(prove(square(2, 0.2), square(4, 0), -kNone, 0.3), Proof::inside) << "unsigned";
-  EXPECT_EQ(prove(square(2, 0.2), square(4, 0), -kNone, 0.1), Proof::outside) << "unsigned";
+  EXPECT_EQ(prove(small, large, -kNone, 0.1), Proof::holds);
+  EXPECT_EQ(prove(small, large, -0.4, kNone), Proof::fails);
+  EXPECT_EQ(prove(small, large, -0.6, kNone), Proof::holds);
+  EXPECT_EQ(prove(small, large, -kNone, -0.4), Proof::holds);
+  EXPECT_EQ(prove(small, large, -kNone, -0.55), Proof::fails);
+  EXPECT_EQ(prove(large, small, 0.4, kNone), Proof::holds);
+  EXPECT_EQ(prove(large, small, 0.55, kNone), Proof::fails);
+  EXPECT_EQ(prove(square(2, 0.2), square(4, 0), -kNone, 0.3), Proof::holds) << "unsigned";
+  EXPECT_EQ(prove(square(2, 0.2), square(4, 0), -kNone, 0.1), Proof::fails) << "unsigned";
 }
 
 // The boxes of spheres are farther apart than half of the limit.
 TEST(ToleranceProof, FindsTheLeastDistance) {
   const Mesh a = moved(sphere(2), {0, 0, 2.3}), b = sphere(2);
   const ToleranceProof found = prove_tolerance(a, Sites(b), Tolerance(0.4, 10));
-  EXPECT_EQ(found.proof, Proof::outside);
+  EXPECT_EQ(found.proof, Proof::fails);
   ASSERT_TRUE(found.witness);
   EXPECT_NEAR(found.witness->distance, 0.3, 1e-12);
   EXPECT_TRUE(found.at_lower);

@@ -64,7 +64,8 @@ std::uint32_t scramble(std::uint32_t x) {
 Rgb ColorScale::operator()(double distance) const {
   if (!std::isfinite(distance)) return kNoValue;
   const Tolerance limits = tolerance.value_or(Tolerance());
-  const double place = rules::color_place(distance, mode_of(*this), lo, hi, limits.lo, limits.hi, accuracy);
+  const double place =
+      rules::color_place(distance, mode_of(*this), lo, hi, limits.lower, limits.upper, accuracy);
   if (place >= rules::kInUnjudged) return kUnjudged;
   if (place >= rules::kInBelow) return gradient(kBelow, place - rules::kInBelow);
   if (place >= rules::kInAbove) return gradient(kAbove, place - rules::kInAbove);

@@ -79,7 +79,7 @@ std::vector<ScaleLabel> scale_labels(const ColorScale& scale) {
   };
   add(lo, false), add(hi, false);
   if (scale.tolerance)
-    for (const double limit : {scale.tolerance->lo, scale.tolerance->hi})
+    for (const double limit : {scale.tolerance->lower, scale.tolerance->upper})
       if (limit > lo && limit < hi) add(limit, true);
   for (const double value : round) add(value, false);
   std::ranges::sort(labels, {}, &ScaleLabel::value);
@@ -94,10 +94,10 @@ LegendText legend_text(const DistanceMap& map, double least, double most, const 
       thickness ? "Thickness" : "Distance", units, {}, map.beyond_max_distance + map.without_match > 0};
   if (least <= most) text.notes = {"min  " + value_label(least), "max  " + value_label(most)};
   if (const auto& t = scale.tolerance) {
-    text.notes.push_back((t->lo == -t->hi ? "green: within " : "green: ") +
+    text.notes.push_back((t->lower == -t->upper ? "green: within " : "green: ") +
                          summary::limits_words(*t, is_signed, value_label));
-    text.notes.emplace_back(std::isinf(t->lo) || std::isinf(t->hi) ? "darker: nearer the limit"
-                                                                   : "darker: nearer a limit");
+    text.notes.emplace_back(std::isinf(t->lower) || std::isinf(t->upper) ? "darker: nearer the limit"
+                                                                         : "darker: nearer a limit");
   }
   if (!thickness)
     text.notes.push_back(map.sign.method == SignMethod::none   ? "unsigned"

@@ -32,8 +32,8 @@ Json scale_json(const ColorScale& scale) {
   return {{"mode", mode_of(scale)},
           {"lo", scale.lo},
           {"hi", scale.hi},
-          {"lower", scale.tolerance ? scale.tolerance->lo : 0},
-          {"upper", scale.tolerance ? scale.tolerance->hi : 0},
+          {"lower", scale.tolerance ? scale.tolerance->lower : 0},
+          {"upper", scale.tolerance ? scale.tolerance->upper : 0},
           {"accuracy", scale.accuracy}};
 }
 
@@ -118,8 +118,8 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
     page["verdict"] = name_of(options.verdicts->of_all);
     page["certified"] = options.verdicts->certified;
     if (!options.verdicts->doubt.empty()) page["doubt"] = options.verdicts->doubt;
-    page["tolerance"] = {{"lower", options.verdicts->tolerance.lo},
-                         {"upper", options.verdicts->tolerance.hi}};
+    page["tolerance"] = {{"lower", options.verdicts->tolerance.lower},
+                         {"upper", options.verdicts->tolerance.upper}};
     page["verdicts"] = Json::array();
     for (const Verdict verdict : options.verdicts->of_frames) page["verdicts"].push_back(name_of(verdict));
   }

@@ -67,9 +67,9 @@ HtmlPage html_page(const Surface& surface, const DistanceMap& map, std::span<con
            ghost = add_ghost(ghost_arrays, *options.other, options.coverage, options.triangles_of_other);
        },
        [&] {
-         if (options.thinnest)
+         if (options.places == ListedPlaces::least)
            listed = json_of_texels(surface, map, thinnest_texels(surface, map));
-         else if (options.thickest)
+         else if (options.places == ListedPlaces::largest)
            listed = json_of_texels(surface, map, thickest_texels(surface, map));
        },
        [&] { area = area_by_value(surface, map); }});
@@ -79,7 +79,8 @@ HtmlPage html_page(const Surface& surface, const DistanceMap& map, std::span<con
   page["map"] = map_json;
   page["model"] = model;
   if (options.other) page["ghost"] = ghost;
-  if (options.thinnest || options.thickest) page[options.thinnest ? "thinnest" : "thickest"] = listed;
+  if (options.places == ListedPlaces::least) page["thinnest"] = listed;
+  if (options.places == ListedPlaces::largest) page["thickest"] = listed;
   return {std::move(page), std::move(arrays)};
 }
 
