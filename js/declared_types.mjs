@@ -10,8 +10,8 @@ for (const { module: from, name, kind } of WebAssembly.Module.imports(module))
   if (kind === 'function') (imports[from] ??= {})[name] = () => (name === 'threads' ? 1 : 0);
 const { exports } = new WebAssembly.Instance(module, imports);
 exports.__wasm_call_ctors();
-// Result of module/result.h: error, message, count, arrays, each of these an address and its bytes.
-const result = new Uint32Array(memory.buffer, exports.sdm_declared_types() >>> 0, 6);
-const text = new TextDecoder().decode(new Uint8Array(memory.buffer).slice(result[4], result[4] + result[5]));
+// Result of module/result.h: error, message, names, numbers and count, then the one array, its address and its bytes.
+const result = new Uint32Array(memory.buffer, exports.sdm_declared_types() >>> 0, 10);
+const text = new TextDecoder().decode(new Uint8Array(memory.buffer).slice(result[8], result[8] + result[9]));
 if (result[0] !== 0 || !text.endsWith('}\n')) throw new Error('the module does not state its declarations');
 writeFileSync(join(folder, 'declared.d.ts'), text);

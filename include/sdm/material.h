@@ -3,6 +3,7 @@
 /// Threads: plain values.
 #pragma once
 
+#include <sdm/names.h>
 #include <sdm/types.h>
 
 #include <array>
@@ -37,6 +38,9 @@ enum class AlphaMode : std::uint8_t {
   mask,    ///< below alpha_cutoff there is no surface
   blend,   ///< the share of its light; the rest is what is behind
 };
+
+template <>
+inline constexpr std::array kWords<AlphaMode>{"opaque", "mask", "blend"};
 
 /// A surface as glTF describes it (metallic-roughness), which textures multiply. Numbers are from 0 to 1, of
 /// light linear.

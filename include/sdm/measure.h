@@ -6,6 +6,7 @@
 #include <sdm/along.h>
 #include <sdm/api.h>
 #include <sdm/map.h>
+#include <sdm/map_samples.h>
 #include <sdm/mesh.h>
 #include <sdm/self_proximity_query.h>
 #include <sdm/sites.h>
@@ -27,6 +28,12 @@ using Measure = std::variant<MapOptions, AlongOptions, SelfOptions, ThicknessOpt
 /// sdm/map.h.
 [[nodiscard]] SDM_API DistanceMap compute_map(const Surface& surface, const Sites& sites,
                                               const Measure& measure);
+
+/// Computes the values of some samples, as compute_samples() in sdm/map_samples.h. Errors as of both. Of
+/// measures other than MapOptions, each call costs what they prepare, such as the order of the faces, and
+/// linear in texels besides.
+SDM_API void compute_samples_of_measure(const Surface& surface, const Sites& sites, const Measure& measure,
+                                        const SampleRange& range, DistanceMap& map);
 
 /// Returns the distance at each vertex of `mesh`, O1. Of MapOptions, as in sdm/vertex_distances.h; of other
 /// measures, each face around a vertex has a distance there, and the result is that of least absolute value,

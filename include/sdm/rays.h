@@ -5,6 +5,7 @@
 
 #include <sdm/api.h>
 #include <sdm/map.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
@@ -13,6 +14,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -23,6 +25,17 @@ struct Ray {
   double t_min = 0;  ///< at least 0; up to here the ray is known to be free, for example by free_distances()
   double t_max = std::numeric_limits<double>::infinity();
 };
+
+template <>
+inline constexpr std::tuple kOptions<Ray>{
+    Option{.name = "t_min",
+           .member = &Ray::t_min,
+           .text = "Rays begin there, at origin + t · direction.",
+           .range = {.least = 0, .most = std::numeric_limits<double>::infinity()}},
+    Option{.name = "t_max",
+           .member = &Ray::t_max,
+           .text = "Rays end there.",
+           .range = {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}}};
 
 /// The first point of O2 on a ray; without a face if the ray does not meet O2. The weights of the face's
 /// corners are not negative; their point is that of t to rounding; of a needle, to 1e-7 of its length.

@@ -8,6 +8,7 @@
 #include <sdm/map.h>
 #include <sdm/match.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
@@ -15,7 +16,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -40,6 +43,18 @@ struct AttributeArray {
   std::span<const Triangle> rows{};
 };
 
+template <>
+inline constexpr std::tuple kOptions<AttributeArray>{
+    Option{.name = "components",
+           .member = &AttributeArray::components,
+           .text = "Numbers of each vertex, face or corner.",
+           .range = {1, std::numeric_limits<std::uint32_t>::max()}},
+    Option{
+        .name = "domain",
+        .member = &AttributeArray::domain,
+        .text =
+            "What the values are of: vertices or corners, between which they are interpolated, or faces."}};
+
 /// Options of transfer().
 struct TransferOptions {
   /// Whether the texels of no face get values too, so that filtering at the border of a chart does not blend
@@ -48,6 +63,12 @@ struct TransferOptions {
   bool fill = true;
   Progress progress{};
 };
+
+template <>
+inline constexpr std::tuple kOptions<TransferOptions>{
+    Option{.name = "fill",
+           .member = &TransferOptions::fill,
+           .text = "Whether texels that no face owns are filled from their surroundings."}};
 
 /// Returns the values of the array, a row for each texel of the map, at the texel's closest point on O2: that
 /// of point_on_face() or, for maps along normals and of thickness, the end of the vector. Values are

@@ -40,8 +40,7 @@ std::vector<Vec3> copy(std::span<const Vec3> positions) {
 
 }  // namespace
 
-/// Whether there is an animation, and then: it, its number of frames, positions of the first one and
-/// triangles. `rate`: frames per second; NaN: those of the keys.
+/// The animation, if there is one, and its first frame. `rate`: frames per second; NaN: those of the keys.
 SDM_EXPORT(sdm_read_animation)
 Result* read_animation(const char* bytes, std::uint32_t size, const char* name, std::uint32_t name_size,
                        const char* names, const char* contents, const std::uint32_t* lengths,
@@ -50,16 +49,12 @@ Result* read_animation(const char* bytes, std::uint32_t size, const char* name, 
     if (rate <= 0 || std::isinf(rate))
       throw Error("the rate of an animation must be a number of frames per second greater than 0");
     auto animation = animation_of({bytes, size, name, name_size, names, contents, lengths, files}, rate);
-    result.add_numbers(animation != nullptr);
     if (!animation) return;
     const Mesh& mesh = animation->frames->mesh();
-    const std::size_t count = animation->source->count();
-    auto positions = copy(mesh.positions);
-    auto triangles = mesh.triangles;
-    result.add_object(std::move(animation));
-    result.add_numbers(count);
-    result.add(std::move(positions));
-    result.add(std::move(triangles));
+    result.put("frames", animation->source->count());
+    result.put("positions", mesh.positions);
+    result.put("indices", mesh.triangles);
+    result.put_object(std::move(animation));
   });
 }
 
@@ -70,7 +65,7 @@ SDM_EXPORT(sdm_free_animation) void free_animation(Animation* animation) {
 SDM_EXPORT(sdm_animation_frame) Result* animation_frame(Animation* animation, std::uint32_t frame) {
   return guarded([&](Result& result) {
     if (frame >= animation->source->count()) throw Error("the animation has no frame of this number");
-    result.add(copy(animation->frames->read(frame)));
+    result.put("positions", copy(animation->frames->read(frame)));
   });
 }
 

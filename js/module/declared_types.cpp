@@ -2,16 +2,18 @@
 #include <sdm/atlas.h>
 #include <sdm/bounds.h>
 #include <sdm/hausdorff.h>
-#include <sdm/map.h>
 #include <sdm/match.h>
 #include <sdm/proximity_query.h>
+#include <sdm/rays.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/statistics.h>
+#include <sdm/transfer.h>
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "module/all_measures.h"
 #include "module/options.h"
 #include "module/result.h"
 
@@ -26,19 +28,44 @@ Words words_of() {
 }
 
 const std::vector<std::pair<std::string, Words>>& enumerations() {
-  static const std::vector<std::pair<std::string, Words>> all{{"SignMethod", words_of<SignMethod>()},
-                                                              {"AtlasKind", words_of<AtlasKind>()},
-                                                              {"MatchMethod", words_of<MatchMethod>()},
-                                                              {"Certainty", words_of<Certainty>()}};
+  static const std::vector<std::pair<std::string, Words>> all{
+      {"SignMethod", words_of<SignMethod>()},
+      {"AtlasKind", words_of<AtlasKind>()},
+      {"MatchMethod", words_of<MatchMethod>()},
+      {"MapMeasure", words_of<MapMeasure>()},
+      {"ThicknessMethod", words_of<ThicknessMethod>()},
+      {"AttributeDomain", words_of<AttributeDomain>()},
+      {"Certainty", words_of<Certainty>()}};
   return all;
+}
+
+std::string type_of(const Words& of) {
+  for (const auto& [name, words] : enumerations())
+    if (words == of) return name;
+  return "string";
 }
 
 std::string type_of(const OptionInfo& option) {
   if (option.type == "flag") return "boolean";
-  if (option.type != "word") return "number";
-  for (const auto& [name, words] : enumerations())
-    if (words == option.words) return name;
-  return "string";
+  if (option.type == "direction") return "'normal' | readonly [x: number, y: number, z: number]";
+  return option.type == "word" ? type_of(option.words) : "number";
+}
+
+/// Of a field, as js/src/results.ts reads it.
+template <class Value>
+std::string type_of() {
+  if constexpr (Worded<Value>) {
+    return type_of(words_of<Value>());
+  } else if constexpr (std::is_arithmetic_v<Value>) {
+    return "number";
+  } else if constexpr (requires(Value value) { value.has_value(); }) {
+    return type_of<typename Value::value_type>() + " | null";
+  } else {
+    std::string text = "[";
+    for (std::size_t i = 0; i < Value{}.size(); ++i)
+      text += (i == 0 ? "" : ", ") + type_of<typename Value::value_type>();
+    return text + "]";
+  }
 }
 
 std::string comment_of(const OptionInfo& option) {
@@ -65,7 +92,7 @@ std::string results_interface(const char* name) {
   std::string text = std::string("export interface ") + name + " {\n";
   for_each_field<Struct>([&](const auto& field) {
     text += std::string("  /** ") + field.text + " */\n  " + spelled(field.name, Spelling::camel_case) +
-            ": number;\n";
+            ": " + type_of<std::remove_reference_t<decltype(std::declval<Struct>().*field.member)>>() + ";\n";
   });
   return text + "}\n";
 }
@@ -81,12 +108,18 @@ SDM_EXPORT(sdm_declared_types) Result* declared_types() {
       text += ";\n";
     }
     text += options_interface<AtlasOptions, PrecisionOptions>("AtlasOptions");
-    text += options_interface<MapOptions>("MapOptions");
+    text += options_interface<MeasureChoice>("MeasureChoice");
+    text += options_interface<MapOptions, AlongOptions>("MapOptions");
+    text += options_interface<ExclusionRule, SelfProximityOptions>("SelfOptions");
+    text += options_interface<ThicknessOptions>("ThicknessOptions");
     text += options_interface<HausdorffOptions>("HausdorffOptions");
     text += options_interface<MatchOptions>("MatchOptions");
     text += options_interface<ProximityOptions>("ProximityOptions");
+    text += options_interface<Ray>("RayOptions");
+    text += options_interface<AttributeArray, TransferOptions>("TransferOptions");
     text += results_interface<DistanceStatistics>("DistanceStatistics");
-    result.add_text(text);
+    text += results_interface<BoundedLength>("BoundedLength");
+    result.put_text("text", std::move(text));
   });
 }
 

@@ -27,8 +27,7 @@ MeshFile read_file(const FileArguments& arguments) {
 
 }  // namespace
 
-/// Positions, triangles, texture coordinates of corners, JSON with what the file says, and the number of the
-/// name of each face for each kind of names.
+/// The mesh, JSON with what the file says, and the number of the name of each face for each kind of names.
 SDM_EXPORT(sdm_read_mesh)
 Result* read_mesh_contents(const char* bytes, std::uint32_t size, const char* name, std::uint32_t name_size,
                            const char* names, const char* contents, const std::uint32_t* lengths,
@@ -40,11 +39,12 @@ Result* read_mesh_contents(const char* bytes, std::uint32_t size, const char* na
     file.names.resize(std::min(file.names.size(), Result::kMostArrays - 4));
     for (const FaceNames& kind : file.names)
       facts["names"].push_back({{"kind", kind.kind}, {"names", kind.names}});
-    result.add(std::move(file.mesh.positions));
-    result.add(std::move(file.mesh.triangles));
-    result.add(std::move(file.mesh.corner_uvs));
-    result.add_text(facts.dump(-1, ' ', false, nlohmann::json::error_handler_t::ignore));
-    for (FaceNames& kind : file.names) result.add(std::move(kind.of_face));
+    result.put("positions", std::move(file.mesh.positions));
+    result.put("indices", std::move(file.mesh.triangles));
+    if (!file.mesh.corner_uvs.empty()) result.put("corner_uvs", std::move(file.mesh.corner_uvs));
+    result.put_text("facts", facts.dump(-1, ' ', false, nlohmann::json::error_handler_t::ignore));
+    for (std::size_t i = 0; i < file.names.size(); ++i)
+      result.put("of_faces/" + std::to_string(i), std::move(file.names[i].of_face));
   });
 }
 

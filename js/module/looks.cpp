@@ -66,11 +66,11 @@ Result* read_look(const char* bytes, std::uint32_t size, const char* name, std::
     nlohmann::ordered_json facts{{"textures", nlohmann::json::array()}, {"notes", file.notes}};
     for (const TextureFile& texture : file.textures) facts["textures"].push_back(texture.name);
     auto look = std::make_unique<Look>(look_of(std::move(file)));
-    const bool has_materials = !look->materials.empty(), has_normals = look->normals() != nullptr;
-    const bool has_colors = std::ranges::count(look->attributes, "color", &MeshAttribute::name) > 0;
-    result.add_object(std::move(look));
-    result.add_numbers(has_materials, has_colors, has_normals);
-    result.add_text(facts.dump(-1, ' ', false, nlohmann::json::error_handler_t::ignore));
+    result.put("has_materials", !look->materials.empty());
+    result.put("has_colors", std::ranges::count(look->attributes, "color", &MeshAttribute::name) > 0);
+    result.put("has_normals", look->normals() != nullptr);
+    result.put_object(std::move(look));
+    result.put_text("facts", facts.dump(-1, ' ', false, nlohmann::json::error_handler_t::ignore));
   });
 }
 
@@ -82,7 +82,7 @@ SDM_EXPORT(sdm_free_look) void free_look(Look* look) {
 SDM_EXPORT(sdm_texture_file) Result* texture_file(const Look* look, std::uint32_t texture) {
   return guarded([&](Result& result) {
     if (texture >= look->textures.size()) throw Error("there is no texture of this number");
-    result.add(look->textures[texture].bytes);
+    result.put("bytes", look->textures[texture].bytes);
   });
 }
 

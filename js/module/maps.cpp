@@ -2,7 +2,6 @@
 #include <sdm/error.h>
 #include <sdm/hausdorff.h>
 #include <sdm/io.h>
-#include <sdm/map.h>
 #include <sdm/map_samples.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/sites.h>
@@ -14,7 +13,7 @@
 #include <type_traits>
 
 #include "module/arguments.h"
-#include "module/lengths.h"
+#include "module/measures.h"
 #include "module/options.h"
 #include "module/result.h"
 #include "module/transferred.h"
@@ -32,19 +31,15 @@ void add_words(std::string& lines, const char* option) {
 
 }  // namespace
 
-/// The words that options and results may have, in the order of their numbers: a line for each, after its
+/// The words of options that are passed by numbers, in the order of these: a line for each option, after its
 /// name.
 SDM_EXPORT(sdm_words) Result* words() {
   return guarded([](Result& result) {
     std::string lines;
     add_words<SignMethod>(lines, "sign");
-    add_words<AtlasKind>(lines, "atlas");
-    add_words<Certainty>(lines, "certainty");
-    add_words<AttributeDomain>(lines, "domain");
-    add_words<MatchMethod>(lines, "method");
     add_words<Colormap>(lines, "colormap");
     add_words<UpAxis>(lines, "up");
-    result.add_text(lines);
+    result.put_text("words", std::move(lines));
   });
 }
 
@@ -61,7 +56,7 @@ Result* new_surface(const double* positions, std::uint32_t vertices, const std::
       made.corner_uvs.assign(uvs.begin(), uvs.end());
     }
     options.resolution = resolution_for(made, fit, options);
-    result.add_object(stored_atlas ? std::make_unique<Surface>(std::move(made), options,
+    result.put_object(stored_atlas ? std::make_unique<Surface>(std::move(made), options,
                                                                std::span(stored_atlas, stored_bytes))
                                    : std::make_unique<Surface>(std::move(made), options));
   });
@@ -69,7 +64,7 @@ Result* new_surface(const double* positions, std::uint32_t vertices, const std::
 
 /// The atlas as bytes, for sdm_new_surface() in another module.
 SDM_EXPORT(sdm_stored_atlas) Result* stored_atlas(const Surface* surface) {
-  return guarded([&](Result& result) { result.add(surface->stored_atlas()); });
+  return guarded([&](Result& result) { result.put("atlas", surface->stored_atlas()); });
 }
 
 SDM_EXPORT(sdm_free_surface) void free_surface(Surface* surface) {
@@ -85,10 +80,11 @@ Result* refit_surface(Surface* surface, const double* positions, std::uint32_t v
 /// corners, in texels (NaN: the face has no chart).
 SDM_EXPORT(sdm_surface_atlas) Result* surface_atlas(const Surface* surface) {
   return guarded([&](Result& result) {
-    result.add_numbers(surface->resolution(), surface->rows(), surface->chart_count(),
-                       surface->utilisation());
-    const auto faces = surface->texel_faces();
-    result.add(std::vector<std::uint32_t>(faces.begin(), faces.end()));
+    result.put("resolution", surface->resolution());
+    result.put("rows", surface->rows());
+    result.put("charts", surface->chart_count());
+    result.put("utilisation", surface->utilisation());
+    result.put_view("texel_faces", surface->texel_faces());
     const auto charts = surface->face_charts();
     std::vector<float> corners(charts.size() * 6, NAN);
     for (std::uint32_t face = 0; face < charts.size(); ++face) {
@@ -99,22 +95,22 @@ SDM_EXPORT(sdm_surface_atlas) Result* surface_atlas(const Surface* surface) {
         corners[face * 6 + 2 * k + 1] = static_cast<float>(of_face[k][1]);
       }
     }
-    result.add(std::move(corners));
+    result.put("corners", std::move(corners));
   });
 }
 
 /// The number of samples, and that of which ranges begin and end at multiples.
 SDM_EXPORT(sdm_sample_counts) Result* sample_counts(const Surface* surface) {
   return guarded([&](Result& result) {
-    result.add_numbers(surface->sample_texels().size(), sample_range_grain(*surface));
+    result.put("samples", surface->sample_texels().size());
+    result.put("grain", sample_range_grain(*surface));
   });
 }
 
 SDM_EXPORT(sdm_surface_samples) Result* surface_samples(const Surface* surface) {
   return guarded([&](Result& result) {
-    const auto texels = surface->sample_texels();
-    result.add(std::vector<std::uint32_t>(texels.begin(), texels.end()));
-    result.add(surface->sample_points());
+    result.put_view("texels", surface->sample_texels());
+    result.put("points", surface->sample_points());
   });
 }
 
@@ -123,9 +119,9 @@ Result* new_sites(const double* positions, std::uint32_t vertices, const std::ui
                   std::uint32_t triangles) {
   return guarded([&](Result& result) {
     auto sites = std::make_unique<Sites>(mesh(positions, vertices, indices, triangles));
-    const bool closed = sites->closed(), orientable = sites->orientable();
-    result.add_object(std::move(sites));
-    result.add_numbers(closed, orientable);
+    result.put("closed", sites->closed());
+    result.put("orientable", sites->orientable());
+    result.put_object(std::move(sites));
   });
 }
 
@@ -140,15 +136,18 @@ Result* refit_sites(Sites* sites, const double* positions, std::uint32_t vertice
 
 namespace {
 
-MapOptions map_options(const GivenOptions& given) {
-  auto options = read_options<MapOptions>(given);
-  options.progress = host_progress();
-  return options;
+void put_sign(Result& result, const DistanceMap& map) {
+  result.put("sign", map.sign.method);
+  result.put("sign_reason", map.sign.reason);
 }
 
-void add_sign(Result& result, const DistanceMap& map) {
-  result.add_numbers(static_cast<int>(map.sign.method));
-  result.add_text(map.sign.reason);
+/// Calls visit(name, values) for each array of a map, by the names that js/src/types.ts has for them.
+template <class Visit>
+void for_each_array(const DistanceMap& map, const Visit& visit) {
+  visit("distances", map.distance);
+  visit("vectors", map.vector);
+  visit("sites_of_texels", map.site);
+  visit("site_types", map.site_type);
 }
 
 }  // namespace
@@ -157,31 +156,34 @@ void add_sign(Result& result, const DistanceMap& map) {
 SDM_EXPORT(sdm_new_map) Result* new_map(const Surface* surface) {
   return guarded([&](Result& result) {
     auto map = std::make_unique<DistanceMap>(empty_map(*surface));
-    const double resolution = map->resolution, rows = map->rows();
-    result.add_object(std::move(map));
-    result.add_numbers(resolution, rows);
+    result.put("resolution", map->resolution);
+    result.put("rows", map->rows());
+    result.put_object(std::move(map));
   });
 }
 
 SDM_EXPORT(sdm_compute_map)
 Result* compute_whole_map(DistanceMap* map, const Surface* surface, const Sites* sites, const char* lines,
-                          std::uint32_t bytes, const double* numbers) {
+                          std::uint32_t bytes, const double* numbers, const double* rest,
+                          std::uint32_t vertices) {
   return guarded([&](Result& result) {
-    compute_map(*surface, *sites, map_options({lines, bytes, numbers}), *map);
-    add_sign(result, *map);
+    measure(*surface, *sites, {{lines, bytes, numbers}, points(rest, vertices)}, *map);
+    put_sign(result, *map);
   });
 }
 
 SDM_EXPORT(sdm_compute_samples)
 Result* compute_range(DistanceMap* map, const Surface* surface, const Sites* sites, const char* lines,
-                      std::uint32_t bytes, const double* numbers, std::uint32_t first, std::uint32_t count) {
+                      std::uint32_t bytes, const double* numbers, const double* rest, std::uint32_t vertices,
+                      std::uint32_t first, std::uint32_t count) {
   return guarded([&](Result& result) {
-    compute_samples(*surface, *sites, map_options({lines, bytes, numbers}), {first, count}, *map);
-    add_sign(result, *map);
+    measure_samples(*surface, *sites, {{lines, bytes, numbers}, points(rest, vertices)}, {first, count},
+                    *map);
+    put_sign(result, *map);
   });
 }
 
-/// The values of a range of samples, in their order: distances, vectors, sites, types of sites.
+/// The arrays of the map for a range of samples, in their order.
 SDM_EXPORT(sdm_map_samples)
 Result* map_samples(const DistanceMap* map, const Surface* surface, std::uint32_t first,
                     std::uint32_t count) {
@@ -191,12 +193,11 @@ Result* map_samples(const DistanceMap* map, const Surface* surface, std::uint32_
         count > all.size() - first)
       throw Error("the samples are not of this map");
     const auto texels = all.subspan(first, count);
-    const auto add = [&](const auto& values) {
+    for_each_array(*map, [&](const char* name, const auto& values) {
       std::remove_cvref_t<decltype(values)> picked(texels.size());
       for (std::size_t i = 0; i < texels.size(); ++i) picked[i] = values[texels[i]];
-      result.add(std::move(picked));
-    };
-    add(map->distance), add(map->vector), add(map->site), add(map->site_type);
+      result.put(name, std::move(picked));
+    });
   });
 }
 
@@ -204,29 +205,26 @@ SDM_EXPORT(sdm_free_map) void free_map(DistanceMap* map) {
   delete map;
 }
 
-/// Of a map: 0: distances, 1: vectors, 2: sites, 3: types of sites. Copied by JavaScript, not here.
-SDM_EXPORT(sdm_map_array) const void* map_array(const DistanceMap* map, std::uint32_t which) {
-  switch (which) {
-    case 0:
-      return map->distance.data();
-    case 1:
-      return map->vector.data();
-    case 2:
-      return map->site.data();
-    default:
-      return map->site_type.data();
-  }
+/// An array of a map, by the name that JavaScript has for it. Copied by JavaScript, not here.
+SDM_EXPORT(sdm_map_array)
+Result* map_array(const DistanceMap* map, const char* name, std::uint32_t size) {
+  return guarded([&](Result& result) {
+    for_each_array(*map, [&](const char* own, const auto& values) {
+      if (spelled(own, Spelling::camel_case) == std::string_view(name, size))
+        result.put_view("values", std::span(values).first(map->texels()));
+    });
+  });
 }
 
 SDM_EXPORT(sdm_map_statistics) Result* map_statistics(const Surface* surface, const DistanceMap* map) {
-  return guarded([&](Result& result) { result.add_fields(statistics(*surface, *map)); });
+  return guarded([&](Result& result) { result.put_fields("", statistics(*surface, *map)); });
 }
 
 SDM_EXPORT(sdm_transfer)
 Result* transfer_values(const Surface* surface, const Sites* sites, const DistanceMap* map,
-                        const float* values, std::uint32_t count, std::uint32_t components,
-                        std::uint32_t domain, bool fill) {
-  return transferred(surface, sites, map, values, count, components, domain, fill);
+                        const float* values, std::uint32_t count, const char* lines, std::uint32_t bytes,
+                        const double* numbers) {
+  return transferred(surface, sites, map, {values, count}, {lines, bytes, numbers});
 }
 
 SDM_EXPORT(sdm_hausdorff)
@@ -236,11 +234,9 @@ Result* hausdorff(const Sites* a, const Sites* b, const char* lines, std::uint32
     auto options = read_options<HausdorffOptions>({lines, bytes, numbers});
     options.progress = host_progress();
     const SymmetricHausdorff both = symmetric_hausdorff(*a, *b, options);
-    for (const HausdorffDistance* one : {&both.from[0], &both.from[1], &both.larger}) {
-      add_length(result, one->distance);
-      result.add(std::vector<std::uint32_t>(one->faces.begin(), one->faces.end()));
-    }
-    result.add_numbers(both.larger_from);
+    result.put_fields("from/0/", both.from[0].distance);
+    result.put_fields("from/1/", both.from[1].distance);
+    result.put_fields("larger/", both.larger.distance);
   });
 }
 

@@ -43,7 +43,6 @@ struct Frames {
 
 }  // namespace
 
-/// Matches, and how many texels have a point by the kinds of MatchKind.
 SDM_EXPORT(sdm_match)
 Result* match(const Surface* surface, const Sites* sites, const char* lines, std::uint32_t bytes,
               const double* numbers) {
@@ -51,12 +50,14 @@ Result* match(const Surface* surface, const Sites* sites, const char* lines, std
     auto options = read_options<MatchOptions>({lines, bytes, numbers});
     options.progress = host_progress();
     auto matches = std::make_unique<TexelMatches>(match_texels(*surface, *sites, options));
-    const auto count = [&](MatchKind kind) { return matches->count(kind); };
-    const std::array counts{count(MatchKind::closest), count(MatchKind::facing), count(MatchKind::ray),
-                            count(MatchKind::too_far), count(MatchKind::facing_away)};
-    const std::uint32_t resolution = matches->resolution, rows = matches->rows();
-    result.add_object(std::move(matches));
-    result.add_numbers(resolution, rows, counts[0], counts[1], counts[2], counts[3], counts[4]);
+    result.put("resolution", matches->resolution);
+    result.put("rows", matches->rows());
+    result.put("counts/closest", matches->count(MatchKind::closest));
+    result.put("counts/facing", matches->count(MatchKind::facing));
+    result.put("counts/ray", matches->count(MatchKind::ray));
+    result.put("counts/too_far", matches->count(MatchKind::too_far));
+    result.put("counts/facing_away", matches->count(MatchKind::facing_away));
+    result.put_object(std::move(matches));
   });
 }
 
@@ -64,28 +65,24 @@ SDM_EXPORT(sdm_free_matches) void free_matches(TexelMatches* matches) {
   delete matches;
 }
 
-/// The kind of each texel, a byte each, its face, and the shares of the face's second and third corners.
+/// Barycentric coordinates are the shares of the face's second and third corners.
 SDM_EXPORT(sdm_match_arrays) Result* match_arrays(const TexelMatches* matches) {
   return guarded([&](Result& result) {
-    std::vector<std::uint8_t> kinds;
-    kinds.reserve(matches->kind.size());
-    for (const MatchKind kind : matches->kind) kinds.push_back(static_cast<std::uint8_t>(kind));
-    result.add(std::move(kinds));
-    result.add(matches->face);
-    result.add(matches->barycentric);
+    result.put("kinds", matches->kind);
+    result.put("faces", matches->face);
+    result.put("barycentric", matches->barycentric);
   });
 }
 
 SDM_EXPORT(sdm_transfer_matches)
 Result* transfer_matches(const Surface* surface, const Sites* sites, const TexelMatches* matches,
-                         const float* values, std::uint32_t count, std::uint32_t components,
-                         std::uint32_t domain, bool fill) {
-  return transferred(surface, sites, matches, values, count, components, domain, fill);
+                         const float* values, std::uint32_t count, const char* lines, std::uint32_t bytes,
+                         const double* numbers) {
+  return transferred(surface, sites, matches, {values, count}, {lines, bytes, numbers});
 }
 
-/// Of each channel of default_channels() its number and how many components its picture has, the factors of
-/// common_material() (base colour, emission, metallic, roughness, mode and cutoff of alpha), and the pictures
-/// of to_image(). Texels without a match are filled.
+/// The pictures of default_channels(), and the factors of common_material(). Texels without a match are
+/// filled.
 SDM_EXPORT(sdm_bake)
 Result* bake_look(const Surface* surface, const Sites* sites, const TexelMatches* matches, const Look* look) {
   return guarded([&](Result& result) {
@@ -93,19 +90,19 @@ Result* bake_look(const Surface* surface, const Sites* sites, const TexelMatches
     const Material m = common_material(view);
     const auto baked = bake(*surface, *sites, *matches, view, default_channels(sites->mesh(), view),
                             {.fill = true, .progress = host_progress()});
-    std::vector<std::uint32_t> channels;
-    std::vector<std::vector<std::uint8_t>> pictures;
-    for (const BakedChannel& channel : baked) {
-      Image image = to_image(channel);
-      channels.push_back(static_cast<std::uint32_t>(channel.channel));
-      channels.push_back(image.components);
-      pictures.push_back(std::move(image.bytes));
+    for (std::size_t i = 0; i < baked.size(); ++i) {
+      Image image = to_image(baked[i]);
+      const std::string path = "textures/" + std::to_string(i) + "/";
+      result.put(path + "channel", name_of(baked[i].channel));
+      result.put(path + "components", image.components);
+      result.put(path + "data", std::move(image.bytes));
     }
-    result.add(std::move(channels));
-    result.add_numbers(m.base_color[0], m.base_color[1], m.base_color[2], m.base_color[3], m.emissive[0],
-                       m.emissive[1], m.emissive[2], m.metallic, m.roughness, static_cast<int>(m.alpha_mode),
-                       m.alpha_cutoff);
-    for (auto& picture : pictures) result.add(std::move(picture));
+    result.put("material/base_color", m.base_color);
+    result.put("material/emissive", m.emissive);
+    result.put("material/metallic", m.metallic);
+    result.put("material/roughness", m.roughness);
+    result.put("material/alpha_mode", m.alpha_mode);
+    result.put("material/alpha_cutoff", m.alpha_cutoff);
   });
 }
 
@@ -126,7 +123,7 @@ Result* bake_normals(const Surface* surface, const Sites* sites, const TexelMatc
       values = tangent_space_normals(*surface, frames.normals, frames.tangents, values, host_progress());
     }
     fill_texels(*surface, 3, values, true);
-    result.add(normal_map_image(*surface, values).bytes);
+    result.put("picture", normal_map_image(*surface, values).bytes);
   });
 }
 
@@ -143,28 +140,27 @@ SDM_EXPORT(sdm_drawn_model) Result* drawn_model(const Surface* surface, bool wit
     const Box box = bounds(mesh);
     const Vec3 origin = 0.5 * (box.lo + box.hi);
     const Vec2 extent{1.0 * surface->resolution(), 1.0 * surface->rows()};
-    const auto add = [&](std::size_t components, const auto& value) {
+    const auto put = [&](const char* name, std::size_t components, const auto& value) {
       std::vector<float> values(components * vertices.place.size());
       for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = static_cast<float>(value(i / components, i % components));
-      result.add(std::move(values));
+      result.put(name, std::move(values));
     };
     const auto vertex = [&](std::size_t i) { return normals.vertex[vertices.normal[i]]; };
-    add(3, [&](std::size_t i, std::size_t k) { return mesh.positions[vertex(i)][k] - origin[k]; });
-    add(3, [&](std::size_t i, std::size_t k) { return normals.normals[vertices.normal[i]][k]; });
-    add(2,
+    put("positions", 3,
+        [&](std::size_t i, std::size_t k) { return mesh.positions[vertex(i)][k] - origin[k]; });
+    put("normals", 3, [&](std::size_t i, std::size_t k) { return normals.normals[vertices.normal[i]][k]; });
+    put("uvs", 2,
         [&](std::size_t i, std::size_t k) { return std::clamp(vertices.place[i][k] / extent[k], 0.0, 1.0); });
-    add(frames ? 4 : 0, [&](std::size_t i, std::size_t k) {
-      return frames->tangents.values[4 * std::size_t{vertices.tangent[i]} + k];
-    });
-    result.add(std::move(vertices.triangles));
-    result.add_numbers(origin[0], origin[1], origin[2]);
+    if (frames)
+      put("tangents", 4, [&](std::size_t i, std::size_t k) {
+        return frames->tangents.values[4 * std::size_t{vertices.tangent[i]} + k];
+      });
+    else
+      result.put("tangents", std::optional<double>());
+    result.put("indices", std::move(vertices.triangles));
+    result.put("origin", origin);
   });
-}
-
-/// Whether there are tangents, and so normals in tangent space.
-SDM_EXPORT(sdm_has_tangents) std::uint32_t has_tangents_here() {
-  return has_tangents();
 }
 
 }  // namespace sdm::js

@@ -14,4 +14,17 @@ std::vector<GivenValue> values_of(const GivenOptions& given) {
   return values;
 }
 
+const OptionInfo& option_of(const GivenValue& given, std::span<const OptionInfo> declared) {
+  std::vector<std::string> names;
+  for (const OptionInfo& option : declared) {
+    names.push_back(spelled(option.name, Spelling::camel_case));
+    if (names.back() == given.name) return option;
+  }
+  throw Error(unknown_name("option", given.name, names));
+}
+
+void refuse(const OptionInfo& option, const GivenValue& given) {
+  throw Error(refused(option, given.words, Spelling::camel_case));
+}
+
 }  // namespace sdm::js

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -46,35 +47,36 @@ template <class Struct, class Value>
     if (std::is_integral_v<Type> && given.number != std::floor(given.number)) return false;
     options.*option.member = static_cast<Type>(given.number);
     return true;
+  } else if constexpr (std::is_same_v<Type, Vec3>) {
+    return read_value(option, given.text().empty() ? given.words : given.text(), options);
   } else {
     return read_value(option, given.text(), options);
   }
 }
 
+/// The option that is meant by a value. Throws sdm::Error if there is none of its name.
+[[nodiscard]] const OptionInfo& option_of(const GivenValue& given, std::span<const OptionInfo> declared);
+/// Throws sdm::Error: the option does not take the value.
+[[noreturn]] void refuse(const OptionInfo& option, const GivenValue& given);
+
 /// The options of several structs. Throws sdm::Error for a name that none of them has, for a value that they
 /// do not take, and for two that exclude each other.
 template <class... Structs>
 [[nodiscard]] std::tuple<Structs...> read_all_options(const GivenOptions& given) {
-  constexpr auto kSpelling = Spelling::camel_case;
   const std::vector<OptionInfo> declared = options_of<Structs...>();
   std::tuple<Structs...> all;
   std::vector<GivenOption> read;
   for (const GivenValue& value : values_of(given)) {
-    const std::size_t before = read.size();
+    const OptionInfo& info = option_of(value, declared);
     const auto read_into = [&]<class Struct>(Struct& options) {
       for_each_option<Struct>([&](const auto& option) {
-        if (spelled(option.name, kSpelling) != value.name) return;
-        if (!set(option, value, options)) throw Error(refused(info_of(option), value.words, kSpelling));
-        read.push_back({option.name, std::string(value.text())});
+        if (option.name == info.name && !set(option, value, options)) refuse(info, value);
       });
     };
     std::apply([&](auto&... options) { (read_into(options), ...); }, all);
-    if (read.size() > before) continue;
-    std::vector<std::string> known;
-    for (const OptionInfo& option : declared) known.push_back(spelled(option.name, kSpelling));
-    throw Error(unknown_name("option", value.name, known));
+    read.push_back({info.name, std::string(value.text())});
   }
-  check_exclusions(declared, read, kSpelling);
+  check_exclusions(declared, read, Spelling::camel_case);
   return all;
 }
 

@@ -3,7 +3,6 @@
 #include <sdm/transform.h>
 
 #include "module/arguments.h"
-#include "module/lengths.h"
 #include "module/options.h"
 #include "module/result.h"
 
@@ -16,7 +15,7 @@ Result* new_pair(const double* positions1, std::uint32_t vertices1, const std::u
                  std::uint32_t bytes, const double* numbers) {
   return guarded([&](Result& result) {
     const auto options = read_options<ProximityOptions>({lines, bytes, numbers});
-    result.add_object(std::make_unique<ProximityQuery>(mesh(positions1, vertices1, indices1, triangles1),
+    result.put_object(std::make_unique<ProximityQuery>(mesh(positions1, vertices1, indices1, triangles1),
                                                        mesh(positions2, vertices2, indices2, triangles2),
                                                        options));
   });
@@ -45,21 +44,20 @@ Result* refit_pair(ProximityQuery* pair, std::uint32_t body, const double* posit
 }
 
 SDM_EXPORT(sdm_colliding) Result* colliding(ProximityQuery* pair) {
-  return guarded([&](Result& result) { result.add_numbers(pair->colliding()); });
+  return guarded([&](Result& result) { result.put("colliding", pair->colliding()); });
 }
 
 SDM_EXPORT(sdm_separation) Result* separation(ProximityQuery* pair) {
-  return guarded([&](Result& result) { add_length(result, pair->separation()); });
+  return guarded([&](Result& result) { result.put_fields("", pair->separation()); });
 }
 
 /// Nothing if neither body is a solid.
 SDM_EXPORT(sdm_penetration_depth) Result* penetration_depth(ProximityQuery* pair) {
   return guarded([&](Result& result) {
-    if (const auto& depth = pair->penetration_depth()) add_length(result, *depth);
+    if (const auto& depth = pair->penetration_depth()) result.put_fields("depth/", *depth);
   });
 }
 
-/// Points on both bodies, normals, depths, patches, and ids of 64 bits.
 SDM_EXPORT(sdm_contacts) Result* contacts(ProximityQuery* pair) {
   return guarded([&](Result& result) {
     std::vector<Vec3> points1, points2, normals;
@@ -74,12 +72,12 @@ SDM_EXPORT(sdm_contacts) Result* contacts(ProximityQuery* pair) {
       patches.push_back(contact.patch);
       ids.push_back(contact.id);
     }
-    result.add(std::move(points1));
-    result.add(std::move(points2));
-    result.add(std::move(normals));
-    result.add(std::move(depths));
-    result.add(std::move(patches));
-    result.add(std::move(ids));
+    result.put("points1", std::move(points1));
+    result.put("points2", std::move(points2));
+    result.put("normals", std::move(normals));
+    result.put("depths", std::move(depths));
+    result.put("patches", std::move(patches));
+    result.put("ids", std::move(ids));
   });
 }
 

@@ -4,20 +4,20 @@
 #include <sdm/sign.h>
 
 #include "module/arguments.h"
+#include "module/options.h"
 #include "module/result.h"
 
 namespace sdm::js {
 
 namespace {
 
-/// Points, distances, faces, barycentric coordinates of corners 1 and 2, sites and their types.
-void add_closest(Result& result, const Sites& sites, std::span<const Vec3> queries,
+/// Barycentric coordinates are those of corners 1 and 2.
+void put_closest(Result& result, const Sites& sites, std::span<const Vec3> queries,
                  const std::vector<ClosestPoint>& closest) {
   const std::size_t count = closest.size();
   std::vector<Vec3> points(count);
   std::vector<double> distances(count), barycentric(2 * count);
-  std::vector<std::uint32_t> faces(count), numbers(count);
-  std::vector<SiteType> types(count);
+  std::vector<std::uint32_t> faces(count);
   for (std::size_t i = 0; i < count; ++i) {
     const ClosestPoint& one = closest[i];
     const bool found = one.type != SiteType::none;
@@ -27,15 +27,11 @@ void add_closest(Result& result, const Sites& sites, std::span<const Vec3> queri
     faces[i] = on.face;
     barycentric[2 * i] = on.barycentric[1];
     barycentric[2 * i + 1] = on.barycentric[2];
-    numbers[i] = one.site;
-    types[i] = one.type;
   }
-  result.add(std::move(points));
-  result.add(std::move(distances));
-  result.add(std::move(faces));
-  result.add(std::move(barycentric));
-  result.add(std::move(numbers));
-  result.add(std::move(types));
+  result.put("points", std::move(points));
+  result.put("distances", std::move(distances));
+  result.put("faces", std::move(faces));
+  result.put("barycentric", std::move(barycentric));
 }
 
 }  // namespace
@@ -46,7 +42,7 @@ Result* closest_points(const Sites* sites, const double* data, std::uint32_t cou
     const auto queries = points(data, count);
     const auto closest =
         sdm::closest_points(*sites, queries, {.max_distance = max_distance, .progress = host_progress()});
-    add_closest(result, *sites, queries, closest);
+    put_closest(result, *sites, queries, closest);
   });
 }
 
@@ -60,20 +56,20 @@ Result* signed_distance(const Sites* sites, const double* data, std::uint32_t co
     std::vector<double> distances(count);
     for (std::size_t i = 0; i < count; ++i)
       distances[i] = inside[i] ? -closest[i].distance : closest[i].distance;
-    result.add(std::move(distances));
-    result.add_numbers(static_cast<int>(used.method));
-    result.add_text(used.reason);
+    result.put("distances", std::move(distances));
+    result.put("sign", used.method);
+    result.put("reason", used.reason);
   });
 }
 
-/// Origins and directions, three numbers each. Parameters, faces, barycentric coordinates of corners 1 and 2.
+/// Origins and directions, three numbers each. Barycentric coordinates are those of corners 1 and 2.
 SDM_EXPORT(sdm_first_hits)
 Result* first_hits(const Sites* sites, const double* origins, const double* directions, std::uint32_t count,
-                   double t_min, double t_max) {
+                   const char* lines, std::uint32_t bytes, const double* numbers) {
   return guarded([&](Result& result) {
-    std::vector<Ray> rays(count);
+    std::vector<Ray> rays(count, read_options<Ray>({lines, bytes, numbers}));
     const auto from = points(origins, count), along = points(directions, count);
-    for (std::size_t i = 0; i < count; ++i) rays[i] = {from[i], along[i], t_min, t_max};
+    for (std::size_t i = 0; i < count; ++i) rays[i].origin = from[i], rays[i].direction = along[i];
     const std::vector<RayHit> hits = sdm::first_hits(*sites, rays, {.progress = host_progress()});
     std::vector<double> t(count), barycentric(2 * count);
     std::vector<std::uint32_t> faces(count);
@@ -83,9 +79,9 @@ Result* first_hits(const Sites* sites, const double* origins, const double* dire
       barycentric[2 * i] = hits[i].barycentric[1];
       barycentric[2 * i + 1] = hits[i].barycentric[2];
     }
-    result.add(std::move(t));
-    result.add(std::move(faces));
-    result.add(std::move(barycentric));
+    result.put("t", std::move(t));
+    result.put("faces", std::move(faces));
+    result.put("barycentric", std::move(barycentric));
   });
 }
 

@@ -17,6 +17,15 @@ std::size_t obeyed = 0;
 
 }  // namespace
 
+void Result::add_line(std::string_view name, std::string_view kind) {
+  names_.append(name).append(" ").append(kind).append("\n");
+}
+
+void Result::add_array(std::string_view name, std::string_view kind, std::span<const std::byte> bytes) {
+  arrays[count++] = {bytes.data(), static_cast<std::uint32_t>(bytes.size())};
+  add_line(name, kind);
+}
+
 void fail_with_current_exception(Result& result) noexcept {
   try {
     throw;

@@ -4,19 +4,20 @@
 #include <sdm/transfer.h>
 
 #include "module/arguments.h"
+#include "module/options.h"
 #include "module/result.h"
 
 namespace sdm::js {
 
-/// The values of `count` numbers, a row for each texel. `source`: a DistanceMap or TexelMatches.
+/// The values of rows of O2, a row for each texel. `source`: a DistanceMap or TexelMatches.
 template <typename Source>
-Result* transferred(const Surface* surface, const Sites* sites, const Source* source, const float* values,
-                    std::uint32_t count, std::uint32_t components, std::uint32_t domain, bool fill) {
+Result* transferred(const Surface* surface, const Sites* sites, const Source* source,
+                    std::span<const float> values, const GivenOptions& given) {
   return guarded([&](Result& result) {
-    result.add(transfer(
-        *surface, *sites, *source,
-        {.values = {values, count}, .components = components, .domain = static_cast<AttributeDomain>(domain)},
-        {.fill = fill, .progress = host_progress()}));
+    auto [array, options] = read_all_options<AttributeArray, TransferOptions>(given);
+    array.values = values;
+    options.progress = host_progress();
+    result.put("values", transfer(*surface, *sites, *source, array, options));
   });
 }
 

@@ -1,5 +1,4 @@
 // Animations of mesh files.
-import { type Bytes, float64, uint32 } from './bytes.js';
 import { type ReadMeshOptions, fileArguments } from './mesh_file.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
@@ -9,15 +8,19 @@ export interface ReadAnimationOptions extends ReadMeshOptions {
   rate?: number;
 }
 
+type FirstFrame = { frames: number; positions: Float64Array; indices: Uint32Array };
+
 /** The mesh of a file whose vertices move. */
 export class Animation extends Owned {
   readonly frames: number;
-  private readonly first: { positions: Bytes; indices: Bytes };
 
-  private constructor(module: Module, address: Bytes, frames: Bytes, positions: Bytes, indices: Bytes) {
-    super(module, float64(address)[0]!, 'sdm_free_animation');
-    this.frames = float64(frames)[0]!;
-    this.first = { positions, indices };
+  private constructor(
+    module: Module,
+    address: number,
+    private readonly first: FirstFrame,
+  ) {
+    super(module, address, 'sdm_free_animation');
+    this.frames = first.frames;
   }
 
   /** @internal Null if the file has no animation. */
@@ -27,23 +30,22 @@ export class Animation extends Owned {
     name: string,
     options: ReadAnimationOptions = {},
   ): Animation | null {
-    const values = fileArguments(module, 'readAnimation', bytes, name, options);
-    const [, ...parts] = module.call(
+    const values = [...fileArguments(module, 'readAnimation', bytes, name, options), options.rate ?? NaN];
+    const { address, ...first } = module.call<{ address?: number } & FirstFrame>(
       'sdm_read_animation',
-      [...values, options.rate ?? NaN],
+      values,
       options.progress,
     );
-    if (parts.length === 0) return null;
-    const [address, frames, positions, indices] = parts as [Bytes, Bytes, Bytes, Bytes];
-    return new Animation(module, address, frames, positions, indices);
+    return address === undefined ? null : new Animation(module, address, first);
   }
 
   /** The first frame. All frames have its triangles and as many vertices. */
   mesh(): { positions: Float64Array; indices: Uint32Array } {
-    return { positions: float64(this.first.positions).slice(), indices: uint32(this.first.indices).slice() };
+    return { positions: this.first.positions.slice(), indices: this.first.indices.slice() };
   }
   /** Where the vertices are in a frame. Cost: linear. */
   positions(frame: number): Float64Array {
-    return float64(this.module.call('sdm_animation_frame', [this.handle, frame])[0]!);
+    const values = [this.handle, frame];
+    return this.module.call<{ positions: Float64Array }>('sdm_animation_frame', values).positions;
   }
 }

@@ -129,7 +129,7 @@ export const takeDeclared = (values: Checks, options: Checks = {}): Call => ({
 export const mesh = { positions: numbers, indices: optional(numbers) };
 const file = { bytes, name: word };
 export const ofSurface = { uvs: numbers, storedAtlas: bytes };
-const ofTransfer = { components: whole(1), domain: anything, fill: flag };
+export const ofMap = { rest: numbers };
 const ofSummary = {
   tolerance: anything,
   units: word,
@@ -164,18 +164,21 @@ const kCalls: [Kind: { prototype: object }, calls: Record<string, Call>][] = [
       refit: take({ positions: numbers }),
       closestPoints: take({ points: numbers }, { maxDistance: number }),
       signedDistance: take({ points: numbers }, { sign: anything }),
-      firstHits: take({ origins: numbers, directions: numbers }, { tMin: number, tMax: number }),
+      firstHits: takeDeclared({ origins: numbers, directions: numbers }),
       hausdorff: takeDeclared({ other: sites }),
     },
   ],
-  [Surface, { refit: take({ positions: numbers }), map: takeDeclared({ sites }), emptyMap: take({ sites }) }],
+  [
+    Surface,
+    { refit: take({ positions: numbers }), map: takeDeclared({ sites }, ofMap), emptyMap: take({ sites }) },
+  ],
   [
     DistanceMap,
     {
-      compute: takeDeclared({}),
-      computeSamples: takeDeclared({ first: whole(0), count: whole(0) }),
+      compute: takeDeclared({}, ofMap),
+      computeSamples: takeDeclared({ first: whole(0), count: whole(0) }, ofMap),
       valuesOfSamples: take({ first: whole(0), count: whole(0) }),
-      transfer: take({ values: numbers }, ofTransfer),
+      transfer: takeDeclared({ values: numbers }),
       summary: take({}, ofSummary),
       report: take({}, { ...ofSummary, up: anything }),
     },
@@ -183,7 +186,7 @@ const kCalls: [Kind: { prototype: object }, calls: Record<string, Call>][] = [
   [
     Matches,
     {
-      transfer: take({ values: numbers }, ofTransfer),
+      transfer: takeDeclared({ values: numbers }),
       bake: take({ look: object(Look, 'a Look') }),
       normals: take({}, { tangentSpace: flag, look: object(Look, 'a Look'), pose: numbers }),
       normalsOf: take({ look: optional(object(Look, 'a Look')) }, { tangentSpace: flag, pose: numbers }),

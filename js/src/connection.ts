@@ -14,7 +14,9 @@ export interface CallOptions {
 }
 
 /** The options of a synchronous call, with those of calls to a worker. */
-export type Options<Synchronous> = Omit<Synchronous, 'progress'> & CallOptions;
+export type Options<Synchronous> = Synchronous extends unknown
+  ? Omit<Synchronous, 'progress'> & CallOptions
+  : never;
 // How long an aborted call may go on, once those before it have ended, before the worker is ended: as many periods as these. They are
 // counted, so that a page that was busy meanwhile still receives that the call has ended.
 const kPeriodMilliseconds = 50;

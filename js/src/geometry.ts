@@ -1,14 +1,5 @@
-// Points, triangles and lengths, as the module takes and returns them.
-import { type Bytes, float64 } from './bytes.js';
-import { type Module } from './module.js';
-import {
-  type BoundedLength,
-  type Certainty,
-  type Indices,
-  type Point,
-  type Points,
-  SdmError,
-} from './types.js';
+// Points and triangles, as the module takes them.
+import { type Indices, type Points, SdmError } from './types.js';
 
 /** Coordinates as doubles, three for each point. */
 export function coordinates(points: Points, name: string): Float64Array {
@@ -31,22 +22,4 @@ export function corners(indices: Indices, vertices: number): Uint32Array {
       throw new SdmError('input', `indices[${i}] is ${index}, but there are ${vertices} vertices`);
   }
   return indices instanceof Uint32Array ? indices : Uint32Array.from(indices);
-}
-
-export function boundedLength(module: Module, bytes: Bytes): BoundedLength {
-  const [value, lower, upper, certainty, ...witness] = Array.from(float64(bytes)) as [
-    number,
-    number,
-    number,
-    number,
-    ...number[],
-  ];
-  const points: [Point, Point] = [witness.slice(0, 3) as Point, witness.slice(3, 6) as Point];
-  return {
-    value,
-    lower,
-    upper,
-    certainty: module.words('certainty')[certainty] as Certainty,
-    witness: Number.isNaN(witness[0]!) ? null : points,
-  };
 }

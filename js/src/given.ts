@@ -9,13 +9,18 @@ export function shown(value: unknown): string {
   return name.endsWith('s') ? name : `${/^[AEIOU]/.test(name) ? 'an' : 'a'} ${name}`;
 }
 
-/** Options that C++ declares, all but progress: their names with their values in words, how many bytes these are, and the numbers. */
-export function declaredOptions(given: object): [Uint8Array, number, Float64Array] {
+const isDirection = (value: unknown): value is ArrayLike<number> =>
+  (Array.isArray(value) || ArrayBuffer.isView(value)) &&
+  [1, 2, 3].includes((value as unknown as ArrayLike<unknown>).length) &&
+  Array.from(value as unknown as ArrayLike<unknown>).every((one) => typeof one === 'number');
+const worded = (value: unknown) => (isDirection(value) ? Array.from(value).join() : shown(value));
+
+/** Options that C++ declares, all but progress: their names with their values in words, and the numbers. */
+export function declaredOptions(given: object): [string, Float64Array] {
   const entries = Object.entries(given).filter(
     ([name, value]) => value !== undefined && value !== null && name !== 'progress',
   );
-  const lines = entries.map(([name, value]) => `${name.replace(/[=\n]/g, ' ')}=${shown(value)}\n`);
-  const bytes = new TextEncoder().encode(lines.join(''));
+  const lines = entries.map(([name, value]) => `${name.replace(/[=\n]/g, ' ')}=${worded(value)}\n`);
   const numbers = entries.map(([, value]) => (typeof value === 'number' ? value : Number.NaN));
-  return [bytes, bytes.length, Float64Array.from(numbers)];
+  return [lines.join(''), Float64Array.from(numbers)];
 }

@@ -27,8 +27,17 @@ export type { FaceNames, MeshFile, ReadMeshOptions } from './mesh_file.js';
 export type { PoolMap, PoolMapOptions, PoolSites, PoolSurface, SdmPool } from './pool.js';
 export type { Colormap, MapSummary, ReportOptions, SummaryOptions } from './report.js';
 export type { Contacts, Pair } from './pair.js';
-export type { ClosestPoints, Hausdorff, HausdorffOptions, RayHits, SignedDistances, Sites } from './sites.js';
-export type { Atlas, DistanceMap, MapOptions, Surface, SurfaceOptions } from './surface.js';
+export type {
+  ClosestPoints,
+  Hausdorff,
+  HausdorffOptions,
+  RayHits,
+  RayOptions,
+  SignedDistances,
+  Sites,
+} from './sites.js';
+export type { MapOptions } from './measures.js';
+export type { Atlas, DistanceMap, Surface, SurfaceOptions } from './surface.js';
 export type { CallOptions } from './connection.js';
 export type { WorkerMap, WorkerPair, WorkerSites, WorkerSurface } from './remote.js';
 export type { WorkerAnimation, WorkerLook, WorkerMatches } from './remote_looks.js';

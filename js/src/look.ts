@@ -1,5 +1,4 @@
 // How meshes look: materials, textures, colours and normals of their files.
-import { float64, text } from './bytes.js';
 import { type ReadMeshOptions, fileArguments } from './mesh_file.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
@@ -24,26 +23,25 @@ export class Look extends Owned {
   private readonly facts: { textures: string[]; notes: string[] };
 
   constructor(module: Module, bytes: Uint8Array | ArrayBuffer, name: string, options: ReadMeshOptions = {}) {
-    const [address, flags, facts] = module.call(
-      'sdm_read_look',
-      fileArguments(module, 'readLook', bytes, name, options),
-      options.progress,
-    );
-    super(module, float64(address!)[0]!, 'sdm_free_look');
-    const [materials, colors, normals] = Array.from(float64(flags!), (flag) => flag !== 0) as [
-      boolean,
-      boolean,
-      boolean,
-    ];
-    [this.hasMaterials, this.hasColors, this.hasNormals] = [materials, colors, normals];
-    this.facts = JSON.parse(text(facts!));
+    const made = module.call<{
+      address: number;
+      hasMaterials: boolean;
+      hasColors: boolean;
+      hasNormals: boolean;
+      facts: string;
+    }>('sdm_read_look', fileArguments(module, 'readLook', bytes, name, options), options.progress);
+    super(module, made.address, 'sdm_free_look');
+    this.hasMaterials = made.hasMaterials;
+    this.hasColors = made.hasColors;
+    this.hasNormals = made.hasNormals;
+    this.facts = JSON.parse(made.facts);
   }
 
   /** The names of the textures, and their files, in PNG, JPEG or WebP. */
   textures(): { name: string; bytes: Uint8Array<ArrayBuffer> }[] {
     return this.facts.textures.map((name, i) => ({
       name,
-      bytes: this.module.call('sdm_texture_file', [this.handle, i])[0]!,
+      bytes: this.module.call<{ bytes: Uint8Array<ArrayBuffer> }>('sdm_texture_file', [this.handle, i]).bytes,
     }));
   }
   /** What was left out or may be wrong, a sentence each. */

@@ -1,5 +1,4 @@
 // The points of O2 that belong to the texels of O1, and what O2 has there.
-import { type Bytes, float32, float64, uint32 } from './bytes.js';
 import type * as declared from './declared.js';
 import { declaredOptions } from './given.js';
 import { type Look } from './look.js';
@@ -38,7 +37,6 @@ export interface MatchArrays {
 }
 
 export type BakeChannel = 'base_color' | 'metallic_roughness' | 'occlusion' | 'emissive';
-const kChannels: readonly BakeChannel[] = ['base_color', 'metallic_roughness', 'occlusion', 'emissive'];
 
 /** A texture, as glTF has it: colours in sRGB, roughness in green and metallic in blue, occlusion in grey. */
 export interface BakedTexture {
@@ -101,31 +99,22 @@ export class Matches extends Owned {
       throw new SdmError('input', 'matches need the module of start({ full: true })');
     const { progress, ...given } = options;
     const values = [surface.handleIn(module), sites.handleIn(module), ...declaredOptions(given)];
-    const [address, numbers] = module.call('sdm_match', values, progress);
-    super(module, float64(address!)[0]!, 'sdm_free_matches');
-    const [resolution, rows, closest, facing, ray, tooFar, facingAway] = Array.from(float64(numbers!)) as [
-      number,
-      number,
-      number,
-      number,
-      number,
-      number,
-      number,
-    ];
-    [this.resolution, this.rows] = [resolution, rows];
-    this.numbers = { closest, facing, ray, tooFar, facingAway };
+    const made = module.call<{ address: number; resolution: number; rows: number; counts: MatchCounts }>(
+      'sdm_match',
+      values,
+      progress,
+    );
+    super(module, made.address, 'sdm_free_matches');
+    this.resolution = made.resolution;
+    this.rows = made.rows;
+    this.numbers = made.counts;
   }
 
   counts(): MatchCounts {
     return { ...this.numbers };
   }
   arrays(): MatchArrays {
-    const [kinds, faces, barycentric] = this.module.call('sdm_match_arrays', [this.handle]) as [
-      Bytes,
-      Bytes,
-      Bytes,
-    ];
-    return { kinds, faces: uint32(faces), barycentric: float32(barycentric) };
+    return this.module.call<MatchArrays>('sdm_match_arrays', [this.handle]);
   }
 
   /** Values of the sites' mesh at the points; NaN where a texel of a face has none. */
@@ -135,40 +124,9 @@ export class Matches extends Owned {
 
   /** The textures of a look at the points: base colours, and what else differs between them. Texels without a point are filled. */
   bake(look: Look, options: { progress?: Progress } = {}): BakedLook {
-    const [channels, factors, ...pictures] = this.module.call(
-      'sdm_bake',
-      [...this.addresses(), look.handleIn(this.module)],
-      options.progress,
-    );
-    const f = Array.from(float64(factors!)) as [
-      number,
-      number,
-      number,
-      number,
-      number,
-      number,
-      number,
-      number,
-      number,
-      number,
-      number,
-    ];
-    const kinds = uint32(channels!);
-    return {
-      textures: pictures.map((data, i) => ({
-        channel: kChannels[kinds[2 * i]!]!,
-        components: kinds[2 * i + 1]!,
-        data,
-      })),
-      material: {
-        baseColor: [f[0], f[1], f[2], f[3]],
-        emissive: [f[4], f[5], f[6]],
-        metallic: f[7],
-        roughness: f[8],
-        alphaMode: (['opaque', 'mask', 'blend'] as const)[f[9]]!,
-        alphaCutoff: f[10],
-      },
-    };
+    const values = [...this.addresses(), look.handleIn(this.module)];
+    const baked = this.module.call<Partial<BakedLook>>('sdm_bake', values, options.progress);
+    return { textures: baked.textures ?? [], material: baked.material! };
   }
 
   /** The normals of O2 at the points as a picture: red, green and blue of each texel. Texels without a point are filled. */
@@ -179,12 +137,12 @@ export class Matches extends Owned {
     const rotation = Float64Array.from({ length: 9 }, (_, i) =>
       pose ? pose[(i % 3) * 4 + Math.floor(i / 3)]! : i % 4 === 0 ? 1 : 0,
     );
-    const [picture] = this.module.call(
+    const shape = [look ? look.handleIn(this.module) : 0, rotation, options.tangentSpace ? 1 : 0];
+    return this.module.call<{ picture: Uint8Array }>(
       'sdm_bake_normals',
-      [...this.addresses(), look ? look.handleIn(this.module) : 0, rotation, options.tangentSpace ? 1 : 0],
+      [...this.addresses(), ...shape],
       options.progress,
-    );
-    return picture!;
+    ).picture;
   }
 
   /** @internal As a worker calls it: references are no options. */
@@ -194,18 +152,8 @@ export class Matches extends Owned {
 
   /** What the textures are drawn on. */
   model(options: { tangents?: boolean } = {}): DrawnModel {
-    const [positions, normals, uvs, tangents, indices, origin] = this.module.call('sdm_drawn_model', [
-      this.surface.handleIn(this.module),
-      options.tangents ? 1 : 0,
-    ]) as [Bytes, Bytes, Bytes, Bytes, Bytes, Bytes];
-    return {
-      positions: float32(positions),
-      normals: float32(normals),
-      uvs: float32(uvs),
-      tangents: options.tangents ? float32(tangents) : null,
-      indices: uint32(indices),
-      origin: Array.from(float64(origin)) as [number, number, number],
-    };
+    const values = [this.surface.handleIn(this.module), options.tangents ? 1 : 0];
+    return this.module.call<DrawnModel>('sdm_drawn_model', values);
   }
 
   private addresses(): [number, number, number] {

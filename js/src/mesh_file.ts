@@ -1,5 +1,4 @@
 // Meshes from files.
-import { float64, text, uint32 } from './bytes.js';
 import { type Module } from './module.js';
 import { type Progress, SdmError } from './types.js';
 
@@ -70,9 +69,8 @@ export function fileArguments(
   if (!module.has('sdm_read_mesh'))
     throw new SdmError('input', `${call} needs the module of start({ full: true })`);
   const file = bytesOf(bytes);
-  const path = new TextEncoder().encode(name);
   const [names, contents, lengths] = packed(files ?? {});
-  return [file, file.length, path, path.length, names, contents, lengths, lengths.length / 2];
+  return [file, file.length, name, names, contents, lengths, lengths.length / 2];
 }
 
 export function readMesh(
@@ -81,25 +79,19 @@ export function readMesh(
   name: string,
   options: ReadMeshOptions,
 ): MeshFile {
-  const [positions, indices, uvs, facts, ...ofFaces] = module.call(
-    'sdm_read_mesh',
-    fileArguments(module, 'readMesh', bytes, name, options),
-    options.progress,
-  );
-  const said = JSON.parse(text(facts!)) as {
-    names: { kind: string; names: string[] }[];
-    notes: string[];
-    xxh3: string;
-  };
+  const { positions, indices, cornerUvs, facts, ofFaces } = module.call<{
+    positions: Float64Array;
+    indices: Uint32Array;
+    cornerUvs?: Float64Array;
+    facts: string;
+    ofFaces?: Uint32Array[];
+  }>('sdm_read_mesh', fileArguments(module, 'readMesh', bytes, name, options), options.progress);
+  const said = JSON.parse(facts) as Pick<MeshFile, 'notes' | 'xxh3'> & { names: Omit<FaceNames, 'ofFace'>[] };
   return {
-    positions: float64(positions!),
-    indices: uint32(indices!),
-    cornerUvs: uvs!.length > 0 ? float64(uvs!) : null,
-    names: said.names.map(({ kind, names: words }, i) => ({
-      kind,
-      names: words,
-      ofFace: uint32(ofFaces[i]!),
-    })),
+    positions,
+    indices,
+    cornerUvs: cornerUvs ?? null,
+    names: said.names.map((kind, i) => ({ ...kind, ofFace: ofFaces![i]! })),
     notes: said.notes,
     xxh3: said.xxh3,
   };

@@ -1,12 +1,13 @@
 // A WebAssembly module of the library: its memory, its calls and their results.
 import { text, wordNumber } from './bytes.js';
 import { type Threads, hostImports } from './host.js';
+import { readResult } from './results.js';
 import { startThreads } from './threads.js';
 import { type NumberArray, SdmError, type Progress } from './types.js';
 
 type Address = number;
-type Argument = number | NumberArray | null;
-type Result = Uint8Array<ArrayBuffer>[];
+/** A text is passed by its address and its length. */
+type Argument = number | string | NumberArray | null;
 
 const kErrors = ['', 'input', 'cancelled', 'memory'] as const;
 
@@ -129,8 +130,8 @@ export class Module {
     return this.fault;
   }
 
-  /** Calls an exported function, with arrays copied into the module and out of it. */
-  call(name: string, values: Argument[], progress?: Progress): Result {
+  /** Calls an exported function, with arrays copied into the module and out of it. Returns the values that it names. */
+  call<Result = Record<string, never>>(name: string, values: Argument[], progress?: Progress): Result {
     if (this.progress) throw new SdmError('input', 'the library was called by a callback of progress');
     const blocks: Address[] = [];
     // An exception of the callback must not pass through the module: the call is cancelled, and then it is thrown.
@@ -144,17 +145,21 @@ export class Module {
       }
     };
     try {
-      const numbers = values.map((value) => {
+      const copied = ({ buffer, byteOffset, byteLength }: NumberArray) => {
+        const block = this.allocate(byteLength);
+        blocks.push(block);
+        const from = new Uint8Array(buffer, byteOffset, byteLength);
+        new Uint8Array(this.memory.buffer, block, byteLength).set(from);
+        return block;
+      };
+      const numbers = values.flatMap((value) => {
         if (value === null) return 0;
         if (typeof value === 'number') return value;
-        const block = this.allocate(value.byteLength);
-        blocks.push(block);
-        new Uint8Array(this.memory.buffer, block, value.byteLength).set(
-          new Uint8Array(value.buffer, value.byteOffset, value.byteLength),
-        );
-        return block;
+        if (typeof value !== 'string') return copied(value);
+        const words = new TextEncoder().encode(value);
+        return [copied(words), words.length];
       });
-      return this.read(this.run(name, numbers));
+      return this.read(this.run(name, numbers)) as Result;
     } catch (error) {
       throw failure ? failure.error : error;
     } finally {
@@ -163,23 +168,17 @@ export class Module {
     }
   }
 
-  /** Calls a function that returns no result. */
-  plain(name: string, ...numbers: number[]): number {
-    if (this.progress) throw new SdmError('input', 'the library was called by a callback of progress');
-    return this.run(name, numbers);
-  }
-
   /** Frees what is at an address, unless the module is broken. */
   free(name: string, address: Address): void {
     if (this.progress) throw new SdmError('input', 'the library was called by a callback of progress');
     if (!this.broken) this.run(name, [address]);
   }
 
-  /** The words of an option or a result, in the order of their numbers. */
-  words(option: string): readonly string[] {
+  /** The words of an option that is passed by a number, in the order of these. */
+  private words(option: string): readonly string[] {
     this.wordsOf ??= new Map(
-      text(this.call('sdm_words', [])[0]!)
-        .trimEnd()
+      this.call<{ words: string }>('sdm_words', [])
+        .words.trimEnd()
         .split('\n')
         .map((line) => {
           const [name, ...words] = line.split(' ');
@@ -217,14 +216,14 @@ export class Module {
     return block;
   }
 
-  // Result of module/result.h: error, message {address, bytes}, count, arrays {address, bytes}.
-  private read(result: Address): Result {
+  // Result of module/result.h: error, message, names, numbers {address, bytes}, count, arrays {address, bytes}.
+  private read(result: Address): Record<string, unknown> {
     try {
-      const words = new Uint32Array(this.memory.buffer, result, 28);
+      const words = new Uint32Array(this.memory.buffer, result, 32);
       const bytes = (at: number) => this.bytes(words[at]!, words[at + 1]!);
       const error = kErrors[words[0]!];
-      if (error) throw new SdmError(error, new TextDecoder().decode(bytes(1)));
-      return Array.from({ length: words[3]! }, (_, i) => bytes(4 + 2 * i));
+      if (error) throw new SdmError(error, text(bytes(1)));
+      return readResult(text(bytes(3)), new Float64Array(bytes(5).buffer), (i) => bytes(8 + 2 * i));
     } finally {
       this.run('sdm_free_result', [result]);
     }

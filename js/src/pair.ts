@@ -1,7 +1,6 @@
 // Two bodies that move.
-import { type Bytes, float64, uint32 } from './bytes.js';
 import type * as declared from './declared.js';
-import { boundedLength, coordinates, corners } from './geometry.js';
+import { coordinates, corners } from './geometry.js';
 import { declaredOptions } from './given.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
@@ -33,8 +32,8 @@ export class Pair extends Owned {
       const triangles = corners(indices ?? null, at.length / 3);
       return [at, at.length / 3, triangles, triangles.length / 3];
     });
-    const [address] = module.call('sdm_new_pair', [...bodies, ...declaredOptions(options)]);
-    super(module, float64(address!)[0]!, 'sdm_free_pair');
+    const values = [...bodies, ...declaredOptions(options)];
+    super(module, module.call<{ address: number }>('sdm_new_pair', values).address, 'sdm_free_pair');
   }
 
   /** Moves a body, 0 or 1. `matrix`: 16 numbers, column after column, as three.js has them (Matrix4.elements). */
@@ -51,28 +50,18 @@ export class Pair extends Owned {
   }
   /** The smallest distance between both surfaces; 0 if they intersect. */
   separation(): BoundedLength {
-    return boundedLength(this.module, this.module.call('sdm_separation', [this.handle])[0]!);
+    return this.module.call<BoundedLength>('sdm_separation', [this.handle]);
   }
   /** Whether the surfaces intersect, or a solid contains part of the other body. */
   colliding(): boolean {
-    return float64(this.module.call('sdm_colliding', [this.handle])[0]!)[0] !== 0;
+    return this.module.call<{ colliding: boolean }>('sdm_colliding', [this.handle]).colliding;
   }
   /** How deep a point of one body is inside the other; null if neither is a solid. */
   penetrationDepth(): BoundedLength | null {
-    const [depth] = this.module.call('sdm_penetration_depth', [this.handle]);
-    return depth ? boundedLength(this.module, depth) : null;
+    const values = [this.handle];
+    return this.module.call<{ depth?: BoundedLength }>('sdm_penetration_depth', values).depth ?? null;
   }
   contacts(): Contacts {
-    const [points1, points2, normals, depths, patches, ids] = this.module.call('sdm_contacts', [
-      this.handle,
-    ]) as Bytes[];
-    return {
-      points1: float64(points1!),
-      points2: float64(points2!),
-      normals: float64(normals!),
-      depths: float64(depths!),
-      patches: uint32(patches!),
-      ids: new BigUint64Array(ids!.buffer),
-    };
+    return this.module.call<Contacts>('sdm_contacts', [this.handle]);
   }
 }

@@ -1,12 +1,13 @@
 // Maps by several workers that share no memory.
-import { anything, checkMethods, mesh, object, ofSurface, take, takeDeclared } from './calls.js';
-import { type CallOptions, unlessAborted } from './connection.js';
+import { anything, checkMethods, mesh, object, ofMap, ofSurface, take, takeDeclared } from './calls.js';
+import { type CallOptions, type Options, unlessAborted } from './connection.js';
+import { type MapOptions, preparesMuch } from './measures.js';
 import { type WorkerMap, type WorkerSites, type WorkerSurface } from './remote.js';
 import { type SdmWorker } from './sdm_worker.js';
-import { type Atlas, type MapOptions, type SurfaceOptions } from './surface.js';
+import { type Atlas, type SurfaceOptions } from './surface.js';
 import { type Indices, type MapValues, type Points, SdmError, type SignMethod } from './types.js';
 
-export type PoolMapOptions = Omit<MapOptions, 'progress'> & CallOptions;
+export type PoolMapOptions = Options<MapOptions>;
 
 /** The arrays of a map, as of DistanceMap. */
 export interface PoolMap extends MapValues {
@@ -87,14 +88,17 @@ export class PoolSurface {
    */
   async map(sites: PoolSites, options: PoolMapOptions = {}): Promise<PoolMap> {
     options.signal?.throwIfAborted();
+    // Later, the caller may have changed it.
+    const rest = options.measure === 'self' && options.rest && Float64Array.from(options.rest);
+    const kept = rest ? { ...options, rest } : options;
     return unlessAborted(
-      this.turns.take(() => this.mapNow(sites, options)),
+      this.turns.take(() => this.mapNow(sites, kept)),
       options.signal,
     );
   }
 
   private async mapNow(sites: PoolSites, options: PoolMapOptions): Promise<PoolMap> {
-    const { signal, progress, ...rest } = options;
+    const { signal, progress, transfer: _, ...measure } = options;
     signal?.throwIfAborted();
     const maps = await this.mapsTo(sites);
     this.texels ??= (await this.each[0]!.samples()).texels;
@@ -102,7 +106,8 @@ export class PoolSurface {
     const { samples, grain } = await this.each[0]!.sampleCounts();
     const { resolution, rows } = maps[0]!;
     const result = noValues(resolution, rows);
-    const size = grain * Math.max(1, Math.floor(samples / grain / (kRangesPerWorker * maps.length)));
+    const ranges = maps.length * (preparesMuch(measure) ? 1 : kRangesPerWorker);
+    const size = grain * Math.max(1, Math.ceil(samples / grain / ranges));
     let next = 0;
     let done = 0;
     let failed = false;
@@ -112,7 +117,7 @@ export class PoolSurface {
         const first = next;
         const count = Math.min(size, samples - first);
         next += count;
-        const { sign, signReason, ...values } = await map.computeValues(first, count, rest);
+        const { sign, signReason, ...values } = await map.computeValues(first, count, measure);
         signs = { sign, signReason };
         store(result, texels, first, values);
         done += count;
@@ -229,7 +234,7 @@ checkMethods(
   PoolSurface,
   {
     refit: take({ positions: mesh.positions }),
-    map: takeDeclared({ sites: object(PoolSites, 'PoolSites') }, ofCalls),
+    map: takeDeclared({ sites: object(PoolSites, 'PoolSites') }, { ...ofMap, ...ofCalls }),
   },
   ['refit', 'map'],
 );

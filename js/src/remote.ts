@@ -6,10 +6,12 @@ import {
   type ClosestPoints,
   type Hausdorff,
   type HausdorffOptions,
+  type RayOptions,
   type RayHits,
   type SignedDistances,
 } from './sites.js';
-import { type Atlas, type MapOptions } from './surface.js';
+import { type MapOptions } from './measures.js';
+import { type Atlas } from './surface.js';
 import { type TransferOptions } from './transfer.js';
 import {
   type BoundedLength,
@@ -40,11 +42,7 @@ export class WorkerSites extends Remote {
   signedDistance(points: Points, options?: { sign?: SignMethod } & CallOptions): Promise<SignedDistances> {
     return this.call('signedDistance', [points], options);
   }
-  firstHits(
-    origins: Points,
-    directions: Points,
-    options?: { tMin?: number; tMax?: number } & CallOptions,
-  ): Promise<RayHits> {
+  firstHits(origins: Points, directions: Points, options?: Options<RayOptions>): Promise<RayHits> {
     return this.call('firstHits', [origins, directions], options);
   }
   hausdorff(other: WorkerSites, options?: Options<HausdorffOptions>): Promise<Hausdorff> {

@@ -1,5 +1,6 @@
 // Summaries and reports of maps, of the module `full`.
-import { type Bytes, float64, text, uint32 } from './bytes.js';
+import { type Bytes } from './bytes.js';
+import { type MeasureArguments } from './measures.js';
 import { type Module } from './module.js';
 import { type kColormapNames } from './rules.js';
 import { type Progress, SdmError } from './types.js';
@@ -18,7 +19,7 @@ export interface SummaryOptions {
   names?: [string, string];
   /** XXH3 of these files, as of MeshFile. */
   xxh3?: [string, string];
-  /** That of the map. */
+  /** That of the map: by default, of what it was computed with last. */
   maxDistance?: number;
   progress?: Progress;
 }
@@ -31,7 +32,8 @@ export interface ReportOptions extends SummaryOptions {
 /** The keys of report.json, which docs/report.md of the project lists. */
 export type MapSummary = { distance: Record<string, number>; [key: string]: unknown };
 
-type Addresses = [map: number, surface: number, sites: number];
+/** The addresses of a map, its surface and its sites, and the options by which it was computed. */
+export type Computed = [map: number, surface: number, sites: number, ...MeasureArguments];
 
 /** Two of a kind, or what stands for none. The module reads as many. */
 function two<Value>(
@@ -57,22 +59,13 @@ function argumentsOf(module: Module, options: ReportOptions) {
     ...two(options.tolerance, none, 'number', 'tolerance'),
     ...two(options.range, none, 'number', 'range'),
   ];
-  const words = new TextEncoder().encode(
-    JSON.stringify({
-      units: options.units ?? '',
-      names: two(options.names, ['O1', 'O2'], 'string', 'names'),
-      xxh3: two(options.xxh3, ['', ''], 'string', 'xxh3'),
-    }),
-  );
+  const words = JSON.stringify({
+    units: options.units ?? '',
+    names: two(options.names, ['O1', 'O2'], 'string', 'names'),
+    xxh3: two(options.xxh3, ['', ''], 'string', 'xxh3'),
+  });
   const colormap = module.number('colormap', options.colormap ?? 'automatic');
-  return [
-    ...limits,
-    options.maxDistance ?? Infinity,
-    colormap,
-    module.number('up', options.up ?? 'y'),
-    words,
-    words.length,
-  ];
+  return [...limits, options.maxDistance ?? NaN, colormap, module.number('up', options.up ?? 'y'), words];
 }
 
 function demandFull(module: Module, name: string): void {
@@ -80,10 +73,10 @@ function demandFull(module: Module, name: string): void {
     throw new SdmError('input', `${name} needs the module of start({ full: true })`);
 }
 
-export function summaryOf(module: Module, map: Addresses, options: SummaryOptions): MapSummary {
+export function summaryOf(module: Module, map: Computed, options: SummaryOptions): MapSummary {
   demandFull(module, 'summary');
-  const [json] = module.call('sdm_map_summary', [...map, ...argumentsOf(module, options)], options.progress);
-  return JSON.parse(text(json!)) as MapSummary;
+  const values = [...map, ...argumentsOf(module, options)];
+  return JSON.parse(module.call<{ json: string }>('sdm_map_summary', values, options.progress).json);
 }
 
 /** A stream of deflate: that of zlib without its header and its checksum, as older engines know no other. */
@@ -95,11 +88,7 @@ async function deflated(bytes: Bytes): Promise<Bytes> {
 const kDataPlace = '<!-- data -->'; // of the page, as src/io/page/report/page_file.cpp looks for it
 
 /** `map`: called once nothing has to be waited for any more, as the objects may be disposed of meanwhile. */
-export async function reportOf(
-  module: Module,
-  map: () => Addresses,
-  options: ReportOptions,
-): Promise<string> {
+export async function reportOf(module: Module, map: () => Computed, options: ReportOptions): Promise<string> {
   demandFull(module, 'report');
   const html = await module.reportPage!();
   if (!html.includes(kDataPlace))
@@ -107,27 +96,25 @@ export async function reportOf(
       'input',
       `the reportPage has no ${kDataPlace}: it must be the text of report_page.html`,
     );
-  const page = new TextEncoder().encode(html);
-  const [address, lengths, planes] = module.call(
+  const { address, lengths, planes } = module.call<{ address: number; lengths: Uint32Array; planes: Bytes }>(
     'sdm_new_report',
     [...map(), ...argumentsOf(module, options)],
     options.progress,
   );
-  const draft = float64(address!)[0]!;
   try {
     let at = 0;
     const compressed = await Promise.all(
-      Array.from(uint32(lengths!), (length) => {
-        const plane = planes!.slice(at, at + length);
+      Array.from(lengths, (length) => {
+        const plane = planes.slice(at, at + length);
         at += length;
         return length > 0 ? deflated(plane) : plane;
       }),
     );
     const sizes = Uint32Array.from(compressed, (plane) => plane.length);
     const all = new Uint8Array(await new Blob(compressed).arrayBuffer());
-    const [report] = module.call('sdm_finish_report', [draft, all, sizes, sizes.length, page, page.length]);
-    return text(report!);
+    const values = [address, all, sizes, sizes.length, html];
+    return module.call<{ html: string }>('sdm_finish_report', values).html;
   } finally {
-    module.free('sdm_free_report', draft);
+    module.free('sdm_free_report', address);
   }
 }

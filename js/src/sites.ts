@@ -1,7 +1,6 @@
 // Sites (O2), and what is asked of any points.
-import { float64, text, uint32 } from './bytes.js';
 import type * as declared from './declared.js';
-import { boundedLength, coordinates, corners } from './geometry.js';
+import { coordinates, corners } from './geometry.js';
 import { declaredOptions } from './given.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
@@ -51,6 +50,10 @@ export interface HausdorffOptions extends declared.HausdorffOptions {
   progress?: Progress;
 }
 
+export interface RayOptions extends declared.RayOptions {
+  progress?: Progress;
+}
+
 /** What distances are measured to (O2): the vertices, edges and faces of a mesh, in a tree. */
 export class Sites extends Owned {
   readonly closed: boolean;
@@ -60,14 +63,14 @@ export class Sites extends Owned {
   constructor(module: Module, positions: Points, indices: Indices = null) {
     const at = coordinates(positions, 'positions');
     const triangles = corners(indices, at.length / 3);
-    const [address, flags] = module.call('sdm_new_sites', [
-      at,
-      at.length / 3,
-      triangles,
-      triangles.length / 3,
-    ]);
-    super(module, float64(address!)[0]!, 'sdm_free_sites');
-    [this.closed, this.orientable] = Array.from(float64(flags!), (flag) => flag !== 0) as [boolean, boolean];
+    const values = [at, at.length / 3, triangles, triangles.length / 3];
+    const made = module.call<{ address: number; closed: boolean; orientable: boolean }>(
+      'sdm_new_sites',
+      values,
+    );
+    super(module, made.address, 'sdm_free_sites');
+    this.closed = made.closed;
+    this.orientable = made.orientable;
   }
 
   /** Moves the vertices. Cost: linear. */
@@ -83,63 +86,31 @@ export class Sites extends Owned {
    */
   closestPoints(points: Points, options: { maxDistance?: number; progress?: Progress } = {}): ClosestPoints {
     const at = coordinates(points, 'points');
-    const [found, distances, faces, barycentric] = this.module.call(
-      'sdm_closest_points',
-      [this.handle, at, at.length / 3, options.maxDistance ?? Infinity],
-      options.progress,
-    );
-    return {
-      points: float64(found!),
-      distances: float64(distances!),
-      faces: uint32(faces!),
-      barycentric: float64(barycentric!),
-    };
+    const values = [this.handle, at, at.length / 3, options.maxDistance ?? Infinity];
+    return this.module.call<ClosestPoints>('sdm_closest_points', values, options.progress);
   }
 
   /** Distances that are negative inside, of closestPoints(). Of an open mesh, `automatic` gives none a sign. */
   signedDistance(points: Points, options: { sign?: SignMethod; progress?: Progress } = {}): SignedDistances {
     const at = coordinates(points, 'points');
     const method = this.module.number('sign', options.sign ?? 'automatic');
-    const [distances, used, reason] = this.module.call(
-      'sdm_signed_distance',
-      [this.handle, at, at.length / 3, method],
-      options.progress,
-    );
-    return {
-      distances: float64(distances!),
-      sign: this.module.words('sign')[float64(used!)[0]!] as SignMethod,
-      reason: text(reason!),
-    };
+    const values = [this.handle, at, at.length / 3, method];
+    return this.module.call<SignedDistances>('sdm_signed_distance', values, options.progress);
   }
 
   /** The first point on each ray from an origin along a direction, at origin + t · direction. */
-  firstHits(
-    origins: Points,
-    directions: Points,
-    options: { tMin?: number; tMax?: number; progress?: Progress } = {},
-  ): RayHits {
+  firstHits(origins: Points, directions: Points, { progress, ...given }: RayOptions = {}): RayHits {
     const from = coordinates(origins, 'origins');
     const along = coordinates(directions, 'directions');
     if (from.length !== along.length)
       throw new SdmError('input', `there are ${from.length / 3} origins, but ${along.length / 3} directions`);
-    const [t, faces, barycentric] = this.module.call(
-      'sdm_first_hits',
-      [this.handle, from, along, from.length / 3, options.tMin ?? 0, options.tMax ?? Infinity],
-      options.progress,
-    );
-    return { t: float64(t!), faces: uint32(faces!), barycentric: float64(barycentric!) };
+    const values = [this.handle, from, along, from.length / 3, ...declaredOptions(given)];
+    return this.module.call<RayHits>('sdm_first_hits', values, progress);
   }
 
   /** The Hausdorff distance to another mesh, with certified bounds. */
   hausdorff(other: Sites, { progress, ...given }: HausdorffOptions = {}): Hausdorff {
-    const result = this.module.call(
-      'sdm_hausdorff',
-      [this.handle, other.handleIn(this.module), ...declaredOptions(given)],
-      progress,
-    );
-    return {
-      from: [boundedLength(this.module, result[0]!), boundedLength(this.module, result[2]!)],
-      larger: boundedLength(this.module, result[4]!),
-    };
+    const values = [this.handle, other.handleIn(this.module), ...declaredOptions(given)];
+    return this.module.call<Hausdorff>('sdm_hausdorff', values, progress);
   }
 }

@@ -1,11 +1,18 @@
 // Surfaces (O1) and their distance maps.
-import { type Bytes, fields, float32, float64, text, uint32 } from './bytes.js';
 import { coordinates, corners } from './geometry.js';
 import type * as declared from './declared.js';
 import { declaredOptions } from './given.js';
+import { type MapOptions, type MeasureArguments, measureArguments } from './measures.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
-import { type MapSummary, type ReportOptions, type SummaryOptions, reportOf, summaryOf } from './report.js';
+import {
+  type Computed,
+  type MapSummary,
+  type ReportOptions,
+  type SummaryOptions,
+  reportOf,
+  summaryOf,
+} from './report.js';
 import { type Sites } from './sites.js';
 import { type TransferOptions, transferred } from './transfer.js';
 import {
@@ -41,10 +48,6 @@ export interface Atlas {
   corners: Float32Array;
 }
 
-export interface MapOptions extends declared.MapOptions {
-  progress?: Progress;
-}
-
 /** The surface on which distances are measured (O1): a mesh with a texture atlas. */
 export class Surface extends Owned {
   /** Lays out the atlas. Throws SdmError if the mesh is unusable. */
@@ -66,12 +69,12 @@ export class Surface extends Owned {
     }
     const mesh = [at, at.length / 3, triangles, triangles.length / 3, uvs];
     const stored = [storedAtlas ?? null, storedAtlas?.length ?? 0];
-    const [address] = module.call(
-      'sdm_new_surface',
-      [...mesh, ...declaredOptions(given), ...stored],
-      progress,
+    const values = [...mesh, ...declaredOptions(given), ...stored];
+    super(
+      module,
+      module.call<{ address: number }>('sdm_new_surface', values, progress).address,
+      'sdm_free_surface',
     );
-    super(module, float64(address!)[0]!, 'sdm_free_surface');
   }
 
   /** Moves the vertices and keeps the atlas. Cost: linear. */
@@ -81,19 +84,12 @@ export class Surface extends Owned {
   }
 
   atlas(): Atlas {
-    const [numbers, faces, places] = this.module.call('sdm_surface_atlas', [this.handle]);
-    const [resolution, rows, charts, utilisation] = Array.from(float64(numbers!)) as [
-      number,
-      number,
-      number,
-      number,
-    ];
-    return { resolution, rows, charts, utilisation, texelFaces: uint32(faces!), corners: float32(places!) };
+    return this.module.call<Atlas>('sdm_surface_atlas', [this.handle]);
   }
 
   /** The atlas as bytes, for SurfaceOptions.storedAtlas. Of the mesh in its present shape, and for this version of sdm only. */
   storedAtlas(): Uint8Array<ArrayBuffer> {
-    return this.module.call('sdm_stored_atlas', [this.handle])[0]!;
+    return this.module.call<{ atlas: Uint8Array<ArrayBuffer> }>('sdm_stored_atlas', [this.handle]).atlas;
   }
 
   /**
@@ -101,18 +97,14 @@ export class Surface extends Owned {
    * and their points. Arrays of a map have no place for the latter, statistics have them.
    */
   samples(): { texels: Uint32Array; points: Float64Array } {
-    const [texels, points] = this.module.call('sdm_surface_samples', [this.handle]);
-    return { texels: uint32(texels!), points: float64(points!) };
+    return this.module.call('sdm_surface_samples', [this.handle]);
   }
   /** The number of samples, and that of which ranges for DistanceMap.computeSamples() begin and end at multiples. */
   sampleCounts(): { samples: number; grain: number } {
-    const [samples, grain] = Array.from(
-      float64(this.module.call('sdm_sample_counts', [this.handle])[0]!),
-    ) as [number, number];
-    return { samples, grain };
+    return this.module.call('sdm_sample_counts', [this.handle]);
   }
 
-  /** The surface distance map: at every texel, the distance to the sites. */
+  /** The surface distance map: at every texel, the distance to the sites, or another measure. */
   map(sites: Sites, options: MapOptions = {}): DistanceMap {
     const map = this.emptyMap(sites);
     try {
@@ -130,8 +122,8 @@ export class Surface extends Owned {
 }
 
 /**
- * At every texel of a surface's atlas: the distance to the sites, the vector to the closest point, and the closest site. Arrays
- * are copied out of the module at each call.
+ * At every texel of a surface's atlas: the distance to the sites, the vector to the closest point, and the closest site, or those of
+ * another measure. Arrays are copied out of the module at each call.
  */
 export class DistanceMap extends Owned {
   readonly resolution: number;
@@ -139,6 +131,7 @@ export class DistanceMap extends Owned {
   /** Of what was computed last. */
   sign: SignMethod = 'automatic';
   signReason = '';
+  private measure: MeasureArguments = measureArguments({});
 
   /** @internal */
   constructor(
@@ -148,9 +141,12 @@ export class DistanceMap extends Owned {
     private readonly sites: Sites,
   ) {
     sites.handleIn(module);
-    const [address, numbers] = module.call('sdm_new_map', [surfaceAddress]);
-    super(module, float64(address!)[0]!, 'sdm_free_map');
-    [this.resolution, this.rows] = Array.from(float64(numbers!)) as [number, number];
+    const made = module.call<{ address: number; resolution: number; rows: number }>('sdm_new_map', [
+      surfaceAddress,
+    ]);
+    super(module, made.address, 'sdm_free_map');
+    this.resolution = made.resolution;
+    this.rows = made.rows;
   }
 
   /** @internal As of Surface. */
@@ -158,66 +154,52 @@ export class DistanceMap extends Owned {
     return this.surface.sampleCounts();
   }
 
-  /** Computes all values, again after refit() of the surface or the sites; takes no more memory. */
-  compute({ progress, ...given }: MapOptions = {}): void {
-    this.take(
-      this.module.call('sdm_compute_map', [...this.addresses(), ...declaredOptions(given)], progress),
-    );
+  /** Computes all values, again after refit() of the surface or the sites; of distances to the sites, it takes no more memory. */
+  compute(options: MapOptions = {}): void {
+    this.computeBy('sdm_compute_map', options, []);
   }
   /**
    * Computes the values of some samples, `first` to `first + count` of Surface.samples(), which must be multiples of
    * sampleCounts().grain or the end. The other texels keep theirs. Ranges that cover all samples, computed in any order and in
    * any number of modules, are the whole map to the bit.
    */
-  computeSamples(first: number, count: number, { progress, ...given }: MapOptions = {}): void {
-    const values = [...this.addresses(), ...declaredOptions(given), first, count];
-    this.take(this.module.call('sdm_compute_samples', values, progress));
+  computeSamples(first: number, count: number, options: MapOptions = {}): void {
+    this.computeBy('sdm_compute_samples', options, [first, count]);
   }
   /** The values of samples, in their order, as those of the arrays of the map. */
   valuesOfSamples(first: number, count: number): MapValues {
-    const [distances, vectors, sites, types] = this.module.call('sdm_map_samples', [
-      this.handle,
-      this.surface.handleIn(this.module),
-      first,
-      count,
-    ]) as [Bytes, Bytes, Bytes, Bytes];
-    return {
-      distances: float32(distances),
-      vectors: float32(vectors),
-      sitesOfTexels: uint32(sites),
-      siteTypes: types,
-    };
+    const values = [this.handle, this.surface.handleIn(this.module), first, count];
+    return this.module.call<MapValues>('sdm_map_samples', values);
   }
 
-  private take([used, reason]: Bytes[]): void {
-    this.sign = this.module.words('sign')[float64(used!)[0]!] as SignMethod;
-    this.signReason = text(reason!);
+  private computeBy(name: string, { progress, ...options }: MapOptions, range: number[]): void {
+    const measure = measureArguments(options);
+    const values = [...this.addresses(), ...measure, ...range];
+    Object.assign(this, this.module.call<{ sign: SignMethod; signReason: string }>(name, values, progress));
+    this.measure = measure;
   }
 
   /** Distances, negative inside; NaN of texels without a value. */
   get distances(): Float32Array {
-    return float32(this.array(0, 4 * this.resolution * this.rows));
+    return this.array('distances');
   }
   /** Closest point − point of the texel: three numbers each. */
   get vectors(): Float32Array {
-    return float32(this.array(1, 12 * this.resolution * this.rows));
+    return this.array('vectors');
   }
   /** The closest vertex, edge or face. */
   get sitesOfTexels(): Uint32Array {
-    return uint32(this.array(2, 4 * this.resolution * this.rows));
+    return this.array('sitesOfTexels');
   }
   /** 0: a vertex, 1: an edge, 2: a face, 255: no value. */
   get siteTypes(): Uint8Array {
-    return this.array(3, this.resolution * this.rows);
+    return this.array('siteTypes');
   }
 
   /** Statistics of the distances, weighted by area. */
   statistics(): MapStatistics {
-    const [names, numbers] = this.module.call('sdm_map_statistics', [
-      this.surface.handleIn(this.module),
-      this.handle,
-    ]);
-    return fields(names!, numbers!) as unknown as MapStatistics;
+    const values = [this.surface.handleIn(this.module), this.handle];
+    return this.module.call<MapStatistics>('sdm_map_statistics', values);
   }
 
   /** Values of the sites' mesh at the closest point of each texel. */
@@ -228,17 +210,20 @@ export class DistanceMap extends Owned {
 
   /** The keys of report.json: numbers, verdict, places, colours, histogram. Of the module `full` only. */
   summary(options: SummaryOptions = {}): MapSummary {
-    return summaryOf(this.module, this.addresses(), options);
+    return summaryOf(this.module, this.computed(), options);
   }
   /** The text of report.html, a page that shows the map and its summary. Of the module `full` only. */
   report(options: ReportOptions = {}): Promise<string> {
-    return reportOf(this.module, () => this.addresses(), options);
+    return reportOf(this.module, () => this.computed(), options);
   }
 
   private addresses(): [number, number, number] {
     return [this.handle, this.surface.handleIn(this.module), this.sites.handleIn(this.module)];
   }
-  private array(which: number, bytes: number): Bytes {
-    return this.module.bytes(this.module.plain('sdm_map_array', this.handle, which), bytes);
+  private computed(): Computed {
+    return [...this.addresses(), ...this.measure];
+  }
+  private array<Name extends keyof MapValues>(name: Name): MapValues[Name] {
+    return this.module.call<{ values: MapValues[Name] }>('sdm_map_array', [this.handle, name]).values;
   }
 }

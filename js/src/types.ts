@@ -1,7 +1,16 @@
 // Types of arguments and results.
-import { type Certainty, type DistanceStatistics } from './declared.js';
+import { type DistanceStatistics } from './declared.js';
 
-export type { AtlasKind, Certainty, MatchMethod, SignMethod } from './declared.js';
+export type {
+  AtlasKind,
+  AttributeDomain,
+  BoundedLength,
+  Certainty,
+  MapMeasure,
+  MatchMethod,
+  SignMethod,
+  ThicknessMethod,
+} from './declared.js';
 
 export type NumberArray = Float64Array | Float32Array | Uint32Array | Int32Array | Uint16Array | Uint8Array;
 
@@ -30,18 +39,6 @@ export class SdmError extends Error {
 }
 
 export type SiteType = 'vertex' | 'edge' | 'face';
-
-export type Point = [number, number, number];
-
-/** A length with its bounds: lower ≤ truth ≤ upper. */
-export interface BoundedLength {
-  value: number;
-  lower: number;
-  upper: number;
-  certainty: Certainty;
-  /** A point of each surface that are `value` apart. */
-  witness: [Point, Point] | null;
-}
 
 /** Statistics of the texels that have a value, each weighted by its area; NaN if there are none. */
 export type MapStatistics = DistanceStatistics;

@@ -2,6 +2,7 @@
 // createWorker() and that of the threads of a module.
 import { Sdm } from './library.js';
 import { textOf } from './load.js';
+import { type MapOptions, preparesMuch } from './measures.js';
 import { Module, canShareMemory } from './module.js';
 import {
   type Call,
@@ -193,14 +194,14 @@ class Server {
   }
 
   /** Where no other thread can set a flag, the samples are computed in parts, between which the message to cancel is received. */
-  private async update(map: DistanceMap, call: Call, options: { progress?: Progress }): Promise<object> {
-    if (this.flags || !call.cancellable) map.compute(options);
+  private async update(map: DistanceMap, call: Call, options: MapOptions): Promise<object> {
+    if (this.flags || !call.cancellable || preparesMuch(options)) map.compute(options);
     else await this.inParts(map, call, options);
     return { sign: map.sign, signReason: map.signReason };
   }
 
   /** Parts are short, so that a call that was aborted ends soon on machines of any speed, but not so short that they cost much. */
-  private async inParts(map: DistanceMap, call: Call, options: { progress?: Progress }): Promise<void> {
+  private async inParts(map: DistanceMap, call: Call, options: MapOptions): Promise<void> {
     const { samples, grain } = map.sampleCounts();
     let step = grain;
     let first = 0;

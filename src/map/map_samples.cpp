@@ -9,7 +9,7 @@
 #include "surface/surface_data.h"
 
 namespace sdm {
-namespace {
+namespace map {
 
 void check_part(const Surface& surface, const SampleRange& range, const DistanceMap& map) {
   if (map.distance.size() != surface.map_faces().size() || map.resolution != surface.resolution())
@@ -23,7 +23,7 @@ void check_part(const Surface& surface, const SampleRange& range, const Distance
                 std::to_string(samples) + " samples");
 }
 
-}  // namespace
+}  // namespace map
 
 std::size_t sample_range_grain(const Surface& surface) {
   return closest::block_size(surface.sample_texels().size());
@@ -39,7 +39,7 @@ DistanceMap empty_map(const Surface& surface) try {
 
 void compute_samples(const Surface& surface, const Sites& sites, const MapOptions& options,
                      const SampleRange& range, DistanceMap& map) try {
-  check_part(surface, range, map);
+  map::check_part(surface, range, map);
   const map::ClosestMeasure measure(surface, sites, options);
   map::TexelStore texels(map, measure.description(), surface.sample_texels(), range);
   closest::for_each_sample_block(

@@ -122,10 +122,12 @@ void TexelStore::finish() {
   if (map_.without_match == 0 && std::ranges::count(map_.unmatched, 1) == 0) map_.unmatched.clear();
 }
 
-void measure_texels(const Surface& surface, const FaceMeasure& measure, DistanceMap& map) {
-  const surface::Tiles tiles(surface);
+namespace {
+
+// Measures the samples of the tiles.
+void measure_tiles(const Surface& surface, const FaceMeasure& measure, const surface::Tiles& tiles,
+                   TexelStore& texels) {
   const Array<std::uint32_t> order = order_of(tiles, measure);
-  TexelStore texels(map, surface, measure.description, tiles.texels);
   // Groups are large enough where there are many tiles that few of them are divided: each division costs what
   // it takes to start with a group.
   const std::size_t grain =
@@ -167,6 +169,25 @@ void measure_texels(const Surface& surface, const FaceMeasure& measure, Distance
     }
   });
   texels.finish();
+}
+
+}  // namespace
+
+void measure_texels(const Surface& surface, const FaceMeasure& measure, DistanceMap& map) {
+  const surface::Tiles tiles(surface);
+  TexelStore texels(map, surface, measure.description, tiles.texels);
+  measure_tiles(surface, measure, tiles, texels);
+}
+
+void measure_texels(const Surface& surface, const FaceMeasure& measure, const SampleRange& range,
+                    DistanceMap& map) {
+  const std::span<const std::uint32_t> faces = surface.map_faces();
+  std::vector<std::uint32_t> owners(faces.size(), kNone);
+  for (const std::uint32_t texel : surface.sample_texels().subspan(range.first, range.count))
+    owners[texel] = faces[texel];
+  const surface::Tiles tiles(surface, owners, surface::Tiles::kSide);
+  TexelStore texels(map, measure.description, tiles.texels, {0, tiles.texels.size()});
+  measure_tiles(surface, measure, tiles, texels);
 }
 
 std::vector<float> measure_vertices(const Mesh& mesh, const FaceMeasure& measure) {

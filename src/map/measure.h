@@ -112,6 +112,11 @@ class FaceMeasure {
 
 /// Computes the map of a measure. Throws Cancelled.
 void measure_texels(const Surface& surface, const FaceMeasure& measure, DistanceMap& map);
+/// The same of some samples, as compute_samples() in sdm/map_samples.h.
+void measure_texels(const Surface& surface, const FaceMeasure& measure, const SampleRange& range,
+                    DistanceMap& map);
+/// Throws sdm::Error unless the map is one of the surface, and the range one for compute_samples().
+void check_part(const Surface& surface, const SampleRange& range, const DistanceMap& map);
 
 /// Returns, for each vertex, the value of least absolute value that its faces have there, of the first face
 /// that has it; NaN for a vertex without one, or what is without a value. Throws Cancelled.

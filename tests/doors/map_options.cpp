@@ -27,20 +27,28 @@ bool set(Struct& options, const std::string& name, const std::string& value) {
 }
 
 void measure(const sdm::Mesh& on, const sdm::Sites& to, std::istringstream given) {
+  const auto options = sdm::options_of<sdm::AtlasOptions, sdm::MapOptions, sdm::AlongOptions>();
   sdm::AtlasOptions atlas{.resolution = 64};
   sdm::MapOptions map;
+  sdm::AlongOptions along;
+  std::vector<sdm::GivenOption> given_options;
   for (std::string word; given >> word;) {
     const std::size_t at = word.find('=');
     const std::string name = word.substr(0, at), value = word.substr(at + 1);
-    if (set(atlas, name, value) || set(map, name, value)) continue;
+    // Not "||": both measures have max_distance.
+    if (int{set(atlas, name, value)} + int{set(map, name, value)} + int{set(along, name, value)} > 0) {
+      given_options.push_back({name, value});
+      continue;
+    }
     std::vector<std::string> known;
-    for (const sdm::OptionInfo& option : sdm::options_of<sdm::AtlasOptions, sdm::MapOptions>())
-      known.push_back(option.name);
+    for (const sdm::OptionInfo& option : options) known.push_back(option.name);
     throw sdm::Error(sdm::unknown_name("option", name, known));
   }
-  sdm::check_options(map);
+  sdm::check_exclusions(options, given_options, sdm::Spelling::field);
   const sdm::Surface surface(on, atlas);
-  const sdm::DistanceMap result = sdm::compute_map(surface, to, map);
+  const bool by_lines = std::ranges::count(given_options, "along", &sdm::GivenOption::name) > 0;
+  const sdm::Measure measure = by_lines ? sdm::Measure(along) : sdm::Measure(map);
+  const sdm::DistanceMap result = sdm::compute_map(surface, to, measure);
   const sdm::DistanceStatistics numbers = sdm::statistics(surface, result);
   std::printf("%s %zu %.9g %.9g %.9g %.9g\n", sdm::name_of(result.sign.method), numbers.texels, numbers.min,
               numbers.max, numbers.mean, numbers.rms);

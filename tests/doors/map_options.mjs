@@ -9,8 +9,8 @@ const library = await sdm.start({ full: true });
 const kOfSurface = ['resolution', 'atlas', 'gutter', 'strict_uv', 'max_stretch'];
 const camel = (name) => name.replace(/_(.)/g, (_, letter) => letter.toUpperCase());
 
-/** A number or a flag, if that is what a user would give. */
-const value = (text) => (text === 'true' ? true : text !== '' && (text === 'nan' || !Number.isNaN(Number(text))) ? Number(text) : text);
+/** A number, a flag or a direction, if that is what a user would give. */
+const value = (text) => (text === 'true' ? true : text.includes(',') ? text.split(',').map(Number) : text !== '' && (text === 'nan' || !Number.isNaN(Number(text))) ? Number(text) : text);
 
 const mesh = (file) => library.readMesh(new Uint8Array(readFileSync(file)), file);
 const [on, to] = process.argv.slice(2).map(mesh);

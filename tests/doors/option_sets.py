@@ -12,6 +12,7 @@ ALLOWED = {
     "max_distance": ["0.05", "0.75", "1e6"],
     "sign": ["automatic", "none", "exact", "winding", "side"],
     "facing": ["1e-3", "60", "90", "180"],
+    "along": ["normal", "0,0,1", "0.5,-1,2"],
 }
 REFUSED = {
     "resolution": ["15", "32769", "-16"],
@@ -21,8 +22,14 @@ REFUSED = {
     "max_distance": ["0", "-0.5", "nan"],
     "sign": ["inside", "None", "automatics"],
     "facing": ["0", "-90", "180.5"],
+    "along": ["0,0,0", "up", "1,2"],
 }
-EXCLUDED = [{"facing": "90", "sign": "exact"}, {"facing": "12.5", "sign": "winding"}]
+EXCLUDED = [
+    {"facing": "90", "sign": "exact"},
+    {"facing": "12.5", "sign": "winding"},
+    {"along": "normal", "facing": "90"},
+    {"along": "0,0,1", "sign": "side"},
+]
 
 
 def misspelt(name: str, chance: random.Random) -> str:
@@ -39,19 +46,28 @@ def option_sets(count: int, seed: int) -> list[dict[str, str]]:
         options = {name: chance.choice(ALLOWED[name]) for name in names}
         if "facing" in options and options.get("sign") in ("exact", "winding"):
             del options["facing"]
+        if "along" in options:
+            options.pop("facing", None)
+            options.pop("sign", None)
         fault = k % 4
         if fault == 1:
             name = chance.choice(sorted(REFUSED))
             if name == "facing":
                 options.pop("sign", None)
+                options.pop("along", None)
             if name == "sign":
+                options.pop("facing", None)
+                options.pop("along", None)
+            if name == "along":
+                options.pop("sign", None)
                 options.pop("facing", None)
             options[name] = chance.choice(REFUSED[name])
         elif fault == 2:
-            name = chance.choice(sorted(set(ALLOWED) - {"sign", "atlas"}))
+            name = chance.choice(sorted(set(ALLOWED) - {"sign", "atlas", "along"}))
             options.pop(name, None)
             options[misspelt(name, chance)] = ALLOWED[name][0]
         elif fault == 3 and k % 8 == 3:
+            options.pop("along", None)
             options |= chance.choice(EXCLUDED)
         sets.append(options)
     return sets

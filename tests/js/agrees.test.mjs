@@ -18,6 +18,13 @@ const extent = (positions) => {
   return Math.hypot(...low.map((x, k) => high[k] - x));
 };
 
+const kOfItself = {
+  rings: { measure: 'self', rings: 2, maxDistance: 1.5 },
+  geodesic: { measure: 'self', geodesic: 0.3 },
+  ball: { measure: 'thickness', angle: 60 },
+  ray: { measure: 'thickness', method: 'ray' },
+};
+
 for (const threads of [1, 2]) {
   test(`with ${threads} thread${threads > 1 ? 's' : ''}`, async (t) => {
     const sdm = await start({ threads, full: true });
@@ -32,19 +39,27 @@ for (const threads of [1, 2]) {
         const surface = new sdm.Surface(...mesh('apart'), { resolution: 128, atlas: 'uv', uvs });
         const sites = new sdm.Sites(...o2);
 
-        const distances = numbers(Float32Array, `${i}.distances`), map = surface.map(sites), own = map.distances;
-        assert.deepEqual(surface.atlas().texelFaces, numbers(Uint32Array, `${i}.texel_faces`));
-        assert.equal(own.length, distances.length);
-        for (let texel = 0; texel < own.length; ++texel) {
-          if (Number.isNaN(distances[texel])) {
-            assert.ok(Number.isNaN(own[texel]));
-            continue;
+        const agree = (own, name) => {
+          const distances = numbers(Float32Array, `${i}.${name}`);
+          assert.equal(own.length, distances.length);
+          for (let texel = 0; texel < own.length; ++texel) {
+            if (Number.isNaN(distances[texel])) {
+              assert.ok(Number.isNaN(own[texel]));
+              continue;
+            }
+            ++texels;
+            if (own[texel] === distances[texel]) continue;
+            ++different;
+            assert.ok(Math.abs(own[texel] - distances[texel]) <= 1e-7 * size, `${name}, texel ${texel}: ${own[texel]}, not ${distances[texel]}`);
           }
-          ++texels;
-          if (own[texel] === distances[texel]) continue;
-          ++different;
-          assert.ok(Math.abs(own[texel] - distances[texel]) <= 1e-7 * size, `texel ${texel}: ${own[texel]}, not ${distances[texel]}`);
-        }
+        };
+        const map = surface.map(sites);
+        assert.deepEqual(surface.atlas().texelFaces, numbers(Uint32Array, `${i}.texel_faces`));
+        agree(map.distances, 'distances');
+        agree(surface.map(sites, { along: 'normal' }).distances, 'along.distances');
+        agree(surface.map(sites, { along: [0.25, -0.5, 1] }).distances, 'upwards.distances');
+        const itself = new sdm.Surface(...o1, { resolution: 64, storedAtlas: numbers(Uint8Array, `${i}.atlas`) }), own = new sdm.Sites(...o1);
+        for (const name of expected.of_itself) agree(itself.map(own, kOfItself[name]).distances, `${name}.distances`);
 
         const points = numbers(Float64Array, `${i}.points`), closest = sites.closestPoints(points);
         const signed = numbers(Float64Array, `${i}.signed`), result = sites.signedDistance(points);
@@ -60,7 +75,7 @@ for (const threads of [1, 2]) {
         assert.ok(Math.abs(pair.separation().value - expected.separation) <= 1e-12 * size);
         assert.equal(pair.colliding(), expected.colliding);
         assert.equal(pair.contacts().depths.length, expected.contacts);
-        for (const object of [surface, sites, map, pair]) object.dispose();
+        for (const object of [surface, sites, map, pair, itself, own]) object.dispose();
       });
     }
     t.diagnostic(`${different} of ${texels} texels differ`);

@@ -53,6 +53,7 @@ async function filePage() {
   const files = {
     script: readFileSync(join(SDM_PACKAGE, 'worker.js'), 'utf8'),
     core: readFileSync(join(SDM_PACKAGE, 'sdm_core.wasm')).toString('base64'),
+    full: readFileSync(join(SDM_PACKAGE, 'sdm_full.wasm')).toString('base64'),
   };
   const file = join(folder, 'page.html');
   writeFileSync(file, `<!doctype html><meta charset="utf-8"><script>window.embedded = ${text(files)};</script><script>${outputFiles[0].text.replaceAll('</script', '<\\/script')}</script>`);
@@ -69,7 +70,7 @@ async function runChecks(t, url, { isolated, script }) {
   await page.evaluate((files) => window.checks.setReference(files), reference());
   const facts = await page.evaluate(() => window.checks.begin());
   assert.deepEqual(facts, { sharesMemory: isolated, threads: isolated ? 2 : 1 });
-  for (const check of ['agrees', 'namesFaults', 'movesBuffers', 'apart', 'others', 'abortsMaps', 'abortsAnything', 'refits', 'divides'])
+  for (const check of ['agrees', 'namesFaults', 'movesBuffers', 'apart', 'others', 'abortsMaps', 'abortsAnything', 'refits', 'divides', 'measures'])
     await t.test(check, () => page.evaluate((name) => window.checks.run(name), check));
   await t.test('failsToStart', () => page.evaluate((bad) => window.checks.failsToStart(bad), script));
   await t.test('the main thread computes without waiting', () => page.evaluate(() => window.checks.synchronous()));

@@ -6,7 +6,7 @@ import { ball } from './shapes.mjs';
 const bytesOf = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
 const { embedded } = window;
 const blob = (text) => URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
-const options = embedded ? { modules: { core: bytesOf(embedded.core) }, script: blob(embedded.script) } : {};
+const options = embedded ? { modules: { core: bytesOf(embedded.core), full: bytesOf(embedded.full) }, script: blob(embedded.script) } : {};
 
 let files, worker;
 const read = (Kind, name) => new Kind(bytesOf(files[name]).buffer);
@@ -23,6 +23,13 @@ const all = {
   async divides() {
     const pool = await sdm.createPool({ ...options, workers: 3 });
     await checks.dividesMaps(pool, worker);
+    pool.terminate();
+  },
+  async measures() {
+    const full = await sdm.createWorker({ ...options, full: true, threads: 1 });
+    const pool = await sdm.createPool({ ...options, full: true, workers: 2 });
+    await checks.measuresAll(full, pool);
+    full.terminate();
     pool.terminate();
   },
 };

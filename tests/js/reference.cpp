@@ -4,7 +4,7 @@
 // system, are those in the folder GIVEN.
 #include <sdm/closest_points.h>
 #include <sdm/hausdorff.h>
-#include <sdm/map.h>
+#include <sdm/measure.h>
 #include <sdm/proximity_query.h>
 #include <sdm/sign.h>
 #include <sdm/transform.h>
@@ -24,6 +24,8 @@ namespace {
 
 using namespace sdm;
 using namespace sdm::test;
+
+constexpr Vec3 kUpwards{0.25, -0.5, 1};
 
 struct Pair {
   std::string name;
@@ -124,6 +126,25 @@ Mesh with_fixed_atlas(const Mesh& mesh, const Files& files, const std::string& n
   return result;
 }
 
+void write_values(const Files& files, const std::string& name, const DistanceMap& map) {
+  files.write(name + ".distances", std::span(map.distance).first(map.texels()));
+}
+
+/// The maps of a mesh by itself, of an atlas that is stored. Returns the names of the maps, as JSON.
+std::string write_measures_of_itself(const Files& files, const std::string& name, const Mesh& mesh) {
+  const Surface surface({mesh.positions, mesh.triangles, {}}, {.resolution = 64});
+  const Sites sites(surface.mesh());
+  files.write(name + ".atlas", surface.stored_atlas());
+  const Exclusion exclusion(mesh, {.rule = {.rings = 2}}), near(mesh, {.rule = {.geodesic = 0.3}});
+  write_values(files, name + ".rings", compute_map(surface, sites, SelfOptions{exclusion, 1.5}));
+  write_values(files, name + ".geodesic", compute_map(surface, sites, SelfOptions{near}));
+  if (!sites.closed() || !sites.orientable()) return R"(["rings", "geodesic"])";
+  write_values(files, name + ".ball", compute_map(surface, sites, ThicknessOptions{.angle = 60}));
+  write_values(files, name + ".ray",
+               compute_map(surface, sites, ThicknessOptions{.method = ThicknessMethod::ray}));
+  return R"(["rings", "geodesic", "ball", "ray"])";
+}
+
 /// Returns the numbers of the pair, as JSON.
 std::string write_pair(const Files& files, Pair pair, unsigned number) {
   const std::string name = std::to_string(number);
@@ -139,6 +160,10 @@ std::string write_pair(const Files& files, Pair pair, unsigned number) {
   files.write(name + ".texel_faces", surface.texel_faces());
   files.write(name + ".distances", std::span(map.distance).first(map.texels()));
   files.write(name + ".vectors", map.vector);
+
+  write_values(files, name + ".along", compute_map(surface, sites, AlongOptions{}));
+  write_values(files, name + ".upwards", compute_map(surface, sites, AlongOptions{.direction = kUpwards}));
+  const std::string of_itself = write_measures_of_itself(files, name, pair.o1);
 
   const std::vector<Vec3> points = random_points(pair.o2, 500, number);
   const std::vector<ClosestPoint> closest = closest_points(sites, points);
@@ -158,9 +183,9 @@ std::string write_pair(const Files& files, Pair pair, unsigned number) {
   std::array<char, 400> text{};
   std::snprintf(
       text.data(), text.size(),
-      R"({"name": "%s", "hausdorff": [%.17g, %.17g], "separation": %.17g, "colliding": %s, "contacts": %zu})",
+      R"({"name": "%s", "hausdorff": [%.17g, %.17g], "separation": %.17g, "colliding": %s, "contacts": %zu, "of_itself": %s})",
       pair.name.c_str(), hausdorff.lower, hausdorff.upper, query.separation().value,
-      query.colliding() ? "true" : "false", query.contacts().size());
+      query.colliding() ? "true" : "false", query.contacts().size(), of_itself.c_str());
   return text.data();
 }
 

@@ -32,6 +32,13 @@ for (const threads of [1, 2])
     await assert.rejects(worker.sites([0, 0, 0, 1, 0, 0, 0, 1, 0]), { kind: 'ended' });
   });
 
+test('measures', { timeout: 300000 }, async () => {
+  const worker = await createWorker({ threads: 2, full: true }), pool = await createPool({ workers: 3, full: true });
+  await checks.measuresAll(worker, pool);
+  worker.terminate();
+  pool.terminate();
+});
+
 test('a worker that cannot be started rejects', { timeout: 120000 }, () =>
   checks.failsToStart(createWorker, { threads: 1 }, ['file:///nowhere/worker.js', 'data:text/javascript,1', 'data:text/javascript,throw 1']));
 

@@ -218,6 +218,37 @@ export async function dividesMaps(pool, worker) {
   assert((await surfaces[0].map(sites[0])).distances.length === 300 * 300, 'and computed again');
 }
 
+/** Maps of each measure by a worker and by a pool, which are the same, with what they say of a ball of radius 1 and one of 0.8. */
+export async function measuresAll(worker, pool) {
+  const part = ball(40), other = ball(30, 0.8), rest = part.positions.map((x) => 2 * x);
+  const [onPool, on] = await Promise.all([pool, worker].map((one) => one.surface(part.positions, part.indices, { resolution: 200 })));
+  const [ofPool, itself] = await Promise.all([pool, worker].map((one) => one.sites(part.positions, part.indices)));
+  const [toPool, to] = await Promise.all([pool, worker].map((one) => one.sites(other.positions, other.indices)));
+  const controller = new AbortController();
+  for (const [options, least, most, own = true] of [
+    [{ along: 'normal' }, 0.19, 0.21, false],
+    [{ along: [0, 0, 1], maxDistance: 0.3 }, 0.19, 0.3, false],
+    [{ measure: 'self', rings: 2 }, 0.01, 0.2],
+    [{ measure: 'self', geodesic: 0.5, rest }, 0.1, 2],
+    [{ measure: 'thickness', angle: 60 }, 1.4, 2],
+    [{ measure: 'thickness', method: 'ray' }, 1.9, 2],
+  ]) {
+    const name = JSON.stringify({ ...options, rest: undefined });
+    const ours = await onPool.map(own ? ofPool : toPool, options);
+    const map = await on.map(own ? itself : to, { ...options, signal: controller.signal });
+    const whole = await map.arrays('distances', 'vectors', 'sitesOfTexels', 'siteTypes');
+    for (const array of Object.keys(whole)) assert(sameBits(ours[array], whole[array]), `${array} of the pool differ, ${name}`);
+    assert(ours.sign === map.sign && ours.signReason === map.signReason, `sign ${ours.sign}, ${name}`);
+    const values = whole.distances.filter((d) => !Number.isNaN(d));
+    assert(values.length > 5000, `${values.length} values, ${name}`);
+    assert(values.every((d) => d >= least && d <= most), `from ${Math.min(...values)} to ${Math.max(...values)}, ${name}`);
+    const { measured } = await map.summary();
+    assert(own && options.measure === 'self' ? measured === undefined : measured.kind === (options.measure ?? 'along'), `measured ${measured?.kind}, ${name}`);
+  }
+  const refused = await rejection(onPool.map(ofPool, { measure: 'self', ring: 2 }));
+  assert(refused.kind === 'input' && refused.message === 'unknown option ring; did you mean rings?', `${refused}`);
+}
+
 /** Maps and refits of a pool that are called at once are done in the order of their calls. */
 async function mapsInTurns(pool, worker, part) {
   const bodies = [ball(30, 0.8), ball(30, 0.6)], moved = bodies[0].positions.map((x) => 1.1 * x);

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 #include <random>
+#include <variant>
 #include <vector>
 
 #include "support/meshes.h"
@@ -85,6 +86,35 @@ TEST(MapSamples, OfFacingFacesAreTheMapToTheBit) {
     EXPECT_EQ(without_match, whole.without_match);
     EXPECT_EQ(parts.measured.facing, 60);
     EXPECT_EQ(parts.sign.method, SignMethod::side);
+  }
+}
+
+TEST(MapSamples, OfOtherMeasuresAreTheMapToTheBit) {
+  const Surface surface(sphere(4), {.resolution = 128});
+  const Sites itself(surface.mesh()), beside(moved(cube(), {0, 0, 1}));
+  const Exclusion exclusion(surface.mesh(), {.rule = {.geodesic = 0.5}});
+  for (const Measure& measure :
+       {Measure(AlongOptions{.max_distance = 0.5}), Measure(SelfOptions{exclusion, 1.0}),
+        Measure(ThicknessOptions{.angle = 45}), Measure(MapOptions{.max_distance = 0.2})}) {
+    const bool by_itself =
+        std::holds_alternative<SelfOptions>(measure) || std::holds_alternative<ThicknessOptions>(measure);
+    const Sites& sites = by_itself ? itself : beside;
+    const DistanceMap whole = compute_map(surface, sites, measure);
+    DistanceMap parts = empty_map(surface);
+    std::vector<SampleRange> ranges = ranges_of(surface, 3);
+    ASSERT_GT(ranges.size(), 5u);
+    std::ranges::reverse(ranges);
+    std::size_t beyond = 0, without_match = 0;
+    for (const SampleRange& range : ranges) {
+      compute_samples_of_measure(surface, sites, measure, range, parts);
+      beyond += parts.beyond_max_distance;
+      without_match += parts.without_match;
+    }
+    EXPECT_TRUE(bits(parts) == bits(whole)) << measure.index();
+    EXPECT_EQ(beyond, whole.beyond_max_distance);
+    EXPECT_EQ(without_match, whole.without_match);
+    EXPECT_EQ(parts.measured.kind, whole.measured.kind);
+    EXPECT_THROW(compute_samples_of_measure(surface, sites, measure, {1, 1}, parts), Error);
   }
 }
 

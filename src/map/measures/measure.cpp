@@ -46,6 +46,22 @@ DistanceMap compute_map(const Surface& surface, const Sites& sites, const Measur
   throw out_of_memory("a map");
 }
 
+void compute_samples_of_measure(const Surface& surface, const Sites& sites, const Measure& measure,
+                                const SampleRange& range, DistanceMap& map) try {
+  std::visit(
+      [&]<class Options>(const Options& options) {
+        if constexpr (kByEngine<Options>) {
+          compute_samples(surface, sites, options, range, map);
+        } else {
+          map::check_part(surface, range, map);
+          map::measure_texels(surface, face_measure(surface.mesh(), sites, options), range, map);
+        }
+      },
+      measure);
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("a map");
+}
+
 std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites, const Measure& measure) try {
   return std::visit(
       [&]<class Options>(const Options& options) {
