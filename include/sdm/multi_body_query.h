@@ -56,8 +56,14 @@ struct PairDepth {
   PartPair parts{};  ///< those whose depth is `value`
 };
 
-/// ProximityQuery::contacts() of a pair: O1 is `first`, O2 is `second`. Of compound bodies, there is one of
-/// these for each pair of parts that has contacts, with patches and ids of its own.
+/// ProximityQuery::separating_translation() of a pair that collides: O1 is `first`, O2 is `second`.
+struct PairTranslation {
+  std::uint32_t first = kNone, second = kNone;  ///< first < second
+  SeparatingTranslation separating_translation{};
+};
+
+/// ProximityQuery::contacts() or separating_contacts() of a pair: O1 is `first`, O2 is `second`. Of compound
+/// bodies, there is one of these for each pair of parts that has contacts, with patches and ids of its own.
 struct PairContacts {
   std::uint32_t first = kNone, second = kNone;  ///< first < second
   std::span<const Contact> contacts{};          ///< at least one
@@ -172,6 +178,23 @@ class SDM_API MultiBodyQuery {
   /// and the parts of compounds, and of a few tests of inside for each contact with one that has others
   /// beside it.
   [[nodiscard]] std::span<const PairContacts> contacts();
+  /// Returns, for each pair that collides, a short translation of its first body after which it does not, and
+  /// bounds on the shortest one; of compounds, one for all pairs of their parts together, by the same search
+  /// with all of them. It is that of the pair alone: other bodies may be in its way. But with
+  /// ignore_internal_edges, where it leads out of a fixed solid into another one that is fixed beside it, it
+  /// is one that ends the collision with both, and so on with those beside these: a box that overlaps a tile
+  /// by little is moved off the floor, not into the next tile. `lower` is then the largest bound of all
+  /// these pairs. Cost: that of ProximityQuery::separating_translation() for each pair of parts that
+  /// collides; of compounds, and into other bodies, also some hundred tests of collision and separations of
+  /// all parts that take part. With ignore_internal_edges, a motion of a fixed body makes all pairs unknown.
+  [[nodiscard]] std::span<const PairTranslation> separating_translations();
+  /// Returns the pairs that have contacts along which they leave each other: those that collide after the
+  /// translation of separating_translations(), moved back by it, all others as contacts() does. Of compounds,
+  /// kExitContact is that of the parts which are closest then. Internal edges are left out as in contacts().
+  /// `most_per_patch` ≥ 1, of each pair of parts: as for ProximityQuery::separating_contacts(). Throws
+  /// sdm::Error for 0. Cost: that of separating_translations(), and of contacts() once for each pair.
+  [[nodiscard]] std::span<const PairContacts> separating_contacts(
+      std::optional<std::size_t> most_per_patch = {});
   /// The number of pairs, of parts if there are compounds, whose boxes were within `max_distance` of each
   /// other in the last call of separations().
   [[nodiscard]] std::size_t candidate_pairs() const;

@@ -24,6 +24,11 @@ struct PyPenetrationDepths {
   LazyArray bodies, parts, depth, depth_bounds;
 };
 
+struct PySeparatingTranslations {
+  std::vector<PairTranslation> pairs;
+  LazyArray bodies, translation, length, length_bounds;
+};
+
 }  // namespace
 
 template <>
@@ -37,6 +42,11 @@ inline constexpr auto kMembers<PairDepth> =
     std::tuple{&PairDepth::first, &PairDepth::second, &PairDepth::penetration_depth, &PairDepth::parts};
 template <>
 inline constexpr auto kMembers<PyPenetrationDepths> = std::tuple{&PyPenetrationDepths::pairs};
+template <>
+inline constexpr auto kMembers<PairTranslation> =
+    std::tuple{&PairTranslation::first, &PairTranslation::second, &PairTranslation::separating_translation};
+template <>
+inline constexpr auto kMembers<PySeparatingTranslations> = std::tuple{&PySeparatingTranslations::pairs};
 
 namespace {
 
@@ -122,6 +132,39 @@ void bind_penetration_depths(nb::module_& module) {
       .def("__len__", [](const P& self) { return self.pairs.size(); })
       .def("__repr__",
            [](const P& self) { return nb::str("sdm.PenetrationDepths({})").format(self.pairs.size()); });
+  bind_value<P>();
+}
+
+void bind_separating_translations(nb::module_& module) {
+  using P = PySeparatingTranslations;
+  nb::class_<P>(
+      module, "SeparatingTranslations", nb::is_weak_referenceable(),
+      "How the pairs of bodies that collide leave each other, as arrays with one row each, sorted by "
+      "first, then second body.")
+      .def_prop_ro("bodies", pair_column(&P::bodies, kBodiesOfPair),
+                   nb::sig("def bodies(self) -> numpy.typing.NDArray[numpy.uint32]"),
+                   "The indices of O1 and O2, (n, 2) uint32, the smaller one first.")
+      .def_prop_ro("translation",
+                   pair_column(&P::translation,
+                               [](const PairTranslation& p) { return p.separating_translation.translation; }),
+                   nb::sig("def translation(self) -> numpy.typing.NDArray[numpy.float64]"),
+                   "Moving O1 by it ends the collision, (n, 3) float64; verified by the exact test.")
+      .def_prop_ro(
+          "length",
+          pair_column(&P::length, [](const PairTranslation& p) { return p.separating_translation.value; }),
+          nb::sig("def length(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "The lengths of the translations, (n,) float64; the same as the upper bounds.")
+      .def_prop_ro(
+          "length_bounds",
+          pair_column(&P::length_bounds,
+                      [](const PairTranslation& p) {
+                        return std::array{p.separating_translation.lower, p.separating_translation.upper};
+                      }),
+          nb::sig("def length_bounds(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Lower and upper bounds on the length of the shortest translation, (n, 2) float64.")
+      .def("__len__", [](const P& self) { return self.pairs.size(); })
+      .def("__repr__",
+           [](const P& self) { return nb::str("sdm.SeparatingTranslations({})").format(self.pairs.size()); });
   bind_value<P>();
 }
 
@@ -232,6 +275,18 @@ moved.)")
           "Takes exclude_pair() back.");
 }
 
+// The contacts of all pairs, as one table.
+std::unique_ptr<PyContacts> table_of(std::span<const PairContacts> pairs) {
+  auto result = std::make_unique<PyContacts>();
+  result->has_bodies = true;
+  for (const PairContacts& pair : pairs) {
+    result->contacts.insert(result->contacts.end(), pair.contacts.begin(), pair.contacts.end());
+    result->parts.insert(result->parts.end(), pair.contacts.size(), pair.parts);
+    result->bodies.insert(result->bodies.end(), pair.contacts.size(), {pair.first, pair.second});
+  }
+  return result;
+}
+
 std::vector<BodyPair> colliding_pairs(PyMultiBodyQuery& self) {
   const auto lock = self.access.change();
   std::vector<BodyPair> pairs;
@@ -286,19 +341,43 @@ meshes.)")
           "contacts",
           [](PyMultiBodyQuery& self) {
             const auto lock = self.access.change();
-            auto result = std::make_unique<PyContacts>();
-            result->has_bodies = true;
+            return run_sized(faces_of(self.query), [&] { return table_of(self.query.contacts()); }).release();
+          },
+          nb::rv_policy::take_ownership,
+          "Returns the contacts of all pairs, those of each as by ProximityQuery.contacts().");
+}
+
+void bind_separating_answers(nb::class_<PyMultiBodyQuery>& query) {
+  query
+      .def(
+          "separating_translations",
+          [](PyMultiBodyQuery& self) {
+            const auto lock = self.access.change();
+            auto result = std::make_unique<PySeparatingTranslations>();
             run_sized(faces_of(self.query), [&] {
-              for (const PairContacts& pair : self.query.contacts()) {
-                result->contacts.insert(result->contacts.end(), pair.contacts.begin(), pair.contacts.end());
-                result->parts.insert(result->parts.end(), pair.contacts.size(), pair.parts);
-                result->bodies.insert(result->bodies.end(), pair.contacts.size(), {pair.first, pair.second});
-              }
+              const auto pairs = self.query.separating_translations();
+              result->pairs.assign(pairs.begin(), pairs.end());
             });
             return result.release();
           },
           nb::rv_policy::take_ownership,
-          "Returns the contacts of all pairs, those of each as by ProximityQuery.contacts().");
+          R"(Returns a short translation of O1 after which a pair does not collide, for each that does, as
+ProximityQuery.separating_translation(). Of a Compound it is that of all parts together. With
+ignore_internal_edges, where it leads out of a fixed solid into another one that is fixed beside it, it is one
+that ends the collision with both: a box that overlaps a tile by little is moved off the floor.)")
+      .def(
+          "separating_contacts",
+          [](PyMultiBodyQuery& self, std::optional<std::size_t> most_per_patch) {
+            const auto lock = self.access.change();
+            return run_sized(faces_of(self.query),
+                             [&] { return table_of(self.query.separating_contacts(most_per_patch)); })
+                .release();
+          },
+          nb::kw_only(), nb::arg("most_per_patch") = nb::none(), nb::rv_policy::take_ownership,
+          nb::sig("def separating_contacts(self, *, most_per_patch: int | None = None) -> Contacts"),
+          R"(Returns the contacts along which all pairs leave each other: of those that collide as by
+ProximityQuery.separating_contacts(), for the translations of separating_translations(); of others as by
+contacts(). most_per_patch: so many of each patch, >= 1.)");
 }
 
 void bind_nearest(nb::class_<PyMultiBodyQuery>& query) {
@@ -353,6 +432,7 @@ void bind_bodies(nb::module_& module) {
   bind_compound(module);
   bind_separations(module);
   bind_penetration_depths(module);
+  bind_separating_translations(module);
   bind_nearest_map(module);
   static const std::string documentation =
       R"(Proximity of bodies that move and deform, each against all others.
@@ -377,6 +457,7 @@ array([[0, 1],
   bind_motion(query);
   bind_filters(query);
   bind_answers(query);
+  bind_separating_answers(query);
   bind_moving_bodies(module, query);
   bind_nearest(query);
   bind_no_state<PyMultiBodyQuery>(

@@ -307,7 +307,7 @@ def public_objects(pair):
     query, bodies = sdm.ProximityQuery(*pair, contact_margin=0.1), sdm.MultiBodyQuery(list(pair), contact_margin=0.1)
     yield from (query, bodies, sdm.PoseQuery(*pair), sdm.SelfProximityQuery(mesh), sdm.scene("letters"), sdm.thread_limit(1))
     yield from (query.contacts(), bodies.contacts(), query.separating_translation(), query.penetration_depth())
-    yield from (bodies.separations(), bodies.penetration_depths(), nearest_map(pair))
+    yield from (bodies.separations(), bodies.penetration_depths(), bodies.separating_translations(), nearest_map(pair))
     there, back = np.eye(4), np.eye(4)
     there[0, 3], back[0, 3] = 5, -5
     yield sdm.time_of_contact(mesh, (there, back), box, None, tolerance=1e-6)

@@ -277,6 +277,32 @@ def test_internal_edges():
         assert slanted.any() != ignore and not slanted.all()
 
 
+def test_a_box_slides_over_tiles_on_separating_contacts():
+    box = (meshes.box()[0] * [1.2, 1.2, 0.6], meshes.box()[1])
+    query = sdm.MultiBodyQuery([meshes.box()] * 6 + [box], contact_margin=0.02, ignore_internal_edges=True)
+    for tile in range(6):
+        query.set_filter(tile, fixed=True)
+        query.set_pose(tile, shift(tile, 0, 0))
+    place, velocity, step = np.array([0.3, 0.1, 0.996]), np.array([3.0, 0, 0]), 1 / 240  # 0.004 deep
+    for _ in range(320):  # four tiles
+        velocity[2] -= 9.81 * step
+        query.set_pose(6, shift(*place))
+        contacts = query.separating_contacts()
+        assert len(contacts) and np.all(contacts.bodies[:, 1] == 6)
+        for _ in range(20):  # without friction; the box does not turn, and is O2
+            for normal, depth in zip(contacts.normal, contacts.depth):
+                velocity += max(0, min(depth, 0) / step + normal @ velocity) * -normal
+        place += step * velocity
+    assert abs(velocity[0] - 3) < 1e-9 and abs(velocity[2]) < 1e-9
+    found = query.separating_translations()
+    assert len(found) and np.allclose(found.translation, [0, 0, -0.004], atol=1e-6)  # of the tiles
+    assert np.allclose(found.length, 0.004, atol=1e-6) and np.all(found.length_bounds[:, 0] <= found.length)
+    assert len(query.separating_contacts(most_per_patch=1)) < len(query.separating_contacts())
+    with pytest.raises(sdm.Error, match="0 contacts"):
+        query.separating_contacts(most_per_patch=0)
+    assert repr(found) == f"sdm.SeparatingTranslations({len(found)})"
+
+
 def test_internal_edges_of_two():
     x, y = np.meshgrid(np.arange(5.0), np.arange(5.0), indexing="ij")
     vertices = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)

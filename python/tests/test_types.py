@@ -32,7 +32,8 @@ def test_arrays_have_the_declared_dtype():
     field = sdm.distance_field(box, spacing=0.5, sites=True)
     objects = [sdm.Mesh(*box), sites, sdm.Surface(box, resolution=32), sites.closest_points([[0, 0, 3]], gradients=True),
                sites.first_hits([[0.5, 0.5, 3]], [[0, 0, -1]]), query.contacts(), query.separating_translation(), field,
-               field.sample([[0.5, 0.5, 0.5]]), bodies.separations(), bodies.penetration_depths(), bodies.nearest_map(0),
+               field.sample([[0.5, 0.5, 0.5]]), bodies.separations(), bodies.penetration_depths(), bodies.separating_translations(),
+               bodies.nearest_map(0),
                sdm.align(sphere, sphere), sdm.time_of_contact(box, None, box, None, tolerance=1e-3),
                sdm.FaceNames("group", ["a"], np.zeros(12, np.uint32))]  # fmt: skip
     count = 0

@@ -18,8 +18,8 @@
 #include "inside/face_pairs.h"
 #include "inside/near_faces.h"
 #include "poses.h"
+#include "scenes/blocks.h"
 #include "sites/sites_data.h"
-#include "support/blocks.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
 #include "support/points.h"
@@ -128,8 +128,8 @@ TEST(Solid, FacesNearOthersAreThoseFoundOneByOne) {
 }
 
 TEST(Solid, FacesAtTheCornersOfBlocksAreNotNear) {
-  const test::Blocks stairs{{{0, 0, 0}, {3, 3, 1}}, {{0, 0, 1}, {2, 3, 2}}, {{0, 0, 2}, {1, 2, 3}}};
-  for (const Mesh& mesh : {test::plate_with_hole(2, 0.51, 1), test::union_of(stairs)}) {
+  const scenes::Blocks stairs{{{0, 0, 0}, {3, 3, 1}}, {{0, 0, 1}, {2, 3, 2}}, {{0, 0, 2}, {1, 2, 3}}};
+  for (const Mesh& mesh : {scenes::plate_with_hole(2, 0.51, 1), scenes::union_of(stairs)}) {
     const Sites sites(mesh);
     std::vector<std::uint8_t> flags;
     flag_faces_with_near(internals(sites), flags);

@@ -127,6 +127,7 @@ std::unique_ptr<MultiBodyQuery> bodies_with_answers() {
   auto query = bodies();
   (void)query->separations(4), (void)query->penetration_depths();
   (void)query->contacts();
+  (void)query->separating_contacts();
   return query;
 }
 
@@ -153,6 +154,21 @@ const Calls<MultiBodyQuery> kBodies{
     [](MultiBodyQuery& q) {
       Numbers numbers;
       for (const PairContacts& pair : q.contacts()) {
+        numbers.add(pair.first, pair.second);
+        for (const Contact& contact : pair.contacts) add_contact(numbers, contact);
+      }
+      return numbers;
+    },
+    [](MultiBodyQuery& q) {
+      Numbers numbers;
+      for (const PairTranslation& pair : q.separating_translations())
+        numbers.add(pair.first, pair.second, pair.separating_translation.lower,
+                    pair.separating_translation.translation);
+      return numbers;
+    },
+    [](MultiBodyQuery& q) {
+      Numbers numbers;
+      for (const PairContacts& pair : q.separating_contacts(2)) {
         numbers.add(pair.first, pair.second);
         for (const Contact& contact : pair.contacts) add_contact(numbers, contact);
       }

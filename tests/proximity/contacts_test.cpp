@@ -10,13 +10,15 @@
 #include <vector>
 
 #include "geometry/vec.h"
-#include "support/blocks.h"
+#include "scenes/blocks.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
+
+using scenes::Blocks, scenes::union_of;
 
 Mesh beam(const Vec3& half, const Vec3& centre) {
   Mesh mesh = cube();

@@ -14,12 +14,14 @@
 #include <vector>
 
 #include "geometry/vec.h"
-#include "support/blocks.h"
+#include "scenes/blocks.h"
 #include "support/oracle.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
+
+using scenes::Blocks, scenes::union_of;
 
 /// n·x ≤ height.
 struct HalfSpace {
@@ -28,7 +30,7 @@ struct HalfSpace {
 };
 using Convex = std::vector<HalfSpace>;
 
-Convex convex(const Block& block, const Transform& pose) {
+Convex convex(const Box& block, const Transform& pose) {
   Convex result;
   const Vec3 origin = pose({});
   for (int k = 0; k < 3; ++k) {
@@ -68,8 +70,8 @@ bool overlap(const std::vector<const Convex*>& of) {
 class Regions {
  public:
   Regions(const Blocks& a, const Blocks& b, const Transform& pose_of_b) {
-    for (const Block& block : a) a_.push_back(convex(block, {}));
-    for (const Block& block : b) b_.push_back(convex(block, pose_of_b));
+    for (const Box& block : a) a_.push_back(convex(block, {}));
+    for (const Box& block : b) b_.push_back(convex(block, pose_of_b));
     for (const Convex& of_a : a_)
       for (const Convex& of_b : b_)
         if (overlap({&of_a, &of_b})) cells_.push_back({&of_a, &of_b, static_cast<int>(cells_.size())});
@@ -123,7 +125,7 @@ class Jacks {
     switch (std::uniform_int_distribution<int>(0, 2)(random_)) {
       case 0:  // three bars that cross
         for (int k = 0; k < 3; ++k) {
-          Block bar{{-w, -w, -w}, {w, w, w}};
+          Box bar{{-w, -w, -w}, {w, w, w}};
           bar.lo[k] = -1, bar.hi[k] = 1;
           result.push_back(bar);
         }

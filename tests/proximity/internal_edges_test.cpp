@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "scenes/box_mesh.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 
@@ -20,10 +21,7 @@ constexpr double kSlideMargin = 0.02;
 constexpr double kVertical = 0.996;  // to 5°
 
 Mesh brick(const Vec3& lo, const Vec3& hi) {
-  Mesh mesh = cube();
-  for (Vec3& p : mesh.positions)
-    for (int k = 0; k < 3; ++k) p[k] = p[k] < 0 ? lo[k] : hi[k];
-  return mesh;
+  return scenes::box_mesh({lo, hi});
 }
 
 // Squares of side 1 at the height of a function, each of two triangles.

@@ -11,13 +11,15 @@
 
 #include "bodies/separate/separating_contacts.h"
 #include "geometry/vec.h"
+#include "scenes/blocks.h"
 #include "support/allocations.h"
-#include "support/blocks.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
+
+using scenes::union_of;
 
 // The translation after one sweep over the contacts.
 Vec3 projected_sweep(std::span<const Contact> contacts) {

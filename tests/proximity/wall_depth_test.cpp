@@ -13,12 +13,14 @@
 #include "bodies/shape/column_box.h"
 #include "geometry/vec.h"
 #include "inside/solid.h"
+#include "scenes/blocks.h"
 #include "sites/sites_data.h"
-#include "support/blocks.h"
 #include "support/shapes.h"
 
 namespace sdm::test {
 namespace {
+
+using scenes::plate_with_hole, scenes::union_of;
 
 // A cube whose sides are grids of n² squares.
 Mesh grid_cube(double half_side, int n) {

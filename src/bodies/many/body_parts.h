@@ -5,6 +5,7 @@
 #include <sdm/multi_body_query.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,11 @@ class BodyParts {
   /// Throws sdm::Error if the body is a compound: `what` it cannot be asked for.
   void require_one_shape(std::size_t body, const char* what) const;
 
+  /// The pose of a part in the frame of its body, of compounds.
+  [[nodiscard]] std::optional<Transform> local(std::uint32_t part) const {
+    if (!compound(body_of_[part])) return {};
+    return local_[part];
+  }
   /// The pose of a part of a body in that pose.
   [[nodiscard]] Transform pose_of(std::uint32_t part, const Transform& body) const;
   /// The motion of each part, in bodies that make these motions: parts turn with their body, about the centre

@@ -1,4 +1,4 @@
-// The contacts of all pairs of bodies.
+// The contacts of all pairs of bodies, of one of their lists.
 #pragma once
 
 #include <sdm/proximity_query.h>
@@ -15,6 +15,8 @@ namespace sdm::bodies {
 /// the contacts of few pairs. Reuses its memory.
 class ContactStore {
  public:
+  explicit ContactStore(ContactList list) : list_(static_cast<std::size_t>(list)) {}
+
   /// Before contacts of at most `pairs` pairs are found.
   void begin(std::size_t pairs) {
     if (found_.size() < pairs) found_.resize(pairs);
@@ -29,12 +31,14 @@ class ContactStore {
 
   /// Valid until the next call of store().
   [[nodiscard]] std::span<const Contact> of(const PairState& pair) const {
-    return std::span(contacts_).subspan(pair.first_contact, pair.contacts);
+    const auto& [first, count] = pair.contacts[list_];
+    return std::span(contacts_).subspan(first, count);
   }
 
  private:
   void keep_only_near(NearPairs& near);
 
+  std::size_t list_;
   std::vector<std::vector<Contact>> found_;
   std::vector<Contact> contacts_, next_;  ///< with those of former pairs and poses between them
 };

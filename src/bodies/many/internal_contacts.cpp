@@ -39,6 +39,35 @@ bool may_be_convex(const sites::SitesData& sites, std::uint32_t edge) {
   return true;
 }
 
+// Those around the vertex or at the edge that the point is on, or its face.
+void find_faces(const sites::SitesData& sites, const SurfacePoint& point, InternalContacts::Around& around) {
+  const Triangle& corners = sites.mesh.triangles[point.face];
+  int count = 0, largest = 0, least = 0;
+  for (int i = 0; i < 3; ++i) {
+    count += point.barycentric[i] > kAtCorner;
+    if (point.barycentric[i] > point.barycentric[largest]) largest = i;
+    if (point.barycentric[i] <= point.barycentric[least]) least = i;
+  }
+  around.faces.assign(1, point.face);
+  around.flat = false;
+  if (count == 3 || sites.topology.ignored(point.face)) return;
+  if (count == 2) {
+    const std::uint32_t edge = sites.topology.face_edges[point.face][(least + 1) % 3];
+    const std::span<const std::uint32_t> faces = sites.topology.edge_faces(edge);
+    around.faces.assign(faces.begin(), faces.end());
+    around.flat = !may_be_convex(sites, edge);
+    return;
+  }
+  const std::span<const std::uint32_t> faces = sites.vertex_faces.of(corners[largest]);
+  around.faces.assign(faces.begin(), faces.end());
+  around.flat = std::ranges::all_of(around.faces, [&](std::uint32_t face) {
+    return std::ranges::all_of(sites.topology.face_edges[face], [&](std::uint32_t edge) {
+      const auto& [a, b] = sites.topology.edges[edge];
+      return (a != corners[largest] && b != corners[largest]) || !may_be_convex(sites, edge);
+    });
+  });
+}
+
 }  // namespace
 
 void InternalContacts::follow(std::span<const shape::PosedBody> bodies, const PairFilter& filter) {
@@ -65,20 +94,35 @@ std::span<const Sweep::Pair> InternalContacts::neighbours(std::uint32_t body) co
   return {range.begin(), range.end()};
 }
 
-bool InternalContacts::contains(const Contact& contact, const Sweep::Pair& pair) {
+std::optional<InternalContacts::Exit> InternalContacts::exit_by(const Contact& contact,
+                                                                const shape::PosedBody& body, int side,
+                                                                Around& around) const {
+  const sites::SitesData& sites = internals(body.body().sites());
+  const auto& [face, weights] = contact.on[side];
+  if (face == kNone || sites.sliver[face]) return {};
+  find_faces(sites, contact.on[side], around);
+  Exit exit{.direction = inverse(body.pose().map).linear(side == 0 ? -contact.normal : contact.normal)};
+  exit.direction = normalized(exit.direction);
+  for (int i = 0; i < 3; ++i) exit.point += weights[i] * sites.mesh.positions[sites.mesh.triangles[face][i]];
+  return exit;
+}
+
+bool InternalContacts::contains(const Contact& contact, const Sweep::Pair& pair, Around& around) const {
   for (int side = 0; side < 2; ++side) {
     const shape::PosedBody& body = bodies_[pair[side]];
-    const sites::SitesData& sites = internals(body.body().sites());
-    const auto& [face, weights] = contact.on[side];
-    if (face == kNone || sites.sliver[face]) continue;
-    find_faces(sites, contact.on[side]);
-    Exit exit{.direction = inverse(body.pose().map).linear(side == 0 ? -contact.normal : contact.normal)};
-    exit.direction = normalized(exit.direction);
-    for (int i = 0; i < 3; ++i)
-      exit.point += weights[i] * sites.mesh.positions[sites.mesh.triangles[face][i]];
-    if ((flat_ && off_flat_faces(body, exit)) || into_neighbour(pair[side], exit)) return true;
+    const std::optional<Exit> exit = exit_by(contact, body, side, around);
+    if (!exit) continue;
+    if ((around.flat && off_flat_faces(body, *exit, around)) || into_neighbour(pair[side], *exit, around))
+      return true;
   }
   return false;
+}
+
+bool InternalContacts::leads_into_neighbour(const Contact& contact, const Sweep::Pair& pair, int side,
+                                            Around& around) const {
+  if (neighbours(pair[side]).empty()) return false;
+  const std::optional<Exit> exit = exit_by(contact, bodies_[pair[side]], side, around);
+  return exit && into_neighbour(pair[side], *exit, around);
 }
 
 void InternalContacts::leave_out(std::vector<PairContacts>& pairs) {
@@ -88,61 +132,34 @@ void InternalContacts::leave_out(std::vector<PairContacts>& pairs) {
   for (PairContacts& pair : pairs) {
     const std::size_t first = external_.size();
     for (const Contact& contact : pair.contacts)
-      if (!contains(contact, {pair.first, pair.second})) external_.push_back(contact);
+      if (contact.id == ProximityQuery::kExitContact ||
+          !contains(contact, {pair.first, pair.second}, around_))
+        external_.push_back(contact);
     pair.contacts = std::span(external_).subspan(first);
   }
   std::erase_if(pairs, [](const PairContacts& pair) { return pair.contacts.empty(); });
 }
 
-// Those around the vertex or at the edge that the point is on, or its face.
-void InternalContacts::find_faces(const sites::SitesData& sites, const SurfacePoint& point) {
-  const Triangle& corners = sites.mesh.triangles[point.face];
-  int count = 0, largest = 0, least = 0;
-  for (int i = 0; i < 3; ++i) {
-    count += point.barycentric[i] > kAtCorner;
-    if (point.barycentric[i] > point.barycentric[largest]) largest = i;
-    if (point.barycentric[i] <= point.barycentric[least]) least = i;
-  }
-  faces_.assign(1, point.face);
-  flat_ = false;
-  if (count == 3 || sites.topology.ignored(point.face)) return;
-  if (count == 2) {
-    const std::uint32_t edge = sites.topology.face_edges[point.face][(least + 1) % 3];
-    const std::span<const std::uint32_t> faces = sites.topology.edge_faces(edge);
-    faces_.assign(faces.begin(), faces.end());
-    flat_ = !may_be_convex(sites, edge);
-    return;
-  }
-  const std::span<const std::uint32_t> faces = sites.vertex_faces.of(corners[largest]);
-  faces_.assign(faces.begin(), faces.end());
-  flat_ = std::ranges::all_of(faces, [&](std::uint32_t face) {
-    return std::ranges::all_of(sites.topology.face_edges[face], [&](std::uint32_t edge) {
-      const auto& [a, b] = sites.topology.edges[edge];
-      return (a != corners[largest] && b != corners[largest]) || !may_be_convex(sites, edge);
-    });
-  });
-}
-
 // Whether a direction is none of those between the normals of the faces around a point, which are flat or
 // concave there.
-bool InternalContacts::off_flat_faces(const shape::PosedBody& body, const Exit& exit) const {
+bool InternalContacts::off_flat_faces(const shape::PosedBody& body, const Exit& exit, const Around& around) {
   const sites::SitesData& sites = internals(body.body().sites());
   const Array<Vec3>& normals = sites.normals.face;
   double along = -1, spread = 1;
-  for (const std::uint32_t face : faces_) {
+  for (const std::uint32_t face : around.faces) {
     const double cosine = dot(normals[face], exit.direction);
     along = std::max(along, sites.is_solid() ? cosine : std::abs(cosine));
-    spread = std::min(spread, dot(normals[face], normals[faces_[0]]));
+    spread = std::min(spread, dot(normals[face], normals[around.faces[0]]));
   }
   return along < std::min(kAlong, spread - kFlat);
 }
 
 // Whether a neighbour covers the faces that the direction leaves by.
-bool InternalContacts::into_neighbour(std::uint32_t body, const Exit& exit) const {
+bool InternalContacts::into_neighbour(std::uint32_t body, const Exit& exit, const Around& around) const {
   if (neighbours(body).empty()) return false;
   const sites::SitesData& sites = internals(bodies_[body].body().sites());
   bool any = false;
-  for (const std::uint32_t face : faces_) {
+  for (const std::uint32_t face : around.faces) {
     if (sites.sliver[face]) continue;
     const bool is_covered = covered(body, face, exit.point);
     if (!is_covered && dot(sites.normals.face[face], exit.direction) >= kAlong) return false;

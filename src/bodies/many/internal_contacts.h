@@ -5,6 +5,7 @@
 #include <sdm/proximity_query.h>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,8 +23,20 @@ class InternalContacts {
   /// by side. Cost: a sweep over the fixed bodies. Reuses memory.
   void follow(std::span<const shape::PosedBody> bodies, const PairFilter& filter);
 
-  [[nodiscard]] bool contains(const Contact& contact, const Sweep::Pair& pair);
-  /// Leaves out internal contacts, and pairs that have no others. The spans are valid until the next call.
+  /// The faces around a point, found again for each: memory that is reused.
+  struct Around {
+    std::vector<std::uint32_t> faces{};
+    bool flat = false;  ///< the point is on an edge or a vertex without a convex edge
+  };
+
+  [[nodiscard]] bool contains(const Contact& contact, const Sweep::Pair& pair, Around& around) const;
+  /// Whether the contact leads out of a body of the pair, the first for 0, into one beside it.
+  [[nodiscard]] bool leads_into_neighbour(const Contact& contact, const Sweep::Pair& pair, int side,
+                                          Around& around) const;
+  /// A body and each of those beside it.
+  [[nodiscard]] std::span<const Sweep::Pair> neighbours(std::uint32_t body) const;
+  /// Leaves out internal contacts but for kExitContact, and pairs that have no others. The spans are valid
+  /// until the next call.
   void leave_out(std::vector<PairContacts>& pairs);
 
  private:
@@ -32,11 +45,13 @@ class InternalContacts {
     Vec3 point{}, direction{};
   };
 
-  void find_faces(const sites::SitesData& sites, const SurfacePoint& point);
-  [[nodiscard]] bool off_flat_faces(const shape::PosedBody& body, const Exit& exit) const;
-  [[nodiscard]] bool into_neighbour(std::uint32_t body, const Exit& exit) const;
+  /// The exit by a contact from a body of a pair, with the faces around it; none on a face without a normal.
+  [[nodiscard]] std::optional<Exit> exit_by(const Contact& contact, const shape::PosedBody& body, int side,
+                                            Around& around) const;
+  [[nodiscard]] static bool off_flat_faces(const shape::PosedBody& body, const Exit& exit,
+                                           const Around& around);
+  [[nodiscard]] bool into_neighbour(std::uint32_t body, const Exit& exit, const Around& around) const;
   [[nodiscard]] bool covered(std::uint32_t body, std::uint32_t face, const Vec3& point) const;
-  [[nodiscard]] std::span<const Sweep::Pair> neighbours(std::uint32_t body) const;
 
   std::span<const shape::PosedBody> bodies_;
   std::vector<std::uint32_t> fixed_;
@@ -44,9 +59,7 @@ class InternalContacts {
   Sweep sweep_;
   std::vector<Sweep::Pair> neighbours_;  ///< a body and another one fixed beside it, sorted
   std::vector<Contact> external_;        ///< what leave_out() left
-  // Around the point that is looked at:
-  std::vector<std::uint32_t> faces_;
-  bool flat_ = false;  ///< it is on an edge or a vertex without a convex edge
+  Around around_;
 };
 
 /// The contacts of two bodies without those that are internal.

@@ -108,16 +108,23 @@ void MultiBodyQuery::Impl::find_depths() {
   parts.merge(depths);
 }
 
+// Those of all pairs of parts that have some.
+void MultiBodyQuery::Impl::list_contacts(bodies::ContactList list, const bodies::ContactStore& store,
+                                         std::vector<PairContacts>& listed) {
+  listed.clear();
+  for (const bodies::NearPair& pair : near.list())
+    if (pair.touching[static_cast<std::size_t>(list)])
+      listed.push_back({pair.pair[0], pair.pair[1], store.of(near.state(pair))});
+}
+
 void MultiBodyQuery::Impl::find_contacts() {
   near.follow(posed, options.contact_margin);
   stored_contacts.begin(near.list().size());
   complete(
-      options.contact_margin, [](const bodies::NearPair& pair) { return !pair.contacts_known; },
+      options.contact_margin, [](const bodies::NearPair& pair) { return !pair.contacts_known[0]; },
       [&](pair::PairAnswers& answers, std::size_t u) { stored_contacts.found(u, answers.contacts()); });
   stored_contacts.store(near, unknown);
-  contacts.clear();
-  for (const bodies::NearPair& pair : near.list())
-    if (pair.touching) contacts.push_back({pair.pair[0], pair.pair[1], stored_contacts.of(near.state(pair))});
+  list_contacts(bodies::ContactList::closest, stored_contacts, contacts);
   if (options.ignore_internal_edges) {
     internal_contacts.follow(posed, near.filter());
     internal_contacts.leave_out(contacts);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,10 +15,12 @@
 #include "bodies/many/contact_store.h"
 #include "bodies/many/internal_contacts.h"
 #include "bodies/many/near_pairs.h"
+#include "bodies/many/pair_separator.h"
 #include "bodies/many/pool.h"
 #include "bodies/pair/pair_answers.h"
 #include "bodies/shape/posed_body.h"
 #include "core/intact.h"
+#include "mesh/similarity.h"
 
 namespace sdm {
 
@@ -31,14 +34,28 @@ struct MultiBodyQuery::Impl {
   bodies::NearPairs near;
   std::vector<std::size_t> unknown;  // the pairs of `near` that a call computes
 
+  // The pairs of parts of two bodies: a range of `grouped`, numbers in the list of near pairs.
+  struct BodyGroup {
+    Sweep::Pair bodies{};
+    std::size_t first = 0, count = 0;
+  };
+
   // What the calls have returned.
   std::vector<BodyPair> colliding;
   std::vector<PairSeparation> separations;
   std::size_t candidates = 0;
   std::vector<PairDepth> depths;
-  std::vector<PairContacts> contacts;
-  bodies::ContactStore stored_contacts;
-  bodies::InternalContacts internal_contacts;
+  std::vector<PairTranslation> translations;
+  std::vector<PairContacts> contacts, separating_contacts;
+  bodies::ContactStore stored_contacts{bodies::ContactList::closest};
+  bodies::ContactStore stored_separating{bodies::ContactList::separating};
+  bodies::InternalContacts internal_contacts, internal_separating;
+  bodies::Pool<bodies::PairSeparator> separators;
+  separate::SeparatingContacts fewer{0};
+  std::vector<Contact> few_contacts;
+  std::vector<std::size_t> grouped;
+  std::vector<BodyGroup> groups;
+  std::optional<std::size_t> known_surroundings{};  // with which the translations were found
 
   Impl(std::vector<Shape> shapes, bodies::BodyParts of_bodies, const ProximityOptions& asked)
       : options(asked), parts(std::move(of_bodies)), given_poses(parts.bodies()), near(parts.body_of()) {
@@ -101,8 +118,20 @@ struct MultiBodyQuery::Impl {
   void find_separations(double max_distance);
   void find_depths();
   void find_contacts();
+  void find_translations();
+  void find_separating_contacts(std::optional<std::size_t> most_per_patch);
+
+  [[nodiscard]] Transform pose(std::size_t body) const {
+    if (parts.compound(body)) return mesh::Similarity::of(given_poses[body]).transform();
+    return posed[parts.begin(body)].pose().transform();
+  }
 
  private:
+  void group_by_bodies(double reach);
+  void find_translation(bodies::PairSeparator& separator, const BodyGroup& group);
+  void keep_per_patch(std::size_t most);
+  void list_contacts(bodies::ContactList list, const bodies::ContactStore& store,
+                     std::vector<PairContacts>& listed);
   template <class IsUnknown, class Compute>
   void complete(double reach, const IsUnknown& is_unknown, const Compute& compute);
   template <class IsListed>

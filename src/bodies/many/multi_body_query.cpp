@@ -14,7 +14,6 @@
 #include "core/cancellation.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "mesh/similarity.h"
 
 namespace sdm {
 namespace {
@@ -80,9 +79,7 @@ void MultiBodyQuery::set_poses(std::span<const Transform> poses) {
 }
 
 Transform MultiBodyQuery::pose(std::size_t body) const {
-  const shape::PosedBody& part = impl_->part_of(body, 0);
-  if (impl_->parts.compound(body)) return mesh::Similarity::of(impl_->given_poses[body]).transform();
-  return part.pose().transform();
+  return impl_->pose(impl_->checked(body));
 }
 Transform MultiBodyQuery::part_pose(std::size_t body, std::size_t part) const {
   return impl_->part_of(body, part).pose().transform();
@@ -154,6 +151,19 @@ std::span<const PairContacts> MultiBodyQuery::contacts() {
   impl_->intact.require();
   with_memory_of_bodies([&] { impl_->find_contacts(); });
   return impl_->contacts;
+}
+
+std::span<const PairTranslation> MultiBodyQuery::separating_translations() {
+  impl_->intact.require();
+  with_memory_of_bodies([&] { impl_->find_translations(); });
+  return impl_->translations;
+}
+
+std::span<const PairContacts> MultiBodyQuery::separating_contacts(std::optional<std::size_t> most_per_patch) {
+  impl_->intact.require();
+  if (most_per_patch == 0) throw Error("0 contacts of each patch are too few; use 1 or more");
+  with_memory_of_bodies([&] { impl_->find_separating_contacts(most_per_patch); });
+  return impl_->separating_contacts;
 }
 
 std::vector<PairTimeOfContact> MultiBodyQuery::time_of_contact(std::span<const Motion> motions,

@@ -48,6 +48,7 @@ void MovedBodies::clear() noexcept {
 void NearPairs::moved(std::size_t body) noexcept {
   if (moved_.list().empty()) reach_.before = std::exchange(reach_.since_motion, 0);
   moved_.add(body);
+  surroundings_ += filter_[body].fixed;
 }
 
 void NearPairs::follow(std::span<const shape::PosedBody> bodies, double reach) try {

@@ -3,7 +3,9 @@
 
 #include <sdm/multi_body_query.h>
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -60,10 +62,22 @@ class MovedBodies {
   std::vector<std::uint8_t> flags_;
 };
 
+/// The lists of contacts of a pair: contacts() and separating_contacts().
+enum class ContactList : std::uint8_t { closest, separating };
+
 /// What is known of a pair of bodies as long as neither moves.
 struct PairState {
+  /// Of a ContactStore.
+  struct Range {
+    std::size_t first = 0, count = 0;
+  };
   pair::KnownAnswers known{};
-  std::size_t first_contact = 0, contacts = 0;  ///< a range of the ContactStore
+  std::array<Range, 2> contacts{};  ///< by ContactList
+  /// That of the bodies, not of these parts alone; 0 if the bodies do not collide.
+  SeparatingTranslation translation{};
+  /// How far apart the nearest of all pairs that leave each other together are then; nothing for a pair
+  /// alone.
+  std::optional<double> apart{};
 };
 
 /// A pair of bodies. What decides whether a call has to look at its state is here: passes over the list of
@@ -73,8 +87,9 @@ struct NearPair {
   std::uint32_t state = 0;  ///< its number
   bool collision_known = false, colliding = false, depth_known = false;
   bool separation_known = false;
-  bool contacts_known = false, touching = false;  ///< touching: it has contacts
-  double gap = 0;                                 ///< between the boxes, rounded down
+  bool translation_known = false;
+  std::array<bool, 2> contacts_known{}, touching{};  ///< by ContactList; touching: it has contacts
+  double gap = 0;                                    ///< between the boxes, rounded down
   double apart = -1;  ///< the separation if it is known, otherwise what it exceeds
 
   void set(const pair::KnownAnswers& known) {
@@ -98,8 +113,12 @@ class NearPairs {
   /// The filter, to be changed; all pairs are looked for again.
   PairFilter& change_filter() {
     complete_ = false;
+    ++surroundings_;
     return filter_;
   }
+
+  /// A number that changes when a fixed body moves or a filter changes.
+  [[nodiscard]] std::size_t surroundings() const { return surroundings_; }
 
   /// Brings the list up to date: then it has all pairs whose boxes are at most `reach` apart, and perhaps
   /// some that are farther. If there is not enough memory, it throws, and all is unknown.
@@ -126,6 +145,7 @@ class NearPairs {
   PairFilter filter_;
   MovedBodies moved_;
   Reach reach_;
+  std::size_t surroundings_ = 0;
   bool complete_ = false;  ///< the list has all pairs that were near before the bodies moved
   Sweep sweep_;
   std::vector<Sweep::Pair> found_, near_moved_;

@@ -1,4 +1,4 @@
-// Short translations after which two bodies do not collide.
+// Short translations after which bodies do not collide.
 #pragma once
 
 #include "bodies/separate/moved_pair.h"
@@ -10,8 +10,8 @@ namespace sdm::separate {
 /// test; that none is shorter is not said.
 class FreeTranslations {
  public:
-  /// `first`: a translation without a collision. `size`: of both bodies. `solids`: whether one is a solid.
-  FreeTranslations(MovedPair& pair, const Vec3& first, double size, bool solids)
+  /// `first`: a translation without a collision. `size`: of all bodies. `solids`: whether one is a solid.
+  FreeTranslations(TranslatedBodies& pair, const Vec3& first, double size, bool solids)
       : pair_(pair), best_(first), size_(size), solids_(solids) {}
 
   [[nodiscard]] const Vec3& best() const { return best_; }
@@ -34,7 +34,7 @@ class FreeTranslations {
   [[nodiscard]] Vec3 shortened(Vec3 t);
   [[nodiscard]] double free_step(const Vec3& t, const Vec3& step, double separation);
 
-  MovedPair& pair_;
+  TranslatedBodies& pair_;
   Vec3 best_;
   double size_;
   bool solids_;

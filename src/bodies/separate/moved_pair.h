@@ -1,4 +1,4 @@
-// Two bodies, the first of which is translated.
+// Bodies of which some are translated, and two, the first of which is.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,22 @@
 
 namespace sdm::separate {
 
-class MovedPair {
+/// Bodies that collide, some of which are translated.
+class TranslatedBodies {
+ public:
+  /// Whether any collide after a translation; exact.
+  [[nodiscard]] virtual bool collide(const Vec3& translation) = 0;
+  /// The closest points after a translation without a collision; valid until the next call.
+  [[nodiscard]] virtual const BoundedLength& separation(const Vec3& translation) = 0;
+  /// How many translations were tried.
+  [[nodiscard]] std::size_t tries() const { return tries_; }
+
+ protected:
+  ~TranslatedBodies() = default;
+  std::size_t tries_ = 0;
+};
+
+class MovedPair final : public TranslatedBodies {
  public:
   /// `answers`: whose memory is reused; results do not depend on what it was used for before.
   MovedPair(const shape::PosedBody& o1, const shape::PosedBody& o2, pair::PairAnswers& answers)
@@ -19,13 +34,11 @@ class MovedPair {
 
   /// What helps after the next translation.
   void set_hints(const pair::Hints& hints) { answers_.begin(moved_, o2_, hints); }
-  /// Whether the bodies collide after a translation of O1; exact.
-  [[nodiscard]] bool collide(const Vec3& translation) {
+  [[nodiscard]] bool collide(const Vec3& translation) override {
     move(translation);
     return answers_.colliding();
   }
-  /// The closest points after a translation without a collision.
-  [[nodiscard]] const BoundedLength& separation(const Vec3& translation) {
+  [[nodiscard]] const BoundedLength& separation(const Vec3& translation) override {
     move(translation);
     return answers_.separation();
   }
@@ -39,8 +52,6 @@ class MovedPair {
     move(translation);
     return answers_.contacts();
   }
-  /// How many translations were tried.
-  [[nodiscard]] std::size_t tries() const { return tries_; }
 
  private:
   void move(const Vec3& translation) {
@@ -56,7 +67,6 @@ class MovedPair {
   const shape::PosedBody& o2_;
   pair::PairAnswers& answers_;
   std::optional<Vec3> at_{};
-  std::size_t tries_ = 0;
 };
 
 }  // namespace sdm::separate

@@ -44,56 +44,92 @@ double size_of(const shape::PosedBody& o1, const shape::PosedBody& o2) {
   return diagonal(box);
 }
 
+// Both bodies after the translation.
+std::array<shape::PosedBody, 2> moved(const shape::PosedBody& o1, const shape::PosedBody& o2,
+                                      const SeparatingTranslation& out) {
+  std::array bodies{o1, o2};
+  bodies[0].set_pose(Transform::translation(out.translation) * o1.pose().transform());
+  return bodies;
+}
+
+// Of a touch after the translation, whose nearest points are `apart`: how far apart other points of it are.
+double reach_of_touch(double apart, const SeparatingTranslation& out, double size) {
+  return apart + kGapOfTranslation * out.value + kGapOfSize * size;
+}
+
 }  // namespace
 
 void SeparatingContacts::find(const shape::PosedBody& o1, const shape::PosedBody& o2,
-                              const SeparatingTranslation& out, const ContactFilter& filter) {
+                              const SeparatingTranslation& out, const ContactFilter& filter,
+                              std::optional<double> apart) {
   contacts_.clear();
-  if (!find_of_convex(o1, o2, out)) find_after(o1, o2, out, filter);
+  if (find_of_convex(o1, o2, out)) return;
+  const double size = size_of(o1, o2);
+  const std::array bodies = moved(o1, o2, out);
+  apart_.begin(bodies[0], bodies[1]);
+  const double reach = reach_of_touch(apart ? *apart : apart_.separation().value, out, size);
+  const std::optional<Contact> exit = exit_after(bodies, out, reach);
+  const std::span<const Contact> all = apart_.contacts_within(contact_margin_ + reach);
+  add_after(filter ? filter(bodies, all) : all, out.translation);
+  sort_after(exit, size);
 }
 
-// The deepest contact of the patch is the one of the closest points after the translation.
+std::optional<Contact> SeparatingContacts::exit_of(const shape::PosedBody& o1, const shape::PosedBody& o2,
+                                                   const SeparatingTranslation& out,
+                                                   std::optional<double> apart) {
+  if (const std::span<const Contact> patch = patch_of(o1, o2, out); !patch.empty()) return patch.front();
+  const std::array bodies = moved(o1, o2, out);
+  apart_.begin(bodies[0], bodies[1]);
+  const double nearest = apart ? *apart : apart_.separation().value;
+  return exit_after(bodies, out, reach_of_touch(nearest, out, size_of(o1, o2)));
+}
+
+// The contact of the closest points after the translation; none if they are farther apart than that.
+std::optional<Contact> SeparatingContacts::exit_after(const std::array<shape::PosedBody, 2>& bodies,
+                                                      const SeparatingTranslation& out, double reach) {
+  if (!apart_.surfaces_within(reach)) return {};
+  const std::array<Vec3, 2>& closest = *apart_.separation().witness;
+  return exit_contact(bodies, apart_.known().closest_faces, closest, out.translation);
+}
+
+// The patch of convex solids, whose deepest contact is the one of the closest points after the translation;
+// empty for other bodies.
+std::span<const Contact> SeparatingContacts::patch_of(const shape::PosedBody& o1, const shape::PosedBody& o2,
+                                                      const SeparatingTranslation& out) {
+  if (o1.body().convex_solid() == nullptr || o2.body().convex_solid() == nullptr) return {};
+  const double size = size_of(o1, o2);
+  return patch_.find(o1, o2, out.translation, size, kGapOfSize * size);
+}
+
 bool SeparatingContacts::find_of_convex(const shape::PosedBody& o1, const shape::PosedBody& o2,
                                         const SeparatingTranslation& out) {
-  if (o1.body().convex_solid() == nullptr || o2.body().convex_solid() == nullptr) return false;
-  const double size = size_of(o1, o2);
-  const std::span<const Contact> patch = patch_.find(o1, o2, out.translation, size, kGapOfSize * size);
+  const std::span<const Contact> patch = patch_of(o1, o2, out);
   if (patch.empty()) return false;
   for (const Contact& contact : patch)
     if (contact.depth > -contact_margin_) contacts_.push_back(contact);
   Contact exit = patch.front();
   exit.id = ProximityQuery::kExitContact;
-  sort_after(exit, size);
+  sort_after(exit, size_of(o1, o2));
   return true;
 }
 
 // After the translation t, contact i lets O1 move where n_i·x ≥ −g_i, with its normal n_i and the gap g_i
 // there. So before it, the distance to go along n_i is n_i·t − g_i.
-void SeparatingContacts::find_after(const shape::PosedBody& o1, const shape::PosedBody& o2,
-                                    const SeparatingTranslation& out, const ContactFilter& filter) {
-  const Vec3& t = out.translation;
-  std::array bodies{o1, o2};
-  bodies[0].set_pose(Transform::translation(t) * o1.pose().transform());
-  apart_.begin(bodies[0], bodies[1]);
-  const BoundedLength separation = apart_.separation();
-  const Contact exit = exit_contact(bodies, apart_.known().closest_faces, *separation.witness, t);
-  const double size = size_of(o1, o2);
-  const std::span<const Contact> all = apart_.contacts_within(
-      contact_margin_ + separation.value + kGapOfTranslation * out.value + kGapOfSize * size);
-  for (Contact c : filter ? filter(bodies, all) : all) {
+void SeparatingContacts::add_after(std::span<const Contact> contacts, const Vec3& t) {
+  for (Contact c : contacts) {
     c.point1 = c.point1 - t;
     c.normal += Vec3{};  // no −0
     c.depth = depth_along(c, t);
     if (c.depth > -contact_margin_) contacts_.push_back(c);
   }
-  sort_after(exit, size);
 }
 
 // Sorts the contacts, after the exit, which is a patch by itself.
-void SeparatingContacts::sort_after(const Contact& exit, double size) {
+void SeparatingContacts::sort_after(const std::optional<Contact>& exit, double size) {
   order_.sort(contacts_, kGapOfSize * size);
+  if (!exit) return;
   for (Contact& c : contacts_) ++c.patch;
-  contacts_.insert(contacts_.begin(), exit);
+  contacts_.insert(contacts_.begin(), *exit);
 }
 
 void SeparatingContacts::keep_per_patch(std::size_t most) {

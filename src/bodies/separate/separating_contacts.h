@@ -3,8 +3,10 @@
 
 #include <sdm/proximity_query.h>
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,8 +29,14 @@ class SeparatingContacts {
 
   /// The contacts of bodies that leave each other by `out`. `filter`: of the contacts that they have then;
   /// all, if it is empty. Convex solids do not need it: their contacts are along normals of their faces.
+  /// `apart`: of bodies that leave each other together with others, how far apart the nearest of all are
+  /// then. If these two are farther apart, they do not have kExitContact, and perhaps no contact.
   void find(const shape::PosedBody& o1, const shape::PosedBody& o2, const SeparatingTranslation& out,
-            const ContactFilter& filter);
+            const ContactFilter& filter, std::optional<double> apart = {});
+  /// The contact that kExitContact is, if there is one.
+  [[nodiscard]] std::optional<Contact> exit_of(const shape::PosedBody& o1, const shape::PosedBody& o2,
+                                               const SeparatingTranslation& out,
+                                               std::optional<double> apart = {});
   /// Takes these contacts.
   void assign(std::span<const Contact> contacts) { contacts_.assign(contacts.begin(), contacts.end()); }
   /// Keeps so many of each patch, at least 1. Requires that they are sorted by patch and depth.
@@ -38,9 +46,12 @@ class SeparatingContacts {
  private:
   [[nodiscard]] bool find_of_convex(const shape::PosedBody& o1, const shape::PosedBody& o2,
                                     const SeparatingTranslation& out);
-  void find_after(const shape::PosedBody& o1, const shape::PosedBody& o2, const SeparatingTranslation& out,
-                  const ContactFilter& filter);
-  void sort_after(const Contact& exit, double size);
+  [[nodiscard]] std::span<const Contact> patch_of(const shape::PosedBody& o1, const shape::PosedBody& o2,
+                                                  const SeparatingTranslation& out);
+  [[nodiscard]] std::optional<Contact> exit_after(const std::array<shape::PosedBody, 2>& bodies,
+                                                  const SeparatingTranslation& out, double reach);
+  void add_after(std::span<const Contact> contacts, const Vec3& t);
+  void sort_after(const std::optional<Contact>& exit, double size);
   void choose(std::span<const Contact> patch, std::size_t most);
 
   double contact_margin_;

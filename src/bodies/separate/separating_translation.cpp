@@ -6,49 +6,22 @@
 #include <limits>
 
 #include "bodies/convex/difference_hull.h"
-#include "bodies/convex/support_search.h"
 #include "bodies/separate/free_translations.h"
 #include "bodies/separate/moved_pair.h"
 #include "bodies/separate/overlap_cover.h"
+#include "bodies/separate/search_steps.h"
 #include "bodies/shape/convexity.h"
-#include "bodies/shape/extreme_vertex.h"
 #include "geometry/vec.h"
 
 namespace sdm::separate {
 namespace {
 
-constexpr double kExact = 1e-6;      // of the size: bounds that are as close are exact
-constexpr double kClose = 0.98;      // ratio of bounds at which a search ends
-constexpr double kEnough = 0.85;     // the same, of the search for a cover
-constexpr double kLeastGap = 1e-12;  // of the size, beyond a translation after which bodies touch
+constexpr double kEnough = 0.85;  // ratio of bounds at which the search for a cover ends
 // Bodies that only touch: how far they are moved at most, of the size, and steps to the direction.
 constexpr double kMostGap = 1e-3;
 constexpr int kTurns = 64;
 // What rounding of two points in space, and of their difference, may amount to, over the largest coordinate.
 constexpr double kSpaceRounding = 16 * std::numeric_limits<double>::epsilon();
-
-// The point of a body that is farthest along u, in space. `convex`: the body, if it is a convex solid, whose
-// `vertex` is one that is near; it receives that vertex.
-Vec3 farthest(const shape::PosedBody& body, const convex::ConvexMesh* convex, const Vec3& u,
-              std::uint32_t& vertex) {
-  const auto& rows = body.pose().map.rows;
-  const Vec3 local = u[0] * rows[0] + u[1] * rows[1] + u[2] * rows[2];
-  if (convex != nullptr) {
-    const double scale = body.pose().scale;
-    vertex = convex::farthest_vertex(*convex, scale == 1 ? local : (1 / scale) * local, vertex);
-    return body.pose().map(convex->points[vertex]);
-  }
-  return body.pose().map(shape::extreme_vertex(internals(body.body().sites()), normalized(local)).point);
-}
-
-// Directions along the axes of a cube, and its diagonals.
-template <class Work>
-void for_each_direction(const Work& work) {
-  for (int x = -1; x <= 1; ++x)
-    for (int y = -1; y <= 1; ++y)
-      for (int z = -1; z <= 1; ++z)
-        if (x != 0 || y != 0 || z != 0) work(normalized(Vec3{1.0 * x, 1.0 * y, 1.0 * z}));
-}
 
 class TranslationSearch {
  public:
@@ -78,7 +51,7 @@ class TranslationSearch {
         },
         normalized(o2_.ball().centre - o1_.ball().centre), size_, workspace_.exit);
     pair_.set_hints({.closest_vertices = closest_vertices(exit)});
-    const Vec3 out = beyond(-std::max(0.0, exit.upper) * exit.direction, -exit.direction);
+    const Vec3 out = beyond(pair_, -std::max(0.0, exit.upper) * exit.direction, -exit.direction, size_);
     // A body that falls short of its hull a little contains the hull scaled about a point.
     const double short1 = convex_[0] ? 0 : o1_.body().convexity_deficit(),
                  short2 = convex_[1] ? 0 : o2_.body().convexity_deficit();
@@ -99,22 +72,8 @@ class TranslationSearch {
     simplex.away = -normalized(u[0] * rows[0] + u[1] * rows[1] + u[2] * rows[2]);
     return simplex;
   }
-  // A translation without a collision, by a little more than one after which the bodies touch at most.
-  Vec3 beyond(const Vec3& translation, const Vec3& u) {
-    for (double gap = kLeastGap; gap < 1; gap *= 10) {
-      const Vec3 t = translation + gap * size_ * u;
-      if (!pair_.collide(t)) return t;
-    }
-    return translation + size_ * u;
-  }
-
   SeparatingTranslation result(double lower, const Vec3& translation) const {
-    SeparatingTranslation found;
-    found.translation = translation + Vec3{};  // no −0
-    found.value = found.upper = norm(translation);
-    found.lower = std::clamp(lower - rounding_, 0.0, found.upper);
-    found.certainty = found.upper - found.lower <= kExact * size_ ? Certainty::exact : Certainty::bounded;
-    return found;
+    return bounded_translation(lower - rounding_, translation, size_);
   }
 
   Vec3 search(const Vec3& out, double& lower) {

@@ -10,19 +10,16 @@
 #include <utility>
 #include <vector>
 
-namespace sdm::test {
+namespace sdm::scenes {
 
-struct Block {
-  Vec3 lo, hi;
-};
-using Blocks = std::vector<Block>;
+using Blocks = std::vector<Box>;
 
 /// The boundary of the union, on the grid of all sides.
 class UnionMesh {
  public:
   explicit UnionMesh(const Blocks& blocks) : blocks_(blocks) {
     for (int k = 0; k < 3; ++k) {
-      for (const Block& b : blocks) at_[k].insert(at_[k].end(), {b.lo[k], b.hi[k]});
+      for (const Box& b : blocks) at_[k].insert(at_[k].end(), {b.lo[k], b.hi[k]});
       std::ranges::sort(at_[k]);
       at_[k].erase(std::unique(at_[k].begin(), at_[k].end()), at_[k].end());
     }
@@ -48,7 +45,7 @@ class UnionMesh {
       if (cell[k] < 0 || cell[k] + 1 >= count(k)) return false;
       middle[k] = 0.5 * (at_[k][cell[k]] + at_[k][cell[k] + 1]);
     }
-    return std::ranges::any_of(blocks_, [&](const Block& b) {
+    return std::ranges::any_of(blocks_, [&](const Box& b) {
       for (int k = 0; k < 3; ++k)
         if (middle[k] < b.lo[k] || middle[k] > b.hi[k]) return false;
       return true;
@@ -89,4 +86,4 @@ class UnionMesh {
                    {{b, -b, 0}, {a, b, height}}});
 }
 
-}  // namespace sdm::test
+}  // namespace sdm::scenes
