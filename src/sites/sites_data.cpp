@@ -67,7 +67,7 @@ bool SitesData::is_valid() const {
         valid_trees =
             !tree.items.empty() && tree::is_tree(tree, kLeafFaces, kUnitReach) && tree::is_tree(wide, tree);
       });
-  return valid_topology && valid_trees && sites::match(*this) && std::ranges::all_of(inverted, one_or_none);
+  return valid_topology && valid_trees && sites::match(*this) && mesh::are_flags(inverted);
 }
 
 void SitesData::find_orientation() {
