@@ -3,6 +3,8 @@
 
 #include <sdm/mesh.h>
 
+#include <span>
+
 #include "mesh/topology.h"
 
 namespace sdm::mesh {
@@ -11,10 +13,10 @@ namespace sdm::mesh {
 /// every face with repeated corners is. Triangles must be valid. Cost: linear.
 [[nodiscard]] bool is_topology(const Topology& topology, const VertexFaces& vertex_faces, const Mesh& mesh);
 
+/// Whether none is larger than 1. Cost: linear.
+[[nodiscard]] bool are_flags(std::span<const std::uint8_t> flags);
+
 /// Whether each face has a component, and each component a face, except for ignored ones. Cost: linear.
 [[nodiscard]] bool is_orientation(const Orientation& orientation, const Topology& topology);
-
-/// Whether rows have increasing offsets up to the number of items. Cost: linear.
-[[nodiscard]] bool are_rows(const CompressedRows<std::uint32_t>& rows, std::size_t count);
 
 }  // namespace sdm::mesh

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "core/parallel.h"
 #include "geometry/vec.h"
@@ -37,21 +38,35 @@ void validate_counts(const Mesh& mesh) {
                 " vertices, too many for 32-bit indices");
 }
 
-void validate_size(const Mesh& mesh) {
-  if (!(diagonal(bounds(mesh)) > kMinSize))
+void validate_size(const Box& box) {
+  if (!(diagonal(box) > kMinSize))
     throw Error("the mesh is smaller than 1e-30, too small for the computation; scale it up");
 }
 
-void validate_triangles(const Mesh& mesh) {
+// The bounds of the mesh. Each vertex is compared at the first of its corners, which takes a quarter of what
+// it takes at all of them.
+Box validate_triangles(const Mesh& mesh) {
+  const std::span<const Vec3> positions(mesh.positions);
+  const std::span<const Triangle> triangles(mesh.triangles);
+  Box box;
   bool any_area = false;
-  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-    for (const std::uint32_t v : mesh.triangles[f])
-      if (v >= mesh.positions.size())
+  std::vector<std::uint8_t> met(positions.size());
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    const Triangle t = triangles[f];
+    for (const std::uint32_t v : t)
+      if (v >= positions.size())
         throw Error("index out of range: triangle " + std::to_string(f) + " refers to vertex " +
-                    std::to_string(v) + " of " + std::to_string(mesh.positions.size()));
-    any_area = any_area || has_area(mesh, mesh.triangles[f]);
+                    std::to_string(v) + " of " + std::to_string(positions.size()));
+    any_area = any_area || has_area(mesh, t);
+    if (is_removed(t)) continue;
+    for (const std::uint32_t v : t) {
+      if (met[v] != 0) continue;
+      met[v] = 1;
+      extend(box, positions[v]);
+    }
   }
   if (!any_area) throw_no_area();
+  return box;
 }
 
 void validate_uvs(const Mesh& mesh) {
@@ -95,17 +110,22 @@ void mesh::validate_edited(const Mesh& mesh) {
   validate_counts(mesh);
   if (std::ranges::none_of(mesh.triangles, [&](const Triangle& t) { return has_area(mesh, t); }))
     throw_no_area();
-  validate_size(mesh);
+  validate_size(bounds(mesh));
   validate_uvs(mesh);
 }
 
-void validate(const Mesh& mesh) {
+Box mesh::validated_bounds(const Mesh& mesh) {
   if (mesh.triangles.empty()) throw Error("there are no triangles");
   validate_counts(mesh);
   mesh::validate_positions(mesh.positions);
-  validate_triangles(mesh);
-  validate_size(mesh);
+  const Box box = validate_triangles(mesh);
+  validate_size(box);
   validate_uvs(mesh);
+  return box;
+}
+
+void validate(const Mesh& mesh) {
+  (void)mesh::validated_bounds(mesh);
 }
 
 Box bounds(const Mesh& mesh) {

@@ -19,6 +19,9 @@ void validate_positions(std::span<const Vec3> positions, std::size_t count);
 /// The same for points that are asked about.
 void validate_queries(std::span<const Vec3> points);
 
+/// bounds(mesh). Throws as validate() does.
+[[nodiscard]] Box validated_bounds(const Mesh& mesh);
+
 /// Throws as validate() does for what an edit with valid indices and coordinates may cause.
 void validate_edited(const Mesh& mesh);
 

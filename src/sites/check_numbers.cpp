@@ -51,34 +51,92 @@ bool AreDoublesWithin(const int64_t* bits, size_t count, int64_t limit) {
   return AreWithin(bits, count, limit);
 }
 
-bool HaveLimits(const FaceBounds& bounds, size_t count, float largest_radius) {
+bool HaveLimits(const tree::AabbTree::Node* nodes, const uint32_t* leaves, size_t count,
+                const FaceBounds* bounds, float largest_radius) {
   const hn::CappedTag<float, FaceBounds::kWidth> d;
-  const auto reach = hn::Set(d, kUnitReach), unit = hn::Set(d, 1.001f), zero = hn::Zero(d);
-  for (size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const auto radius = hn::Load(d, bounds.radius + i), slope = hn::Load(d, bounds.slope + i);
-    auto valid = hn::And(hn::And(hn::Ge(radius, zero), hn::Le(radius, hn::Set(d, largest_radius))),
-                         hn::And(hn::Ge(slope, zero), hn::Le(slope, hn::Set(d, FaceBounds::kOpen))));
-    for (int k = 0; k < 3; ++k) {
-      valid = hn::And(valid, hn::Le(hn::Abs(hn::Load(d, bounds.centre[k] + i)), reach));
-      valid = hn::And(valid, hn::Le(hn::Abs(hn::Load(d, bounds.normal[k] + i)), unit));
+  const auto reach = hn::Set(d, kUnitReach), unit = hn::Set(d, 1.001f), zero = hn::Zero(d),
+             most = hn::Set(d, largest_radius), open = hn::Set(d, FaceBounds::kOpen);
+  for (size_t leaf = 0; leaf < count; ++leaf, ++bounds)
+    for (size_t i = 0, faces = nodes[leaves[leaf]].count; i < faces; i += hn::Lanes(d)) {
+      const auto radius = hn::Load(d, bounds->radius + i), slope = hn::Load(d, bounds->slope + i);
+      auto valid = hn::And(hn::And(hn::Ge(radius, zero), hn::Le(radius, most)),
+                           hn::And(hn::Ge(slope, zero), hn::Le(slope, open)));
+      for (int k = 0; k < 3; ++k) {
+        valid = hn::And(valid, hn::Le(hn::Abs(hn::Load(d, bounds->centre[k] + i)), reach));
+        valid = hn::And(valid, hn::Le(hn::Abs(hn::Load(d, bounds->normal[k] + i)), unit));
+      }
+      if (!hn::AllTrue(d, hn::Or(valid, hn::Not(hn::FirstN(d, faces - i))))) return false;
     }
-    if (!hn::AllTrue(d, hn::Or(valid, hn::Not(hn::FirstN(d, count - i))))) return false;
+  return true;
+}
+
+// Records of six words, of which three vectors of at least two lanes hold a whole number.
+bool AreBelow(const uint32_t* words, size_t count, const uint32_t (&most)[6]) {
+  const hn::CappedTag<uint32_t, 16> d;
+  const size_t lanes = hn::Lanes(d), whole = lanes < 2 ? 0 : count / (3 * lanes) * (3 * lanes);
+  auto a = hn::Zero(d), b = a, c = a;
+  for (size_t i = 0; i < whole; i += 3 * lanes) {
+    a = hn::Max(a, hn::LoadU(d, words + i));
+    b = hn::Max(b, hn::LoadU(d, words + i + lanes));
+    c = hn::Max(c, hn::LoadU(d, words + i + 2 * lanes));
+  }
+  HWY_ALIGN uint32_t largest[48];
+  hn::Store(a, d, largest);
+  hn::StoreU(b, d, largest + lanes);
+  hn::StoreU(c, d, largest + 2 * lanes);
+  bool below = true;
+  for (size_t i = 0; i < 3 * lanes; ++i) below &= largest[i] <= most[i % 6];
+  for (size_t i = whole; i < count; ++i) below &= words[i] <= most[(i - whole) % 6];
+  return below;
+}
+
+bool ArePlaced(const UnitFrame& frame, const Vec3* positions, const UnitVertex* points,
+               const VertexRegion* regions, size_t count, PaddedPoint* placed) {
+  const hn::CappedTag<double, 4> d;
+  const hn::Rebind<float, decltype(d)> single;
+  const hn::RebindToUnsigned<decltype(single)> bits;
+  const auto words = [](const auto& record) { return reinterpret_cast<const float*>(&record); };
+  const auto scale = hn::Set(d, frame.scale);
+  const double padded[] = {frame.origin[0], frame.origin[1], frame.origin[2], 0};
+  for (size_t k = 0; k < 3; k += hn::Lanes(d)) {
+    const auto origin = hn::LoadU(d, padded + k);
+    const auto used = hn::FirstN(d, 3 - k);
+    auto fault = hn::Zero(bits);
+    for (size_t i = 0; i < count; ++i) {
+      const double* const at = positions[points[i].vertex].data() + k;
+      // Nothing beyond the position is read, also by instructions that cannot mask.
+      const auto p = k == 0 ? hn::MaskedLoad(used, d, at) : hn::IfThenElseZero(used, hn::Set(d, *at));
+      const auto unit = hn::Mul(scale, hn::Sub(p, origin));
+      hn::StoreU(unit, d, placed[i].data() + k);
+      const auto expected = hn::BitCast(bits, hn::DemoteTo(single, unit));
+      fault = hn::Or(fault, hn::Xor(expected, hn::BitCast(bits, hn::LoadU(single, words(points[i]) + k))));
+      fault = hn::Or(fault, hn::Xor(expected, hn::BitCast(bits, hn::LoadU(single, words(regions[i]) + k))));
+    }
+    fault = hn::IfThenElseZero(hn::FirstN(bits, 3 - k), fault);
+    if (!hn::AllTrue(bits, hn::Eq(fault, hn::Zero(bits)))) return false;
   }
   return true;
 }
 
-bool Contains(const double* box, const Triangle* triangles, size_t count, const PaddedPoint* points) {
+bool Contain(const tree::AabbTree::Node* nodes, const uint32_t* leaves, size_t count, const Triangle* corners,
+             const PaddedPoint* placed) {
   const hn::CappedTag<double, 4> d;
-  for (size_t k = 0; k < 4; k += hn::Lanes(d)) {
-    auto lo = hn::Set(d, std::numeric_limits<double>::infinity()), hi = hn::Neg(lo);
-    for (size_t i = 0; i < count; ++i)
-      for (const std::uint32_t corner : triangles[i]) {
-        const auto p = hn::LoadU(d, points[corner].data() + k);
-        lo = hn::Min(lo, p);
-        hi = hn::Max(hi, p);
-      }
-    if (!hn::AllTrue(d, hn::And(hn::Le(hn::LoadU(d, box + k), lo), hn::Le(hi, hn::LoadU(d, box + 4 + k)))))
-      return false;
+  for (size_t leaf = 0; leaf < count; ++leaf) {
+    const tree::AabbTree::Node& node = nodes[leaves[leaf]];
+    const auto& [least, most] = node.box;
+    const double box[] = {least[0], least[1], least[2], 0, most[0], most[1], most[2], 0};
+    const Triangle* const begin = corners + node.first;
+    for (size_t k = 0; k < 4; k += hn::Lanes(d)) {
+      auto lo = hn::Set(d, std::numeric_limits<double>::infinity()), hi = hn::Neg(lo);
+      for (size_t i = 0; i < node.count; ++i)
+        for (const std::uint32_t corner : begin[i]) {
+          const auto p = hn::LoadU(d, placed[corner].data() + k);
+          lo = hn::Min(lo, p);
+          hi = hn::Max(hi, p);
+        }
+      if (!hn::AllTrue(d, hn::And(hn::Le(hn::LoadU(d, box + k), lo), hn::Le(hi, hn::LoadU(d, box + 4 + k)))))
+        return false;
+    }
   }
   return true;
 }
@@ -93,7 +151,9 @@ HWY_EXPORT(AreLimited);
 HWY_EXPORT(AreFloatsWithin);
 HWY_EXPORT(AreDoublesWithin);
 HWY_EXPORT(HaveLimits);
-HWY_EXPORT(Contains);
+HWY_EXPORT(AreBelow);
+HWY_EXPORT(ArePlaced);
+HWY_EXPORT(Contain);
 
 namespace {
 
@@ -140,14 +200,36 @@ bool have_limits(std::span<const VertexRegion> vertices) {
   return are_limited(vertices, kVertexLimits);
 }
 
-bool have_limits(const FaceBounds& bounds, std::uint32_t count, float largest_radius) {
-  return HWY_DYNAMIC_DISPATCH(HaveLimits)(bounds, count, largest_radius);
+bool have_limits(std::span<const tree::AabbTree::Node> nodes, std::span<const std::uint32_t> leaves,
+                 std::span<const FaceBounds> bounds, float largest_radius) {
+  return HWY_DYNAMIC_DISPATCH(HaveLimits)(nodes.data(), leaves.data(), leaves.size(), bounds.data(),
+                                          largest_radius);
 }
 
-bool contains(const tree::FloatBox& box, std::span<const Triangle> triangles,
-              std::span<const PaddedPoint> points) {
-  const double padded[] = {box.lo[0], box.lo[1], box.lo[2], 0, box.hi[0], box.hi[1], box.hi[2], 0};
-  return HWY_DYNAMIC_DISPATCH(Contains)(padded, triangles.data(), triangles.size(), points.data());
+bool are_below(std::span<const std::uint32_t> indices, std::size_t count) {
+  if (count == 0) return indices.empty();
+  const auto most = static_cast<std::uint32_t>(count - 1);
+  return HWY_DYNAMIC_DISPATCH(AreBelow)(indices.data(), indices.size(), {most, most, most, most, most, most});
+}
+
+bool are_below(std::span<const SitePlaces::Edge> edges, std::size_t points, std::size_t faces) {
+  if (points == 0 || faces == 0) return edges.empty();
+  const auto point = static_cast<std::uint32_t>(points - 1), face = static_cast<std::uint32_t>(faces - 1);
+  static_assert(sizeof(SitePlaces::Edge) == 6 * sizeof(std::uint32_t));
+  return HWY_DYNAMIC_DISPATCH(AreBelow)(reinterpret_cast<const std::uint32_t*>(edges.data()),
+                                        6 * edges.size(), {point, point, point, point, face, face});
+}
+
+bool are_placed(const UnitFrame& frame, std::span<const Vec3> positions, std::span<const UnitVertex> points,
+                std::span<const VertexRegion> regions, std::span<PaddedPoint> placed) {
+  return HWY_DYNAMIC_DISPATCH(ArePlaced)(frame, positions.data(), points.data(), regions.data(),
+                                         points.size(), placed.data());
+}
+
+bool contain(std::span<const tree::AabbTree::Node> nodes, std::span<const std::uint32_t> leaves,
+             std::span<const Triangle> corners, std::span<const PaddedPoint> placed) {
+  return HWY_DYNAMIC_DISPATCH(Contain)(nodes.data(), leaves.data(), leaves.size(), corners.data(),
+                                       placed.data());
 }
 
 }  // namespace sdm::sites

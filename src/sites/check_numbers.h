@@ -22,13 +22,25 @@ inline constexpr float kUnitReach = 8;
 [[nodiscard]] bool have_limits(std::span<const FaceRegion> faces);
 [[nodiscard]] bool have_limits(std::span<const EdgeRegion> edges);
 [[nodiscard]] bool have_limits(std::span<const VertexRegion> vertices);
-/// Of the first `count` faces: the other lanes hold what the vertices at 0 give.
-[[nodiscard]] bool have_limits(const FaceBounds& bounds, std::uint32_t count, float largest_radius);
+/// Of the faces of leaves, which are nodes: the other lanes hold what the vertices at 0 give.
+[[nodiscard]] bool have_limits(std::span<const tree::AabbTree::Node> nodes,
+                               std::span<const std::uint32_t> leaves, std::span<const FaceBounds> bounds,
+                               float largest_radius);
+
+/// Whether all indices are less than the count.
+[[nodiscard]] bool are_below(std::span<const std::uint32_t> indices, std::size_t count);
+/// Whether those of corners are less than `points`, and those of faces less than `faces`.
+[[nodiscard]] bool are_below(std::span<const SitePlaces::Edge> edges, std::size_t points, std::size_t faces);
 
 /// A point in the unit frame, and 0: two vectors of two numbers, or one of four.
 using PaddedPoint = std::array<double, 4>;
-/// Whether the box contains the corners of the triangles.
-[[nodiscard]] bool contains(const tree::FloatBox& box, std::span<const Triangle> triangles,
-                            std::span<const PaddedPoint> points);
+/// Whether points, and those of regions, are those of the mesh, to the bit. Sets `placed` to them. Their
+/// vertices must be valid.
+[[nodiscard]] bool are_placed(const UnitFrame& frame, std::span<const Vec3> positions,
+                              std::span<const UnitVertex> points, std::span<const VertexRegion> regions,
+                              std::span<PaddedPoint> placed);
+/// Whether the boxes of leaves contain the corners of their faces.
+[[nodiscard]] bool contain(std::span<const tree::AabbTree::Node> nodes, std::span<const std::uint32_t> leaves,
+                           std::span<const Triangle> corners, std::span<const PaddedPoint> placed);
 
 }  // namespace sdm::sites

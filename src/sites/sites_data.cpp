@@ -28,10 +28,9 @@ std::vector<std::uint32_t> faces_with_sites(const mesh::Topology& topology) {
 }  // namespace
 
 SitesData::SitesData(Mesh given) {
-  validate(given);
+  frame = UnitFrame::of(mesh::validated_bounds(given));
   mesh = std::move(given);
   const std::vector<Triangle>& triangles = mesh.triangles;
-  frame = UnitFrame::of(bounds(mesh));
   topology = mesh::build_topology(mesh.positions.size(), triangles);
   parallel_invoke(
       [&] {
@@ -52,14 +51,12 @@ SitesData::SitesData(Mesh given) {
 // The frame, the shells and whether the mesh is closed take less time to find than to load and check.
 SitesData::SitesData(ArrayReader& stored, bool trusted) {
   stored(*this);
-  if (!trusted) validate(mesh);
-  frame = UnitFrame::of(bounds(mesh));
+  frame = UnitFrame::of(trusted ? bounds(mesh) : mesh::validated_bounds(mesh));
   if (!trusted && !is_valid()) stored.fail();
   find_shells();
 }
 
 bool SitesData::is_valid() const {
-  const auto one_or_none = [](std::uint8_t flag) { return flag <= 1; };
   bool valid_topology = false, valid_trees = false;
   parallel_invoke(
       [&] {
@@ -70,7 +67,7 @@ bool SitesData::is_valid() const {
         valid_trees =
             !tree.items.empty() && tree::is_tree(tree, kLeafFaces, kUnitReach) && tree::is_tree(wide, tree);
       });
-  return valid_topology && valid_trees && sites::match(*this) && std::ranges::all_of(inverted, one_or_none);
+  return valid_topology && valid_trees && sites::match(*this) && mesh::are_flags(inverted);
 }
 
 void SitesData::find_orientation() {

@@ -1,6 +1,7 @@
 #include "tree/check_tree.h"
 
 #include <array>
+#include <cstring>
 #include <vector>
 
 #include "tree/fold.h"
@@ -8,48 +9,101 @@
 namespace sdm::tree {
 namespace {
 
-// The leaves below the nodes of a binary tree.
-class LeafRanges {
- public:
-  explicit LeafRanges(const AabbTree& tree) : order_(tree), end_(tree.nodes.size()) {
-    for_each_bottom_up(
-        tree, [&](std::uint32_t leaf) { end_[leaf] = leaf + 1; },
-        [&](std::uint32_t node, std::uint32_t, std::uint32_t right) { end_[node] = end_[right]; });
-  }
-  [[nodiscard]] std::uint32_t first(std::uint32_t node) const { return order_.before[node]; }
-  [[nodiscard]] std::uint32_t last(std::uint32_t node) const { return order_.before[end_[node]]; }
+// The leaves below a node of a binary tree.
+struct LeafRange {
+  std::uint32_t first = 0, last = 0;
 
- private:
-  LeafOrder order_;
-  std::vector<std::uint32_t> end_;  // of each subtree
+  [[nodiscard]] std::uint32_t count() const { return last - first; }
+  [[nodiscard]] bool contains(const LeafRange& other) const {
+    return first <= other.first && other.last <= last;
+  }
 };
 
-// Whether a child of a node, which stands for `whole`, stands for a node below that; `stands_for` has that
-// node for each wide node that is a child of an earlier one.
-bool is_child(const AabbTree& tree, const LeafRanges& leaves, const WideTree::Node& node, std::uint32_t i,
-              std::uint32_t whole, std::span<std::uint32_t> stands_for) {
-  const std::uint32_t source = node.source[i], child = node.child[i];
-  if (source >= tree.nodes.size()) return false;
-  const bool leaf = tree.nodes[source].leaf();
-  if (leaf != WideTree::is_leaf(child) || leaf != ((node.leaves >> i & 1) != 0)) return false;
-  if (leaves.first(source) < leaves.first(whole) || leaves.last(source) > leaves.last(whole)) return false;
-  if (leaf) return WideTree::leaf_number(child) == leaves.first(source);
-  if (child >= stands_for.size() || stands_for[child] != kNone) return false;
-  stands_for[child] = source;
-  return true;
+std::vector<LeafRange> leaf_ranges(const AabbTree& tree) {
+  const std::span<const AabbTree::Node> nodes(tree.nodes);
+  std::vector<LeafRange> ranges(nodes.size());
+  std::uint32_t leaves = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    ranges[i].first = leaves;
+    leaves += nodes[i].leaf() ? 1 : 0;
+  }
+  for (std::size_t i = nodes.size(); i-- > 0;)
+    ranges[i].last = nodes[i].leaf() ? ranges[i].first + 1 : ranges[nodes[i].right].last;
+  return ranges;
 }
 
-// Whether children, which are below the node, have no leaf in common, but together all of its leaves.
-bool divide(const LeafRanges& leaves, const WideTree::Node& node, std::uint32_t whole) {
-  std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < node.count; ++i) {
-    const std::uint32_t first = leaves.first(node.source[i]), last = leaves.last(node.source[i]);
-    count += last - first;
-    for (std::uint32_t j = 0; j < i; ++j)
-      if (first < leaves.last(node.source[j]) && leaves.first(node.source[j]) < last) return false;
+// Whether the children of wide nodes stand for nodes of a binary tree and divide the leaves below these. Each
+// wide node, and each leaf, is a child once, and the children of a node have as many leaves as it has: so the
+// leaves below a child are those of the node that it stands for, and children have none in common. Those that
+// are inner nodes have fewer than their parent, so that the wide tree is not deeper than the binary one.
+class WideTreeCheck {
+ public:
+  WideTreeCheck(const WideTree& wide, const AabbTree& tree)
+      : wide_(wide.nodes),
+        nodes_(tree.nodes),
+        leaves_(leaf_ranges(tree)),
+        whole_(wide_.size()),
+        is_child_(leaves_[0].last) {
+    whole_[0] = leaves_[0];
   }
-  return count == leaves.last(whole) - leaves.first(whole);
-}
+
+  bool run() {
+    for (std::size_t n = 0; n < wide_.size(); ++n)
+      if (!is_node(wide_[n], whole_[n])) return false;
+    return true;
+  }
+
+ private:
+  // `whole` is empty unless the node is a child of an earlier one.
+  bool is_node(const WideTree::Node& node, LeafRange whole) {
+    if (whole.count() == 0 || node.count == 0 || node.count > WideTree::kWidth) return false;
+    std::uint32_t count = 0, is_leaf = 0;
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      const std::uint32_t source = node.source[i], child = node.child[i];
+      if (source >= nodes_.size()) return false;
+      const LeafRange below = leaves_[source];
+      if (!whole.contains(below) || !is_first(child, below, whole.count())) return false;
+      count += below.count();
+      is_leaf |= (WideTree::is_leaf(child) ? 1u : 0u) << i;
+    }
+    for (std::uint32_t i = node.count; i < WideTree::kWidth; ++i)
+      if (node.child[i] != 0 || node.source[i] != 0) return false;
+    return count == whole.count() && node.leaves == is_leaf && has_boxes(node);
+  }
+
+  // Whether a child that stands for a node with these leaves, of so many, is a leaf, or not, as that node is,
+  // and no child of another node. Inner nodes have at least two leaves.
+  bool is_first(std::uint32_t child, LeafRange below, std::uint32_t of) {
+    if (WideTree::is_leaf(child)) {
+      if (below.count() != 1 || WideTree::leaf_number(child) != below.first) return false;
+      return is_child_[below.first]++ == 0;
+    }
+    if (below.count() == 1 || below.count() == of) return false;
+    if (child >= whole_.size() || whole_[child].count() != 0) return false;
+    whole_[child] = below;
+    return true;
+  }
+
+  // Whether a node has the boxes of the nodes that its children stand for, and 0 in lanes without a child.
+  [[nodiscard]] bool has_boxes(const WideTree::Node& node) const {
+    WideTree::Node expected;
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      const FloatBox& box = nodes_[node.source[i]].box;
+      for (int k = 0; k < 3; ++k) {
+        expected.lo[k][i] = box.lo[k];
+        expected.hi[k][i] = box.hi[k];
+      }
+    }
+    return std::memcmp(expected.lo, node.lo, sizeof node.lo) == 0 &&
+           std::memcmp(expected.hi, node.hi, sizeof node.hi) == 0;
+  }
+
+  const std::span<const WideTree::Node> wide_;
+  const std::span<const AabbTree::Node> nodes_;
+  const std::vector<LeafRange> leaves_;  // of each binary node
+  std::vector<LeafRange> whole_;         // of each wide node
+  std::vector<std::uint8_t> is_child_;   // of each leaf
+};
 
 // False for NaN.
 bool is_inside(const FloatBox& box, const FloatBox& outer) {
@@ -61,33 +115,20 @@ bool is_inside(const FloatBox& box, const FloatBox& outer) {
   return inside;
 }
 
-// Whether a node has the boxes of the children that its own stand for, and 0 in lanes without a child.
-bool has_boxes(const WideTree::Node& node, const AabbTree& tree) {
-  bool same = true;
-  for (std::uint32_t i = 0; i < WideTree::kWidth; ++i) {
-    const FloatBox box = i < node.count ? tree.box(node.source[i]) : FloatBox{};
-    for (int k = 0; k < 3; ++k) {
-      same &= node.lo[k][i] == box.lo[k];
-      same &= node.hi[k][i] == box.hi[k];
-    }
-  }
-  return same;
-}
-
 }  // namespace
 
 bool is_tree(const AabbTree& tree, std::uint32_t leaf_size, float reach) {
+  const std::span<const AabbTree::Node> nodes(tree.nodes);
   const FloatBox most{{-reach, -reach, -reach}, {reach, reach, reach}};
   std::array<std::uint32_t, kDeepest> right;  // children of the nodes above whose left subtree is not over
   std::size_t open = 0, items = 0;
-  const std::size_t count = tree.nodes.size();
+  const std::size_t count = nodes.size();
+  if (count > 0 && !is_inside(nodes[0].box, most)) return false;
   for (std::size_t i = 0; i < count; ++i) {
-    const AabbTree::Node& node = tree.nodes[i];
-    if (!is_inside(node.box, most)) return false;
+    const AabbTree::Node& node = nodes[i];
     if (!node.leaf()) {
       if (open == right.size() || node.right <= i + 1 || node.right >= count) return false;
-      if (!is_inside(tree.nodes[i + 1].box, node.box) || !is_inside(tree.box(node.right), node.box))
-        return false;
+      if (!is_inside(nodes[i + 1].box, node.box) || !is_inside(nodes[node.right].box, node.box)) return false;
       right[open++] = node.right;
       continue;
     }
@@ -100,21 +141,7 @@ bool is_tree(const AabbTree& tree, std::uint32_t leaf_size, float reach) {
 
 bool is_tree(const WideTree& wide, const AabbTree& tree) {
   if (tree.nodes.empty() || wide.nodes.empty()) return tree.nodes.empty() && wide.nodes.empty();
-  const LeafRanges leaves(tree);
-  std::vector<std::uint32_t> stands_for(wide.nodes.size(), kNone);
-  stands_for[0] = 0;
-  for (std::size_t n = 0; n < wide.nodes.size(); ++n) {
-    const WideTree::Node& node = wide.nodes[n];
-    const std::uint32_t whole = stands_for[n];
-    if (whole == kNone || node.count == 0 || node.count > WideTree::kWidth || node.leaves >> node.count != 0)
-      return false;
-    for (std::uint32_t i = 0; i < node.count; ++i)
-      if (!is_child(tree, leaves, node, i, whole, stands_for)) return false;
-    for (std::uint32_t i = node.count; i < WideTree::kWidth; ++i)
-      if (node.child[i] != 0 || node.source[i] != 0) return false;
-    if (!divide(leaves, node, whole) || !has_boxes(node, tree)) return false;
-  }
-  return true;
+  return WideTreeCheck(wide, tree).run();
 }
 
 }  // namespace sdm::tree

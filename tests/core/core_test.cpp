@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/arrays/check_rows.h"
 #include "core/arrays/rows.h"
 #include "core/disjoint_sets.h"
 #include "core/lazy/once.h"
@@ -83,6 +84,36 @@ TEST(CompressedRows, KeepTheOrderWithinARow) {
   check(make_rows<int>(100, visit));
   check(make_rows<int, std::size_t>(100, visit));
   EXPECT_EQ(make_rows<int>(0, [](const auto&) {}).size(), 0u);
+}
+
+TEST(RowCheck, AcceptsNothingButTheRowsOfTheItems) {
+  const std::vector<std::uint32_t> row_of{2, 0, 2, 3, 0, 2};  // row 1 is empty
+  const auto visit = [&](const auto& put) {
+    for (std::uint32_t i = 0; i < row_of.size(); ++i) put(row_of[i], 10 + i);
+  };
+  const auto same = [&](const CompressedRows<std::uint32_t>& rows) {
+    RowCheck check(rows);
+    for (std::uint32_t i = 0; i < row_of.size(); ++i)
+      if (!check.put(row_of[i], 10 + i)) return false;
+    return check.complete();
+  };
+  const auto rows = make_rows<std::uint32_t>(4, visit);
+  EXPECT_TRUE(same(rows));
+  const auto with = [&](auto member, std::size_t i, std::uint32_t value) {
+    auto changed = rows;
+    (changed.*member)[i] = value;
+    return changed;
+  };
+  using Rows = CompressedRows<std::uint32_t>;
+  for (const std::uint32_t value : {0u, 1u, 3u, 6u, 12u, 0x80000000u, ~0u}) {
+    for (std::size_t i = 0; i < rows.offsets.size(); ++i)
+      EXPECT_EQ(same(with(&Rows::offsets, i, value)), rows.offsets[i] == value) << i << ' ' << value;
+    for (std::size_t i = 0; i < rows.items.size(); ++i)
+      EXPECT_EQ(same(with(&Rows::items, i, value)), rows.items[i] == value) << i << ' ' << value;
+  }
+  auto longer = rows;
+  longer.items.push_back(0);
+  EXPECT_FALSE(same(longer));
 }
 
 // The groups as their smallest members, by all pairs of boxes.

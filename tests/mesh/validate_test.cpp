@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "mesh/validate.h"
 #include "support/shapes.h"
 
 namespace sdm {
@@ -73,6 +74,19 @@ TEST(Bounds, EncloseExactlyTheUsedVertices) {
   EXPECT_EQ(bounds(mesh).lo, (Vec3{0, 0, 0}));
   EXPECT_EQ(bounds(mesh).hi, (Vec3{1, 1, 1}));
   EXPECT_GT(bounds({}).lo[0], bounds({}).hi[0]);
+}
+
+TEST(Bounds, AreFoundByValidationToo) {
+  Mesh mesh = test::torus(9, 7);
+  mesh.corner_uvs.clear();
+  mesh.positions.insert(mesh.positions.end(), {{100, 100, 100}, {-100, -100, -100}, {3, -4, 5}});
+  const auto last = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  mesh.triangles.insert(mesh.triangles.end(), {{last - 1, last - 1, last - 1}, {0, 0, last}});
+  const Box box = mesh::validated_bounds(mesh);
+  EXPECT_EQ(box.lo, bounds(mesh).lo);
+  EXPECT_EQ(box.hi, bounds(mesh).hi);
+  EXPECT_EQ(box.hi[2], 5);
+  EXPECT_LT(box.hi[0], 100);
 }
 
 }  // namespace
