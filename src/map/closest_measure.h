@@ -14,6 +14,12 @@
 
 namespace sdm::map {
 
+/// Returns the engine of the options. Throws sdm::Error for options out of their ranges.
+[[nodiscard]] inline std::shared_ptr<const Engine> engine_of(const MapOptions& options) {
+  check_options(options);
+  return options.engine ? options.engine : make_engine(engines().front().name);
+}
+
 class ClosestMeasure {
  public:
   /// All must outlive this. Throws sdm::Error for options that do not apply.

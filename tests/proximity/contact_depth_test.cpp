@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/boxes/sweep.h"
+#include "geometry/boxes.h"
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 #include "support/oracle.h"
