@@ -382,13 +382,12 @@ std::vector<Case> cases() {
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) {
-  using namespace sdm::bench;
-  return run_program(argc, argv,
-                     {.name = "bodies",
-                      .description = "Proximity of many deforming bodies against FCL on one thread",
-                      .repetition = "frames",
-                      .cases = cases()});
+Program program() {
+  return {.name = "bodies",
+          .description = "Proximity of many deforming bodies against FCL on one thread",
+          .repetition = "frames",
+          .cases = cases()};
 }
+
+}  // namespace sdm::bench

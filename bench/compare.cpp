@@ -246,13 +246,12 @@ std::vector<Case> cases() {
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) {
-  using namespace sdm::bench;
-  return run_program(argc, argv,
-                     {.name = "compare",
-                      .description = "Maps of the cpu engine against Embree's closest-point queries",
-                      .repetition = "repetitions",
-                      .cases = cases()});
+Program program() {
+  return {.name = "compare",
+          .description = "Maps of the cpu engine against Embree's closest-point queries",
+          .repetition = "repetitions",
+          .cases = cases()};
 }
+
+}  // namespace sdm::bench

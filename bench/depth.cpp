@@ -38,8 +38,10 @@ double processor_ms(const std::function<void()>& work) {
   for (int turn = 0; turn < kTurns; ++turn) {
     const std::clock_t begin = std::clock();
     int runs = 0;
-    do work(), ++runs;
-    while (std::clock() - begin < CLOCKS_PER_SEC / 1000);
+    do {
+      work();
+      ++runs;
+    } while (std::clock() - begin < CLOCKS_PER_SEC / 1000);
     least = std::min(least, 1000.0 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / runs);
   }
   return least;
@@ -185,13 +187,12 @@ std::vector<Case> cases() {
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) {
-  using namespace sdm::bench;
-  return run_program(argc, argv,
-                     {.name = "depth",
-                      .description = "Penetration depth of thin-walled parts",
-                      .repetition = "poses",
-                      .cases = cases()});
+Program program() {
+  return {.name = "depth",
+          .description = "Penetration depth of thin-walled parts",
+          .repetition = "poses",
+          .cases = cases()};
 }
+
+}  // namespace sdm::bench

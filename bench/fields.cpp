@@ -24,7 +24,10 @@ namespace sdm::bench {
 namespace {
 
 Box enlarged(Box box, double by) {
-  for (int k = 0; k < 3; ++k) box.lo[k] -= by, box.hi[k] += by;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] -= by;
+    box.hi[k] += by;
+  }
   return box;
 }
 
@@ -131,14 +134,13 @@ std::vector<Case> cases() {
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) {
+Program program() {
   openvdb::initialize();
-  return sdm::bench::run_program(
-      argc, argv,
-      {.name = "fields",
-       .description = "Distance fields against OpenVDB and the methods of the literature",
-       .repetition = "computations",
-       .cases = sdm::bench::cases()});
+  return {.name = "fields",
+          .description = "Distance fields against OpenVDB and the methods of the literature",
+          .repetition = "computations",
+          .cases = cases()};
 }
+
+}  // namespace sdm::bench

@@ -84,7 +84,8 @@ Outcome measure(const Trial& trial, scenes::SceneKind kind) {
     Stopwatch watch;
     query.refit(positions[0], positions[1]);
     times.update.push_back(watch.lap());
-    (void)query.separation(), (void)query.penetration_depth();
+    (void)query.separation();
+    (void)query.penetration_depth();
     contacts += query.contacts().size();
     colliding += query.colliding();
     times.queries.push_back(watch.lap());
@@ -93,7 +94,8 @@ Outcome measure(const Trial& trial, scenes::SceneKind kind) {
     verified &= agree(query, maps);
   };
   frame(motion.frames.front());  // performs all allocations
-  times = {}, colliding = contacts = 0;
+  times = {};
+  colliding = contacts = 0;
   for (const auto& positions : motion.frames) frame(positions);
 
   const std::vector<double> answers = sum(times.update, times.queries);
@@ -120,14 +122,12 @@ std::vector<Case> cases() {
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) {
-  using namespace sdm::bench;
-  return run_program(
-      argc, argv,
-      {.name = "frames",
-       .description = "Frames of two deforming bodies: update, all queries, the maps of both directions",
-       .repetition = "frames",
-       .cases = cases()});
+Program program() {
+  return {.name = "frames",
+          .description = "Frames of two deforming bodies: update, all queries, the maps of both directions",
+          .repetition = "frames",
+          .cases = cases()};
 }
+
+}  // namespace sdm::bench

@@ -86,12 +86,16 @@ int run(int argc, char** argv, const Program& program) {
 }
 
 }  // namespace
-
-int run_program(int argc, char** argv, const Program& program) noexcept try {
-  return run(argc, argv, program);
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "%s: %s\n", program.name.c_str(), error.what());
-  return 1;
-}
-
 }  // namespace sdm::bench
+
+int main(int argc, char** argv) {
+  std::string name = argv[0];
+  try {
+    const sdm::bench::Program program = sdm::bench::program();
+    name = program.name;
+    return sdm::bench::run(argc, argv, program);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", name.c_str(), error.what());
+    return 1;
+  }
+}

@@ -51,12 +51,13 @@ struct Program {
   std::function<void(CLI::App&)> add_options{};  ///< for the program's own options
 };
 
-/// Parses the arguments --list, --filter REGEX, --repetitions N, --threads N and --json FILE, runs the
+/// What a benchmark program measures: the one function that it defines. main(), which all of them share,
+/// parses the arguments --list, --filter REGEX, --repetitions N, --threads N and --json FILE, runs the
 /// selected cases, and prints a Markdown table of their figures. The JSON file is written at the end:
 ///   {"program": ..., "machine": {"cpu": ..., "cores": ..., "compiler": ...},
 ///    "cases": {NAME: {"verified": ..., "repetitions": ..., "threads": ..., FIGURE: ..., ROW: {FIGURE:
 ///    ...}}}}
-/// Returns the exit status: 0; 1 if a result is wrong or something fails; 2 if the arguments are invalid.
-[[nodiscard]] int run_program(int argc, char** argv, const Program& program) noexcept;
+/// The exit status is 0; 1 if a result is wrong or something fails; 2 if the arguments are invalid.
+[[nodiscard]] Program program();
 
 }  // namespace sdm::bench

@@ -42,7 +42,8 @@ struct Subject {
   Subject() {
     const auto begin = std::chrono::steady_clock::now();
     mantis = std::make_unique<MantisMesh>(single_precision(mesh.positions), mesh.triangles);
-    build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    build_ms = std::chrono::duration < double;
+    std::milli > (std::chrono::steady_clock::now() - begin).count();
   }
 };
 
@@ -116,13 +117,12 @@ std::vector<Case> cases() {
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) {
-  using namespace sdm::bench;
-  return run_program(argc, argv,
-                     {.name = "mantis_points",
-                      .description = "Closest points of scattered points, against Mantis",
-                      .repetition = "repetitions",
-                      .cases = cases()});
+Program program() {
+  return {.name = "mantis_points",
+          .description = "Closest points of scattered points, against Mantis",
+          .repetition = "repetitions",
+          .cases = cases()};
 }
+
+}  // namespace sdm::bench

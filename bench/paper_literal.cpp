@@ -107,18 +107,16 @@ std::vector<Case> cases(const std::string& device) {
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) {
-  using namespace sdm::bench;
+Program program() {
   static std::string device;
-  return run_program(
-      argc, argv,
-      {.name = "paper_literal",
-       .description = "The paper's Algorithm 1 as it is printed, and the effect of each correction",
-       .repetition = "repetitions",
-       .cases = cases(device),
-       .add_options = [](CLI::App& app) {
-         app.add_option("--device", device, "A part of the name of the device that draws");
-       }});
+  return {.name = "paper_literal",
+          .description = "The paper's Algorithm 1 as it is printed, and the effect of each correction",
+          .repetition = "repetitions",
+          .cases = cases(device),
+          .add_options = [](CLI::App& app) {
+            app.add_option("--device", device, "A part of the name of the device that draws");
+          }};
 }
+
+}  // namespace sdm::bench

@@ -89,13 +89,12 @@ std::vector<Case> cases() {
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) {
-  using namespace sdm::bench;
-  return run_program(argc, argv,
-                     {.name = "part_maps",
-                      .description = "Maps of one part, beside one to another part",
-                      .repetition = "repetitions",
-                      .cases = cases()});
+Program program() {
+  return {.name = "part_maps",
+          .description = "Maps of one part, beside one to another part",
+          .repetition = "repetitions",
+          .cases = cases()};
 }
+
+}  // namespace sdm::bench

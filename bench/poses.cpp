@@ -10,7 +10,10 @@ Affine random_rotation(std::mt19937& random) {
   // A unit quaternion, uniform on the four-dimensional unit sphere.
   std::normal_distribution<double> normal;
   double q[4], squared = 0;
-  for (double& x : q) x = normal(random), squared += x * x;
+  for (double& x : q) {
+    x = normal(random);
+    squared += x * x;
+  }
   for (double& x : q) x /= std::sqrt(squared);
   const auto& [w, x, y, z] = q;
   return {{{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},

@@ -178,13 +178,12 @@ std::vector<Case> cases() {
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) {
-  using namespace sdm::bench;
-  return run_program(argc, argv,
-                     {.name = "proximity",
-                      .description = "Exact separation, collision and contacts against FCL",
-                      .repetition = "poses",
-                      .cases = cases()});
+Program program() {
+  return {.name = "proximity",
+          .description = "Exact separation, collision and contacts against FCL",
+          .repetition = "poses",
+          .cases = cases()};
 }
+
+}  // namespace sdm::bench

@@ -126,17 +126,16 @@ std::vector<Case> cases(const std::string& device) {
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) {
-  using namespace sdm::bench;
+Program program() {
   static std::string device;
-  return run_program(argc, argv,
-                     {.name = "raster_culling",
-                      .description = "The effect of culling by bounds in the gl engine",
-                      .repetition = "repetitions",
-                      .cases = cases(device),
-                      .add_options = [](CLI::App& app) {
-                        app.add_option("--device", device, "A part of the name of the device that draws");
-                      }});
+  return {.name = "raster_culling",
+          .description = "The effect of culling by bounds in the gl engine",
+          .repetition = "repetitions",
+          .cases = cases(device),
+          .add_options = [](CLI::App& app) {
+            app.add_option("--device", device, "A part of the name of the device that draws");
+          }};
 }
+
+}  // namespace sdm::bench

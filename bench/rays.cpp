@@ -152,7 +152,8 @@ Outcome measure(const Trial& trial, scenes::SceneKind kind, double max_distance)
     for (const auto& [what, ms] : spent) times[what].push_back(ms);
   };
   frame(false);  // performs all allocations
-  times.clear(), differing = samples = 0;
+  times.clear();
+  differing = samples = 0;
   for (int i = 0; i < trial.repetitions; ++i) {
     for (int step = 0; step < kFrameStep; ++step) scene.advance();
     frame(i % 2 != 0);
@@ -207,13 +208,12 @@ std::vector<Case> cases() {
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) {
-  using namespace sdm::bench;
-  return run_program(argc, argv,
-                     {.name = "rays",
-                      .description = "Ambient occlusion of deforming bodies against Embree's rays",
-                      .repetition = "frames",
-                      .cases = cases()});
+Program program() {
+  return {.name = "rays",
+          .description = "Ambient occlusion of deforming bodies against Embree's rays",
+          .repetition = "frames",
+          .cases = cases()};
 }
+
+}  // namespace sdm::bench

@@ -21,7 +21,7 @@ class Table {
   std::vector<std::string> keys_;  ///< of the latest heading
 };
 
-/// The JSON file written by run_program().
+/// The JSON file written by main().
 class JsonReport {
  public:
   /// If the file name is empty, writes nothing. Throws Error if the file cannot be written.

@@ -74,13 +74,12 @@ std::vector<Case> cases() {
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) {
-  using namespace sdm::bench;
-  return run_program(argc, argv,
-                     {.name = "scattered_points",
-                      .description = "Closest points of scattered points, against the reference engine",
-                      .repetition = "repetitions",
-                      .cases = cases()});
+Program program() {
+  return {.name = "scattered_points",
+          .description = "Closest points of scattered points, against the reference engine",
+          .repetition = "repetitions",
+          .cases = cases()};
 }
+
+}  // namespace sdm::bench

@@ -226,13 +226,12 @@ std::vector<Case> cases() {
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) {
-  using namespace sdm::bench;
-  return run_program(argc, argv,
-                     {.name = "signs",
-                      .description = "What signs cost beside closest points",
-                      .repetition = "repetitions",
-                      .cases = cases()});
+Program program() {
+  return {.name = "signs",
+          .description = "What signs cost beside closest points",
+          .repetition = "repetitions",
+          .cases = cases()};
 }
+
+}  // namespace sdm::bench

@@ -57,7 +57,9 @@ class UnionMesh {
     if (is_filled(beyond)) return;
     const auto corner = [&](int i, int j) {
       Cell c = cell;
-      c[k] += up, c[(k + 1) % 3] += i, c[(k + 2) % 3] += j;
+      c[k] += up;
+      c[(k + 1) % 3] += i;
+      c[(k + 2) % 3] += j;
       const auto [place, added] = numbers_.try_emplace(c, static_cast<std::uint32_t>(mesh_.positions.size()));
       if (added) mesh_.positions.push_back({at_[0][c[0]], at_[1][c[1]], at_[2][c[2]]});
       return place->second;

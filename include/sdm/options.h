@@ -195,7 +195,8 @@ template <class Struct, class Value>
                   .range = option.range,
                   .excludes = {option.excludes.begin(), option.excludes.end()}};
   if constexpr (std::is_same_v<Type, Vec3>) {
-    info.type = "direction", info.default_value.clear();
+    info.type = "direction";
+    info.default_value.clear();
   } else if constexpr (std::is_same_v<Type, bool>) {
     info.type = "flag";
   } else if constexpr (std::is_enum_v<Type>) {

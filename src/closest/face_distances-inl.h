@@ -12,7 +12,7 @@
 
 #include "closest/region_kernels-inl.h"
 #include "geometry/lanes/vec-inl.h"
-#include "sites/frames/face_frames.h"
+#include "sites/face_frames.h"
 #include "sites/sites_data.h"
 
 #ifndef SDM_FACE_DISTANCES_ONCE

@@ -8,7 +8,6 @@
 #include "closest/closest_points.h"
 #include "closest/single_point.h"
 #include "core/parallel.h"
-#include "geometry/morton_order.h"
 #include "geometry/spatial_order.h"
 #include "geometry/vec.h"
 

@@ -21,8 +21,10 @@ class BarycentricFrame {
   BarycentricFrame() = default;
   explicit BarycentricFrame(const Corners& corners) : corners_(corners) {
     for (std::size_t k = 0; k < 3; ++k)
-      if (const double length = squared_norm(corners[(k + 1) % 3] - corners[k]); length > longest_)
-        from_ = k, longest_ = length;
+      if (const double length = squared_norm(corners[(k + 1) % 3] - corners[k]); length > longest_) {
+        from_ = k;
+        longest_ = length;
+      }
     if (!(longest_ > kLeast)) return;
     per_longest_ = 1 / longest_;
     side_ = corners[to()] - corners[from_];

@@ -177,10 +177,12 @@ std::optional<LineHit> line_meets_triangle(const Vec3& origin, const Vec3& direc
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 &first = from[(k + 1) % 3], &second = from[(k + 2) % 3];
     const Determinant edge(direction, first, second);
-    if (edge.certain())
+    if (edge.certain()) {
       (edge.value > 0 ? left : right) = true;
-    else
-      certain = false, through[k] = Determinant::vanishes(direction, first, second);
+    } else {
+      certain = false;
+      through[k] = Determinant::vanishes(direction, first, second);
+    }
   }
   if (left && right) return std::nullopt;
   // Where meshes share a grid, lines from vertices of the one pass through those of the other.

@@ -40,10 +40,12 @@ struct ClosestFeature {
     const double along = dot(from[k], side[k]), length = squared_norm(side[k]);
     ClosestFeature found;
     if (along <= 0 || along >= length) {
-      found.feature = TriangleFeature::corner, found.index = along <= 0 ? k : (k + 1) % 3;
+      found.feature = TriangleFeature::corner;
+      found.index = along <= 0 ? k : (k + 1) % 3;
       found.point = corner[found.index];
     } else {
-      found.feature = TriangleFeature::side, found.index = k;
+      found.feature = TriangleFeature::side;
+      found.index = k;
       found.point = corner[k] + (along / length) * side[k];
     }
     found.squared = squared_norm(found.point - p);
@@ -112,7 +114,10 @@ struct TriangleSides : FewSides {
   Vec3 closest = t.on_side(0, p), foot;
   double least = squared_norm(closest - p);
   const auto offer = [&](const Vec3& point) {
-    if (const double squared = squared_norm(point - p); squared < least) closest = point, least = squared;
+    if (const double squared = squared_norm(point - p); squared < least) {
+      closest = point;
+      least = squared;
+    }
   };
   offer(t.on_side(1, p));
   offer(t.on_side(2, p));

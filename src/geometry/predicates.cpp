@@ -26,8 +26,11 @@ int certain_sign(const DoubleDouble& determinant, double magnitude) {
 // The sign of the determinant of the differences from a, in DoubleDouble; 0 if that is not certain.
 int by_doubled(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double magnitude) {
   std::array<DoubleDouble, 3> u, v, w;
-  for (int k = 0; k < 3; ++k)
-    u[k] = exact_sum(b[k], -a[k]), v[k] = exact_sum(c[k], -a[k]), w[k] = exact_sum(d[k], -a[k]);
+  for (int k = 0; k < 3; ++k) {
+    u[k] = exact_sum(b[k], -a[k]);
+    v[k] = exact_sum(c[k], -a[k]);
+    w[k] = exact_sum(d[k], -a[k]);
+  }
   const auto term = [&](int k, int i, int j) { return w[k] * (u[i] * v[j] - u[j] * v[i]); };
   return certain_sign(term(0, 1, 2) + term(1, 2, 0) + term(2, 0, 1), magnitude);
 }

@@ -22,7 +22,8 @@ class OrientedPlane {
     for (int k = 0; k < 3; ++k) {
       const int i = k < 2 ? k + 1 : 0, j = k > 0 ? k - 1 : 2;
       const double plus = u[i] * v[j], minus = u[j] * v[i];
-      normal_[k] = plus - minus, magnitude_[k] = std::abs(plus) + std::abs(minus);
+      normal_[k] = plus - minus;
+      magnitude_[k] = std::abs(plus) + std::abs(minus);
     }
   }
   [[nodiscard]] int side(const Vec3& d) const {

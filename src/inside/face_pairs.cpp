@@ -54,7 +54,8 @@ class Separation {
       sum[t] = add(corner_[t][0], add(corner_[t][1], corner_[t][2]));
     }
     tests(sub(sum[1], sum[0]));
-    tests(normal[0]), tests(normal[1]);
+    tests(normal[0]);
+    tests(normal[1]);
     for (int t = 0; t < 2; ++t) {
       if (hn::AllTrue(d, apart_)) return apart_;
       for (int j = 0; j < 3; ++j) tests(cross(edge[t][j], normal[t]));
@@ -73,7 +74,8 @@ class Separation {
     PairVec least[2], most[2];
     for (int t = 0; t < 2; ++t) {
       const auto x = dot(axis, corner_[t][0]), y = dot(axis, corner_[t][1]), z = dot(axis, corner_[t][2]);
-      least[t] = hn::Min(x, hn::Min(y, z)), most[t] = hn::Max(x, hn::Max(y, z));
+      least[t] = hn::Min(x, hn::Min(y, z));
+      most[t] = hn::Max(x, hn::Max(y, z));
     }
     const auto gap = hn::Max(hn::Sub(least[0], most[1]), hn::Sub(least[1], most[0]));
     const auto squared = dot(axis, axis);
@@ -110,8 +112,10 @@ void AppendOverlapping(const tree::AabbTree& tree, const FaceBoxes& boxes, std::
   const size_t begin_other = begin_of(other), end_other = begin_other + tree.items_of(other).size();
   for (size_t i = begin; i < end; i += hn::Lanes(d)) {
     PairVec lo[3], hi[3];
-    for (size_t k = 0; k < 3; ++k)
-      lo[k] = hn::LoadU(d, boxes.lo[k].data() + i), hi[k] = hn::LoadU(d, boxes.hi[k].data() + i);
+    for (size_t k = 0; k < 3; ++k) {
+      lo[k] = hn::LoadU(d, boxes.lo[k].data() + i);
+      hi[k] = hn::LoadU(d, boxes.hi[k].data() + i);
+    }
     const size_t left = end - i;
     for (size_t j = begin_other; j < end_other; ++j) {
       // Within a leaf those before j only.
@@ -149,7 +153,10 @@ void FaceBoxes::set(const sites::SitesData& sites, double margin) {
       for (const std::uint32_t v : sites.mesh.triangles[faces[i]])
         extend(exact, sites.frame.to_unit(sites.mesh.positions[v]));
       const auto box = tree::FloatBox::around(exact);
-      for (std::size_t k = 0; k < 3; ++k) lo[k][i] = box.lo[k] - by, hi[k][i] = box.hi[k] + by;
+      for (std::size_t k = 0; k < 3; ++k) {
+        lo[k][i] = box.lo[k] - by;
+        hi[k][i] = box.hi[k] + by;
+      }
     }
   });
 }

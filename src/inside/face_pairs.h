@@ -1,4 +1,4 @@
-// Pairs of faces, eight at a time: whose boxes overlap, and which are known to be apart.
+// Pairs of faces, eight at a time: whose boxes overlap, and which a plane separates.
 #pragma once
 
 #include <array>
@@ -40,7 +40,7 @@ class TrianglePairs {
   /// The others may be nearer.
   [[nodiscard]] std::uint32_t apart(double clearance) const;
 
-  // What is compared: corners relative to one of them, in units of the largest coordinate.
+  // Corners relative to one of them, in units of the largest coordinate.
   alignas(64) float at[2][3][3][kMost] = {};  ///< of a triangle, a corner, a coordinate
   alignas(64) float unit[kMost] = {};         ///< rounded up
 

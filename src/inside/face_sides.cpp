@@ -36,13 +36,14 @@ void FaceSides::renew() {
   offset_ = offset_beside_faces(*solid_);
   for (std::size_t f = 0; f < solid_->mesh.triangles.size(); ++f)
     sides_[f].store(Sides::unknown, std::memory_order_relaxed);
-  found_ = direct_ = walked_ = 0, known_ = false;
+  found_ = direct_ = walked_ = 0;
+  known_ = false;
 }
 
 Sides FaceSides::of_face(std::uint32_t face) const {
   Sides sides = sides_[face].load(std::memory_order_relaxed);
   if (sides != Sides::unknown) return sides;
-  // The others may be asked meanwhile, and are found one by one then.
+  // Faces that other threads ask for meanwhile are found one by one.
   if (found_.fetch_add(1, std::memory_order_relaxed) == kOneByOne + solid_->mesh.triangles.size() / 32)
     find_all();
   sides = sides_[face].load(std::memory_order_relaxed);
@@ -83,7 +84,7 @@ Sides FaceSides::find(std::uint32_t face) const {
   return sides != Sides::unknown ? sides : beside(face);
 }
 
-// The sides of a face that no other one meets.
+// The sides of a face that no other face meets.
 Sides FaceSides::beside(std::uint32_t face) const {
   const auto& [a, b, c] = solid_->mesh.triangles[face];
   const std::vector<Vec3>& p = solid_->mesh.positions;
@@ -109,7 +110,7 @@ void FaceSides::find_all() const {
       continue;
     }
     const Sides sides = beside(first);
-    // Those of all faces that are connected by edges over which the winding number passes.
+    // Flood fill: faces that are connected by edges across which the winding number is the same.
     waiting.assign(1, first);
     while (!waiting.empty()) {
       due();
@@ -127,7 +128,7 @@ void FaceSides::find_all() const {
   known_.store(true, std::memory_order_relaxed);
 }
 
-// No face comes between those of an edge if one of them is met by none.
+// The faces of an edge have the same winding number beside them if no face meets one of them.
 Sides FaceSides::known_to_neighbour(std::uint32_t face) const {
   for (const std::uint32_t edge : solid_->topology.face_edges[face])
     for (const std::uint32_t other : solid_->topology.edge_faces(edge)) {

@@ -10,12 +10,13 @@
 
 namespace sdm::inside {
 
-/// The sides of a piece of surface that lie inside the solid: those of a non-zero winding number.
+/// The sides of a piece of surface that lie inside the solid, those with a winding number other than 0: it is
+/// w on the outer side of the piece, and w + 1 on its inner side.
 enum class Sides : std::uint8_t {
   unknown,
-  boundary,  ///< the inner side, as of every face of a mesh that does not intersect itself
-  reversed,  ///< the outer side
-  buried,    ///< both
+  boundary,  ///< w = 0: the inner side, as of every face of a mesh that does not intersect itself
+  reversed,  ///< w = −1: the outer side
+  buried,    ///< any other w: both
   mixed      ///< not the same everywhere, because other faces intersect the piece or are too near
 };
 
@@ -23,7 +24,7 @@ enum class Sides : std::uint8_t {
 /// distance of other faces. 0 if no such length exists, in a mesh that is far from the origin.
 [[nodiscard]] double offset_beside_faces(const sites::SitesData& sites);
 
-/// Those of a face, by the winding number on its outer side: that of the inner side is larger by 1.
+/// The sides of a face, by the winding number w on its outer side.
 [[nodiscard]] inline Sides sides_by_winding(int outer) {
   return outer == 0 ? Sides::boundary : outer == -1 ? Sides::reversed : Sides::buried;
 }
@@ -41,13 +42,13 @@ class FaceSides {
 
   /// Cost: O(log n) for the first call, constant for others.
   [[nodiscard]] Sides of_face(std::uint32_t face) const;
-  /// Whether the winding number of a query beside this face is to be found without its sides. These take as
-  /// long as several winding numbers, and those of all faces as twice as many as there are faces: at that
-  /// many calls of this they are found. Answers do not depend on it.
+  /// Whether the winding number of a query beside this face is to be found without the sides of the face.
+  /// Sides cost as much as several winding numbers, and the sides of all faces as much as twice as many as
+  /// there are faces: they are found after so many calls of this. Answers do not depend on it.
   [[nodiscard]] bool direct(std::uint32_t face) const;
-  /// Whether the winding numbers of so many queries, which are near each other, are to be found from one to
-  /// the next, as far as that leads to them: until sides of all faces were found, or would have taken less
-  /// time, at four queries a face. Answers do not depend on it.
+  /// Whether the winding numbers of so many queries, which are near each other, are to be found one from the
+  /// other (WindingWalk), as far as that decides them: until the sides of all faces are known, or would have
+  /// cost less, after four queries a face. Answers do not depend on it.
   [[nodiscard]] bool walked(std::size_t queries) const;
   /// offset_beside_faces(); if 0, all sides are `mixed`.
   [[nodiscard]] double offset() const { return offset_; }

@@ -1,39 +1,153 @@
 #include "inside/inside.h"
 
+#include <sdm/types.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "geometry/vec.h"
-#include "inside/winding_walk.h"
+#include "inside/sign.h"
+#include "inside/solid.h"
+#include "rays/trace.h"
+#include "sites/sites_data.h"
 
 namespace sdm::inside {
 namespace {
 
-// Balls that the surface does not meet, each with an answer that holds for all of its points within `reach`
-// of the centre, and for those of balls that overlap it: the segment between the centres lies in both. That
-// of a solid holds for all.
-class Balls {
+/// Winding numbers of points of solids, one from another. Keeps the last points p with their numbers w(p),
+/// each with a clear ball around it, which no face meets. For a new point q,
+///   w(q) = w(p) + the signed crossings of the segment from q to p,
+/// with the p whose ball is nearest to that of q: 0 crossings if the balls overlap, otherwise those of the
+/// part between them. If the way out of the box is shorter, w(q) is the signed crossings of that.
+class WindingWalk {
  public:
-  // The answer for the centre of this ball of the shape with this number, if it overlaps one that is known.
+  /// Prepares for points that are near each other: nodes of the tree near all of them are searched once.
+  void approach(const ShapeSigns& signs, const sites::SitesData& solid, std::span<const Vec3> points);
+  /// The winding number of a point with a clear ball of radius `clear` > 0. With `by_balls`, empty unless
+  /// balls overlap, as long as this is rare.
+  [[nodiscard]] std::optional<int> winding(const ShapeSigns& signs, const sites::SitesData& solid,
+                                           const Vec3& point, double clear, bool by_balls);
+
+ private:
+  static constexpr std::size_t kKept = 16;
+
+  void start(std::uint64_t shape);
+  void keep(const Vec3& point, double clear, int number);
+
+  std::uint64_t shape_ = 0;
+  std::array<std::array<double, kKept>, 3> at_{};
+  std::array<double, kKept> clear_{};  ///< −∞ where none is kept
+  std::array<int, kKept> number_{};
+  std::size_t next_ = 0;
+  double overlapping_ = 1;  ///< the share of points whose balls overlap others, of the last ones
+  Box prepared_box_;
+  bool prepared_ = false;
+  rays::NearNodes prepared_nodes_;
+};
+
+double way_out(const Box& box, const Vec3& point) {
+  double way = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) way = std::min({way, point[k] - box.lo[k], box.hi[k] - point[k]});
+  return std::max(way, 0.0);
+}
+
+void WindingWalk::start(std::uint64_t shape) {
+  if (shape == shape_) return;
+  shape_ = shape;
+  prepared_ = false;
+  overlapping_ = 1;
+  clear_.fill(-std::numeric_limits<double>::infinity());
+}
+
+void WindingWalk::keep(const Vec3& point, double clear, int number) {
+  next_ = (next_ + 1) % kKept;
+  for (int k = 0; k < 3; ++k) at_[static_cast<std::size_t>(k)][next_] = point[k];
+  clear_[next_] = clear;
+  number_[next_] = number;
+}
+
+void WindingWalk::approach(const ShapeSigns& signs, const sites::SitesData& solid,
+                           std::span<const Vec3> points) {
+  start(signs.number);
+  prepared_ = false;  // also if this fails
+  prepared_box_ = {};
+  for (const Vec3& p : points) extend(prepared_box_, p);
+  // The point before is mostly near, too.
+  if (std::isfinite(clear_[next_])) extend(prepared_box_, Vec3{at_[0][next_], at_[1][next_], at_[2][next_]});
+  // More than the rounding of segments.
+  const Vec3 margin{1e-5, 1e-5, 1e-5};
+  rays::find_near_nodes(solid,
+                        tree::FloatBox::around({solid.frame.to_unit(prepared_box_.lo) - margin,
+                                                solid.frame.to_unit(prepared_box_.hi) + margin}),
+                        prepared_nodes_);
+  prepared_ = true;
+}
+
+std::optional<int> WindingWalk::winding(const ShapeSigns& signs, const sites::SitesData& solid,
+                                        const Vec3& point, double clear, bool by_balls) {
+  constexpr double kMostly = 0.4, kNew = 0.05;
+  start(signs.number);
+  std::array<double, kKept> gap;
+  for (std::size_t i = 0; i < kKept; ++i) {
+    const double x = at_[0][i] - point[0], y = at_[1][i] - point[1], z = at_[2][i] - point[2];
+    gap[i] = std::sqrt(x * x + y * y + z * z) - clear_[i];
+  }
+  const auto best = static_cast<std::size_t>(std::ranges::min_element(gap) - gap.begin());
+  const bool overlap = gap[best] < clear;
+  overlapping_ += kNew * ((overlap ? 1 : 0) - overlapping_);
+  if (by_balls && !overlap && overlapping_ < kMostly) return {};
+  std::optional<int> number;
+  if (overlap) {
+    number = number_[best];
+  } else if (gap[best] - clear < way_out(signs.box, point)) {
+    const Vec3 from{at_[0][best], at_[1][best], at_[2][best]};
+    const double length = norm(from - point);
+    const bool prepared =
+        prepared_ && sdm::contains(prepared_box_, from) && sdm::contains(prepared_box_, point);
+    // Only the part between the two balls can meet faces.
+    const auto turns = crossings(solid, {point, from, clear / length, 1 - clear_[best] / length},
+                                 prepared ? &prepared_nodes_ : nullptr);
+    if (turns) number = number_[best] + *turns;
+  }
+  const int found = number ? *number : inside::winding(solid, point);
+  keep(point, clear, found);
+  return found;
+}
+
+// Clear balls, which the surface does not meet, each with an answer that holds for its points within the safe
+// radius of its centre c, and for the centre q of a clear ball that overlaps it: the segment from c to q lies
+// in both, and so meets no face.
+//
+//   ( c ·····)(···· q )     |q − c| < min(r + r_q, safe radius), which is infinite for a solid
+class ClearBalls {
+ public:
+  // The answer for the centre of a clear ball, if it overlaps a known one of the shape with this number.
   [[nodiscard]] std::optional<bool> find(std::uint64_t shape, const Vec3& centre, double radius) const {
     if (shape != shape_) return {};
     for (const Ball& ball : balls_) {
-      const double touching = std::min(radius + ball.radius, ball.reach);
+      const double touching = std::min(radius + ball.radius, ball.safe_radius);
       if (squared_norm(centre - ball.centre) < touching * touching && ball.radius > 0) return ball.inside;
     }
     return {};
   }
   struct Ball {
     Vec3 centre{};
-    double radius = 0, reach = 0;
+    double radius = 0, safe_radius = 0;
     bool inside = false;
   };
   void add(std::uint64_t shape, const Ball& ball) {
-    if (shape != shape_) balls_ = {}, shape_ = shape;
+    if (shape != shape_) {
+      balls_ = {};
+      shape_ = shape;
+    }
     next_ = (next_ + 1) % balls_.size();
     balls_[next_] = ball;
   }
@@ -43,14 +157,17 @@ class Balls {
   std::size_t next_ = 0;
   std::array<Ball, 8> balls_{};
 };
-thread_local Balls balls;
+thread_local ClearBalls balls;
 
-// Whether something that may fail is tried on this thread: after a failure some trials are left out, twice as
-// many each time. Answers do not depend on it.
-class Trials {
+// Exponential back-off on this thread: after the n-th failure in a row, the next min(2ⁿ − 1, 15) trials are
+// left out. Answers do not depend on it.
+class ExponentialBackOff {
  public:
   [[nodiscard]] bool due(std::uint64_t shape) {
-    if (shape != shape_) *this = {}, shape_ = shape;
+    if (shape != shape_) {
+      *this = {};
+      shape_ = shape;
+    }
     if (to_skip_ == 0) return true;
     --to_skip_;
     return false;
@@ -65,7 +182,7 @@ class Trials {
   std::uint64_t shape_ = 0;
   std::uint32_t to_skip_ = 0, skipped_ = 0;
 };
-thread_local Trials packet_trials, ball_trials;
+thread_local ExponentialBackOff packet_trials, ball_trials;
 
 thread_local WindingWalk winding_walk;
 
@@ -73,7 +190,7 @@ thread_local WindingWalk winding_walk;
 // or whose sums have few faces.
 constexpr double kWidestOfSparse = 0.25;
 
-// The answer of a test of a solid: it holds wherever a ball that the surface does not meet leads.
+// The answer of a test of a solid, which holds as far as clear balls overlap.
 WindingNumber::Side of_solid(bool inside) {
   return {inside, std::numeric_limits<double>::infinity()};
 }
@@ -126,7 +243,7 @@ bool InsideTest::inside_ball(const Vec3& query, SiteType type, double distance, 
   if (!(radius > 0)) return test(0.0).above;
   if (const auto known = balls.find(signs_->number, query, radius)) return *known;
   const WindingNumber::Side side = test(radius);
-  balls.add(signs_->number, {query, radius, side.reach, side.above});
+  balls.add(signs_->number, {query, radius, side.safe_radius, side.above});
   return side.above;
 }
 
@@ -174,7 +291,7 @@ bool InsideTest::at_boundary(const Vec3& query, const ClosestPoint& closest) con
 }
 
 InsideTest::Beside InsideTest::beside(const Vec3& p) const {
-  // In no plane that faces are likely to lie in.
+  // A direction along which faces are unlikely to lie.
   constexpr Vec3 kAlong{0.7266, 0.5485, 0.4141};
   Vec3 beside;
   for (int corner = 0; corner < 8; ++corner) {
@@ -192,7 +309,7 @@ WindingNumber::Side InsideTest::above_half(const Vec3& query, const ClosestPoint
   const bool due = clear > 0 && ball_trials.due(signs_->number);
   const double radius = due ? kOfClear * clear : 0;
   const WindingNumber::Side side = winding_->above_half(query, closest, few, radius);
-  if (due) ball_trials.learn(side.reach >= radius);
+  if (due) ball_trials.learn(side.safe_radius >= radius);
   return side;
 }
 
@@ -217,8 +334,13 @@ std::uint32_t InsideTest::above_half(std::span<const Vec3> queries, const Closes
       inside |= (*known ? 1u : 0u) << i;
       continue;
     }
-    if (radius > largest) largest = radius, largest_place = count;
-    open_queries[count] = queries[i], open_closest[count] = at, place[count++] = static_cast<std::uint8_t>(i);
+    if (radius > largest) {
+      largest = radius;
+      largest_place = count;
+    }
+    open_queries[count] = queries[i];
+    open_closest[count] = at;
+    place[count++] = static_cast<std::uint8_t>(i);
   }
   if (count == 0) return inside;
   // The ball of the first one that is tested may answer for the others.

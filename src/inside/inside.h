@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "inside/shape_signs.h"
+#include "inside/sign.h"
 #include "inside/solid.h"
 #include "sites/closest_packet.h"
 #include "sites/sites_data.h"
@@ -17,11 +17,10 @@ namespace sdm::inside {
 
 /// Tests whether points lie inside O2, by one method, for many queries.
 ///
-/// For a solid: those with a winding number other than 0. No face lies between a query and its closest point,
-/// so the query is on that side of the closest face on which it lies as seen from there (the pseudonormal of
-/// the site says which, Bærentzen & Aanæs 2005), and FaceSides says whether that side is inside. Where other
-/// faces are too near, the winding number is computed. Queries that are nearer to the last one than that one
-/// is to the surface need none of this: no face lies between the two.
+/// For a solid: points with a winding number other than 0. No face lies between a query and its closest
+/// point, so the pseudonormal of the closest site tells the side of the closest face on which the query lies
+/// (Bærentzen & Aanæs 2005), and FaceSides whether that side is inside. Where other faces are too near, the
+/// winding number is computed. A query in the clear ball of another one, which no face meets, has its answer.
 class InsideTest {
  public:
   /// `method` as chosen by choose_sign; `none` makes every answer "outside". `error`: the closest points of
@@ -33,7 +32,7 @@ class InsideTest {
   /// `closest` is the closest point of the query. The generalised winding number does without one. On the
   /// surface: outside.
   [[nodiscard]] bool operator()(const Vec3& query, const ClosestPoint& closest) const;
-  /// The same answer. Faster for queries of which most are the only one at their closest face.
+  /// The answer of operator(), faster where most queries are the only one at their closest face.
   [[nodiscard]] bool of_few(const Vec3& query, const ClosestPoint& closest) const;
   /// A bit mask of the queries that are inside, of at most kPacket. With `few`, as of_few().
   [[nodiscard]] std::uint32_t operator()(std::span<const Vec3> queries, std::span<const ClosestPoint> closest,
@@ -60,10 +59,10 @@ class InsideTest {
   [[nodiscard]] bool inside_solid(const Vec3& query, const ClosestPoint& closest) const;
   /// The side of an open O2, as of SignMethod::side.
   [[nodiscard]] bool behind(const Vec3& query, const ClosestPoint& closest) const;
-  /// How far around a query the surface is known not to be; 0 if it is not known.
+  /// The radius of a clear ball around a query: the surface does not meet it. 0 if none is known.
   [[nodiscard]] double clear_radius(SiteType type, double distance) const;
-  /// Decides by known balls, or by test(clear radius), which returns a WindingNumber::Side and adds a ball.
-  /// `type` and `distance` are those of the closest point.
+  /// Decides by known clear balls, or by test(clear radius), which returns a WindingNumber::Side; adds a
+  /// ball. `type` and `distance` are those of the closest point.
   template <class Test>
   [[nodiscard]] bool inside_ball(const Vec3& query, SiteType type, double distance, const Test& test) const;
   [[nodiscard]] bool test(const Vec3& query, const ClosestPoint& closest, bool few) const;
@@ -82,7 +81,7 @@ class InsideTest {
   SignMethod method_;
   double error_;
   const ShapeSigns* signs_ = nullptr;  ///< none without a method
-  // What the method needs.
+  // Set as the method needs them:
   const FaceSides* sides_ = nullptr;
   const WindingNumber* winding_ = nullptr;
   const BoundarySites* boundary_ = nullptr;

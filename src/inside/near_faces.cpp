@@ -24,11 +24,11 @@ std::pair<double, double> extent(const std::array<Vec3, N>& points, const Vec3& 
   return range;
 }
 
-// Triangles that share a corner, as vectors from there to the others: whether both are at an angle of more
-// than kClearAngle from a plane through the corner between them, as faces that meet in the corner of a block,
-// of which neither the plane of a face nor one along two edges has both at an angle. With unit vectors, those
-// of b reversed, the normal of the plane that is farthest from all of them is the point closest to the origin
-// of their hull: in the middle of a side, or where the plane of a face is closest.
+// Triangles that share a corner, as vectors from there to the others: whether a plane through the corner lies
+// between both, at an angle of more than kClearAngle from each. Faces that meet in the corner of a block have
+// such a plane, though the plane of no face and none along two edges is one. With unit vectors, those of b
+// reversed, its best normal is the point of their convex hull that is closest to the origin: the middle of a
+// side, or the foot on the plane of three of them.
 bool apart_on_both_sides(const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b,
                          const std::array<double, 4>& length) {
   const std::array<Vec3, 4> w{(1 / length[0]) * a[0], (1 / length[1]) * a[1], (-1 / length[2]) * b[0],
@@ -76,8 +76,8 @@ bool apart_at_corner(const std::array<Vec3, 2>& a, const std::array<Vec3, 2>& b)
   return false;
 }
 
-// Triangles on both sides of the edge from p to q, with third corners c and d: whether they form an angle
-// larger than kClearAngle.
+// Triangles on both sides of the edge from p to q, with third corners c and d: whether their dihedral angle
+// is larger than kClearAngle.
 bool unfolded(const Vec3& p, const Vec3& q, const Vec3& c, const Vec3& d) {
   const Vec3 along = normalized(q - p);
   const auto inward = [&](const Vec3& corner) {
@@ -87,7 +87,7 @@ bool unfolded(const Vec3& p, const Vec3& q, const Vec3& c, const Vec3& d) {
   return norm(inward(c) - inward(d)) > kClearAngle;
 }
 
-// Neither face of an edge is turned over more than this, by their unit normals.
+// The product of the unit normals of the faces of an edge is larger unless they are nearly folded together.
 constexpr double kUnfolded = -0.99;
 
 bool surely_unfolded(const sites::SitesData& sites, std::uint32_t face, std::uint32_t other) {
@@ -103,10 +103,13 @@ bool clear_of(const sites::SitesData& sites, std::uint32_t face, std::uint32_t o
   bool taken[3] = {};
   for (int i = 0; i < 3; ++i) {
     const int j = a[i] == b[0] ? 0 : a[i] == b[1] ? 1 : a[i] == b[2] ? 2 : 3;
-    if (j == 3)
+    if (j == 3) {
       mine[own--] = i;
-    else
-      mine[shared] = i, theirs[shared++] = j, taken[j] = true;
+    } else {
+      mine[shared] = i;
+      theirs[shared++] = j;
+      taken[j] = true;
+    }
   }
   own = 2;
   for (int j = 0; j < 3; ++j)
@@ -132,13 +135,15 @@ Box box_of_face(const Mesh& mesh, std::uint32_t face) {
   const Triangle& t = mesh.triangles[face];
   const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
   Box box;
-  for (int k = 0; k < 3; ++k)
-    box.lo[k] = std::min(std::min(a[k], b[k]), c[k]), box.hi[k] = std::max(std::max(a[k], b[k]), c[k]);
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = std::min(std::min(a[k], b[k]), c[k]);
+    box.hi[k] = std::max(std::max(a[k], b[k]), c[k]);
+  }
   return box;
 }
 
-// Its box, enlarged by the clearance.
-Box reach_of_face(const sites::SitesData& sites, std::uint32_t face) {
+// The box of a face, enlarged by the clearance.
+Box enlarged_box(const sites::SitesData& sites, std::uint32_t face) {
   const double margin = kClearance / sites.frame.scale;
   const Box box = box_of_face(sites.mesh, face);
   return {box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}};
@@ -196,11 +201,14 @@ class NearPairs {
     append_overlapping(sites_, boxes_, leaf, leaf, pairs_);
     // More than the clearance, and than its rounding.
     constexpr float kMargin = 1.25F * static_cast<float>(kClearance);
-    tree::FloatBox reach = sites_.tree.box(leaf);
-    for (int k = 0; k < 3; ++k) reach.lo[k] -= kMargin, reach.hi[k] += kMargin;
-    // Not nodes that only have earlier leaves.
+    tree::FloatBox enlarged = sites_.tree.box(leaf);
+    for (int k = 0; k < 3; ++k) {
+      enlarged.lo[k] -= kMargin;
+      enlarged.hi[k] += kMargin;
+    }
+    // Nodes with earlier leaves only have been compared.
     const auto enter = [&](tree::Subtree below) {
-      return below.end > leaf + 1 && meet(sites_.tree.box(below.root), reach);
+      return below.end > leaf + 1 && meet(sites_.tree.box(below.root), enlarged);
     };
     const auto visit_leaf = [&](std::uint32_t other) {
       if (other > leaf) append_overlapping(sites_, boxes_, leaf, other, pairs_);
@@ -208,7 +216,7 @@ class NearPairs {
     visit(sites_.tree, tree::InOrder{enter, visit_leaf});
     for (const FacePair& pair : pairs_) compare(pair);
   }
-  /// Those that wait for others.
+  /// Compares the pairs that wait for a full set of lanes.
   void finish() {
     const std::uint32_t apart = triangles_.apart(kClearance);
     for (std::size_t i = 0; i < triangles_.size(); ++i)
@@ -222,7 +230,10 @@ class NearPairs {
     std::uint32_t corner = kNone;
     int shared = 0;
     for (const std::uint32_t v : a)
-      if (v == b[0] || v == b[1] || v == b[2]) corner = v, ++shared;
+      if (v == b[0] || v == b[1] || v == b[2]) {
+        corner = v;
+        ++shared;
+      }
     if (shared == 0) {
       waiting_[triangles_.size()] = pair;
       triangles_.add(unit_corners(sites_, pair[0]), unit_corners(sites_, pair[1]));
@@ -267,7 +278,10 @@ bool apart(const Corners& a, const Corners& b) {
         std::min({b[0][k], b[1][k], b[2][k]}) - std::max({a[0][k], a[1][k], a[2][k]}) > kClearance)
       return true;
   std::array<Vec3, 3> a_edge, b_edge;
-  for (int i = 0; i < 3; ++i) a_edge[i] = a[(i + 1) % 3] - a[i], b_edge[i] = b[(i + 1) % 3] - b[i];
+  for (int i = 0; i < 3; ++i) {
+    a_edge[i] = a[(i + 1) % 3] - a[i];
+    b_edge[i] = b[(i + 1) % 3] - b[i];
+  }
   const Vec3 a_normal = cross(a_edge[0], a_edge[1]), b_normal = cross(b_edge[0], b_edge[1]);
   if (separates(a_normal) || separates(b_normal)) return true;
   for (int i = 0; i < 3; ++i)
@@ -280,12 +294,13 @@ bool apart(const Corners& a, const Corners& b) {
 
 void find_near_faces(const sites::SitesData& sites, std::uint32_t face, std::vector<std::uint32_t>& near) {
   near.clear();
-  const Box reach = reach_of_face(sites, face);
-  const auto unit = tree::FloatBox::around({sites.frame.to_unit(reach.lo), sites.frame.to_unit(reach.hi)});
+  const Box enlarged = enlarged_box(sites, face);
+  const auto unit =
+      tree::FloatBox::around({sites.frame.to_unit(enlarged.lo), sites.frame.to_unit(enlarged.hi)});
   const auto enter = [&](tree::Subtree below) { return meet(sites.tree.box(below.root), unit); };
   const auto visit_leaf = [&](std::uint32_t leaf) {
     for (const std::uint32_t other : sites.tree.items_of(leaf))
-      if (other != face && overlap(reach, box_of_face(sites.mesh, other)) && !clear_of(sites, face, other))
+      if (other != face && overlap(enlarged, box_of_face(sites.mesh, other)) && !clear_of(sites, face, other))
         near.push_back(other);
   };
   visit(sites.tree, tree::InOrder{enter, visit_leaf});

@@ -1,9 +1,11 @@
-// The boundary of an open mesh, and the winding numbers beside its faces, where others close it.
+// Open meshes: their boundary, the faces that close them, and the winding numbers beside their faces.
 #pragma once
 
 #include <sdm/closest_points.h>
+#include <sdm/types.h>
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
@@ -11,8 +13,9 @@
 #include <span>
 #include <vector>
 
-#include "inside/angles/oriented_faces.h"
+#include "inside/angles/expansions.h"
 #include "mesh/topology.h"
+#include "sites/sites_data.h"
 
 namespace sdm::inside {
 
@@ -44,10 +47,10 @@ class OpenSides {
   /// Both must outlive this object and not change. No number is known if the mesh is not orientable.
   OpenSides(const sites::SitesData& sites, const OrientedFaces& closing);
 
-  /// The number around q; empty if it is not constant beside the closest site, if that lies on the boundary,
-  /// or if the site is no face and q is so near that rounding could decide. `direct(point)` finds a number
-  /// without this. With `few`, also empty for the first points at each face, whose number would cost more
-  /// than theirs.
+  /// The winding number around q; empty if it is not constant beside the closest site, if that lies on the
+  /// boundary, or if the site is no face and q is so near that rounding could decide. `direct(point)` finds a
+  /// number without this. With `few`, also empty for the first points at each face, whose number would cost
+  /// more than theirs.
   template <class Direct>
   [[nodiscard]] std::optional<int> operator()(const Vec3& q, const ClosestPoint& closest, bool few,
                                               const Direct& direct) const;
@@ -122,5 +125,13 @@ std::int8_t OpenSides::of_site(SiteType type, std::uint32_t site, const Direct& 
     if (first > kMost || of_face(face, direct) != first) return kMixed;
   return first > kMost || !is_fan(type, site) ? std::int8_t{kMixed} : first;
 }
+
+/// Triangles with the corners of the mesh that, together with its faces as they are oriented, form a closed
+/// surface: each edge is passed as often in one direction as in the other, where vertices at the same
+/// position are one. Their number is that of the boundary edges, counted by how often each is passed more in
+/// one direction, less at least one for each loop of them. None if they are more than `most`.
+/// Cost: O(n), plus O(b log b) for b boundary edges.
+[[nodiscard]] std::optional<std::vector<Triangle>> closing_faces(const sites::SitesData& sites,
+                                                                 std::size_t most);
 
 }  // namespace sdm::inside

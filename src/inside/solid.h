@@ -6,38 +6,41 @@
 #include <optional>
 
 #include "geometry/affine.h"
-#include "inside/angles/oriented_faces.h"
+#include "inside/angles/expansions.h"
 #include "rays/trace.h"
 #include "sites/sites_data.h"
 
 namespace sdm::inside {
 
-/// The winding number of a closed mesh moved by `pose`, with outward-oriented faces, around p, from the
-/// crossings of the segment to a point q outside the mesh. Empty if the segment intersects an edge. Exact if
-/// p does not lie on the surface. Cost: O(log n), plus linear in the faces that the segment meets.
+/// The winding number w(p) of a closed mesh moved by `pose`, with outward-oriented faces, from the crossings
+/// of the segment from p to a point q outside the mesh: w(p) = Σ ±1, + where it leaves through a face. Empty
+/// if the segment intersects an edge. Exact if p does not lie on the surface. Cost: O(log n), plus linear in
+/// the faces that the segment meets.
 [[nodiscard]] std::optional<int> winding(const sites::SitesData& sites, const Affine& pose, const Vec3& p,
                                          const Vec3& q);
 
-/// The sum of the signs with which the segment from p to q crosses faces moved by `pose`: 1 for each that it
-/// leaves through its outer side. Otherwise as the above, which it is for the faces of a closed mesh and a q
-/// outside.
+/// The signed crossings of the segment from p to q with faces moved by `pose`: Σ ±1, + where it leaves
+/// through the outer side of a face. Equal to w(p) − w(q) for the faces of a closed mesh. Empty, exact and of
+/// the same cost as winding().
 [[nodiscard]] std::optional<int> crossings(const OrientedFaces& faces, const Affine& pose, const Vec3& p,
                                            const Vec3& q);
-/// Those of the faces of sites, where they are. The same; faces are excluded eight at a time. Only the given
-/// part of the segment is searched. `near`: of a box in which that lies, or null.
+/// The signed crossings of a part of a segment with the faces of unmoved sites: exact, empty where the part
+/// meets an edge. Boxes of the wide tree are tested eight at a time. `near`: the nodes that meet a box which
+/// contains the part, or null.
 [[nodiscard]] std::optional<int> crossings(const sites::SitesData& sites, const rays::Segment& segment,
                                            const rays::NearNodes* near = nullptr);
 
-/// A segment from a point to a point outside the box of the tree, moved by `pose`, for which crossings(q) is
-/// set: its value. 0 if the point is outside the box; empty if none of the first `most` segments has one.
+/// The winding number around a point: crossings(q) of the first segment for which it is set, of at most
+/// `most` segments to points q outside the box of the tree, moved by `pose`. 0 if the point is outside the
+/// box; empty if there is no such segment.
 template <class Crossings>
 [[nodiscard]] std::optional<int> winding_by_segments(const FaceTree& faces, const Affine& pose,
                                                      const Vec3& point, int most, const Crossings& crossings);
 
 /// The winding number of a solid moved by `pose` around a point that does not lie on its surface: 0 outside.
-/// Exact; 0 for a point on an edge. Cost: usually one call of the above.
+/// Exact; 0 for a point on an edge. Cost: usually that of one segment.
 [[nodiscard]] int winding(const sites::SitesData& solid, const Affine& pose, const Vec3& point);
-/// The same for a solid where it is, in a fraction of the time.
+/// winding() of a solid that is not moved, in a fraction of the time.
 [[nodiscard]] int winding(const sites::SitesData& solid, const Vec3& point);
 
 /// Whether a solid moved by `pose` contains a point that does not lie on its surface: whether its winding
@@ -62,8 +65,16 @@ std::optional<int> winding_by_segments(const FaceTree& faces, const Affine& pose
   for (int k = 0; k < 3; ++k) {
     const double below = p[k] - box.lo[k], above = box.hi[k] - p[k];
     if (below < -kMargin || above < -kMargin) return 0;
-    if (below < way) way = below, axis = k, up = false;
-    if (above < way) way = above, axis = k, up = true;
+    if (below < way) {
+      way = below;
+      axis = k;
+      up = false;
+    }
+    if (above < way) {
+      way = above;
+      axis = k;
+      up = true;
+    }
   }
   const double length = (up ? 1 : -1) * (std::abs(way) + 0.01) / faces.frame.scale;
   // Segments along (1, t, t²) that intersect an edge are skipped. Those that meet the same edge lie in one
@@ -72,7 +83,9 @@ std::optional<int> winding_by_segments(const FaceTree& faces, const Affine& pose
   double t = 0.0137035999;
   for (int i = 0; i < most; ++i, t += 0.0072973525) {
     Vec3 along;
-    along[axis] = length, along[(axis + 1) % 3] = t * length, along[(axis + 2) % 3] = t * t * length;
+    along[axis] = length;
+    along[(axis + 1) % 3] = t * length;
+    along[(axis + 2) % 3] = t * t * length;
     if (const std::optional<int> turns = crossings(point + pose.linear(along))) return turns;
   }
   return {};

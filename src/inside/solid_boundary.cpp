@@ -48,7 +48,7 @@ bool finest(const Corners& t) {
          squared_norm(t[0] - t[2]) < kFinest * kFinest;
 }
 
-// Convex, in a plane.
+// A convex polygon in a plane.
 using Polygon = std::vector<Vec3>;
 
 Vec3 mean(const Polygon& polygon) {
@@ -57,7 +57,7 @@ Vec3 mean(const Polygon& polygon) {
   return (1.0 / static_cast<double>(polygon.size())) * sum;
 }
 
-// Twice the area by the longest side or diagonal from the first corner: at least its width.
+// An upper bound on the width: twice the area by the longest side or diagonal from the first corner.
 double width(const Polygon& polygon) {
   double area = 0, longest = 0;
   for (std::size_t i = 1; i < polygon.size(); ++i) {
@@ -76,7 +76,8 @@ Polygon cut(Polygon& polygon, const Plane& plane) {
   for (const Vec3& p : polygon) {
     const double h = plane.height(p);
     height.push_back(std::abs(h) <= kThinnest ? 0 : h);
-    least = std::min(least, height.back()), most = std::max(most, height.back());
+    least = std::min(least, height.back());
+    most = std::max(most, height.back());
   }
   if (least == 0 || most == 0) return {};
   const auto side = [&] {
@@ -114,8 +115,10 @@ void SolidBoundary::Piece::append_parts(std::vector<Piece>& parts) const {
   constexpr double kLong = 4;  // its longest side by its height
   std::array<Vec3, 3> middle;  // of each side
   std::array<double, 3> side;  // squared
-  for (int k = 0; k < 3; ++k)
-    middle[k] = 0.5 * (at[k] + at[(k + 1) % 3]), side[k] = squared_norm(at[(k + 1) % 3] - at[k]);
+  for (int k = 0; k < 3; ++k) {
+    middle[k] = 0.5 * (at[k] + at[(k + 1) % 3]);
+    side[k] = squared_norm(at[(k + 1) % 3] - at[k]);
+  }
   const auto k = static_cast<int>(std::ranges::max_element(side) - side.begin());
   if (side[k] > kLong * norm(cross(at[1] - at[0], at[2] - at[0]))) {
     const int next = (k + 1) % 3, last = (k + 2) % 3;
@@ -132,7 +135,8 @@ int SolidBoundary::Windings::of(const sites::SitesData& solid, const Vec3& point
   std::optional<int> turns;
   if (known_ && norm(point - last_) * solid.frame.scale < kNear)
     if ((turns = crossings(solid, rays::Segment{point, last_}))) *turns += number_;
-  known_ = true, last_ = point;
+  known_ = true;
+  last_ = point;
   return number_ = turns ? *turns : winding(solid, point);
 }
 
@@ -168,7 +172,7 @@ bool SolidBoundary::find_cuts(const Piece& piece, std::span<const std::uint32_t>
   bool covered = false;
   cuts.clear();
   const auto add = [&](const Plane& plane) {
-    // Those beside the piece, as of the far sides of faces that coincide with it, do not divide it.
+    // Planes beside the piece, such as those of the far sides of coincident faces, do not divide it.
     if (plane.cuts(piece.at) &&
         std::ranges::none_of(cuts, [&](const Plane& known) { return known.equals(plane); }))
       cuts.push_back(plane);
@@ -194,7 +198,8 @@ void SolidBoundary::divide(const Piece& piece, std::span<const std::uint32_t> ne
                            Division& division) const {
   poll();
   division.known = true;
-  division.pieces.clear(), division.near.clear();
+  division.pieces.clear();
+  division.near.clear();
   for (const std::uint32_t other : near)
     if (!apart(piece.at, unit_corners(solid_, other))) division.near.push_back(other);
   division.work = near.size() + division.near.size();
@@ -246,7 +251,7 @@ Sides SolidBoundary::sides_beside(const Vec3& point, std::uint32_t face, bool co
   const Vec3& outwards = solid_.normals.face[face];
   if (!covered && beside_ > 0)
     return sides_by_winding(windings.of(solid_, from_unit(point) + beside_ * outwards));
-  // So that several faces are crossed at once.
+  // At kBeside > kFlat, coincident faces are all crossed at once.
   const bool outer = windings.of(solid_, from_unit(point + kBeside * outwards)) != 0,
              inner = windings.of(solid_, from_unit(point - kBeside * outwards)) != 0;
   return outer == inner ? Sides::buried : inner ? Sides::boundary : Sides::reversed;
@@ -300,7 +305,8 @@ class SolidBoundary::ClosestSearch : public search::Policy {
     if (part.node != kNone) {
       const tree::AabbTree::Node& node = solid_.tree.nodes[part.node];
       if (!node.leaf()) {
-        put_node(part.node + 1), put_node(node.right);
+        put_node(part.node + 1);
+        put_node(node.right);
       } else {
         for (const std::uint32_t face : solid_.tree.items_of(part.node))
           if (boundary_.sides_[face] != Sides::buried && !solid_.sliver[face])
@@ -368,7 +374,8 @@ SolidBoundary::Closest SolidBoundary::closest(const Vec3& p) const {
   return {unit * found.lower, unit * found.upper, found.point, found.face};
 }
 
-// Of a run of faces, largest pieces first.
+// The volume by a run of faces, by the divergence theorem: V = Σ a·(b × c) / 6 over triangles abc of the
+// boundary. Largest pieces first.
 class SolidBoundary::VolumeSum {
  public:
   // Six times the volume, and what the parts that may or may not be boundary contribute.
@@ -424,7 +431,7 @@ class SolidBoundary::VolumeSum {
       unsure += std::abs(flux);
     }
   }
-  // What lies in an earlier face counts there, whatever its sides are.
+  // A piece that lies in an earlier face counts there, whatever its sides are.
   bool repeats_earlier_face(const Piece& piece, std::uint32_t within) {
     if (boundary_.sides_[piece.face] != Sides::mixed) return false;
     const std::span<const std::uint32_t> near = near_of(piece.face, within);
@@ -441,7 +448,7 @@ class SolidBoundary::VolumeSum {
 
 SolidBoundary::Volume SolidBoundary::volume() const {
   const Array<std::uint32_t>& faces = solid_.tree.items;
-  // In parts that do not depend on the number of threads.
+  // Partial sums that do not depend on the number of threads.
   struct Sum {
     double sure = 0, unsure = 0;
   };
@@ -455,7 +462,10 @@ SolidBoundary::Volume SolidBoundary::volume() const {
     }
   });
   Sum all;
-  for (const Sum& sum : sums) all.sure += sum.sure, all.unsure += sum.unsure;
+  for (const Sum& sum : sums) {
+    all.sure += sum.sure;
+    all.unsure += sum.unsure;
+  }
   const double unit = 1 / (6 * solid_.frame.scale * solid_.frame.scale * solid_.frame.scale);
   return {unit * std::max(0.0, all.sure - all.unsure), unit * (all.sure + all.unsure)};
 }

@@ -53,8 +53,7 @@ class SolidBoundary {
   struct Plane;
   class ClosestSearch;
   class VolumeSum;
-  /// The winding numbers of points, each from that of the last one where it is near. These do not lie on the
-  /// surface.
+  /// The winding numbers of points that do not lie on the surface, each from the last one where it is near.
   class Windings {
    public:
     [[nodiscard]] int of(const sites::SitesData& solid, const Vec3& point);
@@ -64,7 +63,8 @@ class SolidBoundary {
     Vec3 last_{};
     int number_ = 0;
   };
-  /// Into pieces that have the solid on one side, some that may have (`mixed`), and unknown ones.
+  /// The division of a piece, into pieces that have the solid on one side, some that may have (`mixed`), and
+  /// unknown ones.
   struct Division {
     bool known = false;
     std::vector<Piece> pieces;

@@ -11,7 +11,7 @@
 
 #include "core/cancellation.h"
 #include "geometry/affine.h"
-#include "inside/closing_faces.h"
+#include "inside/open_sides.h"
 #include "inside/solid.h"
 
 namespace sdm::inside {
@@ -87,11 +87,11 @@ WindingNumber::Side WindingNumber::above_half(const Vec3& q, std::optional<int> 
   if (closed) {
     const double limit = kSphere * (*closed - 0.5);
     const SolidAngles::Sum sum = closing_.angles->at(q, limit, 0);
-    if (certain(sum.angle, limit)) return {sum.angle.value < limit, sum.reach};
+    if (certain(sum.angle, limit)) return {sum.angle.value < limit, sum.safe_radius};
   }
   const double limit = 0.5 * kSphere;
   const SolidAngles::Sum sum = mesh_angles().at(q, limit, 0);
-  return {sum.angle.value > limit, certain(sum.angle, limit) ? sum.reach : 0};
+  return {sum.angle.value > limit, certain(sum.angle, limit) ? sum.safe_radius : 0};
 }
 
 WindingNumber::Side WindingNumber::above_half(const Vec3& q) const {
@@ -113,11 +113,14 @@ std::optional<WindingNumber::Side> WindingNumber::coarse_side(const Vec3& q, std
   if (!sums_many_faces() || (by_closing && !closed)) return {};
   const SolidAngles& angles = by_closing ? *closing_.angles : mesh_angles();
   const double limit = kSphere * (by_closing ? *closed - 0.5 : 0.5);
-  double reach = clear;
+  double safe_radius = clear;
   PacketSides side = clear > 0 ? side_of_ball(angles, q, clear, limit) : PacketSides{};
-  if (side.known == 0) side = sides_of_packet(angles, {&q, 1}, {&limit, 1}), reach = 0;
+  if (side.known == 0) {
+    side = sides_of_packet(angles, {&q, 1}, {&limit, 1});
+    safe_radius = 0;
+  }
   if (side.known == 0) return {};
-  return Side{(side.above != 0) != by_closing, reach};
+  return Side{(side.above != 0) != by_closing, safe_radius};
 }
 
 WindingNumber::Side WindingNumber::above_half(const Vec3& q, const ClosestPoint& closest, bool few,

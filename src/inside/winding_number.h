@@ -18,7 +18,7 @@ namespace sdm::inside {
 /// How many times the mesh winds around a point (Jacobson, Kavan & Sorkine 2013): 1 inside and 0 outside a
 /// closed mesh, in between around an open one.
 ///
-/// The faces of the mesh and those that close it (closing_faces.h) have a winding number that is an integer,
+/// The faces of the mesh and those that close it (open_sides.h) have a winding number that is an integer,
 /// and follows from the crossings of a segment, exactly. What remains is the solid angle of the closing
 /// faces: of few where boundaries are short, and of those near to the point at that. Where they would be more
 /// than half as many as the faces of the mesh, and where rounding leaves open on which side of them a point
@@ -35,21 +35,22 @@ class WindingNumber {
 
   struct Side {
     bool above = false;  ///< whether the winding number is above 1/2
-    /// Nearer to q than this, all points have the same answer that a straight line leads to without meeting
-    /// the mesh.
-    double reach = 0;
+    /// The answer holds for all points nearer to q than this, as far as a straight line leads to them without
+    /// meeting the mesh.
+    double safe_radius = 0;
   };
-  /// The side of 1/2 on which the number around q is; as above.
+  /// The side of 1/2 on which the winding number around q is.
   [[nodiscard]] Side above_half(const Vec3& q) const;
-  /// The same, faster where the number beside the closest site is known. `few`: most queries are the only one
-  /// at their closest face. `clear`: tries to decide all points nearer than this, where the mesh is not; the
-  /// reach is not less if that succeeds.
+  /// above_half(q), faster where the number beside the closest site is known. `few`: most queries are the
+  /// only one at their closest face. `clear`: no face is nearer; tries to decide all points nearer than this,
+  /// so that the safe radius is at least `clear`.
   [[nodiscard]] Side above_half(const Vec3& q, const ClosestPoint& closest, bool few, double clear = 0) const;
-  /// The same for points near to each other, at most kPacket, where one search of the tree decides it.
+  /// above_half() of points near each other, at most kPacket, as far as one search of the tree decides it.
   [[nodiscard]] PacketSides above_half(std::span<const Vec3> points, std::span<const ClosestPoint> closest,
                                        bool few) const;
 
-  /// Whether sums have many faces; those of few reach far, and need no packets where the mesh is not near.
+  /// Whether sums have many faces. With few, safe radii are large, and packets save nothing far from the
+  /// mesh.
   [[nodiscard]] bool sums_many_faces() const {
     constexpr std::size_t kMany = 2000;
     return !closing_.angles || closing_.triangles.size() >= kMany;
@@ -71,7 +72,7 @@ class WindingNumber {
   [[nodiscard]] std::optional<int> closed(const Vec3& q, const ClosestPoint& closest, bool few) const;
   /// Decides with the number of the closed surface.
   [[nodiscard]] Side above_half(const Vec3& q, std::optional<int> closed) const;
-  /// The same in single precision; empty where that does not decide it.
+  /// above_half() in single precision; empty where that does not decide it.
   [[nodiscard]] std::optional<Side> coarse_side(const Vec3& q, std::optional<int> closed, double clear) const;
   [[nodiscard]] const SolidAngles& mesh_angles() const;
 

@@ -1,6 +1,6 @@
 #include "map/closest_measure.h"
 
-#include "map/engine_of.h"
+#include <sdm/tolerance.h>
 
 namespace sdm::map {
 

@@ -89,7 +89,10 @@ class CoverageSearch {
     for (std::size_t f = 0; f < o2.triangles.size(); ++f) {
       const Corners at = corners_of(o2, f);
       const double area = area_of_piece(at);
-      if (area > 0) pieces_.push_back({at, area, static_cast<std::uint32_t>(f)}), total_ += area;
+      if (area > 0) {
+        pieces_.push_back({at, area, static_cast<std::uint32_t>(f)});
+        total_ += area;
+      }
     }
   }
 

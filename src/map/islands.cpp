@@ -39,7 +39,9 @@ WithoutIslands remove_islands(const Mesh& mesh, const IslandLimits& limits) try 
     if (components[f] == kNone) continue;
     sizes.resize(std::max<std::size_t>(sizes.size(), components[f] + std::size_t{1}));
     const double area = area_of(mesh, f);
-    ++sizes[components[f]].faces, sizes[components[f]].area += area, all += area;
+    ++sizes[components[f]].faces;
+    sizes[components[f]].area += area;
+    all += area;
   }
   const auto is_island = [&](const ComponentSize& size) {
     return size.faces < limits.faces || size.area < limits.area || size.area < limits.area_fraction * all;

@@ -16,7 +16,8 @@ constexpr std::size_t kTilesAtOnce = 16, kCornersAtOnce = 768, kPointsAtOnce = 2
 constexpr std::size_t kSamplesAtOnce = 256;  // about, of one call of start()
 
 DistanceMap& described(DistanceMap& map, const Description& description) {
-  map.sign = description.sign, map.measured = description.measured;
+  map.sign = description.sign;
+  map.measured = description.measured;
   return map;
 }
 
@@ -81,7 +82,8 @@ GroupVertices::GroupVertices(const Mesh& mesh, const FaceMeasure& measure) {
         const std::uint32_t v = mesh.triangles[f][k];
         if (last[v] == kNone || last[v] < begin) {
           last[v] = static_cast<std::uint32_t>(vertices.size());
-          vertices.push_back(v), faces.push_back(f);
+          vertices.push_back(v);
+          faces.push_back(f);
         }
         of_corners[f][k] = last[v];
       }
@@ -116,8 +118,10 @@ void TexelStore::operator()(std::size_t first, const sites::ClosestPacket& value
 void TexelStore::finish() {
   std::size_t without = 0;
   map_.without_match = 0;
-  for (const Counter& counter : counters_)
-    without += counter.without, map_.without_match += counter.unmatched;
+  for (const Counter& counter : counters_) {
+    without += counter.without;
+    map_.without_match += counter.unmatched;
+  }
   map_.beyond_max_distance = without - map_.without_match;
   if (map_.without_match == 0 && std::ranges::count(map_.unmatched, 1) == 0) map_.unmatched.clear();
 }
@@ -149,7 +153,8 @@ void measure_tiles(const Surface& surface, const FaceMeasure& measure, const sur
           const Value value = search->value(first + i + k);
           for (int axis = 0; axis < 3; ++axis) packet.vector[axis][k] = value.vector[axis];
           packet.distance[k] = value.closest.distance;
-          packet.site[k] = value.closest.site, packet.type[k] = value.closest.type;
+          packet.site[k] = value.closest.site;
+          packet.type[k] = value.closest.type;
           negative |= std::uint32_t{value.negative} << k, unmatched |= std::uint32_t{value.unmatched} << k;
         }
         texels(tiles.offsets[tile] + i, packet, negative, unmatched);
@@ -232,7 +237,8 @@ FacingPoints measure_points(std::span<const Vec3> points, std::span<const Vec3> 
                             const FaceMeasure& measure) {
   FacingPoints result;
   result.closest.resize(points.size());
-  result.behind.resize(points.size()), result.unmatched.resize(points.size());
+  result.behind.resize(points.size());
+  result.unmatched.resize(points.size());
   parallel_for(points.size(), kPointsAtOnce, measure.progress, "points",
                [&](std::size_t begin, std::size_t end) {
                  const std::unique_ptr<FaceSearch> search = measure.search();
@@ -242,7 +248,8 @@ FacingPoints measure_points(std::span<const Vec3> points, std::span<const Vec3> 
                    search->start({&sample, 1});
                    const Value value = search->value(0);
                    result.closest[i] = value.closest;
-                   result.behind[i] = value.negative, result.unmatched[i] = value.unmatched;
+                   result.behind[i] = value.negative;
+                   result.unmatched[i] = value.unmatched;
                  }
                });
   return result;

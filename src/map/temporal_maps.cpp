@@ -97,7 +97,10 @@ void TemporalMaps::follow_edit(std::span<const std::uint32_t> before, const Surf
   state_.largest.resize(now.size(), kNaN);
   state_.sum.resize(now.size(), kNaN);
   for (std::size_t i = 0; i < before.size(); ++i)
-    if (now[i] != before[i]) state_.least[i] = state_.largest[i] = kNaN, state_.sum[i] = kNaN;
+    if (now[i] != before[i]) {
+      state_.least[i] = state_.largest[i] = kNaN;
+      state_.sum[i] = kNaN;
+    }
 } catch (const std::bad_alloc&) {
   throw out_of_memory("maps over time");
 }

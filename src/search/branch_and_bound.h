@@ -27,7 +27,9 @@ class Parts {
  public:
   /// Forgets all parts.
   void start(double lower, double precision) {
-    lower_ = lower, precision_ = precision, settled_ = -std::numeric_limits<double>::infinity();
+    lower_ = lower;
+    precision_ = precision;
+    settled_ = -std::numeric_limits<double>::infinity();
     forget();
   }
   void raise(double value) { lower_ = std::max(lower_, value); }
@@ -36,10 +38,13 @@ class Parts {
   void put(const Part& part) {
     if (part.upper <= enough()) return settle(part.upper);
     auto slot = static_cast<std::uint32_t>(slots_.size());
-    if (free_.empty())
+    if (free_.empty()) {
       slots_.push_back(part);
-    else
-      slot = free_.back(), free_.pop_back(), slots_[slot] = part;
+    } else {
+      slot = free_.back();
+      free_.pop_back();
+      slots_[slot] = part;
+    }
     open_.push_back({part.upper, slot});
     std::ranges::push_heap(open_);
   }
@@ -61,9 +66,14 @@ class Parts {
     auto operator<=>(const Open&) const = default;
   };
 
-  void forget() { open_.clear(), slots_.clear(), free_.clear(); }
+  void forget() {
+    open_.clear();
+    slots_.clear();
+    free_.clear();
+  }
   Part take(std::uint32_t slot) {
-    free_.push_back(slot), open_.pop_back();
+    free_.push_back(slot);
+    open_.pop_back();
     return slots_[slot];
   }
   template <class Policy>

@@ -102,7 +102,8 @@ class LargestValue {
     double x[3] = {};
     for (int n = 0; n < 3; ++n)
       for (int k = 0; k < 3; ++k) x[k] += limit(active_[n]) * inverse_[n][k];
-    weights_ = {x[0], x[1], 1 - x[0] - x[1]}, t_ = x[2];
+    weights_ = {x[0], x[1], 1 - x[0] - x[1]};
+    t_ = x[2];
   }
 
   // Replaces an active constraint by one that the point violates. Returns false if it violates none.
@@ -110,12 +111,18 @@ class LargestValue {
     Constraint entering;
     double least = -kWeightRounding;
     for (int k = 0; k < 3; ++k)
-      if (weights_[k] < least) least = weights_[k], entering = {.weight = k};
+      if (weights_[k] < least) {
+        least = weights_[k];
+        entering = {.weight = k};
+      }
     if (least == -kWeightRounding) {
       double lowest = t_ - kWeightRounding * t_;
       for (const CornerValues& f : functions_) {
         const double value = weights_[0] * f[0] + weights_[1] * f[1] + weights_[2] * f[2];
-        if (value < lowest) lowest = value, entering = {.function = &f};
+        if (value < lowest) {
+          lowest = value;
+          entering = {.function = &f};
+        }
       }
       if (entering.function == nullptr) return false;
     }
@@ -126,8 +133,10 @@ class LargestValue {
     for (int n = 0; n < 3; ++n) {
       const Row& column = inverse_[n];
       share[n] = entered[0] * column[0] + entered[1] * column[1] + entered[2] * column[2];
-      if (share[n] > kWeightRounding && column[2] < ratio * share[n])
-        ratio = column[2] / share[n], leaving = n;
+      if (share[n] > kWeightRounding && column[2] < ratio * share[n]) {
+        ratio = column[2] / share[n];
+        leaving = n;
+      }
     }
     if (leaving < 0) return false;
     Row& left = inverse_[leaving];
@@ -152,12 +161,16 @@ MixedBound mixed_bound(std::span<const CornerValues> functions, double enough) {
   MixedBound result;
   const CornerValues* first = nullptr;
   for (const CornerValues& values : functions)
-    if (const double most = largest(values); most < result.value) result.value = most, first = &values;
+    if (const double most = largest(values); most < result.value) {
+      result.value = most;
+      first = &values;
+    }
   if (first == nullptr || result.value <= enough) return result;
   LargestValue program(functions, *first);
   program.solve(enough);
   result.value = std::min(result.value, program.bound().value_or(result.value));
-  result.weights = program.weights(), result.mixed = program.mixed();
+  result.weights = program.weights();
+  result.mixed = program.mixed();
   return result;
 }
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "certify/hausdorff/face_distance.h"
+#include "certify/hausdorff/nearest_face.h"
 #include "certify/hausdorff/vertex_search.h"
 #include "closest/blocks.h"
 #include "closest/closest_points.h"

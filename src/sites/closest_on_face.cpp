@@ -36,13 +36,16 @@ ClosestPoint closest_on_face(const SitesData& sites, std::uint32_t face, const V
   ClosestPoint c{.point = closest.point, .distance = std::sqrt(closest.squared), .face = face};
   switch (closest.feature) {
     case TriangleFeature::corner:
-      c.type = SiteType::vertex, c.site = sites.mesh.triangles[face][closest.index];
+      c.type = SiteType::vertex;
+      c.site = sites.mesh.triangles[face][closest.index];
       break;
     case TriangleFeature::side:
-      c.type = SiteType::edge, c.site = sites.topology.face_edges[face][closest.index];
+      c.type = SiteType::edge;
+      c.site = sites.topology.face_edges[face][closest.index];
       break;
     case TriangleFeature::interior:
-      c.type = SiteType::face, c.site = face;
+      c.type = SiteType::face;
+      c.site = face;
   }
   return c;
 }

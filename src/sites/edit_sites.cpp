@@ -5,7 +5,7 @@
 #include "geometry/vec.h"
 #include "mesh/edit_topology.h"
 #include "sites/sites_data.h"
-#include "tree/edit_tree.h"
+#include "tree/aabb_tree.h"
 
 namespace sdm::sites {
 namespace {

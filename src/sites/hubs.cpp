@@ -10,11 +10,11 @@
 
 #include "core/cancellation.h"
 #include "core/parallel.h"
-#include "geometry/boxes/sweep.h"
+#include "geometry/boxes.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "sites/intersecting_faces.h"
-#include "tree/edit_tree.h"
+#include "tree/aabb_tree.h"
 
 namespace sdm::sites {
 namespace {

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "mesh/topology.h"
-#include "sites/normals/pseudonormals.h"
+#include "sites/pseudonormals.h"
 #include "tree/aabb_tree.h"
 
 namespace sdm::sites {

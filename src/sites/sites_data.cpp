@@ -9,7 +9,7 @@
 #include "mesh/validate.h"
 #include "sites/check_numbers.h"
 #include "sites/check_regions.h"
-#include "tree/check_tree.h"
+#include "tree/aabb_tree.h"
 
 namespace sdm::sites {
 namespace {

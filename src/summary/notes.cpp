@@ -10,7 +10,7 @@
 #include "core/numbers/number_text.h"
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
-#include "map/thickness/wall_lengths.h"
+#include "map/measures/walls.h"
 #include "summary/wall_note.h"
 
 namespace sdm {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "map/thickness/wall_lengths.h"
+#include "map/measures/walls.h"
 #include "summary/distribution.h"
 #include "summary/largest_distance.h"
 #include "summary/wall_note.h"

@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
-#include "surface/edit_samples.h"
+#include "surface/sample_order.h"
 #include "surface/surface_data.h"
 
 namespace sdm::surface {
@@ -92,7 +92,8 @@ class SurfaceData::Edit {
                 std::size_t{s_.resolution} * rows + without_texel_.size() + mesh.triangles.size() - faces_);
     reserve_for(s_.corners, mesh.triangles.size());
     reserve_for(s_.face_charts, mesh.triangles.size());
-    rows_before_ = s_.rows, rows_ = rows;
+    rows_before_ = s_.rows;
+    rows_ = rows;
   }
   ~Edit() {
     if (begun_ && !completed_) undo();
@@ -114,7 +115,11 @@ class SurfaceData::Edit {
     for (const auto& [texel, face] : freed_) s_.map_faces[texel] = kNone;
     s_.corners.insert(s_.corners.end(), added.corners.begin(), added.corners.end());
     s_.face_charts.resize(s_.mesh.triangles.size(), kNone);
-    for (const std::uint32_t f : removed_) s_.face_charts[f] = kNone, s_.maps[f] = {}, s_.corners[f] = {};
+    for (const std::uint32_t f : removed_) {
+      s_.face_charts[f] = kNone;
+      s_.maps[f] = {};
+      s_.corners[f] = {};
+    }
     for (std::size_t c = 0; c < added.charts.size(); ++c)
       for (const std::uint32_t f : added.charts[c])
         s_.face_charts[f] = static_cast<std::uint32_t>(s_.chart_count + c);

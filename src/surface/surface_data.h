@@ -43,8 +43,12 @@ class SurfaceData {
   /// of the powers of 1/1.3247…, the root of x³ = x + 1, with the unit square folded into the triangle.
   [[nodiscard]] Vec3 own_point(std::uint32_t face) const {
     double u = 0.7548776662466927 * (face + 0.5), v = 0.5698402909980532 * (face + 0.5);
-    u -= std::floor(u), v -= std::floor(v);
-    if (u + v > 1) u = 1 - u, v = 1 - v;
+    u -= std::floor(u);
+    v -= std::floor(v);
+    if (u + v > 1) {
+      u = 1 - u;
+      v = 1 - v;
+    }
     const auto& [a, b, c] = mesh.triangles[face];
     const Vec3& origin = mesh.positions[a];
     return origin + u * (mesh.positions[b] - origin) + v * (mesh.positions[c] - origin);

@@ -1,9 +1,10 @@
-// A binary tree of axis-aligned boxes: building and refitting. visit.h has its searches.
+// A binary tree of axis-aligned boxes: building, refitting, editing. visit.h has its searches.
 #pragma once
 
 #include <sdm/types.h>
 
 #include <algorithm>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -69,7 +70,8 @@ struct AabbTree {
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [nodes, items] = self;
-    visit(nodes), visit(items);
+    visit(nodes);
+    visit(items);
   }
 };
 
@@ -89,7 +91,25 @@ inline constexpr int kDeepest = 96;
 
 /// Recomputes all boxes from those of the items; the tree keeps its structure. Cost: linear, all cores.
 void refit(AabbTree& tree, std::span<const Box> boxes);
-/// The same, from the boxes of the leaves in their order. Cost: linear.
+/// refit() from the boxes of the leaves in their order. Cost: linear.
 void refit_leaves(AabbTree& tree, std::span<const FloatBox> leaf_boxes);
+
+/// Items to remove from a tree and to add to it.
+struct TreeEdit {
+  std::span<const std::uint8_t> kept;    ///< of each item of the tree by its number: 0 to remove it
+  std::span<const std::uint32_t> added;  ///< items
+  /// The box of an item that stays or is added, in the frame of the tree's boxes.
+  std::function<FloatBox(std::uint32_t item)> box_of;
+};
+
+/// Removes and adds items. Nodes without items disappear; an added item goes to the leaf that it enlarges
+/// least on the way down, and leaves of more than `leaf_size` items are built into subtrees. There must be an
+/// item before and after. Boxes are not up to date: refit them. Many edits at one place can exceed kDeepest.
+/// Cost: a copy of the tree, plus n log n in the added items.
+[[nodiscard]] AabbTree edit_tree(const AabbTree& tree, const TreeEdit& edit, std::uint32_t leaf_size);
+
+/// Adds the nodes and items of another tree behind those of a forest. Its root is the first node added; its
+/// items keep their numbers. Cost: linear in what is added.
+void append(AabbTree& forest, const AabbTree& tree);
 
 }  // namespace sdm::tree

@@ -106,7 +106,10 @@ class Builder {
     Bounds box, centres;
     bound(items + begin, items + end, box, centres);
     AabbTree::Node& node = nodes_[slot];
-    for (int k = 0; k < 3; ++k) node.box.lo[k] = -box.reach[0][k], node.box.hi[k] = box.reach[1][k];
+    for (int k = 0; k < 3; ++k) {
+      node.box.lo[k] = -box.reach[0][k];
+      node.box.hi[k] = box.reach[1][k];
+    }
     if (end - begin <= leaf_size_) {
       node.first = begin;
       node.count = end - begin;
@@ -203,8 +206,10 @@ class Builder {
         side.extend(box[axis][b]);
         side_count += count[axis][b];
         if (side_count == 0 || side_count == total) continue;
-        if (const float sum = left_cost[b] + cost(side, side_count); sum < least)
-          least = sum, best = {axis, b};
+        if (const float sum = left_cost[b] + cost(side, side_count); sum < least) {
+          least = sum;
+          best = {axis, b};
+        }
       }
     }
     return best;

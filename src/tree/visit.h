@@ -119,9 +119,10 @@ struct Place {
   if (place.slot == kNone) return tree.box(0);
   const WideTree::Node& node = wide.nodes[place.slot / WideTree::kWidth];
   FloatBox box;
-  for (int k = 0; k < 3; ++k)
-    box.lo[k] = node.lo[k][place.slot % WideTree::kWidth],
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = node.lo[k][place.slot % WideTree::kWidth];
     box.hi[k] = node.hi[k][place.slot % WideTree::kWidth];
+  }
   return box;
 }
 

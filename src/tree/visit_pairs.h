@@ -76,7 +76,9 @@ void for_each_child_pair(const AabbTree& tree, const NodePair& pair, const Put& 
   if (a == b) {
     if (tree.nodes[a].leaf()) return;
     const auto [left, right] = children(a);
-    put(NodePair{left, left}), put(NodePair{right, right}), put(NodePair{left, right});
+    put(NodePair{left, left});
+    put(NodePair{right, right});
+    put(NodePair{left, right});
     return;
   }
   const auto size = [&](std::uint32_t i) {

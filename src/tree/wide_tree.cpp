@@ -1,8 +1,12 @@
 #include "tree/wide_tree.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
+#include <vector>
 
 #include "core/parallel.h"
+#include "tree/fold.h"
 
 namespace sdm::tree {
 namespace {
@@ -75,10 +79,151 @@ void refit(WideTree& wide, const AabbTree& tree) {
       WideTree::Node& node = wide.nodes[n];
       for (std::uint32_t i = 0; i < node.count; ++i) {
         const FloatBox& box = tree.nodes[node.source[i]].box;
-        for (int k = 0; k < 3; ++k) node.lo[k][i] = box.lo[k], node.hi[k][i] = box.hi[k];
+        for (int k = 0; k < 3; ++k) {
+          node.lo[k][i] = box.lo[k];
+          node.hi[k][i] = box.hi[k];
+        }
       }
     }
   });
+}
+
+namespace {
+
+// The leaves below a node of a binary tree.
+struct LeafRange {
+  std::uint32_t first = 0, last = 0;
+
+  [[nodiscard]] std::uint32_t count() const { return last - first; }
+  [[nodiscard]] bool contains(const LeafRange& other) const {
+    return first <= other.first && other.last <= last;
+  }
+};
+
+std::vector<LeafRange> leaf_ranges(const AabbTree& tree) {
+  const std::span<const AabbTree::Node> nodes(tree.nodes);
+  std::vector<LeafRange> ranges(nodes.size());
+  std::uint32_t leaves = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    ranges[i].first = leaves;
+    leaves += nodes[i].leaf() ? 1 : 0;
+  }
+  for (std::size_t i = nodes.size(); i-- > 0;)
+    ranges[i].last = nodes[i].leaf() ? ranges[i].first + 1 : ranges[nodes[i].right].last;
+  return ranges;
+}
+
+// Whether the children of wide nodes stand for nodes of a binary tree and divide the leaves below these. Each
+// wide node, and each leaf, is a child once, and the children of a node have as many leaves as it has: so the
+// leaves below a child are those of the node that it stands for, and children have none in common. Those that
+// are inner nodes have fewer than their parent, so that the wide tree is not deeper than the binary one.
+class WideTreeCheck {
+ public:
+  WideTreeCheck(const WideTree& wide, const AabbTree& tree)
+      : wide_(wide.nodes),
+        nodes_(tree.nodes),
+        leaves_(leaf_ranges(tree)),
+        whole_(wide_.size()),
+        is_child_(leaves_[0].last) {
+    whole_[0] = leaves_[0];
+  }
+
+  bool run() {
+    for (std::size_t n = 0; n < wide_.size(); ++n)
+      if (!is_node(wide_[n], whole_[n])) return false;
+    return true;
+  }
+
+ private:
+  // `whole` is empty unless the node is a child of an earlier one.
+  bool is_node(const WideTree::Node& node, LeafRange whole) {
+    if (whole.count() == 0 || node.count == 0 || node.count > WideTree::kWidth) return false;
+    std::uint32_t count = 0, is_leaf = 0;
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      const std::uint32_t source = node.source[i], child = node.child[i];
+      if (source >= nodes_.size()) return false;
+      const LeafRange below = leaves_[source];
+      if (!whole.contains(below) || !is_first(child, below, whole.count())) return false;
+      count += below.count();
+      is_leaf |= (WideTree::is_leaf(child) ? 1u : 0u) << i;
+    }
+    for (std::uint32_t i = node.count; i < WideTree::kWidth; ++i)
+      if (node.child[i] != 0 || node.source[i] != 0) return false;
+    return count == whole.count() && node.leaves == is_leaf && has_boxes(node);
+  }
+
+  // Whether a child that stands for a node with these leaves, of so many, is a leaf, or not, as that node is,
+  // and no child of another node. Inner nodes have at least two leaves.
+  bool is_first(std::uint32_t child, LeafRange below, std::uint32_t of) {
+    if (WideTree::is_leaf(child)) {
+      if (below.count() != 1 || WideTree::leaf_number(child) != below.first) return false;
+      return is_child_[below.first]++ == 0;
+    }
+    if (below.count() == 1 || below.count() == of) return false;
+    if (child >= whole_.size() || whole_[child].count() != 0) return false;
+    whole_[child] = below;
+    return true;
+  }
+
+  // Whether a node has the boxes of the nodes that its children stand for, and 0 in lanes without a child.
+  [[nodiscard]] bool has_boxes(const WideTree::Node& node) const {
+    WideTree::Node expected;
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      const FloatBox& box = nodes_[node.source[i]].box;
+      for (int k = 0; k < 3; ++k) {
+        expected.lo[k][i] = box.lo[k];
+        expected.hi[k][i] = box.hi[k];
+      }
+    }
+    return std::memcmp(expected.lo, node.lo, sizeof node.lo) == 0 &&
+           std::memcmp(expected.hi, node.hi, sizeof node.hi) == 0;
+  }
+
+  const std::span<const WideTree::Node> wide_;
+  const std::span<const AabbTree::Node> nodes_;
+  const std::vector<LeafRange> leaves_;  // of each binary node
+  std::vector<LeafRange> whole_;         // of each wide node
+  std::vector<std::uint8_t> is_child_;   // of each leaf
+};
+
+// False for NaN.
+bool is_inside(const FloatBox& box, const FloatBox& outer) {
+  bool inside = true;
+  for (int k = 0; k < 3; ++k) {
+    inside &= outer.lo[k] <= box.lo[k];
+    inside &= box.hi[k] <= outer.hi[k];
+  }
+  return inside;
+}
+
+}  // namespace
+
+bool is_tree(const AabbTree& tree, std::uint32_t leaf_size, float largest_coordinate) {
+  const std::span<const AabbTree::Node> nodes(tree.nodes);
+  const FloatBox most{{-largest_coordinate, -largest_coordinate, -largest_coordinate},
+                      {largest_coordinate, largest_coordinate, largest_coordinate}};
+  std::array<std::uint32_t, kDeepest> right;  // children of the nodes above whose left subtree is not over
+  std::size_t open = 0, items = 0;
+  const std::size_t count = nodes.size();
+  if (count > 0 && !is_inside(nodes[0].box, most)) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const AabbTree::Node& node = nodes[i];
+    if (!node.leaf()) {
+      if (open == right.size() || node.right <= i + 1 || node.right >= count) return false;
+      if (!is_inside(nodes[i + 1].box, node.box) || !is_inside(nodes[node.right].box, node.box)) return false;
+      right[open++] = node.right;
+      continue;
+    }
+    if (node.first != items || node.count > leaf_size) return false;
+    items += node.count;
+    if (i + 1 < count && (open == 0 || right[--open] != i + 1)) return false;
+  }
+  return open == 0 && items == tree.items.size() && depth(tree) <= kDeepest;
+}
+
+bool is_tree(const WideTree& wide, const AabbTree& tree) {
+  if (tree.nodes.empty() || wide.nodes.empty()) return tree.nodes.empty() && wide.nodes.empty();
+  return WideTreeCheck(wide, tree).run();
 }
 
 }  // namespace sdm::tree

@@ -4,6 +4,7 @@
 #include <sdm/types.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "tree/aabb_tree.h"
@@ -57,5 +58,15 @@ inline void squared_distances(const WideTree::Node& node, const FloatBox& box,
 
 /// Copies the boxes of the binary tree after a refit. Cost: linear.
 void refit(WideTree& wide, const AabbTree& tree);
+
+/// Whether the nodes form one tree in depth-first order, not deeper than kDeepest, whose leaves divide the
+/// items into runs of at most `leaf_size`; each box contains those of its children, and no coordinate is
+/// beyond `largest_coordinate`. Cost: linear.
+[[nodiscard]] bool is_tree(const AabbTree& tree, std::uint32_t leaf_size, float largest_coordinate);
+
+/// Whether the nodes form one tree, parents before children, whose children stand for nodes of the binary
+/// tree and have their boxes: those of a node divide the leaves of the one that it stands for. The binary
+/// tree must be one. Cost: linear.
+[[nodiscard]] bool is_tree(const WideTree& wide, const AabbTree& tree);
 
 }  // namespace sdm::tree

@@ -21,13 +21,6 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using Json = nlohmann::json;
 
-Mesh box(const Vec3& lo, const Vec3& hi) {
-  Mesh mesh = cube(1);
-  for (Vec3& p : mesh.positions)
-    for (int k = 0; k < 3; ++k) p[k] = p[k] < 0 ? lo[k] : hi[k];
-  return mesh;
-}
-
 // Two closed cubes that overlap, and a box inside of the first one, near a wall of the second.
 struct Consistency : ::testing::Test {
   TemporaryFolder folder;

@@ -16,8 +16,7 @@
 #include "core/memory.h"
 #include "core/platform.h"
 #include "geometry/barycentric.h"
-#include "geometry/boxes/box_groups.h"
-#include "geometry/boxes/sweep.h"
+#include "geometry/boxes.h"
 #include "geometry/spatial_order.h"
 #include "geometry/vec.h"
 

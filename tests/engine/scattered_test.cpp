@@ -14,7 +14,7 @@
 
 #include "closest/scattered.h"
 #include "closest/single_point.h"
-#include "geometry/morton_order.h"
+#include "geometry/spatial_order.h"
 #include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 #include "sites/sites_data.h"

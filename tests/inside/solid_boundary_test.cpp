@@ -20,13 +20,6 @@ namespace {
 
 using inside::SolidBoundary;
 
-Mesh box_mesh(const Box& box) {
-  Mesh mesh = test::cube(1);
-  for (Vec3& p : mesh.positions)
-    for (int k = 0; k < 3; ++k) p[k] = p[k] < 0 ? box.lo[k] : box.hi[k];
-  return mesh;
-}
-
 // The distance of p from what is left of a rectangle, a box without volume, when the interiors of other boxes
 // are removed, from number `first` on.
 double distance_from_rest(const Box& rectangle, const std::vector<Box>& others, std::size_t first,
@@ -97,7 +90,7 @@ struct CrossedBoxes {
         box.lo[k] = shift - reach * (1 + u(random)), box.hi[k] = shift + reach * (1 + u(random));
       }
       boxes.push_back(box);
-      mesh = test::joined(mesh, box_mesh(box));
+      mesh = test::joined(mesh, test::box(box.lo, box.hi));
       for (int n = 0; n < points_of_each; ++n) {
         Vec3& p = points.emplace_back();
         for (int k = 0; k < 3; ++k) p[k] = box.lo[k] + u(random) * (box.hi[k] - box.lo[k]);

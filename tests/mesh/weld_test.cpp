@@ -16,14 +16,6 @@
 namespace sdm {
 namespace {
 
-// A box of the given sides.
-Mesh box(const Vec3& sides) {
-  Mesh mesh = test::cube(0.5);
-  for (Vec3& p : mesh.positions)
-    for (int k = 0; k < 3; ++k) p[k] *= sides[k];
-  return mesh;
-}
-
 // A blade with this angle at its edge.
 Mesh blade(double angle) {
   Mesh mesh;
@@ -90,7 +82,7 @@ TEST(Weld, DoesNotJoinTheSidesOfAThinWall) {
   for (const double tolerance : {0.06, 0.2}) EXPECT_EQ(weld(skins, {tolerance}).joined_vertices, 0u);
 
   // A closed plate that is thinner than the tolerance, with all faces apart: still a plate.
-  const Mesh plate = box({1, 1, thickness});
+  const Mesh plate = test::box({0.5, 0.5, 0.5 * thickness});
   const Welded welded = weld(test::taken_apart(plate, 1e-6), {2 * thickness});
   EXPECT_TRUE(inspect(welded.mesh).closed);
   EXPECT_NEAR(solid_volume(Sites(welded.mesh)).upper, thickness, 1e-5);

@@ -11,7 +11,6 @@ set(order
   core/parallel
   geometry
   geometry/lanes
-  geometry/boxes
   tree
   search
   mesh
@@ -21,8 +20,6 @@ set(order
   atlas
   surface
   surface/sampling_bound
-  sites/frames
-  sites/normals
   sites
   closest
   closest/facing
@@ -41,14 +38,13 @@ set(order
   map/statistics
   map/places
   map/transfer
-  map/match
   map
   baking
   registration
   certify/hausdorff
   certify/metrics
-  certify/tolerance
   certify/depth
+  certify
   simplify
   volume
   bodies/contacts
@@ -57,8 +53,6 @@ set(order
   bodies/motion
   bodies/many
   bodies
-  map/self
-  map/thickness
   map/measures
   baking/geometry/mikktspace
   baking/geometry
@@ -147,8 +141,8 @@ set(readers_of_nodes
   certify/depth/leaving.cpp            # the children of a node are parts of its branch and bound
   closest/descent.cpp            # appends all leaves within reach to a list, by vector instructions
   bodies/motion/parts.h             # nodes are divided into faces too, by time
-  map/self/self_search.cpp       # marks the nodes whose faces are all excluded
-  map/thickness/thickness_search.cpp  # bounds the normals below each child of a node
+  map/measures/self_measure.cpp  # marks the nodes whose faces are all excluded
+  map/measures/thickness_measure.cpp  # bounds the normals below each child of a node
   inside/angles/expansions.cpp  # computes an expansion for each child of a node
   inside/angles/far_field-inl.h  # one search for several points, eight children at a time
   inside/angles/solid_angles.cpp  # nodes whose errors are too large are opened again

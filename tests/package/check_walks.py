@@ -31,10 +31,10 @@ def path_of_a_map(page: str) -> list[str]:
 
 
 def named_files(page: str) -> list[str]:
-    """Files in code spans, which are relative to the root, to src/ or to include/."""
-    walks = section(page, "## Walks", "\n## Decisions")
+    """Files in code spans of the tables of concepts and measures and of the walks, relative to the root, to src/ or to include/."""
+    text = "".join(section(page, begin, "\n## ") for begin in ("## One of each", "## Adding a measure", "## Walks"))
     faults = []
-    for name in re.findall(r"`([\w./]+/[\w.]+\.(?:h|cpp|ts|py|md|txt))`", walks):
+    for name in re.findall(r"`([\w./-]+/[\w.-]+\.(?:h|cpp|ts|py|md|txt|html))`", text):
         if not any((ROOT / folder / name).exists() for folder in ("", "src", "include", "tests")):
             faults.append(f"there is no {name}")
     return faults

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/boxes/sweep.h"
+#include "geometry/boxes.h"
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 #include "support/oracle.h"
@@ -23,13 +23,6 @@
 
 namespace sdm::test {
 namespace {
-
-Mesh box(const Vec3& half) {
-  Mesh mesh = cube();
-  for (Vec3& p : mesh.positions)
-    for (int k = 0; k < 3; ++k) p[k] *= half[k];
-  return mesh;
-}
 
 /// The solid over a polygon in the plane z = 0, of this height. `triangles` cover the polygon.
 Mesh extruded(const std::vector<Vec2>& polygon, const std::vector<Triangle>& triangles, double height) {

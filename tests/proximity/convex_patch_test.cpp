@@ -32,13 +32,6 @@ std::set<std::uint64_t> ids_of(ProximityQuery& query) {
   return ids;
 }
 
-Mesh box(const Vec3& half) {
-  Mesh mesh = cube();
-  for (Vec3& p : mesh.positions)
-    for (int k = 0; k < 3; ++k) p[k] *= half[k];
-  return mesh;
-}
-
 Mesh prism(int sides, double half) {
   Mesh mesh;
   for (int i = 0; i < sides; ++i) {

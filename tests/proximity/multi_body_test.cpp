@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bodies/pairs/mesh_pair.h"
-#include "geometry/boxes/sweep.h"
+#include "geometry/boxes.h"
 #include "geometry/vec.h"
 #include "proximity/crowd.h"
 #include "support/allocations.h"

@@ -188,13 +188,6 @@ TEST(Proximity, OpenMeshesHaveNoInside) {
   ASSERT_TRUE(solid.penetration_depth());
 }
 
-Mesh box(const Vec3& lo, const Vec3& hi) {
-  Mesh mesh = cube(1);
-  for (Vec3& p : mesh.positions)
-    for (int k = 0; k < 3; ++k) p[k] = p[k] < 0 ? lo[k] : hi[k];
-  return mesh;
-}
-
 // The box around a turned body is larger than its own.
 TEST(Proximity, DepthOfTurnedBodiesIsAsPreciseAsPromised) {
   const Mesh torus_like = torus(24, 12), ball = sphere(2);

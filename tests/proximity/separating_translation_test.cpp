@@ -23,13 +23,6 @@
 namespace sdm::test {
 namespace {
 
-Mesh cuboid(const Vec3& lo, const Vec3& hi) {
-  Mesh mesh = cube();
-  for (Vec3& p : mesh.positions)
-    for (int k = 0; k < 3; ++k) p[k] = p[k] < 0 ? lo[k] : hi[k];
-  return mesh;
-}
-
 // An L of two unit cubes' width, from one outline, so that it does not intersect itself.
 Mesh angle_bracket() {
   const std::array<Vec2, 6> outline{{{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}};
@@ -135,8 +128,7 @@ void expect_valid(ProximityQuery& query) {
 }
 
 TEST(SeparatingTranslation, OfConvexBodiesIsExact) {
-  const std::array bodies{cube(), tetrahedron(), sphere(0), sphere(1),
-                          cuboid({-2, -0.1, -0.5}, {2, 0.1, 0.5})};
+  const std::array bodies{cube(), tetrahedron(), sphere(0), sphere(1), box({-2, -0.1, -0.5}, {2, 0.1, 0.5})};
   std::mt19937 random(38);
   int deep = 0;
   for (int i = 0; i < 300; ++i) {

@@ -48,13 +48,6 @@ Mesh tube(std::uint32_t facets, double inner, double outer, double length) {
   return mesh;
 }
 
-Mesh box(const Vec3& half) {
-  Mesh mesh = test::cube();
-  for (Vec3& p : mesh.positions)
-    for (int k = 0; k < 3; ++k) p[k] *= half[k];
-  return mesh;
-}
-
 struct Measured {
   Measured(const Mesh& mesh, std::uint32_t resolution, double angle = 90)
       : surface(mesh, {.resolution = resolution}),
@@ -90,7 +83,7 @@ TEST(Thickness, OfTubesIsTheirWallFartherThanOneWallFromARim) {
 
 TEST(Thickness, OfABoxIsItsExtentAtEveryTexel) {
   const Vec3 half{3, 2, 0.25};
-  const Measured map(box(half), 256);
+  const Measured map(test::box(half), 256);
   for (const std::uint32_t texel : map.surface.sample_texels()) {
     const Vec3 p = map.surface.texel_point(texel);
     int axis = 0;
@@ -263,7 +256,7 @@ TEST(Thickness, RefusesWhatIsNoSolid) {
 }
 
 TEST(Thickness, JudgesItsTexelsAndCertifiesNoPass) {
-  const Measured map(box({3, 2, 0.25}), 128);
+  const Measured map(test::box({3, 2, 0.25}), 128);
   const double accuracy = thickness_accuracy(map.surface.mesh());
   const auto judged = [&](const Tolerance& limits) {
     return *summarize_thickness(map.surface, map.maps.ball, {.accuracy = accuracy, .tolerance = limits})

@@ -15,13 +15,6 @@
 namespace sdm::test {
 namespace {
 
-Mesh block(const Vec3& lo, const Vec3& hi) {
-  Mesh mesh = cube();
-  for (Vec3& p : mesh.positions)
-    for (int k = 0; k < 3; ++k) p[k] = p[k] < 0 ? lo[k] : hi[k];
-  return mesh;
-}
-
 Motion straight(const Vec3& from, const Vec3& to) {
   return {.from = Transform::translation(from), .to = Transform::translation(to)};
 }
@@ -104,7 +97,7 @@ TEST(TimeOfContact, OfBodiesThatCollideOrRest) {
 
 // The corner (3, 0.01) of a rod turns to a plane at y = 2: 3 sin t + 0.01 cos t = 2.
 TEST(TimeOfContact, OfARodThatOnlyTurns) {
-  const Shape rod(block({-3, -0.01, -0.01}, {3, 0.01, 0.01})), wall(block({-9, 2, -9}, {9, 3, 9}));
+  const Shape rod(box({-3, -0.01, -0.01}, {3, 0.01, 0.01})), wall(box({-9, 2, -9}, {9, 3, 9}));
   const Motion turn{.from = {}, .to = Transform::rotation({0, 0, 135})};
   const double angle = std::asin(2 / std::hypot(3, 0.01)) - std::atan2(0.01, 3);
   for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12}) {
@@ -120,7 +113,7 @@ TEST(TimeOfContact, OfARodThatOnlyTurns) {
   // At a distance beyond its reach, it turns freely.
   for (const double gap : {1e-3, 1e-6, 1e-9}) {
     const double y = std::hypot(3, 0.01) + gap;
-    const Shape beyond(block({-9, y, -9}, {9, 4, 9}));
+    const Shape beyond(box({-9, y, -9}, {9, 4, 9}));
     const TimeOfContact free = time_of_contact(rod, turn, beyond, {}, 0.5 * gap);
     EXPECT_FALSE(free.contact);
     EXPECT_EQ(free.time, 1);
@@ -207,7 +200,7 @@ TEST(TimeOfContact, OfBodiesThatSlideInParallel) {
         EXPECT_EQ(found.time, 1);
         EXPECT_EQ(found.certainty, Certainty::exact);
       };
-      const Mesh above = block({-1, -1, gap}, {1, 1, 1}), below = block({-2, -2, -1}, {2, 2, 0});
+      const Mesh above = box({-1, -1, gap}, {1, 1, 1}), below = box({-2, -2, -1}, {2, 2, 0});
       expect_free(above, slide, below, {});
       const Transform turned = Transform::quaternion({normal(random), normal(random), normal(random), 1});
       Mesh above2 = above, below2 = below;
@@ -226,8 +219,8 @@ TEST(TimeOfContact, OfBodiesThatSlideInParallel) {
 
 // The closest faces slide along each other, while an arm of the same body approaches from farther away.
 TEST(TimeOfContact, IsThatOfTheArmThatArrives) {
-  const Mesh near = block({-6, -1, 0.01}, {6, 1, 0.5}), arm = block({5, -1, -3}, {6, 1, 0.01});
-  const Shape fork(joined(near, arm)), table(block({-2, -2, -1}, {2, 2, 0}));
+  const Mesh near = box({-6, -1, 0.01}, {6, 1, 0.5}), arm = box({5, -1, -3}, {6, 1, 0.01});
+  const Shape fork(joined(near, arm)), table(box({-2, -2, -1}, {2, 2, 0}));
   for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
     const std::array motions{straight({0, 0, 0}, {-8, 0, 0}), Motion{}};
     const TimeOfContact found = time_of_contact(fork, motions[0], table, motions[1], tolerance);
@@ -242,7 +235,7 @@ TEST(TimeOfContact, IsThatOfTheArmThatArrives) {
 // The lower edge of a bar, across the upper edge of another: they pass each other above the tolerance, and
 // meet just below.
 TEST(TimeOfContact, OfEdgesThatGraze) {
-  Mesh bar = block({-3, -0.5, -0.5}, {3, 0.5, 0.5});
+  Mesh bar = box({-3, -0.5, -0.5}, {3, 0.5, 0.5});
   transform(bar, Transform::rotation({45, 0, 0}));  // its edges are √½ above and below
   Mesh across = bar;
   transform(across, Transform::rotation({0, 0, 77}));
@@ -266,13 +259,13 @@ TEST(TimeOfContact, OfEdgesThatGraze) {
 // A wheel of 24 corners rolls and spins above a plane, at distances of its corners from it of some
 // tolerances.
 TEST(TimeOfContact, OfAWheelThatGrazes) {
-  Mesh wheel = block({-1, -1, -0.2}, {1, 1, 0.2});
+  Mesh wheel = box({-1, -1, -0.2}, {1, 1, 0.2});
   for (int turn = 1; turn < 6; ++turn) {
-    Mesh next = block({-1, -1, -0.2}, {1, 1, 0.2});
+    Mesh next = box({-1, -1, -0.2}, {1, 1, 0.2});
     transform(next, Transform::rotation({0, 0, 15.0 * turn}));
     wheel = joined(wheel, next);
   }
-  const Shape o1(wheel), o2(block({-9, -3, -9}, {9, 0, 9}));
+  const Shape o1(wheel), o2(box({-9, -3, -9}, {9, 0, 9}));
   for (const double tolerance : {1e-4, 1e-7})
     for (const double gap : {1.2, 3.0, 0.3}) {
       const double y = std::sqrt(2.0) + gap * tolerance;

@@ -43,7 +43,8 @@ std::array<double, 2> hausdorff_bounds(const Mesh& a, const Mesh& b, double prec
       if (norm(at[(k + 1) % 3] - at[k]) > norm(at[(longest + 1) % 3] - at[longest])) longest = k;
     const Vec3 &p = at[longest], &q = at[(longest + 1) % 3], &r = at[(longest + 2) % 3];
     const Vec3 middle = 0.5 * (p + q);
-    add({p, middle, r}), add({middle, q, r});
+    add({p, middle, r});
+    add({middle, q, r});
   }
   return {lower, std::max(lower, parts.top().upper)};
 }

@@ -43,6 +43,17 @@ Mesh cube(double half_side) {
   return mesh;
 }
 
+Mesh box(const Vec3& lo, const Vec3& hi) {
+  Mesh mesh = cube();
+  for (Vec3& p : mesh.positions)
+    for (int k = 0; k < 3; ++k) p[k] = p[k] < 0 ? lo[k] : hi[k];
+  return mesh;
+}
+
+Mesh box(const Vec3& half_sides) {
+  return box(-half_sides, half_sides);
+}
+
 Mesh sphere(int levels) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   Mesh mesh;

@@ -15,6 +15,9 @@ namespace sdm::test {
 /// Vertices at the origin and the unit vectors; volume 1/6.
 [[nodiscard]] Mesh tetrahedron();
 [[nodiscard]] Mesh cube(double half_side = 1);
+/// A box between two corners, or of these half sides around the origin; vertices and faces as of cube().
+[[nodiscard]] Mesh box(const Vec3& lo, const Vec3& hi);
+[[nodiscard]] Mesh box(const Vec3& half_sides);
 /// An icosahedron, each face cut into 4^levels, on the unit sphere.
 [[nodiscard]] Mesh sphere(int levels);
 /// A torus of n × m quads, each two triangles, with radii 2 and 1. Coordinates are exact in single precision;

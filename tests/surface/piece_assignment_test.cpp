@@ -16,7 +16,7 @@
 #include "support/every_case.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
-#include "surface/sample_blocks.h"
+#include "surface/sample_order.h"
 #include "surface/sampling_bound/sample_tree.h"
 
 namespace sdm {

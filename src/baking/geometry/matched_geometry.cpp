@@ -11,7 +11,7 @@
 #include "closest/facing/outward_normals.h"
 #include "core/memory.h"
 #include "geometry/vec.h"
-#include "map/match/corner_normals.h"
+#include "map/transfer/corner_normals.h"
 #include "map/transfer/fill_texels.h"
 #include "sites/sites_data.h"
 

@@ -9,7 +9,7 @@
 #include "closest/facing/outward_normals.h"
 #include "core/memory.h"
 #include "geometry/vec.h"
-#include "map/thickness/thickness_search.h"
+#include "map/measures/thickness_measure.h"
 #include "rays/hemisphere_rays.h"
 
 namespace sdm {

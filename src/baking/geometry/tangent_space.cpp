@@ -17,7 +17,7 @@
 #include "baking/geometry/texel_walk.h"
 #include "core/memory.h"
 #include "geometry/vec.h"
-#include "map/match/corner_normals.h"
+#include "map/transfer/corner_normals.h"
 
 namespace sdm {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "bodies/contacts/contact_order.h"
 #include "core/disjoint_sets.h"
-#include "geometry/boxes/box_groups.h"
+#include "geometry/boxes.h"
 
 namespace sdm::contacts {
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "closest/closest_points.h"
-#include "geometry/boxes/sweep.h"
+#include "geometry/boxes.h"
 #include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 

@@ -12,7 +12,7 @@
 
 #include "bodies/pair/pair_answers.h"
 #include "bodies/shape/posed_body.h"
-#include "geometry/boxes/sweep.h"
+#include "geometry/boxes.h"
 
 namespace sdm::bodies {
 

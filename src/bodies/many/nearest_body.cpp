@@ -9,10 +9,10 @@
 
 #include "closest/closest_points.h"
 #include "core/parallel.h"
-#include "geometry/boxes/sweep.h"
+#include "geometry/boxes.h"
 #include "geometry/vec.h"
 #include "map/map_writer.h"
-#include "surface/sample_blocks.h"
+#include "surface/sample_order.h"
 #include "surface/surface_data.h"
 
 namespace sdm::bodies {

@@ -9,7 +9,7 @@
 
 #include "bodies/pairs/collision.h"
 #include "core/nothing_found.h"
-#include "geometry/boxes/sweep.h"
+#include "geometry/boxes.h"
 #include "geometry/vec.h"
 
 namespace sdm::pair {

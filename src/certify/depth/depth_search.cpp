@@ -33,8 +33,8 @@ constexpr std::size_t kMostParts = std::size_t{1} << 18;
 // distance is taken to be linear in the triangle. If not, the triangle is too large for that. `enough` is in
 // the frame of the solid.
 bool cut(const TrianglePart& triangle, const Value& value, double enough) {
-  if (value.near.all().empty() || triangle.measured > kMostCuts) return false;
-  const CornerValues& d = value.near.all()[0].distance;
+  if (value.bounds.all().empty() || triangle.measured > kMostCuts) return false;
+  const CornerValues& d = value.bounds.all()[0].distance;
   const CornerValues& w = triangle.weights;
   return w[0] * d[0] + w[1] * d[1] + w[2] * d[2] <= enough;
 }
@@ -43,7 +43,8 @@ bool cut(const TrianglePart& triangle, const Value& value, double enough) {
 
 Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity, 2>& to_other,
                         double precision) {
-  bodies_ = bodies, precision_ = precision;
+  bodies_ = bodies;
+  precision_ = precision;
   coarse_ = kCoarse * std::min(diagonal(bodies[0]->box()), diagonal(bodies[1]->box()));
   depth_ = {};
   measured_ = 0;
@@ -70,7 +71,8 @@ Depth DepthSearch::find(const Bodies& bodies, const std::array<mesh::Similarity,
       search::branch_and_bound(*this, parts_);
     }
   }
-  depth_.lower = parts_.lower(), depth_.upper = parts_.upper();
+  depth_.lower = parts_.lower();
+  depth_.upper = parts_.upper();
   return depth_;
 }
 
@@ -88,7 +90,7 @@ bool DepthSearch::walls_are_no_deeper() const {
   return true;
 }
 
-// Whether those of a solid are thin: nodes of any size may then be excluded as a whole.
+// Whether the walls of a solid are thin: nodes of any size may then be excluded as a whole.
 bool DepthSearch::look_at_walls() {
   bool thin = false;
   for (int body = 0; body < 2; ++body)
@@ -117,7 +119,8 @@ void DepthSearch::find_exits(int body) {
     if (!improve(body, p, b)) return;
     const Vec3 next = normalized(*b.point - p);
     if (dot(next, direction) > kSameDirection) return;
-    direction = next, far = b.point;
+    direction = next;
+    far = b.point;
   }
 }
 
@@ -135,7 +138,7 @@ bool DepthSearch::improve(int body, const Vec3& p, const BoundaryDistance& b) {
   return true;
 }
 
-bool DepthSearch::expand(const Part& part) {
+bool DepthSearch::expand(const SurfacePart& part) {
   const Leaving& leaving = leaving_[part.body];
   if (!std::holds_alternative<NodePart>(part.what) || leaving.thin() ||
       leaving.scale() * part.ball.radius <= coarse_)
@@ -144,12 +147,12 @@ bool DepthSearch::expand(const Part& part) {
   return true;
 }
 
-void DepthSearch::arrange(std::span<Part> batch) {
-  std::ranges::sort(batch, {}, [](const Part& part) { return std::pair(part.body, part.place); });
+void DepthSearch::arrange(std::span<SurfacePart> batch) {
+  std::ranges::sort(batch, {}, [](const SurfacePart& part) { return std::pair(part.body, part.place); });
 }
 
 // Parts of one body follow those of the other.
-void DepthSearch::evaluate(std::span<Part> run, std::vector<Value>& values) const {
+void DepthSearch::evaluate(std::span<SurfacePart> run, std::vector<Value>& values) const {
   values.assign(run.size(), {});
   if (run.size() == 1) return evaluate_one(run[0], values[0]);
   thread_local std::vector<Vec3> centres;
@@ -169,7 +172,7 @@ void DepthSearch::evaluate(std::span<Part> run, std::vector<Value>& values) cons
   }
 }
 
-void DepthSearch::evaluate_one(Part& part, Value& value) const {
+void DepthSearch::evaluate_one(SurfacePart& part, Value& value) const {
   const Leaving& leaving = leaving_[part.body];
   const shape::Body& solid = leaving.solid();
   const Vec3& p = part.ball.centre;
@@ -177,33 +180,36 @@ void DepthSearch::evaluate_one(Part& part, Value& value) const {
   // If the centre is inside, its bound is one on the search, but for rounding far from the origin.
   if (const auto* triangle = std::get_if<TrianglePart>(&part.what))
     closest = closest::closest_point(internals(solid.sites()), p,
-                                     triangle->reach + kUnitDistanceRounding * diagonal(solid.box()));
+                                     triangle->max_distance + kUnitDistanceRounding * diagonal(solid.box()));
   if (closest.type == SiteType::none)
     closest = closest::closest_point(internals(solid.sites()), p, kAnywhere);
   leaving.evaluate(part, value, closest, solid.inside()(p, closest), parts_.enough());
 }
 
-void DepthSearch::learn(std::span<const Part> run, const std::vector<Value>& values) {
+void DepthSearch::learn(std::span<const SurfacePart> run, const std::vector<Value>& values) {
   measured_ += run.size();
   for (std::size_t i = 0; i < run.size(); ++i) {
     const auto& [body, place, ball, upper, exits, what] = run[i];
     const BoundaryDistance& b = values[i].b;
-    for (const Near& n : values[i].near.all()) leaving_[body].learn(ball.centre, n.boundary);
+    for (const CornerBound& n : values[i].bounds.all()) leaving_[body].learn(ball.centre, n.boundary);
     if (std::holds_alternative<TrianglePart>(what) && improve(body, ball.centre, b))
       leaving_[body].exits().add(normalized(*b.point - ball.centre), b.point);
   }
 }
 
-void DepthSearch::conclude(std::span<Part> run, const std::vector<Value>& values) {
+void DepthSearch::conclude(std::span<SurfacePart> run, const std::vector<Value>& values) {
   const double enough = parts_.enough();
   for (std::size_t i = 0; i < run.size(); ++i) {
-    Part& part = run[i];
+    SurfacePart& part = run[i];
     Leaving& leaving = leaving_[part.body];
     auto* triangle = std::get_if<TrianglePart>(&part.what);
     const bool by_cut =
         triangle != nullptr && part.upper > enough && cut(*triangle, values[i], enough / leaving.scale());
     if (triangle != nullptr && part.upper > enough) {
-      for (const Near& n : values[i].near.all()) triangle->near.add(n), triangle->stale = true;
+      for (const CornerBound& n : values[i].bounds.all()) {
+        triangle->bounds.add(n);
+        triangle->stale = true;
+      }
       leaving.tighten(part, enough);
     }
     // The distance to the boundary of a solid that intersects itself has bounds that no division tightens.

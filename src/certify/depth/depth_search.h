@@ -8,7 +8,6 @@
 
 #include "bodies/shape/posed_body.h"
 #include "certify/depth/leaving.h"
-#include "certify/depth/part.h"
 
 namespace sdm::depth {
 
@@ -37,12 +36,12 @@ class DepthSearch : public search::Policy {
   // The fraction of many open parts that is evaluated together: neighbours are among them, and share
   // searches.
   static constexpr std::size_t kFraction = 64, kRun = 256;
-  bool tighten(Part& part) { return leaving_[part.body].tighten(part, parts_.enough()); }
-  bool expand(const Part& part);
-  static void arrange(std::span<Part> batch);
-  void evaluate(std::span<Part> run, std::vector<Value>& values) const;
-  void learn(std::span<const Part> run, const std::vector<Value>& values);
-  void conclude(std::span<Part> run, const std::vector<Value>& values);
+  bool tighten(SurfacePart& part) { return leaving_[part.body].tighten(part, parts_.enough()); }
+  bool expand(const SurfacePart& part);
+  static void arrange(std::span<SurfacePart> batch);
+  void evaluate(std::span<SurfacePart> run, std::vector<Value>& values) const;
+  void learn(std::span<const SurfacePart> run, const std::vector<Value>& values);
+  void conclude(std::span<SurfacePart> run, const std::vector<Value>& values);
 
   [[nodiscard]] bool within_budget() const { return measured_ <= budget_; }
 
@@ -52,7 +51,7 @@ class DepthSearch : public search::Policy {
   [[nodiscard]] bool look_at_walls();
   void find_exits(int body);
   [[nodiscard]] bool improve(int body, const Vec3& p, const BoundaryDistance& b);
-  void evaluate_one(Part& part, Value& value) const;
+  void evaluate_one(SurfacePart& part, Value& value) const;
 
   Bodies bodies_{};
   std::array<Leaving, 2> leaving_;  // by the body that leaves the other

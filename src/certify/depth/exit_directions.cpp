@@ -10,7 +10,9 @@ namespace sdm::depth {
 
 void ExitDirections::start(const sites::SitesData& body, const sites::SitesData& solid,
                            const mesh::Similarity& to_solid) {
-  body_ = &body, solid_ = &solid, to_solid_ = to_solid;
+  body_ = &body;
+  solid_ = &solid;
+  to_solid_ = to_solid;
   size_ = 0;
 }
 

@@ -1,4 +1,4 @@
-// Bounds on a depth from directions in which points leave a solid.
+// Bounds on a depth by the support function of the solid, in directions in which points leave it.
 #pragma once
 
 #include <array>
@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "bodies/shape/node_ball.h"
-#include "certify/depth/boundary_part.h"
+#include "certify/depth/boundary.h"
 #include "geometry/triangle_pair.h"
 #include "mesh/similarity.h"
 #include "sites/sites_data.h"
 
 namespace sdm::depth {
 
-/// A point p inside a solid S leaves it in the direction u, |u| = 1, no later than at the plane that supports
+/// A point p inside a solid S leaves it in the direction u, |u| = 1, no later than at the supporting plane of
 /// S there, so its distance to the boundary is
-///   b(p) ≤ h(u) − u·p,  h(u) = max over x in S of u·x.
+///   b(p) ≤ h(u) − u·p,  with the support function h(u) = max over x in S of u·x.
 /// With the direction from the deepest point of another body to the boundary, this excludes all but a few of
 /// its faces, without a search for any of them. Points and lengths are in the frame of the solid; only the
 /// boxes of the body's tree are where the tree has them.
@@ -33,7 +33,7 @@ class ExitDirections {
 
   /// The bound on b of a triangle.
   [[nodiscard]] double bound(const Corners& triangle) const;
-  /// The same for a ball, by the directions from `first` on.
+  /// The bound on b of a ball, by the directions from `first` on.
   [[nodiscard]] double bound(const shape::Ball& ball, std::size_t first) const;
   /// Appends the bounds at the corners of a triangle, one entry for each direction: they are linear.
   void values(const Corners& triangle, std::vector<CornerValues>& values) const;

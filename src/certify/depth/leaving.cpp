@@ -6,7 +6,7 @@
 #include <span>
 
 #include "bodies/shape/wall_column.h"
-#include "geometry/boxes/sweep.h"
+#include "geometry/boxes.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
 
@@ -20,7 +20,7 @@ constexpr double kThin = 3, kThinOfSize = 1.0 / 100;
 constexpr std::size_t kSampledFaces = 16;
 
 // Sets where a triangle is measured.
-void measure_at(Part& part, TrianglePart& triangle, const CornerValues& weights) {
+void measure_at(SurfacePart& part, TrianglePart& triangle, const CornerValues& weights) {
   const auto& [a, b, c] = triangle.at;
   triangle.weights = weights;
   part.ball = {weights[0] * a + weights[1] * b + weights[2] * c, 0};
@@ -32,7 +32,10 @@ void measure_at(Part& part, TrianglePart& triangle, const CornerValues& weights)
 
 void Leaving::start(const shape::PosedBody& body, const shape::PosedBody& solid,
                     const mesh::Similarity& to_solid) {
-  body_ = &body.body(), solid_ = &solid.body(), to_solid_ = to_solid, scale_ = solid.pose().scale;
+  body_ = &body.body();
+  solid_ = &solid.body();
+  to_solid_ = to_solid;
+  scale_ = solid.pose().scale;
   exits_.start(internals(body_->sites()), internals(solid_->sites()), to_solid);
   known_.clear();
   thin_ = false;
@@ -49,7 +52,7 @@ std::array<CornerValues, 2> Leaving::bounds_by(const Corners& at,
   return result;
 }
 
-bool Leaving::tighten(Part& part, double enough) {
+bool Leaving::tighten(SurfacePart& part, double enough) {
   const std::size_t exits = exits_.size();
   auto* triangle = std::get_if<TrianglePart>(&part.what);
   if (triangle == nullptr) {
@@ -59,28 +62,30 @@ bool Leaving::tighten(Part& part, double enough) {
     return true;
   }
   if (part.exits == exits && triangle->known == known_.size() && !triangle->stale) return false;
-  const auto known = known_.nearest(part.ball.centre, triangle->near.all(), triangle->known);
+  const auto known = known_.nearest(part.ball.centre, triangle->bounds.all(), triangle->known);
   if (known || part.exits < exits || triangle->stale) {
     functions_.clear();
     exits_.values(triangle->at, functions_);
-    for (const Near& n : triangle->near.all()) functions_.push_back(n.distance);
+    for (const CornerBound& n : triangle->bounds.all()) functions_.push_back(n.distance);
     if (known)
       for (const CornerValues& d : bounds_by(triangle->at, *known)) functions_.push_back(d);
     const search::MixedBound mixed = search::mixed_bound(functions_, enough / scale_);
     part.limit(scale_ * mixed.value);
-    triangle->reach = mixed.value;
+    triangle->max_distance = mixed.value;
     if (part.upper > enough) measure_at(part, *triangle, mixed.weights);
   }
-  part.exits = exits, triangle->known = known_.size(), triangle->stale = false;
+  part.exits = exits;
+  triangle->known = known_.size();
+  triangle->stale = false;
   return true;
 }
 
-void Leaving::evaluate(Part& part, Value& value, const ClosestPoint& closest, bool inside,
+void Leaving::evaluate(SurfacePart& part, Value& value, const ClosestPoint& closest, bool inside,
                        double enough) const {
   const auto& [centre, radius] = part.ball;
   auto* triangle = std::get_if<TrianglePart>(&part.what);
   const auto keep = [&](const BoundaryPart& boundary) {
-    value.near.add(
+    value.bounds.add(
         {boundary, triangle != nullptr ? bounds_by(triangle->at, {boundary, boundary})[0] : CornerValues{}});
   };
   if (triangle != nullptr) ++triangle->measured;
@@ -109,16 +114,17 @@ void Leaving::evaluate(Part& part, Value& value, const ClosestPoint& closest, bo
   part.limit(scale_ * bound_outside(part, *triangle, value, closest.distance, step, enough));
 }
 
-// With the centre on the surface, and inside after the step.
-void Leaving::evaluate_beside(Part& part, Value& value, const Vec3& step) const {
+// Bounds a part whose centre is on the surface, and inside after the step.
+void Leaving::evaluate_beside(SurfacePart& part, Value& value, const Vec3& step) const {
   const auto& [centre, radius] = part.ball;
   BoundaryDistance b = distance_to_boundary(*solid_, centre + step);
-  b.lower = std::max(0.0, b.lower - norm(step)), b.upper += norm(step);
+  b.lower = std::max(0.0, b.lower - norm(step));
+  b.upper += norm(step);
   b.value = b.point ? norm(*b.point - centre) : b.lower;
   part.limit(scale_ * (b.upper + radius));
   if (auto* triangle = std::get_if<TrianglePart>(&part.what)) {
     triangle->gap = scale_ * (b.upper - b.lower);
-    if (b.nearest) value.near.add({*b.nearest, bounds_by(triangle->at, {*b.nearest, *b.nearest})[0]});
+    if (b.nearest) value.bounds.add({*b.nearest, bounds_by(triangle->at, {*b.nearest, *b.nearest})[0]});
   }
   value.b = b;
 }
@@ -146,8 +152,8 @@ bool Leaving::walls_within(double enough, double times) const {
   return 2 * thin >= kSampledFaces;
 }
 
-void Leaving::bound_by_walls(Part& part, const ClosestPoint& closest, const BoundaryDistance& b, bool inside,
-                             double enough) const {
+void Leaving::bound_by_walls(SurfacePart& part, const ClosestPoint& closest, const BoundaryDistance& b,
+                             bool inside, double enough) const {
   if (scale_ * b.upper <= enough && walls_are_thin(part.ball, enough / scale_)) return part.limit(enough);
   const auto* triangle = std::get_if<TrianglePart>(&part.what);
   if (triangle == nullptr || scale_ * part.ball.radius < enough) return;
@@ -166,12 +172,12 @@ void Leaving::bound_by_walls(Part& part, const ClosestPoint& closest, const Boun
 
 // The bound of a triangle whose centre is outside, by this distance or after this step, where that alone is
 // not enough.
-double Leaving::bound_outside(const Part& part, const TrianglePart& triangle, const Value& value,
+double Leaving::bound_outside(const SurfacePart& part, const TrianglePart& triangle, const Value& value,
                               double distance, const Vec3& step, double enough) const {
   std::array<CornerValues, 8> functions;
   std::size_t count = 0;
-  for (const Near& n : triangle.near.all()) functions[count++] = n.distance;
-  for (const Near& n : value.near.all()) functions[count++] = n.distance;
+  for (const CornerBound& n : triangle.bounds.all()) functions[count++] = n.distance;
+  for (const CornerBound& n : value.bounds.all()) functions[count++] = n.distance;
   const double mixed = search::mixed_bound(std::span(functions).first(count), enough / scale_).value;
   if (mixed <= enough / scale_) return mixed;
   // The way to a point inside is at least as long outside as the surface is far from the centre.
@@ -181,7 +187,7 @@ double Leaving::bound_outside(const Part& part, const TrianglePart& triangle, co
                                          std::min(mixed, part.ball.radius - distance));
 }
 
-void Leaving::divide(const Part& part, Parts& parts) const {
+void Leaving::divide(const SurfacePart& part, Parts& parts) const {
   if (const auto* triangle = std::get_if<TrianglePart>(&part.what))
     return put_quarters(part, *triangle, parts);
   const std::uint32_t node = std::get<NodePart>(part.what).node;
@@ -191,13 +197,14 @@ void Leaving::divide(const Part& part, Parts& parts) const {
     put_children(part, node, parts);
 }
 
-// Unless they are beyond the box of the solid.
-void Leaving::put_children(const Part& part, std::uint32_t node, Parts& parts) const {
+// Puts the children of a node, except those beyond the box of the solid.
+void Leaving::put_children(const SurfacePart& part, std::uint32_t node, Parts& parts) const {
   const sites::SitesData& sites = internals(body_->sites());
   const tree::WideTree::Node& wide = sites.wide.nodes[node];
   const ExitDirections::OfChildren by_exits = exits_.bound_children(wide);
   for (std::uint32_t i = 0; i < wide.count; ++i) {
-    Part child{.body = part.body, .place = wide.source[i], .upper = part.upper, .exits = exits_.size()};
+    SurfacePart child{
+        .body = part.body, .place = wide.source[i], .upper = part.upper, .exits = exits_.size()};
     child.limit(scale_ * by_exits[i]);
     if (child.upper <= parts.enough()) {
       parts.settle(child.upper);
@@ -210,7 +217,7 @@ void Leaving::put_children(const Part& part, std::uint32_t node, Parts& parts) c
   }
 }
 
-void Leaving::put_faces(const Part& part, std::uint32_t leaf, Parts& parts) const {
+void Leaving::put_faces(const SurfacePart& part, std::uint32_t leaf, Parts& parts) const {
   const sites::SitesData& sites = internals(body_->sites());
   const Affine& map = to_solid_.map;
   for (std::uint32_t i = sites.regions.leaves[leaf]; i < sites.regions.leaves[leaf + 1]; ++i) {
@@ -220,17 +227,17 @@ void Leaving::put_faces(const Part& part, std::uint32_t leaf, Parts& parts) cons
   }
 }
 
-void Leaving::put_quarters(const Part& part, const TrianglePart& triangle, Parts& parts) const {
+void Leaving::put_quarters(const SurfacePart& part, const TrianglePart& triangle, Parts& parts) const {
   const Corners& at = triangle.at;
   Corners middle;  // of each side
   for (int k = 0; k < 3; ++k) middle[k] = 0.5 * (at[k] + at[(k + 1) % 3]);
   std::array<TrianglePart, 4> quarters;
   for (int k = 0; k < 3; ++k) quarters[k].at = {at[k], middle[k], middle[(k + 2) % 3]};
   quarters[3].at = middle;
-  for (const Near& n : triangle.near.all()) {
+  for (const CornerBound& n : triangle.bounds.all()) {
     const CornerValues m = bounds_by(middle, {n.boundary, n.boundary})[0];
-    for (int k = 0; k < 3; ++k) quarters[k].near.add({n.boundary, {n.distance[k], m[k], m[(k + 2) % 3]}});
-    quarters[3].near.add({n.boundary, m});
+    for (int k = 0; k < 3; ++k) quarters[k].bounds.add({n.boundary, {n.distance[k], m[k], m[(k + 2) % 3]}});
+    quarters[3].bounds.add({n.boundary, m});
   }
   // The quarters of a triangle follow it, up to the precision of the number.
   for (std::uint64_t k = 0; k < 4; ++k) {
@@ -239,11 +246,11 @@ void Leaving::put_quarters(const Part& part, const TrianglePart& triangle, Parts
   }
 }
 
-void Leaving::put_triangle(const Part& parent, std::uint64_t place, const TrianglePart& triangle,
+void Leaving::put_triangle(const SurfacePart& parent, std::uint64_t place, const TrianglePart& triangle,
                            Parts& parts) const {
   const double upper = std::min(parent.upper, scale_ * exits_.bound(triangle.at));
   if (upper <= parts.enough()) return parts.settle(upper);
-  Part part{.body = parent.body, .place = place, .upper = upper, .what = triangle};
+  SurfacePart part{.body = parent.body, .place = place, .upper = upper, .what = triangle};
   measure_at(part, std::get<TrianglePart>(part.what), {1.0 / 3, 1.0 / 3, 1.0 / 3});
   parts.put(part);
 }

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "certify/hausdorff/lower_bound.h"
 #include "certify/hausdorff/matching.h"
+#include "certify/hausdorff/vertex_search.h"
 
 namespace sdm::hausdorff {
 
@@ -31,7 +31,7 @@ struct Decision {
   double forgiven = 0;
 };
 
-/// What is asked.
+/// How closely the largest distance is to be bounded, and which points count.
 struct Question {
   double precision = 0;  ///< of the bounds; that of the scale is the least
   std::optional<Decision> decision{};

@@ -1,11 +1,28 @@
-// The face of B that is closest to a point, in double precision, with bounds that hold in spite of rounding.
+// The distance of a point to a triangle and to the nearest face of B, with bounds that hold in spite of
+// rounding.
 #pragma once
+
+#include <sdm/types.h>
 
 #include "certify/hausdorff/matching.h"
 #include "geometry/triangle.h"
+#include "geometry/triangle_pair.h"
 #include "sites/sites_data.h"
 
 namespace sdm::hausdorff {
+
+/// lower ≤ distance ≤ upper; a few units in the last place of the distance and the size of the triangle
+/// apart, unless this is almost a segment, or its border is closer than 1e-8 of its size.
+struct FaceDistance {
+  double lower = 0, upper = 0;
+  Vec3 point{};  ///< of the triangle, to rounding, at most `upper` from the query
+};
+
+/// Bounds on the distance from p to a triangle of any shape, also a segment or a point.
+[[nodiscard]] FaceDistance face_distance(const Vec3& p, const Corners& face);
+
+/// The upper bound only: 0 if p is a corner.
+[[nodiscard]] double upper_face_distance(const Vec3& p, const Corners& face);
 
 /// Bounds on the distance of a point: lower ≤ d(p, B) ≤ upper.
 struct NearestFace {

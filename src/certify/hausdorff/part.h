@@ -4,7 +4,9 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
+#include "geometry/triangle.h"
 #include "geometry/triangle_pair.h"
 #include "sites/sites_data.h"
 
@@ -18,16 +20,16 @@ namespace sdm::hausdorff {
 /// also the maximum over the triangle of min over k of l_k, where l_k is linear and equal to d(·, S_k) at the
 /// corners. `weights` are the barycentric coordinates of that maximum. It exceeds the maximum of min over k
 /// of d(·, S_k) by the square of the size of the triangle only, even where several S_k are equally close.
-struct Part {
+struct FacePart {
   static constexpr int kMostFaces = 6;
 
-  Corners at{};                                  ///< the corners a_i
-  std::uint32_t face = kNone;                    ///< of A
-  std::uint16_t depth = 0;                       ///< number of divisions
-  bool stalled = false;                          ///< the last division did not improve the bound
-  std::uint16_t count = 0;                       ///< number of S_k
-  std::array<std::uint32_t, kMostFaces> near{};  ///< S_k
-  std::array<Vec3, kMostFaces> distances{};      ///< d(a_i, S_k), rounded upwards, at [k][i]
+  Corners at{};                                     ///< the corners a_i
+  std::uint32_t face = kNone;                       ///< of A
+  std::uint16_t depth = 0;                          ///< number of divisions
+  bool stalled = false;                             ///< the last division did not improve the bound
+  std::uint16_t count = 0;                          ///< number of S_k
+  std::array<std::uint32_t, kMostFaces> b_faces{};  ///< S_k
+  std::array<Vec3, kMostFaces> distances{};         ///< d(a_i, S_k), rounded upwards, at [k][i]
   double upper = std::numeric_limits<double>::infinity();
   Vec3 weights{};
   std::uint32_t mixed = 0;  ///< a bit for each k with μ_k > 0
@@ -47,7 +49,7 @@ struct Part {
 
 /// Up to three parts that make up a part.
 struct Pieces {
-  std::array<Part, 3> part;
+  std::array<FacePart, 3> part;
   int count = 0;
 };
 
@@ -55,13 +57,27 @@ struct Pieces {
 /// lies along the plane of the face: a piece above the face is then settled, however long and thin both are
 /// and however they cross. `enough`: a bound at which a part is settled. No pieces if no side cuts the part,
 /// or the face is so small beside it that halving is better. Sets the bounds of the pieces.
-[[nodiscard]] Pieces cut_along(const Part& part, const sites::SitesData& b, std::uint32_t near_face,
+[[nodiscard]] Pieces cut_along(const FacePart& part, const sites::SitesData& b, std::uint32_t near_face,
                                double enough);
 
 /// Divides a part by segments from one of its points to its corners, where that helps faces of B to be the
 /// closest on a whole piece each: at a vertex that the mixed faces share, or at the place on a side where two
 /// faces are equally far. After a division that did not improve the bound, a side is cut in the middle, the
 /// longest. `tolerance` is the difference of distances that counts as equal. Sets the bounds of the pieces.
-[[nodiscard]] Pieces divide(const Part& part, const sites::SitesData& b, double tolerance);
+[[nodiscard]] Pieces divide(const FacePart& part, const sites::SitesData& b, double tolerance);
+
+/// A cut of a triangle by a line: one corner is alone on its side of it.
+struct SideCut {
+  int alone = 0;
+  std::array<double, 2> at{};  ///< along the sides from that corner to the next two
+};
+
+/// The cut along the side of a face that the triangle reaches beyond the most, moved outwards by `offset`.
+/// `normal`: of the face, of length 1. Nothing unless there are corners farther than `margin` from the line
+/// on either side of it.
+[[nodiscard]] std::optional<SideCut> cut_along_side(const Corners& triangle, const Corners& face,
+                                                    const Vec3& normal, double offset, double margin);
+
+[[nodiscard]] double longest_side(const Corners& triangle);
 
 }  // namespace sdm::hausdorff

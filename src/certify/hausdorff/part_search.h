@@ -6,7 +6,6 @@
 
 #include "certify/hausdorff/first_parts.h"
 #include "certify/hausdorff/largest_distance.h"
-#include "certify/hausdorff/lower_bound.h"
 #include "certify/hausdorff/part.h"
 #include "certify/hausdorff/vertex_search.h"
 #include "search/branch_and_bound.h"
@@ -20,10 +19,10 @@ class PartSearch : public search::Policy {
  public:
   static constexpr std::size_t kLeast = 256, kFraction = 3;
   static constexpr std::size_t kRun = 16;  // each may profit from those before
-  /// What the evaluation of some parts results in.
+  /// The result of the evaluation of some parts.
   struct Found {
     LowerBound lower;
-    std::vector<Part> open;
+    std::vector<FacePart> open;
     double settled = 0;
   };
 
@@ -49,18 +48,18 @@ class PartSearch : public search::Policy {
   double operator()(const Mesh& a, std::span<const VertexDistance> vertices, const Progress& progress);
   double operator()(const FirstParts& first, const Progress& progress);
 
-  void evaluate(std::span<const Part> run, Found& found) const;
-  void learn(std::span<const Part> run, const Found& found);
-  void conclude(std::span<const Part> run, const Found& found);
+  void evaluate(std::span<const FacePart> run, Found& found) const;
+  void learn(std::span<const FacePart> run, const Found& found);
+  void conclude(std::span<const FacePart> run, const Found& found);
   [[nodiscard]] bool within_budget() const {
     return examined_ < most_parts_ && !(decision_ && lower_.value > decision_->forgiven);
   }
 
  private:
-  void evaluate(const Part& part, Found& found) const;
+  void evaluate(const FacePart& part, Found& found) const;
   void forgive();
-  void put(Part part, Found& found) const;
-  [[nodiscard]] double rounding(const Part& part) const;
+  void put(FacePart part, Found& found) const;
+  [[nodiscard]] double rounding(const FacePart& part) const;
 
   const sites::SitesData& b_;
   const double precision_, coordinate_;
@@ -69,7 +68,7 @@ class PartSearch : public search::Policy {
   const Matching* matching_;  // null: all faces of B count
   LowerBound& lower_;
   std::size_t examined_ = 0;
-  search::Parts<Part, Found> parts_;
+  search::Parts<FacePart, Found> parts_;
 };
 
 }  // namespace sdm::hausdorff

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "certify/hausdorff/face_distance.h"
+#include "certify/hausdorff/nearest_face.h"
 #include "closest/blocks.h"
 #include "closest/closest_points.h"
 #include "core/parallel.h"
@@ -47,13 +47,13 @@ class VertexSearch {
   };
   struct Vertex {
     Vec3 at;
-    double reach;  // no point of its faces is farther from it
+    double radius;  // no point of its faces is farther from it
     std::uint32_t index, face;
   };
 
   // The vertices of faces, in spatial order.
   void find_vertices() {
-    std::vector<double> squared_reach(a_.positions.size(), -1);
+    std::vector<double> squared_radius(a_.positions.size(), -1);
     std::vector<std::uint32_t> face_of(a_.positions.size(), kNone);
     for (std::size_t f = 0; f < a_.triangles.size(); ++f) {
       const Triangle& t = a_.triangles[f];
@@ -61,18 +61,21 @@ class VertexSearch {
       Vec3 length;
       for (int k = 0; k < 3; ++k) length[k] = squared_norm(a_.positions[t[(k + 1) % 3]] - a_.positions[t[k]]);
       for (int k = 0; k < 3; ++k) {
-        squared_reach[t[k]] = std::max({squared_reach[t[k]], length[k], length[(k + 2) % 3]});
+        squared_radius[t[k]] = std::max({squared_radius[t[k]], length[k], length[(k + 2) % 3]});
         face_of[t[k]] = static_cast<std::uint32_t>(f);
       }
     }
     std::vector<Vec3> points;
     std::vector<std::uint32_t> index;
     for (std::uint32_t v = 0; v < a_.positions.size(); ++v)
-      if (face_of[v] != kNone) points.push_back(a_.positions[v]), index.push_back(v);
+      if (face_of[v] != kNone) {
+        points.push_back(a_.positions[v]);
+        index.push_back(v);
+      }
     vertices_.reserve(points.size());
     for (const std::uint32_t i : spatial_order(points)) {
       const std::uint32_t v = index[i];
-      vertices_.push_back({points[i], (1 + kFewRoundings) * std::sqrt(squared_reach[v]), v, face_of[v]});
+      vertices_.push_back({points[i], (1 + kFewRoundings) * std::sqrt(squared_radius[v]), v, face_of[v]});
     }
   }
 
@@ -96,9 +99,12 @@ class VertexSearch {
 
   // Computes the distances of groups of one vertex each, neighbours together.
   void measure_vertices(const std::vector<Group>& groups) {
-    points_.clear(), measured_.clear();
-    for (const Group& group : groups)
-      points_.push_back(vertices_[group.begin].at), measured_.push_back(group.begin);
+    points_.clear();
+    measured_.clear();
+    for (const Group& group : groups) {
+      points_.push_back(vertices_[group.begin].at);
+      measured_.push_back(group.begin);
+    }
     closest::for_each_block(points_.size(), progress_, "vertices", [&](std::size_t begin, std::size_t end) {
       closest::closest_points(
           b_, std::span(points_).subspan(begin, end - begin), std::numeric_limits<double>::infinity(),
@@ -144,9 +150,9 @@ class VertexSearch {
         const Group part{begin, std::min(begin + size, group.end), distances_[middle.index].face};
         for (std::size_t i = part.begin; i < part.end; ++i) {
           const Vertex& v = vertices_[i];
-          if ((1 + kProductRounding) * (distance + norm(v.at - middle.at) + v.reach) <= lower_.value)
+          if ((1 + kProductRounding) * (distance + norm(v.at - middle.at) + v.radius) <= lower_.value)
             continue;
-          if ((1 + kProductRounding) * (upper_face_distance(v.at, near) + v.reach) <= lower_.value) continue;
+          if ((1 + kProductRounding) * (upper_face_distance(v.at, near) + v.radius) <= lower_.value) continue;
           parts.push_back(part);
           break;
         }

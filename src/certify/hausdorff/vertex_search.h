@@ -1,15 +1,37 @@
-// Distances from the vertices of A near which the largest distance may occur.
+// The largest distance that is known to occur, and distances from the vertices of A near which it may be
+// larger.
 #pragma once
 
 #include <sdm/progress.h>
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
-#include "certify/hausdorff/lower_bound.h"
+#include "certify/hausdorff/nearest_face.h"
+#include "certify/hausdorff/side.h"
+#include "geometry/vec.h"
 #include "sites/sites_data.h"
 
 namespace sdm::hausdorff {
+
+/// A point of A with the distance to B there.
+struct LowerBound {
+  double value = -1;        ///< ≤ the largest distance
+  Vec3 point{}, closest{};  ///< of A and of B
+  std::array<std::uint32_t, 2> faces{kNone, kNone};
+  const Side* side = nullptr;  ///< null: points on both sides of B count
+
+  void raise(const LowerBound& other) {
+    if (other.value > value) *this = other;
+  }
+  /// `point` is a point of a face of A, at most `rounding` from it.
+  void raise(const Vec3& p, double rounding, std::uint32_t face, const NearestFace& nearest) {
+    const double distance = std::max(0.0, nearest.lower - rounding);
+    if (distance > value && (side == nullptr || side->has(p, nearest.upper)))
+      *this = {distance, p, nearest.point, {face, nearest.face}, side};
+  }
+};
 
 /// Whether a face of A is ignored, as Sites ignores it.
 [[nodiscard]] constexpr bool repeats_corner(const Triangle& t) {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "certify/hausdorff/vertex_search.h"
-#include "certify/metrics/faces.h"
+#include "certify/metrics/surface_points.h"
 #include "core/cancellation.h"
 #include "core/parallel.h"
 #include "geometry/rounding.h"
@@ -39,7 +39,10 @@ std::vector<MeasuredPoint> measure_vertices(const Mesh& a, const sites::SitesDat
   std::vector<Vec3> points, sorted;
   std::vector<std::uint32_t> vertex;
   for (std::uint32_t v = 0; v < used.size(); ++v)
-    if (used[v]) points.push_back(a.positions[v]), vertex.push_back(v);
+    if (used[v]) {
+      points.push_back(a.positions[v]);
+      vertex.push_back(v);
+    }
   const std::vector<std::uint32_t> order = spatial_order(points);
   sorted.reserve(points.size());
   for (const std::uint32_t i : order) sorted.push_back(points[i]);
@@ -51,11 +54,12 @@ std::vector<MeasuredPoint> measure_vertices(const Mesh& a, const sites::SitesDat
 
 /// Calls add(sum, part) for all parts, and merge(sum, other): the same, whatever the number of threads.
 template <class Sum, class Add, class Merge>
-void sum_parts(std::span<const Part> parts, Sum& sum, const Add& add, const Merge& merge) {
+void sum_parts(std::span<const FacePart> parts, Sum& sum, const Add& add, const Merge& merge) {
   std::vector<Sum> sums((parts.size() + kSummed - 1) / kSummed);
   parallel_for(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n)
-      for (const Part& part : parts.subspan(n * kSummed).first(std::min(kSummed, parts.size() - n * kSummed)))
+      for (const FacePart& part :
+           parts.subspan(n * kSummed).first(std::min(kSummed, parts.size() - n * kSummed)))
         add(sums[n], part);
   });
   for (const Sum& other : sums) merge(sum, other);
@@ -96,7 +100,7 @@ double DirectedSearch::consistency() const {
   double sum = 0;
   sum_parts(
       parts_, sum,
-      [this](double& s, const Part& part) {
+      [this](double& s, const FacePart& part) {
         s += part.area * std::abs(dot(unit_normal(a_, part.face), unit_normal(b_.mesh, part.nearest)));
       },
       [](double& s, double other) { s += other; });
@@ -105,7 +109,7 @@ double DirectedSearch::consistency() const {
 
 // A run may have the same share of what is asked for as it has of the area.
 void DirectedSearch::refine_in_runs() {
-  const std::vector<Part> all = std::move(parts_);
+  const std::vector<FacePart> all = std::move(parts_);
   in_runs_ = true;
   settled_.percentiles.clear();
   for (const BoundedNumber& percentile : sums_.percentiles) settled_.percentiles.emplace_back(percentile);
@@ -115,7 +119,7 @@ void DirectedSearch::refine_in_runs() {
     parts_.assign(all.begin() + static_cast<std::ptrdiff_t>(begin),
                   all.begin() + static_cast<std::ptrdiff_t>(end));
     area_ = 0;
-    for (const Part& part : parts_) area_ += part.area;
+    for (const FacePart& part : parts_) area_ += part.area;
     const auto share = static_cast<double>(end - begin) / static_cast<double>(all.size());
     const auto most = static_cast<std::size_t>(share * static_cast<double>(most_parts_));
     while (refine(choose(), most) == Refined::yes) {
@@ -134,7 +138,7 @@ double DirectedSearch::Steps::at(std::size_t i) const {
                      : bounds.lower + (bounds.upper - bounds.lower) * static_cast<double>(i) / kSteps;
 }
 
-void DirectedSearch::Steps::add(const Part& part) {
+void DirectedSearch::Steps::add(const FacePart& part) {
   const auto add_to = [&](std::vector<CompensatedSum>& below, const TwoSided& bound) {
     const double width = bounds.upper - bounds.lower;
     const double step = (bound.least() - bounds.lower) / width * kSteps;
@@ -147,7 +151,8 @@ void DirectedSearch::Steps::add(const Part& part) {
       counted = fraction;
     }
   };
-  add_to(below_low, part.lower()), add_to(below_high, part.upper());
+  add_to(below_low, part.lower());
+  add_to(below_high, part.upper());
 }
 
 void DirectedSearch::settle() {
@@ -156,7 +161,7 @@ void DirectedSearch::settle() {
     add_within(parts_, limit(options_.tolerances[i]), settled_.within[i]);
   for (Steps& steps : settled_.percentiles)
     if (steps.bounds.lower < steps.bounds.upper)
-      for (const Part& part : parts_) steps.add(part);
+      for (const FacePart& part : parts_) steps.add(part);
   settled_.consistency += consistency();
 }
 
@@ -181,20 +186,24 @@ void DirectedSearch::make_parts() {
   bound_by_middles(all);
 }
 
-// All sums are in the order of the parts, whatever the number of threads.
-void DirectedSearch::add_means(const std::vector<Part>& parts, Means& means) {
+// Sums are in the order of the parts, whatever the number of threads.
+void DirectedSearch::add_means(const std::vector<FacePart>& parts, Means& means) {
   sum_parts(
       parts, means,
-      [](Means& m, const Part& part) {
+      [](Means& m, const FacePart& part) {
         const TwoSided low = part.lower(), high = part.upper();
         m.largest = std::max(m.largest, high.largest());
-        m.low += part.area * low.mean(), m.high += part.area * high.mean();
-        m.square_low += part.area * low.mean_square(), m.square_high += part.area * high.mean_square();
+        m.low += part.area * low.mean();
+        m.high += part.area * high.mean();
+        m.square_low += part.area * low.mean_square();
+        m.square_high += part.area * high.mean_square();
       },
       [](Means& m, const Means& other) {
         m.largest = std::max(m.largest, other.largest);
-        m.low += other.low.value(), m.high += other.high.value();
-        m.square_low += other.square_low.value(), m.square_high += other.square_high.value();
+        m.low += other.low.value();
+        m.high += other.high.value();
+        m.square_low += other.square_low.value();
+        m.square_high += other.square_high.value();
       });
 }
 
@@ -223,18 +232,22 @@ double DirectedSearch::limit(double tolerance) const {
   return tolerance + scale_.accuracy;
 }
 
-void DirectedSearch::add_within(const std::vector<Part>& parts, double limit, Within& sum) {
+void DirectedSearch::add_within(const std::vector<FacePart>& parts, double limit, Within& sum) {
   sum_parts(
       parts, sum,
-      [limit](Within& w, const Part& part) {
+      [limit](Within& w, const FacePart& part) {
         const double surely = part.upper().fraction_within(limit),
                      maybe = part.lower().fraction_within(limit);
-        w.low += part.area * surely, w.high += part.area * maybe;
-        w.all = w.all && surely == 1, w.any = w.any || maybe > 0;
+        w.low += part.area * surely;
+        w.high += part.area * maybe;
+        w.all = w.all && surely == 1;
+        w.any = w.any || maybe > 0;
       },
       [](Within& w, const Within& other) {
-        w.low += other.low.value(), w.high += other.high.value();
-        w.all = w.all && other.all, w.any = w.any || other.any;
+        w.low += other.low.value();
+        w.high += other.high.value();
+        w.all = w.all && other.all;
+        w.any = w.any || other.any;
       });
 }
 
@@ -259,26 +272,29 @@ BoundedNumber DirectedSearch::percentile(std::size_t number) const {
   if (!settled_.percentiles.empty()) return percentile(settled_.percentiles[number], least, most);
   const BoundedNumber known =
       number < known_percentiles_.size() ? known_percentiles_[number] : between(0, largest_);
-  const double low = quantile(least, &Part::lower, known), high = quantile(most, &Part::upper, known);
+  const double low = quantile(least, &FacePart::lower, known), high = quantile(most, &FacePart::upper, known);
   return between(std::max(0.0, low - scale_.rounding), high > 0 ? high + scale_.rounding : 0);
 }
 
-// Of parts that are all settled, within the bounds that were known before.
+// The percentile of parts that are all settled, within the bounds that were known before.
 BoundedNumber DirectedSearch::percentile(const Steps& steps, double least, double most) const {
   double lower = steps.bounds.lower, upper = steps.bounds.upper;
   CompensatedSum low, high;
   bool below = true, found = false;
   for (std::size_t i = 0; i <= kSteps; ++i) {
-    low += steps.below_low[i].value(), high += steps.below_high[i].value();
+    low += steps.below_low[i].value();
+    high += steps.below_high[i].value();
     below = below && low.value() < least * sums_.area;
     if (below) lower = std::max(lower, steps.at(i) - scale_.rounding);
-    if (!found && high.value() >= most * sums_.area)
-      found = true, upper = std::min(upper, steps.at(i) + scale_.rounding);
+    if (!found && high.value() >= most * sums_.area) {
+      found = true;
+      upper = std::min(upper, steps.at(i) + scale_.rounding);
+    }
   }
   return between(lower, upper);
 }
 
-double DirectedSearch::quantile(double fraction, TwoSided (Part::*bound)() const,
+double DirectedSearch::quantile(double fraction, TwoSided (FacePart::*bound)() const,
                                 const BoundedNumber& known) const {
   struct Piece {
     TwoSided bound;
@@ -293,7 +309,7 @@ double DirectedSearch::quantile(double fraction, TwoSided (Part::*bound)() const
   Open open;
   sum_parts(
       parts_, open,
-      [&](Open& some, const Part& part) {
+      [&](Open& some, const FacePart& part) {
         const TwoSided distance = (part.*bound)();
         if (distance.largest() <= lo)
           some.below += part.area;
@@ -317,7 +333,7 @@ double DirectedSearch::quantile(double fraction, TwoSided (Part::*bound)() const
       return piece.bound.largest() <= lo || piece.bound.least() > hi;
     });
   }
-  return bound == &Part::lower ? lo : hi;
+  return bound == &FacePart::lower ? lo : hi;
 }
 
 // Parts that together contribute half of what is asked for need not be bounded more closely. Of the others,
@@ -333,7 +349,10 @@ void DirectedSearch::choose_by_share(const std::vector<double>& contributions, d
   std::vector<std::uint32_t> large;
   double of_large = 0;
   for (std::uint32_t i = 0; i < contributions.size(); ++i)
-    if (is_large[i]) large.push_back(i), of_large += contributions[i];
+    if (is_large[i]) {
+      large.push_back(i);
+      of_large += contributions[i];
+    }
   constexpr double kLess = 0.8, kLeft = 0.5;  // of what is asked for; of the contribution of a part
   const double surplus = total - kLess * target;
   if (kLeft * of_large > surplus)
@@ -343,7 +362,8 @@ void DirectedSearch::choose_by_share(const std::vector<double>& contributions, d
   double less = 0;
   for (const std::uint32_t i : large) {
     if (less > surplus) break;
-    less += kLeft * contributions[i], chosen[i] = 1;
+    less += kLeft * contributions[i];
+    chosen[i] = 1;
   }
 }
 
@@ -354,7 +374,7 @@ void DirectedSearch::choose_around(const BoundedNumber& percentile, Chosen& chos
   if (found <= asked) return;
   const double enough = std::max(asked / 2, in_runs_ ? 0 : found / 4);
   for_each_part([&](std::size_t i) {
-    const Part& part = parts_[i];
+    const FacePart& part = parts_[i];
     if (!chosen[i] && part.upper().largest() >= percentile.lower &&
         part.lower().least() <= percentile.upper && part.gap() > enough)
       chosen[i] = 1;
@@ -393,11 +413,11 @@ void DirectedSearch::for_each_part(const std::function<void(std::size_t)>& visit
   });
 }
 
-bool DirectedSearch::can_be_thorough(const Part& part) {
+bool DirectedSearch::can_be_thorough(const FacePart& part) {
   return !part.thorough && part.squared_size() > kNear * part.upper().least() * part.upper().least();
 }
 
-bool DirectedSearch::can_be_closer(const Part& part) const {
+bool DirectedSearch::can_be_closer(const FacePart& part) const {
   const double least = kLeastSize * scale_.size;
   return part.gap() > part.closest_bounds(scale_.accuracy) &&
          (can_be_thorough(part) || part.squared_size() > least * least);
@@ -433,10 +453,14 @@ void DirectedSearch::divide(const std::vector<std::size_t>& divided) {
   std::vector<std::size_t> changed;
   std::span<const MeasuredPoint> left = measured;
   for (std::size_t n = 0; n < divided.size(); ++n) {
-    const std::vector<Part> all = pieces(parts_[divided[n]], cuts[n], left);
+    const std::vector<FacePart> all = pieces(parts_[divided[n]], cuts[n], left);
     left = left.subspan(static_cast<std::size_t>(cuts[n].points));
-    parts_[divided[n]] = all.front(), changed.push_back(divided[n]);
-    for (std::size_t k = 1; k < all.size(); ++k) changed.push_back(parts_.size()), parts_.push_back(all[k]);
+    parts_[divided[n]] = all.front();
+    changed.push_back(divided[n]);
+    for (std::size_t k = 1; k < all.size(); ++k) {
+      changed.push_back(parts_.size());
+      parts_.push_back(all[k]);
+    }
   }
   bound_by_middles(changed);
 }
@@ -449,7 +473,7 @@ void DirectedSearch::bound_by_middles(const std::vector<std::size_t>& numbers) {
       measure(b_, points, scale_.accuracy, options_.progress, kFarFace);
   parallel_for(numbers.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      Part& part = parts_[numbers[n]];
+      FacePart& part = parts_[numbers[n]];
       part.nearest = middles[n].nearest;
       bound(b_, part);
     }

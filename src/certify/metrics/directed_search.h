@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "certify/metrics/part.h"
-#include "certify/metrics/scale.h"
+#include "certify/metrics/surface_points.h"
 #include "core/numbers/compensated_sum.h"
 
 namespace sdm::metrics {
@@ -42,7 +42,7 @@ class DirectedSearch {
 
     explicit Steps(const BoundedNumber& found);
     [[nodiscard]] double at(std::size_t i) const;
-    void add(const Part& part);
+    void add(const FacePart& part);
   };
   /// Sums over parts that are no longer in memory.
   struct Settled {
@@ -57,8 +57,8 @@ class DirectedSearch {
   /// Adds the parts to what is settled.
   void settle();
   void sum_up();
-  static void add_means(const std::vector<Part>& parts, Means& means);
-  static void add_within(const std::vector<Part>& parts, double limit, Within& sum);
+  static void add_means(const std::vector<FacePart>& parts, Means& means);
+  static void add_within(const std::vector<FacePart>& parts, double limit, Within& sum);
   [[nodiscard]] double consistency() const;
   /// The largest distance that counts as within a tolerance.
   [[nodiscard]] double limit(double tolerance) const;
@@ -68,16 +68,16 @@ class DirectedSearch {
   [[nodiscard]] BoundedNumber percentile(const Steps& steps, double least, double most) const;
   /// The least t such that `bound` is at most t on this fraction of the area, or the end of what is known of
   /// it if it is beyond.
-  [[nodiscard]] double quantile(double fraction, TwoSided (Part::*bound)() const,
+  [[nodiscard]] double quantile(double fraction, TwoSided (FacePart::*bound)() const,
                                 const BoundedNumber& known) const;
   [[nodiscard]] double width(const BoundedNumber& number) const;
   [[nodiscard]] Chosen choose() const;
   void choose_by_share(const std::vector<double>& contributions, double target, Chosen& chosen) const;
   void choose_around(const BoundedNumber& percentile, Chosen& chosen) const;
-  /// On all cores.
+  /// Calls visit(i) for all parts, on all cores.
   void for_each_part(const std::function<void(std::size_t)>& visit) const;
-  [[nodiscard]] static bool can_be_thorough(const Part& part);
-  [[nodiscard]] bool can_be_closer(const Part& part) const;
+  [[nodiscard]] static bool can_be_thorough(const FacePart& part);
+  [[nodiscard]] bool can_be_closer(const FacePart& part) const;
   /// Returns whether a bound may have changed; `too_many`: there are `most` parts already.
   Refined refine(const Chosen& chosen, std::size_t most);
   void divide(const std::vector<std::size_t>& divided);
@@ -88,7 +88,7 @@ class DirectedSearch {
   const sites::SitesData& b_;
   const MetricsOptions& options_;
   const Scale scale_;
-  std::vector<Part> parts_;
+  std::vector<FacePart> parts_;
   std::size_t most_parts_ = 0;
   double rounding_ = 0;   // of areas and their sums, as a fraction of the whole area
   double area_ = 0;       // of the parts in memory

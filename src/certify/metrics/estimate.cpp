@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "certify/hausdorff/face_distance.h"
+#include "certify/hausdorff/nearest_face.h"
 #include "certify/hausdorff/vertex_search.h"
-#include "certify/metrics/faces.h"
 #include "certify/metrics/intervals.h"
+#include "certify/metrics/surface_points.h"
 #include "closest/scattered.h"
 #include "closest/single_point.h"
 #include "core/cancellation.h"
@@ -70,8 +70,10 @@ struct Cell {
     int longest = 0;
     double most = -1;
     for (int i = 0; i < 3; ++i)
-      if (const double length = squared_norm(corner[(i + 2) % 3] - corner[(i + 1) % 3]); length > most)
-        most = length, longest = i;
+      if (const double length = squared_norm(corner[(i + 2) % 3] - corner[(i + 1) % 3]); length > most) {
+        most = length;
+        longest = i;
+      }
     const int next = (longest + 1) % 3, last = (longest + 2) % 3;
     std::array<Cell, 2> result{*this, *this};
     result[0].corner[next] = result[1].corner[last] = 0.5 * (corner[next] + corner[last]);
@@ -161,7 +163,8 @@ DirectedEstimate::Sample DirectedEstimate::measure(std::size_t count, std::uint6
       runs.place(r, places);
       at.clear();
       for (const SurfacePoints::Place& place : places) at.push_back(place.at);
-      order.resize(at.size()), found.assign(at.size(), {});
+      order.resize(at.size());
+      found.assign(at.size(), {});
       std::iota(order.begin(), order.end(), 0u);
       closest::closest_of_each(b_, at, order, kInfinity, found);
       for (std::size_t i = 0; i < at.size(); ++i) {
@@ -188,7 +191,8 @@ DirectedMetrics DirectedEstimate::evaluate(Sample sample) {
   const Mean first = mean(distances, 1), second = mean(distances, 2);
   result.mean = estimated(first.value, first.lower, first.upper);
   result.rms = estimated(std::sqrt(second.value), std::sqrt(second.lower), std::sqrt(second.upper));
-  ask_for(first.enough), ask_for(second.enough);
+  ask_for(first.enough);
+  ask_for(second.enough);
   const auto samples = static_cast<double>(distances.size());
   // An interval of so many points that is `half` to a side, where `enough` is asked for.
   const auto ask = [&](const BoundedNumber& number, double enough) {
@@ -227,8 +231,11 @@ DirectedEstimate::Mean DirectedEstimate::mean(const std::vector<double>& distanc
   const auto samples = static_cast<double>(n);
   CompensatedSum all, up_to_usual, squares;
   std::size_t larger = 0;
-  for (const double d : distances)
-    all += powered(d), up_to_usual += std::min(usual, powered(d)), larger += d > usual_;
+  for (const double d : distances) {
+    all += powered(d);
+    up_to_usual += std::min(usual, powered(d));
+    larger += d > usual_;
+  }
   const double middle = up_to_usual.value() / samples;
   for (const double d : distances) {
     const double off = std::min(usual, powered(d)) - middle;

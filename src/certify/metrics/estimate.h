@@ -5,7 +5,6 @@
 
 #include <vector>
 
-#include "certify/metrics/scale.h"
 #include "certify/metrics/surface_points.h"
 #include "sites/sites_data.h"
 
@@ -16,7 +15,7 @@ namespace sdm::metrics {
 /// the rest. The largest distance is certified.
 class DirectedEstimate {
  public:
-  /// All must outlive this object. `stream`: of the random numbers, different for both directions.
+  /// The arguments must outlive this object. `stream`: of the random numbers, different for both directions.
   DirectedEstimate(const Mesh& a, const sites::SitesData& b, const MetricsOptions& options,
                    const Scale& scale, std::uint64_t stream);
 

@@ -32,7 +32,8 @@ double at_most(std::uint64_t n, std::uint64_t k, double p) {
   double sum = 1, term = 1;
   for (double i = successes; i > 0; --i) {
     const double ratio = i / (trials - i + 1) * ((1 - p) / p);
-    term *= ratio, sum += term;
+    term *= ratio;
+    sum += term;
     if (term < kNegligible * sum * (1 - ratio)) break;
   }
   const double first = log_factorial(trials) - log_factorial(successes) - log_factorial(trials - successes) +

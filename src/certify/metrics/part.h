@@ -1,18 +1,57 @@
-// A part of a face of A, and linear bounds on the distance of its points to B.
+// Integrals and distributions of linear functions on triangles.
 #pragma once
 
 #include <sdm/progress.h>
+#include <sdm/types.h>
 
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "certify/metrics/linear.h"
-#include "certify/metrics/scale.h"
+#include "certify/metrics/surface_points.h"
 #include "sites/sites_data.h"
 
 namespace sdm::metrics {
+
+/// A linear function on a triangle, by its values at the corners.
+class Linear {
+ public:
+  Linear() = default;
+  explicit Linear(const Vec3& at_corners);
+
+  /// The mean of the positive part, max(0, f).
+  [[nodiscard]] double mean() const;
+  /// The mean of the square of the positive part.
+  [[nodiscard]] double mean_square() const;
+  /// The fraction of the area where f ≤ limit.
+  [[nodiscard]] double fraction_within(double limit) const;
+  [[nodiscard]] double least() const { return a_; }
+  [[nodiscard]] double largest() const { return c_; }
+
+ private:
+  /// The fraction of the area next to the corner with value `at`, up to where the function is `limit`.
+  [[nodiscard]] double fraction_at(double at, double limit, double other, double third) const;
+
+  double a_ = 0, b_ = 0, c_ = 0;  // ascending
+};
+
+/// max(0, a, b) of two linear functions: the distance to a plane, or between two, where a triangle crosses
+/// it. Exact unless a and b are both positive somewhere; then the mean and the mean square are upper bounds,
+/// and the fraction within a limit is a lower one.
+class TwoSided {
+ public:
+  TwoSided(const Vec3& a, const Vec3& b) : a_(a), b_(b) {}
+
+  [[nodiscard]] double mean() const { return a_.mean() + b_.mean(); }
+  [[nodiscard]] double mean_square() const { return a_.mean_square() + b_.mean_square(); }
+  [[nodiscard]] double fraction_within(double limit) const;
+  [[nodiscard]] double least() const;
+  [[nodiscard]] double largest() const;
+
+ private:
+  Linear a_, b_;
+};
 
 /// A point of A, with bounds on its distance.
 struct MeasuredPoint {
@@ -23,7 +62,7 @@ struct MeasuredPoint {
 
 /// Points that are farther than so many times the accuracy of the cpu engine are measured by it alone.
 inline constexpr double kFar = 1000;
-/// The same for points of which only some near face is needed.
+/// kFar for points of which only a near face is needed.
 inline constexpr double kFarFace = 30;
 
 /// Measures points, which should be near each other if they are in the order, by the cpu engine, whose
@@ -52,7 +91,7 @@ inline constexpr double kFarFace = 30;
 ///       plane.
 ///
 /// Where B is smooth, both differ from d by the square of the size of the part.
-struct Part {
+struct FacePart {
   std::array<MeasuredPoint, 3> corner{};
   std::uint32_t face = kNone;     ///< of A
   std::uint32_t nearest = kNone;  ///< a face of B closest to the middle
@@ -74,10 +113,10 @@ struct Part {
 };
 
 /// Improves the bounds by the corners and the faces closest to them and to the middle, `nearest`.
-void bound(const sites::SitesData& b, Part& part);
+void bound(const sites::SitesData& b, FacePart& part);
 
 /// Improves the bounds by the faces of B nearby, the lower one if these are few.
-void bound_thoroughly(const sites::SitesData& b, Part& part);
+void bound_thoroughly(const sites::SitesData& b, FacePart& part);
 
 /// Where a part is cut: by a segment from `corner` to the side opposite, or between both sides at it.
 struct Cut {
@@ -86,16 +125,16 @@ struct Cut {
   std::array<double, 2> at{0.5, 0.5};  ///< along each side
 
   /// The points where sides of the part are cut.
-  [[nodiscard]] std::array<Vec3, 2> of(const Part& part) const;
+  [[nodiscard]] std::array<Vec3, 2> of(const FacePart& part) const;
 };
 
 /// Cuts a part that is near the surface along a side of the face that is nearest to its middle, so that one
 /// piece lies above that face; otherwise at the middle of its longest side.
-[[nodiscard]] Cut choose_cut(const sites::SitesData& b, const Part& part);
+[[nodiscard]] Cut choose_cut(const sites::SitesData& b, const FacePart& part);
 
 /// The pieces of a part that is cut at these points: two, or three for two points. Its bounds are those of
 /// the pieces; `nearest` is not set.
-[[nodiscard]] std::vector<Part> pieces(const Part& part, const Cut& cut,
-                                       std::span<const MeasuredPoint> points);
+[[nodiscard]] std::vector<FacePart> pieces(const FacePart& part, const Cut& cut,
+                                           std::span<const MeasuredPoint> points);
 
 }  // namespace sdm::metrics

@@ -1,6 +1,7 @@
 #include <sdm/error.h>
 #include <sdm/hausdorff.h>
 #include <sdm/metrics.h>
+#include <sdm/progress.h>
 #include <sdm/sites.h>
 
 #include <algorithm>
@@ -8,12 +9,13 @@
 #include <charconv>
 #include <cmath>
 #include <new>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "certify/metrics/directed_search.h"
 #include "certify/metrics/estimate.h"
-#include "certify/metrics/faces.h"
-#include "certify/metrics/staged_progress.h"
+#include "certify/metrics/surface_points.h"
 #include "core/memory.h"
 #include "core/numbers/compensated_sum.h"
 #include "geometry/rounding.h"
@@ -22,6 +24,47 @@
 
 namespace sdm {
 namespace {
+
+/// One progress of a computation of several stages, each of a number of steps that is not known in advance.
+/// Reports "metrics" with a fraction that never decreases. Each step of a stage, which begins where the
+/// fraction of the step before falls or its name changes, takes half of what is left of its stage.
+class StagedProgress {
+ public:
+  explicit StagedProgress(Progress progress) : progress_(std::move(progress)) {}
+  StagedProgress(const StagedProgress&) = delete;
+  StagedProgress& operator=(const StagedProgress&) = delete;
+
+  /// Begins the stage that ends with this fraction of the whole, and returns its progress, which refers to
+  /// this object; empty without a progress.
+  [[nodiscard]] Progress stage(double end) {
+    begin_ = end_;
+    end_ = end;
+    last_ = 0;
+    step_.clear();
+    if (!progress_) return {};
+    return [this](std::string_view step, double fraction) { return report(step, fraction); };
+  }
+
+  void finish() const {
+    if (progress_ && !progress_("metrics", 1)) throw Cancelled();
+  }
+
+ private:
+  bool report(std::string_view step, double fraction) {
+    if (step_ != step || fraction < last_) {
+      begin_ += share() * last_;
+      step_ = step;
+    }
+    last_ = std::clamp(fraction, 0.0, 1.0);
+    return progress_("metrics", begin_ + share() * last_);
+  }
+  [[nodiscard]] double share() const { return (end_ - begin_) / 2; }
+
+  Progress progress_;
+  double begin_ = 0, end_ = 0;  ///< what is left of the stage
+  double last_ = 0;             ///< fraction of the present step
+  std::string step_;
+};
 
 // The search for the largest distances takes about this share of the whole progress.
 constexpr double kOfHausdorff = 0.2;
@@ -52,8 +95,10 @@ BoundedNumber averaged(const BoundedNumber& a, const BoundedNumber& b, const Fun
 
 BoundedNumber larger(const BoundedNumber& a, const BoundedNumber& b) {
   BoundedNumber result = a.lower < b.lower || (a.lower == b.lower && a.upper < b.upper) ? b : a;
-  if (const double upper = std::max(a.upper, b.upper); upper > result.upper)
-    result.upper = upper, result.certainty = Certainty::bounded;
+  if (const double upper = std::max(a.upper, b.upper); upper > result.upper) {
+    result.upper = upper;
+    result.certainty = Certainty::bounded;
+  }
   if (std::max(a.certainty, b.certainty) == Certainty::estimate) result.certainty = Certainty::estimate;
   result.value = std::max(a.value, b.value);
   return result;
@@ -114,11 +159,13 @@ DirectedMetrics metrics_of_none(bool both, const MetricsOptions& options) {
 void limit_by_largest(const MetricsOptions& options, const metrics::Scale& scale, DirectedMetrics& m) {
   const double most = m.hausdorff.upper;
   const auto limit = [&](BoundedNumber& number) {
-    number.upper = std::min(number.upper, most), number.lower = std::min(number.lower, most);
+    number.upper = std::min(number.upper, most);
+    number.lower = std::min(number.lower, most);
     number.value = std::clamp(number.value, number.lower, number.upper);
     if (number.upper - number.lower <= 2 * scale.rounding) number.certainty = Certainty::exact;
   };
-  limit(m.mean), limit(m.rms);
+  limit(m.mean);
+  limit(m.rms);
   for (BoundedNumber& percentile : m.percentiles) limit(percentile);
   for (std::size_t i = 0; i < m.within.size(); ++i) {
     if (most <= options.tolerances[i] + scale.accuracy) m.within[i] = exactly(1);
@@ -127,7 +174,7 @@ void limit_by_largest(const MetricsOptions& options, const metrics::Scale& scale
 }
 
 std::array<DirectedMetrics, 2> both_directions(const Mesh& a, const Mesh& b, MetricsOptions options) {
-  metrics::StagedProgress progress(std::move(options.progress));
+  StagedProgress progress(std::move(options.progress));
   options.progress = progress.stage(kOfHausdorff);
   const std::array sites{Sites(a), Sites(b)};
   Box box = bounds(a);
@@ -192,7 +239,10 @@ SurfaceMetrics surface_metrics(const Mesh& a, const Mesh& b, const MetricsOption
     std::array<DirectedMetrics, 2> from;
     from.fill(metrics_of_none(a.triangles.empty() && b.triangles.empty(), options));
     for (const auto& [mesh, m] : {std::pair(&a, &from[0]), std::pair(&b, &from[1])})
-      if (!mesh->triangles.empty()) validate(*mesh), m->area = area_of(*mesh);
+      if (!mesh->triangles.empty()) {
+        validate(*mesh);
+        m->area = area_of(*mesh);
+      }
     return metrics_of(from);
   }
   SurfaceMetrics result = metrics_of(both_directions(a, b, options));

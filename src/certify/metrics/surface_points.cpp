@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "certify/hausdorff/vertex_search.h"
-#include "certify/metrics/faces.h"
 #include "core/numbers/compensated_sum.h"
 #include "geometry/rounding.h"
 #include "geometry/spatial_order.h"
@@ -26,14 +25,17 @@ SurfacePoints::SurfacePoints(const Mesh& mesh) : mesh_(mesh) {
   for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
     if (hausdorff::repeats_corner(mesh.triangles[f])) continue;
     const auto [p, q, r] = corners_of(mesh, f);
-    faces.push_back(f), middles.push_back((1.0 / 3) * (p + q + r));
+    faces.push_back(f);
+    middles.push_back((1.0 / 3) * (p + q + r));
   }
   CompensatedSum area, error;
   for (const std::uint32_t i : spatial_order(middles)) {
     const auto [part, rounding] = area_of(corners_of(mesh, faces[i]));
     if (!(part > 0)) continue;
-    area += part, error += rounding;
-    faces_.push_back(faces[i]), end_.push_back(area.value());
+    area += part;
+    error += rounding;
+    faces_.push_back(faces[i]);
+    end_.push_back(area.value());
   }
   if (faces_.empty()) throw Error("the faces of a mesh have no area: there are no average distances");
   area_ = area.value();
@@ -54,12 +56,21 @@ SurfacePoints::Place SurfacePoints::place(double along, double u, double v, std:
   for (int n = 0; n < halvings; ++n) {
     const Vec3 middle = 0.5 * (b + c), apex = a;
     rest *= 2;
-    if (rest < 1)
-      a = middle, c = b, b = apex;
-    else
-      a = middle, b = c, c = apex, rest -= 1;
+    if (rest < 1) {
+      a = middle;
+      c = b;
+      b = apex;
+    } else {
+      a = middle;
+      b = c;
+      c = apex;
+      rest -= 1;
+    }
   }
-  if (u + v > 1) u = 1 - u, v = 1 - v;
+  if (u + v > 1) {
+    u = 1 - u;
+    v = 1 - v;
+  }
   return {a + u * (b - a) + v * (c - a), faces_[i]};
 }
 

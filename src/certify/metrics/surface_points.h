@@ -1,13 +1,46 @@
-// Random points of a surface.
+// The surface A: lengths that its measures depend on, areas and normals of its faces, and random points of
+// it.
 #pragma once
 
 #include <sdm/mesh.h>
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "geometry/triangle.h"
+#include "geometry/vec.h"
+
 namespace sdm::metrics {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Lengths of both meshes together.
+struct Scale {
+  double size = 0;      ///< the diagonal of their box
+  double rounding = 0;  ///< of distances and coordinates, in double precision
+  double accuracy = 0;  ///< of the cpu engine
+};
+
+struct FaceArea {
+  double area = 0;
+  double error = 0;  ///< of rounding, at most: that of a needle may be more than its area
+};
+
+[[nodiscard]] inline FaceArea area_of(const Corners& face) {
+  constexpr double kAreaRounding = 1e-15;
+  const auto& [p, q, r] = face;
+  return {norm(cross(q - p, r - p)) / 2, kAreaRounding * norm(q - p) * norm(r - p)};
+}
+
+/// Zero of a face without area.
+[[nodiscard]] inline Vec3 unit_normal(const Mesh& mesh, std::uint32_t face) {
+  const auto [a, b, c] = corners_of(mesh, face);
+  const Vec3 normal = cross(b - a, c - a);
+  const double length = norm(normal);
+  return length > 0 ? (1 / length) * normal : Vec3{};
+}
 
 /// Independent random numbers in [0, 1), each by its index: S. Vigna's splitmix64.
 class RandomNumbers {
@@ -37,7 +70,7 @@ class SurfacePoints {
   explicit SurfacePoints(const Mesh& mesh);
 
   [[nodiscard]] double area() const { return area_; }
-  /// Of areas and their sums, as a fraction of the whole area.
+  /// The rounding of areas and their sums, as a fraction of the whole area.
   [[nodiscard]] double rounding() const { return rounding_; }
 
   struct Place {
@@ -60,7 +93,7 @@ class SurfacePoints {
     RandomNumbers numbers_;
     std::vector<std::size_t> first_;  // of each run, and the number of all
   };
-  /// For each seed and stream other ones.
+  /// The points depend on the seed and the stream.
   [[nodiscard]] Runs runs(std::size_t count, std::uint64_t seed, std::uint64_t stream) const {
     return {*this, count, seed, stream};
   }

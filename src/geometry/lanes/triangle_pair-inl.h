@@ -21,7 +21,10 @@ class TrianglePairs {
 
   void set(size_t lane, const Corners& a, const Corners& b) {
     for (int c = 0; c < 3; ++c)
-      for (int k = 0; k < 3; ++k) corner_[0][c][k][lane] = a[c][k], corner_[1][c][k][lane] = b[c][k];
+      for (int k = 0; k < 3; ++k) {
+        corner_[0][c][k][lane] = a[c][k];
+        corner_[1][c][k][lane] = b[c][k];
+      }
   }
 
   // The squared distances of the first `count` lanes.

@@ -35,12 +35,13 @@ struct Moments {
                                       0.5 * (d[2] * m[0] + d[0] * m[2])};
     for (std::size_t i = 0; i < moved.size(); ++i) first[i] += part.first[i] + moved[i];
     moment += m;
-    area += part.area, edges += part.edges;
+    area += part.area;
+    edges += part.edges;
     second += part.second + part.area * squared_norm(d);
   }
 };
 
-// Not smaller, and above all that underflows.
+// At least the value, and above all that underflows.
 float rounded_up(double value) {
   constexpr float kLeast = 1e-30F;
   return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity()) + kLeast;

@@ -1,14 +1,34 @@
-// Expansions of the solid angles of groups of faces.
+// Triangles with an orientation of each, and a tree over them.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
-#include "inside/angles/oriented_faces.h"
+#include "mesh/crossings/ray_parity.h"
+#include "sites/sites_data.h"
 #include "tree/wide_tree.h"
 
 namespace sdm::inside {
+
+struct OrientedFaces {
+  FaceTree faces;
+  std::span<const std::uint8_t> inverted;  ///< of each face: its corners are taken in reverse; empty: of none
+
+  /// The corners in the order of the orientation.
+  [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t face) const {
+    const Triangle& t = faces.triangles[face];
+    const bool reverse = !inverted.empty() && inverted[face] != 0;
+    return {faces.positions[t[0]], faces.positions[t[reverse ? 2 : 1]], faces.positions[t[reverse ? 1 : 2]]};
+  }
+};
+
+/// The faces of sites with the orientation that signs use. Valid for the lifetime of the sites.
+[[nodiscard]] inline OrientedFaces oriented_faces(const sites::SitesData& sites) {
+  return {sites.face_tree(), sites.inverted};
+}
 
 /// The expansions of the children of a wide node, one per lane, in the unit frame and single precision
 /// (Barill et al. 2018, up to the first derivative).
@@ -49,14 +69,14 @@ struct Expansions {
   alignas(32) float centre[3][kWidth] = {};  ///< c, near the area-weighted mean
   alignas(32) float moment[3][kWidth] = {};  ///< M
   alignas(32) float first[6][kWidth] = {};   ///< the symmetric part of T: xx, yy, zz, xy, yz, zx
-  // Not smaller than they are.
+  // Rounded upwards:
   alignas(32) float area[kWidth] = {};    ///< A
   alignas(32) float second[kWidth] = {};  ///< ∫|x − c|² dA
   alignas(32) float radius[kWidth] = {};  ///< R, with δ at the origin
   alignas(32) float noise[kWidth] = {};   ///< 256·u·A + 256·w·P: the rounding of a value, times g²
 };
 
-/// The same for single faces, in the order of the leaves. About its centroid a flat face has T = 0.
+/// The expansions of single faces, in the order of the leaves. About its centroid a flat face has T = 0.
 struct FaceExpansions {
   /// Bounds the rounding of a centre, which is not chosen as a number of single precision.
   static constexpr double kCentreRounding = 2e-7;
@@ -72,7 +92,7 @@ struct TreeExpansions {
   std::vector<Expansions> nodes;  ///< of the wide tree
   FaceExpansions faces;
 };
-/// Those of the wide tree of these faces, and of each face. Cost: linear.
+/// The expansions of the wide tree of these faces, and of each face. Cost: linear.
 [[nodiscard]] TreeExpansions expansions_of(const OrientedFaces& faces, const tree::WideTree& wide);
 
 }  // namespace sdm::inside

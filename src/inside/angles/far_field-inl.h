@@ -42,7 +42,7 @@ struct AngleBall {
   [[nodiscard]] bool in_range() const { return norm(centre) + radius < 0x1p20; }
 };
 
-/// What has an error larger than this, in solid angle, is not part of a field.
+/// Groups of faces and faces with a larger error, in solid angle, are not part of the far field.
 struct FarLimits {
   float group, face;
 };
@@ -56,7 +56,8 @@ namespace sdm::inside::HWY_NAMESPACE {
 // A packet with more near faces and expansions, in vectors, costs more than its points one by one.
 constexpr std::size_t kMostNear = 1500, kMostSteps = 4096;
 
-// What is far from the packet: value + gradient · (q − centre), to within `error`.
+// The sum of the solid angles of faces far from the packet: value + gradient · (q − centre), to within
+// `error`.
 struct FarField {
   double value = 0, error = 0, gradient[3] = {};
 };
@@ -132,8 +133,10 @@ class FarSum {
       for (int k = 0; k < 3; ++k)
         t.r[k] = hn::Sub(hn::Load(d, e.centre[k] + i), hn::Set(d, static_cast<float>(ball_.centre[k])));
       lanes::HWY_NAMESPACE::load(d, e.moment, i, t.moment);
-      t.radius = hn::Load(d, e.radius + i), t.area = hn::Load(d, e.area + i);
-      t.second = hn::Load(d, e.second + i), t.noise = hn::Load(d, e.noise + i);
+      t.radius = hn::Load(d, e.radius + i);
+      t.area = hn::Load(d, e.area + i);
+      t.second = hn::Load(d, e.second + i);
+      t.noise = hn::Load(d, e.noise + i);
       t.displacement = displacement_;
       others |= add(t, children - i, limits_.group,
                     [&](ChildVec squared, ChildVec inverse)
@@ -156,10 +159,11 @@ class FarSum {
             hn::Sub(hn::LoadU(d, e.centre[axis].data() + i), hn::Set(d, static_cast<float>(ball_.centre[k])));
         t.moment[k] = hn::LoadU(d, e.moment[axis].data() + i);
       }
-      // Not smaller than it is.
+      // Rounded upwards.
       t.area = hn::Mul(hn::Sqrt(lanes::HWY_NAMESPACE::dot(t.moment, t.moment)), hn::Set(d, 1 + 1e-6F));
       t.area = hn::Add(t.area, hn::Set(d, 1e-18F));
-      t.radius = hn::LoadU(d, e.radius.data() + i), t.second = hn::LoadU(d, e.second.data() + i);
+      t.radius = hn::LoadU(d, e.radius.data() + i);
+      t.second = hn::LoadU(d, e.second.data() + i);
       t.noise = hn::LoadU(d, e.noise.data() + i);
       t.displacement = displacement_ + static_cast<float>(FaceExpansions::kCentreRounding);
       const float most = whole_ ? std::numeric_limits<float>::max() : limits_.face;

@@ -34,7 +34,10 @@ class LearnedLimits {
  public:
   [[nodiscard]] FarLimits of(std::uint64_t shape) {
     constexpr float kFirst = 0.05F, kOfFaces = 0.5F;
-    if (shape != shape_) most_ = kFirst, shape_ = shape;
+    if (shape != shape_) {
+      most_ = kFirst;
+      shape_ = shape;
+    }
     return {most_, kOfFaces * most_};
   }
   // Whether a sum with this error is useful. If not, the limits are smaller now.
@@ -163,8 +166,10 @@ class NearSum {
     if (!hn::AllTrue(d, known)) {
       unknown = bits_of(hn::Not(known));
       const auto one = hn::Set(d, 1);
-      squared = hn::IfThenElse(known, squared, one), real = hn::IfThenElse(known, real, one);
-      imaginary = hn::IfThenElseZero(known, imaginary), eight = hn::IfThenElseZero(known, eight);
+      squared = hn::IfThenElse(known, squared, one);
+      real = hn::IfThenElse(known, real, one);
+      imaginary = hn::IfThenElseZero(known, imaginary);
+      eight = hn::IfThenElseZero(known, eight);
     }
     // An estimate: the product may have any size near 1, and the bound has a tenth to spare.
     const auto inverse = hn::ApproximateReciprocalSqrt(squared);
@@ -178,7 +183,8 @@ class NearSum {
     const auto fewer = hn::AndNot(hn::Or(up, factor_up), next_up);
     turns_ = hn::Add(turns_, hn::IfThenElseZero(more, hn::Set(d, 1)));
     turns_ = hn::Sub(turns_, hn::IfThenElseZero(fewer, hn::Set(d, 1)));
-    real_ = next_real, imaginary_ = next;
+    real_ = next_real;
+    imaginary_ = next;
     return unknown;
   }
   // The argument of the product to within 0.0038 (S. Rajan et al., Efficient approximations for the
@@ -197,7 +203,7 @@ class NearSum {
   PointVec real_, imaginary_, turns_, error_;
 };
 
-// What single precision leaves open of the angles of faces beside points.
+// The angles of faces beside points, which single precision does not decide.
 class BesideFaces {
  public:
   BesideFaces(const SolidAngles& angles, std::span<const std::uint32_t> faces)
@@ -302,7 +308,8 @@ PacketSides compare(const FarField& far, std::span<const PacketFace> faces, Besi
     double total = total_at[i], error = error_at[i];
     if (!beside.empty()) {
       const SolidAngle exact = beside.at(exact_points[i], 1u << i);
-      total += exact.value, error += exact.error;
+      total += exact.value;
+      error += exact.error;
     }
     sides.known |= (std::abs(total) > error ? 1u : 0u) << i;
     sides.above |= (total > error ? 1u : 0u) << i;

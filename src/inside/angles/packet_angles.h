@@ -1,4 +1,4 @@
-// The solid angle of many triangles, compared with a limit at points near to each other.
+// Sums of the solid angles of many triangles at points near each other, compared with limits.
 #pragma once
 
 #include <sdm/types.h>

@@ -64,7 +64,8 @@ class SolidAngleSum {
       turns_ += imaginary < 0 ? 1 : 0;
     else if (imaginary_ < 0 && im < 0)
       turns_ -= imaginary > 0 || (imaginary == 0 && real < 0) ? 1 : 0;
-    real_ = real, imaginary_ = imaginary;
+    real_ = real;
+    imaginary_ = imaginary;
   }
   [[nodiscard]] SolidAngle sum() const {
     const double value = 2 * (2 * std::numbers::pi * turns_ + std::atan2(imaginary_, real_));

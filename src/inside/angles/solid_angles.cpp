@@ -26,7 +26,8 @@ namespace {
 
 // Terms with larger errors, in solid angle, are never part of a sum.
 constexpr double kMostError = 0.3;
-// How much smaller than the distance from the limit the error is to become: the rest is for the reach.
+// The error is to become smaller than the distance from the limit by this factor: the rest is for the safe
+// radius.
 constexpr double kDecided = 1.2;
 // Beyond this in the unit frame, single precision does not have the range for expansions.
 constexpr double kFarthest = 0x1p20;
@@ -57,7 +58,10 @@ struct ExpansionTerms {
   std::size_t count = 0;
   std::vector<std::uint32_t> open;  // places of children that are not part of it
 
-  void clear() { count = 0, open.clear(); }
+  void clear() {
+    count = 0;
+    open.clear();
+  }
   // Makes room for some more, and for what vectors write beyond those.
   void reserve(std::size_t more) {
     if (count + more <= place.size()) return;
@@ -78,7 +82,10 @@ struct ExpansionTerms {
         open.push_back(place[i]);
         continue;
       }
-      value[kept] = value[i], error[kept] = error[i], gap[kept] = gap[i], steepness[kept] = steepness[i];
+      value[kept] = value[i];
+      error[kept] = error[i];
+      gap[kept] = gap[i];
+      steepness[kept] = steepness[i];
       place[kept++] = place[i];
     }
     count = kept;
@@ -113,7 +120,7 @@ class Refinement {
     terms_.clear();
   }
 
-  // All terms with errors of at most `most`, at first.
+  // Starts with terms whose errors are at most `most`.
   void start(double most) {
     most_ = static_cast<float>(most);
     expand(0);
@@ -135,7 +142,8 @@ class Refinement {
     terms_.end_with_zeros();
     for (size_t i = 0; i < terms_.count; i += hn::Lanes(d)) {
       const auto v = hn::PromoteTo(d, hn::LoadU(df, terms_.value.data() + i));
-      value = hn::Add(value, v), magnitude = hn::Add(magnitude, hn::Abs(v));
+      value = hn::Add(value, v);
+      magnitude = hn::Add(magnitude, hn::Abs(v));
       error = hn::Add(error, hn::PromoteTo(d, hn::LoadU(df, terms_.error.data() + i)));
     }
     const SolidAngle faces = faces_.sum();
@@ -148,7 +156,7 @@ class Refinement {
   }
   // How far q can move while the sum changes by less than `change`. No term changes by more than 2·A/g³ per
   // length, where g is the distance to its faces on the way, at least 3/4 of that from q.
-  double reach(double change) const {
+  double safe_radius(double change) const {
     double nearest = nearest_leaf_, steepest = steepness_of_leaves_;
     for (size_t i = 0; i < terms_.count; ++i) {
       nearest = std::min(nearest, double{terms_.gap[i]});
@@ -206,7 +214,7 @@ class Refinement {
     const Floats d;
     const hn::RebindToUnsigned<Floats> du;
     const size_t at = terms_.count;
-    // Not CompressStore(), whose masked stores take far longer on some processors.
+    // The masked stores of CompressStore() take far longer on some processors.
     hn::StoreU(hn::Compress(value, part), d, terms_.value.data() + at);
     hn::StoreU(hn::Compress(error, part), d, terms_.error.data() + at);
     hn::StoreU(hn::Compress(gap, part), d, terms_.gap.data() + at);
@@ -295,7 +303,7 @@ SolidAngles::Sum SumAt(const SolidAngles& angles, const Vec3& q, double limit, d
     if (from_limit > kDecided * angle.error || angle.error <= tolerance || std::isinf(angle.error) ||
         refinement.by_faces()) {
       const double change = from_limit - angle.error;
-      return {angle, change > 0 ? refinement.reach(change) : 0};
+      return {angle, change > 0 ? refinement.safe_radius(change) : 0};
     }
     most = next_error(most, std::max(tolerance, from_limit / kDecided), angle.error);
   }

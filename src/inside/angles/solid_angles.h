@@ -1,4 +1,4 @@
-// The solid angle of many triangles, as accurately as it is needed.
+// Sums of the solid angles of many triangles, as accurately as needed: a tree code.
 #pragma once
 
 #include <sdm/types.h>
@@ -7,22 +7,21 @@
 #include <vector>
 
 #include "inside/angles/expansions.h"
-#include "inside/angles/oriented_faces.h"
 #include "inside/angles/solid_angle.h"
 
 namespace sdm::inside {
 
-/// The sum of the solid angles of the faces of a tree, where those of distant subtrees are expanded about
-/// their centres, eight at once, with a bound on the error of each (expansions.h).
+/// The sum of the solid angles of the faces of a tree. Distant subtrees are expanded about their centres,
+/// eight at once, with a bound on the error of each (expansions.h).
 class SolidAngles {
  public:
   /// `wide` is the tree of the faces, collapsed. Both must outlive this object and not change. Cost: linear.
   SolidAngles(const OrientedFaces& faces, const tree::WideTree& wide);
 
-  /// What is known of the sum at a point q.
+  /// The sum at a point q.
   struct Sum {
     SolidAngle angle;
-    double reach = 0;  ///< at points nearer to q than this, the sum is on the same side of the limit
+    double safe_radius = 0;  ///< at points nearer to q than this, the sum is on the same side of the limit
   };
   /// The sum at q: refined, the largest errors first, until the error is well below its distance from
   /// `limit` or the error is at most `tolerance`, or until no expansion is left or the error is infinite: q
@@ -32,7 +31,6 @@ class SolidAngles {
   [[nodiscard]] bool empty() const { return expansions.nodes.empty(); }
 
   std::uint64_t number;  ///< unique, over all objects
-  // What sums are made of.
   OrientedFaces faces;
   const tree::WideTree& wide;
   TreeExpansions expansions;

@@ -26,9 +26,9 @@
 #include "io/points/cloud_places.h"
 #include "io/points/measured_rows.h"
 #include "io/points/point_cells.h"
+#include "map/measures/walls.h"
 #include "map/statistics/tolerance_limits.h"
 #include "map/statistics/weighted_statistics.h"
-#include "map/thickness/wall_lengths.h"
 #include "summary/verdict/sample_evidence.h"
 #include "summary/wall_note.h"
 

@@ -6,8 +6,8 @@
 #include "core/memory.h"
 #include "map/along_measure.h"
 #include "map/measure.h"
-#include "map/self/self_measure.h"
-#include "map/thickness/thickness_measure.h"
+#include "map/measures/self_measure.h"
+#include "map/measures/thickness_measure.h"
 
 namespace sdm {
 namespace {

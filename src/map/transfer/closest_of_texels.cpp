@@ -51,8 +51,10 @@ SurfacePoint ClosestOfTexels::at(std::uint32_t texel) {
   const SiteType type = map_.site_type[texel];
   if (type == SiteType::none) return {};
   const std::uint32_t owner = surface_.map_faces[texel], number = map_.site[texel];
-  if (texel - row_begin_ >= surface_.resolution)
-    row_ = texel / surface_.resolution, row_begin_ = row_ * surface_.resolution;
+  if (texel - row_begin_ >= surface_.resolution) {
+    row_ = texel / surface_.resolution;
+    row_begin_ = row_ * surface_.resolution;
+  }
   const Vec3 query = surface_.to_surface(owner, {texel - row_begin_ + 0.5, row_ + 0.5});
   if (ends_elsewhere_) return end_of_vector(texel, query);
   if (type != site_.type || number != site_.number) read(type, number);
@@ -69,7 +71,9 @@ void ClosestOfTexels::read(SiteType type, std::uint32_t number) {
                                                      : data_.mesh.triangles.size();
   if (number >= count || (type == SiteType::vertex && data_.vertex_faces.of(number).empty()))
     throw Error("the map names a site that the other mesh does not have");
-  site_.type = type, site_.number = number, site_.face = data_.face_of(type, number);
+  site_.type = type;
+  site_.number = number;
+  site_.face = data_.face_of(type, number);
   const auto& positions = data_.mesh.positions;
   if (type == SiteType::vertex) {
     site_.ends[0] = number;

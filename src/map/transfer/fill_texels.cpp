@@ -30,7 +30,8 @@ class Pyramid {
   Pyramid(std::size_t columns, std::size_t rows, std::size_t components)
       : columns_(columns), rows_(rows), known_components_(components) {
     for (std::size_t w = columns, h = rows; w > 1 || h > 1;) {
-      w = (w + 1) / 2, h = (h + 1) / 2;
+      w = (w + 1) / 2;
+      h = (h + 1) / 2;
       levels_.push_back({w, h, std::vector<float>(w * h), std::vector<float>(w * h * components)});
     }
   }

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "certify/tolerance/prove_valid.h"
+#include "certify/prove_tolerance.h"
 #include "closest/facing/outward_normals.h"
 #include "summary/verdict/certify.h"
 #include "summary/verdict/evidence.h"

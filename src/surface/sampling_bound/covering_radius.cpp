@@ -11,7 +11,7 @@
 #include "core/parallel.h"
 #include "geometry/vec.h"
 #include "surface/sampling_bound/face_cutter.h"
-#include "surface/sampling_bound/face_frame.h"
+#include "surface/sampling_bound/piece_assignment.h"
 
 namespace sdm {
 namespace surface {

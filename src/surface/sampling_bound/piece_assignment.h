@@ -1,16 +1,40 @@
 // Covering radii: the distance from any surface point to a sample, for any positions of the vertices.
 #pragma once
 
+#include <sdm/mesh.h>
 #include <sdm/surface.h>
 
 #include <memory>
 #include <vector>
 
-#include "surface/sample_blocks.h"
-#include "surface/sampling_bound/face_frame.h"
+#include "geometry/vec.h"
+#include "surface/sample_order.h"
 #include "surface/sampling_bound/measure_pieces.h"
 
 namespace sdm::surface {
+
+/// The point with weights (a, b), a, b ≥ 0, a + b ≤ 1, is origin + a edges[0] + b edges[1].
+struct FaceFrame {
+  Vec3 origin;
+  std::array<Vec3, 2> edges;
+
+  FaceFrame(const Mesh& mesh, std::size_t face) {
+    const auto& [a, b, c] = mesh.triangles[face];
+    origin = mesh.positions[a];
+    edges = {mesh.positions[b] - origin, mesh.positions[c] - origin};
+  }
+
+  [[nodiscard]] Vec3 at(double a, double b) const { return origin + a * edges[0] + b * edges[1]; }
+
+  /// Upper bound on the error of a point computed from weights rounded to float: at most 2⁻²⁵ per weight,
+  /// plus a few roundings in double.
+  [[nodiscard]] double rounding() const {
+    double largest = 0;
+    for (const Vec3& v : {origin, origin + edges[0], origin + edges[1]})
+      for (const double x : v) largest = std::max(largest, std::abs(x));
+    return 1e-14 * largest + 0x1.01p-25 * (norm(edges[0]) + norm(edges[1]));
+  }
+};
 
 struct Identity;
 
@@ -27,7 +51,7 @@ struct Identity;
 /// their faces, so it is valid for any positions of the vertices. Only the radii depend on the positions. See
 /// docs/theory.md, "The error bound".
 ///
-/// All functions take the surface that this was built for, not edited since, with any positions.
+/// The surface of each function is that which this was built for, not edited since, with any positions.
 ///
 /// Memory: 1 byte per sample, 12 bytes per face and block in which it has samples or pieces, and 36 bytes per
 /// piece. There is about one piece for every two squares crossed by an edge of a face, and one for every
@@ -88,7 +112,8 @@ void PieceAssignment::for_each_face(std::size_t block, const Take& take) const {
     const FaceInBlock& part = faces_in_blocks_[p];
     take(part, std::span(squares_).subspan(square, part.square_end - square),
          std::span(pieces_).subspan(piece, part.piece_end - piece));
-    square = part.square_end, piece = part.piece_end;
+    square = part.square_end;
+    piece = part.piece_end;
   }
 }
 

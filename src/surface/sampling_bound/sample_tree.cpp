@@ -62,8 +62,10 @@ std::uint32_t SampleTree::nearest(const Vec3& query) const {
     const std::uint32_t run = tree_.items_of(leaf)[0];
     for (std::size_t i = first_[run]; i < first_[run + 1]; ++i) {
       const Vec3 p = surface_.texel_point(surface_.sample_faces[i], surface_.samples[i]);
-      if (const double d = squared_norm(p - query); d < least)
-        sample = static_cast<std::uint32_t>(i), least = d;
+      if (const double d = squared_norm(p - query); d < least) {
+        sample = static_cast<std::uint32_t>(i);
+        least = d;
+      }
     }
   };
   tree::visit(tree_, tree::NearestFirst{bound, enter, visit_leaf});

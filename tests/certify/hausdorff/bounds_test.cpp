@@ -4,7 +4,6 @@
 
 #include <random>
 
-#include "certify/hausdorff/face_distance.h"
 #include "certify/hausdorff/nearest_face.h"
 #include "certify/hausdorff/part.h"
 #include "geometry/vec.h"
@@ -82,17 +81,17 @@ TEST(Part, BoundsContainAllDistances) {
   const auto& b = internals(sites);
   std::exponential_distribution<double> weight;
   for (int trial = 0; trial < 300; ++trial) {
-    Part part;
+    FacePart part;
     part.at = random_triangle(random, trial % 6);
     for (int k = 0; k < 1 + trial % 9; ++k) {
       part.add(b, b.tree.items[random() % b.tree.items.size()], 0);
-      if (k + 1 < trial % 9 && part.count == Part::kMostFaces) part.bound();
+      if (k + 1 < trial % 9 && part.count == FacePart::kMostFaces) part.bound();
     }
     part.bound();
     const auto nearest = [&](const Vec3& p) {
       double least = std::numeric_limits<double>::infinity();
       for (int k = 0; k < part.count; ++k)
-        least = std::min(least, upper_face_distance(p, corners_of(mesh, part.near[k])));
+        least = std::min(least, upper_face_distance(p, corners_of(mesh, part.b_faces[k])));
       return least;
     };
     double best = std::numeric_limits<double>::infinity();
@@ -127,7 +126,7 @@ TEST(Part, BoundIsTightForPlanes) {
   const Sites sites(planes);
   std::mt19937 random(8);
   for (int trial = 0; trial < 100; ++trial) {
-    Part part;
+    FacePart part;
     part.at = random_triangle(random, 0);
     for (Vec3& p : part.at) p = 0.4 * p;  // on the same side of all planes
     for (std::uint32_t f = 0; f < 3; ++f) part.add(internals(sites), f, 0);

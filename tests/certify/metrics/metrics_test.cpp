@@ -144,7 +144,7 @@ TEST(MetricParts, BoundTheDistanceOfEachPoint) {
     const sites::SitesData& b = internals(sites);
     for (int n = 0; n < 300; ++n) {
       const double size = std::pow(10.0, -3 * unit(random));
-      metrics::Part part{.face = 0, .area = 1};
+      metrics::FacePart part{.face = 0, .area = 1};
       const Vec3 middle = n % 2 == 0 ? random_point({{-1, -1, -1}, {2, 2, 2}}, random)
                                      : random_surface_points(mesh, 1, random)[0];
       const auto measured = [&](const Vec3& p) { return metrics::measure(b, std::array{p}, 1e-6, {})[0]; };
@@ -172,9 +172,9 @@ TEST(MetricParts, BoundTheDistanceOfEachPoint) {
         std::vector<metrics::MeasuredPoint> points;
         const std::array<Vec3, 2> at = cut.of(part);
         for (int k = 0; k < cut.points; ++k) points.push_back(measured(at[k]));
-        const std::vector<metrics::Part> all = pieces(part, cut, points);
+        const std::vector<metrics::FacePart> all = pieces(part, cut, points);
         double area = 0;
-        for (const metrics::Part& piece : all) area += piece.area;
+        for (const metrics::FacePart& piece : all) area += piece.area;
         EXPECT_NEAR(area, part.area, 1e-15);
         part = all[n % all.size()];
         part.nearest = measured(part.middle()).nearest;

@@ -3,7 +3,7 @@
 
 #include "io/image/pictures/color_scale.h"
 #include "io/image/pictures/legend.h"
-#include "map/places/face_tolerances.h"
+#include "map/places/place_limits.h"
 
 #include <cstdint>
 #include <optional>
