@@ -8,7 +8,7 @@
 #include "closest/facing/facing_normals.h"
 #include "core/memory.h"
 #include "geometry/vec.h"
-#include "map/engine_of.h"
+#include "map/closest_measure.h"
 #include "sites/sites_data.h"
 
 namespace sdm {

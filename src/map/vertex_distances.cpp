@@ -10,7 +10,7 @@
 
 #include "core/memory.h"
 #include "inside/open_sides.h"
-#include "map/engine_of.h"
+#include "map/closest_measure.h"
 #include "map/facing_measure.h"
 #include "sites/sites_data.h"
 
