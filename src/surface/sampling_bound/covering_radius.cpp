@@ -17,6 +17,34 @@ namespace sdm {
 namespace surface {
 namespace {
 
+// Far more than the rounding errors of atlas coordinates and of places on the edges between them.
+constexpr double kMargin = 1e-6;
+
+/// The squares that a triangle inside the atlas, which extends from `left` to `right`, meets in a row: from
+/// the first to the last. Both may be one too far, nowhere too near.
+std::array<std::uint32_t, 2> columns_in_row(const std::array<Vec2, 3>& corners, double y, double left,
+                                            double right) {
+  // Between the edges that cross the upper and the lower border of the row, and the corners in it.
+  double from = right, to = left;
+  for (int k = 0; k < 3; ++k) {
+    const Vec2 &a = corners[k], &b = corners[(k + 1) % 3];
+    const auto [above, below] = std::minmax(a[1], b[1]);
+    if (below < y - kMargin || above > y + 1 + kMargin) continue;
+    const double slope = above < below ? (b[0] - a[0]) / (b[1] - a[1]) : 0;
+    for (const double line : {std::max(y - kMargin, above), std::min(y + 1 + kMargin, below)}) {
+      const double x = a[0] + (line - a[1]) * slope;
+      from = std::min(from, x);
+      to = std::max(to, x);
+    }
+    if (above < below) continue;
+    from = std::min({from, a[0], b[0]});
+    to = std::max({to, a[0], b[0]});
+  }
+  // Nearly horizontal edges round their places most, but not beyond the ends of the triangle.
+  return {static_cast<std::uint32_t>(std::max(from, left) - kMargin),
+          static_cast<std::uint32_t>(std::min(to, right) + kMargin)};
+}
+
 /// The radius of the pieces of one face. A part of the face that is surely within the largest radius so far
 /// need not be cut. That depends on the order of the faces, but the result does not.
 class LargestRadius {
@@ -28,30 +56,31 @@ class LargestRadius {
         square_(surface.face_charts()[face] == kNone ? 0 : square_radius(surface, face, frame_)),
         shared_(largest) {}
 
-  // Whether all pieces of a face with few squares are surely within the largest radius: those of its squares
-  // whose texels have an owner. Most faces need no more than this, which cuts nothing.
+  // Whether all pieces of a face are surely within the largest radius: those of the squares that it meets,
+  // if their texels have an owner. Most faces need no more than this, which cuts nothing.
   [[nodiscard]] bool skips_face(std::uint32_t face) const {
-    constexpr double kMostSquares = 256;
     const double least = least_to_know();
     if (surface_.face_charts()[face] == kNone || !(square_ <= least)) return false;
-    const auto& corners = internals(surface_).corners[face];
-    const auto [x0, x1] = std::minmax({corners[0][0], corners[1][0], corners[2][0]});
-    const auto [y0, y1] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
-    const double left = std::floor(x0), top = std::floor(y0), n = surface_.resolution();
-    if (!(left >= 0 && top >= 0 && x1 < n && y1 < surface_.rows())) return false;
-    if ((x1 - left + 1) * (y1 - top + 1) > kMostSquares) return false;
     const SurfaceData& data = internals(surface_);
-    const auto owners = surface_.texel_faces();
+    const std::array<Vec2, 3>& corners = data.corners[face];
+    const auto [left, right] = std::minmax({corners[0][0], corners[1][0], corners[2][0]});
+    const auto [top, bottom] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
+    if (!(left >= kMargin && top >= kMargin && right + kMargin < data.resolution &&
+          bottom + kMargin < data.rows))
+      return false;
     const double spare = least - square_;
-    for (double y = top; y <= y1; ++y)
-      for (double x = left; x <= x1; ++x) {
-        const auto texel = static_cast<std::uint32_t>(y * n + x);
-        if (owners[texel] == face) continue;
-        if (owners[texel] == kNone) return false;
+    const std::uint32_t* const owners = data.map_faces.data();
+    for (auto y = static_cast<std::uint32_t>(top - kMargin); y <= bottom + kMargin; ++y) {
+      const auto [from, to] = columns_in_row(corners, y, left, right);
+      for (std::uint32_t x = from; x <= to; ++x) {
+        const std::uint32_t texel = y * data.resolution + x, owner = owners[texel];
+        if (owner == face) continue;
+        if (owner == kNone) return false;
         const Vec2 at{x + 0.5, y + 0.5};
-        const Vec3 centre = data.to_surface(face, at) - data.to_surface(owners[texel], at);
+        const Vec3 centre = data.to_surface(face, at) - data.to_surface(owner, at);
         if (squared_norm(centre) > spare * spare) return false;
       }
+    }
     return true;
   }
 

@@ -36,16 +36,23 @@ SampleTree::SampleTree(const Surface& surface, double radius)
 }
 
 std::vector<SampleTree::Run> SampleTree::cut(std::size_t begin, std::size_t end, double radius) const {
-  constexpr std::size_t kLongest = 64;
+  constexpr std::size_t kLongest = 128;
+  std::vector<Vec3> points(end - begin);
+  surface_.place_samples(begin, points);
   std::vector<Run> runs;
-  Vec3 start{};
-  for (std::size_t i = begin; i < end; ++i) {
-    const Vec3 p = surface_.texel_point(surface_.sample_faces[i], surface_.samples[i]);
-    if (runs.empty() || i - runs.back().first == kLongest || norm(p - start) > radius) {
-      runs.push_back({i, {}});
-      start = p;
+  for (std::size_t first = 0, next = 0; first < points.size(); first = next) {
+    const Vec3 start = points[first];
+    Vec3 lo = start, hi = start;
+    for (next = first + 1; next < std::min(first + kLongest, points.size()); ++next) {
+      const Vec3& p = points[next];
+      if (squared_norm(p - start) > radius * radius) break;
+      for (int k = 0; k < 3; ++k) {
+        lo[k] = std::min(lo[k], p[k]);
+        hi[k] = std::max(hi[k], p[k]);
+      }
     }
-    extend(runs.back().box, frame_.to_unit(p));
+    // Rounding is monotonic: this is the box of the points in the unit frame.
+    runs.push_back({begin + first, {frame_.to_unit(lo), frame_.to_unit(hi)}});
   }
   return runs;
 }
