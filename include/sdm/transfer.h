@@ -8,6 +8,7 @@
 #include <sdm/map.h>
 #include <sdm/match.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
@@ -16,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -48,6 +50,13 @@ struct TransferOptions {
   bool fill = true;
   Progress progress{};
 };
+
+template <>
+inline constexpr auto kOptions<TransferOptions> = std::tuple{
+    Option{.name = "fill",
+           .member = &TransferOptions::fill,
+           .text = "Texels of no face get values too, from texels near them, so that filtering at the border "
+                   "of a chart does not blend in a background."}};
 
 /// Returns the values of the array, a row for each texel of the map, at the texel's closest point on O2: that
 /// of point_on_face() or, for maps along normals and of thickness, the end of the vector. Values are

@@ -100,10 +100,10 @@ struct PyMap {
 /// The accepted distances: a number, or the least and the most. Throws sdm::Error for others, and for a
 /// tolerance that needs signs if distances have none.
 [[nodiscard]] Tolerance tolerance_of(nb::handle value, SignMethod sign);
+/// Throws sdm::Error for a tolerance that needs signs if distances have none.
+void require_sign(const Tolerance& tolerance, SignMethod sign);
 /// The word for a verdict: that of the command, in small letters.
 [[nodiscard]] std::string word_of(Verdict verdict);
-[[nodiscard]] std::optional<std::array<double, 2>> range_of(
-    const std::optional<std::pair<double, double>>& range);
 
 /// Rows of values to transfer.
 using TransferRows = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
