@@ -8,20 +8,21 @@
 #include <fstream>
 #include <string_view>
 
+#include "declared_options.h"
 #include "group_tolerances.h"
 #include "open_text.h"
 #include "option_checks.h"
 
 namespace {
 
-constexpr std::string_view kBox = "box:", kAxes = "xyz";
+constexpr std::string_view kBox = "box:";
 
 std::optional<sdm::Box> box_of(std::string_view text) {
-  const auto numbers = parse_list(text.substr(kBox.size()), 6);
-  if (!numbers) return std::nullopt;
+  std::vector<double> numbers;
+  if (!sdm::read_numbers(text.substr(kBox.size()), {}, 6, numbers)) return std::nullopt;
   sdm::Box box;
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] = (*numbers)[k], box.hi[k] = (*numbers)[k + 3];
+    box.lo[k] = numbers[k], box.hi[k] = numbers[k + 3];
     if (!(box.lo[k] <= box.hi[k])) return std::nullopt;
   }
   return box;
@@ -36,31 +37,11 @@ CLI::Validator checked(const std::string& needed, bool (*accepts)(const std::str
 }
 
 void add_freedom_options(CLI::App& app, AlignCommand& command, CLI::Option* align) {
-  CLI::Option* free =
-      app.add_option_function<std::string>(
-             "--align-free",
-             [&command](const std::string& text) {
-               const sdm::Vec3 about = command.freedoms.about;
-               command.freedoms = *sdm::parse_freedoms(text);
-               command.freedoms.about = about;
-             },
-             "The motions that the alignment may use, the others are locked: xyz,rz for translations along "
-             "x, "
-             "y and z and a rotation about z, or any of x, y, z, rx, ry, rz; axes of O2's coordinates")
-          ->check(checked("a list of x, y, z, rx, ry and rz",
-                          [](const std::string& text) { return sdm::parse_freedoms(text).has_value(); }))
-          ->type_name("MOTION,...")
-          ->needs(align);
-  app.add_option_function<std::string>(
-         "--align-about",
-         [&command](const std::string& text) {
-           const auto numbers = parse_list(text, 3);
-           std::copy_n(numbers->begin(), 3, command.freedoms.about.begin());
-         },
-         "The point that the axes of these rotations go through; by default the origin")
-      ->check(checked("three numbers, X,Y,Z",
-                      [](const std::string& text) { return parse_list(text, 3).has_value(); }))
-      ->type_name("X,Y,Z")
+  CLI::Option* free = add_declared_option(app, sdm::option_of(&sdm::AlignOptions::freedoms), command.freedoms,
+                                          {.name = "free", .as = "align_free"})
+                          ->needs(align);
+  add_declared_option(app, sdm::option_of(&sdm::AlignFreedoms::about), command.freedoms.about,
+                      {.name = "about", .as = "align_about"})
       ->needs(free);
 }
 
@@ -94,15 +75,6 @@ void add_align_options(CLI::App& app, AlignCommand& command) {
       ->check(non_empty())
       ->type_name("FILE")
       ->excludes(align);
-}
-
-std::vector<std::string> names_of(const sdm::AlignFreedoms& freedoms) {
-  std::vector<std::string> names;
-  for (std::size_t k = 0; k < 3; ++k)
-    if (freedoms.translations[k]) names.emplace_back(1, kAxes[k]);
-  for (std::size_t k = 0; k < 3; ++k)
-    if (freedoms.rotations[k]) names.push_back(std::string("r") + kAxes[k]);
-  return names;
 }
 
 sdm::AlignRegion region_of(const AlignCommand& command, const Input& o2) {

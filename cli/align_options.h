@@ -22,9 +22,6 @@ struct AlignCommand {
 /// Adds --align, and the options that begin with it.
 void add_align_options(CLI::App& app, AlignCommand& command);
 
-/// The letters of the freedoms that are not locked, such as "x", "y" and "rz".
-[[nodiscard]] std::vector<std::string> names_of(const sdm::AlignFreedoms& freedoms);
-
 /// The groups, objects or materials and the boxes of --align-on. Throws sdm::Error for a name that O2 does
 /// not have.
 [[nodiscard]] sdm::AlignRegion region_of(const AlignCommand& command, const Input& o2);

@@ -50,7 +50,7 @@ std::array<Input, 2> load(const BakeCommand& command) {
       {[&] {
          inputs[0] =
              load_input("high", command.high, command.transform_high, {false, command.tessellation, true});
-         if (!command.channels || !command.channels->look.empty()) require_look(inputs[0]);
+         if (!command.request.channels || !command.request.channels->look.empty()) require_look(inputs[0]);
        },
        [&] {
          inputs[1] = load_input("low", command.low, command.transform_low, {false, command.tessellation});
@@ -64,7 +64,7 @@ void check_matches(const BakeCommand& command, const MatchCounts& counts) {
   throw sdm::Error(fmt::format(
       "no point of {} is {}{} of {}: nothing can be baked; are both in the same place and in the same units?",
       command.high, counts.facing_away > 0 ? "on a face that faces a texel" : "close enough to a texel",
-      counts.too_far > 0 ? fmt::format(" (--max-distance {})", number(command.map.max_distance)) : "",
+      counts.too_far > 0 ? fmt::format(" (--max-distance {})", number(command.request.max_distance)) : "",
       command.low));
 }
 
@@ -84,7 +84,7 @@ void find_normals(const BakeCommand& command, const Input& high, Detailed& detai
     return;
   }
   const bool are_baked =
-      command.channels && std::ranges::any_of(command.channels->geometry, sdm::is_direction);
+      command.request.channels && std::ranges::any_of(command.request.channels->geometry, sdm::is_direction);
   if (!command.page && !are_baked) return;
   detailed.smooth_normals = sdm::smooth_normals(high.mesh);
   detailed.normals = &*detailed.smooth_normals;
@@ -102,7 +102,8 @@ sdm::TexelMatches match(const BakeCommand& command, Input& high, Input& low, Det
                         BakeResult& result) {
   const sdm::MeshLook look{high.look.materials, high.look.face_materials, {}, {}};
   const std::span<const sdm::BakeChannel> channels =
-      command.channels ? std::span<const sdm::BakeChannel>(command.channels->look) : sdm::kBakeChannels;
+      command.request.channels ? std::span<const sdm::BakeChannel>(command.request.channels->look)
+                               : sdm::kBakeChannels;
   const auto decode = [&] {
     try {
       detailed.pictures = sdm::decode_textures(high.look.textures, look, channels, result.notes);
@@ -113,15 +114,13 @@ sdm::TexelMatches match(const BakeCommand& command, Input& high, Input& low, Det
     }
   };
   const auto lay_out = [&] {
-    result.low = bake_surface(low, sample_layout(command));
+    result.low = bake_surface(low, command.request);
     inspect(low);
   };
   sdm::TexelMatches matches;
   const auto find = [&] {
     sdm::run_concurrently({lay_out, [&] { prepare(command, high, detailed); }});
-    sdm::MatchOptions options = match_options(command);
-    options.progress = command.map.progress;
-    matches = sdm::match_texels(*result.low.surface, *detailed.sites, options);
+    matches = sdm::match_texels(*result.low.surface, *detailed.sites, sdm::match_options(command.request));
   };
   sdm::run_concurrently({decode, find});
   result.matches = counts_of(matches);
@@ -185,13 +184,21 @@ Json bake_into(const BakeCommand& command, Input& high, Input& low, const std::f
   return report;
 }
 
+/// Throws CLI::ValidationError for options that exclude each other.
+void check_request(const sdm::BakeRequest& request) try {
+  const sdm::AtlasOptions layout = sdm::sample_layout(request);
+  if (request.atlas) check_layout(layout);
+  (void)sdm::match_options(request);
+} catch (const sdm::Error& error) {
+  throw CLI::ValidationError(error.what());
+}
+
 void run_baking(BakeCommand command) {
   Stopwatch watch;
   limit_threads(command.threads);
   OutputFolder out(command.out, {.command = "bake", .planned = planned_files(command)});
   ProgressLine progress(command.quiet);
-  command.layout.atlas.progress = command.map.progress = progress.callback();
-  command.map.sign = sdm::SignMethod::none;
+  command.request.progress = progress.callback();
 
   progress.step("import");
   std::array<Input, 2> inputs = load(command);
@@ -218,15 +225,9 @@ void add_bake_command(CLI::App& app) {
   const auto command = std::make_shared<BakeCommand>();
   add_options(*bake, *command);
   bake->callback([command] {
-    if (command->layout.kind) {
-      sdm::AtlasOptions atlas = command->layout.atlas;
-      atlas.kind = *command->layout.kind;
-      check_layout(atlas);
-    }
+    check_request(command->request);
     check_units(command->units, command->high, command->transform_high);
     check_units(command->units, command->low, command->transform_low);
-    (void)match_options(*command);
-    check_samples(*command);
     run_baking(*command);
   });
 }

@@ -74,7 +74,7 @@ class ChannelBaker {
       : pair_(pair),
         folder_(std::move(folder)),
         notes_(notes),
-        grid_{pair.surface.resolution(), pair.command.sample_side},
+        grid_{pair.surface.resolution(), pair.command.request.side()},
         texels_(grid_.texels()) {}
 
   void bake(std::span<const sdm::BakeChannel> channels);
@@ -115,7 +115,7 @@ ChannelBaker::Filled ChannelBaker::filled(std::size_t components, std::vector<fl
                                           sdm::SampleKind kind) const {
   sdm::TexelMeans means = sdm::mean_of_samples(grid_, components, samples, kind);
   samples = {};
-  sdm::fill_texels(texels_, components, means.values, pair_.command.layout.atlas.gutter);
+  sdm::fill_texels(texels_, components, means.values, pair_.command.request.gutter);
   return {std::move(means.values), std::move(means.coverage)};
 }
 
@@ -140,7 +140,7 @@ std::vector<char> ChannelBaker::page_png(std::size_t components, const std::vect
 void ChannelBaker::bake(std::span<const sdm::BakeChannel> channels) {
   for (sdm::BakedChannel& baked :
        sdm::bake(pair_.surface, pair_.sites, pair_.matches, pair_.look, channels,
-                 {.fill = grid_.side == 1, .progress = pair_.command.map.progress})) {
+                 {.fill = grid_.side == 1, .progress = pair_.command.request.progress})) {
     if (grid_.side > 1) baked.values = filled(baked.components, std::move(baked.values)).values;
     const sdm::BakeChannel channel = baked.channel;
     const std::string name(sdm::name_of(channel));
@@ -184,9 +184,9 @@ std::vector<float> ChannelBaker::samples_of(GeometryChannel channel) {
                               {.normals = pair_.normals,
                                .drawn_normals = &result.normal_map.normals,
                                .drawn_tangents = &result.normal_map.tangents,
-                               .occlusion = command.occlusion,
-                               .method = command.thickness,
-                               .progress = command.map.progress});
+                               .occlusion = sdm::occlusion_options(command.request),
+                               .method = command.request.thickness_method,
+                               .progress = command.request.progress});
   } catch (const sdm::Cancelled&) {
     throw;
   } catch (const sdm::Error& error) {
@@ -286,7 +286,7 @@ void ChannelBaker::add_numbers(GeometryChannel channel) {
 
 BakedChannels bake_channels(const BakePair& pair, const fs::path& folder, Notes& notes) {
   ChannelBaker baker(pair, folder, notes);
-  const auto& selected = pair.command.channels;
+  const auto& selected = pair.command.request.channels;
   baker.bake(selected ? selected->look : sdm::default_channels(pair.sites.mesh(), pair.look));
   if (selected)
     for (const GeometryChannel channel : selected->geometry) baker.bake(channel);

@@ -14,9 +14,9 @@ using Json = nlohmann::ordered_json;
 
 Json atlas_json(const BakeCommand& command, const sdm::Surface& surface) {
   return {{"kind", sdm::name_of(surface.atlas_kind())},
-          {"resolution", surface.resolution() / command.sample_side},
-          {"rows", surface.rows() / command.sample_side},
-          {"samples", command.sample_side * command.sample_side},
+          {"resolution", surface.resolution() / command.request.side()},
+          {"rows", surface.rows() / command.request.side()},
+          {"samples", command.request.samples},
           {"charts", surface.chart_count()},
           {"texels", surface.owned_texels()},
           {"utilisation", surface.utilisation()},
@@ -55,13 +55,13 @@ Json report_of(const BakeCommand& command, const Input& high, const Input& low, 
               {"low", to_json(low)},
               {"units", command.units},
               {"atlas", atlas_json(command, *result.low.surface)}};
-  const bool limited = std::isfinite(command.map.max_distance);
-  report["max_distance"] = limited ? Json(command.map.max_distance) : Json();
-  const sdm::MatchOptions matching = match_options(command);
+  const bool limited = std::isfinite(command.request.max_distance);
+  report["max_distance"] = limited ? Json(command.request.max_distance) : Json();
+  const sdm::MatchOptions matching = match_options(command.request);
   const bool facing = matching.method != sdm::MatchMethod::closest;
   report["match"] = name_of(matching.method);
   report["facing"] = facing ? Json(matching.facing) : Json();
-  report["cage"] = command.cage ? Json(*command.cage) : Json();
+  report["cage"] = command.request.cage ? Json(*command.request.cage) : Json();
   report["texels"] = {{"closest", counts.closest},
                       {"facing", counts.facing},
                       {"ray", counts.ray},
@@ -80,7 +80,7 @@ Json report_of(const BakeCommand& command, const Input& high, const Input& low, 
 std::string text_of(const BakeCommand& command, const BakeResult& result) {
   const sdm::Surface& surface = *result.low.surface;
   const MatchCounts& counts = result.matches;
-  const std::uint32_t side = command.sample_side;
+  const std::uint32_t side = command.request.side();
   std::string text = fmt::format("{} -> {}\n", command.high, command.low);
   text += fmt::format("  baked     {}, {} x {} texels{}\n", fmt::join(result.channels.names, ", "),
                       surface.resolution() / side, surface.rows() / side,

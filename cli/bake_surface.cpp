@@ -7,10 +7,11 @@
 
 #include "format.h"
 
-BakeSurface bake_surface(const Input& low, const BakeLayout& layout) {
+BakeSurface bake_surface(const Input& low, const sdm::BakeRequest& request) {
   BakeSurface result;
-  if (!layout.kind) {
-    sdm::BakeAtlas atlas = sdm::bake_atlas(low.mesh, layout.atlas);
+  const sdm::AtlasOptions layout = sdm::sample_layout(request);
+  if (!request.atlas) {
+    sdm::BakeAtlas atlas = sdm::bake_atlas(low.mesh, layout);
     const bool usable = !low.mesh.corner_uvs.empty() && !atlas.fault.starts_with("its UVs cannot be used");
     if (!atlas.fault.empty())
       result.notes.push_back(fmt::format("{}: {}, so it got an atlas of charts{}", low.file, atlas.fault,
@@ -18,9 +19,7 @@ BakeSurface bake_surface(const Input& low, const BakeLayout& layout) {
     result.surface = std::make_unique<sdm::Surface>(std::move(atlas.surface));
     return result;
   }
-  sdm::AtlasOptions options = layout.atlas;
-  options.kind = *layout.kind;
-  result.surface = std::make_unique<sdm::Surface>(low.mesh, options);
+  result.surface = std::make_unique<sdm::Surface>(low.mesh, layout);
   if (const double overlap = sdm::overlap_of(*result.surface); overlap > 0)
     result.notes.push_back(fmt::format(
         "{}: {} % of the texels of faces lie in another face too: each has what its first face has", low.file,

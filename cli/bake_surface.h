@@ -16,4 +16,4 @@ struct BakeSurface {
 };
 
 /// Lays LOW out. Throws sdm::Error as sdm::Surface does.
-[[nodiscard]] BakeSurface bake_surface(const Input& low, const BakeLayout& layout);
+[[nodiscard]] BakeSurface bake_surface(const Input& low, const sdm::BakeRequest& request);

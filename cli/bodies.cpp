@@ -209,7 +209,7 @@ void add_bodies_command(CLI::App& app) {
       "body.\n\n"
       "Examples, all pairs closer than 5, and three bodies of one shape in poses:\n"
       "  sdm bodies part1.stl part2.stl housing.stl --max-distance 5\n"
-      "  sdm bodies gear.stl gear.stl gear.stl --poses poses.txt --margin 0.1 --json");
+      "  sdm bodies gear.stl gear.stl gear.stl --poses poses.txt --contact-margin 0.1 --json");
   const auto command = std::make_shared<BodiesCommand>();
   add_options(*bodies, *command);
   bodies->callback([command] {

@@ -3,19 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "declared_options.h"
 #include "format.h"
-#include "option_checks.h"
 #include "src/geometry/stretch.h"
 
 void add_deflection_option(CLI::App& app, sdm::TessellationOptions& options) {
-  app.add_option(
-         "--deflection", options.deflection,
-         "The distance in mm that triangles of STEP and IGES may have from the surface, as "
-         "OpenCASCADE keeps it; by default 1/2000 of the diagonal, or a tenth of the tolerance if that "
-         "is less, with up to 2 million triangles. What was measured is reported, as an estimate, and "
-         "verdicts keep so far from the limits")
-      ->check(positive_number())
-      ->type_name("D");
+  add_declared_option(app, sdm::option_of(&sdm::TessellationOptions::deflection), options.deflection);
 }
 
 void check_deflection(const sdm::TessellationOptions& options, std::initializer_list<const Input*> inputs) {

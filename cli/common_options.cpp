@@ -4,7 +4,6 @@
 #include <sdm/threads.h>
 
 #include <algorithm>
-#include <tuple>
 #include <vector>
 
 #include "declared_options.h"
@@ -31,10 +30,11 @@ void add_transform_option(CLI::App& app, const std::string& name, const std::str
 
 namespace {
 
-const auto& kResolution = std::get<0>(sdm::kOptions<sdm::AtlasOptions>);
+constexpr auto kResolution = sdm::option_of(&sdm::AtlasOptions::resolution);
 
-sdm::OptionInfo resolution_of(const sdm::AtlasOptions& atlas, const std::string& maps) {
-  sdm::OptionInfo info = info_of(kResolution, atlas);
+sdm::OptionInfo resolution_of(std::uint32_t usual, const std::string& maps) {
+  sdm::OptionInfo info = sdm::info_of(kResolution);
+  info.default_value = std::to_string(usual);
   info.text = "Texels along each side of " + maps;
   return info;
 }
@@ -42,24 +42,30 @@ sdm::OptionInfo resolution_of(const sdm::AtlasOptions& atlas, const std::string&
 }  // namespace
 
 CLI::Option* add_side_option(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& maps) {
-  return add_declared_option(app, resolution_of(atlas, maps), [&atlas](const std::string& text) {
+  return add_declared_option(app, resolution_of(atlas.resolution, maps), [&atlas](const std::string& text) {
     return sdm::read_value(kResolution, text, atlas);
   });
 }
 
-CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& maps) {
-  sdm::OptionInfo info = resolution_of(atlas, maps);
+CLI::Option* add_resolution_option(CLI::App& app, std::uint32_t& resolution,
+                                   std::optional<std::uint32_t>& rows, const std::string& maps) {
+  sdm::OptionInfo info = resolution_of(resolution, maps);
   info.text += "; with --atlas uv also WxH, those of a row and of a column";
   info.value = "N|WxH";
-  return add_declared_option(app, std::move(info), [&atlas](const std::string& text) {
+  return add_declared_option(app, std::move(info), [&resolution, &rows](const std::string& text) {
     const std::size_t by = std::min(text.find('x'), text.size());
-    sdm::AtlasOptions side;
-    if (!sdm::read_value(kResolution, text.substr(0, by), atlas)) return false;
+    sdm::AtlasOptions columns, side;
+    if (!sdm::read_value(kResolution, text.substr(0, by), columns)) return false;
+    resolution = columns.resolution;
     if (by == text.size()) return true;
     if (!sdm::read_value(kResolution, text.substr(by + 1), side)) return false;
-    atlas.rows = side.resolution;
+    rows = side.resolution;
     return true;
   });
+}
+
+CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas, const std::string& maps) {
+  return add_resolution_option(app, atlas.resolution, atlas.rows, maps);
 }
 
 void check_layout(const sdm::AtlasOptions& atlas) {
@@ -90,61 +96,32 @@ std::shared_ptr<const sdm::Engine> make_engine(const sdm::EngineInfo& engine, co
 }
 
 void add_color_options(CLI::App& app, sdm::PictureOptions& picture) {
-  add_choice(app, "--colormap", picture.colormap,
-             "Colormap; sequential: viridis from 0 to one side, and reds to the other one; "
-             "auto: viridis if no distance is negative, sequential if little is on one "
-             "side of 0, otherwise diverging");
-  app.add_option_function<std::vector<double>>(
-         "--range",
-         [&picture](const std::vector<double>& range) {
-           if (!(range[0] < range[1])) throw CLI::ValidationError("--range", "LO must be below HI");
-           picture.range = {range[0], range[1]};
-         },
-         "The distances at the ends of the colour scale; by default up to the 99th percentile of "
-         "|distance|, rounded, to both sides of 0 if distances have both signs")
-      ->expected(2)
-      ->check(any_number())
-      ->type_name("LO HI");
+  add_declared_options(app, picture, {"tolerance", "units", "size", "up", "unlit"});
 }
 
 void add_picture_options(CLI::App& app, sdm::PictureOptions& picture) {
-  add_color_options(app, picture);
-  app.add_option(
-         "--picture-size", picture.largest,
-         "The most pixels a side of the pictures and of the model's texture; of a larger map, they show "
-         "some texels")
-      ->transform(whole_number(16, 32768))
-      ->type_name("N")
-      ->capture_default_str();
-  app.add_option("--units", picture.units,
-                 "Units of the meshes, for the legend; m, cm, mm, um, in, ft also scale model.glb to metres")
-      ->type_name("NAME");
-  add_up_option(app, picture.up, "model.glb, views.png and report.html");
-  app.add_flag("--unlit", picture.unlit, "model.glb without shading, in exactly the colours of the scale");
+  add_declared_options(
+      app, picture, {"tolerance"},
+      {{"units",
+        "Units of the meshes, for the legend; m, cm, mm, um, in, ft also scale model.glb to metres."},
+       {"size", nullptr, "picture_size"},
+       {"up", "The axis of the meshes that points up, in model.glb, views.png and report.html."},
+       {"unlit", "model.glb without shading, in exactly the colours of the scale."}});
 }
 
 void add_units_option(CLI::App& app, std::string& units) {
-  app.add_option("--units", units, "Units of the meshes, for printed and drawn values")->type_name("NAME");
+  add_declared_option(app, sdm::option_of(&sdm::SummaryOptions::units), units);
 }
 
-void add_up_option(CLI::App& app, sdm::UpAxis& up, const std::string& files) {
-  add_choice(app, "--up", up, "The axis of the meshes that points up, in " + files);
+void add_up_option(CLI::App& app, sdm::UpAxis& up, const char* text) {
+  add_declared_option(app, sdm::option_of(&sdm::PictureOptions::up), up, {"up", text});
 }
 
 void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& tolerance) {
-  app.add_option_function<std::string>(
-         "--tolerance", [&tolerance](const std::string& text) { tolerance = parse_tolerance(text); },
-         "Draw colour bands, and judge whether all distances are from LO to HI, by the exit code too; T: the "
-         "same as "
-         "-T:T, also for unsigned distances")
-      ->check(CLI::Validator(
-          [](const std::string& text) {
-            return parse_tolerance(text)
-                       ? std::string()
-                       : text + " is not a number, 0 or more, nor two numbers LO:HI, the smaller one first";
-          },
-          ""))
-      ->type_name("T|LO:HI");
+  add_declared_option(app, sdm::option_of(&sdm::ColorChoice::tolerance), tolerance,
+                      {"tolerance",
+                       "Draw colour bands, and judge whether all distances are from LO to HI, by the exit "
+                       "code too; T: the same as -T:T, also for unsigned distances."});
 }
 
 void add_run_options(CLI::App& app, RunOptions& run, const std::string& json_prints) {

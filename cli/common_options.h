@@ -7,6 +7,7 @@
 #include <sdm/surface.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -23,6 +24,8 @@ CLI::Option* add_side_option(CLI::App& app, sdm::AtlasOptions& atlas, const std:
 /// Returns --resolution, N or WxH; check_layout() checks whether the atlas can have that shape.
 CLI::Option* add_resolution_option(CLI::App& app, sdm::AtlasOptions& atlas,
                                    const std::string& maps = "the map");
+CLI::Option* add_resolution_option(CLI::App& app, std::uint32_t& resolution,
+                                   std::optional<std::uint32_t>& rows, const std::string& maps);
 /// All of an atlas but its resolution.
 void add_layout_options(CLI::App& app, sdm::AtlasOptions& atlas);
 /// Throws CLI::ValidationError for a map that is not square unless the atlas is that of the mesh.
@@ -40,8 +43,8 @@ void add_color_options(CLI::App& app, sdm::PictureOptions& picture);
 void add_picture_options(CLI::App& app, sdm::PictureOptions& picture);
 /// --units, for printed and drawn values.
 void add_units_option(CLI::App& app, std::string& units);
-/// --up; `files` that it applies to, in the help text.
-void add_up_option(CLI::App& app, sdm::UpAxis& up, const std::string& files);
+/// --up; `text`: its help, with the files that it applies to.
+void add_up_option(CLI::App& app, sdm::UpAxis& up, const char* text);
 void add_tolerance_option(CLI::App& app, std::optional<sdm::Tolerance>& tolerance);
 /// How a command runs and what it prints.
 struct RunOptions {

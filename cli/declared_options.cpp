@@ -4,13 +4,13 @@
 #include <sdm/error.h>
 
 #include <map>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 namespace {
 
 constexpr auto kSpelling = sdm::Spelling::dashed;
+constexpr auto kAlong = sdm::option_of(&sdm::AlongOptions::direction);
 constexpr std::string_view kLongWord = "automatic", kShortWord = "auto";
 
 /// Those that each command has.
@@ -57,28 +57,34 @@ CLI::Option* add_declared_option(CLI::App& app, sdm::OptionInfo info,
   info = abbreviated(std::move(info));
   declared(app).push_back(info);
   const std::string name = sdm::spelled(info.name, kSpelling), help = without_full_stop(info.text);
-  if (info.type == "flag")
+  if (info.type == "flag") {
+    const bool is_set = info.default_value == "true";
     return app.add_flag_callback(
-        name, [read = std::move(read)] { (void)read("true"); }, help);
-  CLI::Option* option = app.add_option_function<std::string>(
-      name,
-      [info, read = std::move(read)](const std::string& given) {
-        const std::string& text = given.empty() ? info.implied : given;
-        if (!read(info.type == "word" ? unabbreviated(text) : text))
-          throw CLI::ValidationError(sdm::refused(info, text, kSpelling));
-      },
-      help);
+        is_set ? sdm::spelled("no_" + info.name, kSpelling) : name,
+        [read = std::move(read), is_set] { (void)read(is_set ? "false" : "true"); }, help);
+  }
+  const auto take = [info, read = std::move(read)](const std::string& given) {
+    const std::string& text = given.empty() ? info.implied : given;
+    if (!read(info.type == "word" ? unabbreviated(text) : text))
+      throw CLI::ValidationError(sdm::refused(info, text, kSpelling));
+  };
+  if (info.type == "interval")
+    return app
+        .add_option_function<std::vector<std::string>>(
+            name, [take](const std::vector<std::string>& ends) { take(ends[0] + "," + ends[1]); }, help)
+        ->expected(2)
+        ->type_name(info.value);
+  CLI::Option* option = app.add_option_function<std::string>(name, take, help);
   if (!info.implied.empty()) option->expected(0, 1);
   if (!info.optional && info.default_value != "inf") option->default_str(info.default_value);
   return option->type_name(value_name(info));
 }
 
 void add_along_option(CLI::App& app, std::optional<sdm::AlongOptions>& along, const std::string& remark) {
-  const auto& option = std::get<0>(sdm::kOptions<sdm::AlongOptions>);
-  sdm::OptionInfo info = sdm::info_of(option);
+  sdm::OptionInfo info = sdm::info_of(kAlong);
   if (!remark.empty()) info.text += " " + remark;
-  add_declared_option(app, std::move(info), [&option, &along](const std::string& text) {
-    return sdm::read_value(option, text, along.emplace());
+  add_declared_option(app, std::move(info), [&along](const std::string& text) {
+    return sdm::read_value(kAlong, text, along.emplace());
   });
 }
 

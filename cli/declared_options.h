@@ -18,34 +18,49 @@
 CLI::Option* add_declared_option(CLI::App& app, sdm::OptionInfo info,
                                  std::function<bool(const std::string&)> read);
 
-/// What is declared of an option, with the default that `target` has, which may be the command's own.
-template <class Struct, class Value>
-sdm::OptionInfo info_of(const sdm::Option<Struct, Value>& option, const Struct& target) {
-  sdm::OptionInfo info = sdm::info_of(option);
-  for (const sdm::GivenOption& setting : sdm::settings_of(target))
-    if (setting.name == info.name) info.default_value = setting.value;
-  return info;
-}
-
-/// A sentence of the command's own for an option.
+/// What a command says of an option otherwise than its struct does.
 struct OptionText {
   std::string_view name;
-  const char* text;
+  const char* text = nullptr;  ///< its sentences; null: the declared ones
+  const char* as = nullptr;    ///< the option's name, with underscores; null: the declared one
 };
 
-/// Adds those that a struct declares, but for some, which set `target`; `texts`: in place of the declared
-/// ones.
+/// Adds an option of a struct, which sets `target`, a value like that of the struct; its default may be the
+/// command's own. An optional word may also be "auto", for nothing.
+template <class Struct, class Value>
+CLI::Option* add_declared_option(CLI::App& app, const sdm::Option<Struct, Value>& option, Value& target,
+                                 const OptionText& said = {}) {
+  constexpr std::string_view kNothing = "automatic";
+  sdm::OptionInfo info = sdm::info_of(option);
+  const bool is_optional_word = info.optional && info.type == "word";
+  if (info.type != "direction") info.default_value = sdm::OptionForm<Value>::text(target);
+  if (said.text != nullptr) info.text = said.text;
+  if (said.as != nullptr) info.name = said.as;
+  if constexpr (sdm::detail::OptionalOf<Value>::kOptional)
+    if (is_optional_word) {
+      info.words.insert(info.words.begin(), std::string(kNothing));
+      if (!target) info.default_value = kNothing;
+      info.optional = false;  // nothing is "auto"
+    }
+  return add_declared_option(app, std::move(info),
+                             [range = option.range, is_optional_word, &target](const std::string& text) {
+                               if (is_optional_word && text == kNothing) {
+                                 target = Value{};
+                                 return true;
+                               }
+                               return sdm::OptionForm<Value>::read(text, range, target);
+                             });
+}
+
+/// Adds those that a struct declares, but for some, which set `target`; `texts`: what the command says of
+/// them.
 template <class Struct>
 void add_declared_options(CLI::App& app, Struct& target, std::initializer_list<std::string_view> without = {},
                           std::initializer_list<OptionText> texts = {}) {
   sdm::for_each_option<Struct>([&](const auto& option) {
     if (std::ranges::find(without, option.name) != without.end()) return;
-    sdm::OptionInfo info = info_of(option, target);
-    for (const auto& [name, text] : texts)
-      if (name == info.name) info.text = text;
-    add_declared_option(app, std::move(info), [&option, &target](const std::string& text) {
-      return sdm::read_value(option, text, target);
-    });
+    const auto said = std::ranges::find(texts, std::string_view(option.name), &OptionText::name);
+    add_declared_option(app, option, target.*option.member, said == texts.end() ? OptionText{} : *said);
   });
 }
 

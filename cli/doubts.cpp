@@ -1,18 +1,20 @@
 #include "doubts.h"
 
+#include <sdm/summary.h>
+
 #include <algorithm>
 #include <cmath>
-#include <string>
 
+#include "declared_options.h"
 #include "option_checks.h"
 
-void add_accept_doubts(CLI::App& app, bool& accept, const char* what) {
-  app.add_flag("--accept-doubts", accept,
-               std::string("PASS stays PASS where ") + what + ", instead of DOUBTFUL");
+void add_accept_doubts(CLI::App& app, bool& accept, const char* text) {
+  add_declared_option(app, sdm::option_of(&sdm::SummaryOptions::accept_doubts), accept,
+                      {"accept_doubts", text});
 }
 
 void add_doubt_options(CLI::App& app, DoubtCommand& command) {
-  add_accept_doubts(app, command.accept, "units, the alignment, the coverage or thin walls leave a doubt");
+  add_accept_doubts(app, command.accept);
   CLI::Option* least = app.add_option("--min-coverage", command.min_coverage,
                                       "Measure which fraction of O2's area has a measured point near it (by "
                                       "--reach D) and doubt a PASS if "

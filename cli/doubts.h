@@ -16,8 +16,8 @@ struct DoubtCommand {
   std::optional<double> reach{};  ///< of a measured point; by default the larger limit of the tolerance
 };
 
-/// Adds --accept-doubts; `what` may leave a doubt.
-void add_accept_doubts(CLI::App& app, bool& accept, const char* what);
+/// Adds --accept-doubts; `text`: its help, if other doubts are left than the declared ones.
+void add_accept_doubts(CLI::App& app, bool& accept, const char* text = nullptr);
 
 /// Adds --accept-doubts, --min-coverage and --reach.
 void add_doubt_options(CLI::App& app, DoubtCommand& command);

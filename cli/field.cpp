@@ -99,6 +99,6 @@ void add_field_options(CLI::App& app, FieldCommand& command, const std::string& 
       ->type_name("X0 Y0 Z0 X1 Y1 Z1");
   add_declared_options(app, command.options, {}, {{"sites", "Also find the closest sites (in .vti)."}});
   add_transform_option(app, "--transform-o2", "O2", command.transform_o2);
-  app.add_option("--units", command.units, "Units of the meshes, for printed values")->type_name("NAME");
+  add_units_option(app, command.units);
   add_run_options(app, command, "JSON instead of a summary");
 }

@@ -254,8 +254,9 @@ void add_hausdorff_command(CLI::App& app) {
           "between them")
       ->check(no_negative_number())
       ->type_name("T");
-  add_accept_doubts(*hausdorff, c.accept_doubts, "O1 seems to be in another unit");
-  hausdorff->add_option("--units", c.units, "Units of the meshes, for printed values")->type_name("NAME");
+  add_accept_doubts(*hausdorff, c.accept_doubts,
+                    "PASS stays PASS where O1 seems to be in another unit, instead of DOUBTFUL.");
+  add_units_option(*hausdorff, c.units);
   add_run_options(*hausdorff, c, "JSON instead of a summary");
   hausdorff->callback([command] {
     check_units(command->units, command->o1, command->transform_o1);

@@ -5,7 +5,6 @@
 
 #include "common_options.h"
 #include "declared_options.h"
-#include "option_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,30 +48,17 @@ void add_options(CLI::App& app, MapCommand& c) {
   add_declared_options(app, c.map);
   add_along_option(app, c.along);
   add_engine_option(app, c.engine);
-  app.add_option("--gl-device", c.gl.device,
-                 "gl: the device, by its number in `sdm devices` or part of its name")
-      ->type_name("NAME");
-  add_choice(
-      app, "--clip", c.gl.clip,
-      "gl: how polygons are clipped to faces of O1: by planes or, as in the paper, by a stencil cache");
-  app.add_option("--stencil-values", c.gl.stencil_values, "gl, --clip stencil: the number of stencil values")
-      ->transform(whole_number(1, 255))
-      ->type_name("K")
-      ->capture_default_str();
-  app.add_flag_callback(
-      "--no-bound-culling", [&c] { c.gl.bound_culling = false; },
-      "gl: do not cull sites by upper bounds on the distance; the map is unchanged");
+  add_declared_options(
+      app, c.gl, {},
+      {{"device", "gl: the device, by its number in `sdm devices` or part of its name.", "gl_device"},
+       {"clip",
+        "gl: how polygons are clipped to faces of O1: by planes or, as in the paper, by a stencil cache."},
+       {"stencil_values", "gl, --clip stencil: the number of stencil values."},
+       {"bound_culling", "gl: do not cull sites by upper bounds on the distance; the map is unchanged."}});
   add_tolerance_option(app, c.picture.tolerance);
   add_tolerance_table_option(app, c.groups);
   add_doubt_options(app, c.doubts);
-  app.add_option(
-         "--bands", c.bands,
-         "The edges of the bands of distance in the report, increasing, with the fraction of the area in "
-         "each; by default multiples of the tolerance")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(any_number())
-      ->type_name("LIST");
+  add_declared_option(app, sdm::option_of(&sdm::SummaryOptions::bands), c.bands);
 
   add_write_option(app, c.output.files, true);
   add_channels_option(app, c.output.layers);

@@ -156,11 +156,6 @@ void remove_duplicates(std::vector<double>& numbers) {
   numbers = once;
 }
 
-CLI::Option* add_numbers(CLI::App& app, const std::string& name, std::vector<double>& target,
-                         const std::string& description, const CLI::Validator& validator) {
-  return app.add_option(name, target, description)->delimiter(',')->allow_extra_args(false)->check(validator);
-}
-
 }  // namespace
 
 void add_metrics_command(CLI::App& app) {
@@ -183,15 +178,11 @@ void add_metrics_command(CLI::App& app) {
                       "The mesh that it is compared with, the truth"});
   add_pair_transforms(*metrics, c);
   add_pair_reading(*metrics, c);
-  add_numbers(*metrics, "--percentile", c.options.percentiles,
-              "Percentiles P for hdP, separated by commas; by default 95",
-              number("a number between 0 and 100", [](double p) { return p > 0 && p < 100; }))
-      ->type_name("P,...");
-  add_numbers(*metrics, "--tolerance", c.options.tolerances,
-              "Distances T for nsd(T), precision(T), recall(T) and f_score(T), separated by commas",
-              no_negative_number())
-      ->type_name("T,...");
-  add_declared_options(*metrics, c.options, {"fraction_precision"});
+  add_declared_options(
+      *metrics, c.options, {"fraction_precision"},
+      {{"percentiles", "Percentiles P for hdP, separated by commas.", "percentile"},
+       {"tolerances", "Distances T for nsd(T), precision(T), recall(T) and f_score(T), separated by commas.",
+        "tolerance"}});
   metrics
       ->add_option("--fail-if", *conditions,
                    "A condition such as 'hd95>0.5' or 'nsd(1)<0.95', quoted, under which the comparison "
@@ -199,7 +190,7 @@ void add_metrics_command(CLI::App& app) {
       ->allow_extra_args(false)
       ->excludes(metrics->get_option("--estimate"))
       ->type_name("CONDITION");
-  metrics->add_option("--units", c.units, "Units of the meshes, for printed values")->type_name("NAME");
+  add_units_option(*metrics, c.units);
   add_run_options(*metrics, c, "JSON instead of a summary");
   metrics->callback([command, conditions] {
     check_units(command->units, command->o1, command->transform_o1);

@@ -33,18 +33,6 @@ std::optional<std::vector<double>> parse_row(std::string_view text) {
   return numbers;
 }
 
-std::optional<std::vector<double>> parse_list(std::string_view text, std::size_t count) {
-  std::vector<double> numbers;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::optional<double> value = parse_number(text.substr(begin, end - begin));
-    if (!value || numbers.size() == count) return std::nullopt;
-    numbers.push_back(*value);
-    begin = end + 1;
-  }
-  return numbers.size() == count ? std::optional(numbers) : std::nullopt;
-}
-
 std::string check_transform(const std::string& text) try {
   (void)sdm::scenes::parse_placement(text);
   return {};
@@ -87,13 +75,4 @@ CLI::Validator whole_number(std::int64_t lowest, std::int64_t highest) {
         return std::string();
       },
       "");
-}
-
-std::optional<sdm::Tolerance> parse_tolerance(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  const std::optional<double> first = parse_number(text.substr(0, colon));
-  if (colon == std::string::npos)
-    return first && *first >= 0 ? std::optional<sdm::Tolerance>(*first) : std::nullopt;
-  const std::optional<double> second = parse_number(text.substr(colon + 1));
-  return first && second && *first <= *second ? std::optional(sdm::Tolerance(*first, *second)) : std::nullopt;
 }

@@ -1,8 +1,6 @@
 // Validators and choices for options of several commands.
 #pragma once
 
-#include <sdm/tolerance.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
@@ -21,9 +19,6 @@
 /// Reads a row of a file of numbers, with blanks, commas or semicolons between them; nothing if something
 /// else is in it.
 [[nodiscard]] std::optional<std::vector<double>> parse_row(std::string_view text);
-/// Reads numbers with one comma between two of them, and nothing else; nothing unless they are `count`.
-[[nodiscard]] std::optional<std::vector<double>> parse_list(std::string_view text, std::size_t count);
-
 /// Requires a finite number in base 10 for which `accepts` holds.
 [[nodiscard]] CLI::Validator number(const std::string& description, bool (*accepts)(double));
 /// Requires a finite number, above 0, not below 0, or any.
@@ -35,9 +30,6 @@
 /// Requires a whole number in base 10, and removes its leading zeros: CLI11 would read 010 in base 8. To be
 /// passed to CLI::Option::transform().
 [[nodiscard]] CLI::Validator whole_number(std::int64_t lowest, std::int64_t highest);
-
-/// Reads "T" or "LO:HI"; nothing if it is neither, or LO is above HI.
-[[nodiscard]] std::optional<sdm::Tolerance> parse_tolerance(const std::string& text);
 
 /// An option with a fixed set of values; the first one is the default.
 template <class Enum>
@@ -59,13 +51,4 @@ void add_choice(CLI::App& app, const std::string& name, Enum& target, const std:
           ""))
       ->type_name(names)
       ->default_str(choices[0].first);
-}
-
-/// An option with the words of an enumeration, of which the command abbreviates "automatic".
-template <sdm::Worded Enum>
-void add_choice(CLI::App& app, const std::string& name, Enum& target, const std::string& description) {
-  std::vector<std::pair<std::string, Enum>> choices;
-  for (const std::string word : sdm::kWords<Enum>)
-    choices.emplace_back(word == "automatic" ? "auto" : word, *sdm::value_of<Enum>(word));
-  add_choice<Enum>(app, name, target, description, choices);
 }

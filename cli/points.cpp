@@ -232,18 +232,6 @@ void add_files_option(CLI::App& app, PointsCommand& command) {
                    });
 }
 
-// --columns, --separator and --decimal.
-void add_text_options(CLI::App& app, sdm::TextDialect& text) {
-  app.add_option_function<std::string>(
-         "--columns", [&text](const std::string& names) { text.columns = CLI::detail::split(names, ','); },
-         "What the columns of a cloud in text are: x, y and z, perhaps nx, ny and nz, and any other name, "
-         "such as _, where a column is ignored; by default as the file names them, or the first three are x, "
-         "y, z")
-      ->type_name("NAME,...");
-  add_choice(app, "--separator", text.separator, "What separates these columns");
-  add_choice(app, "--decimal", text.decimal, "The decimal mark of their numbers");
-}
-
 /// What options do not allow together.
 void check_points_options(const PointsCommand& command) {
   try {
@@ -275,7 +263,7 @@ void add_points_command(CLI::App& app) {
   PointsCommand& c = *command;
   points->add_option("CLOUD", c.cloud, fmt::format("The point cloud ({})", sdm::point_format_names()))
       ->required();
-  add_text_options(*points, c.text);
+  add_declared_options(*points, c.text);
   points
       ->add_option("O2", c.o2,
                    fmt::format("The mesh that distances are measured to ({})", sdm::mesh_format_names()))
@@ -298,10 +286,9 @@ void add_points_command(CLI::App& app) {
       "too");
   add_doubt_options(*points, c.doubts);
   add_color_options(*points, c.picture);
-  points->add_option("--units", c.picture.units, "Units of the cloud and the mesh, for printed values")
-      ->type_name("NAME");
+  add_units_option(*points, c.picture.units);
   add_files_option(*points, c);
-  add_up_option(*points, c.picture.up, "report.html");
+  add_up_option(*points, c.picture.up, "The axis of the meshes that points up, in report.html.");
   add_field_option(*points, c.fields);
   add_run_options(*points, c, "the report (report.json) instead of a summary");
   points->callback([command, points] {

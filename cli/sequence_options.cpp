@@ -4,6 +4,7 @@
 
 #include "cad_options.h"
 #include "common_options.h"
+#include "declared_options.h"
 #include "doubts.h"
 #include "option_checks.h"
 
@@ -22,9 +23,11 @@ void add_output_options(CLI::App& app, SequenceCommand& c) {
   app.add_flag("--both", c.both,
                "Also measure O2: its distances to O1, maps NNNN_o2 with --maps, colours in the player");
   add_tolerance_option(app, c.picture.tolerance);
-  add_accept_doubts(app, c.accept_doubts, "the unit of O1 or thin walls leave a doubt");
+  add_accept_doubts(app, c.accept_doubts,
+                    "PASS stays PASS where the unit of O1 or thin walls leave a doubt, instead of DOUBTFUL.");
   add_color_options(app, c.picture);
-  add_up_option(app, c.picture.up, "player.html and animation.glb");
+  add_up_option(app, c.picture.up,
+                "The axis of the meshes that points up, in player.html and animation.glb.");
   app.add_option("--maps", c.outputs.maps_every, "Write the map of O1 of every K-th frame, as EXR and PNG")
       ->transform(whole_number(1, 1000000))
       ->type_name("K");
@@ -32,12 +35,11 @@ void add_output_options(CLI::App& app, SequenceCommand& c) {
 
 void add_reading_options(CLI::App& app, SequenceCommand& c) {
   add_deflection_option(app, c.reading.tessellation);
-  app.add_option("--rate", c.reading.rate, "glTF animations: frames per second; by default one frame per key")
-      ->check(positive_number())
-      ->type_name("FPS");
-  app.add_flag("--allow-topology", c.reading.allow_topology,
-               "Numbered files may add and remove vertices and faces between frames; what stays keeps "
-               "its texels, and maps over time are of what stays");
+  add_declared_options(
+      app, c.reading, {},
+      {{"allow_topology",
+        "Numbered files may add and remove vertices and faces between frames; what stays keeps its texels, "
+        "and maps over time are of what stays."}});
   app.add_flag("--resume", c.resume,
                "Continue an interrupted run in the same folder, with the same inputs and options; "
                "without one, start from the first frame");

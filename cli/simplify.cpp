@@ -18,6 +18,7 @@
 #include "bounds_text.h"
 #include "cad_options.h"
 #include "common_options.h"
+#include "declared_options.h"
 #include "exit_codes.h"
 #include "format.h"
 #include "notes.h"
@@ -36,37 +37,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// --triangles: a number, or a share of those of the mesh.
-struct TriangleTarget {
-  double value = 0;
-  bool is_percent = false;
-
-  [[nodiscard]] std::size_t of(std::size_t triangles) const {
-    const double count = is_percent ? value * static_cast<double>(triangles) / 100 : value;
-    return std::max<std::size_t>(1, static_cast<std::size_t>(count));
-  }
-};
-
-std::optional<TriangleTarget> parse_triangles(std::string text) {
-  TriangleTarget target;
-  if (text.ends_with('%')) {
-    text.pop_back();
-    const auto share = parse_number(text);
-    if (!share || !(*share > 0 && *share <= 100)) return std::nullopt;
-    return TriangleTarget{*share, true};
-  }
-  constexpr std::int64_t kMost = std::int64_t{1} << 30;
-  const auto count = parse_whole_number(text);
-  if (!count || *count < 1 || *count > kMost) return std::nullopt;
-  return TriangleTarget{static_cast<double>(*count), false};
-}
-
 struct SimplifyCommand : RunOptions {
   std::string mesh, units;
   fs::path out, report;  // empty: no report
-  std::optional<double> max_deviation;
-  std::optional<TriangleTarget> triangles;
-  unsigned lods = 0;
+  sdm::LevelsOptions levels;
+  std::optional<double> percent;  ///< of the triangles of the mesh, in place of levels.triangles
   std::optional<sdm::WeldOptions> weld;
   sdm::TessellationOptions tessellation;
 
@@ -78,11 +53,10 @@ struct SimplifyCommand : RunOptions {
   }
 };
 
-struct SimplifyOutcome {
+struct SimplifyOutcome : sdm::SimplifiedLevels {
   Input input;
-  std::size_t triangles = 0;  ///< of the input
-  std::vector<sdm::Simplified> levels;
-  sdm::SimplifyReport report;
+  std::size_t triangles = 0;                   ///< of the input
+  std::optional<std::uint64_t> max_triangles;  ///< that are asked for
   Notes notes;
   double import_ms = 0, output_ms = 0;
 };
@@ -93,35 +67,13 @@ std::optional<std::string> note_on_level(const SimplifyCommand& command, std::si
   if (!simplified.stopped) return std::nullopt;
   const std::string file = command.file(level).string();
   const std::string same = level == 0 ? "the mesh itself, with all its triangles" : "the level before it";
-  if (command.max_deviation)
+  if (command.levels.max_deviation)
     return fmt::format("{} is {}: no collapse of edges keeps the deviation within {}", file, same,
-                       number(*command.max_deviation * std::ldexp(1, static_cast<int>(level))));
+                       number(*command.levels.max_deviation * std::ldexp(1, static_cast<int>(level))));
   return fmt::format(
       "{} has {} triangles, more than asked for: borders, seams and non-manifold edges permit no further "
       "collapse, or nothing with an area would be left",
       file, simplified.mesh.triangles.size());
-}
-
-std::vector<sdm::Simplified> simplify_levels(const SimplifyCommand& command, const sdm::Mesh& mesh,
-                                             sdm::SimplifyReport& report, const sdm::Progress& progress) {
-  sdm::Simplifier simplifier(mesh);
-  std::vector<sdm::Simplified> levels;
-  levels.reserve(command.lods + 1);
-  for (unsigned level = 0; level <= command.lods; ++level) {
-    const sdm::SimplifyOptions options{.from = levels.empty() ? nullptr : &levels.back(),
-                                       .single_precision = sdm::is_written_in_single_precision(command.out),
-                                       .progress = progress};
-    const double factor = std::ldexp(1, static_cast<int>(level));
-    if (command.max_deviation) {
-      levels.push_back(simplifier.to_deviation(factor * *command.max_deviation, options));
-    } else {
-      const auto count = static_cast<double>(command.triangles->of(mesh.triangles.size()));
-      levels.push_back(
-          simplifier.to_triangles(static_cast<std::size_t>(std::max(1.0, count / factor)), options));
-    }
-  }
-  report = simplifier.report();
-  return levels;
 }
 
 SimplifyOutcome simplify_mesh(const SimplifyCommand& command, const sdm::Progress& progress) {
@@ -135,8 +87,15 @@ SimplifyOutcome simplify_mesh(const SimplifyCommand& command, const sdm::Progres
   outcome.notes = outcome.input.notes;
   if (auto note = note_on_unit(command.units)) outcome.notes.push_back(std::move(*note));
   outcome.import_ms = watch.lap();
+  sdm::LevelsOptions options = command.levels;
+  if (command.percent)
+    options.triangles = std::max<std::uint64_t>(
+        1, static_cast<std::uint64_t>(*command.percent * static_cast<double>(outcome.triangles) / 100));
+  outcome.max_triangles = options.triangles;
+  options.single_precision = sdm::is_written_in_single_precision(command.out);
+  options.progress = progress;
   try {
-    outcome.levels = simplify_levels(command, outcome.input.mesh, outcome.report, progress);
+    static_cast<sdm::SimplifiedLevels&>(outcome) = sdm::simplify_levels(outcome.input.mesh, options);
   } catch (const sdm::Cancelled&) {
     throw;
   } catch (const sdm::Error& error) {
@@ -158,8 +117,9 @@ Json report_of(const SimplifyCommand& command, const SimplifyOutcome& outcome) {
   json["version"] = sdm::kVersion;
   json["mesh"] = to_json(outcome.input);
   json["units"] = command.units;
-  json["max_deviation"] = command.max_deviation ? Json(*command.max_deviation) : Json();
-  json["max_triangles"] = command.triangles ? Json(command.triangles->of(outcome.triangles)) : Json();
+  const std::optional<double>& deviation = command.levels.max_deviation;
+  json["max_deviation"] = deviation ? Json(*deviation) : Json();
+  json["max_triangles"] = outcome.max_triangles ? Json(*outcome.max_triangles) : Json();
   json["levels"] = Json::array();
   for (std::size_t i = 0; i < outcome.levels.size(); ++i)
     json["levels"].push_back(level_json(command, i, outcome.levels[i]));
@@ -214,7 +174,8 @@ void write_report(const SimplifyCommand& command, const SimplifyOutcome& outcome
 void run(const SimplifyCommand& command) {
   limit_threads(command.threads);
   std::vector<fs::path> planned;
-  for (unsigned level = 0; level <= command.lods; ++level) planned.push_back(command.file(level).filename());
+  for (unsigned level = 0; level <= command.levels.lods; ++level)
+    planned.push_back(command.file(level).filename());
   if (!command.report.empty()) planned.push_back(fs::absolute(command.report));
   OutputFolder out(fs::absolute(command.out).parent_path(),
                    {.planned = std::move(planned)});  // found before anything is computed
@@ -234,34 +195,30 @@ void run(const SimplifyCommand& command) {
       command, [&] { return report_of(command, outcome); }, [&] { return summary(command, outcome); });
 }
 
+/// --triangles may also be a share of those of the mesh.
+void add_triangles_option(CLI::App& app, SimplifyCommand& command) {
+  static constexpr auto kTriangles = sdm::option_of(&sdm::LevelsOptions::triangles);
+  sdm::OptionInfo info = sdm::info_of(kTriangles);
+  info.text =
+      "At most so many triangles, or P percent of those of the mesh; how far the result deviates is "
+      "certified.";
+  info.form = sdm::needed(info) + ", or a share such as 5%";
+  info.value = "N|P%";
+  add_declared_option(app, std::move(info), [&command](const std::string& text) {
+    constexpr sdm::OptionRange kPercent{.least = 0, .most = 100, .above = true};
+    if (!text.ends_with('%')) return sdm::read_value(kTriangles, text, command.levels);
+    const std::string share = text.substr(0, text.size() - 1);
+    return sdm::OptionForm<std::optional<double>>::read(share, kPercent, command.percent);
+  });
+}
+
 void add_targets(CLI::App& app, SimplifyCommand& command) {
-  CLI::Option* const deviation =
-      app.add_option("--max-deviation", command.max_deviation,
-                     "As few triangles as are found for which no point of the result is farther than D from "
-                     "the mesh, "
-                     "and none of the mesh farther from the result: certified, not sampled")
-          ->check(positive_number())
-          ->type_name("D");
-  app.add_option_function<std::string>(
-         "--triangles", [&command](const std::string& text) { command.triangles = parse_triangles(text); },
-         "At most so many triangles, or P percent of those of the mesh; how far the result deviates is "
-         "certified")
-      ->check(CLI::Validator(
-          [](const std::string& text) {
-            return parse_triangles(text)
-                       ? std::string()
-                       : text + " is neither a whole number, 1 or more, nor a share such as 5%";
-          },
-          ""))
-      ->excludes(deviation)
-      ->type_name("N|P%");
-  app.add_option(
-         "--lods", command.lods,
-         "So many further levels of detail, each with twice the deviation or half of the triangles of "
-         "the one before, as NAME_lod1, NAME_lod2, ... beside the output")
-      ->transform(whole_number(0, 16))
-      ->type_name("N")
-      ->capture_default_str();
+  add_declared_options(
+      app, command.levels, {"triangles"},
+      {{"lods",
+        "So many further levels of detail, each with twice the deviation or half of the triangles of the "
+        "one before, as NAME_lod1, NAME_lod2, ... beside the output."}});
+  add_triangles_option(app, command);
 }
 
 std::string check_extension(const std::string& file) {
@@ -299,12 +256,12 @@ void add_simplify_command(CLI::App& app) {
   simplify->add_option("--report", c.report, "Write what --json prints to a file, too")
       ->check(non_empty())
       ->type_name("FILE");
-  simplify->add_option("--units", c.units, "Units of the mesh, for printed values")->type_name("NAME");
+  add_units_option(*simplify, c.units);
   add_run_options(*simplify, c, "JSON instead of a summary");
   simplify->callback([command] {
-    if (!command->max_deviation && !command->triangles)
+    if (!command->levels.max_deviation && !command->levels.triangles && !command->percent)
       throw CLI::ValidationError("sdm simplify", "--max-deviation or --triangles is required");
-    for (unsigned level = 0; !command->report.empty() && level <= command->lods; ++level)
+    for (unsigned level = 0; !command->report.empty() && level <= command->levels.lods; ++level)
       if (name_one_file(command->report, command->file(level)))
         throw CLI::ValidationError("--report", "it names a file of -o, " + command->report.string());
     check_units(command->units, command->mesh, "");

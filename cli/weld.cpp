@@ -2,12 +2,13 @@
 
 #include <sdm/error.h>
 
+#include "declared_options.h"
 #include "format.h"
-#include "option_checks.h"
 
 namespace {
 
 constexpr const char* kAutomatic = "auto";
+constexpr auto kTolerance = sdm::option_of(&sdm::WeldOptions::tolerance);
 
 // What --weld would do for a mesh that is open, as a clause; empty if that does not close it, or was done.
 std::string weld_advice(const Input& input) {
@@ -21,21 +22,19 @@ std::string weld_advice(const Input& input) {
 }  // namespace
 
 void add_weld_option(CLI::App& app, std::optional<sdm::WeldOptions>& weld, const std::string& meshes) {
-  app.add_option_function<std::string>(
-         "--weld",
-         [&weld](const std::string& text) {
-           weld.emplace();
-           if (text != kAutomatic) weld->tolerance = *parse_number(text);
-         },
-         fmt::format(
-             "Join boundary edges of {} whose ends are at most T apart, after the transforms; auto: at "
-             "most 0.001 of the diagonal. No gap wider than a quarter of its edges is closed. Distances "
-             "are then to the welded mesh",
-             meshes))
-      ->check([positive = positive_number()](const std::string& text) {
-        return text == kAutomatic ? std::string() : positive(text);
-      })
-      ->type_name("T|auto");
+  sdm::OptionInfo info = sdm::info_of(kTolerance);
+  info.name = "weld";
+  info.text = fmt::format(
+      "Join boundary edges of {} whose ends are at most T apart, after the transforms; auto: at "
+      "most 0.001 of the diagonal. No gap wider than a quarter of its edges is closed. Distances "
+      "are then to the welded mesh.",
+      meshes);
+  info.words = {kAutomatic};
+  info.value = "T|auto";
+  add_declared_option(app, std::move(info), [&weld](const std::string& text) {
+    sdm::WeldOptions& options = weld.emplace();
+    return text == kAutomatic || sdm::read_value(kTolerance, text, options);
+  });
 }
 
 void weld(Input& input, const sdm::WeldOptions& options) {

@@ -20,8 +20,9 @@ def call_of(function: ast.FunctionDef) -> "str | None":
 
 
 def with_options(function: ast.FunctionDef, call: str) -> None:
-    declared = ast.parse(f"def f(*, {_core.option_signature(call)}): ...").body[0].args
     arguments = function.args
+    own = [argument.arg for argument in [*arguments.args, *arguments.kwonlyargs]]
+    declared = ast.parse(f"def f(*, {_core.option_signature(call, own)}): ...").body[0].args
     arguments.kwarg = None
     arguments.kwonlyargs = declared.kwonlyargs + arguments.kwonlyargs
     arguments.kw_defaults = declared.kw_defaults + arguments.kw_defaults
@@ -30,12 +31,14 @@ def with_options(function: ast.FunctionDef, call: str) -> None:
 
 def main(source: Path, stub: Path) -> None:
     module = ast.parse(source.read_text())
-    for node in module.body:
+    module.body = [node for node in module.body if not (isinstance(node, ast.ImportFrom) and node.module == "__future__")]
+    classes = [node for node in module.body if isinstance(node, ast.ClassDef)]
+    for node in [*module.body, *(member for one in classes for member in one.body)]:
         if isinstance(node, ast.FunctionDef):
             if call := call_of(node):
                 with_options(node, call)
             node.body = [ast.Expr(ast.Constant(...))]
-    stub.write_text(f"import typing\n{ast.unparse(module)}\n")
+    stub.write_text(f"import collections.abc\nimport typing\n{ast.unparse(module)}\n")
 
 
 main(Path(sys.argv[1]), Path(sys.argv[2]))

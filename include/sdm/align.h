@@ -6,6 +6,7 @@
 #include <sdm/api.h>
 #include <sdm/mesh.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/transform.h>
@@ -15,6 +16,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <vector>
@@ -32,6 +34,9 @@ enum class AlignStart {
   principal_axes,
 };
 
+template <>
+inline constexpr std::array kWords<AlignStart>{"automatic", "pose", "principal_axes"};
+
 /// The motions that an alignment may use: x ↦ about + R (start(x) − about) + t. With the axes of O2's
 /// coordinates, t has no component along an axis whose translation is locked, and the rotation vector of R
 /// none along one whose rotation is. All are allowed by default.
@@ -39,6 +44,8 @@ struct AlignFreedoms {
   std::array<bool, 3> translations{true, true, true};  ///< along x, y and z
   std::array<bool, 3> rotations{true, true, true};     ///< about axes along x, y and z
   Vec3 about{};  ///< the point of these axes; without effect unless a translation or rotation is locked
+
+  friend bool operator==(const AlignFreedoms&, const AlignFreedoms&) = default;
 
   /// Whether nothing is locked.
   [[nodiscard]] bool all() const {
@@ -50,6 +57,28 @@ struct AlignFreedoms {
 /// axes, or, after r, for rotations about them. All others are locked; `about` is the origin. Nothing for any
 /// other text.
 [[nodiscard]] SDM_API std::optional<AlignFreedoms> parse_freedoms(std::string_view text);
+
+/// The letters of the freedoms that are not locked, such as "x", "y" and "rz".
+[[nodiscard]] SDM_API std::vector<std::string> names_of(const AlignFreedoms& freedoms);
+
+/// The motions as a list; `about` is an option of its own.
+template <>
+struct OptionForm<AlignFreedoms> {
+  static constexpr const char* kType = "motions";
+  static std::string needed() { return "a list of x, y, z, rx, ry and rz, such as xyz,rz"; }
+  SDM_API static bool read(std::string_view text, const OptionRange& range, AlignFreedoms& value);
+  SDM_API static std::string text(const AlignFreedoms& value);
+  static bool allowed(const AlignFreedoms&, const OptionRange&) { return true; }
+};
+
+template <>
+inline constexpr auto kOptions<AlignFreedoms> = std::tuple{
+    Option{.name = "about",
+           .member = &AlignFreedoms::about,
+           .text = "The point that the axes of the rotations that are not locked go through; by default the "
+                   "origin.",
+           .range = {.least = -1e37, .most = 1e37},
+           .value = "X,Y,Z"}};
 
 /// The part of O2 that O1 is fitted to: faces and boxes together; all of O2 if there are none.
 struct AlignRegion {
@@ -72,6 +101,31 @@ struct AlignOptions {
   std::span<const std::uint32_t> group_of_face{};
   Progress progress{};
 };
+
+template <>
+inline constexpr auto kOptions<AlignOptions> = std::tuple{
+    Option{.name = "start",
+           .member = &AlignOptions::start,
+           .text =
+               "Where the alignment starts: at the pose; where centres and principal axes of both agree, "
+               "which needs most of the surface of O1; or, automatic, at the pose and, if that leads to a "
+               "poor fit, also at the axes."},
+    Option{.name = "samples",
+           .member = &AlignOptions::samples,
+           .text = "Samples of the surface of O1.",
+           .range = {.least = 64},
+           .value = "N"},
+    Option{.name = "max_iterations",
+           .member = &AlignOptions::max_iterations,
+           .text = "Steps for each level of refinement.",
+           .range = {.least = 1},
+           .value = "N"},
+    Option{.name = "free",
+           .member = &AlignOptions::freedoms,
+           .text = "The motions that the alignment may use, the others are locked: xyz,rz for translations "
+                   "along x, y and z and a rotation about z, or any of x, y, z, rx, ry, rz; axes of O2's "
+                   "coordinates.",
+           .value = "MOTION,..."}};
 
 /// A rigid motion, and how well O2 determines it at the aligned pose. Each is a translation and a rotation
 /// about an axis through `centre`, which is moved by |rotation| radians times the radius of gyration of O1:

@@ -63,12 +63,7 @@ inline constexpr auto kOptions<AlongOptions> = std::tuple{
                "estimate.",
            .value = "normal|X,Y,Z",
            .excludes = kAlongExcludes},
-    Option{.name = "max_distance",
-           .member = &AlongOptions::max_distance,
-           .text = "Samples farther than this have no value.",
-           .range = kPositiveOrInfinite,
-           .unit = "length",
-           .value = "D"}};
+    max_distance_option<AlongOptions>()};
 
 /// Measures along lines from points with normals, of any length: `closest` are the hits, of SiteType::face,
 /// with the distance without its sign, which is − where `behind`. `unmatched` are the points without a hit at

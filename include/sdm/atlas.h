@@ -44,12 +44,16 @@ struct AtlasOptions {
   Progress progress{};
 };
 
+inline constexpr OptionRange kResolutionRange{16, 32768}, kGutterRange{0, 8192};
+inline constexpr const char* kGutterText =
+    "Free texels around each chart, and how far values extend beyond charts, if more than 4.";
+
 template <>
 inline constexpr auto kOptions<AtlasOptions> = std::tuple{
     Option{.name = "resolution",
            .member = &AtlasOptions::resolution,
            .text = "Texels along each side of the atlas.",
-           .range = {16, 32768},
+           .range = kResolutionRange,
            .unit = "texels",
            .value = "N"},
     Option{.name = "atlas",
@@ -59,8 +63,8 @@ inline constexpr auto kOptions<AtlasOptions> = std::tuple{
                "own UVs."},
     Option{.name = "gutter",
            .member = &AtlasOptions::gutter,
-           .text = "Free texels around each chart, and how far values extend beyond charts, if more than 4.",
-           .range = {0, 8192},
+           .text = kGutterText,
+           .range = kGutterRange,
            .unit = "texels",
            .value = "N"},
     Option{.name = "strict_uv",

@@ -5,20 +5,28 @@
 #pragma once
 
 #include <sdm/api.h>
+#include <sdm/atlas.h>
+#include <sdm/bake.h>
 #include <sdm/image.h>
 #include <sdm/match.h>
 #include <sdm/mesh_attributes.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 #include <sdm/rays.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
 #include <sdm/thickness.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -73,6 +81,123 @@ struct GeometryOptions {
   ThicknessOptions thickness{};                    ///< its progress is ignored
   Progress progress{};
 };
+
+/// What is baked.
+struct BakeSelection {
+  std::vector<BakeChannel> look{};
+  std::vector<GeometryChannel> geometry{};
+
+  [[nodiscard]] bool has(GeometryChannel channel) const {
+    return std::ranges::find(geometry, channel) != geometry.end();
+  }
+  friend bool operator==(const BakeSelection&, const BakeSelection&) = default;
+};
+
+/// Names of both kinds of channels, with a comma between two of them; read() has them in the order of the
+/// library, and takes `normal` only if has_tangents().
+template <>
+struct OptionForm<BakeSelection> {
+  static constexpr const char* kType = "texts";
+  SDM_API static std::string needed();
+  SDM_API static bool read(std::string_view text, const OptionRange& range, BakeSelection& value);
+  SDM_API static std::string text(const BakeSelection& value);
+  static bool allowed(const BakeSelection&, const OptionRange&) { return true; }
+};
+
+/// What programs that bake a pair of meshes can be asked for.
+struct BakeRequest {
+  std::optional<BakeSelection> channels{};  ///< nothing: default_channels()
+  std::uint32_t resolution = 1024;          ///< as of AtlasOptions
+  std::optional<std::uint32_t> rows{};      ///< the same
+  std::uint32_t gutter = 1;                 ///< the same
+  std::optional<AtlasKind> atlas{};         ///< nothing: as bake_atlas() chooses
+  std::uint32_t samples = 1;                ///< in each texel, a square up to 64; see supersampling.h
+  std::optional<MatchMethod> match{};       ///< nothing: `facing` if an angle is given, else `closest`
+  std::optional<double> facing{};           ///< as of MatchOptions
+  std::optional<double> cage{};             ///< the same
+  double max_distance = std::numeric_limits<double>::infinity();        ///< the same
+  std::uint32_t occlusion_rays = 64;                                    ///< AmbientOcclusionOptions::rays
+  double occlusion_distance = std::numeric_limits<double>::infinity();  ///< its maximum distance
+  ThicknessMethod thickness_method = ThicknessMethod::ball;
+  Progress progress{};
+
+  /// The root of `samples`.
+  [[nodiscard]] SDM_API std::uint32_t side() const;
+};
+
+template <>
+inline constexpr auto kOptions<BakeRequest> = std::tuple{
+    Option{.name = "channels",
+           .member = &BakeRequest::channels,
+           .text = "What to bake; by default base_color, and others that the detailed mesh has a texture for "
+                   "or that differ between its points. Of its shape: normal, in tangent space of the coarse "
+                   "mesh; object_normal; displacement along the smooth normal of the coarse mesh; position; "
+                   "ambient_occlusion; thickness, of a closed mesh; the numbers of face and material.",
+           .value = "LIST"},
+    Option{.name = "resolution",
+           .member = &BakeRequest::resolution,
+           .text = "Texels along each side of the textures.",
+           .range = kResolutionRange,
+           .unit = "texels",
+           .value = "N"},
+    Option{.name = "atlas",
+           .member = &BakeRequest::atlas,
+           .text =
+               "How the coarse mesh is parametrised: by its own UVs, in few charts, or in pairs of "
+               "triangles without distortion; by default by its UVs if they lie in [0, 1] and faces do not "
+               "overlap there, otherwise in charts."},
+    Option{.name = "gutter",
+           .member = &BakeRequest::gutter,
+           .text = kGutterText,
+           .range = kGutterRange,
+           .unit = "texels",
+           .value = "N"},
+    Option{.name = "samples",
+           .member = &BakeRequest::samples,
+           .text = "Samples in each texel: each has a point of the detailed mesh, and the texel has their "
+                   "mean, of numbers that of most of them.",
+           .range = {.least = 1, .most = 64, .square = true},
+           .value = "N"},
+    Option{.name = "match",
+           .member = &BakeRequest::match,
+           .text =
+               "Which point belongs to a texel: the closest one, the closest one that faces the same way, "
+               "or the nearest hit along the normal of the coarse mesh that does, where there is one; by "
+               "default closest, or facing if that angle is given."},
+    facing_option<BakeRequest>({},
+                               "Match the closest of the faces of the detailed mesh that face the same "
+                               "way: whose normal is within this angle of that of the texel's face. For "
+                               "thin walls, where the closest point may be on the other skin."),
+    Option{.name = "cage",
+           .member = &BakeRequest::cage,
+           .text = "How far the match ray searches along the normal, to either side.",
+           .range = kPositive,
+           .unit = "length",
+           .value = "D"},
+    max_distance_option<BakeRequest>("Texels farther than this have no match, and are filled from others."),
+    Option{.name = "occlusion_rays",
+           .member = &BakeRequest::occlusion_rays,
+           .text = kOcclusionRaysText,
+           .range = kOcclusionRays,
+           .value = "N"},
+    Option{.name = "occlusion_distance",
+           .member = &BakeRequest::occlusion_distance,
+           .text = kOcclusionDistanceText,
+           .range = kPositiveOrInfinite,
+           .unit = "length",
+           .value = "D"},
+    Option{.name = "thickness_method",
+           .member = &BakeRequest::thickness_method,
+           .text = "Of thickness: the diameter of the largest ball in the detailed mesh that touches the "
+                   "point, or the length of the ray along the inward normal."}};
+
+/// How points are matched. Throws sdm::Error for an angle with `closest`, and for a cage without `ray`.
+[[nodiscard]] SDM_API MatchOptions match_options(const BakeRequest& request);
+/// The layout of the samples, as of sample_layout(), and its errors. Without an atlas, the kind is that of
+/// AtlasOptions.
+[[nodiscard]] SDM_API AtlasOptions sample_layout(const BakeRequest& request);
+/// What ambient occlusion is asked for.
+[[nodiscard]] SDM_API AmbientOcclusionOptions occlusion_options(const BakeRequest& request);
 
 // All functions return values for each texel, in rows as of TexelMatches; texels without a point hold NaN,
 // until fill_texels(). They throw sdm::Error if the matches are not from this surface to these sites, or if

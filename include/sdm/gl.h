@@ -6,6 +6,7 @@
 #include <sdm/api.h>
 #include <sdm/engine.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 
 #include <array>
 #include <cstdint>
@@ -56,6 +57,25 @@ struct GlOptions {
   /// distances.
   bool bound_culling = true;
 };
+
+template <>
+inline constexpr auto kOptions<GlOptions> = std::tuple{
+    Option{.name = "device",
+           .member = &GlOptions::device,
+           .text = "The device, by its number in `sdm devices` or part of its name.",
+           .value = "NAME"},
+    Option{.name = "clip",
+           .member = &GlOptions::clip,
+           .text = "How polygons are clipped to faces of O1: by planes or, as in the paper, by a stencil "
+                   "cache."},
+    Option{.name = "stencil_values",
+           .member = &GlOptions::stencil_values,
+           .text = "Of the clip stencil: the number of stencil values.",
+           .range = {1, 255},
+           .value = "K"},
+    Option{.name = "bound_culling",
+           .member = &GlOptions::bound_culling,
+           .text = "Cull sites by upper bounds on the distance; the map is the same without."}};
 
 /// Returns the device that `options` selects for maps whose longer side has `resolution` texels. Throws
 /// sdm::Error if there is none, or if its largest image is smaller; programs can thus fail before they build

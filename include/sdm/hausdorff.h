@@ -43,16 +43,7 @@ inline constexpr auto kOptions<HausdorffOptions> = std::tuple{
         .range = kPositive,
         .unit = "length",
         .value = "EPS"},
-    Option{.name = "facing",
-           .member = &HausdorffOptions::facing,
-           .text =
-               "Measure to the closest of the faces of O2 that face the same way: whose normal is within "
-               "this angle of that of the point's face. For thin walls, where the closest point may be on "
-               "the other skin.",
-           .range = {.least = 0, .most = 180, .above = true},
-           .unit = "degrees",
-           .value = "ANGLE",
-           .implied = "90"}};
+    facing_option<HausdorffOptions>()};
 
 /// The largest distance from a point of a surface A to the closest point of a surface B.
 struct HausdorffDistance {

@@ -12,6 +12,7 @@
 #include <sdm/mesh.h>
 #include <sdm/mesh_attributes.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/part_statistics.h>
 #include <sdm/statistics.h>
 #include <sdm/summary.h>
@@ -27,6 +28,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -131,6 +133,29 @@ struct PictureOptions {
   std::span<const GroupTolerance> table{};
   std::span<const FaceNames> names{};
 };
+
+inline constexpr const char* kUpText = "The axis of the meshes that points up.";
+
+template <>
+inline constexpr auto kOptions<PictureOptions> = std::tuple_cat(
+    kColorOptions<PictureOptions>,
+    std::tuple{
+        Option{
+            .name = "units",
+            .member = &PictureOptions::units,
+            .text = "Units of the meshes, for the legend; m, cm, mm, um, in, ft also scale models to metres.",
+            .value = "NAME"},
+        Option{.name = "size",
+               .member = &PictureOptions::largest,
+               .text = "The most pixels a side of the pictures and of the model's texture; of a larger map, "
+                       "they show some texels.",
+               .range = {16, 32768},
+               .unit = "pixels",
+               .value = "N"},
+        Option{.name = "up", .member = &PictureOptions::up, .text = kUpText},
+        Option{.name = "unlit",
+               .member = &PictureOptions::unlit,
+               .text = "Models without shading, in exactly the colours of the scale."}});
 
 /// Returns `options` with the colormap and the range that color_range() chooses for them on a map with these
 /// statistics, for pictures that share a scale. Errors and cost as of color_range().

@@ -44,30 +44,8 @@ inline constexpr std::array kFacingExcludes{
 
 template <>
 inline constexpr auto kOptions<MapOptions> = std::tuple{
-    Option{.name = "max_distance",
-           .member = &MapOptions::max_distance,
-           .text = "Samples farther than this have no value.",
-           .range = kPositiveOrInfinite,
-           .unit = "length",
-           .value = "D"},
-    Option{.name = "sign",
-           .member = &MapOptions::sign,
-           .text =
-               "How the inside of O2, where distances are negative, is determined; automatic: exact if O2 "
-               "is closed and orientable, otherwise none; winding: by generalised winding numbers, an "
-               "estimate; side: of an open O2 the side to which its normals do not point is negative, an "
-               "estimate."},
-    Option{.name = "facing",
-           .member = &MapOptions::facing,
-           .text =
-               "Measure to the closest of the faces of O2 that face the same way: whose normal is within "
-               "this angle of that of the sample's face. For thin walls, where the closest point may be on "
-               "the other skin.",
-           .range = {.least = 0, .most = 180, .above = true},
-           .unit = "degrees",
-           .value = "ANGLE",
-           .implied = "90",
-           .excludes = kFacingExcludes}};
+    max_distance_option<MapOptions>(), Option{.name = "sign", .member = &MapOptions::sign, .text = kSignText},
+    facing_option<MapOptions>(kFacingExcludes)};
 
 /// One value per texel, resolution · rows(), row 0 at the top, and after them one for each face that owns no
 /// texel, as Surface::map_faces(). Texels without a value, because no face owns them, O2 is farther than

@@ -99,7 +99,7 @@ inline constexpr auto kOptions<MatchOptions> = std::tuple{
            .text =
                "Of facing and ray: allowed are the faces whose normal is within this angle of that of the "
                "texel's face.",
-           .range = {.least = 0, .most = 180, .above = true},
+           .range = kAngle,
            .unit = "degrees",
            .value = "ANGLE"},
     Option{.name = "cage",
@@ -108,12 +108,7 @@ inline constexpr auto kOptions<MatchOptions> = std::tuple{
            .range = kPositiveOrInfinite,
            .unit = "length",
            .value = "D"},
-    Option{.name = "max_distance",
-           .member = &MatchOptions::max_distance,
-           .text = "Points of O2 farther than this do not match.",
-           .range = kPositiveOrInfinite,
-           .unit = "length",
-           .value = "D"}};
+    max_distance_option<MatchOptions>("Points of O2 farther than this do not match.")};
 
 /// Finds, for each texel, its point of O2.
 ///

@@ -52,6 +52,17 @@ struct MetricsOptions {
 
 template <>
 inline constexpr auto kOptions<MetricsOptions> = std::tuple{
+    Option{.name = "tolerances",
+           .member = &MetricsOptions::tolerances,
+           .text = "Distances T for nsd(T), the surface Dice, precision(T), recall(T) and f_score(T).",
+           .range = {.least = 0},
+           .unit = "length",
+           .value = "T,..."},
+    Option{.name = "percentiles",
+           .member = &MetricsOptions::percentiles,
+           .text = "Percentiles P for hdP.",
+           .range = {.least = 0, .most = 100, .above = true, .below = true},
+           .value = "P,..."},
     Option{.name = "precision",
            .member = &MetricsOptions::precision,
            .text =

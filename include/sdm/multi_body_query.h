@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -82,6 +83,17 @@ struct TimeOfContactOptions {
   double until = 1;            ///< the last time, from 0 to 1, at which contacts are looked for
   bool earliest_only = false;  ///< only the pairs with the earliest contact of all
 };
+
+template <>
+inline constexpr auto kOptions<TimeOfContactOptions> = std::tuple{
+    Option{.name = "until",
+           .member = &TimeOfContactOptions::until,
+           .text = "The last time at which contacts are looked for.",
+           .range = {0, 1},
+           .value = "T"},
+    Option{.name = "earliest_only",
+           .member = &TimeOfContactOptions::earliest_only,
+           .text = "Only the pairs with the earliest contact of all, usually at the cost of one pair."}};
 
 /// The distance map of one body to all others.
 struct NearestMap {

@@ -8,10 +8,9 @@
 
 #include <sdm/api.h>
 #include <sdm/names.h>
+#include <sdm/option_forms.h>
 #include <sdm/types.h>
 
-#include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,18 +21,6 @@
 
 namespace sdm {
 
-/// The numbers that an option may be: from `least` to `most`.
-struct OptionRange {
-  double least = std::numeric_limits<double>::lowest();  ///< the lowest number there is: no limit but finite
-  double most = std::numeric_limits<double>::max();      ///< the same
-  bool above = false;                                    ///< whether `least` itself is excluded
-  bool below = false;                                    ///< whether `most` itself is excluded
-};
-/// The finite numbers greater than 0.
-inline constexpr OptionRange kPositive{0, std::numeric_limits<double>::max(), true};
-/// The same, and infinity.
-inline constexpr OptionRange kPositiveOrInfinite{0, std::numeric_limits<double>::infinity(), true};
-
 /// Another option that may not be given beside one.
 struct ExcludedOption {
   const char* name;
@@ -42,20 +29,54 @@ struct ExcludedOption {
       "";  ///< the words, one blank between two of them, for which that holds; empty: all values
 };
 
-/// An option: a member of a struct, whose initialiser is the default. Values are numbers, flags, words of an
-/// enumeration, and each of them as an optional one; or an optional direction, nothing standing for normals.
+/// An option: a member of a struct, whose initialiser is the default. Its type has an OptionForm.
 template <class Struct, class Value>
 struct Option {
   const char* name;  ///< Python's keyword; --with-dashes in the command, inCamelCase in JavaScript
   Value Struct::*member;
   const char* text;  ///< what it does; its sentences end with a full stop
   OptionRange range{};
-  const char* unit = "";     ///< "length", in the units of the meshes, "degrees" or "texels"
+  const char* unit = "";     ///< "length", in the units of the meshes, "degrees", "texels" or "pixels"
   const char* value = "";    ///< the name of its value in the help of the command
   const char* implied = "";  ///< its value where the command gives none; empty: it must
   std::span<const ExcludedOption> excludes{};  ///< given values other than the default exclude these
   const char* since = "0.1";                   ///< the version that has it first
 };
+
+// What several structs say of their members in the same words.
+inline constexpr const char* kMaxDistanceText = "Samples farther than this have no value.";
+inline constexpr const char* kSignText =
+    "How the inside of O2, where distances are negative, is determined; automatic: exact if O2 is closed and "
+    "orientable, otherwise none; winding: by generalised winding numbers, an estimate; side: of an open O2 "
+    "the side to which its normals do not point is negative, an estimate.";
+inline constexpr const char* kFacingText =
+    "Measure to the closest of the faces of O2 that face the same way: whose normal is within this angle of "
+    "that of the face that is measured from. For thin walls, where the closest point may be on the other "
+    "skin.";
+
+/// max_distance of a struct.
+template <class Struct>
+[[nodiscard]] constexpr auto max_distance_option(const char* text = kMaxDistanceText) {
+  return Option{.name = "max_distance",
+                .member = &Struct::max_distance,
+                .text = text,
+                .range = kPositiveOrInfinite,
+                .unit = "length",
+                .value = "D"};
+}
+/// facing of a struct, 90 degrees where the command gives no angle.
+template <class Struct>
+[[nodiscard]] constexpr auto facing_option(std::span<const ExcludedOption> excludes = {},
+                                           const char* text = kFacingText) {
+  return Option{.name = "facing",
+                .member = &Struct::facing,
+                .text = text,
+                .range = kAngle,
+                .unit = "degrees",
+                .value = "ANGLE",
+                .implied = "90",
+                .excludes = excludes};
+}
 
 /// The options of a struct, a std::tuple of Option; nullptr of one that declares none.
 template <class Struct>
@@ -65,6 +86,17 @@ inline constexpr auto kOptions = nullptr;
 template <class Struct, class Visit>
 constexpr void for_each_option(const Visit& visit) {
   std::apply([&](const auto&... option) { (visit(option), ...); }, kOptions<Struct>);
+}
+
+/// The option that sets a member.
+template <class Struct, class Value>
+[[nodiscard]] constexpr Option<Struct, Value> option_of(Value Struct::*member) {
+  Option<Struct, Value> found{};
+  for_each_option<Struct>([&](const auto& option) {
+    if constexpr (std::is_same_v<decltype(option), const Option<Struct, Value>&>)
+      if (option.member == member) found = option;
+  });
+  return found;
 }
 
 /// How a door spells the names of options.
@@ -78,11 +110,12 @@ enum class Spelling {
 struct OptionInfo {
   std::string name;  ///< as the field's
   std::string text, unit, value, implied, since;
-  std::string type;                ///< "number", "integer", "flag", "word" or "direction"
+  std::string type;                ///< OptionForm::kType
   bool optional = false;           ///< whether it may be absent, which is then its default
   std::string default_value;       ///< as text; empty if absent
   std::vector<std::string> words;  ///< of type "word"
   OptionRange range;               ///< of numbers
+  std::string form;                ///< OptionForm::needed()
   std::vector<ExcludedOption> excludes;
 };
 
@@ -107,28 +140,6 @@ struct GivenOption {
 SDM_API void check_exclusions(std::span<const OptionInfo> options, std::span<const GivenOption> given,
                               Spelling spelling);
 
-/// Reads an option's value from text, as a number in base 10, "true" or "false", or a word. Returns false,
-/// and changes nothing, if it is none or out of range.
-[[nodiscard]] SDM_API bool read_number(std::string_view text, const OptionRange& range, double& value);
-/// The same of a whole number.
-[[nodiscard]] SDM_API bool read_number(std::string_view text, const OptionRange& range, std::uint32_t& value);
-
-/// The same of a direction X,Y,Z other than 0,0,0, or of "normal" for nothing.
-[[nodiscard]] SDM_API bool read_direction(std::string_view text, std::optional<Vec3>& value);
-
-/// A number as text, by which it can be read again.
-[[nodiscard]] SDM_API std::string text_of(double value);
-/// The same of a direction.
-[[nodiscard]] SDM_API std::string text_of(const std::optional<Vec3>& direction);
-
-/// Whether the vector has a direction: it is finite, its length too, and not 0.
-[[nodiscard]] SDM_API bool has_direction(const Vec3& vector);
-/// Whether a number is in a range.
-[[nodiscard]] constexpr bool in_range(double value, const OptionRange& range) {
-  return (range.above ? value > range.least : value >= range.least) &&
-         (range.below ? value < range.most : value <= range.most);
-}
-
 namespace detail {
 
 template <class Struct>
@@ -148,32 +159,6 @@ struct OptionalOf<std::optional<Value>> {
   static constexpr bool kOptional = true;
 };
 
-template <class Value>
-[[nodiscard]] std::string value_text(const Value& value) {
-  if constexpr (std::is_same_v<Value, std::optional<Vec3>>)
-    return text_of(value);
-  else if constexpr (OptionalOf<Value>::kOptional)
-    return value ? value_text(*value) : std::string();
-  else if constexpr (std::is_same_v<Value, bool>)
-    return value ? "true" : "false";
-  else if constexpr (std::is_enum_v<Value>)
-    return name_of(value);
-  else
-    return text_of(static_cast<double>(value));
-}
-
-template <class Value>
-[[nodiscard]] constexpr bool allowed(const Value& value, const OptionRange& range) {
-  if constexpr (std::is_same_v<Value, std::optional<Vec3>>)
-    return !value || has_direction(*value);
-  else if constexpr (OptionalOf<Value>::kOptional)
-    return !value || allowed(*value, range);
-  else if constexpr (std::is_same_v<Value, bool> || std::is_enum_v<Value>)
-    return true;
-  else
-    return in_range(static_cast<double>(value), range);
-}
-
 [[noreturn]] SDM_API void refuse(const OptionInfo& option, const std::string& value);
 
 }  // namespace detail
@@ -182,29 +167,23 @@ template <class Value>
 template <class Struct, class Value>
 [[nodiscard]] OptionInfo info_of(const Option<Struct, Value>& option) {
   using Type = typename detail::OptionalOf<Value>::Type;
+  using Form = OptionForm<Value>;
   OptionInfo info{.name = option.name,
                   .text = option.text,
                   .unit = option.unit,
                   .value = option.value,
                   .implied = option.implied,
                   .since = option.since,
-                  .type = "number",
+                  .type = Form::kType,
                   .optional = detail::OptionalOf<Value>::kOptional,
-                  .default_value = detail::value_text(detail::defaults_of<Struct>().*option.member),
+                  .default_value = {},
                   .words = {},
                   .range = option.range,
+                  .form = Form::needed(),
                   .excludes = {option.excludes.begin(), option.excludes.end()}};
-  if constexpr (std::is_same_v<Type, Vec3>) {
-    info.type = "direction";
-    info.default_value.clear();
-  } else if constexpr (std::is_same_v<Type, bool>) {
-    info.type = "flag";
-  } else if constexpr (std::is_enum_v<Type>) {
-    info.type = "word";
-    info.words.assign(kWords<Type>.begin(), kWords<Type>.end());
-  } else if constexpr (std::is_integral_v<Type>) {
-    info.type = "integer";
-  }
+  if constexpr (!std::is_same_v<Value, std::optional<Vec3>>)
+    info.default_value = Form::text(detail::defaults_of<Struct>().*option.member);
+  if constexpr (Worded<Type>) info.words.assign(kWords<Type>.begin(), kWords<Type>.end());
   return info;
 }
 
@@ -224,31 +203,15 @@ template <class... Structs>
 /// Reads the value of an option from text. Returns false, and changes nothing, if it is none or out of range.
 template <class Struct, class Value>
 [[nodiscard]] bool read_value(const Option<Struct, Value>& option, std::string_view text, Struct& options) {
-  using Type = typename detail::OptionalOf<Value>::Type;
-  Value& member = options.*option.member;
-  if constexpr (std::is_same_v<Type, Vec3>) {
-    return read_direction(text, member);
-  } else if constexpr (std::is_same_v<Type, bool>) {
-    if (text != "true" && text != "false") return false;
-    member = text == "true";
-  } else if constexpr (std::is_enum_v<Type>) {
-    const std::optional<Type> value = value_of<Type>(text);
-    if (!value) return false;
-    member = *value;
-  } else {
-    Type value{};
-    if (!read_number(text, option.range, value)) return false;
-    member = value;
-  }
-  return true;
+  return OptionForm<Value>::read(text, option.range, options.*option.member);
 }
 
 /// The values of all options of a struct.
 template <class Struct>
 [[nodiscard]] std::vector<GivenOption> settings_of(const Struct& options) {
   std::vector<GivenOption> settings;
-  for_each_option<Struct>([&](const auto& option) {
-    settings.push_back({option.name, detail::value_text(options.*option.member)});
+  for_each_option<Struct>([&]<class Value>(const Option<Struct, Value>& option) {
+    settings.push_back({option.name, OptionForm<Value>::text(options.*option.member)});
   });
   return settings;
 }
@@ -257,18 +220,20 @@ template <class Struct>
 /// excludes another one.
 template <class Struct>
 void check_options(const Struct& options) {
+  std::vector<GivenOption> given;
   bool excluding = false;
-  for_each_option<Struct>([&](const auto& option) {
-    const auto& value = options.*option.member;
-    if (!detail::allowed(value, option.range)) detail::refuse(info_of(option), detail::value_text(value));
+  for_each_option<Struct>([&]<class Value>(const Option<Struct, Value>& option) {
+    using Form = OptionForm<Value>;
+    const Value& value = options.*option.member;
+    if (!Form::allowed(value, option.range)) detail::refuse(info_of(option), Form::text(value));
     excluding =
         excluding || (!option.excludes.empty() && !(value == detail::defaults_of<Struct>().*option.member));
   });
   if (!excluding) return;
-  std::vector<GivenOption> given;
-  for_each_option<Struct>([&](const auto& option) {
-    if (!(options.*option.member == detail::defaults_of<Struct>().*option.member))
-      given.push_back({option.name, detail::value_text(options.*option.member)});
+  for_each_option<Struct>([&]<class Value>(const Option<Struct, Value>& option) {
+    const Value& value = options.*option.member;
+    if (!(value == detail::defaults_of<Struct>().*option.member))
+      given.push_back({option.name, OptionForm<Value>::text(value)});
   });
   check_exclusions(options_of<Struct>(), given, Spelling::field);
 }

@@ -10,6 +10,7 @@
 #include <sdm/io.h>
 #include <sdm/map.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/part_statistics.h>
 #include <sdm/places.h>
 #include <sdm/progress.h>
@@ -61,6 +62,18 @@ struct TextDialect {
   /// The line of the header in a file that was opened, from 1; nothing if it has none.
   std::optional<std::uint64_t> header_line{};
 };
+
+template <>
+inline constexpr auto kOptions<TextDialect> = std::tuple{
+    Option{.name = "columns",
+           .member = &TextDialect::columns,
+           .text =
+               "What the columns of a cloud in text are: x, y and z, perhaps nx, ny and nz, and any other "
+               "name, such as _, where a column is ignored; by default as the file names them, or the "
+               "first three are x, y, z.",
+           .value = "NAME,..."},
+    Option{.name = "separator", .member = &TextDialect::separator, .text = "What separates these columns."},
+    Option{.name = "decimal", .member = &TextDialect::decimal, .text = "The decimal mark of their numbers."}};
 
 template <>
 inline constexpr std::tuple kFields<TextDialect>{

@@ -3,6 +3,7 @@
 
 #include <sdm/api.h>
 #include <sdm/bounds.h>
+#include <sdm/proximity_query.h>
 #include <sdm/shape.h>
 #include <sdm/transform.h>
 
@@ -12,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -20,6 +22,9 @@ namespace sdm {
 struct PoseQueryOptions {
   std::optional<double> depth_precision{};  ///< as that of ProximityOptions
 };
+
+template <>
+inline constexpr auto kOptions<PoseQueryOptions> = std::tuple{depth_precision_option<PoseQueryOptions>()};
 
 /// Proximity of a shape in many poses to obstacles: other shapes, each in one pose.
 ///

@@ -98,15 +98,22 @@ struct ProximityOptions {
   bool ignore_internal_edges = false;
 };
 
+/// depth_precision of a struct.
+template <class Struct>
+[[nodiscard]] constexpr auto depth_precision_option() {
+  return Option{.name = "depth_precision",
+                .member = &Struct::depth_precision,
+                .text =
+                    "Bounds on the penetration depth at most this far apart; by default 1/1000 of the "
+                    "smaller body's diagonal.",
+                .range = kPositive,
+                .unit = "length",
+                .value = "EPS"};
+}
+
 template <>
 inline constexpr auto kOptions<ProximityOptions> = std::tuple{
-    Option{.name = "depth_precision",
-           .member = &ProximityOptions::depth_precision,
-           .text = "Bounds on the penetration depth at most this far apart; by default 1/1000 of the smaller "
-                   "body's diagonal.",
-           .range = kPositive,
-           .unit = "length",
-           .value = "EPS"},
+    depth_precision_option<ProximityOptions>(),
     Option{.name = "contact_margin",
            .member = &ProximityOptions::contact_margin,
            .text = "Also report contacts up to this distance, not only of penetrating parts.",

@@ -90,6 +90,25 @@ struct AmbientOcclusionOptions {
   Progress progress{};
 };
 
+inline constexpr OptionRange kOcclusionRays{1, 1 << 16};
+inline constexpr const char* kOcclusionRaysText = "Of ambient_occlusion: rays from each point.";
+inline constexpr const char* kOcclusionDistanceText =
+    "Of ambient_occlusion: what is farther away occludes nothing.";
+
+template <>
+inline constexpr auto kOptions<AmbientOcclusionOptions> =
+    std::tuple{Option{.name = "rays",
+                      .member = &AmbientOcclusionOptions::rays,
+                      .text = kOcclusionRaysText,
+                      .range = kOcclusionRays,
+                      .value = "N"},
+               max_distance_option<AmbientOcclusionOptions>(kOcclusionDistanceText),
+               Option{.name = "seed",
+                      .member = &AmbientOcclusionOptions::seed,
+                      .text = "Of ambient_occlusion: what the directions of its rays depend on.",
+                      .range = {.least = 0},
+                      .value = "N"}};
+
 /// Returns, for each texel, the fraction of rays that do not meet O2, or NaN if no face owns the texel. Rays
 /// start at the texel's surface point, on the side to which the normal of its face points, with a density
 /// proportional to the cosine of the angle to the normal: the result is an estimate of

@@ -37,6 +37,7 @@
 #include <sdm/metrics.h>
 #include <sdm/multi_body_query.h>
 #include <sdm/names.h>
+#include <sdm/option_forms.h>
 #include <sdm/options.h>
 #include <sdm/part_statistics.h>
 #include <sdm/places.h>

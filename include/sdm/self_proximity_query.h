@@ -133,13 +133,8 @@ struct SelfProximityOptions {
 };
 
 template <>
-inline constexpr auto kOptions<SelfProximityOptions> =
-    std::tuple{Option{.name = "max_distance",
-                      .member = &SelfProximityOptions::max_distance,
-                      .text = "Samples without a surface within this distance have no value.",
-                      .range = kPositiveOrInfinite,
-                      .unit = "length",
-                      .value = "D"}};
+inline constexpr auto kOptions<SelfProximityOptions> = std::tuple{max_distance_option<SelfProximityOptions>(
+    "Samples without a surface within this distance have no value.")};
 
 /// Proximity of a deforming mesh to itself, for simulation loops. Results are exact: computed from the
 /// triangles, without sampling error.

@@ -7,6 +7,7 @@
 #include <sdm/api.h>
 #include <sdm/mesh.h>
 #include <sdm/mesh_edit.h>
+#include <sdm/options.h>
 #include <sdm/tessellation.h>
 
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 
 namespace sdm {
 
@@ -25,6 +27,17 @@ struct SequenceOptions {
   bool allow_topology = false;
   TessellationOptions tessellation{};  ///< of CAD
 };
+
+template <>
+inline constexpr auto kOptions<SequenceOptions> = std::tuple{
+    Option{.name = "rate",
+           .member = &SequenceOptions::rate,
+           .text = "glTF animations: frames per second; by default one frame per key.",
+           .range = kPositive,
+           .value = "FPS"},
+    Option{.name = "allow_topology",
+           .member = &SequenceOptions::allow_topology,
+           .text = "Vertices and faces may be added and removed between the files of a sequence."}};
 
 /// How a frame differs from the one that was read before.
 struct TopologyChange {

@@ -8,12 +8,16 @@
 #include <sdm/bounds.h>
 #include <sdm/mesh.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <tuple>
+#include <vector>
 
 namespace sdm {
 
@@ -51,6 +55,39 @@ struct SimplifyOptions {
   bool single_precision = false;
   Progress progress{};
 };
+
+/// Options of simplify_levels(). Exactly one of the first two is given.
+struct LevelsOptions {
+  std::optional<double> max_deviation{};     ///< greater than 0, in units of the mesh: of the first level
+  std::optional<std::uint64_t> triangles{};  ///< at least 1: of the first level
+  std::uint32_t lods = 0;                    ///< levels after it, up to 32
+  bool single_precision = false;             ///< as of SimplifyOptions
+  Progress progress{};
+};
+
+inline constexpr std::array kDeviationExcludes{ExcludedOption{"triangles"}};
+
+template <>
+inline constexpr auto kOptions<LevelsOptions> = std::tuple{
+    Option{.name = "max_deviation",
+           .member = &LevelsOptions::max_deviation,
+           .text = "As few triangles as are found for which no point of the result is farther than this from "
+                   "the mesh, and none of the mesh farther from the result: certified, not sampled.",
+           .range = kPositive,
+           .unit = "length",
+           .value = "D",
+           .excludes = kDeviationExcludes},
+    Option{.name = "triangles",
+           .member = &LevelsOptions::triangles,
+           .text = "At most so many triangles; how far the result deviates is certified.",
+           .range = {.least = 1},
+           .value = "N"},
+    Option{.name = "lods",
+           .member = &LevelsOptions::lods,
+           .text = "So many further levels of detail, each with twice the deviation or half of the triangles "
+                   "of the one before, from which it is made.",
+           .range = {0, 32},
+           .value = "N"}};
 
 /// What the calls so far have cost. Phases that run beside each other count twice.
 struct SimplifyReport {
@@ -96,5 +133,16 @@ class SDM_API Simplifier {
   class State;
   std::unique_ptr<State> state_;
 };
+
+/// Levels of detail, the finest first, and what they cost.
+struct SimplifiedLevels {
+  std::vector<Simplified> levels{};
+  SimplifyReport report{};
+};
+
+/// Returns 1 + options.lods meshes with fewer triangles, each made from the one before and certified against
+/// the given mesh. The k-th has 2^k times the deviation, or at most triangles / 2^k of them, but one. Throws
+/// sdm::Error for options out of range, and as Simplifier does; Cancelled. Cost: that of its calls.
+[[nodiscard]] SDM_API SimplifiedLevels simplify_levels(const Mesh& mesh, const LevelsOptions& options);
 
 }  // namespace sdm

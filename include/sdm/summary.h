@@ -16,6 +16,7 @@
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/part_statistics.h>
 #include <sdm/places.h>
 #include <sdm/progress.h>
@@ -31,6 +32,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
@@ -57,6 +59,31 @@ struct ColorChoice {
   std::optional<Tolerance> tolerance{};
   double accuracy = 0;  ///< of the distances; a range from the distances is at least as long
 };
+
+/// The options of a struct on colours: colormap, range and tolerance.
+template <class Struct>
+inline constexpr auto kColorOptions = std::tuple{
+    Option{.name = "colormap",
+           .member = &Struct::colormap,
+           .text = "Colormap; sequential: viridis from 0 to one side, and reds to the other one; automatic: "
+                   "viridis if no distance is negative, sequential if little is on one side of 0, otherwise "
+                   "diverging."},
+    Option{.name = "range",
+           .member = &Struct::range,
+           .text = "The distances at the ends of the colour scale; by default up to the 99th percentile of "
+                   "|distance|, rounded, to both sides of 0 if distances have both signs.",
+           .unit = "length",
+           .value = "LO HI"},
+    Option{.name = "tolerance",
+           .member = &Struct::tolerance,
+           .text = "Draw colour bands, and judge whether all distances are from LO to HI; T: the same as "
+                   "-T:T, also for unsigned distances.",
+           .unit = "length",
+           .value = "T|LO:HI"}};
+inline constexpr const char* kUnitsText = "Units of the meshes, for printed and drawn values.";
+
+template <>
+inline constexpr auto kOptions<ColorChoice> = kColorOptions<ColorChoice>;
 
 /// The colours of distances.
 struct ColorRange {
@@ -168,6 +195,24 @@ struct SummaryOptions {
   bool accept_doubts = false;                    ///< a pass stays one
   Progress progress{};                           ///< of the proof of the tolerance
 };
+
+inline constexpr const char* kAcceptDoubtsText =
+    "PASS stays PASS where units, the alignment, the coverage or thin walls leave a doubt, instead of "
+    "DOUBTFUL.";
+
+template <>
+inline constexpr auto kOptions<SummaryOptions> = std::tuple_cat(
+    kColorOptions<SummaryOptions>,
+    std::tuple{
+        Option{.name = "units", .member = &SummaryOptions::units, .text = kUnitsText, .value = "NAME"},
+        Option{.name = "bands",
+               .member = &SummaryOptions::bands,
+               .text = "The edges of the bands of distance in the report, increasing, with the fraction "
+                       "of the area in each; by default multiples of the tolerance.",
+               .unit = "length",
+               .value = "LIST"},
+        Option{
+            .name = "accept_doubts", .member = &SummaryOptions::accept_doubts, .text = kAcceptDoubtsText}});
 
 /// Sums up a map on `surface` of the distances to `sites`. `vertex_distances`: the distance at each vertex of
 /// surface.mesh(), NaN if it has no value. Throws sdm::Error if the map or the distances belong to another

@@ -5,6 +5,7 @@
 
 #include <sdm/api.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 
 #include <cstddef>
 #include <optional>
@@ -25,6 +26,23 @@ struct TessellationOptions {
   double angle =
       0.2;  ///< the angle in radians between the normals of neighbouring triangles that is aimed at
 };
+
+template <>
+inline constexpr auto kOptions<TessellationOptions> = std::tuple{
+    Option{.name = "deflection",
+           .member = &TessellationOptions::deflection,
+           .text = "The distance in mm that triangles of STEP and IGES may have from the surface, as "
+                   "OpenCASCADE keeps it; by default 1/2000 of the diagonal, or a tenth of the tolerance if "
+                   "that is less, with up to 2 million triangles. What was measured is reported, as an "
+                   "estimate, and verdicts keep so far from the limits.",
+           .range = kPositive,
+           .value = "D"},
+    Option{.name = "angle",
+           .member = &TessellationOptions::angle,
+           .text = "The angle in radians between the normals of neighbouring triangles of STEP and IGES that "
+                   "is aimed at.",
+           .range = {.least = 0, .most = 1.5707963267948966, .above = true, .below = true},
+           .value = "A"}};
 
 /// The tessellation of a CAD file. Coordinates are in millimetres, whatever the unit of the file.
 struct Tessellation {

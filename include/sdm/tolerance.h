@@ -8,12 +8,15 @@
 #include <sdm/map.h>
 #include <sdm/mesh.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/surface.h>
 
 #include <array>
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <tuple>
 
 namespace sdm {
@@ -35,6 +38,18 @@ struct Tolerance {
     return lower < 0 && -lower != upper && lower > -std::numeric_limits<double>::infinity();
   }
   friend bool operator==(const Tolerance&, const Tolerance&) = default;
+};
+
+/// One number T for −T ≤ d ≤ T, or LO:HI. No limit is infinite.
+template <>
+struct OptionForm<Tolerance> {
+  static constexpr const char* kType = "tolerance";
+  static std::string needed() { return "a number of at least 0, or two, LO:HI, the smaller one first"; }
+  SDM_API static bool read(std::string_view text, const OptionRange& range, Tolerance& value);
+  SDM_API static std::string text(const Tolerance& value);
+  static bool allowed(const Tolerance& value, const OptionRange& range) {
+    return value.lo <= value.hi && in_range(value.hi - value.lo, range);
+  }
 };
 
 /// Fractions of the area of a map's texels, in [0, 1]; they add up to 1. All are 0 for a map without texels.

@@ -65,10 +65,11 @@ struct TransferOptions {
 };
 
 template <>
-inline constexpr std::tuple kOptions<TransferOptions>{
+inline constexpr auto kOptions<TransferOptions> = std::tuple{
     Option{.name = "fill",
            .member = &TransferOptions::fill,
-           .text = "Whether texels that no face owns are filled from their surroundings."}};
+           .text = "Texels of no face get values too, from texels near them, so that filtering at the border "
+                   "of a chart does not blend in a background."}};
 
 /// Returns the values of the array, a row for each texel of the map, at the texel's closest point on O2: that
 /// of point_on_face() or, for maps along normals and of thickness, the end of the vector. Values are

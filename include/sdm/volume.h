@@ -68,19 +68,8 @@ struct FieldOptions {
 
 template <>
 inline constexpr auto kOptions<FieldOptions> = std::tuple{
-    Option{.name = "max_distance",
-           .member = &FieldOptions::max_distance,
-           .text = "Points farther than this have no value.",
-           .range = kPositiveOrInfinite,
-           .unit = "length",
-           .value = "D"},
-    Option{.name = "sign",
-           .member = &FieldOptions::sign,
-           .text =
-               "How the inside of O2, where distances are negative, is determined; automatic: exact if O2 "
-               "is closed and orientable, otherwise none; winding: by generalised winding numbers, an "
-               "estimate; side: of an open O2 the side to which its normals do not point is negative, an "
-               "estimate."},
+    max_distance_option<FieldOptions>("Points farther than this have no value."),
+    Option{.name = "sign", .member = &FieldOptions::sign, .text = kSignText},
     Option{.name = "sites", .member = &FieldOptions::sites, .text = "Also find the closest sites."}};
 
 /// One value per grid point. Points without a value, farther than the maximum distance, hold NaN, kNone and

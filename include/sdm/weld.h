@@ -7,6 +7,7 @@
 #include <sdm/api.h>
 #include <sdm/mesh.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/progress.h>
 
 #include <cstddef>
@@ -24,6 +25,16 @@ struct WeldOptions {
   std::optional<double> tolerance{};
   Progress progress{};
 };
+
+template <>
+inline constexpr auto kOptions<WeldOptions> = std::tuple{
+    Option{.name = "tolerance",
+           .member = &WeldOptions::tolerance,
+           .text = "Edges are joined whose ends are at most this far apart; by default up to 0.001 of the "
+                   "diagonal of the mesh. No gap wider than a quarter of its edges is closed.",
+           .range = kPositive,
+           .unit = "length",
+           .value = "T"}};
 
 /// What weld() did.
 struct WeldReport {

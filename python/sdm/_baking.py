@@ -1,7 +1,7 @@
 """Textures of coarse meshes from detailed ones."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from . import _core
 from ._arrays import numpy_of
 from ._core import Baked, Error, Mesh
 from ._looks import Appearance, look_of
-from ._types import Atlas, MatchMethod
+from ._options import takes_options
 
 
 def _corner_uvs(mesh: Any, uvs: Any) -> npt.NDArray[Any]:
@@ -43,6 +43,7 @@ def _appearance(mesh: Any, vertex_colors: Any, face_colors: Any, texture: Any, u
     return own, look
 
 
+@takes_options("bake")
 def bake(
     high: Any,
     low: Any,
@@ -51,18 +52,8 @@ def bake(
     face_colors: Any = None,
     texture: Any = None,
     uvs: Any = None,
-    channels: "Sequence[str] | None" = None,
-    resolution: int = 1024,
-    samples: int = 1,
-    atlas: "Atlas | None" = None,
-    gutter: int = 1,
-    match: "MatchMethod | None" = None,
-    facing: "float | None" = None,
-    cage: "float | None" = None,
-    max_distance: float = np.inf,
-    occlusion_rays: int = 64,
-    occlusion_distance: float = np.inf,
     progress: "Callable[[str, float], bool | None] | None" = None,
+    **options: object,
 ) -> Baked:
     """Bakes the materials, textures and colours of a detailed mesh into textures of a coarse one.
 
@@ -79,24 +70,10 @@ def bake(
         corners of faces without texture.
     low: the mesh that gets the textures: on its texture coordinates if they can be used, otherwise on an atlas
         (``Baked.corner_uvs``).
-    channels: of materials 'base_color', 'metallic_roughness', 'occlusion' and 'emissive'; by default base_color, and others
-        that differ between points of ``high``. Of the shape of ``high``, which needs no materials: 'normal', in the tangent
-        space of ``low``; 'object_normal', in the coordinates of the meshes; 'displacement', how far the point is along the
-        smooth normal of ``low``, negative below its surface; 'position'; 'ambient_occlusion', the share of the hemisphere
-        that ``high`` leaves free; 'thickness', the diameter of the largest ball in ``high`` that touches the point, for a
-        closed mesh; 'face' and 'material', the numbers of the point's face and of its material (``Baked.material_names``).
-        Lengths and positions are in the units of the meshes. Shapes of arrays: ``Baked[channel]``.
-    resolution: texels a side, from 16 to 32768. samples: in each texel, the square of 1 to 8: each has a point of ``high``,
-        and the texel has their mean, of numbers that of most of them; ``resolution`` times the root is 32768 at most.
-    atlas: insists on a layout, as of ``map()``. gutter: free texels around charts.
-    match: 'closest', 'facing' or 'ray', as of ``match()``: the closest point, the closest one on faces that face as the
-        texel does, or the nearest hit of these along the normal of ``low``. By default closest, or facing if ``facing`` is
-        given. For thin walls, pass facing=90.
-    facing: of 'facing' and 'ray', the largest angle in degrees between the normals; by default 90.
-    cage: of 'ray', how far along the normal hits are searched for, to either side.
-    max_distance: points farther away do not count.
-    occlusion_rays, occlusion_distance: of 'ambient_occlusion', rays from each point, 1 to 65536, and how far away faces
-        still occlude.
+    {options}
+
+    Shapes of arrays: ``Baked[channel]``; ``Baked.material_names`` has the names of materials by their numbers.
+    ``resolution`` times the root of ``samples`` is 32768 at most. For thin walls, pass facing=90.
 
     Raises Error if ``high`` has nothing to bake, and if no texel has a point. Time and memory are those of a texture with
     as many texels as there are samples.
@@ -119,16 +96,6 @@ def bake(
         mesh,
         look.compiled(),
         low,
-        None if channels is None else list(channels),
-        resolution,
-        samples,
-        atlas,
-        gutter,
-        match,
-        facing,
-        cage,
-        max_distance,
-        occlusion_rays,
-        occlusion_distance,
+        options,
         progress,
     )

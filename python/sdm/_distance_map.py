@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from . import _core
 from ._closest_points import NONE
 from ._core import (
     BoundedLength,
@@ -19,8 +20,8 @@ from ._core import (
     Places,
     ToleranceVerdict,
 )
+from ._options import takes_options
 from ._texels import Progress, Texels, read_only
-from ._types import Colormap
 
 
 @dataclass(frozen=True)
@@ -181,42 +182,37 @@ class DistanceMap(MapChannels, Texels):
         """
         return self._core.free_distances()
 
-    def ambient_occlusion(
-        self, rays: int = 64, *, max_distance: float = float("inf"), seed: int = 0, progress: "Progress | None" = None
-    ) -> "npt.NDArray[np.float32]":
+    @takes_options("ambient_occlusion")
+    def ambient_occlusion(self, rays: int = 64, *, progress: "Progress | None" = None, **options: object) -> "npt.NDArray[np.float32]":
         """Returns, for each texel, how much of the hemisphere above it is free of O2, (H, W) float32: an estimate.
 
         1: all of it; NaN where no face owns the texel. Rays start at the texel, to the side of the face's normal, with a
         density proportional to the cosine of the angle to it. O1 does not occlude itself.
-        rays: for each texel, 1 to 65536. max_distance: > 0; O2 occludes nothing that is farther away. seed: of the
-        directions. Raises Error as ``bounds`` does; Cancelled. Cost: ``rays`` rays per texel, all cores.
+        rays: for each texel, 1 to 65536.
+        {options}
+        Raises Error as ``bounds`` does; Cancelled. Cost: ``rays`` rays per texel, all cores.
 
         >>> bool(np.nanmin(sdm.map(box, sphere, resolution=64).ambient_occlusion(16)) < 1)
         True
         """
-        return self._core.ambient_occlusion(rays, max_distance, seed, progress)
+        given = {"rays": rays, **options}
+        _core.check_keywords("ambient_occlusion", given)
+        return self._core.ambient_occlusion(given, progress)
 
-    def report(
-        self,
-        *,
-        tolerance: "float | tuple[float, float] | None" = None,
-        units: str = "",
-        colormap: Colormap = "automatic",
-        range: "tuple[float, float] | None" = None,
-        progress: "Progress | None" = None,
-    ) -> "dict[str, Any]":
+    @takes_options("report")
+    def report(self, *, progress: "Progress | None" = None, **options: object) -> "dict[str, Any]":
         """Returns the numbers of the map with the keys of the command's report.json, for json.dump().
 
-        The options are those of save(). None stands for what has no value, such as the times of what other calls did. Raises Error if the surface or the sites have been
-        refitted; Cancelled. Cost: one search per vertex.
+        {options}
+        None stands for what has no value, such as the times of what other calls did. Raises Error if the surface or the sites
+        have been refitted; Cancelled. Cost: one search per vertex.
 
         >>> report = sdm.map(sphere, box, resolution=64).report(tolerance=2)
         >>> report["tolerance"]["verdict"], report["atlas"]["resolution"]
         ('PASS', 64)
         """
-        at_vertices = self.at_vertices(progress=progress)
-        text = self._core.report(at_vertices, tolerance=tolerance, units=units, colormap=colormap, range=range)
-        report: "dict[str, Any]" = json.loads(text)
+        _core.check_keywords("report", options)
+        report: "dict[str, Any]" = json.loads(self._core.report(self.at_vertices(progress=progress), options))
         return report
 
     def at_vertices(self, *, progress: "Progress | None" = None) -> "npt.NDArray[np.float32]":
@@ -227,18 +223,8 @@ class DistanceMap(MapChannels, Texels):
         """
         return self._core.at_vertices(progress)
 
-    def save(
-        self,
-        file: "str | os.PathLike[str]",
-        *,
-        colormap: Colormap = "automatic",
-        range: "tuple[float, float] | None" = None,
-        tolerance: "float | tuple[float, float] | None" = None,
-        units: str = "",
-        size: int = 2048,
-        up: str = "y",
-        progress: "Progress | None" = None,
-    ) -> None:
+    @takes_options("save")
+    def save(self, file: "str | os.PathLike[str]", *, progress: "Progress | None" = None, **options: object) -> None:
         """Writes the map, in the format of the file's extension.
 
         ===================  ======================================================================================
@@ -249,52 +235,41 @@ class DistanceMap(MapChannels, Texels):
         .ply .csv .npy .vtp  the distance of each vertex, in the order of the vertices; in .ply and .vtp with the faces
         ===================  ======================================================================================
 
-        The options are those of the colours. colormap: 'automatic' (viridis if no distance is negative, 'sequential'
-        if less than 5 % of the area is on one side of 0, else 'diverging'), one of these, or 'paper2006'. range: of the
-        colours; by default from the map, rounded. tolerance: bands, green within ±tolerance, or from the first to the
-        second number. units: shown in the legend ('mm', ...); they scale a .glb to metres, and are an attribute of a .exr, beside what the distances are to and their sign. size: the most pixels a side of pictures and textures. up: 'y' or 'z', the axis that points up in a
-        .html. The complete file appears, or none. Raises Error, naming the file and the fault.
+        {options}
+        A .exr has the units, what the distances are to, and their sign as attributes.
+        The complete file appears, or none. Raises Error, naming the file and the fault.
         """
+        _core.check_keywords("save", options)
         name = os.fsdecode(file)
         suffix = os.path.splitext(name)[1].lower()
         if suffix not in (".exr", ".png", ".glb", ".html", ".ply", ".csv", ".npy", ".vtp"):
             raise Error(f"{name}: a map is saved as .exr, .png, .glb, .html, .ply, .csv, .npy or .vtp, not as '{suffix}'")
         if suffix == ".html":
             at_vertices = self.at_vertices(progress=progress)
-            report = self._core.report(at_vertices, tolerance=tolerance, units=units, colormap=colormap, range=range)
-            self._core.write_page(name, at_vertices, report, up=up)
+            self._core.write_page(name, at_vertices, self._core.report(at_vertices, options), up=options.get("up") or "y")
             return
-        self._core.write(
-            suffix[1:],
-            name,
-            colormap=colormap,
-            range=range,
-            tolerance=tolerance,
-            units=units,
-            size=size,
-            progress=progress,
-        )
+        self._core.write(suffix[1:], name, options, progress=progress)
 
+    @takes_options("save")
     def save_view(
         self,
         file: "str | os.PathLike[str]",
         towards: "tuple[float, float, float]" = (0.7, 0.5, 1.0),
         *,
         other: "DistanceMap | None" = None,
-        colormap: Colormap = "automatic",
-        range: "tuple[float, float] | None" = None,
-        tolerance: "float | tuple[float, float] | None" = None,
-        units: str = "",
         size: int = 1200,
-        up: str = "y",
         legend: bool = True,
+        **options: object,
     ) -> None:
         """Writes a picture of the surface in the colours of the distances, as PNG.
 
         towards: from the surface to the viewer: right, up, front. O2 is pale beside it, or coloured as well, at the same
-        scale, with other: the map from O2. The options are those of save(); size: the pixels of the width, 86 to 8192, of
-        which the height is three quarters; legend: beside the view. Raises Error, naming the fault.
+        scale, with other: the map from O2. size: the pixels of the width, 86 to 8192, of which the height is three quarters;
+        legend: beside the view.
+        {options}
+        Raises Error, naming the fault.
         """
+        _core.check_keywords("save", options)
         name = os.fsdecode(file)
         if not name.lower().endswith(".png"):
             raise Error(f"{name}: a view is saved as .png")
@@ -305,12 +280,8 @@ class DistanceMap(MapChannels, Texels):
             self.at_vertices(),
             towards,
             None if other is None else other.at_vertices(),
-            colormap=colormap,
-            range=range,
-            tolerance=tolerance,
-            units=units,
+            options,
             size=size,
-            up=up,
             legend=legend,
         )
 

@@ -121,35 +121,39 @@ class Matches(Texels):
         """Returns the points, (H, W, 3)."""
         return self._core.positions(fill, progress)
 
+    @takes_options("ambient_occlusion")
     def ambient_occlusion(
-        self,
-        rays: int = 64,
-        *,
-        max_distance: float = float("inf"),
-        seed: int = 0,
-        fill: bool = True,
-        progress: "Progress | None" = None,
+        self, rays: int = 64, *, fill: bool = True, progress: "Progress | None" = None, **options: object
     ) -> "npt.NDArray[np.float32]":
         """Returns how much of the hemisphere above each point is free of O2, (H, W): an estimate.
 
-        rays: for each texel. max_distance: > 0; nothing farther occludes. seed: of the directions. Rays start 1e-6 of the
-        diagonal of O2 above its face. Raises Error for numbers out of range. Cost: ``rays`` rays a texel.
+        rays: for each texel, 1 to 65536. Rays start 1e-6 of the diagonal of O2 above its face.
+        {options}
+        Raises Error for numbers out of range. Cost: ``rays`` rays a texel.
         """
-        return self._core.ambient_occlusion(rays, max_distance, seed, fill, progress)
+        given = {"rays": rays, **options}
+        _core.check_keywords("ambient_occlusion", given)
+        return self._core.ambient_occlusion(given, fill, progress)
 
+    @takes_options("TexelMatches.thickness")
     def thickness(
         self,
         method: Literal["ball", "ray"] = "ball",
         *,
-        angle: float = 90.0,
         fill: bool = True,
         progress: "Progress | None" = None,
+        **options: object,
     ) -> "npt.NDArray[np.float32]":
-        """Returns the wall thickness of O2 at each point, (H, W); NaN where nothing ends it. The arguments are those of thickness().
+        """Returns the wall thickness of O2 at each point, (H, W); NaN where nothing ends it. 
+
+        method: as of thickness().
+        {options}
 
         Raises Error unless O2 is closed and orientable. Cost: a ray a texel; of balls, also a search.
         """
-        return self._core.thickness(method, angle, fill, progress)
+        given = {"method": method, **options}
+        _core.check_keywords("TexelMatches.thickness", given)
+        return self._core.thickness(given, fill, progress)
 
     @staticmethod
     def _normals(normals: Normals, name: str, of: "Surface | Sites") -> object:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from . import _core
 from ._arrays import numpy_of
 from ._core import Error
+from ._options import takes_options
 from ._types import Certainty
 
 
@@ -72,13 +73,6 @@ class SurfaceMetrics(Mapping[str, BoundedNumber]):
         return f"sdm.SurfaceMetrics({', '.join(f'{name}={n.value:.6g}' for name, n in self.items())})"
 
 
-def _numbers(numbers: object, name: str) -> list[float]:
-    try:
-        return [float(n) for n in np.atleast_1d(np.asarray(numbers, dtype=np.float64))]
-    except (TypeError, ValueError):
-        raise Error(f"{name} must be numbers") from None
-
-
 def mask_surface(mask: object, spacing: float | Sequence[float] = 1.0) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
     """Returns the surface of a segmentation, the faces between voxels inside and outside: vertices (n, 3) float64 and
     faces (m, 3) uint32.
@@ -127,29 +121,18 @@ def _or_none_if_empty(mesh: object) -> object:
     return None if isinstance(mesh, tuple) and len(mesh) == 2 and np.size(mesh[1]) == 0 else mesh
 
 
+@takes_options("surface_metrics")
 def surface_metrics(
     a: object,
     b: object,
     *,
-    tolerances: object = (),
-    percentiles: object = (95,),
-    precision: float | None = None,
-    fraction_precision: float = 1e-3,
-    estimate: bool = False,
     progress: Callable[[str, float], bool | None] | None = None,
+    **options: object,
 ) -> SurfaceMetrics:
     """Compares two surfaces by the measures that papers and benchmarks report, with certified bounds.
 
     a, b: any form of a mesh (see Mesh), also without faces as a pair of arrays, or Sites. b is the truth for 'precision(T)' and 'recall(T)'.
-    tolerances: distances T ≥ 0, for 'nsd(T)' (surface Dice), 'precision(T)', 'recall(T)' and 'f_score(T)'.
-    percentiles: above 0 and below 100, for 'hdP'.
-    precision: bounds of distances are at most this far apart, in units of the meshes; None: 0.2 % of their
-    value, or up to 3 % where that is less than 2e-5 of the diagonal of the box of both. 1e-7 of that diagonal at least;
-    for 'hd' as close as given, and 1e-6 of the diagonal at most.
-    fraction_precision: the same for fractions of the area.
-    estimate: estimates from random points, uniform by area, in seconds. With a probability of at least 99 %, each is between
-    its bounds, which are 0.2 % of a distance from it, or `precision`, and `fraction_precision` from a fraction, unless 4
-    million points of each mesh are not enough. The bounds of 'hd' are certain, but far apart.
+    {options}
     progress: called as progress(step, fraction), on this thread; False cancels.
 
     'hd' is the Hausdorff distance, 'hd95' the larger of both 95th percentiles, 'assd' the average symmetric surface
@@ -164,15 +147,7 @@ def surface_metrics(
     >>> float(sdm.surface_metrics(box, box)["assd"])
     0.0
     """
-    both, forth, back, areas, points = _core.surface_metrics(
-        _or_none_if_empty(a),
-        _or_none_if_empty(b),
-        _numbers(percentiles, "percentiles"),
-        _numbers(tolerances, "tolerances"),
-        precision,
-        fraction_precision,
-        estimate,
-        progress,
-    )
+    _core.check_keywords("surface_metrics", options)
+    both, forth, back, areas, points = _core.surface_metrics(_or_none_if_empty(a), _or_none_if_empty(b), options, progress)
     numbers = [{name: BoundedNumber(*n) for name, n in part.items()} for part in (both, forth, back)]
     return SurfaceMetrics(numbers[0], numbers[1], numbers[2], areas, points)

@@ -22,7 +22,7 @@ def _page(distance_map: Any, folder: str) -> str:
     """The page of save("x.html"), with fewer texels and triangles if there are many; it loads nothing."""
     file = os.path.join(folder, "map.html")
     at_vertices = distance_map.at_vertices()
-    report = distance_map._core.report(at_vertices)
+    report = distance_map._core.report(at_vertices, {})
     distance_map._core.write_page(file, at_vertices, report, largest=_SIDE, triangles=_TRIANGLES)
     page = html.escape(_read(file).decode())
     style = "width: 100%; height: 640px; border: 1px solid #8888; border-radius: 4px"

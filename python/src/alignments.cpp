@@ -1,5 +1,4 @@
 // The alignment of two surfaces, or of points to a surface, and the doubts that it leaves.
-#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <sdm/doubts.h>
 #include <sdm/fit_check.h>
@@ -12,39 +11,25 @@
 
 #include "arrays.h"
 #include "fields.h"
+#include "options.h"
 #include "signatures.h"
 #include "sites_in_use.h"
 
 namespace sdm::python {
 namespace {
 
-AlignFreedoms freedoms_of(const std::string& text) {
-  if (const auto freedoms = parse_freedoms(text)) return *freedoms;
-  throw Error("'" + text + "' is not a list of x, y, z, rx, ry and rz, such as 'xyz,rz'");
-}
-
-AlignOptions align_options(const char* start, nb::handle pose, std::size_t samples, int max_iterations) {
-  AlignOptions options{.samples = samples, .max_iterations = max_iterations};
-  const std::string_view name = start;
-  if (name == "principal_axes")
-    options.start = AlignStart::principal_axes;
-  else if (name == "pose")
-    options.start = AlignStart::pose;
-  else if (name != "automatic")
-    throw Error("there is no start " + std::string(name) + "; use 'automatic', 'pose' or 'principal_axes'");
+/// The options of a call. `pose`: or None.
+AlignOptions align_options(const std::string& call, const nb::dict& given, nb::handle pose) {
+  check_keywords(call, given);
+  AlignOptions options;
+  set_options(given, options);
+  set_options(given, options.freedoms);
   if (!pose.is_none()) options.pose = transform(pose, "pose");
   return options;
 }
 
-/// What an alignment may move, and what it is fitted to.
-void restrict(AlignOptions& options, nb::handle free, nb::handle about, nb::handle on_faces,
-              nb::handle on_boxes, std::size_t faces) {
-  if (!free.is_none()) options.freedoms = freedoms_of(nb::cast<std::string>(free));
-  if (!about.is_none()) {
-    const Points point(nb::module_::import_("numpy").attr("atleast_2d")(about), "about");
-    if (point.get().size() != 1) throw Error("about needs three numbers");
-    options.freedoms.about = point.get()[0];
-  }
+/// The part of O2 that an alignment is fitted to.
+void restrict(AlignOptions& options, nb::handle on_faces, nb::handle on_boxes, std::size_t faces) {
   if (!on_faces.is_none()) {
     options.region.faces.resize(faces);
     for (const std::uint32_t face : indices(on_faces, "on_faces")) {
@@ -92,42 +77,16 @@ void bind_alignment(nb::module_& module) {
       });
 }
 
+constexpr const char* kWhere = "pose: object = None, on_faces: object = None, on_boxes: object = None, ";
+
 void bind_align(nb::module_& module) {
-  static const std::string align_signature =
-      std::string(
-          "def align(o1: object, o2: object, *, start: str = 'automatic', pose: object = None, "
-          "samples: int = 32768, max_iterations: int = 100, free: str | None = None, about: object = None, "
-          "on_faces: object = None, on_boxes: object = None, ") +
-      kProgress + "Alignment";
-  module.def(
-      "align",
-      [](nb::handle o1, nb::handle o2, const char* start, nb::handle pose, std::size_t samples,
-         int max_iterations, nb::handle free, nb::handle about, nb::handle on_faces, nb::handle on_boxes,
-         nb::handle progress) {
-        AlignOptions options = align_options(start, pose, samples, max_iterations);
-        const Mesh mesh = mesh_of(o1, nb::none());
-        SitesInUse to(o2);
-        restrict(options, free, about, on_faces, on_boxes, to.get().mesh().triangles.size());
-        Alignment result;
-        run(progress, [&](const Progress& report) {
-          options.progress = report;
-          result = align(mesh, to.get(), options);
-        });
-        return result;
-      },
-      nb::arg("o1").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("start") = "automatic",
-      nb::arg("pose") = nb::none(), nb::arg("samples") = 32768, nb::arg("max_iterations") = 100,
-      nb::arg("free") = nb::none(), nb::arg("about") = nb::none(), nb::arg("on_faces") = nb::none(),
-      nb::arg("on_boxes") = nb::none(), nb::arg("progress") = nb::none(), nb::sig(align_signature.c_str()),
+  static const std::string documentation =
       R"(Finds the rotation and the translation that move the surface of O1 onto O2.
 
 o1, o2: any form of a mesh (see Mesh); o2 also Sites.
-start: 'pose', at ``pose``; 'principal_axes', where centres and principal axes of both agree, which needs
-most of the surface of O1; or 'automatic', at ``pose`` and, if that leads to a poor fit, also at the axes.
+)" + option_documentation("align") +
+      R"(
 pose: of a rotation and a translation, as of ProximityQuery.set_pose(); None: O1 as it is.
-samples: of the surface of O1, at least 64. max_iterations: per level of refinement.
-free: the motions that may be used, such as 'xyz,rz': translations along x, y and z and a rotation about z, with
-the axes of O2's coordinates through ``about``, three numbers (None: the origin); None: all. Others are locked.
 on_faces, on_boxes: the part of O2 that O1 is fitted to: (k,) numbers of faces, and (2 k, 3) corners of boxes, the
 lower and the upper one of each; None: all of it. Samples are then those whose closest point is in that part.
 progress: called as progress(step, fraction), on this thread; False cancels.
@@ -139,28 +98,43 @@ range.
 >>> moved = sdm.Mesh(box).transformed([[1, 0, 0, 0.03], [0, 1, 0, 0.02], [0, 0, 1, -0.01], [0, 0, 0, 1]])
 >>> alignment = sdm.align(moved, box)
 >>> bool(np.abs(alignment.transform[:3, 3] + [0.03, 0.02, -0.01]).max() < 1e-9)
-True)");
+True)";
+  static const std::string align_signature = std::string("def align(o1: object, o2: object, *, ") +
+                                             option_signature("align") + kWhere + kProgress + "Alignment";
+  module.def(
+      "align",
+      [](nb::handle o1, nb::handle o2, nb::handle pose, nb::handle on_faces, nb::handle on_boxes,
+         nb::handle progress, const nb::kwargs& given) {
+        AlignOptions options = align_options("align", given, pose);
+        const Mesh mesh = mesh_of(o1, nb::none());
+        SitesInUse to(o2);
+        restrict(options, on_faces, on_boxes, to.get().mesh().triangles.size());
+        Alignment result;
+        run(progress, [&](const Progress& report) {
+          options.progress = report;
+          result = align(mesh, to.get(), options);
+        });
+        return result;
+      },
+      nb::arg("o1").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("pose") = nb::none(),
+      nb::arg("on_faces") = nb::none(), nb::arg("on_boxes") = nb::none(), nb::arg("progress") = nb::none(),
+      nb::arg("options"), nb::sig(align_signature.c_str()), documentation.c_str());
 }
 
 void bind_align_points(nb::module_& module) {
   static const std::string align_points_signature =
-      std::string(
-          "def align_points(points: object, o2: object, *, normals: object = None, start: str = "
-          "'automatic', pose: object = None, samples: int = 32768, max_iterations: int = 100, free: str | "
-          "None = "
-          "None, about: object = None, on_faces: object = None, on_boxes: object = None, ") +
-      kProgress + "Alignment";
+      std::string("def align_points(points: object, o2: object, *, normals: object = None, ") +
+      option_signature("align_points") + kWhere + kProgress + "Alignment";
   module.def(
       "align_points",
-      [](nb::handle points, nb::handle o2, nb::handle normals, const char* start, nb::handle pose,
-         std::size_t samples, int max_iterations, nb::handle free, nb::handle about, nb::handle on_faces,
-         nb::handle on_boxes, nb::handle progress) {
-        AlignOptions options = align_options(start, pose, samples, max_iterations);
+      [](nb::handle points, nb::handle o2, nb::handle normals, nb::handle pose, nb::handle on_faces,
+         nb::handle on_boxes, nb::handle progress, const nb::kwargs& given) {
+        AlignOptions options = align_options("align_points", given, pose);
         const Points p(points, "points");
         std::optional<Points> n;
         if (!normals.is_none()) n.emplace(normals, "normals");
         SitesInUse to(o2);
-        restrict(options, free, about, on_faces, on_boxes, to.get().mesh().triangles.size());
+        restrict(options, on_faces, on_boxes, to.get().mesh().triangles.size());
         Alignment result;
         run(progress, [&](const Progress& report) {
           options.progress = report;
@@ -169,10 +143,8 @@ void bind_align_points(nb::module_& module) {
         return result;
       },
       nb::arg("points").none(), nb::arg("o2").none(), nb::kw_only(), nb::arg("normals") = nb::none(),
-      nb::arg("start") = "automatic", nb::arg("pose") = nb::none(), nb::arg("samples") = 32768,
-      nb::arg("max_iterations") = 100, nb::arg("free") = nb::none(), nb::arg("about") = nb::none(),
-      nb::arg("on_faces") = nb::none(), nb::arg("on_boxes") = nb::none(), nb::arg("progress") = nb::none(),
-      nb::sig(align_points_signature.c_str()),
+      nb::arg("pose") = nb::none(), nb::arg("on_faces") = nb::none(), nb::arg("on_boxes") = nb::none(),
+      nb::arg("progress") = nb::none(), nb::arg("options"), nb::sig(align_points_signature.c_str()),
       R"(Finds the rotation and the translation that move points onto O2; see align().
 
 points: (n, 3) numbers, of which a pseudorandom subset is used if there are more than ``samples``.
@@ -212,11 +184,13 @@ void bind_doubts(nb::module_& module) {
   bind_fields(type).def("__repr__", [](const Doubt& self) {
     return nb::str("sdm.Doubt({}: {})").format(name_of(self.reason), self.text);
   });
+  static const std::string signature =
+      "def alignment_doubts(o1: object, o2: object, alignment: Alignment, *, " + option_signature("align") +
+      "pose: object = None) -> list[Doubt]";
   module.def(
       "alignment_doubts",
-      [](nb::handle o1, nb::handle o2, const Alignment& alignment, const char* start, nb::handle pose) {
-        const AlignOptions options =
-            align_options(start, pose, AlignOptions{}.samples, AlignOptions{}.max_iterations);
+      [](nb::handle o1, nb::handle o2, const Alignment& alignment, nb::handle pose, const nb::kwargs& given) {
+        const AlignOptions options = align_options("align", given, pose);
         const Mesh mesh = mesh_of(o1, nb::none());
         SitesInUse to(o2);
         std::vector<Doubt> doubts;
@@ -229,13 +203,10 @@ void bind_doubts(nb::module_& module) {
         return result;
       },
       nb::arg("o1").none(), nb::arg("o2").none(), nb::arg("alignment"), nb::kw_only(),
-      nb::arg("start") = "automatic", nb::arg("pose") = nb::none(),
-      nb::sig(
-          "def alignment_doubts(o1: object, o2: object, alignment: Alignment, *, start: str = 'automatic', "
-          "pose: object = None) -> list[Doubt]"),
+      nb::arg("pose") = nb::none(), nb::arg("options"), nb::sig(signature.c_str()),
       R"(Returns the doubts that an alignment leaves, for which the command withholds a PASS.
 
-o1: as it was given to align(), which returned the alignment with these ``start`` and ``pose``.
+o1: as it was given to align(), which returned the alignment with these options.
 
 They are that o1 fits far better 10, 25.4, 304.8 or 1000 times as large, or as small, or mirrored; that less than half of
 its samples fit; and that the surfaces do not determine all freedoms. Errors as of align(). Cost: that of up to

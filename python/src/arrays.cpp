@@ -48,13 +48,6 @@ std::int64_t integer_of(nb::handle value, const char* name, std::int64_t least, 
               (most <= kStated ? from + " to " + to : "at least " + from));
 }
 
-std::optional<double> facing_of(nb::handle value) {
-  if (value.is_none()) return std::nullopt;
-  if (PyBool_Check(value.ptr()) || PyNumber_Check(value.ptr()) == 0)
-    throw nb::type_error("facing must be an angle in degrees, such as 90, or None");
-  return real_of(value);
-}
-
 double real_of(nb::handle value) {
   const double result = PyFloat_AsDouble(value.ptr());
   if (result == -1 && PyErr_Occurred() != nullptr) nb::raise_python_error();

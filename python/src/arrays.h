@@ -57,9 +57,6 @@ class Lengths {
 /// fraction. Throws sdm::Error for less than `least` or more than `most`.
 [[nodiscard]] std::int64_t integer_of(nb::handle value, const char* name, std::int64_t least,
                                       std::int64_t most = 0xFFFFFFFE);
-/// facing: an angle in degrees, or nothing for None. Throws a TypeError for anything else: True, which is 1
-/// elsewhere, is no angle.
-[[nodiscard]] std::optional<double> facing_of(nb::handle value);
 /// A number. Throws a TypeError for anything else, such as text.
 [[nodiscard]] double real_of(nb::handle value);
 

@@ -100,8 +100,8 @@ struct PyMap {
 /// The accepted distances: a number, or the least and the most. Throws sdm::Error for others, and for a
 /// tolerance that needs signs if distances have none.
 [[nodiscard]] Tolerance tolerance_of(nb::handle value, SignMethod sign);
-[[nodiscard]] std::optional<std::array<double, 2>> range_of(
-    const std::optional<std::pair<double, double>>& range);
+/// Throws sdm::Error for a tolerance that needs signs if distances have none.
+void require_sign(const Tolerance& tolerance, SignMethod sign);
 
 /// Rows of values to transfer.
 using TransferRows = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;

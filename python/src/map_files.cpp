@@ -1,7 +1,6 @@
 // The files of a map, and the numbers of its page.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <sdm/io.h>
 #include <sdm/report.h>
@@ -21,26 +20,15 @@
 #include <vector>
 
 #include "map.h"
-#include "signatures.h"
+#include "options.h"
 
 namespace sdm::python {
 namespace {
 
-// The options of colours, as Python has them.
-struct Colours {
-  std::string colormap;
-  std::optional<std::pair<double, double>> range;
-  nb::handle tolerance;
-  std::string units;
-};
-
-PictureOptions picture_of(const PyMap& self, const Colours& colours, std::uint32_t largest = 2048) {
-  if (largest < 16) throw Error("size must be at least 16 pixels");
-  PictureOptions picture{.colormap = enum_of<Colormap>("colormap", colours.colormap),
-                         .units = colours.units,
-                         .largest = largest};
-  if (!colours.tolerance.is_none()) picture.tolerance = tolerance_of(colours.tolerance, self.map.sign.method);
-  picture.range = range_of(colours.range);
+PictureOptions picture_of(const PyMap& self, const nb::dict& given) {
+  PictureOptions picture;
+  set_options(given, picture);
+  if (picture.tolerance) require_sign(*picture.tolerance, self.map.sign.method);
   // Self maps are exact but for rounding to float.
   if (!self.exclusion) picture.accuracy = self.accuracy();
   return picture;
@@ -66,13 +54,11 @@ FileVertices file_vertices(const Mesh& mesh) {
   return result;
 }
 
-void write(const PyMap& self, const std::string& format, nb::handle file, const std::string& colormap,
-           std::optional<std::pair<double, double>> range, nb::handle tolerance, const std::string& units,
-           std::uint32_t largest, nb::handle progress) {
+void write(const PyMap& self, const std::string& format, nb::handle file, const nb::dict& given,
+           nb::handle progress) {
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
-  const Colours colours{colormap, range, tolerance, units};
-  const PictureOptions picture = picture_of(self, colours, largest);
+  const PictureOptions picture = picture_of(self, given);
   const std::filesystem::path path = path_of(file);
   const Surface& surface = self.on->surface;
   using WriteVertices = void (*)(const std::filesystem::path&, const FileVertices&, std::span<const float>);
@@ -88,7 +74,7 @@ void write(const PyMap& self, const std::string& format, nb::handle file, const 
       if (!self.to->sites.closed()) boundary = boundary_mask(self.to->sites, self.map);
       const MapReport origin = origin_of(self);
       write_exr(path, surface, self.map,
-                {.boundary = boundary, .attributes = exr_attributes(origin, self.map, colours.units)});
+                {.boundary = boundary, .attributes = exr_attributes(origin, self.map, picture.units)});
     } else if (format == "glb") {
       write_glb(path, surface, self.map, self.vertex_distances(report), picture);
     } else {
@@ -112,13 +98,11 @@ Vec3 direction_of(nb::handle towards) {
 }
 
 void write_view(const PyMap& self, nb::handle file, const VertexDistances& at_vertices, nb::handle towards,
-                const std::optional<VertexDistances>& other, const std::string& colormap,
-                std::optional<std::pair<double, double>> range, nb::handle tolerance,
-                const std::string& units, nb::handle size, const std::string& up, bool legend) {
+                const std::optional<VertexDistances>& other, const nb::dict& given, nb::handle size,
+                bool legend) {
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
-  PictureOptions picture = picture_of(self, {colormap, range, tolerance, units});
-  picture.up = enum_of<UpAxis>("up", up);
+  const PictureOptions picture = picture_of(self, given);
   const std::filesystem::path path = path_of(file);
   const auto width = static_cast<std::uint32_t>(integer_of(size, "size", 86, 8192));
   ViewOptions view{
@@ -131,21 +115,16 @@ void write_view(const PyMap& self, nb::handle file, const VertexDistances& at_ve
 }
 
 // The text of report.json.
-std::string report(const PyMap& self, const VertexDistances& at_vertices, const std::string& colormap,
-                   std::optional<std::pair<double, double>> range, nb::handle tolerance,
-                   const std::string& units) {
+std::string report(const PyMap& self, const VertexDistances& at_vertices, const nb::dict& given) {
   const auto lock = self.use_surface();
   const auto sites_lock = self.use_sites();
-  const PictureOptions picture = picture_of(self, {colormap, range, tolerance, units});
   const Surface& surface = self.on->surface;
   const Sites& sites = self.to->sites;
-  const SummaryOptions options{.units = units,
-                               .max_distance = self.options.max_distance,
-                               .accuracy = self.exclusion ? picture.accuracy : self.accuracy(),
-                               .guard = self.exclusion ? 0 : self.guard(),
-                               .tolerance = picture.tolerance,
-                               .colormap = picture.colormap,
-                               .range = picture.range};
+  SummaryOptions options;
+  set_options(given, options);
+  if (options.tolerance) require_sign(*options.tolerance, self.map.sign.method);
+  options.max_distance = self.options.max_distance;
+  if (!self.exclusion) options.accuracy = self.accuracy(), options.guard = self.guard();
   MapReport origin = origin_of(self);
   std::string text;
   run(nb::none(), [&](const Progress&) {
@@ -174,7 +153,7 @@ std::string report(const PyMap& self, const VertexDistances& at_vertices, const 
 nb::object colors(const PyMap& self) {
   constexpr int kSteps = 1024;
   const auto lock = self.use_surface();
-  const PictureOptions picture = picture_of(self, {"automatic", {}, nb::none(), ""});
+  const PictureOptions picture = picture_of(self, {});
   const PictureOptions fixed =
       run_short([&] { return fixed_colors(picture, statistics(self.on->surface, self.map)); });
   const auto [low, high] = *fixed.range;
@@ -206,45 +185,22 @@ void write_page(const PyMap& self, nb::handle file, const VertexDistances& at_ve
 
 }  // namespace
 
-std::optional<std::array<double, 2>> range_of(const std::optional<std::pair<double, double>>& range) {
-  if (!range) return {};
-  if (!(range->first < range->second) || !std::isfinite(range->second - range->first))
-    throw Error("range must be two finite numbers, the smaller one first");
-  return std::array{range->first, range->second};
-}
-
 void bind_map_files(nb::module_& module, nb::class_<PyMap>& map) {
   module.def("can_write_html", &can_write_html);
-  map.def("write", &write, nb::arg("format"), nb::arg("file").none(), nb::kw_only(),
-          nb::arg("colormap") = "automatic", nb::arg("range") = nb::none(), nb::arg("tolerance") = nb::none(),
-          nb::arg("units") = "", nb::arg("size") = 2048, nb::arg("progress") = nb::none(),
-          nb::sig("def write(self, format: str, file: str, *, colormap: " SDM_COLORMAP
-                  " = 'automatic', range: "
-                  "tuple[float, float] | "
-                  "None = None, tolerance: float | tuple[float, float] | None = None, units: str = '', "
-                  "size: int = 2048, "
-                  "progress: object = "
+  map.def("write", &write, nb::arg("format"), nb::arg("file").none(), nb::arg("options"), nb::kw_only(),
+          nb::arg("progress") = nb::none(),
+          nb::sig("def write(self, format: str, file: str, options: dict[str, object], *, progress: object = "
                   "None) -> None"))
-      .def(
-          "report", &report, nb::arg("at_vertices"), nb::kw_only(), nb::arg("colormap") = "automatic",
-          nb::arg("range") = nb::none(), nb::arg("tolerance") = nb::none(), nb::arg("units") = "",
-          nb::sig("def report(self, at_vertices: numpy.typing.NDArray[typing.Any], *, colormap: " SDM_COLORMAP
-                  " = "
-                  "'automatic', range: "
-                  "tuple[float, float] | None = None, tolerance: float | tuple[float, float] | None = None, "
-                  "units: str = '') -> str"))
+      .def("report", &report, nb::arg("at_vertices"), nb::arg("options"),
+           nb::sig("def report(self, at_vertices: numpy.typing.NDArray[typing.Any], options: dict[str, "
+                   "object]) -> str"))
       .def("colors", &colors,
            nb::sig("def colors(self) -> tuple[str, float, float, numpy.typing.NDArray[numpy.uint8]]"))
       .def("write_view", &write_view, nb::arg("file"), nb::arg("at_vertices"), nb::arg("towards"),
-           nb::arg("other").none(), nb::kw_only(), nb::arg("colormap"), nb::arg("range").none(),
-           nb::arg("tolerance").none(), nb::arg("units"), nb::arg("size"), nb::arg("up"), nb::arg("legend"),
+           nb::arg("other").none(), nb::arg("options"), nb::kw_only(), nb::arg("size"), nb::arg("legend"),
            nb::sig("def write_view(self, file: str, at_vertices: numpy.typing.NDArray[typing.Any], towards: "
-                   "tuple[float, float, "
-                   "float], other: numpy.typing.NDArray[typing.Any] | None, *, colormap: " SDM_COLORMAP
-                   ", range: "
-                   "tuple[float, float] | None, "
-                   "tolerance: float | tuple[float, float] | None, units: str, size: int, up: str, legend: "
-                   "bool) -> None"))
+                   "tuple[float, float, float], other: numpy.typing.NDArray[typing.Any] | None, options: "
+                   "dict[str, object], *, size: int, legend: bool) -> None"))
       .def("write_page", &write_page, nb::arg("file"), nb::arg("at_vertices"), nb::arg("report"),
            nb::kw_only(), nb::arg("up") = "y", nb::arg("largest") = HtmlOptions{}.largest,
            nb::arg("triangles") = HtmlOptions{}.triangles,

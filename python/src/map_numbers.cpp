@@ -15,6 +15,7 @@
 #include "arrays.h"
 #include "fields.h"
 #include "map.h"
+#include "options.h"
 #include "signatures.h"
 
 namespace sdm::python {
@@ -186,25 +187,15 @@ std::string word_of(Verdict verdict) {
 }
 
 Tolerance tolerance_of(nb::handle value, SignMethod sign) {
-  const auto fault = [&] {
-    return "tolerance must be a number, or the least and the most distance, and not " +
-           std::string(nb::repr(value).c_str());
-  };
-  const auto number = [&](nb::handle limit) {
-    const double result = PyFloat_AsDouble(limit.ptr());
-    if (result != -1 || PyErr_Occurred() == nullptr) return result;
-    PyErr_Clear();
-    throw nb::type_error(fault().c_str());
-  };
-  const bool is_pair = nb::isinstance<nb::tuple>(value) || nb::isinstance<nb::list>(value);
-  if (is_pair && nb::len(value) != 2) throw Error(fault());
-  const Tolerance tolerance =
-      is_pair ? Tolerance(number(value[0]), number(value[1])) : Tolerance(number(value));
-  if (!(tolerance.lower <= tolerance.upper) || !std::isfinite(tolerance.upper - tolerance.lower))
-    throw Error("tolerance must be a finite number that is not negative, or two, the smaller one first");
+  ColorChoice choice;
+  set_option(option_of(&ColorChoice::tolerance), value, choice);
+  require_sign(*choice.tolerance, sign);
+  return *choice.tolerance;
+}
+
+void require_sign(const Tolerance& tolerance, SignMethod sign) {
   if (tolerance.needs_sign() && sign == SignMethod::none)
     throw Error("a tolerance that differs by the sign needs signed distances, but these are unsigned");
-  return tolerance;
 }
 
 void bind_map_numbers(nb::module_& module, nb::class_<PyMap>& map) {

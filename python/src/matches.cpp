@@ -178,29 +178,30 @@ void bind_matched_geometry(nb::class_<PyMatches>& type) {
                   "numpy.typing.NDArray[numpy.float32]"))
       .def(
           "ambient_occlusion",
-          [](const PyMatches& self, std::uint32_t rays, double max_distance, std::uint64_t seed, bool fill,
-             nb::handle progress) {
+          [](const PyMatches& self, const nb::dict& given, bool fill, nb::handle progress) {
+            AmbientOcclusionOptions options;
+            set_options(given, options);
             return self.values(1, fill, progress, [&](const Progress& report) {
-              return matched_occlusion(
-                  self.on->surface, self.to->sites, self.matches,
-                  {.rays = rays, .max_distance = max_distance, .seed = seed, .progress = report});
+              options.progress = report;
+              return matched_occlusion(self.on->surface, self.to->sites, self.matches, options);
             });
           },
-          nb::arg("rays"), nb::arg("max_distance"), nb::arg("seed"), nb::arg("fill"),
-          nb::arg("progress").none(),
-          nb::sig("def ambient_occlusion(self, rays: int, max_distance: float, seed: int, fill: bool, "
-                  "progress: object) -> numpy.typing.NDArray[numpy.float32]"))
+          nb::arg("options"), nb::arg("fill"), nb::arg("progress").none(),
+          nb::sig("def ambient_occlusion(self, options: dict[str, object], fill: bool, progress: object) -> "
+                  "numpy.typing.NDArray[numpy.float32]"))
       .def(
           "thickness",
-          [](const PyMatches& self, const char* method, double angle, bool fill, nb::handle progress) {
-            const ThicknessMethod chosen = enum_of<ThicknessMethod>("method", method);
+          [](const PyMatches& self, const nb::dict& given, bool fill, nb::handle progress) {
+            ThicknessOptions options;
+            set_options(given, options);
             return self.values(1, fill, progress, [&](const Progress& report) {
-              return matched_thickness(self.on->surface, self.to->sites, self.matches, chosen,
-                                       {.angle = angle, .progress = report});
+              options.progress = report;
+              return matched_thickness(self.on->surface, self.to->sites, self.matches, options.method,
+                                       options);
             });
           },
-          nb::arg("method"), nb::arg("angle"), nb::arg("fill"), nb::arg("progress").none(),
-          nb::sig("def thickness(self, method: str, angle: float, fill: bool, progress: object) -> "
+          nb::arg("options"), nb::arg("fill"), nb::arg("progress").none(),
+          nb::sig("def thickness(self, options: dict[str, object], fill: bool, progress: object) -> "
                   "numpy.typing.NDArray[numpy.float32]"));
 }
 

@@ -12,6 +12,7 @@
 #include "arrays.h"
 #include "fields.h"
 #include "objects.h"
+#include "options.h"
 #include "src/geometry/stretch.h"
 
 namespace sdm::python {
@@ -193,34 +194,42 @@ void bind_weld(nb::module_& module) {
     return nb::str("sdm.WeldReport(joined_vertices={}, largest_move={:.3g}, boundary_edges={})")
         .format(self.joined_vertices, self.largest_move, self.boundary_edges);
   });
-  module.def(
-      "weld",
-      [](nb::handle mesh, std::optional<double> tolerance) {
-        const PyMesh given = given_mesh(mesh, nb::none());
-        Welded welded;
-        run(nb::none(), [&](const Progress& progress) {
-          welded = weld(given.mesh, {.tolerance = tolerance, .progress = progress});
-        });
-        const WeldReport report = welded;
-        return nb::make_tuple(
-            nb::cast(new PyMesh{std::move(welded.mesh), given.deviation}, nb::rv_policy::take_ownership),
-            report);
-      },
-      nb::arg("mesh").none(), nb::arg("tolerance") = nb::none(),
-      nb::sig("def weld(mesh: object, tolerance: float | None = None) -> tuple[Mesh, WeldReport]"),
+  static const std::string signature =
+      "def weld(mesh: object, " + option_signature("weld") + ") -> tuple[Mesh, WeldReport]";
+  static const std::string documentation =
       R"(Joins boundary edges that coincide but for rounding, so that a mesh that is closed but for rounding
 has an inside. Returns the welded mesh, whose vertices keep their numbers, and what was done.
 
-tolerance: edges are joined whose ends are at most this far apart, and at most a quarter of their length;
-by default 1e-3 of the diagonal of the mesh's box. No two vertices of one face are joined, nor the two
-sides of a thin wall. Raises Error for a tolerance that is not positive.
+)" + option_documentation("weld") +
+      R"(
+
+No two vertices of one face are joined, nor the two sides of a thin wall. Raises Error for a tolerance that is not
+positive.
 
 >>> vertices, faces = sdm.Mesh(box)
 >>> apart = vertices[faces].reshape(-1, 3) + np.linspace(0, 1e-7, 36)[:, None]
 >>> welded, report = sdm.weld((apart, np.arange(36).reshape(-1, 3)))
 >>> report.joined_vertices, report.boundary_edges
 (28, 0)
-)");
+)";
+  module.def(
+      "weld",
+      [](nb::handle mesh, nb::handle tolerance) {
+        const PyMesh given = given_mesh(mesh, nb::none());
+        WeldOptions options;
+        if (!tolerance.is_none()) set_option(option_of(&WeldOptions::tolerance), tolerance, options);
+        Welded welded;
+        run(nb::none(), [&](const Progress& progress) {
+          options.progress = progress;
+          welded = weld(given.mesh, options);
+        });
+        const WeldReport report = welded;
+        return nb::make_tuple(
+            nb::cast(new PyMesh{std::move(welded.mesh), given.deviation}, nb::rv_policy::take_ownership),
+            report);
+      },
+      nb::arg("mesh").none(), nb::arg("tolerance") = nb::none(), nb::sig(signature.c_str()),
+      documentation.c_str());
 }
 
 void bind_convex_hull(nb::module_& module) {
@@ -291,12 +300,13 @@ array([ 0.5,  0. ,  0. , -0.5]))");
 
   module.def(
       "read",
-      [](nb::handle file, std::optional<double> deflection) {
+      [](nb::handle file, nb::handle deflection) {
         const std::filesystem::path name = path_of(file);
+        MeshFileOptions options;
+        if (!deflection.is_none())
+          set_option(option_of(&TessellationOptions::deflection), deflection, options.tessellation);
         MeshFile read;
-        run(nb::none(), [&](const Progress&) {
-          read = read_mesh_file(name, {.tessellation = {.deflection = deflection}});
-        });
+        run(nb::none(), [&](const Progress&) { read = read_mesh_file(name, options); });
         return new PyMesh{std::move(read.mesh), read.tessellation ? read.tessellation->largest_deviation : 0};
       },
       nb::rv_policy::take_ownership, nb::arg("file").none(), nb::arg("deflection") = nb::none(),

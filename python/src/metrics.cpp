@@ -1,13 +1,13 @@
 // Measures that compare two surfaces.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
 #include <sdm/metrics.h>
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "options.h"
 #include "proximity.h"
 #include "sites_in_use.h"
 
@@ -49,15 +49,10 @@ class MeshOrNone {
 };
 
 /// Dictionaries of both together, from a to b, and from b to a, both areas, and the numbers of random points.
-nb::tuple surface_metrics_of(nb::handle a, nb::handle b, std::vector<double> percentiles,
-                             std::vector<double> tolerances, std::optional<double> precision,
-                             double fraction_precision, bool estimate, nb::handle progress) {
+nb::tuple surface_metrics_of(nb::handle a, nb::handle b, const nb::dict& given, nb::handle progress) {
+  MetricsOptions options;
+  set_options(given, options);
   const MeshOrNone on(a), to(b);
-  MetricsOptions options{.percentiles = std::move(percentiles),
-                         .tolerances = std::move(tolerances),
-                         .precision = precision,
-                         .fraction_precision = fraction_precision,
-                         .estimate = estimate};
   SurfaceMetrics metrics;
   run(progress, [&](const Progress& report) {
     options.progress = report;
@@ -76,12 +71,10 @@ nb::tuple surface_metrics_of(nb::handle a, nb::handle b, std::vector<double> per
 
 void bind_metrics(nb::module_& module) {
   module.def(
-      "surface_metrics", &surface_metrics_of, nb::arg("a").none(), nb::arg("b").none(),
-      nb::arg("percentiles"), nb::arg("tolerances"), nb::arg("precision").none(),
-      nb::arg("fraction_precision"), nb::arg("estimate"), nb::arg("progress").none(),
-      nb::sig("def surface_metrics(a: object, b: object, percentiles: collections.abc.Sequence[float], "
-              "tolerances: collections.abc.Sequence[float], precision: float | None, "
-              "fraction_precision: float, estimate: bool, progress: object) -> tuple[typing.Any, ...]"));
+      "surface_metrics", &surface_metrics_of, nb::arg("a").none(), nb::arg("b").none(), nb::arg("options"),
+      nb::arg("progress").none(),
+      nb::sig("def surface_metrics(a: object, b: object, options: dict[str, object], progress: object) -> "
+              "tuple[typing.Any, ...]"));
 }
 
 }  // namespace sdm::python

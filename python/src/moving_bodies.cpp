@@ -1,6 +1,7 @@
 // The first contacts of many bodies that move.
 #include <limits>
 
+#include "options.h"
 #include "proximity.h"
 #include "values.h"
 
@@ -105,33 +106,21 @@ std::vector<Motion> motions_of(nb::handle starts, nb::handle ends) {
 
 }  // namespace
 
+constexpr const char* kCall = "MultiBodyQuery.time_of_contact";
+
 void bind_moving_bodies(nb::module_& module, nb::class_<PyMultiBodyQuery>& query) {
   bind_times_of_contact(module);
-  query.def(
-      "time_of_contact",
-      [](const PyMultiBodyQuery& self, nb::handle starts, nb::handle ends, double tolerance, double until,
-         bool earliest_only) {
-        const std::vector<Motion> motions = motions_of(starts, ends);
-        const auto lock = self.access.use();
-        auto result = std::make_unique<PyTimesOfContact>();
-        run_sized(faces_of(self.query), [&] {
-          result->pairs = self.query.time_of_contact(motions, tolerance,
-                                                     {.until = until, .earliest_only = earliest_only});
-        });
-        return result.release();
-      },
-      nb::rv_policy::take_ownership, nb::arg("starts").none(), nb::arg("ends").none(), nb::kw_only(),
-      nb::arg("tolerance"), nb::arg("until") = 1.0, nb::arg("earliest_only") = false,
-      nb::sig(
-          "def time_of_contact(self, starts: object, ends: object, *, tolerance: float, until: float = 1.0, "
-          "earliest_only: bool = False) -> TimesOfContact"),
+  static const std::string signature =
+      "def time_of_contact(self, starts: object, ends: object, *, tolerance: float, " +
+      option_signature(kCall) + ") -> TimesOfContact";
+  static const std::string documentation =
       R"(Returns the pairs that come into contact while each body moves from one pose to another, whatever
 their poses now: the first contact of each pair, as of sdm.time_of_contact().
 
 starts, ends: the poses of all bodies at time 0 and at time 1, as of set_poses().
 tolerance: > 0, in units of space, as of sdm.time_of_contact().
-until: the last time, in [0, 1], at which contacts are looked for.
-earliest_only: only the pairs with the earliest contact of all.
+)" + option_documentation(kCall) +
+      R"(
 
 A Compound turns about the centre of the box of all its parts in its frame. Pairs are those of the filters, and
 each is by itself: bodies move on after their contacts. None is missed,
@@ -146,7 +135,23 @@ boxes are within the tolerance, on all cores.
 >>> ends[0, 0, 3] = 20
 >>> found = query.time_of_contact(starts, ends, tolerance=1e-6)
 >>> found.bodies.tolist(), found.time.round(5).tolist()
-([[0, 1], [0, 2]], [0.2, 0.4]))");
+([[0, 1], [0, 2]], [0.2, 0.4]))";
+  query.def(
+      "time_of_contact",
+      [](const PyMultiBodyQuery& self, nb::handle starts, nb::handle ends, double tolerance,
+         const nb::kwargs& given) {
+        check_keywords(kCall, given);
+        TimeOfContactOptions options;
+        set_options(given, options);
+        const std::vector<Motion> motions = motions_of(starts, ends);
+        const auto lock = self.access.use();
+        auto result = std::make_unique<PyTimesOfContact>();
+        run_sized(faces_of(self.query),
+                  [&] { result->pairs = self.query.time_of_contact(motions, tolerance, options); });
+        return result.release();
+      },
+      nb::rv_policy::take_ownership, nb::arg("starts").none(), nb::arg("ends").none(), nb::kw_only(),
+      nb::arg("tolerance"), nb::arg("options"), nb::sig(signature.c_str()), documentation.c_str());
   query.def(
       "poses_at",
       [](const PyMultiBodyQuery& self, nb::handle starts, nb::handle ends, double time) {

@@ -1,7 +1,11 @@
 #include "options.h"
 
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 #include <sdm/error.h>
+#include <sdm/io.h>
+#include <sdm/points.h>
+#include <sdm/pose_query.h>
 #include <sdm/sdm.h>
 
 #include <algorithm>
@@ -29,16 +33,54 @@ bool is_number(nb::handle value) {
   return !PyBool_Check(value.ptr()) && PyNumber_Check(value.ptr()) != 0 && !nb::isinstance<nb::str>(value);
 }
 
-std::optional<std::string> direction_text(nb::handle value) {
-  if (nb::isinstance<nb::str>(value)) return nb::cast<std::string>(value);
-  if (PySequence_Check(value.ptr()) == 0 || nb::len(value) != 3) return std::nullopt;
-  Vec3 direction{};
-  for (std::size_t k = 0; k < 3; ++k) {
+/// Numbers of a sequence or an array; nothing if it has something else.
+std::optional<std::vector<double>> numbers_of(nb::handle value) {
+  if (PySequence_Check(value.ptr()) == 0 || nb::isinstance<nb::str>(value)) return std::nullopt;
+  std::vector<double> numbers;
+  for (std::size_t k = 0; k < nb::len(value); ++k) {
     const nb::object number = value[k];
     if (!is_number(number)) return std::nullopt;
-    direction[k] = real_of(number);
+    numbers.push_back(real_of(number));
   }
-  return sdm::text_of(std::optional<Vec3>(direction));
+  return numbers;
+}
+
+/// Several numbers, as one text. Throws TypeError for something else.
+std::string numbers_text(const OptionInfo& option, nb::handle value, const char* separator) {
+  const std::optional<std::vector<double>> numbers = numbers_of(value);
+  if (!numbers) refuse_type(option, value);
+  std::string text;
+  for (const double number : *numbers)
+    text.append(text.empty() ? "" : separator).append(sdm::text_of(number));
+  return text;
+}
+
+/// Words with commas between them. Throws TypeError for something else.
+std::string texts_text(const OptionInfo& option, nb::handle value) {
+  std::string text;
+  if (nb::isinstance<nb::str>(value) || PySequence_Check(value.ptr()) == 0) refuse_type(option, value);
+  for (std::size_t k = 0; k < nb::len(value); ++k) {
+    const nb::object word = value[k];
+    if (!nb::isinstance<nb::str>(word)) refuse_type(option, value);
+    text.append(k == 0 ? "" : ",").append(nb::cast<std::string>(word));
+  }
+  return text;
+}
+
+std::string integer_text(const OptionInfo& option, nb::handle value) {
+  const nb::object index = nb::steal(is_number(value) ? PyNumber_Index(value.ptr()) : nullptr);
+  if (!index.is_valid()) {
+    PyErr_Clear();
+    refuse_type(option, value);
+  }
+  return nb::str(index).c_str();
+}
+
+std::string direction_text(const OptionInfo& option, nb::handle value) {
+  if (nb::isinstance<nb::str>(value)) return nb::cast<std::string>(value);
+  const std::optional<std::vector<double>> numbers = numbers_of(value);
+  if (!numbers) refuse(option, value);
+  return sdm::text_of(*numbers);
 }
 
 std::string annotation_of(const OptionInfo& option) {
@@ -47,6 +89,11 @@ std::string annotation_of(const OptionInfo& option) {
   if (option.type == "integer") text = "int";
   if (option.type == "flag") text = "bool";
   if (option.type == "direction") text = "str | tuple[float, float, float]";
+  if (option.type == "text" || option.type == "motions") text = "str";
+  if (option.type == "texts") text = "collections.abc.Sequence[str]";
+  if (option.type == "numbers" || option.type == "point") text = "object";
+  if (option.type == "interval") text = "tuple[float, float]";
+  if (option.type == "tolerance") text = "float | tuple[float, float]";
   if (option.type == "word") {
     text = "typing.Literal[";
     for (const std::string& word : option.words) text += (text.ends_with('[') ? "'" : ", '") + word + "'";
@@ -58,9 +105,15 @@ std::string annotation_of(const OptionInfo& option) {
 
 nb::object default_of(const OptionInfo& option) {
   const std::string& text = option.default_value;
+  if (option.type == "text" && !option.optional) return nb::str(text.c_str());
+  if (option.type == "numbers" || option.type == "point") {
+    std::vector<double> numbers;
+    (void)read_numbers(text, {}, 0, numbers);
+    return nb::tuple(nb::cast(numbers));
+  }
   if (text.empty()) return nb::none();
   if (option.type == "flag") return nb::bool_(text == "true");
-  if (option.type == "word") return nb::str(text.c_str());
+  if (option.type == "word" || option.type == "motions") return nb::str(text.c_str());
   const nb::object number = nb::float_(nb::str(text.c_str()));
   return option.type == "integer" ? nb::object(nb::int_(number)) : number;
 }
@@ -68,7 +121,8 @@ nb::object default_of(const OptionInfo& option) {
 std::string paragraph_of(const OptionInfo& option) {
   std::string text = option.name + ": " + option.text;
   const bool limited = option.range.least > OptionRange{}.least || option.range.most < OptionRange{}.most;
-  if ((option.type == "number" || option.type == "integer") && limited)
+  const bool is_number = option.type == "number" || option.type == "integer" || option.type == "numbers";
+  if (is_number && limited)
     text += " Must be " + needed(option) + (option.unit == "length" ? ", in units of the meshes." : ".");
   if (option.name == "resolution") text += " With atlas='uv' also two, the texels per row and the rows.";
   return text;
@@ -94,9 +148,24 @@ const std::map<std::string, CallOptions>& all_calls() {
        call_of<AtlasOptions, PrecisionOptions, ExclusionRule, SelfProximityOptions>({"rest", "progress"})},
       {"thickness", call_of<AtlasOptions, ThicknessOptions>({"progress"})},
       {"match", call_of<AtlasOptions, MatchOptions>({"normals", "engine", "progress"})},
-      {"measure_points", call_of<MapOptions, AlongOptions>(
-                             {"transform", "engine", "tolerance", "colormap", "range", "progress", "columns",
-                              "separator", "decimal", "tolerance_table", "names", "island_points"})},
+      {"measure_points",
+       call_of<MapOptions, AlongOptions, ColorChoice, TextDialect>(
+           {"transform", "engine", "progress", "tolerance_table", "names", "island_points"})},
+      {"read_points", call_of<TextDialect>({})},
+      {"save", call_of<PictureOptions>({"progress"})},
+      {"report", call_of<SummaryOptions>({"progress"})},
+      {"ambient_occlusion", call_of<AmbientOcclusionOptions>({"fill", "progress"})},
+      {"TexelMatches.thickness", call_of<ThicknessOptions>({"fill", "progress"})},
+      {"align", call_of<AlignOptions, AlignFreedoms>({"pose", "on_faces", "on_boxes", "progress"})},
+      {"align_points",
+       call_of<AlignOptions, AlignFreedoms>({"normals", "pose", "on_faces", "on_boxes", "progress"})},
+      {"simplify", call_of<LevelsOptions>({"progress"})},
+      {"weld", call_of<WeldOptions>({})},
+      {"read", call_of<TessellationOptions>({})},
+      {"bake", call_of<BakeRequest>({"vertex_colors", "face_colors", "texture", "uvs", "progress"})},
+      {"surface_metrics", call_of<MetricsOptions>({"progress"})},
+      {"PoseQuery", call_of<PoseQueryOptions>({"shape", "obstacles"})},
+      {"MultiBodyQuery.time_of_contact", call_of<TimeOfContactOptions>({"starts", "ends", "tolerance"})},
       {"distance_field", call_of<FieldOptions>({"spacing", "shape", "bounds", "margin", "progress"})},
       {"hausdorff", call_of<HausdorffOptions>({"one_sided", "progress"})},
       {"ProximityQuery", call_of<ProximityOptions>({"o1", "o2"})},
@@ -139,9 +208,10 @@ void check_keywords(const std::string& call, const nb::dict& keywords) {
   check_exclusions(options, given, kSpelling);
 }
 
-std::string option_signature(const std::string& call) {
+std::string option_signature(const std::string& call, const std::vector<std::string>& without) {
   std::string text;
   for (const OptionInfo& option : call_options(call).options) {
+    if (std::ranges::find(without, option.name) != without.end()) continue;
     const nb::object value = default_of(option);
     const std::string shown = option.default_value == "inf" ? "..." : nb::repr(value).c_str();
     text += option.name + ": " + annotation_of(option) + " = " + shown + ", ";
@@ -149,9 +219,10 @@ std::string option_signature(const std::string& call) {
   return text;
 }
 
-std::string option_documentation(const std::string& call) {
+std::string option_documentation(const std::string& call, const std::vector<std::string>& without) {
   std::string text;
   for (const OptionInfo& option : call_options(call).options) {
+    if (std::ranges::find(without, option.name) != without.end()) continue;
     if (!text.empty()) text += '\n';
     text += paragraph_of(option);
   }
@@ -167,19 +238,18 @@ std::string text_of(const OptionInfo& option, nb::handle value) {
     if (!PyBool_Check(value.ptr())) refuse_type(option, value);
     return nb::cast<bool>(value) ? "true" : "false";
   }
-  if (option.type == "direction") {
-    const std::optional<std::string> text = direction_text(value);
-    if (!text) refuse(option, value);
-    return *text;
+  if (option.type == "text" || option.type == "motions") {
+    if (!nb::isinstance<nb::str>(value)) refuse_type(option, value);
+    return nb::cast<std::string>(value);
   }
-  if (!is_number(value)) refuse_type(option, value);
-  if (option.type == "number") return sdm::text_of(real_of(value));
-  const nb::object index = nb::steal(PyNumber_Index(value.ptr()));
-  if (!index.is_valid()) {
-    PyErr_Clear();
-    refuse_type(option, value);
-  }
-  return nb::str(index).c_str();
+  if (option.type == "texts") return texts_text(option, value);
+  if (option.type == "direction") return direction_text(option, value);
+  if (option.type == "integer") return integer_text(option, value);
+  if (option.type == "interval" || option.type == "point") return numbers_text(option, value, ",");
+  if (is_number(value)) return sdm::text_of(real_of(value));
+  if (option.type == "numbers") return numbers_text(option, value, ",");
+  if (option.type == "tolerance") return numbers_text(option, value, ":");
+  refuse_type(option, value);
 }
 
 void refuse(const OptionInfo& option, nb::handle value) {
@@ -219,8 +289,10 @@ void bind_options(nb::module_& module) {
         return names;
       },
       nb::sig("def option_calls() -> list[str]"));
-  module.def("option_documentation", &option_documentation, nb::arg("call"));
-  module.def("option_signature", &option_signature, nb::arg("call"));
+  module.def("option_documentation", &option_documentation, nb::arg("call"),
+             nb::arg("without") = std::vector<std::string>());
+  module.def("option_signature", &option_signature, nb::arg("call"),
+             nb::arg("without") = std::vector<std::string>());
   module.def("check_keywords", &check_keywords, nb::arg("call"), nb::arg("given"),
              nb::sig("def check_keywords(call: str, given: dict[str, object]) -> None"));
 }

@@ -28,23 +28,29 @@ struct CallOptions {
 void check_keywords(const std::string& call, const nb::dict& given);
 
 /// The options of a call as they are in its signature, each followed by ", ".
-[[nodiscard]] std::string option_signature(const std::string& call);
+[[nodiscard]] std::string option_signature(const std::string& call,
+                                           const std::vector<std::string>& without = {});
 /// What they are, a paragraph for each.
-[[nodiscard]] std::string option_documentation(const std::string& call);
+[[nodiscard]] std::string option_documentation(const std::string& call,
+                                               const std::vector<std::string>& without = {});
 
 /// A value as text, for sdm::read_value(). Throws TypeError for one of another type than the option's.
 [[nodiscard]] std::string text_of(const OptionInfo& option, nb::handle value);
 [[noreturn]] void refuse(const OptionInfo& option, nb::handle value);
 
-/// Sets those options of a struct that are given. Throws TypeError, and sdm::Error for a value out of range.
+/// Sets an option of a struct. Throws TypeError, and sdm::Error for a value out of range.
+template <class Struct, class Value>
+void set_option(const Option<Struct, Value>& option, nb::handle value, Struct& options) {
+  const OptionInfo info = info_of(option);
+  if (!read_value(option, text_of(info, value), options)) refuse(info, value);
+}
+
+/// The same of those options of a struct that are given; None is as if it were not.
 template <class Struct>
 void set_options(const nb::dict& given, Struct& options) {
   for_each_option<Struct>([&](const auto& option) {
-    if (!given.contains(option.name)) return;
-    const nb::handle value = given[option.name];
-    if (value.is_none()) return;
-    const OptionInfo info = info_of(option);
-    if (!read_value(option, text_of(info, value), options)) refuse(info, value);
+    if (given.contains(option.name) && !given[option.name].is_none())
+      set_option(option, given[option.name], options);
   });
 }
 

@@ -1,8 +1,6 @@
 // Point clouds in files.
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
 #include <sdm/error.h>
 #include <sdm/points.h>
 
@@ -26,19 +24,17 @@
 namespace sdm::python {
 namespace {
 
-TextDialect dialect_of(const std::optional<std::vector<std::string>>& columns, const std::string& separator,
-                       const std::string& decimal) {
-  TextDialect dialect{.separator = enum_of<TextSeparator>("separator", separator),
-                      .decimal = enum_of<DecimalMark>("decimal", decimal)};
-  if (columns) dialect.columns = *columns;
+TextDialect dialect_of(const nb::dict& given) {
+  TextDialect dialect;
+  set_options(given, dialect);
   validate(dialect);
   return dialect;
 }
 
-nb::object read_points(nb::handle file, const std::optional<std::vector<std::string>>& columns,
-                       const std::string& separator, const std::string& decimal) {
+nb::object read_points(nb::handle file, const nb::kwargs& given) {
+  check_keywords("read_points", given);
   const std::filesystem::path path = path_of(file);
-  const TextDialect text = dialect_of(columns, separator, decimal);
+  const TextDialect text = dialect_of(given);
   std::vector<Vec3> points, normals;
   run(nb::none(), [&](const Progress&) {
     PointReader reader(path, text);
@@ -93,20 +89,16 @@ void bind_distances(nb::module_& module) {
 }
 
 void bind_read_points(nb::module_& module) {
-  module.def(
-      "read_points", &read_points, nb::arg("file").none(), nb::kw_only(), nb::arg("columns") = nb::none(),
-      nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",
-      nb::sig(
-          "def read_points(file: str | os.PathLike[str], *, columns: collections.abc.Sequence[str] | None = "
-          "None, separator: str = 'automatic', decimal: str = 'automatic') -> "
-          "tuple[numpy.typing.NDArray[numpy.float64], "
-          "numpy.typing.NDArray[numpy.float64] | None]"),
+  static const std::string signature =
+      "def read_points(file: str | os.PathLike[str], *, " + option_signature("read_points") +
+      ") -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64] | None]";
+  static const std::string documentation =
       R"(Reads a point cloud: PLY, PCD 0.7, LAS 1.0 to 1.4 (not LAZ), PTX, PTS, or text with a point a row. The
 format is detected from the content.
 
-columns, separator, decimal: of text, where the file leaves them open. ``columns`` has the name of each column:
-'x', 'y' and 'z', perhaps 'nx', 'ny' and 'nz', and any other where a column is ignored; ``separator`` is 'blank',
-'tab', 'comma' or 'semicolon', ``decimal`` is 'point' or 'comma'.
+Of text, where the file leaves them open:
+)" + option_documentation("read_points") +
+      R"(
 
 Returns (points, normals): (n, 3) float64 each; normals are None if the file has none. NaN marks points without
 a measurement. Raises Error, naming the file, the fault and, in text, the line.
@@ -115,7 +107,9 @@ a measurement. Raises Error, naming the file, the fault and, in text, the line.
 Traceback (most recent call last):
     ...
 sdm.Error: ...
-)");
+)";
+  module.def("read_points", &read_points, nb::arg("file").none(), nb::arg("options"),
+             nb::sig(signature.c_str()), documentation.c_str());
 }
 
 /// Throws if the input is a file, and the one that is to be written.
@@ -131,10 +125,7 @@ void require_other(const std::filesystem::path& output, nb::handle input) {
 }
 
 PointDistances measure(nb::handle cloud, nb::handle o2, nb::handle output, nb::handle motion,
-                       const char* engine, nb::handle tolerance, const std::string& colormap,
-                       std::optional<std::pair<double, double>> range, nb::handle progress,
-                       const std::optional<std::vector<std::string>>& columns, const std::string& separator,
-                       const std::string& decimal, nb::handle tolerance_table, nb::handle names,
+                       const char* engine, nb::handle progress, nb::handle tolerance_table, nb::handle names,
                        nb::handle island_points, const nb::kwargs& given) {
   nb::dict all;
   for (const auto& [name, value] : given) all[name] = value;
@@ -149,15 +140,14 @@ PointDistances measure(nb::handle cloud, nb::handle o2, nb::handle output, nb::h
     options.map.engine = {};
     set_options(given, options.along.emplace());
   }
-  options.text = dialect_of(columns, separator, decimal);
+  options.text = dialect_of(given);
   if (!motion.is_none()) options.placement = transform(motion, "transform");
-  options.picture.colormap = enum_of<Colormap>("colormap", colormap);
-  options.picture.range = range_of(range);
+  set_options(given, options.picture);
   PointDistances result;
   options.guard = to.deviation();
   run(nb::none(), [&](const Progress&) { (void)to.get(); });
   const SignMethod signs = options.along ? SignMethod::side : choose_sign(to.get(), options.map).method;
-  if (!tolerance.is_none()) options.picture.tolerance = tolerance_of(tolerance, signs);
+  if (options.picture.tolerance) require_sign(*options.picture.tolerance, signs);
   std::vector<GroupTolerance> table;
   std::vector<FaceNames> kinds;
   if (!names.is_none()) kinds = names_of(names, to.get().mesh().triangles.size());
@@ -188,16 +178,13 @@ void bind_points(nb::module_& module) {
       "def measure_points(cloud: str | os.PathLike[str], o2: object, output: str | os.PathLike[str], *, "
       "transform: object = None, engine: " SDM_ENGINE " = 'cpu', " +
       option_signature("measure_points") +
-      "tolerance: float | tuple[float, float] | None = None, colormap: str = 'automatic', range: "
-      "tuple[float, float] | None = None, columns: collections.abc.Sequence[str] | None = None, separator: "
-      "str = 'automatic', decimal: str = 'automatic', tolerance_table: object = None, names: object = None, "
-      "island_points: int = 0, " +
-      kProgress + "PointDistances";
+      "tolerance_table: object = None, names: object = None, island_points: int = 0, " + kProgress +
+      "PointDistances";
   static const std::string documentation =
       R"(Computes the distance of each point of a file to a mesh, in parts: the cloud may be larger than the
 memory. For points in memory, use Sites.closest_points().
 
-cloud: a file of read_points(), with its columns, separator and decimal.
+cloud: a file of read_points().
 o2: any form of a mesh (see Mesh); Sites are used as they are.
 output: a PLY file to write, with the points in their order: x, y, z, the normals if there are any, distance,
 face and colours. It must not be one of the inputs.
@@ -206,8 +193,7 @@ transform: a 4 × 4 affine matrix that moves the points first, such as Alignment
       R"(
 engine: as of map(). facing and along='normal' need the normals of the cloud. Along a direction, a cloud without normals
 is measured to any face.
-tolerance, colormap, range: of the colours, as of DistanceMap.save();
-the tolerance also of ``beyond_tolerance``.
+The tolerance is also that of ``beyond_tolerance``.
 tolerance_table: a file, or a dict of tolerances by name, of the groups of o2 (``groups``): each point is of those of its
 closest face; one without a value is of none, and fails. names: FaceNames of the faces of o2, or a list of them, as of read_face_names().
 island_points: clusters of fewer points are left out: they have no distance and count for nothing. Finding them reads the
@@ -218,9 +204,7 @@ Raises Error, naming the file and the fault; Cancelled. Cost: a search per point
 back three times.)";
   module.def("measure_points", measure, nb::arg("cloud").none(), nb::arg("o2").none(),
              nb::arg("output").none(), nb::kw_only(), nb::arg("transform") = nb::none(),
-             nb::arg("engine") = "cpu", nb::arg("tolerance") = nb::none(), nb::arg("colormap") = "automatic",
-             nb::arg("range") = nb::none(), nb::arg("progress") = nb::none(), nb::arg("columns") = nb::none(),
-             nb::arg("separator") = "automatic", nb::arg("decimal") = "automatic",
+             nb::arg("engine") = "cpu", nb::arg("progress") = nb::none(),
              nb::arg("tolerance_table") = nb::none(), nb::arg("names") = nb::none(),
              nb::arg("island_points") = 0, nb::arg("options"), nb::sig(signature.c_str()),
              documentation.c_str());

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "options.h"
 #include "proximity.h"
 #include "stored.h"
 
@@ -90,6 +91,8 @@ exact, 0 if they intersect; infinite if it is more than max_distance, > 0. A sma
 }  // namespace
 
 void bind_poses(nb::module_& module) {
+  static const std::string signature = "def __init__(self, shape: object, obstacles: object, *, " +
+                                       option_signature("PoseQuery") + ") -> None";
   nb::class_<PyPoseQuery> query(module, "PoseQuery", nb::is_weak_referenceable(),
                                 R"(Proximity of one shape in many poses to obstacles, other shapes at rest.
 
@@ -109,16 +112,14 @@ array([ 2., inf]))");
   query
       .def(
           "__init__",
-          [](PyPoseQuery* self, nb::handle shape, nb::handle obstacles,
-             std::optional<double> depth_precision) {
-            new (self) PyPoseQuery{
-                PoseQuery(shape_of(shape), obstacles_of(obstacles), {.depth_precision = depth_precision}),
-                {}};
+          [](PyPoseQuery* self, nb::handle shape, nb::handle obstacles, const nb::kwargs& given) {
+            check_keywords("PoseQuery", given);
+            PoseQueryOptions options;
+            set_options(given, options);
+            new (self) PyPoseQuery{PoseQuery(shape_of(shape), obstacles_of(obstacles), options), {}};
           },
-          nb::arg("shape").none(), nb::arg("obstacles").none(), nb::kw_only(),
-          nb::arg("depth_precision") = nb::none(),
-          nb::sig("def __init__(self, shape: object, obstacles: object, *, depth_precision: float | None = "
-                  "None) -> None"))
+          nb::arg("shape").none(), nb::arg("obstacles").none(), nb::arg("options"),
+          nb::sig(signature.c_str()))
       .def(
           "set_pose",
           [](PyPoseQuery& self, std::int64_t obstacle, nb::handle pose) {

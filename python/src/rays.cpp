@@ -11,6 +11,7 @@
 
 #include "arrays.h"
 #include "map.h"
+#include "options.h"
 #include "values.h"
 
 namespace sdm::python {
@@ -153,22 +154,22 @@ void bind_map_rays(nb::class_<PyMap>& map) {
          nb::sig("def free_distances(self) -> numpy.typing.NDArray[numpy.float64]"))
       .def(
           "ambient_occlusion",
-          [](const PyMap& self, std::uint32_t rays, double max_distance, std::uint64_t seed,
-             nb::handle progress) {
+          [](const PyMap& self, const nb::dict& given, nb::handle progress) {
+            AmbientOcclusionOptions options;
+            set_options(given, options);
             self.require_other_mesh();
             const auto lock = self.use_surface();
             const auto sites_lock = self.use_sites();
             std::vector<float> values;
             run(progress, [&](const Progress& report) {
-              values = ambient_occlusion(
-                  self.on->surface, self.to->sites, self.map,
-                  {.rays = rays, .max_distance = max_distance, .seed = seed, .progress = report});
+              options.progress = report;
+              values = ambient_occlusion(self.on->surface, self.to->sites, self.map, options);
             });
             return array_of<float>(std::move(values), {self.rows(), self.map.resolution});
           },
-          nb::arg("rays"), nb::arg("max_distance"), nb::arg("seed"), nb::arg("progress").none(),
-          nb::sig("def ambient_occlusion(self, rays: int, max_distance: float, seed: int, progress: object) "
-                  "-> numpy.typing.NDArray[numpy.float32]"));
+          nb::arg("options"), nb::arg("progress").none(),
+          nb::sig("def ambient_occlusion(self, options: dict[str, object], progress: object) -> "
+                  "numpy.typing.NDArray[numpy.float32]"));
 }
 
 }  // namespace sdm::python

@@ -4,10 +4,8 @@
 // The words of arguments and results: macros, as signatures are literals. python/sdm/_types.py has them, too.
 #define SDM_SIGN "typing.Literal['automatic', 'none', 'exact', 'winding', 'side']"
 #define SDM_ENGINE "typing.Literal['cpu', 'gl', 'reference']"
-#define SDM_ATLAS "typing.Literal['charts', 'triangles', 'uv']"
 #define SDM_VERDICT "typing.Literal['pass', 'fail', 'not decided', 'doubtful']"
 #define SDM_CERTAINTY "typing.Literal['exact', 'bounded', 'estimate']"
-#define SDM_COLORMAP "typing.Literal['automatic', 'viridis', 'sequential', 'diverging', 'paper2006']"
 
 namespace sdm::python {
 

@@ -134,7 +134,7 @@ def test_rows_of_different_lengths_are_named_in_one_sentence():
 
 
 def test_integers_out_of_range_have_a_range():
-    with pytest.raises(sdm.Error, match="triangles is out of range; use at least 1$"):
+    with pytest.raises(sdm.Error, match="triangles is 0: it must be a whole number of at least 1$"):
         sdm.simplify(meshes.sphere(), triangles=0)
 
 

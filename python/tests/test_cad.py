@@ -27,7 +27,7 @@ def test_parts_are_meshes_by_their_path():
 
 
 def test_a_deflection_must_be_positive():
-    with pytest.raises(sdm.Error, match="must be positive"):
+    with pytest.raises(sdm.Error, match="deflection is 0: it must be a number greater than 0"):
         sdm.read(f"{FILES}/box.step", deflection=0)
 
 

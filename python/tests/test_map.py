@@ -318,7 +318,7 @@ def test_pages(distance_map, tmp_path):
     report = page_data(page, "report")
     assert report == json.loads(json.dumps(distance_map.report(tolerance=(-0.1, 2), units="mm")))
     assert report["units"] == "mm" and report["tolerance"]["verdict"] == "FAIL" and page_data(page, "page")["up"] == "z"
-    with pytest.raises(sdm.Error, match="up must be"):
+    with pytest.raises(sdm.Error, match="up is 'x': it must be y or z"):
         distance_map.save(tmp_path / "n.html", up="x")
     with pytest.raises(sdm.Error, match="no such folder"):
         distance_map.save(tmp_path / "no such folder" / "n.html")

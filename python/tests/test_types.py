@@ -52,8 +52,6 @@ def test_arrays_have_the_declared_dtype():
 @pytest.mark.parametrize("name, call", [
     ("Sign", lambda word: sdm.Sites(meshes.box()).closest_points([[0, 0, 3]], sign=word)),
     ("Engine", lambda word: sdm.map(meshes.box(), meshes.box(), resolution=32, engine=word)),
-    ("Atlas", lambda word: sdm.Surface(meshes.box(), resolution=32, atlas=word)),
-    ("Colormap", lambda word: sdm.map(meshes.box(), meshes.box(), resolution=32).report(colormap=word)),
 ])  # fmt: skip
 def test_words_are_those_of_the_library(name, call):
     with pytest.raises(sdm.Error) as fault:

@@ -38,12 +38,16 @@ std::string alternatives(std::span<const std::string> words) {
 }
 
 std::string needed_number(const OptionInfo& option) {
-  const auto [least, most, above, below] = option.range;
+  const auto [least, most, above, below, square] = option.range;
   using Limits = std::numeric_limits<double>;
   const bool from = least > Limits::lowest(), to = most < Limits::max();
-  std::string text = option.type == "integer" ? "a whole number" : "a number";
+  std::string text = option.type == "integer"   ? "a whole number"
+                     : option.type == "numbers" ? "numbers"
+                     : option.type == "point"   ? option.form
+                                                : "a number";
   if (option.unit == "degrees") text += " of degrees";
-  if (from && to && !above && !below) return text + " from " + text_of(least) + " to " + text_of(most);
+  if (from && to && !above && !below)
+    return text + " from " + text_of(least) + " to " + text_of(most) + (square ? " that is a square" : "");
   if (from) text += (above ? " greater than " : " of at least ") + text_of(least);
   if (to) text += std::string(from ? " and" : "") + (below ? " less than " : " at most ") + text_of(most);
   return text;
@@ -85,10 +89,11 @@ std::string spelled(std::string_view name, Spelling spelling) {
 }
 
 std::string needed(const OptionInfo& option) {
-  if (option.type == "flag") return "true or false";
-  if (option.type == "direction") return "normal or a direction of three numbers, not all 0";
+  if (!option.form.empty() && option.type != "point") return option.form;
   if (option.type == "word") return alternatives(option.words);
-  return needed_number(option);
+  // Words beside numbers, such as "auto", are those of a door.
+  return option.words.empty() ? needed_number(option)
+                              : alternatives(option.words) + " or " + needed_number(option);
 }
 
 std::string refused(const OptionInfo& option, std::string_view value, Spelling spelling) {
@@ -125,8 +130,40 @@ void check_exclusions(std::span<const OptionInfo> options, std::span<const Given
 bool read_number(std::string_view text, const OptionRange& range, double& value) {
   return read(text, range, value);
 }
-bool read_number(std::string_view text, const OptionRange& range, std::uint32_t& value) {
+bool read_number(std::string_view text, const OptionRange& range, std::uint64_t& value) {
   return read(text, range, value);
+}
+
+bool read_numbers(std::string_view text, const OptionRange& range, std::size_t count,
+                  std::vector<double>& values) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    double number = 0;
+    if (!read_number(text.substr(begin, end - begin), range, number)) return false;
+    numbers.push_back(number);
+    begin = end + 1;
+  }
+  if (count > 0 && numbers.size() != count) return false;
+  values = std::move(numbers);
+  return true;
+}
+
+bool OptionForm<std::vector<std::string>>::read(std::string_view text, const OptionRange&,
+                                                std::vector<std::string>& values) {
+  values.clear();
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    values.emplace_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return true;
+}
+
+std::string OptionForm<std::vector<std::string>>::text(const std::vector<std::string>& values) {
+  std::string text;
+  for (std::size_t i = 0; i < values.size(); ++i) text.append(i == 0 ? "" : ",").append(values[i]);
+  return text;
 }
 
 std::string text_of(double value) {
@@ -134,10 +171,14 @@ std::string text_of(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
+std::string text_of(std::span<const double> values) {
+  std::string text;
+  for (std::size_t i = 0; i < values.size(); ++i) text.append(i == 0 ? "" : ",").append(text_of(values[i]));
+  return text;
+}
+
 std::string text_of(const std::optional<Vec3>& direction) {
-  if (!direction) return kNormal;
-  const auto& [x, y, z] = *direction;
-  return text_of(x) + "," + text_of(y) + "," + text_of(z);
+  return direction ? text_of(std::span<const double>(*direction)) : std::string(kNormal);
 }
 
 bool has_direction(const Vec3& vector) {
@@ -145,17 +186,12 @@ bool has_direction(const Vec3& vector) {
 }
 
 bool read_direction(std::string_view text, std::optional<Vec3>& value) {
-  Vec3 direction{};
   if (text == kNormal) {
     value.reset();
     return true;
   }
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t end = k < 2 ? text.find(',') : text.size();
-    if (end == std::string_view::npos || !read_number(text.substr(0, end), {}, direction[k])) return false;
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  if (!has_direction(direction)) return false;
+  Vec3 direction{};
+  if (!OptionForm<Vec3>::read(text, {}, direction) || !has_direction(direction)) return false;
   value = direction;
   return true;
 }

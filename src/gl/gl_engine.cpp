@@ -19,11 +19,6 @@ namespace sdm {
 namespace gl {
 namespace {
 
-void check(const GlOptions& options) {
-  if (options.stencil_values < 1 || options.stencil_values > 255)
-    throw Error(std::to_string(options.stencil_values) + " stencil values are out of range; use 1 to 255");
-}
-
 struct Devices {
   DevicePool<RasterDevice> pool;
   TileTreeCache tiles;  // of the surfaces mapped on any of them
@@ -38,7 +33,7 @@ Devices& devices() {
 // Draws the winners in single precision, then confirms them in double.
 class GlEngine final : public Engine {
  public:
-  explicit GlEngine(const GlOptions& options) : options_(options) { check(options_); }
+  explicit GlEngine(const GlOptions& options) : options_(options) { check_options(options_); }
 
   [[nodiscard]] const EngineInfo& info() const override { return kInfo; }
   void map(const Surface& surface, const Sites& sites, const engine::EngineOptions& options,
@@ -92,7 +87,7 @@ void GlEngine::map(const Surface& surface, const Sites& sites, const engine::Eng
 }  // namespace gl
 
 GlDevice gl_device(std::uint32_t resolution, const GlOptions& options) {
-  gl::check(options);
+  check_options(options);
   return gl::devices().pool.with(options.device, [&](const gl::RasterDevice& device, double) {
     gl::Rasteriser::check_size(device.context(), {resolution, resolution});
     return device.context().device();

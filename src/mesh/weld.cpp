@@ -282,8 +282,7 @@ std::size_t count_t_junctions(const Mesh& mesh, std::span<const BoundaryEdge> ed
 
 Welded weld(const Mesh& mesh, const WeldOptions& options) try {
   validate(mesh);
-  if (options.tolerance && !(*options.tolerance > 0))
-    throw Error("the tolerance of a weld must be greater than 0");
+  check_options(options);
   const double size = diagonal(bounds(mesh));
   const double most = options.tolerance.value_or(mesh::kMostOfDiagonal * size);
   const mesh::Topology topology = mesh::build_topology(mesh.positions.size(), mesh.triangles);

@@ -49,7 +49,7 @@ std::vector<float> ambient_occlusion(const Surface& surface, const Sites& sites,
                                      const AmbientOcclusionOptions& options) try {
   constexpr std::size_t kGrain = 16;
   check_resolution(surface, map, "ambient_occlusion");
-  rays::check_options(options, "ambient_occlusion");
+  check_options(options);
   const surface::SurfaceData& on = internals(surface);
   const double error = largest_error(surface, sites);
   std::vector<float> result(map.texels(), std::numeric_limits<float>::quiet_NaN());

@@ -1,21 +1,10 @@
 #include "rays/hemisphere_rays.h"
 
-#include <sdm/error.h>
-
 #include <algorithm>
-#include <string>
 
 #include "rays/hemisphere.h"
 
 namespace sdm::rays {
-
-void check_options(const AmbientOcclusionOptions& options, const char* function) {
-  constexpr std::uint32_t kMostRays = 1 << 16;
-  if (options.rays < 1 || options.rays > kMostRays)
-    throw Error(std::string(function) + "() needs 1 to 65536 rays for each sample");
-  if (!(options.max_distance > 0))
-    throw Error(std::string(function) + "() needs a max_distance greater than 0");
-}
 
 void HemisphereRays::resize(std::size_t count) {
   directions_.resize(count);

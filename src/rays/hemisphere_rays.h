@@ -10,9 +10,6 @@
 
 namespace sdm::rays {
 
-/// Throws sdm::Error, naming the function, for options out of range.
-void check_options(const AmbientOcclusionOptions& options, const char* function);
-
 /// Working memory for the rays of one sample at a time.
 class HemisphereRays {
  public:

@@ -116,14 +116,11 @@ std::vector<GroupResiduals> group_residuals(const Correspondences& pairs,
   return groups;
 }
 
-void check_options(const AlignOptions& options, const Mesh& o2) {
-  if (options.samples < 64) throw Error("an alignment needs at least 64 samples");
-  if (options.max_iterations < 1) throw Error("the number of iterations must be greater than 0");
+void check(const AlignOptions& options, const Mesh& o2) {
+  check_options(options);
+  check_options(options.freedoms);
   if (options.start == AlignStart::principal_axes && !options.freedoms.all())
     throw Error("an alignment with locked freedoms starts at a pose, not at the principal axes");
-  for (const double x : options.freedoms.about)
-    if (!(std::abs(x) <= mesh::kMaxCoordinate))
-      throw Error("the point of the axes of rotation has a coordinate that is NaN or beyond 1e37");
   const std::size_t faces = o2.triangles.size();
   if (!options.region.faces.empty() && options.region.faces.size() != faces)
     throw Error("the region of the alignment needs an entry for each face of O2");
@@ -186,7 +183,7 @@ void add_fractions(const Correspondences& pairs, double cut, double radius, Alig
 
 Alignment align_samples(const SampleSource& source, const Sites& o2, const AlignOptions& options) {
   constexpr double kCoarseTolerance = 1e-4, kTolerance = 1e-6;
-  check_options(options, o2.mesh());
+  check(options, o2.mesh());
   const Affine start = rigid(options.pose);
   check_progress(options, 0);
 

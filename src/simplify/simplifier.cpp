@@ -278,4 +278,28 @@ const SimplifyReport& Simplifier::report() const {
   return state_->report();
 }
 
+SimplifiedLevels simplify_levels(const Mesh& mesh, const LevelsOptions& options) {
+  check_options(options);
+  if (!options.max_deviation && !options.triangles)
+    throw Error("a simplification needs max_deviation or triangles");
+  Simplifier simplifier(mesh);
+  SimplifiedLevels result;
+  std::vector<Simplified>& levels = result.levels;
+  levels.reserve(options.lods + std::size_t{1});
+  for (std::uint32_t level = 0; level <= options.lods; ++level) {
+    const SimplifyOptions of_level{.from = levels.empty() ? nullptr : &levels.back(),
+                                   .single_precision = options.single_precision,
+                                   .progress = options.progress};
+    const double factor = std::ldexp(1, static_cast<int>(level));
+    if (options.max_deviation) {
+      levels.push_back(simplifier.to_deviation(factor * *options.max_deviation, of_level));
+    } else {
+      const double count = std::max(1.0, static_cast<double>(*options.triangles) / factor);
+      levels.push_back(simplifier.to_triangles(static_cast<std::size_t>(count), of_level));
+    }
+  }
+  result.report = simplifier.report();
+  return result;
+}
+
 }  // namespace sdm

@@ -197,7 +197,8 @@ TEST_F(BakeCommandTest, ChannelsAreThoseThatDifferOrThatAreAskedFor) {
   EXPECT_EQ(unknown.code, 2);
   EXPECT_THAT(
       unknown.err,
-      HasSubstr("gloss is not one of base_color, metallic_roughness, occlusion, emissive, normal, "
+      HasSubstr("--channels is gloss: it must be one or more of base_color, metallic_roughness, occlusion, "
+                "emissive, normal, "
                 "object_normal, displacement, position, ambient_occlusion, thickness, face, material"));
   const Outcome with_page = run(), without = run({"--no-page"});
   EXPECT_EQ(std::string::npos != with_page.out.find("report.html"), can_write_html());

@@ -150,7 +150,7 @@ TEST(Weld, TheResultDoesNotDependOnTheNumberOfThreads) {
 TEST(Weld, RefusesTolerances) {
   for (const double tolerance : {0.0, -1.0, std::nan("")})
     EXPECT_EQ(test::error_of([&] { (void)weld(test::cube(), {tolerance}); }),
-              "the tolerance of a weld must be greater than 0");
+              "tolerance is " + text_of(tolerance) + ": it must be a number greater than 0");
 }
 
 }  // namespace

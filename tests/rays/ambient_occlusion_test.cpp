@@ -168,8 +168,8 @@ TEST(AmbientOcclusion, Errors) {
   const auto error = [&](const AmbientOcclusionOptions& options) {
     return test::error_of([&] { return scene.occlusion(options); });
   };
-  EXPECT_THAT(error({.rays = 0}), HasSubstr("1 to 65536 rays"));
-  EXPECT_THAT(error({.rays = 70000}), HasSubstr("1 to 65536 rays"));
+  EXPECT_THAT(error({.rays = 0}), HasSubstr("rays is 0: it must be a whole number from 1 to 65536"));
+  EXPECT_THAT(error({.rays = 70000}), HasSubstr("from 1 to 65536"));
   EXPECT_THAT(error({.max_distance = 0}), HasSubstr("max_distance"));
   EXPECT_THAT(error({.max_distance = std::nan("")}), HasSubstr("max_distance"));
   const Surface other(test::sphere(1), {.resolution = 64});

@@ -17,7 +17,7 @@ namespace sdm {
 std::vector<float> matched_occlusion(const Surface& surface, const Sites& sites, const TexelMatches& matches,
                                      const AmbientOcclusionOptions& options) try {
   require_matches(surface, sites, matches);
-  rays::check_options(options, "matched_occlusion");
+  check_options(options);
   constexpr double kAbove = 1e-6;  // of the diagonal: more than the rounding of points
   const sites::SitesData& data = internals(sites);
   const double above = kAbove * diagonal(bounds(data.mesh));

@@ -171,9 +171,7 @@ std::vector<PairTimeOfContact> MultiBodyQuery::time_of_contact(std::span<const M
                                                                const TimeOfContactOptions& options) const {
   impl_->check_count(motions.size(), "motions");
   motion::check_tolerance(tolerance);
-  if (!(options.until >= 0 && options.until <= 1))
-    throw Error("contacts until the time " + std::to_string(options.until) +
-                " are asked for; motions take place from 0 to 1");
+  check_options(options);
   return with_memory_of_bodies([&] {
     const std::vector<motion::DividedMotion> divided = impl_->parts.divided(impl_->posed, motions);
     std::vector<PairTimeOfContact> contacts =

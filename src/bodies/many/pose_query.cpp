@@ -115,7 +115,7 @@ Relations relations_to_all(std::span<const std::optional<convex::PosePacket>> pa
 }
 
 const PoseQueryOptions& checked(const PoseQueryOptions& options) {
-  check_options(ProximityOptions{.depth_precision = options.depth_precision});
+  check_options(options);
   return options;
 }
 

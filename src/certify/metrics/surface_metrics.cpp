@@ -126,15 +126,6 @@ std::string shortest(double number) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
 
-void check(const MetricsOptions& options) {
-  for (const double p : options.percentiles)
-    if (!(p > 0 && p < 100)) throw Error("a percentile must be above 0 and below 100");
-  for (const double t : options.tolerances)
-    if (!(t >= 0 && std::isfinite(t)))
-      throw Error("a tolerance of metrics must be a number that is not negative");
-  check_options(options);
-}
-
 double area_of(const Mesh& mesh) {
   CompensatedSum area;
   for (const Triangle& t : mesh.triangles) {
@@ -234,7 +225,7 @@ SurfaceMetrics metrics_of(std::array<DirectedMetrics, 2> from) {
 }  // namespace
 
 SurfaceMetrics surface_metrics(const Mesh& a, const Mesh& b, const MetricsOptions& options) try {
-  check(options);
+  check_options(options);
   if (a.triangles.empty() || b.triangles.empty()) {
     std::array<DirectedMetrics, 2> from;
     from.fill(metrics_of_none(a.triangles.empty() && b.triangles.empty(), options));

@@ -37,6 +37,21 @@ Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
   return result;
 }
 
+bool OptionForm<Tolerance>::read(std::string_view text, const OptionRange& range, Tolerance& value) {
+  const std::size_t colon = text.find(':');
+  double lo = 0, hi = 0;
+  if (!read_number(text.substr(0, colon), range, lo)) return false;
+  if (colon != std::string_view::npos && !read_number(text.substr(colon + 1), range, hi)) return false;
+  const Tolerance given = colon == std::string_view::npos ? Tolerance(lo) : Tolerance(lo, hi);
+  if (!allowed(given, range)) return false;
+  value = given;
+  return true;
+}
+
+std::string OptionForm<Tolerance>::text(const Tolerance& value) {
+  return -value.lo == value.hi ? text_of(value.hi) : text_of(value.lo) + ":" + text_of(value.hi);
+}
+
 double largest_limit(const Tolerance& tolerance) {
   return rules::largest_limit(tolerance.lower, tolerance.upper);
 }

@@ -7,7 +7,6 @@
 #include <array>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <span>
 
 #include "io/file/input_files.h"
@@ -21,7 +20,6 @@ using cad::CadFormat;
 using cad::CadShape;
 
 constexpr std::size_t kIgesSection = 72;  // the column of the section's letter
-constexpr double kMostAngle = std::numbers::pi / 2;
 
 PolygonMesh to_polygons(const CadShape& shape) {
   PolygonMesh mesh;
@@ -73,9 +71,8 @@ PolygonMesh read(std::string_view bytes, const std::filesystem::path& file, CadF
                  const TessellationOptions& options) {
   const char* const name = format == CadFormat::step ? "STEP" : "IGES";
   constexpr double kAny = std::numeric_limits<double>::infinity();
-  if (!(options.deflection.value_or(1) > 0) || !(options.at_most.value_or(1) > 0) || !(options.angle > 0) ||
-      !(options.angle < kMostAngle))
-    throw Error("the deflection must be positive, and the angle too and below 90°");
+  check_options(options);
+  if (!(options.at_most.value_or(1) > 0)) throw Error("the largest deflection must be greater than 0");
   Client client;
   const CadShape shape = cad::read_in_child({.bytes = bytes,
                                              .file = file.c_str(),

@@ -84,8 +84,7 @@ void MeshSequence::Impl::open(const SequenceOptions& options) {
 
 MeshSequence::MeshSequence(const std::string& input, const SequenceOptions& options) try
     : impl_(std::make_unique<Impl>()) {
-  if (options.rate && !(*options.rate > 0 && std::isfinite(*options.rate)))
-    throw Error("the rate of a sequence must be a number of frames per second greater than 0");
+  check_options(options);
   impl_->input = input;
   io::with_error_prefix(input, [&] { impl_->open(options); });
 } catch (const std::bad_alloc&) {
