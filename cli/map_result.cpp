@@ -95,7 +95,9 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
                             .sites = task.sites.get(),
                             .attributes = exr_attributes(task.on, task.to, map, command.picture.units)};
   MapFiles files = command.output.files;
-  const bool views = std::exchange(files.views, false);  // they state the verdict
+  // Views state the verdict, if there may be one.
+  const bool judged_first = command.picture.tolerance.has_value() || !command.groups.rows.empty();
+  const bool views = judged_first && std::exchange(files.views, false);
   sdm::run_concurrently({
       [&] {
         write_map_files(folder, files, surface, map, computed.at_vertices, &task.to.mesh,

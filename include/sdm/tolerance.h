@@ -48,7 +48,7 @@ struct OptionForm<Tolerance> {
   SDM_API static bool read(std::string_view text, const OptionRange& range, Tolerance& value);
   SDM_API static std::string text(const Tolerance& value);
   static bool allowed(const Tolerance& value, const OptionRange& range) {
-    return value.lo <= value.hi && in_range(value.hi - value.lo, range);
+    return value.lower <= value.upper && in_range(value.upper - value.lower, range);
   }
 };
 

@@ -162,10 +162,13 @@ TEST(Views, ShowEachSideAsItIsSeen) {
 TEST(Views, ShowTheOtherMeshPaleAndMarkVisiblePlaces) {
   const CubeScene cube_scene;
   const Mesh other = moved(cube(), {0.5, 0, -3});  // behind the cube in the front view, and to the right
+  const std::vector<float> distances(cube_scene.map.texels(), 0);
+  const FaceScales red({.map = Colormap::paper2006}, {});  // at 0
   ViewScene scene{.surface = &cube_scene.surface,
                   .normals = shading_normals(cube_scene.surface.mesh()),
-                  .colors = std::vector<Rgb>(cube_scene.map.texels(), Rgb{255, 0, 0}),
+                  .distances = distances,
                   .vertex_distances = cube_scene.vertices,
+                  .of_faces = &red,
                   .other = &other,
                   .other_normals = shading_normals(other)};
   const Projection front{.scale = 20, .width = 100, .height = 100};
@@ -181,7 +184,6 @@ TEST(Views, ShowTheOtherMeshPaleAndMarkVisiblePlaces) {
   EXPECT_EQ(at(90), kViewBackground);
   EXPECT_EQ(at(10), kViewBackground);
 
-  scene.colors.assign(scene.colors.size(), {255, 0, 0});
   const Mesh nearer = moved(other, {0, 0, 6});
   scene.other = &nearer;
   const View veiled = render_view(scene, front, places);

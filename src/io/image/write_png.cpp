@@ -58,7 +58,9 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
   of_faces.describe(text);
   write_map_png(
       file, picture,
-      [&](std::size_t texel) { return of_faces(surface.texel_faces()[texel], map.distance[texel]); },
+      [&, owners = surface.texel_faces()](std::size_t texel) {
+        return of_faces(owners[texel], map.distance[texel]);
+      },
       draw_legend(of_faces.of_legend(), text, picture.height()));
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());

@@ -54,19 +54,12 @@ std::vector<Mark> marks_of(const std::optional<Extremes>& extremes, const std::s
 ViewScene scene_of(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
                    const ColorScale& scale, const FaceScales& of_faces, const Mesh* other) {
   ViewScene scene{.surface = &surface,
+                  .distances = std::span(map.distance).first(map.texels()),
                   .vertex_distances = vertex_distances,
                   .scale = scale,
                   .of_faces = &of_faces,
                   .other = other};
-  scene.colors.resize(map.texels());
-  run_concurrently({[&] {
-                      constexpr std::size_t kGrain = 1 << 14;
-                      parallel_for(scene.colors.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i)
-                          scene.colors[i] = of_faces(surface.texel_faces()[i], map.distance[i]);
-                      });
-                    },
-                    [&] { scene.normals = shading_normals(surface.mesh()); },
+  run_concurrently({[&] { scene.normals = shading_normals(surface.mesh()); },
                     [&] {
                       if (other != nullptr) scene.other_normals = shading_normals(*other);
                     }});

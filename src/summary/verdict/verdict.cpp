@@ -49,7 +49,8 @@ bool OptionForm<Tolerance>::read(std::string_view text, const OptionRange& range
 }
 
 std::string OptionForm<Tolerance>::text(const Tolerance& value) {
-  return -value.lo == value.hi ? text_of(value.hi) : text_of(value.lo) + ":" + text_of(value.hi);
+  return -value.lower == value.upper ? text_of(value.upper)
+                                     : text_of(value.lower) + ":" + text_of(value.upper);
 }
 
 double largest_limit(const Tolerance& tolerance) {

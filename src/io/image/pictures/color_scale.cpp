@@ -16,7 +16,7 @@ std::uint8_t to_byte(float x) {
 }
 
 // Piecewise linear through equally spaced colours; t in [0, 1].
-Rgb gradient(std::span<const Rgb> colors, double t) {
+inline Rgb gradient(std::span<const Rgb> colors, double t) {
   const float s = static_cast<float>(t) * static_cast<float>(colors.size() - 1);
   const int i = std::min(static_cast<int>(s), static_cast<int>(colors.size()) - 2);
   // Integers with 16 bits of fraction are faster than three conversions each way.
@@ -28,9 +28,8 @@ Rgb gradient(std::span<const Rgb> colors, double t) {
   return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
 }
 
-// The mode of rules::color_place().
+// The mode of rules::color_place() without bands.
 double mode_of(const ColorScale& scale) {
-  if (scale.tolerance) return rules::kBands;
   if (scale.map == Colormap::sequential) return rules::kSequential;
   return scale.map == Colormap::diverging ? rules::kCentred : rules::kEndToEnd;
 }
@@ -63,15 +62,19 @@ std::uint32_t scramble(std::uint32_t x) {
 
 Rgb ColorScale::operator()(double distance) const {
   if (!std::isfinite(distance)) return kNoValue;
-  const Tolerance limits = tolerance.value_or(Tolerance());
+  if (tolerance) return band(distance);
+  const double place = rules::color_place(distance, mode_of(*this), lo, hi, 0, 0, accuracy);
+  if (place >= rules::kInOpposite) return gradient(rules::kOpposite, place - rules::kInOpposite);
+  return gradient(colors_of(map), place);
+}
+
+Rgb ColorScale::band(double distance) const {
   const double place =
-      rules::color_place(distance, mode_of(*this), lo, hi, limits.lower, limits.upper, accuracy);
+      rules::color_place(distance, rules::kBands, lo, hi, tolerance->lower, tolerance->upper, accuracy);
   if (place >= rules::kInUnjudged) return kUnjudged;
   if (place >= rules::kInBelow) return gradient(kBelow, place - rules::kInBelow);
   if (place >= rules::kInAbove) return gradient(kAbove, place - rules::kInAbove);
-  if (place >= rules::kInWithin) return gradient(kWithin, place - rules::kInWithin);
-  if (place >= rules::kInOpposite) return gradient(rules::kOpposite, place - rules::kInOpposite);
-  return gradient(colors_of(map), place);
+  return gradient(kWithin, place - rules::kInWithin);
 }
 
 ColorScale color_scale(const PictureOptions& fixed) {

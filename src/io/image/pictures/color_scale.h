@@ -28,6 +28,9 @@ struct ColorScale {
   double accuracy = 0;                   ///< distances that exceed the tolerance, or 0, by less are within it
 
   [[nodiscard]] Rgb operator()(double distance) const;
+
+ private:
+  [[nodiscard]] Rgb band(double distance) const;
 };
 
 /// The scale of `options`; what they leave open comes from the map, as fixed_colors() chooses it.

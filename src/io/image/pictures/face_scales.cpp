@@ -26,8 +26,8 @@ FaceScales::FaceScales(const ColorScale& scale, const PictureOptions& options) :
   if (std::ranges::all_of(faces_of_groups(options.names, options.table), names_none)) tolerances_.reset();
 }
 
-Rgb FaceScales::operator()(std::uint32_t face, double distance) const {
-  if (!tolerances_ || !std::isfinite(distance)) return scale_(distance);
+Rgb FaceScales::of_group(std::uint32_t face, double distance) const {
+  if (!std::isfinite(distance)) return kNoValue;
   return banded(scale_, tolerances_->of(face))(distance);
 }
 

@@ -17,7 +17,9 @@ class FaceScales {
   FaceScales(const ColorScale& scale, const PictureOptions& options);
 
   /// The colour of a distance on a face.
-  [[nodiscard]] Rgb operator()(std::uint32_t face, double distance) const;
+  [[nodiscard]] Rgb operator()(std::uint32_t face, double distance) const {
+    return tolerances_ ? of_group(face, distance) : scale_(distance);
+  }
   [[nodiscard]] bool by_group() const { return tolerances_.has_value(); }
   /// The scale of the legend: that of all faces, or in units of the limits of each, from -2 to 2.
   [[nodiscard]] ColorScale of_legend() const;
@@ -25,6 +27,8 @@ class FaceScales {
   void describe(LegendText& text) const;
 
  private:
+  [[nodiscard]] Rgb of_group(std::uint32_t face, double distance) const;
+
   ColorScale scale_;
   std::optional<map::FaceTolerances> tolerances_;
 };

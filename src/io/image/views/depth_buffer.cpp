@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "geometry/vec.h"
@@ -17,16 +16,20 @@ Vec2 flat(const Vec3& p) {
   return {p[0], p[1]};
 }
 
-/// The samples whose centres are from `lo` to `hi`, of `count`: from `first` up to before `second`.
-inline std::pair<std::uint32_t, std::uint32_t> samples(double lo, double hi, std::uint32_t count) {
-  // Both ends are rounded by a conversion to int, which is one instruction; std::ceil() is a call.
-  const double most = count;
-  const double first = std::clamp(lo - 0.5, -1.0, most), last = std::clamp(hi - 0.5, -1.0, most - 1);
-  const auto begin = std::max(0, static_cast<int>(first) + (first > static_cast<int>(first) ? 1 : 0));
-  const auto end = static_cast<int>(last + 1);  // not negative: rounded down
-  return begin < end ? std::pair(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end))
-                     : std::pair(0u, 0u);
+/// The first sample whose centre is not before a place, which is at least 0.
+inline std::int32_t sample_from(double place) {
+  return static_cast<std::int32_t>(place + 0.5);
 }
+
+/// A line from one point to another that is not above it.
+struct Edge {
+  Vec2 from;
+  double slope;  // columns per row
+
+  Edge(const Vec3& upper, const Vec3& lower)
+      : from(flat(upper)), slope(lower[1] > upper[1] ? (lower[0] - upper[0]) / (lower[1] - upper[1]) : 0) {}
+  [[nodiscard]] double column(double y) const { return from[0] + slope * (y - from[1]); }
+};
 
 }  // namespace
 
@@ -38,8 +41,7 @@ Vec3 Projection::operator()(const Vec3& point) const {
 DepthBuffer::DepthBuffer(const Mesh& mesh, const Projection& projection)
     : width_(kSamples * projection.width),
       height_(kSamples * projection.height),
-      depth_(std::size_t{width_} * height_, -std::numeric_limits<float>::infinity()),
-      face_(depth_.size(), kNone) {
+      seen_(std::size_t{width_} * height_) {
   corners_.reserve(mesh.positions.size());
   for (const Vec3& position : mesh.positions) {
     const Vec3 p = projection(position);
@@ -55,44 +57,42 @@ void DepthBuffer::draw(std::uint32_t face, const Triangle& triangle) {
   constexpr double kMargin = 1e-6;  // samples
   const std::array<Vec3, 3> p{corners_[triangle[0]], corners_[triangle[1]], corners_[triangle[2]]};
   const auto [left, right] = std::minmax({p[0][0], p[1][0], p[2][0]});
-  const auto [top, bottom] = std::minmax({p[0][1], p[1][1], p[2][1]});
-  const auto [farthest, nearest] = std::minmax({p[0][2], p[1][2], p[2][2]});
-  if (!(right > 0 && left < width_ && bottom > 0 && top < height_)) return;  // outside of the picture
-  const auto [first_row, end_row] = samples(top - kMargin, bottom + kMargin, height_);
-  const auto columns = samples(left - kMargin, right + kMargin, width_);
-  if (first_row == end_row || columns.first == columns.second) return;  // between samples
+  const double begin = std::max(left - kMargin, 0.0), end = std::min(right + kMargin, 1.0 * width_);
+  if (!(begin < end && sample_from(begin) < sample_from(end))) return;  // outside, or between samples
+  std::array<const Vec3*, 3> down{p.data(), &p[1], &p[2]};  // from the highest corner to the lowest
+  if ((*down[1])[1] < (*down[0])[1]) std::swap(down[0], down[1]);
+  if ((*down[2])[1] < (*down[1])[1]) std::swap(down[1], down[2]);
+  if ((*down[1])[1] < (*down[0])[1]) std::swap(down[0], down[1]);
+  const double middle = (*down[1])[1];
+  const double top = std::max((*down[0])[1] - kMargin, 0.0);
+  const double bottom = std::min((*down[2])[1] + kMargin, 1.0 * height_);
+  if (!(top < bottom)) return;
+  const std::int32_t first_row = sample_from(top), end_row = sample_from(bottom);
+  if (first_row >= end_row) return;
   const double area = cross(flat(p[1]) - flat(p[0]), flat(p[2]) - flat(p[0]));
   if (area == 0) return;  // seen edge-on
-  const double side = area > 0 ? 1 : -1;
 
   // The depth is linear: depth = at + by_x · x + by_y · y.
+  const auto [farthest, nearest] = std::minmax({p[0][2], p[1][2], p[2][2]});
   const Vec3 a = p[1] - p[0], b = p[2] - p[0];
   const double by_x = (a[2] * b[1] - b[2] * a[1]) / area, by_y = (b[2] * a[0] - a[2] * b[0]) / area;
   const double at = p[0][2] - by_x * p[0][0] - by_y * p[0][1];
 
-  std::array<double, 3> slope{}, per_row{};  // by how many columns an edge moves from row to row
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 &from = p[k], &to = p[(k + 1) % 3];
-    slope[k] = side * (from[1] - to[1]);
-    if (slope[k] != 0) per_row[k] = (to[0] - from[0]) / (to[1] - from[1]);
-  }
-  for (std::uint32_t row = first_row; row < end_row; ++row) {
-    // The columns where the row's samples are on the inner side of all three edges.
+  // A row lies between the edge from the highest to the lowest corner and one of the two others.
+  const Edge whole(*down[0], *down[2]), upper(*down[0], *down[1]), lower(*down[1], *down[2]);
+  const bool to_right = cross(flat(*down[2]) - flat(*down[0]), flat(*down[1]) - flat(*down[0])) < 0;
+  for (std::int32_t row = first_row; row < end_row; ++row) {
     const double y = row + 0.5;
-    double begin = left - kMargin, end = right + kMargin;
-    for (int k = 0; k < 3; ++k) {
-      const double column = p[k][0] + per_row[k] * (y - p[k][1]);
-      if (slope[k] > 0)
-        begin = std::max(begin, column - kMargin);
-      else if (slope[k] < 0)
-        end = std::min(end, column + kMargin);
-    }
-    const auto [first, last] = samples(begin, end, width_);
-    for (std::uint32_t column = first; column < last; ++column) {
+    const double here = whole.column(y), other = (y < middle ? upper : lower).column(y);
+    const double from = (to_right ? here : other) - kMargin, to = (to_right ? other : here) + kMargin;
+    const std::int32_t first = sample_from(std::min(end, std::max(begin, from)));
+    const std::int32_t last = sample_from(std::max(begin, std::min(end, to)));
+    Seen* const seen = &seen_[static_cast<std::size_t>(row) * width_];
+    const double depth_of_row = at + by_y * y;
+    for (std::int32_t column = first; column < last; ++column) {
       const auto depth =
-          static_cast<float>(std::clamp(at + by_x * (column + 0.5) + by_y * y, farthest, nearest));
-      const std::size_t sample = std::size_t{row} * width_ + column;
-      if (depth > depth_[sample]) depth_[sample] = depth, face_[sample] = face;
+          static_cast<float>(std::clamp(depth_of_row + by_x * (column + 0.5), farthest, nearest));
+      if (depth > seen[column].depth) seen[column] = {depth, face};
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <sdm/mesh.h>
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -33,21 +34,25 @@ class DepthBuffer {
   [[nodiscard]] std::uint32_t width() const { return width_; }  ///< samples
   [[nodiscard]] std::uint32_t height() const { return height_; }
   /// The nearest face, kNone if there is none.
-  [[nodiscard]] std::uint32_t face(std::size_t sample) const { return face_[sample]; }
+  [[nodiscard]] std::uint32_t face(std::size_t sample) const { return seen_[sample].face; }
   /// Its depth, −∞ if there is none.
-  [[nodiscard]] float depth(std::size_t sample) const { return depth_[sample]; }
+  [[nodiscard]] float depth(std::size_t sample) const { return seen_[sample].depth; }
   /// The weights of the corners of a face at a sample.
   [[nodiscard]] Vec3 weights(std::size_t sample, const Triangle& triangle) const;
   /// Whether the viewer sees the back of a face: its corners are clockwise.
   [[nodiscard]] bool is_back(const Triangle& triangle) const;
 
  private:
+  struct Seen {
+    float depth = -std::numeric_limits<float>::infinity();
+    std::uint32_t face = kNone;
+  };
+
   void draw(std::uint32_t face, const Triangle& triangle);
 
   std::uint32_t width_, height_;
   std::vector<Vec3> corners_;  // x and y in samples, and depth, of each vertex
-  std::vector<float> depth_;
-  std::vector<std::uint32_t> face_;
+  std::vector<Seen> seen_;     // at each sample
 };
 
 }  // namespace sdm::io

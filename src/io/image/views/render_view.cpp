@@ -9,6 +9,7 @@
 
 #include "geometry/vec.h"
 #include "io/image/pictures/canvas.h"
+#include "surface/surface_data.h"
 
 namespace sdm::io {
 namespace {
@@ -54,44 +55,68 @@ class Light {
   Vec3 from_;
 };
 
-/// The colour of a point of a face: that of the texel there or, at the border of a chart, of a neighbouring
-/// texel of the same chart.
-Rgb color_at(const ViewScene& scene, std::uint32_t face, const Vec3& weights) {
-  const Surface& surface = *scene.surface;
-  const auto charts = surface.face_charts(), owners = surface.texel_faces();
-  if (charts[face] != kNone) {
-    const auto corners = surface.atlas_corners(face);
-    Vec2 place{};
-    for (int k = 0; k < 3; ++k) place = place + weights[k] * corners[k];
-    const auto width = static_cast<int>(surface.resolution()), height = static_cast<int>(surface.rows());
-    const int x = static_cast<int>(place[0]), y = static_cast<int>(place[1]);
-    const auto is_of_chart = [&](std::size_t texel) {
-      return owners[texel] != kNone && charts[owners[texel]] == charts[face];
-    };
-    if (x >= 0 && x < width && y >= 0 && y < height)
-      if (const std::size_t own = std::size_t(y) * std::size_t(width) + std::size_t(x); is_of_chart(own))
-        return scene.colors[own];
-    double nearest = std::numeric_limits<double>::infinity();
-    std::optional<std::size_t> found;
-    for (int row = std::max(0, y - 1); row <= std::min(height - 1, y + 1); ++row)
-      for (int column = std::max(0, x - 1); column <= std::min(width - 1, x + 1); ++column) {
-        const std::size_t texel = std::size_t(row) * std::size_t(width) + std::size_t(column);
-        if (!is_of_chart(texel)) continue;
-        const double away = std::max(std::abs(column + 0.5 - place[0]), std::abs(row + 0.5 - place[1]));
-        if (away < nearest) nearest = away, found = texel;
-      }
-    if (found) return scene.colors[*found];
+/// The colours of O1.
+class SurfaceColors {
+ public:
+  explicit SurfaceColors(const ViewScene& scene)
+      : scene_(scene),
+        data_(internals(*scene.surface)),
+        columns_(static_cast<int>(data_.resolution)),
+        rows_(static_cast<int>(data_.rows)) {}
+
+  /// The colour of a point of a face: that of the texel there or, at the border of a chart, of a neighbouring
+  /// texel of the same chart.
+  [[nodiscard]] Rgb operator()(std::uint32_t face, const Vec3& weights) const {
+    if (const std::uint32_t chart = data_.face_charts[face]; chart != kNone) {
+      const std::array<Vec2, 3>& corners = data_.corners[face];
+      Vec2 place{};
+      for (int k = 0; k < 3; ++k) place = place + weights[k] * corners[k];
+      const int x = static_cast<int>(place[0]), y = static_cast<int>(place[1]);
+      if (x >= 0 && x < columns_ && y >= 0 && y < rows_ && is_of_chart(texel_at(x, y), chart))
+        return color_of_texel(texel_at(x, y));
+      double nearest = std::numeric_limits<double>::infinity();
+      std::optional<std::size_t> found;
+      for (int row = std::max(0, y - 1); row <= std::min(rows_ - 1, y + 1); ++row)
+        for (int column = std::max(0, x - 1); column <= std::min(columns_ - 1, x + 1); ++column) {
+          const std::size_t texel = texel_at(column, row);
+          if (!is_of_chart(texel, chart)) continue;
+          const double away = std::max(std::abs(column + 0.5 - place[0]), std::abs(row + 0.5 - place[1]));
+          if (away < nearest) nearest = away, found = texel;
+        }
+      if (found) return color_of_texel(*found);
+    }
+    double distance = 0;
+    for (int k = 0; k < 3; ++k)
+      distance += weights[k] * scene_.vertex_distances[data_.mesh.triangles[face][k]];
+    return (*scene_.of_faces)(face, distance);
   }
-  double distance = 0;
-  for (int k = 0; k < 3; ++k)
-    distance += weights[k] * scene.vertex_distances[surface.mesh().triangles[face][k]];
-  return scene.of_faces != nullptr ? (*scene.of_faces)(face, distance) : scene.scale(distance);
-}
+
+ private:
+  [[nodiscard]] std::size_t texel_at(int column, int row) const {
+    return static_cast<std::size_t>(row) * data_.resolution + static_cast<std::size_t>(column);
+  }
+  [[nodiscard]] bool is_of_chart(std::size_t texel, std::uint32_t chart) const {
+    const std::uint32_t owner = data_.map_faces[texel];
+    return owner != kNone && data_.face_charts[owner] == chart;
+  }
+  [[nodiscard]] Rgb color_of_texel(std::size_t texel) const {
+    return (*scene_.of_faces)(data_.map_faces[texel], scene_.distances[texel]);
+  }
+
+  const ViewScene& scene_;
+  const surface::SurfaceData& data_;
+  int columns_, rows_;
+};
 
 class Renderer {
  public:
   Renderer(const ViewScene& scene, const Projection& projection)
-      : scene_(scene), projection_(projection), light_(projection), part_(mesh(), projection) {
+      : scene_(scene),
+        projection_(projection),
+        light_(projection),
+        colors_(scene),
+        mesh_(scene.surface->mesh()),
+        part_(mesh_, projection) {
     if (scene.other != nullptr) ghost_.emplace(*scene.other, projection);
   }
 
@@ -117,7 +142,6 @@ class Renderer {
  private:
   static constexpr std::uint32_t kSamples = DepthBuffer::kSamples;
 
-  [[nodiscard]] const Mesh& mesh() const { return scene_.surface->mesh(); }
   /// The first sample of a pixel.
   [[nodiscard]] std::size_t sample_at(std::uint32_t x, std::uint32_t y) const {
     return std::size_t{kSamples} * y * part_.width() + std::size_t{kSamples} * x;
@@ -171,10 +195,10 @@ class Renderer {
     if (face == kNone)
       return other_face == kNone ? color(kViewBackground)
                                  : mix(color(kViewBackground), other_color(sample, other_face), 0.75);
-    const Triangle& corners = mesh().triangles[face];
+    const Triangle& corners = mesh_.triangles[face];
     const Vec3 weights = part_.weights(sample, corners);
-    const Color part = light_(scene_.normals, face, weights, part_.is_back(corners)) *
-                       color(color_at(scene_, face, weights));
+    const Color part =
+        light_(scene_.normals, face, weights, part_.is_back(corners)) * color(colors_(face, weights));
     return other_face == kNone ? part : mix(part, other_color(sample, other_face), kVeil);
   }
 
@@ -212,6 +236,8 @@ class Renderer {
   const ViewScene& scene_;
   const Projection& projection_;
   Light light_;
+  SurfaceColors colors_;
+  const Mesh& mesh_;  // O1
   DepthBuffer part_;
   std::optional<DepthBuffer> ghost_;
 };

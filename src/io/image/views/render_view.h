@@ -21,10 +21,10 @@ inline constexpr Rgb kViewBackground{240, 241, 243}, kGhost{203, 208, 215};
 struct ViewScene {
   const Surface* surface = nullptr;
   ShadingNormals normals{};
-  std::vector<Rgb> colors{};                  ///< of each texel
+  std::span<const float> distances{};         ///< of each texel
   std::span<const float> vertex_distances{};  ///< shown where a face has no texel
   ColorScale scale{};                         ///< of O2's distances
-  const FaceScales* of_faces = nullptr;       ///< of those of O1; null: `scale`
+  const FaceScales* of_faces = nullptr;       ///< of those of O1
   const Mesh* other = nullptr;                ///< O2, or null
   ShadingNormals other_normals{};
   std::span<const float> other_distances{};  ///< of O2's vertices, which colour it; or empty: it is pale
