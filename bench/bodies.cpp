@@ -8,8 +8,8 @@
 // vertices of theirs. In the cases `world`, rigid bodies touch like those of a pile, all or one of them
 // moves, and a frame is separations() and contacts(); in those named `depths`, it is penetration_depths().
 // The last case is a frame of the scene `crowd`.
+#include <sdm/execution.h>
 #include <sdm/multi_body_query.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <array>

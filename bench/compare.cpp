@@ -3,8 +3,8 @@
 // description names the two.
 //
 //   build/dev/bench/compare [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
+#include <sdm/execution.h>
 #include <sdm/sdm.h>
-#include <sdm/threads.h>
 
 #include <array>
 #include <cmath>

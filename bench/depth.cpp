@@ -4,8 +4,8 @@
 //
 //   build/dev/bench/depth [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
 #include <sdm/closest_points.h>
+#include <sdm/execution.h>
 #include <sdm/proximity_query.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 // complete maps.
 //
 //   build/dev/bench/frames [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
+#include <sdm/execution.h>
 #include <sdm/sdm.h>
-#include <sdm/threads.h>
 #include "scenes/scene.h"
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 //   build/dev/bench/mantis_points [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
 #include <mantis.h>
 #include <sdm/closest_points.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // Times one map, and writes its samples and distances for other libraries, for bench/peers.
+#include <sdm/execution.h>
 #include <sdm/sdm.h>
-#include <sdm/threads.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,6 +1,6 @@
 #include "map_task.h"
 
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <cmath>
 #include <cstdio>

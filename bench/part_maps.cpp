@@ -3,9 +3,9 @@
 // faces.
 //
 //   build/dev/bench/part_maps [--list] [--filter REGEX] [--repetitions N] [--json FILE]
+#include <sdm/execution.h>
 #include <sdm/map.h>
 #include <sdm/measure.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <cmath>

@@ -9,8 +9,8 @@
 // contact.
 //
 //   build/dev/bench/proximity [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
+#include <sdm/execution.h>
 #include <sdm/proximity_query.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Writes a mesh with more triangles, for bench/whole.
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

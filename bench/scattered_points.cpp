@@ -3,7 +3,7 @@
 //
 //   build/dev/bench/scattered_points [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
 #include <sdm/closest_points.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <cmath>
 #include <span>

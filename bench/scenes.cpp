@@ -1,6 +1,6 @@
 #include "scenes.h"
 
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include <string>
 

@@ -4,9 +4,9 @@
 //
 //   build/dev/bench/signs [--list] [--filter REGEX] [--repetitions N] [--json FILE]
 #include <sdm/closest_points.h>
+#include <sdm/execution.h>
 #include <sdm/map.h>
-#include <sdm/sign.h>
-#include <sdm/threads.h>
+#include <sdm/sites.h>
 
 #include <cmath>
 #include <ctime>

@@ -1,7 +1,7 @@
 // Building a shape, and reading it from a file.
+#include <sdm/execution.h>
+#include <sdm/map_files.h>
 #include <sdm/proximity_query.h>
-#include <sdm/shape_files.h>
-#include <sdm/threads.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

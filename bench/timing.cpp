@@ -1,6 +1,6 @@
 #include "timing.h"
 
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,10 @@
 #include "alignment.h"
 
+#include <sdm/align.h>
+#include <sdm/doubts.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
+#include <sdm/sites.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,6 @@
 
 #include <sdm/align.h>
 #include <sdm/doubts.h>
-#include <sdm/fit_check.h>
-#include <sdm/unit_check.h>
 
 #include <nlohmann/json.hpp>
 #include <optional>

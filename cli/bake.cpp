@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 #include <sdm/bake_files.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <algorithm>
 #include <array>

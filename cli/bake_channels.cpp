@@ -1,9 +1,9 @@
 #include "bake_channels.h"
 
 #include <fmt/format.h>
-#include <sdm/baked_geometry.h>
-#include <sdm/cancellation.h>
-#include <sdm/supersampling.h>
+#include <sdm/bake.h>
+#include <sdm/bake_files.h>
+#include <sdm/execution.h>
 
 #include <algorithm>
 #include <array>

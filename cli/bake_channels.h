@@ -44,6 +44,6 @@ struct BakedChannels {
 };
 
 /// Bakes the channels that are asked for, and writes their files into `folder`. Throws sdm::Error as the
-/// functions of <sdm/baked_geometry.h> do, and for `material` of a mesh that has none.
+/// functions of <sdm/bake.h> do, and for `material` of a mesh that has none.
 [[nodiscard]] BakedChannels bake_channels(const BakePair& pair, const std::filesystem::path& folder,
                                           Notes& notes);

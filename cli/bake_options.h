@@ -1,8 +1,8 @@
 // The command line of `sdm bake`.
 #pragma once
 
-#include <sdm/baked_geometry.h>
-#include <sdm/io.h>
+#include <sdm/bake.h>
+#include <sdm/map_files.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>

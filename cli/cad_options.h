@@ -1,8 +1,7 @@
 // --deflection: how closely the triangles of CAD files follow their surfaces.
 #pragma once
 
-#include <sdm/group_verdicts.h>
-#include <sdm/tessellation.h>
+#include <sdm/mesh.h>
 #include <sdm/tolerance.h>
 
 #include <CLI/CLI.hpp>

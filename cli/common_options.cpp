@@ -1,7 +1,7 @@
 #include "common_options.h"
 
+#include <sdm/execution.h>
 #include <sdm/map.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <vector>

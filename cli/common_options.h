@@ -3,7 +3,7 @@
 
 #include <sdm/engine.h>
 #include <sdm/gl.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 #include <sdm/surface.h>
 
 #include <CLI/CLI.hpp>

@@ -1,7 +1,7 @@
 // The options of the command that structs declare (sdm/options.h).
 #pragma once
 
-#include <sdm/along.h>
+#include <sdm/measure.h>
 #include <sdm/options.h>
 
 #include <CLI/CLI.hpp>

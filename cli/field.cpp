@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <sdm/field_files.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_files.h>
 
 #include <algorithm>
 #include <cmath>

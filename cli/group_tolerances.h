@@ -2,7 +2,8 @@
 #pragma once
 
 #include <sdm/doubts.h>
-#include <sdm/group_verdicts.h>
+#include <sdm/tolerance.h>
+#include <sdm/verdict.h>
 
 #include <CLI/CLI.hpp>
 #include <initializer_list>

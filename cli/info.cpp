@@ -1,11 +1,10 @@
 #include "info.h"
 
 #include <fmt/format.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 #include <sdm/mesh.h>
-#include <sdm/report.h>
-#include <sdm/self_intersections.h>
-#include <sdm/solid.h>
+#include <sdm/mesh_files.h>
+#include <sdm/sites.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "input_pair.h"
 
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 #include <sdm/version.h>
 
 #include <algorithm>

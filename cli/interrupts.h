@@ -1,7 +1,7 @@
 // Interrupts of the command: Ctrl-C (SIGINT), SIGTERM and SIGHUP.
 #pragma once
 
-#include <sdm/cancellation.h>
+#include <sdm/execution.h>
 
 /// During its lifetime, which is that of the program, the first interrupt cancels the work: the library polls
 /// a flag (sdm::CancelScope). Where it does not stop in time, a thread ends the program, after removing what

@@ -1,7 +1,7 @@
 // --ignore-islands: small components of a mesh, and small clusters of a cloud, are left out.
 #pragma once
 
-#include <sdm/islands.h>
+#include <sdm/mesh_edit.h>
 #include <sdm/points.h>
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,6 @@
 #include "map.h"
 
-#include <sdm/tolerance_table.h>
+#include <sdm/map_files.h>
 
 #include "alignment.h"
 #include "cad_options.h"

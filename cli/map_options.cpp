@@ -1,7 +1,8 @@
 #include "map_options.h"
 
 #include <fmt/format.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
+#include <sdm/summary.h>
 
 #include "common_options.h"
 #include "declared_options.h"

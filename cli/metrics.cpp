@@ -1,8 +1,9 @@
 #include "metrics.h"
 
 #include <fmt/format.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 #include <sdm/metrics.h>
+#include <sdm/tolerance.h>
 
 #include <algorithm>
 #include <memory>

@@ -1,7 +1,7 @@
 #include "notes.h"
 
 #include <fmt/format.h>
-#include <sdm/units.h>
+#include <sdm/mesh.h>
 
 #include <algorithm>
 #include <array>

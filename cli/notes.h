@@ -3,7 +3,7 @@
 #pragma once
 
 #include <sdm/mesh.h>
-#include <sdm/transform.h>
+#include <sdm/mesh_edit.h>
 
 #include <optional>
 #include <span>

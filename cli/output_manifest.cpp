@@ -1,7 +1,7 @@
 #include "output_manifest.h"
 
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include <algorithm>
 #include <fstream>

@@ -1,8 +1,8 @@
 // The mesh of a command that measures one mesh by itself.
 #pragma once
 
-#include <sdm/tessellation.h>
-#include <sdm/weld.h>
+#include <sdm/mesh.h>
+#include <sdm/mesh_edit.h>
 
 #include <filesystem>
 #include <optional>

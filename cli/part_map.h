@@ -1,8 +1,8 @@
 // The map of a mesh by itself, of `sdm self` and `sdm thickness`.
 #pragma once
 
-#include <sdm/io.h>
 #include <sdm/map.h>
+#include <sdm/map_files.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>

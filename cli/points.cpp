@@ -1,8 +1,8 @@
 #include "points.h"
 
+#include <sdm/map_files.h>
 #include <sdm/points.h>
 #include <sdm/sdm.h>
-#include <sdm/tolerance_table.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Poses of bodies from a text file.
 #pragma once
 
-#include <sdm/transform.h>
+#include <sdm/mesh_edit.h>
 
 #include <filesystem>
 #include <vector>

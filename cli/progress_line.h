@@ -2,7 +2,7 @@
 #pragma once
 
 #include <sdm/error.h>
-#include <sdm/progress.h>
+#include <sdm/execution.h>
 
 #include <string>
 #include <string_view>

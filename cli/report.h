@@ -2,8 +2,8 @@
 #pragma once
 
 #include <sdm/io.h>
-#include <sdm/islands.h>
-#include <sdm/report.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_edit.h>
 #include <sdm/sdm.h>
 
 #include <filesystem>
@@ -58,7 +58,7 @@ struct Outcome {
   sdm::ReportTimes time;
 };
 
-/// The mesh with what inspect() found, for the functions of sdm/report.h.
+/// The mesh with what inspect() found, for the functions of sdm/map_files.h.
 [[nodiscard]] sdm::ReportedMesh reported(const Input& input);
 [[nodiscard]] nlohmann::ordered_json to_json(const Input& input);
 

@@ -8,9 +8,8 @@
 #include "scene_scan.h"
 
 #include <sdm/error.h>
-#include <sdm/io.h>
-#include <sdm/sequence.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
+#include <sdm/mesh_files.h>
 
 #include <filesystem>
 #include <iostream>

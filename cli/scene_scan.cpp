@@ -1,7 +1,7 @@
 #include "scene_scan.h"
 
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include <iostream>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,9 @@
 #include "self.h"
 
 #include <fmt/format.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 #include <sdm/measure.h>
+#include <sdm/mesh_files.h>
 
 #include "common_options.h"
 #include "declared_options.h"

@@ -1,7 +1,7 @@
 #include "sequence.h"
 
+#include <sdm/mesh_files.h>
 #include <sdm/sdm.h>
-#include <sdm/sequence.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // A body of `sdm sequence`: a sequence of meshes and their placement.
 #pragma once
 
-#include <sdm/sequence.h>
+#include <sdm/mesh_files.h>
 
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,7 @@
 #include "sequence_colors.h"
 
 #include <sdm/error.h>
-#include <sdm/progress.h>
+#include <sdm/execution.h>
 #include <sdm/sites.h>
 
 #include <algorithm>

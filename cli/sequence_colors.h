@@ -1,7 +1,7 @@
 // One colour scale for all frames of `sdm sequence`.
 #pragma once
 
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <array>
 #include <cstddef>

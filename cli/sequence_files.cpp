@@ -1,7 +1,7 @@
 #include "sequence_files.h"
 
 #include <fmt/format.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <algorithm>
 #include <iostream>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <sdm/io.h>
+#include <sdm/mesh_files.h>
 #include <sdm/sdm.h>
-#include <sdm/sequence.h>
 
 #include <CLI/CLI.hpp>
 #include <cstddef>

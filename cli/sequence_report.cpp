@@ -1,6 +1,6 @@
 #include "sequence_report.h"
 
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // The resolution that keeps the error bound of a map small in all frames.
 #pragma once
 
-#include <sdm/atlas.h>
+#include <sdm/surface.h>
 
 #include <cstdint>
 #include <functional>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <sdm/mesh.h>
-#include <sdm/temporal_maps.h>
+#include <sdm/statistics.h>
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // The maps over time of `sdm sequence`, of an atlas that may change.
 #pragma once
 
+#include <sdm/statistics.h>
 #include <sdm/surface.h>
-#include <sdm/temporal_maps.h>
 
 #include <cstdint>
 #include <utility>

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 #include <sdm/simplify.h>
 #include <sdm/version.h>
 

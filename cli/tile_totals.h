@@ -1,7 +1,7 @@
 // The numbers of all UDIM tiles of a mesh together.
 #pragma once
 
-#include <sdm/combined_statistics.h>
+#include <sdm/statistics.h>
 
 #include <nlohmann/json.hpp>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "unit_options.h"
 
 #include <fmt/format.h>
-#include <sdm/units.h>
+#include <sdm/mesh.h>
 
 #include <filesystem>
 

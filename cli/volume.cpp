@@ -1,7 +1,7 @@
 #include "volume.h"
 
 #include <fmt/format.h>
-#include <sdm/field_files.h>
+#include <sdm/map_files.h>
 #include <sdm/sdm.h>
 
 #include <filesystem>

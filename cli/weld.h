@@ -1,7 +1,7 @@
 // --weld: boundary edges of the meshes that coincide but for rounding are joined.
 #pragma once
 
-#include <sdm/weld.h>
+#include <sdm/mesh_edit.h>
 
 #include <CLI/CLI.hpp>
 #include <optional>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <sdm/mesh.h>
-#include <sdm/transform.h>
+#include <sdm/mesh_edit.h>
 
 #include <filesystem>
 #include <span>

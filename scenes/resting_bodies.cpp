@@ -1,6 +1,6 @@
 #include "scenes/resting_bodies.h"
 
-#include <sdm/transform.h>
+#include <sdm/mesh_edit.h>
 
 #include <cmath>
 #include <numbers>

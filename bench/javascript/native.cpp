@@ -3,11 +3,10 @@
 // time in milliseconds, or, of `write`, that the results are in the folder.
 #include <hwy/targets.h>
 #include <sdm/closest_points.h>
+#include <sdm/execution.h>
 #include <sdm/map.h>
-#include <sdm/map_samples.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
-#include <sdm/threads.h>
 
 #include <chrono>
 #include <filesystem>

@@ -11,20 +11,17 @@ from xml.etree import ElementTree
 PLAIN = re.compile(r"\(variable\)|\w+\((\w+ ?&&|const \w+ ?&)\)|operator=|operator==|~\w+\(\)")
 # Headers by subject, in the order of the reference.
 SUBJECTS = {
-    "Meshes": ["types", "vec", "bounds", "mesh", "mesh_attributes", "material", "mesh_edit", "transform", "weld", "tessellation", "self_intersections", "solid", "convex_hull"],
-    "Files": ["io", "image", "report", "points", "sequence", "field_files", "shape_files", "bake_files"],
-    "Distance maps": ["surface", "atlas", "uv_tiles", "sites", "map", "measure", "map_samples", "distance_kind", "along", "sign", "engine", "gl",
-                      "closest_points", "closest_in_parts", "facing", "vertex_distances"],
-    "Results of maps": ["names", "options", "channels", "summary", "units", "statistics", "sampling_bound", "tolerance", "tolerance_proof",
-                         "certified_verdict", "group_verdicts", "tolerance_table", "coverage", "doubts", "part_statistics", "places", "islands", "combined_statistics", "temporal_maps", "match", "transfer", "bake",
-                         "baked_geometry", "supersampling"],
-    "Proximity": ["proximity_query", "shape", "multi_body_query", "pose_query", "self_proximity_query", "thickness", "time_of_contact",
-                  "hausdorff", "metrics", "simplify"],
-    "Other queries": ["align", "fit_check", "unit_check", "rays", "volume"],
-    "Errors, progress and threads": ["error", "progress", "cancellation", "threads"],
+    "Meshes": ["mesh", "mesh_attributes", "mesh_edit", "simplify"],
+    "Files": ["mesh_files", "map_files", "points", "bake_files"],
+    "The two shapes": ["surface", "sampling_bound", "sites", "engine", "gl"],
+    "Distances": ["map", "closest_points", "measure", "self_proximity_query"],
+    "Results and verdicts": ["statistics", "tolerance", "verdict", "doubts", "places", "summary"],
+    "Bodies": ["shape", "proximity_query", "multi_body_query"],
+    "Other comparisons": ["match", "bake", "hausdorff", "metrics", "align", "rays", "volume"],
+    "Basics": ["types", "bounds", "error", "execution", "names", "options"],
 }  # fmt: skip
 # Headers that declare nothing of their own.
-WITHOUT_PAGE = {"api", "sdm"}
+WITHOUT_PAGE = {"io", "sdm"}
 
 
 def run_doxygen(headers: Path, folder: Path) -> Path:

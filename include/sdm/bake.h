@@ -1,26 +1,82 @@
-/// Baking: what the materials, textures and colours of O2 are at the points that belong to O1's texels, as
-/// textures of O1.
+/// Baking: what the materials, textures, colours and geometry of O2 are at the points that belong to O1's
+/// texels, as textures of O1.
+///
+/// Several samples a texel: values on a grid that is finer than the texture, of which each texel is a square.
+///
+/// The geometry of O2 at the points that belong to O1's texels, as textures of O1: normals, tangent-space
+/// normals, displacements, positions, ambient occlusion, thickness, and numbers of faces and materials.
 ///
 /// Threads: the functions may be called concurrently, also with the same surface, sites and matches.
 #pragma once
 
-#include <sdm/api.h>
-#include <sdm/image.h>
+#include <sdm/execution.h>
 #include <sdm/match.h>
-#include <sdm/material.h>
+#include <sdm/measure.h>
+#include <sdm/mesh.h>
 #include <sdm/mesh_attributes.h>
-#include <sdm/progress.h>
+#include <sdm/options.h>
+#include <sdm/rays.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
+#include <sdm/types.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 namespace sdm {
+
+/// Rows of samples; each texel has side · side of them.
+struct SampleGrid {
+  std::uint32_t resolution = 0;  ///< samples per row, a multiple of the side
+  std::uint32_t side = 1;        ///< of a texel, in samples
+
+  /// Texels per row.
+  [[nodiscard]] std::uint32_t texels() const { return resolution / side; }
+};
+
+/// Values as the mean of samples makes them, and how much of each texel they are from.
+struct TexelMeans {
+  std::vector<float> values;    ///< NaN for texels without a sample that has values
+  std::vector<float> coverage;  ///< for each texel the share, from 0 to 1, of its samples that have values
+};
+
+/// What the mean of samples is.
+enum class SampleKind : std::uint8_t {
+  numbers,    ///< the arithmetic mean: of colours in linear light, that of the light
+  directions  ///< its direction, of length 1: of three components that are unit vectors
+};
+
+/// Returns the side of the square of so many samples a texel: the root of 1, 4, 9 and so on up to 64; nothing
+/// for other numbers.
+[[nodiscard]] SDM_API std::optional<std::uint32_t> sample_side(std::int64_t samples);
+
+/// Returns the layout of samples, side · side for each texel of a layout: that of a finer texture, in which
+/// charts of different texels do not meet. Throws sdm::Error if it has fewer texels per row than a surface
+/// may have, or more samples.
+[[nodiscard]] SDM_API AtlasOptions sample_layout(const AtlasOptions& texels, std::uint32_t side);
+
+// The functions below throw sdm::Error unless the samples are whole rows of texels, and if there is not
+// enough memory. Their cost is linear in samples, all cores.
+
+/// Returns the means of samples of `components` numbers each. Those that are not all finite count as none.
+/// Directions that cancel out are those of the first sample.
+[[nodiscard]] SDM_API TexelMeans mean_of_samples(const SampleGrid& grid, std::size_t components,
+                                                 std::span<const float> samples,
+                                                 SampleKind kind = SampleKind::numbers);
+
+/// Returns the number that most samples of each texel have, the least one of several; kNone, which counts as
+/// none, for texels that have no other.
+[[nodiscard]] SDM_API std::vector<std::uint32_t> most_frequent_samples(
+    const SampleGrid& grid, std::span<const std::uint32_t> samples);
 
 /// The textures of a material that can be baked.
 enum class BakeChannel : std::uint8_t {
@@ -130,5 +186,286 @@ struct LookValues {
 /// sdm::Error unless the values are whole rows of texels, of two numbers for roughness and metallic. Cost:
 /// linear, all cores.
 [[nodiscard]] SDM_API Image to_image(const BakedChannel& baked);
+
+/// What can be baked of a mesh beside the textures of its materials.
+enum class GeometryChannel : std::uint8_t {
+  normal,             ///< tangent_space_normals() of matched_normals()
+  object_normal,      ///< matched_normals()
+  displacement,       ///< matched_displacements()
+  position,           ///< matched_positions()
+  ambient_occlusion,  ///< matched_occlusion()
+  thickness,          ///< matched_thickness()
+  face,               ///< TexelMatches::face
+  material            ///< matched_materials()
+};
+
+/// All of them, in this order.
+inline constexpr GeometryChannel kGeometryChannels[] = {
+    GeometryChannel::normal,   GeometryChannel::object_normal,     GeometryChannel::displacement,
+    GeometryChannel::position, GeometryChannel::ambient_occlusion, GeometryChannel::thickness,
+    GeometryChannel::face,     GeometryChannel::material};
+
+/// Returns the name of a channel, such as "object_normal".
+[[nodiscard]] SDM_API std::string_view name_of(GeometryChannel channel);
+
+/// Whether a channel has directions, of length 1.
+[[nodiscard]] constexpr bool is_direction(GeometryChannel channel) {
+  return channel == GeometryChannel::normal || channel == GeometryChannel::object_normal;
+}
+
+/// Whether a channel has whole numbers, kNone where there is none, which have no mean.
+[[nodiscard]] constexpr bool is_number(GeometryChannel channel) {
+  return channel == GeometryChannel::face || channel == GeometryChannel::material;
+}
+
+/// The numbers that a channel has for each texel.
+[[nodiscard]] constexpr std::size_t components_of(GeometryChannel channel) {
+  return is_direction(channel) || channel == GeometryChannel::position ? 3 : 1;
+}
+
+/// Options of bake_geometry().
+struct GeometryOptions {
+  /// Normals at the corners of O2's faces, for `normal` and `object_normal`; null: smooth_normals() of O2.
+  const MeshAttribute* normals = nullptr;
+  /// What the model of O1 is drawn with, for `normal`, which needs both.
+  const MeshAttribute *drawn_normals = nullptr, *drawn_tangents = nullptr;
+  /// Directions at the corners of O1's faces, for `displacement`; null: smooth_normals() of O1, so that
+  /// displaced faces meet at their edges.
+  const MeshAttribute* directions = nullptr;
+  AmbientOcclusionOptions occlusion{};             ///< its progress is ignored
+  ThicknessMethod method = ThicknessMethod::ball;  ///< of `thickness`
+  ThicknessOptions thickness{};                    ///< its progress is ignored
+  Progress progress{};
+};
+
+/// What is baked.
+struct BakeSelection {
+  std::vector<BakeChannel> look{};
+  std::vector<GeometryChannel> geometry{};
+
+  [[nodiscard]] bool has(GeometryChannel channel) const {
+    return std::ranges::find(geometry, channel) != geometry.end();
+  }
+  friend bool operator==(const BakeSelection&, const BakeSelection&) = default;
+};
+
+/// Names of both kinds of channels, with a comma between two of them; read() has them in the order of the
+/// library, and takes `normal` only if has_tangents().
+template <>
+struct OptionForm<BakeSelection> {
+  static constexpr const char* kType = "texts";
+  SDM_API static std::string needed();
+  SDM_API static bool read(std::string_view text, const OptionRange& range, BakeSelection& value);
+  SDM_API static std::string text(const BakeSelection& value);
+  static bool allowed(const BakeSelection&, const OptionRange&) { return true; }
+};
+
+/// What programs that bake a pair of meshes can be asked for.
+struct BakeRequest {
+  std::optional<BakeSelection> channels{};  ///< nothing: default_channels()
+  std::uint32_t resolution = 1024;          ///< as of AtlasOptions
+  std::optional<std::uint32_t> rows{};      ///< the same
+  std::uint32_t gutter = 1;                 ///< the same
+  std::optional<AtlasKind> atlas{};         ///< nothing: as bake_atlas() chooses
+  std::uint32_t samples = 1;                ///< in each texel, a square up to 64; see supersampling.h
+  std::optional<MatchMethod> match{};       ///< nothing: `facing` if an angle is given, else `closest`
+  std::optional<double> facing{};           ///< as of MatchOptions
+  std::optional<double> cage{};             ///< the same
+  double max_distance = std::numeric_limits<double>::infinity();        ///< the same
+  std::uint32_t occlusion_rays = 64;                                    ///< AmbientOcclusionOptions::rays
+  double occlusion_distance = std::numeric_limits<double>::infinity();  ///< its maximum distance
+  ThicknessMethod thickness_method = ThicknessMethod::ball;
+  Progress progress{};
+
+  /// The root of `samples`.
+  [[nodiscard]] SDM_API std::uint32_t side() const;
+};
+
+template <>
+inline constexpr auto kOptions<BakeRequest> = std::tuple{
+    Option{.name = "channels",
+           .member = &BakeRequest::channels,
+           .text = "What to bake; by default base_color, and others that the detailed mesh has a texture for "
+                   "or that differ between its points. Of its shape: normal, in tangent space of the coarse "
+                   "mesh; object_normal; displacement along the smooth normal of the coarse mesh; position; "
+                   "ambient_occlusion; thickness, of a closed mesh; the numbers of face and material.",
+           .value = "LIST"},
+    Option{.name = "resolution",
+           .member = &BakeRequest::resolution,
+           .text = "Texels along each side of the textures.",
+           .range = kResolutionRange,
+           .unit = "texels",
+           .value = "N"},
+    Option{.name = "atlas",
+           .member = &BakeRequest::atlas,
+           .text =
+               "How the coarse mesh is parametrised: by its own UVs, in few charts, or in pairs of "
+               "triangles without distortion; by default by its UVs if they lie in [0, 1] and faces do not "
+               "overlap there, otherwise in charts."},
+    Option{.name = "gutter",
+           .member = &BakeRequest::gutter,
+           .text = kGutterText,
+           .range = kGutterRange,
+           .unit = "texels",
+           .value = "N"},
+    Option{.name = "samples",
+           .member = &BakeRequest::samples,
+           .text = "Samples in each texel: each has a point of the detailed mesh, and the texel has their "
+                   "mean, of numbers that of most of them.",
+           .range = {.least = 1, .most = 64, .square = true},
+           .value = "N"},
+    Option{.name = "match",
+           .member = &BakeRequest::match,
+           .text =
+               "Which point belongs to a texel: the closest one, the closest one that faces the same way, "
+               "or the nearest hit along the normal of the coarse mesh that does, where there is one; by "
+               "default closest, or facing if that angle is given."},
+    facing_option<BakeRequest>({},
+                               "Match the closest of the faces of the detailed mesh that face the same "
+                               "way: whose normal is within this angle of that of the texel's face. For "
+                               "thin walls, where the closest point may be on the other skin."),
+    Option{.name = "cage",
+           .member = &BakeRequest::cage,
+           .text = "How far the match ray searches along the normal, to either side.",
+           .range = kPositive,
+           .unit = "length",
+           .value = "D"},
+    max_distance_option<BakeRequest>("Texels farther than this have no match, and are filled from others."),
+    Option{.name = "occlusion_rays",
+           .member = &BakeRequest::occlusion_rays,
+           .text = kOcclusionRaysText,
+           .range = kOcclusionRays,
+           .value = "N"},
+    Option{.name = "occlusion_distance",
+           .member = &BakeRequest::occlusion_distance,
+           .text = kOcclusionDistanceText,
+           .range = kPositiveOrInfinite,
+           .unit = "length",
+           .value = "D"},
+    Option{.name = "thickness_method",
+           .member = &BakeRequest::thickness_method,
+           .text = "Of thickness: the diameter of the largest ball in the detailed mesh that touches the "
+                   "point, or the length of the ray along the inward normal."}};
+
+/// How points are matched. Throws sdm::Error for an angle with `closest`, and for a cage without `ray`.
+[[nodiscard]] SDM_API MatchOptions match_options(const BakeRequest& request);
+/// The layout of the samples, as of sample_layout(), and its errors. Without an atlas, the kind is that of
+/// AtlasOptions.
+[[nodiscard]] SDM_API AtlasOptions sample_layout(const BakeRequest& request);
+/// What ambient occlusion is asked for.
+[[nodiscard]] SDM_API AmbientOcclusionOptions occlusion_options(const BakeRequest& request);
+
+// All functions return values for each texel, in rows as of TexelMatches; texels without a point hold NaN,
+// until fill_texels(). They throw sdm::Error if the matches are not from this surface to these sites, or if
+// there is not enough memory; Cancelled. Their cost is linear in texels, all cores, unless stated otherwise.
+
+/// Returns the normals of O2 at the matches, of length 1, in the coordinates of the meshes: three numbers a
+/// texel. `normals`: at the corners of O2's faces, those of its file or smooth_normals(), which with a crease
+/// of 0 are those of faces. Where Sites turns a face of a closed mesh outwards and the normals do not agree
+/// with that, they are turned too. Also throws if the normals do not fit O2.
+[[nodiscard]] SDM_API std::vector<float> matched_normals(const Surface& surface, const Sites& sites,
+                                                         const TexelMatches& matches,
+                                                         const MeshAttribute& normals,
+                                                         const Progress& progress = {});
+
+/// Returns the matched points of O2: three numbers a texel.
+[[nodiscard]] SDM_API std::vector<float> matched_positions(const Surface& surface, const Sites& sites,
+                                                           const TexelMatches& matches,
+                                                           const Progress& progress = {});
+
+/// Returns how far the matches q are along the normal of O1: (q − p)·n, with p the texel's surface point and
+/// n, of length 1, the normal interpolated between the corners of its face. Negative below the surface of O1.
+/// Of MatchKind::ray with the same normals, p + displacement · n is the match. Also throws if the normals do
+/// not fit O1.
+[[nodiscard]] SDM_API std::vector<float> matched_displacements(const Surface& surface, const Sites& sites,
+                                                               const TexelMatches& matches,
+                                                               const MeshAttribute& normals,
+                                                               const Progress& progress = {});
+
+/// Returns, for each matched point of O2, the fraction of rays that do not meet O2: an estimate, as of
+/// ambient_occlusion(), of its outward face there. Rays start 1e-6 of the diagonal of O2 above the point;
+/// faces nearer than that occlude nothing. Also throws for options out of range. Cost: options.rays rays a
+/// texel.
+[[nodiscard]] SDM_API std::vector<float> matched_occlusion(const Surface& surface, const Sites& sites,
+                                                           const TexelMatches& matches,
+                                                           const AmbientOcclusionOptions& options = {});
+
+/// Returns the wall thickness of O2 at the matches, as of ThicknessOptions; NaN where nothing ends it. Also
+/// throws unless O2 is closed and orientable. Cost: a ray for each texel; of balls, also a search.
+[[nodiscard]] SDM_API std::vector<float> matched_thickness(const Surface& surface, const Sites& sites,
+                                                           const TexelMatches& matches,
+                                                           ThicknessMethod method,
+                                                           const ThicknessOptions& options = {});
+
+/// Returns the materials of the matched faces, or kNone: a number a texel. `face_materials`: for each face of
+/// O2 its material, or kNone; none for all if empty. Also throws for another number of faces.
+[[nodiscard]] SDM_API std::vector<std::uint32_t> matched_materials(
+    const Surface& surface, const Sites& sites, const TexelMatches& matches,
+    std::span<const std::uint32_t> face_materials);
+
+/// Returns a channel that is_number() is false for, components_of() numbers a texel. Throws sdm::Error as the
+/// function that the channel is named after, and for one of whole numbers.
+[[nodiscard]] SDM_API std::vector<float> bake_geometry(const Surface& surface, const Sites& sites,
+                                                       const TexelMatches& matches, GeometryChannel channel,
+                                                       const GeometryOptions& options = {});
+
+/// Whether this build has tangents(): they need the source of MikkTSpace, which the build fetches.
+[[nodiscard]] SDM_API bool has_tangents();
+
+/// Returns the attribute `tangent` of O1 in its atlas, by MikkTSpace (M. S. Mikkelsen), as Blender, Unity,
+/// Unreal and glTF's TANGENT have it: four components at each corner of a face, the unit tangent, towards the
+/// right of the texture, and w, 1 or −1: the bitangent, towards the upper side of the texture, is w ·
+/// cross(normal, tangent). `normals`: at the corners of O1's faces, those that the model is drawn with.
+/// Corners have the same row where all four components are equal and the vertex is the same; removed faces
+/// have none (kNone). Throws sdm::Error if the normals do not fit, without MikkTSpace, or if there is not
+/// enough memory. Cost: O(n log n) in faces, one core.
+[[nodiscard]] SDM_API MeshAttribute tangents(const Surface& surface, const MeshAttribute& normals);
+
+/// Returns object-space normals, such as matched_normals(), in the tangent space of O1: three numbers x, y, z
+/// a texel, of length 1. With the normal n and the tangent t interpolated between the corners of the texel's
+/// face, neither made longer nor shorter, and b = w · cross(n, t), the given normal has the direction of x t
+/// + y b + z n, as MikkTSpace demands. `normals` and `tangents` are what the model is drawn with. NaN where
+/// the given normal is. Throws sdm::Error if an array does not fit, or if there is not enough memory;
+/// Cancelled.
+[[nodiscard]] SDM_API std::vector<float> tangent_space_normals(const Surface& surface,
+                                                               const MeshAttribute& normals,
+                                                               const MeshAttribute& tangents,
+                                                               std::span<const float> object_normals,
+                                                               const Progress& progress = {});
+
+/// Returns normals, in rows of `resolution` texels, as a picture of `bits`, 8 or 16, a number: (x + 1) / 2
+/// and so on, as glTF has it of tangent_space_normals(). Texels without a normal are (0, 0, 1). Throws
+/// sdm::Error for another number of bits, and for normals that are no whole rows.
+[[nodiscard]] SDM_API Image normal_map_image(std::uint32_t resolution, std::span<const float> normals,
+                                             std::uint32_t bits = 8);
+
+/// The same of normals of the texels of a surface.
+[[nodiscard]] SDM_API Image normal_map_image(const Surface& surface, std::span<const float> normals,
+                                             std::uint32_t bits = 8);
+
+/// Lengths or shares as a picture of one component, and what its numbers stand for.
+struct ScalarImage {
+  Image image;
+  double lower = 0, upper = 1;  ///< of the numbers 0 and 2^bits − 1; between them, values are linear
+};
+
+/// Returns values, in rows of `resolution` texels, as a picture of `bits`, 8 or 16, a number; `range`: those
+/// of the least and the greatest number. Values that are not finite are the former, others are clamped.
+/// Throws sdm::Error for another number of bits, values that are no whole rows, or a range that is empty or
+/// not finite.
+[[nodiscard]] SDM_API ScalarImage scalar_image(std::uint32_t resolution, std::span<const float> values,
+                                               const std::array<double, 2>& range, std::uint32_t bits = 16);
+
+/// Gives the texels of no face values, as TransferOptions::fill does. `values`: `components` numbers for each
+/// texel; those of a texel that are not all finite are none. `unmatched`: texels of a face that have none get
+/// some, too, as bake() does it; otherwise they stay as they are. Throws sdm::Error for another number of
+/// values, or if there is not enough memory.
+SDM_API void fill_texels(const Surface& surface, std::size_t components, std::span<float> values,
+                         bool unmatched = false);
+
+/// The same for rows of `resolution` texels: all whose values are not finite get some, within `gutter` texels
+/// of others, but 4 at least and 16 at most, those of the nearest one.
+SDM_API void fill_texels(std::uint32_t resolution, std::size_t components, std::span<float> values,
+                         std::uint32_t gutter);
 
 }  // namespace sdm

@@ -1,14 +1,15 @@
-/// The files of baking: pictures of textures, and models that contain them. Every function throws an
-/// sdm::Error that names the file and the fault.
+/// The files of baking: pictures of textures, decoded and encoded, and models that contain them. Every
+/// function throws an sdm::Error that names the file and the fault.
 ///
 /// Threads: the functions may be called concurrently, unless two of them write the same file.
 #pragma once
 
-#include <sdm/api.h>
 #include <sdm/bake.h>
-#include <sdm/image.h>
-#include <sdm/io.h>
-#include <sdm/material.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh.h>
+#include <sdm/mesh_attributes.h>
+#include <sdm/surface.h>
+#include <sdm/types.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -20,6 +21,20 @@
 #include <vector>
 
 namespace sdm {
+
+/// Decodes a PNG, JPEG or WebP file, by its content. Palettes become colours, fewer bits than 8 become 8, and
+/// CMYK becomes red, green and blue, as without a colour profile. Colour profiles and gamma are ignored, as
+/// glTF has it. Throws sdm::Error for other formats, for damaged and truncated files, for more than 100,000
+/// pixels a side or 2^28 in total, and if there is not enough memory. Cost: linear in pixels.
+[[nodiscard]] SDM_API Image decode_image(std::span<const char> bytes);
+
+/// decode_image() of a file, whose name the errors begin with.
+[[nodiscard]] SDM_API Image read_image(const std::filesystem::path& file);
+
+/// Returns a PNG file with these pixels; `srgb`: colours (of three or four components) are stated to be in
+/// sRGB. Made for speed rather than size. Throws sdm::Error if the picture has no pixels or its bytes are not
+/// those of its pixels, and if there is not enough memory. Cost: linear, all cores.
+[[nodiscard]] SDM_API std::vector<char> encode_png(const Image& image, bool srgb = true);
 
 /// decode_image() of the textures that these channels need of a look, whose pictures do not matter, for
 /// MeshLook::pictures; others become empty images, and so do damaged ones, with a line in `notes`. Throws

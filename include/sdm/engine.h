@@ -3,7 +3,7 @@
 /// Threads: all functions may be called concurrently; an engine may serve several threads at once.
 #pragma once
 
-#include <sdm/api.h>
+#include <sdm/types.h>
 
 #include <memory>
 #include <span>

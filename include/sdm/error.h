@@ -11,7 +11,7 @@
 /// Threads: exceptions are values.
 #pragma once
 
-#include <sdm/api.h>
+#include <sdm/types.h>
 
 #include <stdexcept>
 #include <string>

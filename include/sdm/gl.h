@@ -3,10 +3,10 @@
 /// Threads: all functions may be called concurrently; an engine may serve several threads at once.
 #pragma once
 
-#include <sdm/api.h>
 #include <sdm/engine.h>
 #include <sdm/names.h>
 #include <sdm/options.h>
+#include <sdm/types.h>
 
 #include <array>
 #include <cstdint>

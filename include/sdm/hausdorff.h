@@ -3,13 +3,13 @@
 /// Threads: the functions may be called concurrently, also with the same Sites.
 #pragma once
 
-#include <sdm/api.h>
 #include <sdm/bounds.h>
+#include <sdm/execution.h>
 #include <sdm/mesh.h>
 #include <sdm/names.h>
 #include <sdm/options.h>
-#include <sdm/progress.h>
 #include <sdm/sites.h>
+#include <sdm/types.h>
 
 #include <array>
 #include <cstddef>

@@ -1,20 +1,32 @@
 /// The surface distance map: at every sample of O1, which are the texels of its atlas and one point of each
-/// face without one, the distance to O2.
+/// face without one, the distance to O2; the same at vertices, and the channels that are read from a map.
+///
+/// Which distance a map or a cloud states.
+///
+/// Parts of a surface distance map: for programs that divide a map among processes, or into steps between
+/// which they do something else.
+///
+/// The table of channels: what a map has at each texel, a row for each array.
+///
+/// map.exr and the choice of its layers, the arrays of the Python package, the values that report.html shows
+/// and the columns of the files of vertices are made from this table. docs/design/house.md describes how to
+/// add a row.
 ///
 /// Threads: the functions may be called concurrently, also with the same Surface and Sites, if the maps that
 /// they write differ.
 #pragma once
 
-#include <sdm/api.h>
-#include <sdm/distance_kind.h>
 #include <sdm/engine.h>
+#include <sdm/execution.h>
+#include <sdm/mesh.h>
+#include <sdm/names.h>
 #include <sdm/options.h>
-#include <sdm/progress.h>
-#include <sdm/sign.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
+#include <sdm/types.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -26,6 +38,56 @@
 
 namespace sdm {
 
+/// What the distance of a sample is measured to. Only `closest` is a distance of points: it is 1-Lipschitz
+/// along O1, so that samples bound it everywhere. The others hold at the samples and are estimates between;
+/// of `facing`, prove_tolerance() decides limits for every point.
+enum class DistanceKind : std::uint8_t {
+  closest,    ///< the closest point of O2
+  facing,     ///< the closest point of the faces of O2 that face the same way as the sample
+  along,      ///< the nearest point of O2 on a line through the sample
+  thickness,  ///< of the wall below the sample, which is of the part itself
+  self,       ///< the closest point of the faces that the sample's face does not exclude, of the same mesh
+};
+
+template <>
+inline constexpr std::array kWords<DistanceKind>{"closest", "facing", "along", "thickness", "self"};
+
+/// Whether the distance is 1-Lipschitz along O1, so that samples bound it everywhere; others may jump between
+/// samples.
+[[nodiscard]] constexpr bool is_lipschitz(DistanceKind kind) {
+  return kind == DistanceKind::closest;
+}
+
+/// Whether a sample may have nothing that it is measured to, at any distance: no face that faces as it does,
+/// or nothing that ends a wall.
+[[nodiscard]] constexpr bool may_lack_match(DistanceKind kind) {
+  return kind != DistanceKind::closest && kind != DistanceKind::self;
+}
+
+/// Whether the closest point may be on the other skin of a wall that is thinner than twice the distance.
+[[nodiscard]] constexpr bool may_cross_walls(DistanceKind kind) {
+  return kind == DistanceKind::closest;
+}
+
+/// Whether the vector of a sample leads to any point of a face, rather than to the closest one of its site.
+[[nodiscard]] constexpr bool ends_anywhere(DistanceKind kind) {
+  return kind == DistanceKind::along || kind == DistanceKind::thickness;
+}
+
+/// What was measured, for reports.
+struct MeasuredDistance {
+  DistanceKind kind = DistanceKind::closest;
+  std::string text = "distance to the closest point";  ///< with the rule's numbers, such as an angle
+  std::optional<double> facing{};       ///< of DistanceKind::facing: the angle in degrees, MapOptions::facing
+  std::vector<GivenOption> settings{};  ///< the options of the measure
+};
+
+/// Whether prove_tolerance() decides limits for every point.
+[[nodiscard]] inline bool is_provable(const MeasuredDistance& measured) {
+  return measured.kind == DistanceKind::closest ||
+         (measured.kind == DistanceKind::facing && measured.facing.has_value());
+}
+
 /// Options of compute_map().
 struct MapOptions {
   std::shared_ptr<const Engine> engine{};  ///< null: the cpu engine
@@ -33,7 +95,8 @@ struct MapOptions {
   /// Greater than 0, in units of the meshes. Texels farther than this have no value (NaN).
   double max_distance = std::numeric_limits<double>::infinity();
   /// An angle in degrees, above 0 and up to 180: distances are to the closest of the faces of O2 whose normal
-  /// is within it of the normal of the sample's face (see sdm/facing.h). Nothing: to the closest point.
+  /// is within it of the normal of the sample's face (see sdm/closest_points.h). Nothing: to the closest
+  /// point.
   std::optional<double> facing{};
   Progress progress{};
 };
@@ -108,5 +171,111 @@ SDM_API void compute_map(const Surface& surface, const Sites& sites, const MapOp
 /// surfaces. The map must be one to these sites. Throws sdm::Error if it names a site that does not exist.
 /// Cost: linear.
 [[nodiscard]] SDM_API std::vector<std::uint8_t> boundary_mask(const Sites& sites, const DistanceMap& map);
+
+/// A range of the samples of a surface, by their places in Surface::sample_texels().
+struct SampleRange {
+  std::size_t first = 0, count = 0;
+};
+
+/// Returns the number of samples that are searched together: ranges for compute_samples() begin and end at
+/// its multiples, or at the end of the samples. A power of four, at most 65,536 and mostly between a 32nd and
+/// a 128th of the samples. Cost: O(1).
+[[nodiscard]] SDM_API std::size_t sample_range_grain(const Surface& surface);
+
+/// Returns a map of the surface, without a value at any sample. Throws sdm::Error if there
+/// is not enough memory. Cost: linear.
+[[nodiscard]] SDM_API DistanceMap empty_map(const Surface& surface);
+
+/// Computes the values of some samples and stores them; the others keep theirs. Once
+/// this was called for ranges that cover all samples, in any order, with the same arguments otherwise, the
+/// arrays and the sign of the map are those of compute_map() to the bit; beyond_max_distance and
+/// without_match count the samples of this range. Throws sdm::Error as compute_map() does, if `map` has
+/// another size than the atlas, for ranges other than those of sample_range_grain(), and for engines that
+/// compute whole maps only. Cost: as compute_map(), by the samples of the range, and with options.facing
+/// linear in the faces of the surface.
+SDM_API void compute_samples(const Surface& surface, const Sites& sites, const MapOptions& options,
+                             const SampleRange& range, DistanceMap& map);
+
+/// Returns the distance from each vertex of `mesh` to O2, NaN beyond options.max_distance; signed as by
+/// compute_map with the same options. With options.facing, each face around a vertex has a distance there, by
+/// its own normal; the result is the one of least absolute value, NaN if no face has one. An engine that
+/// takes no points (EngineInfo::takes_points) is replaced by cpu. Throws sdm::Error as closest_points does,
+/// and for a sign method that O2 does not allow; Cancelled. Cost: that of closest_points; with
+/// options.facing, another search for each face around a vertex whose closest point it does not allow. For
+/// other measures, see sdm/measure.h.
+[[nodiscard]] SDM_API std::vector<float> distances_at_vertices(const Mesh& mesh, const Sites& sites,
+                                                               const MapOptions& options = {});
+
+/// boundary_mask() of the vertices of `mesh`: for each, 1 if its closest site is a boundary edge of an open
+/// O2 or a vertex of one, otherwise 0, also beyond options.max_distance. Distances by SignMethod::side have
+/// no sign there. Errors and cost as of closest_points().
+[[nodiscard]] SDM_API std::vector<std::uint8_t> boundary_vertices(const Mesh& mesh, const Sites& sites,
+                                                                  MapOptions options = {});
+
+namespace map {
+class TexelBlock;
+}
+
+/// The type of a channel's numbers. In map.exr 64-bit floats have 32 bits, and whole numbers too.
+enum class ChannelType : std::uint8_t { float32, float64, uint32, uint8 };
+
+/// A row of the table.
+struct Channel {
+  const char* name;   ///< of the array in Python and of the column in files of vertices
+  const char* layer;  ///< of map.exr, to be chosen there; empty: in all that have what the row needs
+  std::array<const char*, 3> planes{};  ///< the names of its components in map.exr; null: no more of them
+  const char* description;              ///< a phrase without a full stop
+  bool is_length = false;               ///< in the units of the meshes; otherwise without a unit
+  bool on_request = false;              ///< in map.exr only if its layer is asked for
+  bool in_python = true;                ///< an array of the Python package
+  bool on_page = false;                 ///< in report.html, for the texel under the cursor
+  bool at_vertices = false;             ///< in the files of vertices; reads nothing but distances
+  bool needs_shape = false;             ///< positions of the surface
+  bool needs_sites = false;
+  bool needs_boundary = false;
+
+  // What follows from how the row is read:
+  ChannelType type = ChannelType::float32;
+  const char* none = "";  ///< the value of a texel without one, in words
+  void (*read)(const map::TexelBlock& block, std::byte* values) = nullptr;
+  /// The memory of a channel that maps store; null for one that is computed.
+  std::span<const std::byte> (*stored)(const DistanceMap& map) = nullptr;
+
+  /// The number of components of a value, 1 to 3.
+  [[nodiscard]] std::size_t components() const {
+    std::size_t count = 0;
+    while (count < planes.size() && planes[count] != nullptr) ++count;
+    return count;
+  }
+};
+
+/// The table, in the order in which it is listed for users.
+[[nodiscard]] SDM_API std::span<const Channel> channels();
+
+/// The bytes of one number of this type.
+[[nodiscard]] SDM_API std::size_t size_of(ChannelType type);
+/// The name of the type in NumPy, such as "float32".
+[[nodiscard]] SDM_API const char* name_of(ChannelType type);
+
+/// The layers of map.exr, in the order of the table.
+[[nodiscard]] SDM_API std::vector<std::string> channel_layers();
+/// Those that map.exr has unless others are chosen.
+[[nodiscard]] SDM_API std::vector<std::string> default_channel_layers();
+
+/// What channels are read from.
+struct ChannelSource {
+  const DistanceMap* map = nullptr;
+  const Surface* surface = nullptr;          ///< on which the map was computed; not for stored channels
+  const Sites* sites = nullptr;              ///< of the map, for rows that need them
+  std::span<const std::uint8_t> boundary{};  ///< of boundary_mask(), for rows that need it
+};
+
+/// Returns the values of each of `channels` at texels, those of one texel together. `texels`: owned ones, or
+/// kNone for one without a value; number i stands for texel first + i, which may repeat another one's values.
+/// Throws sdm::Error if the source lacks what a channel needs. Cost: constant per value.
+[[nodiscard]] SDM_API std::vector<std::vector<std::byte>> read_channels(std::span<const Channel> channels,
+                                                                        const ChannelSource& source,
+                                                                        std::span<const std::uint32_t> texels,
+                                                                        std::uint32_t first = 0);
 
 }  // namespace sdm

@@ -1,23 +1,187 @@
-/// What is measured at the samples of a surface, of which programs may choose while they run.
+/// Measures: what is measured at the samples of a surface. Besides the closest point (sdm/map.h): along a
+/// line, and the wall thickness; and any of all, of which programs choose while they run.
+///
+/// The distance to O2 along a line: the normal of O1, or a direction such as the vertical.
+///
+/// The wall thickness of a part, at every texel of its atlas.
 ///
 /// Threads: the functions may be called concurrently, also with the same Surface and Sites.
 #pragma once
 
-#include <sdm/along.h>
-#include <sdm/api.h>
+#include <sdm/closest_points.h>
+#include <sdm/execution.h>
 #include <sdm/map.h>
-#include <sdm/map_samples.h>
 #include <sdm/mesh.h>
+#include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/self_proximity_query.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
-#include <sdm/thickness.h>
-#include <sdm/vertex_distances.h>
+#include <sdm/types.h>
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
 namespace sdm {
+
+/// A measure (sdm/measure.h): the distance to the nearest point of O2 on the line through the sample, to both
+/// sides, among the faces that face the same way as the sample. With m, the normal of the sample's face, and
+/// u, the unit vector along the line, these are the faces whose normal n has
+///   n·m > 0                   along normals (u = m)
+///   (n·u) (m·u) > 0           along a direction: seen along it, both show the same side
+/// by more than 1e-12. Along the vertical, the distance of terrain is its change of height; both surfaces
+/// must be oriented alike. `distance` is positive where the sample is on the side of the hit face to which n
+/// points: outside or, of terrain with upward normals, above; its SignMethod is `side`.
+/// `vector` leads to the hit, on the face `site`.
+///
+/// Normals of O2 are outward if it is closed and orientable; otherwise those of its file, made consistent
+/// within each component. Those of O1 are outward if it is closed and orientable, otherwise as its triangles
+/// are oriented in its file.
+///
+/// Distances are exact to 1e-11 of the size of the meshes and the rounding to float, at the texels. They are
+/// not 1-Lipschitz: nothing bounds them in between. Owned texels without a hit have no value, and count as
+/// without_match, or as beyond_max_distance if there is a hit that is farther. Throws sdm::Error for a
+/// direction that is 0 or not finite, for a max_distance that is not positive, or if there is not enough
+/// memory; Cancelled. Cost: two rays for each texel, all cores.
+struct AlongOptions {
+  /// The direction of all lines, of any length. Nothing: the normal of each sample's face, or of each point.
+  std::optional<Vec3> direction{};
+  /// Greater than 0, in units of the meshes. Texels farther than this have no value (NaN).
+  double max_distance = std::numeric_limits<double>::infinity();
+  Progress progress{};
+};
+
+inline constexpr std::array kAlongExcludes{ExcludedOption{"sign", "", "none exact winding side"},
+                                           ExcludedOption{"engine", "", "gl reference"},
+                                           ExcludedOption{"facing"}};
+
+template <>
+inline constexpr auto kOptions<AlongOptions> = std::tuple{
+    Option{.name = "along",
+           .member = &AlongOptions::direction,
+           .text =
+               "Measure along a line, the normal of each sample's face or a direction, to both sides: to "
+               "the nearest face of O2 that faces the same way. Along 0,0,1: the change of height of "
+               "terrain. Positive on the side to which the normal of that face points. Between samples, an "
+               "estimate.",
+           .value = "normal|X,Y,Z",
+           .excludes = kAlongExcludes},
+    max_distance_option<AlongOptions>()};
+
+/// Measures along lines from points with normals, of any length: `closest` are the hits, of SiteType::face,
+/// with the distance without its sign, which is − where `behind`. `unmatched` are the points without a hit at
+/// any distance. Without normals, along a direction, all faces count. A point with a normal of 0, or one at a
+/// right angle to the direction, has no hit. Also throws for points that are not finite, and unless there is
+/// a normal for each point, or none along a direction. Cost: two rays for each point, all cores.
+[[nodiscard]] SDM_API FacingPoints closest_points_along(const Sites& sites, std::span<const Vec3> points,
+                                                        std::span<const Vec3> normals,
+                                                        const AlongOptions& options);
+
+/// What the distances are, in words; `sample` is what they are measured from, such as "sample's face".
+[[nodiscard]] SDM_API MeasuredDistance measured_distance(const AlongOptions& options,
+                                                         const std::string& sample = "sample's face");
+
+/// What the thickness at a point of the surface of a part is. With n, the inward normal of the point's face:
+enum class ThicknessMethod : std::uint8_t {
+  ball,  ///< the diameter of the largest ball in the part that touches there, with its centre along n
+  ray,   ///< the length of the ray along n until it leaves the part
+};
+
+template <>
+inline constexpr std::array kWords<ThicknessMethod>{"ball", "ray"};
+
+/// A measure (sdm/measure.h): the thickness of a solid.
+///
+/// The ray starts at the texel's surface point and ends at the first face whose outward normal has a product
+/// with it above 1e-12: faces next to the point, which it touches or enters, do not end it. The ball that
+/// touches at the point p reaches the point q at the radius r = |q − p|² / (2 n·(q − p)), if n·(q − p) > 0;
+/// it is stopped at the least r of all points of the closed faces that turn by more than the angle, and of
+/// the point where the ray ends, if its face turns by more than 90°. Faces must turn by 0.1° more than the
+/// angle, as the normals of parts in single precision are not exact: at 90°, the sides of a plate do not stop
+/// the balls near its rim.
+///
+/// A part of several solids is measured solid by solid: of a shell that bounds a solid, only its own faces
+/// and those of cavities stop anything, so that parts which touch or overlap do not shorten each other. A
+/// solid that intersects itself is measured as if each of its faces bounded it.
+///
+/// Values are exact to 1e-11 of the diagonal of the mesh and the rounding to float, at the texels. Nothing
+/// bounds them in between: the thickness may jump from face to face. Texels of faces that Sites ignores, and
+/// balls that nothing stops, have no value (NaN, kNone), and count as beyond_max_distance. At a vertex, balls
+/// have 0 where faces meet at an edge that is sharper than the angle allows.
+///
+/// `vector` of the map leads from the texel's surface point to the point that stops the ball or the ray, on
+/// the face `site`. Of the ball, the vector is shorter than the diameter unless both ends are opposite.
+///
+/// Surface and Sites must be built from the same mesh and positions. Throws sdm::Error if their numbers of
+/// faces differ, unless the mesh is closed and orientable, for an angle out of range, or if there is not
+/// enough memory; Cancelled. Cost: a ray and a search in the tree for each sample, all cores.
+struct ThicknessOptions {
+  ThicknessMethod method = ThicknessMethod::ball;
+  /// An angle in degrees, greater than 0 and less than 180: the ball is stopped by faces whose normal turns
+  /// from that of the point's face by more than this. Faces that turn less are the neighbourhood of the
+  /// point, which would stop any ball at 0.
+  double angle = 90;
+  Progress progress{};
+};
+
+template <>
+inline constexpr auto kOptions<ThicknessOptions> = std::tuple{
+    Option{.name = "method",
+           .member = &ThicknessOptions::method,
+           .text = "What the thickness is: of the ball, the diameter of the largest ball in the part that "
+                   "touches at the point; of the ray, the length of the inward normal to where it leaves the "
+                   "part."},
+    Option{.name = "angle",
+           .member = &ThicknessOptions::angle,
+           .text =
+               "Of the ball: only faces whose normal turns by more than this from that of the point's face "
+               "stop it; faces that turn less are the neighbourhood of the point.",
+           .range = {.least = 0, .most = 180, .above = true, .below = true},
+           .unit = "degrees",
+           .value = "DEGREES"}};
+
+/// Returns what a thickness with these options is.
+[[nodiscard]] SDM_API MeasuredDistance measured_distance(const ThicknessOptions& options);
+
+/// The walls of a solid, by rays from a sample of its surface. An estimate.
+struct WallEstimate {
+  double thin = 0;    ///< the share of the area, in [0, 1], below which the wall is thinner than asked
+  double median = 0;  ///< of those walls; 0 if there are none
+  std::size_t samples = 0;
+};
+
+/// Estimates where the walls of a solid are thinner than a length, by ThicknessMethod::ray at points that are
+/// evenly distributed over its area. Nothing if the mesh is open or cannot be oriented. Throws sdm::Error if
+/// there is not enough memory. Cost: linear in the faces, and a ray for each sample, all cores.
+[[nodiscard]] SDM_API std::optional<WallEstimate> estimate_walls(const Sites& sites, double thin,
+                                                                 std::size_t samples = 4096);
+
+/// Returns the thickness that the walls of a solid are below on at least 1 % of its area, as of
+/// estimate_walls(): less may be edges that are sharper than a right angle. Infinite for a mesh that bounds
+/// no solid. Errors and cost as of estimate_walls().
+[[nodiscard]] SDM_API double thin_walls(const Sites& sites);
+
+/// Returns the texels of least value, the least first, each at least 6 % of the diagonal of the mesh from
+/// those before it; at most `count`. Throws sdm::Error if the map belongs to another surface. Cost:
+/// O(n log n) in texels.
+[[nodiscard]] SDM_API std::vector<std::uint32_t> thinnest_texels(const Surface& surface,
+                                                                 const DistanceMap& map,
+                                                                 std::size_t count = 10);
+/// The same of the largest value.
+[[nodiscard]] SDM_API std::vector<std::uint32_t> thickest_texels(const Surface& surface,
+                                                                 const DistanceMap& map,
+                                                                 std::size_t count = 10);
+
+/// The largest error of a thickness, in units of the mesh: of rounding.
+[[nodiscard]] SDM_API double thickness_accuracy(const Mesh& mesh);
 
 /// A measure is its options: of the closest point of O2 or, with MapOptions::facing, of the faces that face
 /// the same way; along lines; to the rest of the same mesh; of the wall thickness. Of the last two, O2 is the
@@ -29,13 +193,13 @@ using Measure = std::variant<MapOptions, AlongOptions, SelfOptions, ThicknessOpt
 [[nodiscard]] SDM_API DistanceMap compute_map(const Surface& surface, const Sites& sites,
                                               const Measure& measure);
 
-/// Computes the values of some samples, as compute_samples() in sdm/map_samples.h. Errors as of both. Of
+/// Computes the values of some samples, as compute_samples() in sdm/map.h. Errors as of both. Of
 /// measures other than MapOptions, each call costs what they prepare, such as the order of the faces, and
 /// linear in texels besides.
 SDM_API void compute_samples_of_measure(const Surface& surface, const Sites& sites, const Measure& measure,
                                         const SampleRange& range, DistanceMap& map);
 
-/// Returns the distance at each vertex of `mesh`, O1. Of MapOptions, as in sdm/vertex_distances.h; of other
+/// Returns the distance at each vertex of `mesh`, O1. Of MapOptions, as in sdm/map.h; of other
 /// measures, each face around a vertex has a distance there, and the result is that of least absolute value,
 /// of the first such face; NaN for a vertex without a value. Errors as of the measure. Cost: a search for
 /// each corner of a face, at a vertex once for faces that measure alike; all cores.

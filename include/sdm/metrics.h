@@ -4,12 +4,12 @@
 /// Threads: the functions may be called concurrently.
 #pragma once
 
-#include <sdm/api.h>
 #include <sdm/bounds.h>
+#include <sdm/execution.h>
 #include <sdm/mesh.h>
 #include <sdm/names.h>
 #include <sdm/options.h>
-#include <sdm/progress.h>
+#include <sdm/types.h>
 
 #include <array>
 #include <cstddef>

@@ -1,11 +1,16 @@
 /// Proximity of many bodies: all pairs, and the distance map of each body to all others.
 #pragma once
 
-#include <sdm/api.h>
 #include <sdm/bounds.h>
 #include <sdm/map.h>
+#include <sdm/mesh.h>
+#include <sdm/mesh_edit.h>
+#include <sdm/options.h>
 #include <sdm/proximity_query.h>
-#include <sdm/time_of_contact.h>
+#include <sdm/shape.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
+#include <sdm/types.h>
 
 #include <array>
 #include <cstdint>

@@ -4,13 +4,12 @@
 /// Threads: the functions may be called concurrently, also with the same map.
 #pragma once
 
-#include <sdm/api.h>
-#include <sdm/group_verdicts.h>
 #include <sdm/map.h>
+#include <sdm/mesh_attributes.h>
 #include <sdm/names.h>
-#include <sdm/part_statistics.h>
 #include <sdm/surface.h>
 #include <sdm/tolerance.h>
+#include <sdm/types.h>
 
 #include <cstddef>
 #include <cstdint>

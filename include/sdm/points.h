@@ -4,20 +4,21 @@
 /// used by one thread at a time.
 #pragma once
 
-#include <sdm/along.h>
-#include <sdm/api.h>
-#include <sdm/group_verdicts.h>
-#include <sdm/io.h>
+#include <sdm/execution.h>
 #include <sdm/map.h>
+#include <sdm/map_files.h>
+#include <sdm/measure.h>
+#include <sdm/mesh_attributes.h>
+#include <sdm/mesh_edit.h>
 #include <sdm/names.h>
 #include <sdm/options.h>
-#include <sdm/part_statistics.h>
 #include <sdm/places.h>
-#include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
 #include <sdm/summary.h>
-#include <sdm/transform.h>
+#include <sdm/tolerance.h>
+#include <sdm/types.h>
+#include <sdm/verdict.h>
 
 #include <array>
 #include <cstdint>

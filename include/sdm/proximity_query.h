@@ -1,21 +1,33 @@
-/// Proximity of two bodies: separation, collision, penetration depth and contacts, each with its bounds.
+/// Two bodies: separation, collision, penetration depth and contacts, each with its bounds; many poses of one
+/// body; the first contact of two motions.
+///
+/// Proximity of one shape in many poses to bodies at rest, as of a gripper that looks for a grasp.
+///
+/// When two bodies that move from one pose to another first come into contact.
+///
+/// Threads: an object is used by one thread at a time; objects and functions that share shapes may be used
+/// concurrently.
 #pragma once
 
-#include <sdm/api.h>
 #include <sdm/bounds.h>
-#include <sdm/map.h>
+#include <sdm/mesh.h>
 #include <sdm/mesh_edit.h>
 #include <sdm/names.h>
 #include <sdm/options.h>
 #include <sdm/shape.h>
-#include <sdm/transform.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
+#include <sdm/types.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <tuple>
+#include <vector>
 
 namespace sdm {
 
@@ -281,5 +293,139 @@ class SDM_API ProximityQuery {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Options of a PoseQuery.
+struct PoseQueryOptions {
+  std::optional<double> depth_precision{};  ///< as that of ProximityOptions
+};
+
+template <>
+inline constexpr auto kOptions<PoseQueryOptions> = std::tuple{depth_precision_option<PoseQueryOptions>()};
+
+/// Proximity of a shape in many poses to obstacles: other shapes, each in one pose.
+///
+/// The answers for a pose are those of ProximityQuery with the shape as O1 and each of the obstacles as O2.
+/// Each call asks for all poses, on all cores; the results do not depend on how many, nor on the order of the
+/// poses. Consecutive poses that are near each other take less time. But for the vector that is returned, no
+/// call allocates memory once the shape has been in similar poses, unless a solid intersects itself.
+///
+/// All calls throw sdm::Error for a pose that ProximityQuery::set_pose refuses, and name one such pose, and
+/// if there is not enough memory; values of `results` are then unspecified. Those with `results` also throw
+/// for another number of results than of poses.
+///
+/// Threads: an object is used by one thread at a time; objects that share shapes may be used concurrently.
+class SDM_API PoseQuery {
+ public:
+  /// Any number of obstacles is allowed, including 0. Throws sdm::Error for options that are out of range.
+  /// Cost: constant for each obstacle.
+  PoseQuery(Shape shape, std::vector<Shape> obstacles, const PoseQueryOptions& options = {});
+  /// The same for one obstacle.
+  PoseQuery(Shape shape, Shape obstacle, const PoseQueryOptions& options = {});
+  ~PoseQuery();
+  PoseQuery(PoseQuery&&) noexcept;
+  PoseQuery& operator=(PoseQuery&&) noexcept;
+
+  /// Sets the pose of an obstacle, initially the identity, as ProximityQuery::set_pose does. Throws
+  /// sdm::Error, and changes nothing, also for an obstacle that does not exist. Cost: constant.
+  void set_pose(std::size_t obstacle, const Transform& pose);
+
+  /// Returns whether the shape collides with any obstacle, 1 or 0 for each pose. Exact.
+  [[nodiscard]] std::vector<std::uint8_t> colliding(std::span<const Transform> poses);
+  /// The same, into `results`.
+  void colliding(std::span<const Transform> poses, std::span<std::uint8_t> results);
+
+  /// Returns the smallest distance between the surfaces of the shape and of any obstacle for each pose:
+  /// exact, 0 if they intersect; infinite if it is more than `max_distance`, > 0. Throws sdm::Error for any
+  /// other maximum distance. A smaller one takes less time.
+  [[nodiscard]] std::vector<double> separations(
+      std::span<const Transform> poses, double max_distance = std::numeric_limits<double>::infinity());
+  /// The same, into `results`.
+  void separations(std::span<const Transform> poses, double max_distance, std::span<double> results);
+
+  /// Returns the largest penetration depth of the shape and any obstacle for each pose, of the pairs of which
+  /// one is a solid: exactly 0 without a collision, otherwise bounded; all numbers are NaN if there is no
+  /// such pair.
+  [[nodiscard]] std::vector<BoundedNumber> penetration_depths(std::span<const Transform> poses);
+  /// The same, into `results`.
+  void penetration_depths(std::span<const Transform> poses, std::span<BoundedNumber> results);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A motion during the time from 0 to 1: the centre of the mesh's box moves along a straight line, and the
+/// body turns about it with constant speed, about one axis, by at most 180°.
+struct Motion {
+  Transform from{}, to{};  ///< as ProximityQuery::set_pose; with the same scale, to 1e-5
+
+  /// The pose at a time. Throws sdm::Error as set_pose does, and for different scales.
+  [[nodiscard]] SDM_API Transform at(double time, const Shape& shape) const;
+};
+
+/// The first contact of a motion.
+struct TimeOfContact {
+  /// The bodies collide at `time`, or are at most the tolerance apart; or, with `bounded`, they may be about
+  /// to: a motion that must be free of contact ends at `time` in either case.
+  bool contact = false;
+  /// The bodies do not touch before this: they are more than half of the tolerance apart. 1 without contact.
+  double time = 1;
+  /// Between the surfaces at `time`; exact.
+  double separation = 0;
+  /// bounded: free of contact until `time` for certain, but not decided beyond it. The bodies are
+  /// `separation` apart then, more than the tolerance, and the next step that is safe is less than rounding
+  /// resolves: the time itself, whose unit is 1e-16, or coordinates in space. Also where two faces took a
+  /// million steps.
+  Certainty certainty = Certainty::exact;
+  /// A point of O1 and a point of O2 that are `separation` apart at `time`, in space, and a face that
+  /// contains each.
+  std::array<Vec3, 2> witness{};
+  std::array<std::uint32_t, 2> faces{kNone, kNone};
+  /// Unit vector along which moving O1 separates it from O2: (witness[0] − witness[1]) / separation, or the
+  /// opposite where one body contains part of the other at time 0. Nothing if the surfaces intersect then.
+  std::optional<Vec3> normal{};
+};
+
+template <>
+inline constexpr std::tuple kFields<TimeOfContact>{
+    Field{
+        "contact", &TimeOfContact::contact,
+        "Whether the bodies collide at ``time``, or are at most the tolerance apart; or, where ``certainty`` "
+        "is 'bounded', may be about to: a motion that must be free of contact ends at ``time`` in either "
+        "case."},
+    Field{"time", &TimeOfContact::time,
+          "In [0, 1]. The bodies do not touch before this: they are more than half of the tolerance apart. 1 "
+          "without contact."},
+    Field{"separation", &TimeOfContact::separation,
+          "The smallest distance between the surfaces at ``time``, in units of space; exact."},
+    Field{
+        "certainty", &TimeOfContact::certainty,
+        "'exact'; or 'bounded': free of contact until ``time`` for certain, but not decided beyond it, as "
+        "the "
+        "next step that is safe is less than what rounding resolves: of the time, whose unit is 1e-16, or of "
+        "coordinates in space. The bodies are ``separation`` apart then, more than the tolerance."},
+    Field{"witness", &TimeOfContact::witness,
+          "A point of O1 and a point of O2 that are ``separation`` apart at ``time``, in space."},
+    Field{"faces", &TimeOfContact::faces, "A face of O1 and one of O2 that contain these points."},
+    Field{
+        "normal", &TimeOfContact::normal,
+        "Unit vector along which moving O1 separates it from O2: (witness[0] - witness[1]) / separation, or "
+        "the opposite where one body contains part of the other at time 0; nothing if the surfaces intersect "
+        "then."}};
+
+/// Finds the first contact by controlled conservative advancement (Tang, Kim & Manocha 2009): two parts of
+/// the bodies, nodes of their trees or faces, that a direction separates need at least the distance along it,
+/// divided by the speed along it, to meet. Each pair of parts advances by itself, so bodies that slide along
+/// each other take no more steps than those that are far apart. No contact is missed, however thin the bodies
+/// and long the motions. Bodies that collide at first have contact at time 0.
+///
+/// `tolerance` > 0, in units of space; bodies that come closer than it, but not closer than its half, may
+/// have contact or not. Where it is less than the rounding of coordinates, results are `bounded`.
+///
+/// Throws sdm::Error for any other tolerance, and as Motion::at does. Cost: two searches for the closest
+/// faces, that of the pairs of nodes that come near each other before the contact, and of a box around the
+/// faces of each of these nodes. Single-threaded.
+[[nodiscard]] SDM_API TimeOfContact time_of_contact(const Shape& o1, const Motion& motion1, const Shape& o2,
+                                                    const Motion& motion2, double tolerance);
 
 }  // namespace sdm

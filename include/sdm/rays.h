@@ -3,10 +3,9 @@
 /// Threads: the functions may be called concurrently, also with the same Surface and Sites.
 #pragma once
 
-#include <sdm/api.h>
+#include <sdm/execution.h>
 #include <sdm/map.h>
 #include <sdm/options.h>
-#include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
 #include <sdm/types.h>

@@ -5,11 +5,13 @@
 /// other functions may be called concurrently, also with the same Surface.
 #pragma once
 
-#include <sdm/api.h>
+#include <sdm/mesh.h>
 #include <sdm/options.h>
 #include <sdm/surface.h>
+#include <sdm/types.h>
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>

@@ -3,11 +3,13 @@
 /// Threads: an object is used by one thread at a time; different objects may be used concurrently.
 #pragma once
 
-#include <sdm/api.h>
 #include <sdm/bounds.h>
-#include <sdm/map.h>
+#include <sdm/execution.h>
+#include <sdm/mesh.h>
 #include <sdm/options.h>
 #include <sdm/proximity_query.h>
+#include <sdm/sites.h>
+#include <sdm/types.h>
 
 #include <array>
 #include <cstdint>

@@ -1,11 +1,10 @@
 /// A mesh prepared for proximity queries, shared by any number of bodies.
 #pragma once
 
-#include <sdm/api.h>
-#include <sdm/atlas.h>
 #include <sdm/mesh.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
+#include <sdm/types.h>
 
 #include <cstddef>
 #include <functional>

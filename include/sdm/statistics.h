@@ -1,15 +1,18 @@
-/// Statistics of a map.
+/// Statistics of maps: of one, of its parts, of several as of one, and over time.
 ///
-/// Threads: the functions may be called concurrently, also with the same map.
+/// Threads: the functions may be called concurrently, also with the same map; an object is used by one thread
+/// at a time, but for its const functions.
 #pragma once
 
-#include <sdm/api.h>
 #include <sdm/map.h>
 #include <sdm/names.h>
 #include <sdm/surface.h>
+#include <sdm/tolerance.h>
+#include <sdm/types.h>
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -137,5 +140,96 @@ inline constexpr std::tuple kFields<DistanceHistogram>{
 [[nodiscard]] SDM_API DistanceHistogram distance_histogram(const Surface& surface, const DistanceMap& map,
                                                            const std::array<double, 2>& range,
                                                            std::size_t bins);
+
+/// The distances of one part of a surface.
+struct PartStatistics {
+  std::size_t faces = 0;
+  Box box;                                   ///< of the vertices of its faces
+  double area_fraction = 0;                  ///< of the area of all texels of the map, in [0, 1]
+  DistanceStatistics distance;               ///< of the texels of its faces
+  std::optional<ToleranceShares> tolerance;  ///< fractions of the part's own area; if there is one
+};
+
+/// Options of part_statistics().
+struct PartStatisticsOptions {
+  std::optional<Tolerance> tolerance{};
+  double accuracy = 0;  ///< of a distance, as for tolerance_shares()
+};
+
+/// `part_of_face`: for each face of the surface, the number of its part, below `parts`, or kNone for faces
+/// that belong to none. Throws sdm::Error if the map or the parts
+/// belong to another surface. Cost: linear in texels and faces, all cores; eight bytes for each texel.
+[[nodiscard]] SDM_API std::vector<PartStatistics> part_statistics(const Surface& surface,
+                                                                  const DistanceMap& map,
+                                                                  std::span<const std::uint32_t> part_of_face,
+                                                                  std::size_t parts,
+                                                                  const PartStatisticsOptions& options = {});
+
+/// Collects the distances of maps, such as those of the UDIM tiles of a mesh, with their areas: the maps need
+/// not be kept.
+class SDM_API CombinedStatistics {
+ public:
+  /// Throws sdm::Error, and changes nothing, if the map does not belong to this surface, or if there is not
+  /// enough memory. Cost:
+  /// linear in texels; 8 bytes for each texel with a value.
+  void add(const Surface& surface, const DistanceMap& map);
+
+  /// As statistics(), over the texels of all maps, each weighted by its area on its surface. Throws
+  /// sdm::Error if there is not enough memory. Cost: linear in texels, all cores.
+  [[nodiscard]] DistanceStatistics statistics() const;
+
+ private:
+  struct Texel {
+    float distance, area;
+  };
+  std::vector<Texel> texels_;
+  double unit_ = 0;  ///< of the areas: that of the largest texel of the first map
+};
+
+/// The minimum, maximum and mean distance of every texel of an atlas over the added maps; faces without a
+/// texel have none. NaN where no
+/// face owns the texel, where another face or none owned it in an earlier map, or where it
+/// was beyond the maximum distance in one of the maps. Self maps mark the
+/// latter by +∞ instead: the minimum is then that over the other maps.
+class SDM_API TemporalMaps {
+ public:
+  /// What a later process needs in order to continue.
+  struct State {
+    std::size_t maps = 0;
+    std::uint32_t resolution = 0;
+    std::vector<float> least{}, largest{};  ///< of whole rows of texels, none before the first map
+    std::vector<double> sum{};              ///< of the distances, likewise
+  };
+
+  TemporalMaps() = default;
+  /// Continues from an earlier state: the results are bit for bit those without the interruption. Throws
+  /// sdm::Error if the sizes do not match.
+  explicit TemporalMaps(State state);
+
+  /// Adds a map. Throws sdm::Error, and changes nothing, if its size differs from that of earlier maps or
+  /// there is not enough memory. Cost: O(n) in texels, all cores.
+  void add(const DistanceMap& map);
+
+  /// Follows an edit of the surface: texels whose face stays keep their statistics, all others become NaN for
+  /// good. `before`: Surface::texel_faces() before Surface::edit. Throws sdm::Error, and changes
+  /// nothing, if the sizes do not match or there is not enough memory. Cost: O(n) in texels.
+  void follow_edit(std::span<const std::uint32_t> before, const Surface& edited);
+
+  /// The number of maps added.
+  [[nodiscard]] std::size_t maps() const { return state_.maps; }
+  /// Texels per row; 0 before the first map.
+  [[nodiscard]] std::uint32_t resolution() const { return state_.resolution; }
+  /// The minimum of each texel, in rows.
+  [[nodiscard]] std::span<const float> least() const { return state_.least; }
+  /// The maximum of each texel.
+  [[nodiscard]] std::span<const float> largest() const { return state_.largest; }
+  /// Cost: O(n) in texels.
+  [[nodiscard]] std::vector<float> mean() const;
+  /// What a later process needs in order to continue.
+  [[nodiscard]] const State& state() const { return state_; }
+
+ private:
+  State state_;
+};
 
 }  // namespace sdm

@@ -5,25 +5,20 @@
 /// at a time.
 #pragma once
 
-#include <sdm/api.h>
-#include <sdm/atlas.h>
-#include <sdm/certified_verdict.h>
-#include <sdm/combined_statistics.h>
-#include <sdm/coverage.h>
-#include <sdm/distance_kind.h>
 #include <sdm/doubts.h>
-#include <sdm/group_verdicts.h>
+#include <sdm/execution.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
+#include <sdm/mesh_attributes.h>
 #include <sdm/names.h>
 #include <sdm/options.h>
-#include <sdm/part_statistics.h>
 #include <sdm/places.h>
-#include <sdm/progress.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
 #include <sdm/surface.h>
 #include <sdm/tolerance.h>
+#include <sdm/types.h>
+#include <sdm/verdict.h>
 
 #include <array>
 #include <cstddef>
@@ -275,7 +270,7 @@ class SDM_API CombinedSummary {
 
 /// Returns a sentence if faces of a surface are so small that their direction is noise: where distances go to
 /// faces that face the same way, within `facing` degrees, these are measured as their surroundings are (see
-/// sdm/facing.h). Throws sdm::Error for an angle out of range. Cost: linear.
+/// sdm/closest_points.h). Throws sdm::Error for an angle out of range. Cost: linear.
 [[nodiscard]] SDM_API std::optional<std::string> note_on_directions(const Mesh& surface, double facing,
                                                                     const std::string& units);
 

@@ -1,8 +1,8 @@
 // Arguments of the exported functions: numbers and arrays in the memory of the module.
 #pragma once
 
+#include <sdm/execution.h>
 #include <sdm/mesh.h>
-#include <sdm/progress.h>
 
 #include <cstdint>
 #include <span>

@@ -1,5 +1,4 @@
 // The types of what is declared, in TypeScript: js/declared_types.mjs writes them into the package.
-#include <sdm/atlas.h>
 #include <sdm/bounds.h>
 #include <sdm/hausdorff.h>
 #include <sdm/match.h>
@@ -7,7 +6,7 @@
 #include <sdm/rays.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/statistics.h>
-#include <sdm/transfer.h>
+#include <sdm/surface.h>
 
 #include <string>
 #include <utility>

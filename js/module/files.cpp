@@ -1,5 +1,5 @@
 // Meshes from the contents of files.
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 // Surfaces, sites, and the maps of a surface to sites.
 #include <sdm/error.h>
 #include <sdm/hausdorff.h>
-#include <sdm/io.h>
-#include <sdm/map_samples.h>
+#include <sdm/map.h>
+#include <sdm/map_files.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>

@@ -1,6 +1,5 @@
 // The points of O2 that belong to the texels of a surface, and what O2 has there.
 #include <sdm/bake.h>
-#include <sdm/baked_geometry.h>
 #include <sdm/error.h>
 #include <sdm/match.h>
 

@@ -1,7 +1,7 @@
 // What the maps of JavaScript measure.
 #pragma once
 
-#include <sdm/map_samples.h>
+#include <sdm/map.h>
 #include <sdm/mesh.h>
 
 #include <span>

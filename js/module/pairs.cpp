@@ -1,6 +1,6 @@
 // Two bodies that move: separation, collision, penetration depth and contacts.
+#include <sdm/mesh_edit.h>
 #include <sdm/proximity_query.h>
-#include <sdm/transform.h>
 
 #include "module/arguments.h"
 #include "module/options.h"

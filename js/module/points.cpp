@@ -1,7 +1,7 @@
 // Closest points of any points, their signs, and rays.
 #include <sdm/closest_points.h>
 #include <sdm/rays.h>
-#include <sdm/sign.h>
+#include <sdm/sites.h>
 
 #include "module/arguments.h"
 #include "module/options.h"

@@ -1,10 +1,9 @@
 // Summaries of maps, and report.html.
 #include <sdm/engine.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
-#include <sdm/report.h>
+#include <sdm/map_files.h>
+#include <sdm/measure.h>
 #include <sdm/summary.h>
-#include <sdm/thickness.h>
 
 #include <cmath>
 #include <iterator>

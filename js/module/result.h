@@ -1,7 +1,7 @@
 // Results of the exported functions, as JavaScript reads them.
 #pragma once
 
-#include <sdm/cancellation.h>
+#include <sdm/execution.h>
 #include <sdm/names.h>
 
 #include <atomic>

@@ -1,7 +1,7 @@
 // Values of O2 at the points that belong to the texels of a surface.
 #pragma once
 
-#include <sdm/transfer.h>
+#include <sdm/match.h>
 
 #include "module/arguments.h"
 #include "module/options.h"

@@ -1,7 +1,6 @@
 // The alignment of two surfaces, or of points to a surface, and the doubts that it leaves.
 #include <nanobind/stl/string.h>
 #include <sdm/doubts.h>
-#include <sdm/fit_check.h>
 
 #include <algorithm>
 #include <optional>

@@ -1,7 +1,7 @@
 #include "arrays.h"
 
 #include <sdm/error.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <algorithm>
 #include <cstring>

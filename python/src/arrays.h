@@ -5,7 +5,7 @@
 #include <nanobind/ndarray.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
-#include <sdm/transform.h>
+#include <sdm/mesh_edit.h>
 #include <sdm/types.h>
 
 #include <cstddef>

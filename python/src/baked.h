@@ -3,8 +3,6 @@
 
 #include <nanobind/nanobind.h>
 #include <sdm/bake.h>
-#include <sdm/baked_geometry.h>
-#include <sdm/supersampling.h>
 
 #include <cstdint>
 #include <optional>

@@ -2,9 +2,9 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
+#include <sdm/bake.h>
 #include <sdm/bake_files.h>
 #include <sdm/error.h>
-#include <sdm/supersampling.h>
 
 #include <algorithm>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Closest points of many meshes in one call.
 #include <nanobind/stl/vector.h>
 #include <sdm/error.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <algorithm>
 #include <atomic>

@@ -1,6 +1,6 @@
 // The arrays of a map: one for each row of the table of channels.
 #include <nanobind/stl/string.h>
-#include <sdm/channels.h>
+#include <sdm/map.h>
 
 #include <algorithm>
 #include <cctype>

@@ -2,7 +2,7 @@
 
 #include <sdm/closest_points.h>
 #include <sdm/error.h>
-#include <sdm/sign.h>
+#include <sdm/sites.h>
 
 #include <algorithm>
 #include <cmath>

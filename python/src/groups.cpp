@@ -4,9 +4,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_files.h>
 #include <sdm/places.h>
-#include <sdm/tolerance_table.h>
 
 #include <algorithm>
 #include <cctype>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
-#include <sdm/group_verdicts.h>
+#include <sdm/tolerance.h>
 
 #include <span>
 #include <vector>

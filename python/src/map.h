@@ -4,8 +4,8 @@
 #include <nanobind/stl/string.h>
 #include <sdm/error.h>
 #include <sdm/io.h>
+#include <sdm/measure.h>
 #include <sdm/sdm.h>
-#include <sdm/thickness.h>
 
 #include <array>
 #include <cstdint>

@@ -2,8 +2,8 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
-#include <sdm/io.h>
-#include <sdm/report.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_files.h>
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 // The numbers of a map: statistics, bounds, and whether it is within a tolerance.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
-#include <sdm/certified_verdict.h>
 #include <sdm/hausdorff.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/summary.h>
+#include <sdm/verdict.h>
 
 #include <algorithm>
 #include <cctype>

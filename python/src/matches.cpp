@@ -1,5 +1,5 @@
 // Matches of texels, and the geometry of O2 there: what python/sdm/_matches.py presents.
-#include <sdm/baked_geometry.h>
+#include <sdm/bake.h>
 #include <sdm/match.h>
 
 #include <algorithm>

@@ -1,9 +1,10 @@
 // Meshes from Python objects and files.
 #include <nanobind/stl/optional.h>
-#include <sdm/convex_hull.h>
-#include <sdm/io.h>
-#include <sdm/islands.h>
-#include <sdm/weld.h>
+#include <sdm/map.h>
+#include <sdm/mesh_edit.h>
+#include <sdm/mesh_files.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
 
 #include <algorithm>
 #include <limits>

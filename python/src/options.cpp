@@ -5,7 +5,7 @@
 #include <sdm/error.h>
 #include <sdm/io.h>
 #include <sdm/points.h>
-#include <sdm/pose_query.h>
+#include <sdm/proximity_query.h>
 #include <sdm/sdm.h>
 
 #include <algorithm>

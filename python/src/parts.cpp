@@ -1,5 +1,5 @@
 // What sdm.dask needs for meshes in parts: the samples of a surface, and the closest points of one part.
-#include <sdm/closest_in_parts.h>
+#include <sdm/closest_points.h>
 #include <sdm/error.h>
 
 #include <algorithm>
@@ -124,7 +124,7 @@ void bind_parts(nb::module_& module) {
               "numpy.typing.NDArray[typing.Any], face: "
               "numpy.typing.NDArray[typing.Any]) -> None"),
       "Replaces closest points, in place, by those of a part of O2 that are closer; see "
-      "sdm/closest_in_parts.h. vertices, edges, faces: their numbers in the whole O2, uint32, increasing.");
+      "sdm/closest_points.h. vertices, edges, faces: their numbers in the whole O2, uint32, increasing.");
 }
 
 }  // namespace sdm::python

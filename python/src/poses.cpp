@@ -1,7 +1,7 @@
 // Proximity of one shape in many poses.
 #include <nanobind/stl/optional.h>
 #include <sdm/error.h>
-#include <sdm/pose_query.h>
+#include <sdm/proximity_query.h>
 
 #include <array>
 #include <cstddef>

@@ -7,7 +7,7 @@
 
 #include <nanobind/stl/optional.h>
 #include <sdm/error.h>
-#include <sdm/shape_files.h>
+#include <sdm/map_files.h>
 
 #include <filesystem>
 #include <memory>

@@ -2,16 +2,15 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
-#include <sdm/fit_check.h>
+#include <sdm/doubts.h>
 #include <sdm/io.h>
-#include <sdm/islands.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_edit.h>
 #include <sdm/metrics.h>
 #include <sdm/options.h>
 #include <sdm/points.h>
-#include <sdm/report.h>
 #include <sdm/sdm.h>
 #include <sdm/simplify.h>
-#include <sdm/weld.h>
 
 #include <array>
 #include <optional>

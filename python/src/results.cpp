@@ -1,12 +1,10 @@
 // Pickling and copying of results that are values of the library: their members are listed here.
-#include <sdm/coverage.h>
 #include <sdm/doubts.h>
-#include <sdm/group_verdicts.h>
-#include <sdm/io.h>
-#include <sdm/islands.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_edit.h>
 #include <sdm/places.h>
 #include <sdm/points.h>
-#include <sdm/weld.h>
+#include <sdm/verdict.h>
 
 #include "objects.h"
 #include "values.h"

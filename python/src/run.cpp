@@ -1,7 +1,7 @@
 #include "run.h"
 
 #include <pthread.h>
-#include <sdm/cancellation.h>
+#include <sdm/execution.h>
 
 #include <atomic>
 #include <chrono>

@@ -3,7 +3,7 @@
 
 #include <nanobind/nanobind.h>
 #include <sdm/error.h>
-#include <sdm/progress.h>
+#include <sdm/execution.h>
 
 #include <atomic>
 #include <functional>

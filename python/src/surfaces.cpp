@@ -1,6 +1,6 @@
 // The Hausdorff distance of two surfaces, and how much of one has a point of the other near it.
 #include <nanobind/stl/optional.h>
-#include <sdm/coverage.h>
+#include <sdm/doubts.h>
 
 #include <optional>
 #include <string>

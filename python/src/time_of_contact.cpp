@@ -1,6 +1,6 @@
 // When two moving bodies first come into contact.
 #include <nanobind/stl/optional.h>
-#include <sdm/time_of_contact.h>
+#include <sdm/proximity_query.h>
 
 #include "proximity.h"
 #include "signatures.h"

@@ -1,5 +1,5 @@
 // The compiled part of DistanceMap.transfer().
-#include <sdm/transfer.h>
+#include <sdm/match.h>
 
 #include <cstddef>
 #include <string_view>

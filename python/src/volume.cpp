@@ -4,7 +4,7 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <sdm/error.h>
-#include <sdm/field_files.h>
+#include <sdm/map_files.h>
 #include <sdm/volume.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include <sdm/bake.h>
 #include <sdm/error.h>
-#include <sdm/uv_tiles.h>
+#include <sdm/mesh_attributes.h>
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,8 @@
 // Pictures of textures, filtered.
 #pragma once
 
-#include <sdm/image.h>
-#include <sdm/material.h>
-#include <sdm/vec.h>
+#include <sdm/mesh_attributes.h>
+#include <sdm/types.h>
 
 #include <array>
 #include <cstdint>

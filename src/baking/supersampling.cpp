@@ -1,5 +1,5 @@
+#include <sdm/bake.h>
 #include <sdm/error.h>
-#include <sdm/supersampling.h>
 #include <sdm/types.h>
 
 #include <algorithm>

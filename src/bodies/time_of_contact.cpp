@@ -1,4 +1,4 @@
-#include <sdm/time_of_contact.h>
+#include <sdm/proximity_query.h>
 
 #include <new>
 #include <optional>

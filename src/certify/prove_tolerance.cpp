@@ -3,7 +3,7 @@
 #include <sdm/error.h>
 #include <sdm/map.h>
 #include <sdm/mesh.h>
-#include <sdm/tolerance_proof.h>
+#include <sdm/tolerance.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // The proof of a tolerance for meshes that were validated before.
 #pragma once
 
-#include <sdm/tolerance_proof.h>
+#include <sdm/tolerance.h>
 
 #include "certify/hausdorff/matching.h"
 

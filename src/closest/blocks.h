@@ -1,8 +1,8 @@
 // Splits points into the blocks that are searched together.
 #pragma once
 
-#include <sdm/map_samples.h>
-#include <sdm/progress.h>
+#include <sdm/execution.h>
+#include <sdm/map.h>
 #include <sdm/surface.h>
 
 #include <functional>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <sdm/engine.h>
-#include <sdm/progress.h>
+#include <sdm/execution.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
 

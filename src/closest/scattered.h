@@ -1,7 +1,7 @@
 // The closest points of O2, for points in any order.
 #pragma once
 
-#include <sdm/progress.h>
+#include <sdm/execution.h>
 #include <sdm/sites.h>
 
 #include <functional>

@@ -2,7 +2,7 @@
 // some 20 ms polls by itself.
 #pragma once
 
-#include <sdm/cancellation.h>
+#include <sdm/execution.h>
 
 #include <atomic>
 #include <cstdint>

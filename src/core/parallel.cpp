@@ -1,7 +1,7 @@
 #include "core/parallel.h"
 
 #include <sdm/error.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <atomic>
 #include <mutex>

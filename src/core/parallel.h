@@ -2,7 +2,7 @@
 // All poll for cancellation (core/cancellation.h) before each range and each task, on behalf of their caller.
 #pragma once
 
-#include <sdm/progress.h>
+#include <sdm/execution.h>
 
 #include <cstddef>
 #include <functional>

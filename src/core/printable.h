@@ -3,7 +3,7 @@
 /// Threads: the function may be called concurrently.
 #pragma once
 
-#include <sdm/api.h>
+#include <sdm/types.h>
 
 #include <string>
 #include <string_view>

@@ -1,7 +1,7 @@
 // How much an affine map stretches lengths.
 #pragma once
 
-#include <sdm/transform.h>
+#include <sdm/mesh_edit.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Boxes, and what the library needs of vectors beside the arithmetic of sdm/vec.h.
+// Boxes, and what the library needs of vectors beside the arithmetic of sdm/types.h.
 #pragma once
 
 #include <sdm/types.h>

@@ -3,7 +3,7 @@
 // meshes have an inside.
 #pragma once
 
-#include <sdm/sign.h>
+#include <sdm/sites.h>
 
 #include <cstdint>
 #include <span>

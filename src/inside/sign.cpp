@@ -1,7 +1,7 @@
 #include "inside/sign.h"
 
 #include <sdm/error.h>
-#include <sdm/sign.h>
+#include <sdm/sites.h>
 
 #include <algorithm>
 #include <array>

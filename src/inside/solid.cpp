@@ -1,8 +1,7 @@
 #include "inside/solid.h"
 
 #include <sdm/error.h>
-#include <sdm/self_intersections.h>
-#include <sdm/solid.h>
+#include <sdm/sites.h>
 
 #include <algorithm>
 #include <new>

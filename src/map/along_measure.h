@@ -1,7 +1,7 @@
 // Distances along lines.
 #pragma once
 
-#include <sdm/along.h>
+#include <sdm/measure.h>
 
 #include "map/measure.h"
 #include "sites/sites_data.h"

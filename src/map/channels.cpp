@@ -1,5 +1,5 @@
-#include <sdm/channels.h>
 #include <sdm/error.h>
+#include <sdm/map.h>
 
 #include <algorithm>
 #include <cstring>

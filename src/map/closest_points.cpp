@@ -1,4 +1,3 @@
-#include <sdm/closest_in_parts.h>
 #include <sdm/closest_points.h>
 #include <sdm/error.h>
 

@@ -1,6 +1,5 @@
 #include <sdm/error.h>
 #include <sdm/map.h>
-#include <sdm/map_samples.h>
 
 #include <new>
 #include <string>

@@ -1,5 +1,5 @@
 #include <sdm/closest_points.h>
-#include <sdm/coverage.h>
+#include <sdm/doubts.h>
 #include <sdm/error.h>
 #include <sdm/tolerance.h>
 

@@ -1,6 +1,6 @@
 #include <sdm/error.h>
-#include <sdm/islands.h>
-#include <sdm/part_statistics.h>
+#include <sdm/mesh_attributes.h>
+#include <sdm/mesh_edit.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,8 @@
 // The loops over texels, vertices and points, which all measures share.
 #pragma once
 
-#include <sdm/facing.h>
+#include <sdm/closest_points.h>
 #include <sdm/map.h>
-#include <sdm/map_samples.h>
 #include <sdm/mesh.h>
 #include <sdm/surface.h>
 
@@ -112,7 +111,7 @@ class FaceMeasure {
 
 /// Computes the map of a measure. Throws Cancelled.
 void measure_texels(const Surface& surface, const FaceMeasure& measure, DistanceMap& map);
-/// The same of some samples, as compute_samples() in sdm/map_samples.h.
+/// The same of some samples, as compute_samples() in sdm/map.h.
 void measure_texels(const Surface& surface, const FaceMeasure& measure, const SampleRange& range,
                     DistanceMap& map);
 /// Throws sdm::Error unless the map is one of the surface, and the range one for compute_samples().

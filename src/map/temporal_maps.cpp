@@ -1,5 +1,5 @@
 #include <sdm/error.h>
-#include <sdm/temporal_maps.h>
+#include <sdm/statistics.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,7 @@
 #include <sdm/closest_points.h>
 #include <sdm/error.h>
 #include <sdm/map.h>
-#include <sdm/sign.h>
-#include <sdm/vertex_distances.h>
+#include <sdm/sites.h>
 
 #include <cstdint>
 #include <limits>

@@ -1,8 +1,8 @@
 // Quickhull (Barber, Dobkin & Huhdanpaa 1996) with exact predicates. Whether a point sees a face is decided
 // exactly, and points in its plane do not: the faces that a point sees are then connected, and no edge of
 // their outline is on a line with it, so that all new faces have an area.
-#include <sdm/convex_hull.h>
 #include <sdm/error.h>
+#include <sdm/mesh_edit.h>
 #include <sdm/types.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // The pose of a rigid body: a rotation, a uniform scale and a translation.
 #pragma once
 
-#include <sdm/transform.h>
+#include <sdm/mesh_edit.h>
 
 #include "geometry/affine.h"
 

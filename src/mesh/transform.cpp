@@ -1,5 +1,5 @@
 #include <sdm/error.h>
-#include <sdm/transform.h>
+#include <sdm/mesh_edit.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include <sdm/error.h>
+#include <sdm/mesh_attributes.h>
 #include <sdm/mesh_edit.h>
-#include <sdm/uv_tiles.h>
 
 #include <algorithm>
 #include <array>

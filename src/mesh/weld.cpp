@@ -1,6 +1,6 @@
 // Boundary edges are matched in pairs, the closest ones first, and the vertices at their ends are united.
 #include <sdm/error.h>
-#include <sdm/weld.h>
+#include <sdm/mesh_edit.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <sdm/fit_check.h>
+#include <sdm/doubts.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <sdm/unit_check.h>
+#include <sdm/doubts.h>
 
 #include <algorithm>
 #include <cmath>

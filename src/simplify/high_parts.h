@@ -1,8 +1,8 @@
 // Where a mesh may be far from another one.
 #pragma once
 
+#include <sdm/execution.h>
 #include <sdm/mesh.h>
-#include <sdm/progress.h>
 
 #include "sites/sites_data.h"
 

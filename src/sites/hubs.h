@@ -1,7 +1,7 @@
 // Pairs of faces that may intersect, also where many faces share a vertex or an edge.
 #pragma once
 
-#include <sdm/progress.h>
+#include <sdm/execution.h>
 
 #include <array>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "sites/intersecting_faces.h"
 
-#include <sdm/self_intersections.h>
+#include <sdm/sites.h>
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,5 @@
-#include <sdm/group_verdicts.h>
+#include <sdm/tolerance.h>
+#include <sdm/verdict.h>
 
 #include <algorithm>
 #include <vector>

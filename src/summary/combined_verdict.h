@@ -1,7 +1,7 @@
 // The verdict on several maps as of one.
 #pragma once
 
-#include <sdm/certified_verdict.h>
+#include <sdm/verdict.h>
 
 #include <span>
 

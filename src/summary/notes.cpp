@@ -1,6 +1,6 @@
+#include <sdm/measure.h>
 #include <sdm/statistics.h>
 #include <sdm/summary.h>
-#include <sdm/thickness.h>
 
 #include <algorithm>
 #include <cmath>

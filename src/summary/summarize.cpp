@@ -1,7 +1,7 @@
 #include <sdm/error.h>
+#include <sdm/execution.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/summary.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <sdm/tessellation.h>
+#include <sdm/mesh.h>
 
 #include <array>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include <sdm/units.h>
+#include <sdm/mesh.h>
 
 #include "core/rules.h"
 

@@ -1,10 +1,11 @@
 // `sdm bake`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sdm/bake.h>
 #include <sdm/bake_files.h>
-#include <sdm/baked_geometry.h>
 #include <sdm/closest_points.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_files.h>
 
 #include <algorithm>
 #include <array>

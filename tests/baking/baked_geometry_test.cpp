@@ -1,8 +1,8 @@
 // The geometry of O2 as textures of O1.
 #include <gtest/gtest.h>
-#include <sdm/baked_geometry.h>
+#include <sdm/bake.h>
 #include <sdm/error.h>
-#include <sdm/transfer.h>
+#include <sdm/match.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 // Filled textures, and the smaller ones that renderers make of them.
 #include <gtest/gtest.h>
 #include <sdm/bake.h>
-#include <sdm/baked_geometry.h>
 
 #include <algorithm>
 #include <array>

@@ -5,10 +5,11 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/baked_geometry.h>
+#include <sdm/bake.h>
+#include <sdm/bake_files.h>
 #include <sdm/closest_points.h>
-#include <sdm/image.h>
-#include <sdm/io.h>
+#include <sdm/mesh_attributes.h>
+#include <sdm/mesh_files.h>
 
 #include <algorithm>
 #include <cmath>

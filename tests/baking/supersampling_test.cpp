@@ -1,6 +1,6 @@
 // Several samples a texel.
 #include <gtest/gtest.h>
-#include <sdm/supersampling.h>
+#include <sdm/bake.h>
 #include <sdm/types.h>
 
 #include <algorithm>

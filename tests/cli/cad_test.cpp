@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/io.h>
-#include <sdm/transform.h>
+#include <sdm/mesh_edit.h>
+#include <sdm/mesh_files.h>
 
 #include <algorithm>
 #include <filesystem>

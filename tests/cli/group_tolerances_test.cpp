@@ -1,9 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/group_verdicts.h>
-#include <sdm/part_statistics.h>
-#include <sdm/tolerance_table.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_attributes.h>
+#include <sdm/tolerance.h>
+#include <sdm/verdict.h>
 
 #include <cstdint>
 #include <fstream>

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/sequence.h>
+#include <sdm/mesh_files.h>
 #include <sys/file.h>
 #include <unistd.h>
 

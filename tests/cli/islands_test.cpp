@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/islands.h>
-#include <sdm/part_statistics.h>
+#include <sdm/mesh_edit.h>
+#include <sdm/statistics.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -2,7 +2,7 @@
 // programs.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <sdm/weld.h>
+#include <sdm/mesh_edit.h>
 
 #include <algorithm>
 #include <array>

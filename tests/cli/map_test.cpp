@@ -3,13 +3,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/io.h>
 #include <sdm/map.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_files.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
 #include <sdm/version.h>
-#include <sdm/vertex_distances.h>
 
 #include <cmath>
 #include <cstring>

@@ -1,7 +1,7 @@
 // `sdm metrics`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 #include <sdm/metrics.h>
 
 #include <nlohmann/json.hpp>

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/measure.h>
 #include <sdm/points.h>
-#include <sdm/thickness.h>
 
 #include <fmt/format.h>
 #include <lzf.h>

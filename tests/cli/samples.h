@@ -1,7 +1,7 @@
 // Small meshes as files, for runs of the command.
 #pragma once
 
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <algorithm>
 #include <fstream>

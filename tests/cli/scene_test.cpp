@@ -1,8 +1,7 @@
 // `sdm scene` as a user runs it: the files are what MeshSequence reads.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/io.h>
-#include <sdm/sequence.h>
+#include <sdm/mesh_files.h>
 
 #include <csignal>
 #include <nlohmann/json.hpp>

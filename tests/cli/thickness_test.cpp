@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/io.h>
+#include <sdm/measure.h>
 #include <sdm/sdm.h>
-#include <sdm/thickness.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // `sdm volume`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/field_files.h>
+#include <sdm/map_files.h>
 #include <sdm/volume.h>
 
 #include <cstring>

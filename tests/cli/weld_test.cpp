@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>

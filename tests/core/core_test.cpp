@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 #include <sdm/error.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <array>
 #include <numeric>

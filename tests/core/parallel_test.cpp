@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <algorithm>
 #include <atomic>

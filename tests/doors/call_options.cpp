@@ -1,6 +1,6 @@
 // The door of C++ for doors.py: calls with the options of each line, a call and name=value with blanks
 // between them, and "--" before the files. Prints a line for each: numbers, or "error " and why not.
-#include <sdm/baked_geometry.h>
+#include <sdm/bake.h>
 #include <sdm/io.h>
 #include <sdm/points.h>
 #include <sdm/sdm.h>

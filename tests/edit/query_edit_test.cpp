@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/sdm.h>
-#include <sdm/temporal_maps.h>
+#include <sdm/statistics.h>
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Sites after edits answer as those built anew from the edited mesh.
 #include <gtest/gtest.h>
 #include <sdm/closest_points.h>
-#include <sdm/sign.h>
+#include <sdm/sites.h>
 
 #include <cstring>
 

@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 #include <sdm/closest_points.h>
 #include <sdm/error.h>
+#include <sdm/execution.h>
 #include <sdm/map.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/statistics.h>
-#include <sdm/threads.h>
 
 #include "atlas/invariants.h"
 #include "edit/random_edits.h"

@@ -1,8 +1,8 @@
 // Closest points of scattered points by the cpu engine: equal, bit by bit, to the least distance of all
 // faces.
 #include <gtest/gtest.h>
+#include <sdm/execution.h>
 #include <sdm/sdm.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <cmath>

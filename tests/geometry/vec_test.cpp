@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <sdm/vec.h>
+#include <sdm/types.h>
 
 #include <type_traits>
 #include <utility>

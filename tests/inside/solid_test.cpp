@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <sdm/closest_points.h>
 #include <sdm/mesh.h>
-#include <sdm/sign.h>
 #include <sdm/sites.h>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/solid.h>
-#include <sdm/threads.h>
-#include <sdm/vec.h>
+#include <sdm/execution.h>
+#include <sdm/sites.h>
+#include <sdm/types.h>
 
 #include <ctime>
 #include <numbers>

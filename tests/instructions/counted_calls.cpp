@@ -8,15 +8,14 @@
 #include <sdm/align.h>
 #include <sdm/closest_points.h>
 #include <sdm/engine.h>
-#include <sdm/io.h>
+#include <sdm/execution.h>
 #include <sdm/map.h>
 #include <sdm/measure.h>
+#include <sdm/mesh_files.h>
 #include <sdm/proximity_query.h>
-#include <sdm/sign.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
-#include <sdm/threads.h>
-#include <sdm/vec.h>
+#include <sdm/types.h>
 #include <valgrind/callgrind.h>
 
 #include <algorithm>

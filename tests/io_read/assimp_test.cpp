@@ -2,7 +2,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 #include <assimp/Importer.hpp>
 
 #include <algorithm>

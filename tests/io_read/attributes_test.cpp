@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include <array>
 #include <bit>

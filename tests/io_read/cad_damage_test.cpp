@@ -1,9 +1,9 @@
 // Damaged CAD files are read or refused, whatever OpenCASCADE makes of them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/cancellation.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/execution.h>
+#include <sdm/mesh_files.h>
 
 #include <algorithm>
 #include <atomic>

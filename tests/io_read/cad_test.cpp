@@ -1,9 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 #include <sdm/sites.h>
-#include <sdm/solid.h>
 
 #include <cmath>
 #include <filesystem>

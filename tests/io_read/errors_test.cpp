@@ -1,7 +1,7 @@
 // Every fault is reported in one sentence that names the file and the fault.
 #include <gmock/gmock.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

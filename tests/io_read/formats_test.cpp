@@ -1,6 +1,6 @@
 // Round trips of every variant of every format.
 #include <gtest/gtest.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <array>
 #include <cmath>

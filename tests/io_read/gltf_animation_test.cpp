@@ -1,7 +1,7 @@
 // Animations of nodes and skins in glTF files, compared with closed forms.
 #include <gmock/gmock.h>
 #include <sdm/error.h>
-#include <sdm/sequence.h>
+#include <sdm/mesh_files.h>
 
 #include <cmath>
 #include <functional>

@@ -1,7 +1,6 @@
 // glTF files that refer to what is not theirs, or declare more than they hold.
 #include <gmock/gmock.h>
-#include <sdm/io.h>
-#include <sdm/sequence.h>
+#include <sdm/mesh_files.h>
 #include <sys/stat.h>
 
 #include <fstream>

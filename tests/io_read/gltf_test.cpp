@@ -1,7 +1,7 @@
 // What a glTF file adds to its triangles: instances, morph targets, skins and extensions.
 #include <gmock/gmock.h>
-#include <sdm/io.h>
-#include <sdm/sequence.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_files.h>
 
 #include <algorithm>
 #include <numbers>

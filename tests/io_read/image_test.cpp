@@ -2,8 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <png.h>
+#include <sdm/bake_files.h>
 #include <sdm/error.h>
-#include <sdm/image.h>
+#include <sdm/mesh_attributes.h>
 #include <webp/encode.h>
 #include <zlib.h>
 

@@ -1,7 +1,7 @@
 // Matrices from files.
 #include <gmock/gmock.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include <bit>
 #include <fstream>

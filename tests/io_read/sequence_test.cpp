@@ -1,8 +1,7 @@
 // Sequences: every form of input gives the frames that were written; errors name the frame.
 #include <gmock/gmock.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
-#include <sdm/sequence.h>
+#include <sdm/mesh_files.h>
 
 #include <fstream>
 #include <vector>

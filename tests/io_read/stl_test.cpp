@@ -1,7 +1,7 @@
 // STL text in all the layouts that programs write, and binary STL whose header does not fit the file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include "io_read/writers.h"
 #include "support/matches.h"

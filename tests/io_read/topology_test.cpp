@@ -2,8 +2,7 @@
 // stays.
 #include <gmock/gmock.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
-#include <sdm/sequence.h>
+#include <sdm/mesh_files.h>
 
 #include <algorithm>
 #include <fstream>

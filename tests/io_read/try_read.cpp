@@ -1,10 +1,9 @@
 #include "io_read/try_read.h"
 
 #include <sdm/error.h>
-#include <sdm/io.h>
 #include <sdm/mesh.h>
+#include <sdm/mesh_files.h>
 #include <sdm/points.h>
-#include <sdm/sequence.h>
 
 #include <algorithm>
 #include <array>

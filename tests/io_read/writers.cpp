@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include <cstdio>
 #include <fstream>

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 #include <sys/resource.h>
 
 #include <csignal>

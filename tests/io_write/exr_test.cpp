@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <sdm/closest_points.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <array>
 #include <cmath>

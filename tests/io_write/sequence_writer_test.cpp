@@ -1,8 +1,8 @@
 // Round trips of meshes, sequences and values per texel.
 #include <gmock/gmock.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
-#include <sdm/sequence.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_files.h>
 
 #include <fstream>
 #include <vector>

@@ -5,7 +5,7 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <cstring>
 #include <fstream>

@@ -1,7 +1,7 @@
 // The distance as a plain texture.
 #include <gtest/gtest.h>
 #include <png.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_files.h>
 
 #include <bit>
 #include <charconv>

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
+#include <sdm/map_files.h>
 
 #include <algorithm>
 #include <array>

@@ -5,9 +5,9 @@
 #include <sdm/closest_points.h>
 #include <sdm/hausdorff.h>
 #include <sdm/measure.h>
+#include <sdm/mesh_edit.h>
 #include <sdm/proximity_query.h>
-#include <sdm/sign.h>
-#include <sdm/transform.h>
+#include <sdm/sites.h>
 
 #include <cmath>
 #include <cstdio>

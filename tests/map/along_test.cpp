@@ -1,6 +1,6 @@
 // Distances along lines: terrain that was moved by a known function, sheets, and what is refused.
 #include <gtest/gtest.h>
-#include <sdm/along.h>
+#include <sdm/measure.h>
 #include <sdm/sdm.h>
 
 #include <cmath>

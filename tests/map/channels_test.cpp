@@ -1,8 +1,8 @@
 // The table of channels: what every row must have, and what is read by it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/channels.h>
 #include <sdm/error.h>
+#include <sdm/map.h>
 
 #include <cmath>
 #include <cstring>

@@ -1,6 +1,5 @@
 // Parts of O2, divided at random, against the reference engine for the whole of it: bit for bit.
 #include <gtest/gtest.h>
-#include <sdm/closest_in_parts.h>
 #include <sdm/closest_points.h>
 #include <sdm/error.h>
 

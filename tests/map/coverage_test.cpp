@@ -1,6 +1,6 @@
 // Where O2 is covered, as pictures show it.
 #include <gtest/gtest.h>
-#include <sdm/coverage.h>
+#include <sdm/doubts.h>
 
 #include <array>
 #include <cmath>

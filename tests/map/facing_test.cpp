@@ -1,10 +1,10 @@
 // Distances to the faces that face the samples.
 #include <gtest/gtest.h>
-#include <sdm/certified_verdict.h>
-#include <sdm/facing.h>
-#include <sdm/group_verdicts.h>
+#include <sdm/closest_points.h>
+#include <sdm/map.h>
 #include <sdm/summary.h>
-#include <sdm/vertex_distances.h>
+#include <sdm/tolerance.h>
+#include <sdm/verdict.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/match.h>
-#include <sdm/transfer.h>
 
 #include <algorithm>
 #include <array>

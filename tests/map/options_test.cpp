@@ -1,12 +1,12 @@
 // The options that structs declare: their values, and the sentences that refuse them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/baked_geometry.h>
+#include <sdm/bake.h>
 #include <sdm/io.h>
+#include <sdm/mesh_files.h>
 #include <sdm/points.h>
-#include <sdm/pose_query.h>
+#include <sdm/proximity_query.h>
 #include <sdm/sdm.h>
-#include <sdm/sequence.h>
 
 #include <array>
 #include <cmath>

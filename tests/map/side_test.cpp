@@ -1,10 +1,9 @@
 // Signs by the side of an open mesh.
 #include <gtest/gtest.h>
-#include <sdm/certified_verdict.h>
 #include <sdm/closest_points.h>
 #include <sdm/map.h>
-#include <sdm/tolerance_proof.h>
-#include <sdm/vertex_distances.h>
+#include <sdm/tolerance.h>
+#include <sdm/verdict.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
-#include <sdm/temporal_maps.h>
+#include <sdm/map_files.h>
+#include <sdm/statistics.h>
 
 #include <cmath>
 #include <vector>

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/map.h>
 #include <sdm/tolerance.h>
-#include <sdm/vertex_distances.h>
 
 #include <cmath>
 #include <limits>

@@ -1,8 +1,8 @@
 // Values of O2 at the closest points of texels.
 #include <gtest/gtest.h>
+#include <sdm/closest_points.h>
 #include <sdm/error.h>
-#include <sdm/facing.h>
-#include <sdm/transfer.h>
+#include <sdm/match.h>
 
 #include <algorithm>
 #include <array>

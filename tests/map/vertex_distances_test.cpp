@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/map.h>
 #include <sdm/multi_body_query.h>
-#include <sdm/vertex_distances.h>
 
 #include <cmath>
 

@@ -1,16 +1,12 @@
 // Every part of the area has a sample, also where faces are smaller than a texel.
 #include <gtest/gtest.h>
-#include <sdm/along.h>
 #include <sdm/closest_points.h>
-#include <sdm/facing.h>
 #include <sdm/map.h>
-#include <sdm/map_samples.h>
 #include <sdm/measure.h>
 #include <sdm/places.h>
 #include <sdm/self_proximity_query.h>
 #include <sdm/statistics.h>
 #include <sdm/surface.h>
-#include <sdm/thickness.h>
 #include <sdm/tolerance.h>
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/execution.h>
 #include <sdm/mesh_edit.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <cmath>

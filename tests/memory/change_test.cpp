@@ -1,11 +1,10 @@
 // Meshes, surfaces, sites and what is collected from maps, when memory runs out during a change.
 #include <gtest/gtest.h>
 #include <sdm/closest_points.h>
-#include <sdm/combined_statistics.h>
 #include <sdm/map.h>
 #include <sdm/sampling_bound.h>
-#include <sdm/self_intersections.h>
-#include <sdm/temporal_maps.h>
+#include <sdm/sites.h>
+#include <sdm/statistics.h>
 
 #include "memory/all_or_nothing.h"
 #include "support/shapes.h"

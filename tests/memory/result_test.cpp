@@ -1,10 +1,8 @@
 // Calls that change nothing, when memory runs out: an error, and afterwards the right result.
 #include <gtest/gtest.h>
 #include <sdm/hausdorff.h>
-#include <sdm/io.h>
 #include <sdm/map.h>
-#include <sdm/sequence.h>
-#include <sdm/vertex_distances.h>
+#include <sdm/mesh_files.h>
 #include <sdm/volume.h>
 
 #include <fstream>

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 #include <sdm/error.h>
-#include <sdm/transform.h>
+#include <sdm/mesh_edit.h>
 
 #include <cmath>
 #include <random>

@@ -1,10 +1,9 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/execution.h>
 #include <sdm/mesh.h>
+#include <sdm/mesh_edit.h>
 #include <sdm/sites.h>
-#include <sdm/solid.h>
-#include <sdm/threads.h>
-#include <sdm/weld.h>
 
 #include <cmath>
 #include <random>

@@ -1,7 +1,7 @@
 // The first contacts of worlds that move, against those of every pair and against known times.
 #include <gtest/gtest.h>
+#include <sdm/execution.h>
 #include <sdm/sdm.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Worlds of which some bodies move, against worlds that are built anew and against single pairs.
 #include <gtest/gtest.h>
+#include <sdm/execution.h>
 #include <sdm/sdm.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Many bodies at once, against single pairs and single maps.
 #include <gmock/gmock.h>
+#include <sdm/execution.h>
 #include <sdm/sdm.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <cmath>

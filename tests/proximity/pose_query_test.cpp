@@ -1,7 +1,7 @@
 // One shape in many poses, against a ProximityQuery for each.
 #include <gmock/gmock.h>
+#include <sdm/execution.h>
 #include <sdm/sdm.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,18 +1,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/closest_points.h>
-#include <sdm/convex_hull.h>
 #include <sdm/error.h>
 #include <sdm/hausdorff.h>
 #include <sdm/map.h>
+#include <sdm/map_files.h>
 #include <sdm/measure.h>
+#include <sdm/mesh_edit.h>
 #include <sdm/proximity_query.h>
 #include <sdm/rays.h>
-#include <sdm/self_intersections.h>
-#include <sdm/shape_files.h>
-#include <sdm/sign.h>
-#include <sdm/thickness.h>
-#include <sdm/time_of_contact.h>
+#include <sdm/sites.h>
 
 #include <bit>
 #include <cmath>

@@ -1,7 +1,7 @@
 // The wall thickness: what is known of boxes and tubes, brute force, and what is refused.
 #include <gtest/gtest.h>
+#include <sdm/measure.h>
 #include <sdm/sdm.h>
-#include <sdm/thickness.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Known motions are recovered; what O2 does not determine is reported.
 #include <gmock/gmock.h>
 #include <sdm/align.h>
+#include <sdm/doubts.h>
 #include <sdm/error.h>
-#include <sdm/fit_check.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <algorithm>
 #include <bit>

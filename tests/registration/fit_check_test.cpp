@@ -1,7 +1,6 @@
 // Mirrored and scaled parts are recognised, and others are not.
 #include <gmock/gmock.h>
 #include <sdm/doubts.h>
-#include <sdm/fit_check.h>
 
 #include <cmath>
 #include <random>

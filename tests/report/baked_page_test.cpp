@@ -1,8 +1,8 @@
 // The page of `sdm bake`, and its models in three.js.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sdm/bake.h>
 #include <sdm/bake_files.h>
-#include <sdm/baked_geometry.h>
 #include <sdm/error.h>
 
 #include <cmath>

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/channels.h>
 #include <sdm/error.h>
+#include <sdm/map.h>
 #include <sdm/points.h>
 
 #include <array>

@@ -1,7 +1,7 @@
 // Tests of the parts of the simulations against their definitions.
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <sdm/closest_points.h>
 #include <sdm/error.h>
+#include <sdm/execution.h>
 #include <sdm/map.h>
-#include <sdm/threads.h>
 
 #include "geometry/vec.h"
 #include "scenes/scene.h"

@@ -1,8 +1,8 @@
 // The cloth of the scene `tear`: sites and surface follow its edits.
 #include <gtest/gtest.h>
 #include <sdm/closest_points.h>
+#include <sdm/execution.h>
 #include <sdm/surface.h>
-#include <sdm/threads.h>
 
 #include "geometry/vec.h"
 #include "scenes/scene.h"

@@ -2,9 +2,9 @@
 #include "search/branch_and_bound.h"
 
 #include <gtest/gtest.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
-#include <sdm/cancellation.h>
+#include <sdm/execution.h>
 
 #include <array>
 #include <atomic>

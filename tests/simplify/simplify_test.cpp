@@ -4,7 +4,7 @@
 #include <sdm/error.h>
 #include <sdm/hausdorff.h>
 #include <sdm/simplify.h>
-#include <sdm/vec.h>
+#include <sdm/types.h>
 
 #include <cmath>
 #include <limits>

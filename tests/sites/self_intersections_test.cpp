@@ -1,8 +1,7 @@
 // Intersections of the faces of a mesh, against CGAL and brute force.
 #include <gtest/gtest.h>
-#include <sdm/self_intersections.h>
-#include <sdm/solid.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
+#include <sdm/sites.h>
 
 #include <algorithm>
 #include <array>

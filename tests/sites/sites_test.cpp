@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
+#include <sdm/execution.h>
 #include <sdm/sites.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <cmath>

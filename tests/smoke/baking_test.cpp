@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/bake_files.h>
-#include <sdm/image.h>
+#include <sdm/mesh_attributes.h>
 #include <sdm/sdm.h>
 
 #include <algorithm>

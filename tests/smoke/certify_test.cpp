@@ -2,7 +2,7 @@
 // forms or independent bounds.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/report.h>
+#include <sdm/map_files.h>
 #include <sdm/sdm.h>
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 // arguments.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/image.h>
-#include <sdm/report.h>
+#include <sdm/bake_files.h>
+#include <sdm/map_files.h>
 #include <sdm/sdm.h>
 
 #include <algorithm>

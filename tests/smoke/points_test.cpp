@@ -1,7 +1,7 @@
 // Queries of points, rays and fields: one small case for each, against brute force or a closed form.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/closest_in_parts.h>
+#include <sdm/closest_points.h>
 #include <sdm/sdm.h>
 
 #include <algorithm>

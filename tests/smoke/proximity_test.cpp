@@ -2,8 +2,8 @@
 // or a closed form.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sdm/map_files.h>
 #include <sdm/sdm.h>
-#include <sdm/shape_files.h>
 
 #include <algorithm>
 #include <array>

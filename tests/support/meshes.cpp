@@ -1,6 +1,6 @@
 #include "support/meshes.h"
 
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include "scenes/placement.h"
 

@@ -1,9 +1,9 @@
 // The radii of samples and faces against random points of surfaces that bend, twist, shear, stretch and
 // crumple.
 #include <gtest/gtest.h>
+#include <sdm/execution.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/sdm.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/execution.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/sdm.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <set>

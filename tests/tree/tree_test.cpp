@@ -1,5 +1,5 @@
 #include <gmock/gmock.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <functional>
 #include <limits>

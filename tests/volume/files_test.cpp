@@ -1,7 +1,7 @@
 // Files of fields, read back.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/field_files.h>
+#include <sdm/map_files.h>
 #include <sdm/sdm.h>
 
 #include <cstring>

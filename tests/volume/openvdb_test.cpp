@@ -1,6 +1,6 @@
 // OpenVDB reads the files of fields, and its own level sets agree with them.
 #include <gtest/gtest.h>
-#include <sdm/field_files.h>
+#include <sdm/map_files.h>
 #include <sdm/sdm.h>
 
 #if defined(__GNUC__)

@@ -1,7 +1,7 @@
 // Clusters of adjacent faces with similar normals.
 #pragma once
 
-#include <sdm/progress.h>
+#include <sdm/execution.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Placing the shapes of charts in the atlas.
 #pragma once
 
-#include <sdm/progress.h>
+#include <sdm/execution.h>
 
 #include <cstdint>
 #include <span>

@@ -1,6 +1,5 @@
-#include <sdm/baked_geometry.h>
+#include <sdm/bake.h>
 #include <sdm/error.h>
-#include <sdm/supersampling.h>
 
 #include <algorithm>
 #include <string>

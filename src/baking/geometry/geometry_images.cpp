@@ -1,4 +1,4 @@
-#include <sdm/baked_geometry.h>
+#include <sdm/bake.h>
 #include <sdm/error.h>
 
 #include <algorithm>

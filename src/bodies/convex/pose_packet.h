@@ -1,7 +1,7 @@
 // Collisions of a convex solid in several poses at once.
 #pragma once
 
-#include <sdm/transform.h>
+#include <sdm/mesh_edit.h>
 
 #include <array>
 #include <cstddef>

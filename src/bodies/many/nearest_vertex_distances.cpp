@@ -1,5 +1,5 @@
+#include <sdm/map.h>
 #include <sdm/multi_body_query.h>
-#include <sdm/vertex_distances.h>
 
 #include <cmath>
 #include <limits>

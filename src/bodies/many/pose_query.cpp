@@ -1,5 +1,5 @@
 #include <sdm/error.h>
-#include <sdm/pose_query.h>
+#include <sdm/proximity_query.h>
 
 #include <algorithm>
 #include <array>

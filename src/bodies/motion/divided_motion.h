@@ -1,7 +1,7 @@
 // A motion of a body, divided into that of its centre and a rotation about it.
 #pragma once
 
-#include <sdm/time_of_contact.h>
+#include <sdm/proximity_query.h>
 
 #include "mesh/similarity.h"
 

@@ -1,7 +1,7 @@
 // Two bodies at any time of their motions, and their first contact.
 #pragma once
 
-#include <sdm/time_of_contact.h>
+#include <sdm/proximity_query.h>
 
 #include <array>
 #include <atomic>

@@ -1,7 +1,7 @@
 // The faces of A that may hold the largest distance, given the distances of vertices.
 #pragma once
 
-#include <sdm/progress.h>
+#include <sdm/execution.h>
 
 #include <cstdint>
 #include <span>

@@ -1,7 +1,7 @@
 // The largest distance of the points of A, or whether it exceeds a limit.
 #pragma once
 
-#include <sdm/progress.h>
+#include <sdm/execution.h>
 
 #include <cstddef>
 #include <limits>

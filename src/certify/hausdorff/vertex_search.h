@@ -2,7 +2,7 @@
 // larger.
 #pragma once
 
-#include <sdm/progress.h>
+#include <sdm/execution.h>
 
 #include <algorithm>
 #include <span>

@@ -1,7 +1,7 @@
 // Integrals and distributions of linear functions on triangles.
 #pragma once
 
-#include <sdm/progress.h>
+#include <sdm/execution.h>
 #include <sdm/types.h>
 
 #include <array>

@@ -1,7 +1,7 @@
 #include <sdm/error.h>
+#include <sdm/execution.h>
 #include <sdm/hausdorff.h>
 #include <sdm/metrics.h>
-#include <sdm/progress.h>
 #include <sdm/sites.h>
 
 #include <algorithm>

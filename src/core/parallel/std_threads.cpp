@@ -4,7 +4,7 @@
 // the parts that workers have begun are done, on the jobs within these; it does no other work meanwhile,
 // which might need a lock that it holds. Idle workers join the job that was added last. A part waits only for
 // parts that threads are working on, so that nothing waits in a circle.
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <algorithm>
 #include <atomic>

@@ -1,5 +1,5 @@
 // The loops of core/parallel.h on oneTBB.
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>

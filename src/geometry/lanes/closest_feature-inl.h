@@ -14,7 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sdm::lanes::HWY_NAMESPACE {
 
-// Products and sums that are rounded one by one, as in sdm/vec.h.
+// Products and sums that are rounded one by one, as in sdm/types.h.
 HWY_INLINE Vec plain_dot(const Vec3v& a, const Vec3v& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <sdm/field_files.h>
+#include <sdm/map_files.h>
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <sdm/tolerance_table.h>
+#include <sdm/map_files.h>
 
 #include <algorithm>
 #include <array>

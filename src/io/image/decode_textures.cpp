@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 #include <sdm/bake_files.h>
 #include <sdm/error.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <cstdint>
 #include <functional>

@@ -1,5 +1,6 @@
+#include <sdm/bake_files.h>
 #include <sdm/error.h>
-#include <sdm/image.h>
+#include <sdm/mesh_attributes.h>
 
 #include <new>
 #include <sstream>

@@ -2,10 +2,9 @@
 #include "core/memory.h"
 #include "io/image/exr_planes.h"
 
-#include <sdm/channels.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
-#include <sdm/report.h>
+#include <sdm/map.h>
+#include <sdm/map_files.h>
 
 #include <algorithm>
 #include <array>

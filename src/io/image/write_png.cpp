@@ -7,7 +7,7 @@
 #include "io/image/pictures/png.h"
 #include "io/image/pictures/site_legend.h"
 
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/execution.h>
+#include <sdm/map_files.h>
 #include <sdm/summary.h>
-#include <sdm/threads.h>
 
 #include <algorithm>
 #include <array>

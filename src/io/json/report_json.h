@@ -1,25 +1,24 @@
-// Results as objects of JSON, made in one place for all outputs: sdm/report.h has their text, and the command
-// adds what only it knows. NaN and infinity are null once they are printed. Exported, as the command has
-// these functions from a shared library, too.
+// Results as objects of JSON, made in one place for all outputs: sdm/map_files.h has their text, and the
+// command adds what only it knows. NaN and infinity are null once they are printed. Exported, as the command
+// has these functions from a shared library, too.
 #pragma once
 
 #include <sdm/align.h>
-#include <sdm/api.h>
 #include <sdm/bounds.h>
 #include <sdm/doubts.h>
 #include <sdm/gl.h>
-#include <sdm/group_verdicts.h>
 #include <sdm/hausdorff.h>
-#include <sdm/islands.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_edit.h>
 #include <sdm/metrics.h>
 #include <sdm/multi_body_query.h>
 #include <sdm/names.h>
 #include <sdm/points.h>
 #include <sdm/proximity_query.h>
-#include <sdm/report.h>
 #include <sdm/simplify.h>
 #include <sdm/tolerance.h>
-#include <sdm/transform.h>
+#include <sdm/types.h>
+#include <sdm/verdict.h>
 #include <sdm/volume.h>
 
 #include <cstddef>

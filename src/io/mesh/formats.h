@@ -2,7 +2,7 @@
 // does not name the file.
 #pragma once
 
-#include <sdm/tessellation.h>
+#include <sdm/mesh.h>
 
 #include <filesystem>
 #include <string_view>

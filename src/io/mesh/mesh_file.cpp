@@ -1,7 +1,7 @@
 #include "io/mesh/mesh_file.h"
 
 #include <fmt/format.h>
-#include <sdm/uv_tiles.h>
+#include <sdm/mesh_attributes.h>
 
 #include <algorithm>
 #include <cmath>

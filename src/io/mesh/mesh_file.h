@@ -1,7 +1,7 @@
 // What is kept of the polygons of a mesh file.
 #pragma once
 
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include "io/mesh/polygons/polygon_mesh.h"
 

@@ -1,6 +1,6 @@
 #include "io/mesh/ply_attributes.h"
 
-#include <sdm/image.h>
+#include <sdm/mesh_attributes.h>
 
 #include <algorithm>
 #include <string>

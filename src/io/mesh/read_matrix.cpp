@@ -1,7 +1,7 @@
 // 4×4 matrices of affine maps: text, NPY, or the JSON of an alignment.
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>

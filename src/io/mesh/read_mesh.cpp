@@ -1,4 +1,4 @@
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include <new>
 #include <span>

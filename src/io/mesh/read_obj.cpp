@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <sdm/image.h>
+#include <sdm/mesh_attributes.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // The polygons of a mesh file of any format.
 #pragma once
 
-#include <sdm/tessellation.h>
+#include <sdm/mesh.h>
 
 #include <filesystem>
 #include <string_view>

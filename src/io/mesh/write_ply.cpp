@@ -1,5 +1,5 @@
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 
 #include <new>
 #include <string>

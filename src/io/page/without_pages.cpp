@@ -1,6 +1,6 @@
 #include <sdm/bake_files.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 #include <sdm/points.h>
 
 #include "io/page/player/player_page.h"

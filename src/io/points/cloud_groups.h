@@ -1,8 +1,9 @@
 // The points of a cloud by the named groups of their closest faces.
 #pragma once
 
-#include <sdm/group_verdicts.h>
-#include <sdm/sign.h>
+#include <sdm/sites.h>
+#include <sdm/tolerance.h>
+#include <sdm/verdict.h>
 
 #include <cstdint>
 #include <span>

@@ -1,10 +1,9 @@
-#include <sdm/along.h>
 #include <sdm/closest_points.h>
 #include <sdm/error.h>
-#include <sdm/facing.h>
+#include <sdm/execution.h>
+#include <sdm/measure.h>
 #include <sdm/points.h>
-#include <sdm/sign.h>
-#include <sdm/threads.h>
+#include <sdm/sites.h>
 
 #include <algorithm>
 #include <cmath>

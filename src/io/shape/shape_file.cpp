@@ -1,4 +1,4 @@
-#include <sdm/shape_files.h>
+#include <sdm/map_files.h>
 
 #include <ios>
 #include <utility>

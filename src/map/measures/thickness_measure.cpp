@@ -1,7 +1,7 @@
 #include "map/measures/thickness_measure.h"
 
 #include <sdm/error.h>
-#include <sdm/thickness.h>
+#include <sdm/measure.h>
 
 #include <algorithm>
 #include <cmath>

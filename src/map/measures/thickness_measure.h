@@ -1,8 +1,8 @@
 // The thickness of a solid at a point of its surface, and as a measure.
 #pragma once
 
+#include <sdm/measure.h>
 #include <sdm/rays.h>
-#include <sdm/thickness.h>
 
 #include <array>
 #include <cstddef>

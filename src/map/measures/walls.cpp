@@ -1,8 +1,8 @@
 #include "map/measures/walls.h"
 
 #include <sdm/error.h>
+#include <sdm/measure.h>
 #include <sdm/mesh_edit.h>
-#include <sdm/thickness.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // The walls of a solid at a sample of its surface, for all that is asked of them.
 #pragma once
 
+#include <sdm/measure.h>
 #include <sdm/sites.h>
-#include <sdm/thickness.h>
 
 #include <cstddef>
 #include <optional>

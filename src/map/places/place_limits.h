@@ -1,8 +1,7 @@
 // The tolerances of the faces of a surface, and the limits beyond which distances belong to places.
 #pragma once
 
-#include <sdm/group_verdicts.h>
-#include <sdm/part_statistics.h>
+#include <sdm/mesh_attributes.h>
 #include <sdm/places.h>
 #include <sdm/tolerance.h>
 

@@ -1,4 +1,4 @@
-#include <sdm/combined_statistics.h>
+#include <sdm/statistics.h>
 
 #include <cmath>
 #include <new>

@@ -1,6 +1,7 @@
 #include <sdm/error.h>
-#include <sdm/group_verdicts.h>
-#include <sdm/part_statistics.h>
+#include <sdm/mesh_attributes.h>
+#include <sdm/statistics.h>
+#include <sdm/tolerance.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,5 @@
 #include <sdm/error.h>
 #include <sdm/match.h>
-#include <sdm/transfer.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
-#include <sdm/certified_verdict.h>
+#include <sdm/measure.h>
 #include <sdm/summary.h>
-#include <sdm/thickness.h>
+#include <sdm/verdict.h>
 
 #include <algorithm>
 #include <limits>

@@ -1,7 +1,7 @@
 // What the verdicts on a surface and on its groups share.
 #pragma once
 
-#include <sdm/certified_verdict.h>
+#include <sdm/verdict.h>
 
 #include <cstdint>
 #include <optional>

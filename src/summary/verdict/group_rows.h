@@ -2,7 +2,8 @@
 #pragma once
 
 #include <sdm/error.h>
-#include <sdm/group_verdicts.h>
+#include <sdm/tolerance.h>
+#include <sdm/verdict.h>
 
 #include <algorithm>
 #include <cstdint>

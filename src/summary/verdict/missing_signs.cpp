@@ -1,6 +1,6 @@
 #include "summary/verdict/missing_signs.h"
 
-#include <sdm/vertex_distances.h>
+#include <sdm/map.h>
 
 #include <algorithm>
 #include <cmath>

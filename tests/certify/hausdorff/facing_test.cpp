@@ -1,7 +1,7 @@
 // Hausdorff distances to the faces that face the same way.
 #include <gtest/gtest.h>
 #include <sdm/hausdorff.h>
-#include <sdm/tolerance_proof.h>
+#include <sdm/tolerance.h>
 
 #include <algorithm>
 #include <array>

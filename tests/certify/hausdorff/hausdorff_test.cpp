@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sdm/closest_points.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <cmath>
 #include <limits>

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
+#include <sdm/execution.h>
 #include <sdm/metrics.h>
-#include <sdm/threads.h>
 
 #include <cmath>
 #include <map>

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <algorithm>
 #include <array>

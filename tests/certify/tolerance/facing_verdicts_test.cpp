@@ -1,11 +1,11 @@
 // Verdicts on distances to the faces that face the same way: of all points, not only of samples.
 #include <gtest/gtest.h>
-#include <sdm/atlas.h>
-#include <sdm/certified_verdict.h>
-#include <sdm/group_verdicts.h>
 #include <sdm/hausdorff.h>
+#include <sdm/map.h>
 #include <sdm/summary.h>
-#include <sdm/vertex_distances.h>
+#include <sdm/surface.h>
+#include <sdm/tolerance.h>
+#include <sdm/verdict.h>
 
 #include <algorithm>
 #include <cmath>

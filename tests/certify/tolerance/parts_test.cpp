@@ -1,9 +1,9 @@
 // Verdicts on mechanical and free-form parts, good and with a defect, at a resolution at which maps alone do
 // not decide. The truth is computed by CGAL.
 #include <gtest/gtest.h>
-#include <sdm/certified_verdict.h>
+#include <sdm/map.h>
 #include <sdm/sampling_bound.h>
-#include <sdm/vertex_distances.h>
+#include <sdm/verdict.h>
 
 #include "support/judged_parts.h"
 #include "support/shapes.h"

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
-#include <sdm/tolerance_proof.h>
+#include <sdm/tolerance.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // Colours for distances.
 #pragma once
 
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <cstdint>
 #include <optional>

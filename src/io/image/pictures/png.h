@@ -3,7 +3,7 @@
 
 #include "io/image/pictures/color_scale.h"
 
-#include <sdm/image.h>
+#include <sdm/mesh_attributes.h>
 
 #include <cstdint>
 #include <functional>

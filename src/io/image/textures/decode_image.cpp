@@ -1,6 +1,7 @@
 #include <fmt/format.h>
+#include <sdm/bake_files.h>
 #include <sdm/error.h>
-#include <sdm/image.h>
+#include <sdm/mesh_attributes.h>
 
 #include <algorithm>
 #include <mutex>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <sdm/error.h>
-#include <sdm/image.h>
+#include <sdm/mesh_attributes.h>
 
 #include <cstddef>
 #include <cstdint>

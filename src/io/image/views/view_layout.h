@@ -1,7 +1,7 @@
 // How six views of a part are placed in a picture, at one scale.
 #pragma once
 
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <array>
 #include <cstdint>

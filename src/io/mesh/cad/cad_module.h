@@ -3,7 +3,7 @@
 // start of every command.
 #pragma once
 
-#include <sdm/vec.h>
+#include <sdm/types.h>
 
 #include <array>
 #include <cstddef>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <sdm/mesh.h>
-#include <sdm/sequence.h>
+#include <sdm/mesh_files.h>
 
 #include <cstdint>
 #include <span>

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <sdm/sequence.h>
+#include <sdm/mesh_files.h>
 
 #include <array>
 #include <cmath>

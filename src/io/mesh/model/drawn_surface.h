@@ -1,7 +1,7 @@
 // A surface with textures, as glTF.
 #pragma once
 
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 #include <tiny_gltf.h>
 
 #include <span>

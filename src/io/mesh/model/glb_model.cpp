@@ -1,6 +1,6 @@
 #include "io/mesh/model/glb_model.h"
 
-#include <sdm/units.h>
+#include <sdm/mesh.h>
 
 #include <numbers>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 #include <sdm/version.h>
 #include <tiny_gltf.h>
 

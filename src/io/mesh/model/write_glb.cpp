@@ -13,8 +13,8 @@
 #include "io/mesh/model/shading_normals.h"
 
 #include <sdm/error.h>
-#include <sdm/io.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
+#include <sdm/map_files.h>
 #include <sdm/version.h>
 #include <tiny_gltf.h>
 

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
+#include <sdm/mesh_files.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>

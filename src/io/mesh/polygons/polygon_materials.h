@@ -1,7 +1,7 @@
 // The materials of polygons.
 #pragma once
 
-#include <sdm/material.h>
+#include <sdm/mesh_attributes.h>
 
 #include <cstdint>
 #include <filesystem>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <sdm/mesh.h>
-#include <sdm/tessellation.h>
 
 #include <cstdint>
 #include <map>

@@ -1,8 +1,8 @@
 // What files of vertices have for each vertex beside its position.
 #pragma once
 
-#include <sdm/channels.h>
-#include <sdm/io.h>
+#include <sdm/map.h>
+#include <sdm/mesh_files.h>
 
 #include <filesystem>
 #include <span>

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_files.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 // VTK PolyData: VTK file formats, "XML file formats", serial PolyData with appended base64 data.
 #include <fmt/format.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
+#include <sdm/mesh_files.h>
 
 #include <cstdint>
 #include <new>

@@ -1,6 +1,6 @@
 #include <sdm/bake_files.h>
 #include <sdm/error.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
 
 #include <algorithm>
 #include <new>

@@ -1,6 +1,6 @@
 #include "io/page/player/animated_model.h"
 
-#include <sdm/image.h>
+#include <sdm/mesh_attributes.h>
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #include "io/page/player/sequence_player.h"
 
 #include <sdm/error.h>
-#include <sdm/threads.h>
-#include <sdm/vertex_distances.h>
+#include <sdm/execution.h>
+#include <sdm/map.h>
 
 #include <algorithm>
 #include <cmath>

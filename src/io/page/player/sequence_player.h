@@ -3,11 +3,11 @@
 /// Threads: an object is used by one thread at a time.
 #pragma once
 
-#include <sdm/api.h>
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 #include <sdm/mesh.h>
 #include <sdm/sites.h>
 #include <sdm/tolerance.h>
+#include <sdm/types.h>
 
 #include <array>
 #include <cstddef>

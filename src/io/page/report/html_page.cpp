@@ -1,8 +1,8 @@
 #include "io/page/report/html_page.h"
 
 #include <sdm/error.h>
-#include <sdm/thickness.h>
-#include <sdm/threads.h>
+#include <sdm/execution.h>
+#include <sdm/measure.h>
 
 #include <algorithm>
 #include <utility>

@@ -1,7 +1,7 @@
 // The data of report.html.
 #pragma once
 
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <nlohmann/json.hpp>
 #include <span>

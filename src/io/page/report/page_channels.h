@@ -1,7 +1,7 @@
 // The channels of a map that report.html shows.
 #pragma once
 
-#include <sdm/channels.h>
+#include <sdm/map.h>
 
 #include <cstdint>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // A page with its data in it.
 #pragma once
 
-#include <sdm/io.h>
+#include <sdm/map_files.h>
 
 #include <nlohmann/json.hpp>
 #include <ostream>

@@ -1,7 +1,7 @@
 // The other mesh, as report.html shows it.
 #pragma once
 
-#include <sdm/coverage.h>
+#include <sdm/doubts.h>
 #include <sdm/mesh.h>
 
 #include <nlohmann/json.hpp>

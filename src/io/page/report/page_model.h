@@ -2,7 +2,7 @@
 #pragma once
 
 #include <sdm/map.h>
-#include <sdm/part_statistics.h>
+#include <sdm/mesh_attributes.h>
 #include <sdm/surface.h>
 
 #include <nlohmann/json.hpp>

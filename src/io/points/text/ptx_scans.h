@@ -1,7 +1,7 @@
 // Leica PTX: scans, each on a grid of directions, with their poses.
 #pragma once
 
-#include <sdm/transform.h>
+#include <sdm/mesh_edit.h>
 
 #include <cstdint>
 #include <string_view>

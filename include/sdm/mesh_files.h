@@ -1,23 +1,101 @@
-/// Deforming meshes in files: positions for each frame, and fixed triangles unless asked for. All functions
-/// throw an sdm::Error that names the file, the frame and the fault.
+/// Meshes in files: reading and writing them, and sequences of deforming ones. Every function throws an
+/// sdm::Error that names the file and the fault.
 ///
-/// Threads: an object is used by one thread at a time; different objects may be used concurrently.
+/// Deforming meshes in files: positions for each frame, and fixed triangles unless asked for. Errors name the
+/// frame, too.
+///
+/// Threads: the functions may be called concurrently, unless two of them write the same file; an object is
+/// used by one thread at a time.
 #pragma once
 
-#include <sdm/api.h>
 #include <sdm/mesh.h>
+#include <sdm/mesh_attributes.h>
 #include <sdm/mesh_edit.h>
 #include <sdm/options.h>
-#include <sdm/tessellation.h>
+#include <sdm/types.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <tuple>
+#include <vector>
 
 namespace sdm {
+
+/// Reads OBJ, PLY, STL, OFF, glTF/GLB, 3DS, or STEP and IGES if sdm was built with SDM_BUILD_CAD. The format
+/// is detected from the content, then from the extension. Polygons are triangulated, all meshes of the file
+/// are merged into one, and glTF's nodes, instances, default morph weights and skins are applied. Vertices
+/// used by faces keep their order; bit-identical positions are welded. The result is valid in the sense of
+/// validate(). It has texture coordinates if every corner of the file has; what else was left out is in
+/// MeshFile::notes. STEP and IGES are tessellated as MeshFileOptions has it, in millimetres, see
+/// MeshFile::tessellation; one such file is read at a time, and a deflection or an angle that is not positive
+/// is an error, too.
+[[nodiscard]] SDM_API Mesh read_mesh(const std::filesystem::path& file);
+
+/// The vertices and polygons of a file as they are stored, before welding and triangulation. Those of the
+/// nodes of glTF are transformed and concatenated; every corner of a triangle of STL is a vertex.
+struct FileVertices {
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> mesh_vertex;  ///< of each, the vertex of the mesh; kNone if no face uses it
+  std::vector<std::uint32_t> corners;      ///< the vertex of each corner, polygon after polygon
+  std::vector<std::uint32_t> ends;         ///< for each polygon, one past its last corner
+};
+
+/// A mesh, and what its file says about it.
+struct MeshFile {
+  Mesh mesh;                     ///< as of read_mesh()
+  std::vector<FaceNames> names;  ///< one entry for each kind that the file has
+  /// What was left out or may be wrong, a sentence each: texture coordinates that some corners lack, a count
+  /// that is not that of the file, text without its end.
+  std::vector<std::string> notes{};
+  std::optional<FileVertices> vertices{};
+  std::optional<Tessellation> tessellation{};  ///< of STEP and IGES
+  std::string xxh3{};                          ///< as of file_xxh3()
+  std::vector<MeshAttribute> attributes{};     ///< of glTF, OBJ and PLY
+  std::vector<Material> materials{};           ///< of glTF, and of the MTL files of OBJ
+  std::vector<TextureFile> textures{};         ///< that these refer to
+  /// The number of each triangle's material, or kNone; empty if there are no materials.
+  std::vector<std::uint32_t> face_materials{};
+};
+
+/// Options of read_mesh_file().
+struct MeshFileOptions {
+  bool vertices = false;  ///< keep the vertices of the file: up to six times the memory of the mesh for STL
+  TessellationOptions tessellation{};  ///< of STEP and IGES; other files consist of polygons
+  bool attributes = false;             ///< read MeshFile::attributes, materials and textures
+};
+
+/// Reads a mesh as read_mesh() does, with the names of its faces.
+[[nodiscard]] SDM_API MeshFile read_mesh_file(const std::filesystem::path& file,
+                                              const MeshFileOptions& options = {});
+
+/// Returns XXH3 with 64 bits of the bytes of a file, as 16 hexadecimal digits: what `xxhsum -H3` prints.
+/// Files that it refers to, such as the .bin of glTF, do not take part. Cost: linear, less than that of
+/// reading.
+[[nodiscard]] SDM_API std::string file_xxh3(const std::filesystem::path& file);
+
+/// The names of the formats that read_mesh supports, separated by commas, for messages and help texts.
+[[nodiscard]] SDM_API std::string mesh_format_names();
+
+/// Reads a 4×4 matrix, row by row, with the last row 0 0 0 1: 16 numbers as text, separated by spaces, commas
+/// or line ends, with comments after '#'; an NPY array of shape (4, 4), float32 or float64; or JSON with the
+/// rows as "matrix", such as alignment.json, or the same in an object "alignment", as in report.json. Also
+/// throws sdm::Error for numbers that are not finite, and for a singular matrix.
+[[nodiscard]] SDM_API Transform read_matrix(const std::filesystem::path& file);
+
+/// Writes the positions, in double precision, the triangles and, if the mesh has them, the texture
+/// coordinates of corners as binary PLY; read_mesh returns them bit-identical.
+SDM_API void write_ply(const std::filesystem::path& file, const Mesh& mesh);
+
+/// Writes a mesh in the format that the extension names: .ply as write_ply() does; .obj with all digits;
+/// .stl, binary, without texture coordinates; .glb. The latter two keep positions, and GLB texture
+/// coordinates, in single precision. Also throws sdm::Error for another extension.
+SDM_API void write_mesh(const std::filesystem::path& file, const Mesh& mesh);
+/// Whether write_mesh() rounds positions to float. Throws sdm::Error as it does for another extension.
+[[nodiscard]] SDM_API bool is_written_in_single_precision(const std::filesystem::path& file);
 
 /// Options of a MeshSequence.
 struct SequenceOptions {
