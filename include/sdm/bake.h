@@ -64,7 +64,7 @@ enum class SampleKind : std::uint8_t {
 /// may have, or more samples.
 [[nodiscard]] SDM_API AtlasOptions sample_layout(const AtlasOptions& texels, std::uint32_t side);
 
-// The functions below throw sdm::Error unless the samples are whole rows of texels, and if there is not
+// The next two throw sdm::Error unless the samples are whole rows of texels, and if there is not
 // enough memory. Their cost is linear in samples, all cores.
 
 /// Returns the means of samples of `components` numbers each. Those that are not all finite count as none.
@@ -267,7 +267,7 @@ struct BakeRequest {
   std::optional<std::uint32_t> rows{};      ///< the same
   std::uint32_t gutter = 1;                 ///< the same
   std::optional<AtlasKind> atlas{};         ///< nothing: as bake_atlas() chooses
-  std::uint32_t samples = 1;                ///< in each texel, a square up to 64; see supersampling.h
+  std::uint32_t samples = 1;                ///< in each texel, a square up to 64; see SampleGrid
   std::optional<MatchMethod> match{};       ///< nothing: `facing` if an angle is given, else `closest`
   std::optional<double> facing{};           ///< as of MatchOptions
   std::optional<double> cage{};             ///< the same
@@ -355,7 +355,7 @@ inline constexpr auto kOptions<BakeRequest> = std::tuple{
 /// What ambient occlusion is asked for.
 [[nodiscard]] SDM_API AmbientOcclusionOptions occlusion_options(const BakeRequest& request);
 
-// All functions return values for each texel, in rows as of TexelMatches; texels without a point hold NaN,
+// All matched_…() return values for each texel, in rows as of TexelMatches; texels without a point hold NaN,
 // until fill_texels(). They throw sdm::Error if the matches are not from this surface to these sites, or if
 // there is not enough memory; Cancelled. Their cost is linear in texels, all cores, unless stated otherwise.
 

@@ -1,5 +1,5 @@
-/// The files of baking: pictures of textures, decoded and encoded, and models that contain them. Every
-/// function throws an sdm::Error that names the file and the fault.
+/// The files of baking: pictures of textures, decoded and encoded, and models that contain them. Those
+/// of files throw an sdm::Error that names the file and the fault.
 ///
 /// Threads: the functions may be called concurrently, unless two of them write the same file.
 #pragma once

@@ -39,12 +39,7 @@ struct ClosestPointOptions {
 
 template <>
 inline constexpr auto kOptions<ClosestPointOptions> =
-    std::tuple{Option{.name = "max_distance",
-                      .member = &ClosestPointOptions::max_distance,
-                      .text = "Points farther than this have no site.",
-                      .range = kPositiveOrInfinite,
-                      .unit = "length",
-                      .value = "D"}};
+    std::tuple{max_distance_option<ClosestPointOptions>("Points farther than this have no site.")};
 
 /// Returns the closest point of O2 to each of `points`, which may be in any order; `distance` is unsigned.
 /// Throws sdm::Error for a coordinate that is NaN or beyond 1e37, for a max_distance that is not positive,

@@ -1,10 +1,5 @@
-/// What withholds a PASS: signs that what was measured is not what was meant.
-///
-/// How much of O2 was measured.
-///
-/// Whether an aligned O1 fits O2 better mirrored, or at another scale.
-///
-/// Whether O1 fits O2 far better in another unit of length.
+/// What withholds a PASS: signs that what was measured is not what was meant. How much of O2 was measured,
+/// and whether O1 fits O2 better mirrored, at another scale, or in another unit of length.
 ///
 /// Threads: the functions may be called concurrently, also with the same Sites.
 #pragma once

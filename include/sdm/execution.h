@@ -1,7 +1,5 @@
 /// How calls run: their progress, their cancellation, and the threads that they may use.
 ///
-/// Cancellation of every call of the library, whether or not it reports progress.
-///
 /// Threads: a CancelScope applies to the thread that made it, and to the threads that work for its calls.
 /// Limits of threads may be set by several threads; the smallest of them is in force.
 #pragma once

@@ -1,17 +1,6 @@
 /// The surface distance map: at every sample of O1, which are the texels of its atlas and one point of each
 /// face without one, the distance to O2; the same at vertices, and the channels that are read from a map.
 ///
-/// Which distance a map or a cloud states.
-///
-/// Parts of a surface distance map: for programs that divide a map among processes, or into steps between
-/// which they do something else.
-///
-/// The table of channels: what a map has at each texel, a row for each array.
-///
-/// map.exr and the choice of its layers, the arrays of the Python package, the values that report.html shows
-/// and the columns of the files of vertices are made from this table. docs/design/house.md describes how to
-/// add a row.
-///
 /// Threads: the functions may be called concurrently, also with the same Surface and Sites, if the maps that
 /// they write differ.
 #pragma once
@@ -172,6 +161,9 @@ SDM_API void compute_map(const Surface& surface, const Sites& sites, const MapOp
 /// Cost: linear.
 [[nodiscard]] SDM_API std::vector<std::uint8_t> boundary_mask(const Sites& sites, const DistanceMap& map);
 
+// Parts of a map: for programs that divide it among processes, or into steps between which they do something
+// else.
+
 /// A range of the samples of a surface, by their places in Surface::sample_texels().
 struct SampleRange {
   std::size_t first = 0, count = 0;
@@ -211,6 +203,10 @@ SDM_API void compute_samples(const Surface& surface, const Sites& sites, const M
 /// no sign there. Errors and cost as of closest_points().
 [[nodiscard]] SDM_API std::vector<std::uint8_t> boundary_vertices(const Mesh& mesh, const Sites& sites,
                                                                   MapOptions options = {});
+
+// The table of channels: what a map has at each texel, a row for each array. map.exr and the choice of its
+// layers, the arrays of the Python package, the values that report.html shows and the columns of the files of
+// vertices are made from it. docs/design/house.md describes how to add a row.
 
 namespace map {
 class TexelBlock;

@@ -1,5 +1,5 @@
 /// Writing maps and what belongs to them: EXR, pictures, models, pages, report.json and distance fields;
-/// stored shapes, and tables of tolerances. Every function throws an sdm::Error that names the file and the
+/// stored shapes, and tables of tolerances. Those of files throw an sdm::Error that names the file and the
 /// fault.
 ///
 /// report.json is the one form in which files, pages and programs get a Summary. Its keys are documented in
@@ -313,7 +313,7 @@ struct MapReport {
 /// Returns the value of `tessellation`.
 [[nodiscard]] SDM_API std::string tessellation_json(const Tessellation& tessellation);
 
-/// The names and extensions of the formats, for messages and help texts.
+/// The names and extensions of the formats of write_field(), for messages and help texts.
 [[nodiscard]] SDM_API std::string field_format_names();
 /// Throws sdm::Error unless the file has the extension of a format (in capitals or not), before there is a
 /// field to write.

@@ -189,7 +189,7 @@ inline constexpr auto kOptions<TransferOptions> = std::tuple{
                    "of a chart does not blend in a background."}};
 
 /// Returns the values of the array, a row for each texel of the map, at the texel's closest point on O2: that
-/// of point_on_face() or, for maps along normals and of thickness, the end of the vector. Values are
+/// of point_on_face() or, for maps along lines and of thickness, the end of the vector. Values are
 /// interpolated in double and stored in float. Texels that a face owns but that have no distance hold NaN; so
 /// do, unless they are filled, those that no face owns.
 ///

@@ -1,10 +1,6 @@
 /// Measures: what is measured at the samples of a surface. Besides the closest point (sdm/map.h): along a
 /// line, and the wall thickness; and any of all, of which programs choose while they run.
 ///
-/// The distance to O2 along a line: the normal of O1, or a direction such as the vertical.
-///
-/// The wall thickness of a part, at every texel of its atlas.
-///
 /// Threads: the functions may be called concurrently, also with the same Surface and Sites.
 #pragma once
 
@@ -32,7 +28,7 @@
 
 namespace sdm {
 
-/// A measure (sdm/measure.h): the distance to the nearest point of O2 on the line through the sample, to both
+/// A measure: the distance to the nearest point of O2 on the line through the sample, to both
 /// sides, among the faces that face the same way as the sample. With m, the normal of the sample's face, and
 /// u, the unit vector along the line, these are the faces whose normal n has
 ///   n·m > 0                   along normals (u = m)
@@ -98,7 +94,7 @@ enum class ThicknessMethod : std::uint8_t {
 template <>
 inline constexpr std::array kWords<ThicknessMethod>{"ball", "ray"};
 
-/// A measure (sdm/measure.h): the thickness of a solid.
+/// A measure: the thickness of a solid.
 ///
 /// The ray starts at the texel's surface point and ends at the first face whose outward normal has a product
 /// with it above 1e-12: faces next to the point, which it touches or enters, do not end it. The ball that

@@ -1,8 +1,5 @@
-/// Triangle meshes: any triangle soup, open or closed, manifold or not.
-///
-/// How the surfaces of a CAD file became triangles.
-///
-/// Units of length by their names.
+/// Triangle meshes: any triangle soup, open or closed, manifold or not; how those of CAD files were made, and
+/// units of length.
 ///
 /// Threads: plain values; the functions may be called concurrently, also with the same mesh.
 #pragma once

@@ -1,14 +1,12 @@
-/// Other meshes of a mesh: transformed, edited, welded, its convex hull, without its islands.
-///
-/// Changes of a mesh's topology that keep the numbers of all that stays.
+/// Meshes made from a mesh: transformed, edited, welded, its convex hull, or without islands.
 ///
 /// Joining boundary edges that coincide but for rounding, as of CAD models whose faces were written one by
 /// one.
 ///
 /// Islands: small connected components of a mesh, such as the floating specks of a scan.
 ///
-/// Threads: plain values; the functions may be called concurrently, also with the same mesh; apply() with
-/// different ones.
+/// Threads: plain values; the functions may be called concurrently, also with the same mesh; apply()
+/// and transform() with different ones.
 #pragma once
 
 #include <sdm/execution.h>

@@ -3,14 +3,6 @@
 /// with their documentation, JavaScript its options with their types, report.json its settings and the
 /// documentation its table; all check values by the same rule, and refuse them by the same sentence.
 ///
-/// What the values of options may be, and how they are read from text, written and checked: for
-/// sdm/options.h, which has what is declared of options.
-///
-/// What calls can be asked for, declared once: the options of a struct by name. The command has its options
-/// with their help from here, Python its keywords with their documentation, JavaScript its options with their
-/// types, report.json its settings and the documentation its table; all check values by the same rule, and
-/// refuse them by the same sentence.
-///
 /// Threads: the functions may be called concurrently.
 #pragma once
 

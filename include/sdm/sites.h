@@ -1,10 +1,5 @@
-/// The object that distances are measured to (O2): the open faces, open edges and vertices of a mesh.
-///
-/// Inside or outside of O2: the sign of a distance.
-///
-/// Whether a mesh intersects itself.
-///
-/// The solid that a closed mesh bounds.
+/// The object that distances are measured to (O2): the open faces, open edges and vertices of a mesh; what is
+/// inside of it, where it intersects itself, and the volume of the solid that it bounds.
 ///
 /// Threads: const functions of Sites may be called concurrently, as may all queries of them; nothing else may
 /// run beside refit() and edit().

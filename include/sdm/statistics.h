@@ -135,8 +135,8 @@ inline constexpr std::tuple kFields<DistanceHistogram>{
     Field{"above", &DistanceHistogram::above, "The fraction above the last one."},
     Field{"without_value", &DistanceHistogram::without_value, "The fraction without a distance."}};
 
-/// Throws sdm::Error unless lo < hi are finite and there is a bin, and if the map belongs to another surface.
-/// Cost: linear in texels, all cores.
+/// Throws sdm::Error unless the range is finite and increasing and there is a bin, and if the map belongs to
+/// another surface. Cost: linear in texels, all cores.
 [[nodiscard]] SDM_API DistanceHistogram distance_histogram(const Surface& surface, const DistanceMap& map,
                                                            const std::array<double, 2>& range,
                                                            std::size_t bins);

@@ -1,7 +1,5 @@
 /// The surface on which distances are measured (O1): a mesh with a texture atlas.
 ///
-/// How the faces of a mesh are laid out in a texture atlas.
-///
 /// Threads: const functions of a Surface may be called concurrently, as may all maps of it; nothing else may
 /// run beside refit() and edit().
 #pragma once
@@ -92,7 +90,7 @@ namespace surface {
 class SurfaceData;
 }
 
-/// O1: a mesh whose faces are laid out in a square texture; edits may add rows to it. Faces do not overlap,
+/// O1: a mesh whose faces are laid out in a texture of resolution() · rows() texels. Faces do not overlap,
 /// except for AtlasKind::uv, as the mesh has it.
 ///
 /// Atlas coordinates (u, v) are in texels, u to the right, v *down* from the upper left corner of the image,

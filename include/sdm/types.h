@@ -1,8 +1,6 @@
 /// Points and vectors with their arithmetic, triangles and boxes: what every header shares. Lengths are in
 /// the units of the mesh.
 ///
-/// Export macro of the public API. All other symbols of a shared library are hidden.
-///
 /// Threads: plain values.
 #pragma once
 
@@ -16,6 +14,7 @@
 #include <tuple>
 #include <type_traits>
 
+// Export macro of the public API. All other symbols of a shared library are hidden.
 #if defined(__GNUC__)
 #define SDM_API __attribute__((visibility("default")))
 #else

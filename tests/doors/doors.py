@@ -234,7 +234,7 @@ def plain(sentence: str, call: str) -> str:
     sentence = re.sub(r"(?<= is )\[(.*?)\](?=: it must)", lambda match: match[1].replace(", ", ","), sentence)
     sentence = sentence.replace("'", "").replace('"', "").replace("NaN", "nan")
     sentence = re.sub(r"(?<=unknown option )\S+?(?=;|$)", lambda match: re.sub(r"[-_]", "", match[0]).lower(), sentence)
-    sentence = re.sub(r"(?<=about is )[^:]*", lambda match: ",".join(str(float(x)) for x in match[0].split(",")), sentence)
+    sentence = re.sub(r"(?<=about is |along is )[^:]*,[^:]*", lambda match: ",".join(str(float(x)) for x in match[0].split(",")), sentence)
     return re.sub(r"^\w+\(\) has an ", "", sentence)
 
 

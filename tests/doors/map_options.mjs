@@ -1,4 +1,4 @@
-// The door of JavaScript for doors.py: node map_options.mjs MESH MESH, as map_options.cpp, with the package for npm in the folder
+// The door of JavaScript for doors.py: node map_options.mjs MESH MESH, as call_options.cpp for maps, with the package for npm in the folder
 // SDM_PACKAGE.
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 #include <sdm/execution.h>
 
-#include <sdm/execution.h>
-
 #include <array>
 #include <atomic>
 #include <random>
