@@ -154,5 +154,37 @@ TEST(IntegerPoses, HaveAllAnswers) {
   EXPECT_GT(touching, count / 2);
 }
 
+// A face of the cube has its centre on the slanted face of the tetrahedron, to the last digit inside or
+// outside. Its deepest points are on the edge of the cube from (1, 2, 0) to (1, 2, 1), as far from z = 0 as
+// from there.
+TEST(IntegerPoses, DepthOfAFaceWhoseCentreIsOnTheSurface) {
+  const std::vector<Shape> shapes = integer_shapes();
+  const Shape &cube = shapes[0], &tetrahedron = shapes[8];
+  const auto check = [&](const std::array<Transform, 2>& poses) {
+    ProximityQuery query(cube, tetrahedron);
+    for (int body = 0; body < 2; ++body) query.set_pose(body, poses[body]);
+    const double truth = 1 / (1 + std::sqrt(3.0));
+    const BoundedLength& depth = *query.penetration_depth();
+    EXPECT_LE(depth.lower, truth);
+    EXPECT_GE(depth.upper, truth);
+    EXPECT_NEAR(depth.value, truth, 2e-3);
+  };
+  for (const int seed : {8191, 10201}) {
+    const auto& [a, b, poses] = integer_pair(shapes, seed);
+    ASSERT_EQ(a, 0u);
+    ASSERT_EQ(b, 8u);
+    check(poses);
+  }
+  for (int turn = 0; turn < 64; ++turn) {
+    const Transform rotation =
+        Transform::rotation({90.0 * (turn % 4), 90.0 * (turn / 4 % 4), 90.0 * (turn / 16)});
+    const Box turned = box_of(cube, rotation);
+    check({Transform::translation(
+               {1 - std::round(turned.lo[0]), 2 - std::round(turned.lo[1]), -std::round(turned.lo[2])}) *
+               rotation,
+           Transform{}});
+  }
+}
+
 }  // namespace
 }  // namespace sdm::test

@@ -1,10 +1,12 @@
 #include "certify/depth/boundary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "certify/depth/face_distances.h"
+#include "geometry/point_triangle.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
@@ -75,31 +77,45 @@ BoundaryDistance boundary_distance(const shape::Body& solid, const Vec3& p, cons
   return distance_to_boundary(solid, p);
 }
 
-double bound_beyond_faces(const sites::SitesData& solid, const Corners& triangle, const shape::Ball& ball,
-                          double most) {
+double bound_beyond_faces(const shape::Body& solid, const Corners& triangle, const shape::Ball& ball,
+                          double distance, double most) {
+  const sites::SitesData& sites = internals(solid.sites());
+  const double rounding = 1e-12 / sites.frame.scale;
+  const double same = kUnitDistanceRounding / sites.frame.scale;
+  const bool touching = distance <= same;
   Box box;
-  for (const Vec3& p : triangle) extend(box, solid.frame.to_unit(p));
+  for (const Vec3& p : triangle) extend(box, sites.frame.to_unit(p));
   const tree::FloatBox around = tree::FloatBox::around(box);
-  const double rounding = 1e-12 / solid.frame.scale;
   double bound = 0;
   const auto near = [&](tree::Subtree subtree) {
-    return bound < most && squared_norm(gap(solid.tree.box(subtree.root), around)) == 0;
+    return bound < most && squared_norm(gap(sites.tree.box(subtree.root), around)) == 0;
   };
   const auto add = [&](std::uint32_t leaf) {
-    for (const std::uint32_t face : solid.tree.items_of(leaf)) {
-      const auto& [i, j, k] = solid.mesh.triangles[face];
-      const Corners corners{solid.mesh.positions[i], solid.mesh.positions[j], solid.mesh.positions[k]};
+    for (const std::uint32_t face : sites.tree.items_of(leaf)) {
+      const Corners corners = corners_of(sites.mesh, face);
       if (!triangles_intersect(triangle, corners)) continue;
-      if (solid.sliver[face]) bound = most;
-      const Vec3& n = solid.normals.face[face];
-      const double height = dot(n, ball.centre - corners[0]), side = height < 0 ? -1 : 1;
-      double beyond = 0;
-      for (const Vec3& p : triangle) beyond = std::max(beyond, -side * dot(n, p - corners[0]));
+      const bool flat = sites.sliver[face] == 0;
+      if (!flat) bound = most;
+      const Vec3& n = sites.normals.face[face];
+      double above = 0, below = 0;
+      for (const Vec3& p : triangle) {
+        const double height = dot(n, p - corners[0]);
+        above = std::max(above, height);
+        below = std::max(below, -height);
+      }
+      double height = dot(n, ball.centre - corners[0]);
+      double beyond = height < 0 ? above : below;
+      if (std::abs(height) <= same ||
+          (touching && closest_feature(ball.centre, corners, flat).squared <= same * same)) {
+        const Sides sides = solid.inside().sides().of_face(face);
+        beyond = sides == Sides::boundary ? below : sides == Sides::reversed ? above : std::max(above, below);
+        height = 0;
+      }
       if (beyond > rounding)
-        bound = std::max(bound, ball.radius * beyond / (beyond + side * height) + rounding);
+        bound = std::max(bound, ball.radius * beyond / (beyond + std::abs(height)) + rounding);
     }
   };
-  tree::visit(solid.tree, tree::InOrder{near, add});
+  tree::visit(sites.tree, tree::InOrder{near, add});
   return std::min(most, bound);
 }
 

@@ -85,12 +85,14 @@ struct BoundaryDistance {
 [[nodiscard]] std::optional<BoundaryPart> boundary_face(const shape::Body& solid,
                                                         const ClosestPoint& closest);
 
-/// Bounds b at the points p inside the solid of a triangle with the point c, which is outside. The way in the
-/// triangle from c to p passes through some face, at x, so b(p) ≤ |p − x|. As c and p are on different sides
-/// of its plane, |p − x| is the part of |p − c| that is beyond the plane. A triangle that no face intersects
-/// has no point inside. `triangle` is in the ball about c; stops at `most`.
-[[nodiscard]] double bound_beyond_faces(const sites::SitesData& solid, const Corners& triangle,
-                                        const shape::Ball& ball, double most);
+/// Bounds b at the points p inside the solid of a triangle with the point c, which is outside, at this
+/// distance from the surface. The way in the triangle from c to p passes through some face, at x, so b(p) ≤
+/// |p − x|. As c and p are on different sides of its plane, |p − x| is the part of |p − c| that is beyond the
+/// plane. A triangle that no face intersects has no point inside. Where c is in the plane or on the face to
+/// rounding, p is on the side inside the solid, and x may be c. `triangle` is in the ball about c; stops at
+/// `most`.
+[[nodiscard]] double bound_beyond_faces(const shape::Body& solid, const Corners& triangle,
+                                        const shape::Ball& ball, double distance, double most);
 
 /// Parts of the boundary, each found for a point of a body. They may bound triangles near that point, too.
 class KnownBoundary {

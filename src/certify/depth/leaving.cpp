@@ -182,8 +182,8 @@ double Leaving::bound_outside(const SurfacePart& part, const TrianglePart& trian
   if (mixed <= enough / scale_) return mixed;
   // The way to a point inside is at least as long outside as the surface is far from the centre.
   const auto& [a, b, c] = triangle.at;
-  return norm(step) + bound_beyond_faces(internals(solid_->sites()), {a + step, b + step, c + step},
-                                         {part.ball.centre + step, part.ball.radius},
+  return norm(step) + bound_beyond_faces(*solid_, {a + step, b + step, c + step},
+                                         {part.ball.centre + step, part.ball.radius}, distance,
                                          std::min(mixed, part.ball.radius - distance));
 }
 
