@@ -152,12 +152,12 @@ Result* new_report(const DistanceMap* map, const Surface* surface, const Sites* 
                    {{lines, bytes, numbers}, points(rest, vertices)},
                    {lower, upper, color_lo, color_hi, max_distance, colormap, up, words, words_size}});
     const bool of_itself = is_of_itself(map->measured.kind);
-    auto draft =
-        std::make_unique<Draft>(Draft{.page = io::html_page(*surface, *map, at_vertices,
-                                                            {.other = of_itself ? nullptr : &sites->mesh(),
-                                                             .up = up == 1 ? UpAxis::z : UpAxis::y,
-                                                             .thinnest = of_itself}),
-                                      .report = std::move(json)});
+    auto draft = std::make_unique<Draft>(
+        Draft{.page = io::html_page(*surface, *map, at_vertices,
+                                    {.other = of_itself ? nullptr : &sites->mesh(),
+                                     .up = up == 1 ? UpAxis::z : UpAxis::y,
+                                     .places = of_itself ? ListedPlaces::least : ListedPlaces::deviating}),
+              .report = std::move(json)});
     std::vector<std::uint32_t> lengths;
     std::vector<std::uint8_t> planes;
     for (const auto& plane : draft->page.arrays.planes()) {

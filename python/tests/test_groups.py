@@ -99,7 +99,7 @@ def test_places_of_a_map():
     for call in (m.check, m.places):
         for wrong in ("x", (1, "x"), (1, 2, 3), [None, None], {}):
             fault = sdm.Error if wrong == (1, 2, 3) else TypeError
-            with pytest.raises(fault, match="tolerance must be a number, or the least and the most distance, and not "):
+            with pytest.raises(fault, match="it must be a number of at least 0, or two, LO:HI, the smaller one first"):
                 call(wrong)
 
 
