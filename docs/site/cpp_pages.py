@@ -58,6 +58,8 @@ def declarations(xml: Path) -> dict[str, list[list[str]]]:
         name = f"sdm::{member.findtext('name')}"
         if "<" in name:  # a specialisation, such as the words of an enumeration
             continue
+        if re.fullmatch(r"sdm::k\w+(Text|Options)", name):  # a part of the options of several structs
+            continue
         if kind == "function":
             types = ("".join(p.find("type").itertext()) for p in member.findall("param"))
             name += f"({', '.join(types)})"

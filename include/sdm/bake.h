@@ -243,6 +243,7 @@ struct BakeSelection {
   std::vector<BakeChannel> look{};
   std::vector<GeometryChannel> geometry{};
 
+  /// Whether the channel is baked.
   [[nodiscard]] bool has(GeometryChannel channel) const {
     return std::ranges::find(geometry, channel) != geometry.end();
   }

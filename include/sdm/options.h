@@ -40,7 +40,7 @@ inline constexpr OptionRange kPositive{0, std::numeric_limits<double>::max(), tr
 inline constexpr OptionRange kPositiveOrInfinite{0, std::numeric_limits<double>::infinity(), true};
 
 /// An angle between normals, in degrees.
-inline constexpr OptionRange kAngle{.least = 0, .most = 180, .above = true};
+inline constexpr OptionRange kAngle{0, 180, true};
 
 /// Reads all of a text as a number in base 10. Returns false, and changes nothing, if it is none or out of
 /// range.
