@@ -29,14 +29,14 @@ namespace sdm {
 /// The numbers that an option may be: from `least` to `most`.
 struct OptionRange {
   double least = std::numeric_limits<double>::lowest();  ///< the lowest number there is: no limit but finite
-  double most = std::numeric_limits<double>::max();      ///< the same
+  double most = std::numeric_limits<double>::max();      ///< the highest one: no limit but finite
   bool above = false;                                    ///< whether `least` itself is excluded
   bool below = false;                                    ///< whether `most` itself is excluded
   bool square = false;  ///< whether only squares of whole numbers are allowed
 };
 /// The finite numbers greater than 0.
 inline constexpr OptionRange kPositive{0, std::numeric_limits<double>::max(), true};
-/// The same, and infinity.
+/// The numbers greater than 0, infinity included.
 inline constexpr OptionRange kPositiveOrInfinite{0, std::numeric_limits<double>::infinity(), true};
 
 /// An angle between normals, in degrees.
@@ -45,19 +45,19 @@ inline constexpr OptionRange kAngle{0, 180, true};
 /// Reads all of a text as a number in base 10. Returns false, and changes nothing, if it is none or out of
 /// range.
 [[nodiscard]] SDM_API bool read_number(std::string_view text, const OptionRange& range, double& value);
-/// The same of a whole number, at least 0.
+/// Reads a whole number of at least 0, as the function above reads a number.
 [[nodiscard]] SDM_API bool read_number(std::string_view text, const OptionRange& range, std::uint64_t& value);
-/// The same of numbers with one comma between two of them; `count`: of how many, 0: any.
+/// Reads numbers with commas between them, as read_number() reads one; `count`: how many, 0: any number.
 [[nodiscard]] SDM_API bool read_numbers(std::string_view text, const OptionRange& range, std::size_t count,
                                         std::vector<double>& values);
-/// The same of a direction X,Y,Z other than 0,0,0, or of "normal" for nothing.
+/// Reads a direction X,Y,Z other than 0,0,0, or "normal", which is nothing, as read_number() reads a number.
 [[nodiscard]] SDM_API bool read_direction(std::string_view text, std::optional<Vec3>& value);
 
 /// A number as text, by which it can be read again.
 [[nodiscard]] SDM_API std::string text_of(double value);
-/// The same of several.
+/// Numbers as text, with commas between them.
 [[nodiscard]] SDM_API std::string text_of(std::span<const double> values);
-/// The same of a direction.
+/// A direction as text; nothing is "normal".
 [[nodiscard]] SDM_API std::string text_of(const std::optional<Vec3>& direction);
 
 /// Whether the vector has a direction: it is finite, its length too, and not 0.

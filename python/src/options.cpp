@@ -248,7 +248,11 @@ std::string text_of(const OptionInfo& option, nb::handle value) {
   if (option.type == "interval" || option.type == "point") return numbers_text(option, value, ",");
   if (is_number(value)) return sdm::text_of(real_of(value));
   if (option.type == "numbers") return numbers_text(option, value, ",");
-  if (option.type == "tolerance") return numbers_text(option, value, ":");
+  if (option.type == "tolerance") {
+    const std::string text = numbers_text(option, value, ":");
+    if (text.find(':') == std::string::npos) refuse(option, value);  // not one number in a sequence
+    return text;
+  }
   refuse_type(option, value);
 }
 

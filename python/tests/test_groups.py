@@ -97,8 +97,8 @@ def test_places_of_a_map():
     assert {p.group for p in of_top.largest} == {"top"} and of_top.largest[0].limits == (-np.inf, 0.2)
     assert m.check_groups({"top": (None, 0.3), "bottom": (-0.3, None)}, names).verdict == "pass"
     for call in (m.check, m.places):
-        for wrong in ("x", (1, "x"), (1, 2, 3), [None, None], {}):
-            fault = sdm.Error if wrong == (1, 2, 3) else TypeError
+        for wrong in ("x", (1, "x"), (1, 2, 3), (0.1,), (), [None, None], {}):
+            fault = sdm.Error if wrong in ((1, 2, 3), (0.1,), ()) else TypeError
             with pytest.raises(fault, match="it must be a number of at least 0, or two, LO:HI, the smaller one first"):
                 call(wrong)
 

@@ -239,13 +239,13 @@ def plain(sentence: str, call: str) -> str:
 
 
 def number(x: "float | None") -> float:
-    return 0.0 if x is None or x != x else float(x)
+    return math.nan if x is None else float(x)
 
 
 def same(call: str, a: Result, b: Result) -> bool:
     if isinstance(a, str) or isinstance(b, str):
         return isinstance(a, str) and isinstance(b, str) and plain(a, call) == plain(b, call)
-    return len(a) == len(b) and all(x == y or abs(x - y) <= 1e-6 for x, y in zip(map(number, a), map(number, b)))
+    return len(a) == len(b) and all(x == y or (x != x and y != y) or abs(x - y) <= 1e-6 for x, y in zip(map(number, a), map(number, b)))
 
 
 def of_points(call: str, numbers: Result) -> Result:

@@ -25,6 +25,7 @@
 #include "io/points/cloud_places.h"
 #include "io/points/measured_rows.h"
 #include "io/points/point_cells.h"
+#include "map/closest_measure.h"
 #include "map/measures/walls.h"
 #include "map/statistics/tolerance_limits.h"
 #include "map/statistics/weighted_statistics.h"
@@ -203,7 +204,8 @@ class Measurement {
     }
     chunk.facing.clear();
     if (!by_facing_) return;
-    const FacingPoints facing = closest_facing_points(sites_, queries, chunk.normals, 90, point_options(map));
+    const FacingPoints facing =
+        closest_facing_points(sites_, queries, chunk.normals, 90, map::point_options(map));
     const bool is_signed = result_.sign.method != SignMethod::none;
     for (std::size_t i = 0; i < queries.size(); ++i) {
       const double d = facing.closest[i].distance;
@@ -229,10 +231,6 @@ class Measurement {
     return flags;
   }
 
-  [[nodiscard]] static ClosestPointOptions point_options(const MapOptions& map) {
-    return {.engine = map.engine, .max_distance = map.max_distance, .progress = map.progress};
-  }
-
   // The matches of the points, and whether their distances are negative.
   [[nodiscard]] FacingPoints find(std::span<const Vec3> queries, std::span<const Vec3> normals,
                                   const MapOptions& map) const {
@@ -242,12 +240,14 @@ class Measurement {
       return closest_points_along(sites_, queries, normals, along);
     }
     if (map.facing) {
-      FacingPoints found = closest_facing_points(sites_, queries, normals, *map.facing, point_options(map));
+      FacingPoints found =
+          closest_facing_points(sites_, queries, normals, *map.facing, map::point_options(map));
       if (result_.sign.method == SignMethod::none) std::ranges::fill(found.behind, std::uint8_t{0});
       return found;
     }
-    FacingPoints found{
-        closest_points(sites_, queries, point_options(map)), {}, std::vector<std::uint8_t>(queries.size())};
+    FacingPoints found{closest_points(sites_, queries, map::point_options(map)),
+                       {},
+                       std::vector<std::uint8_t>(queries.size())};
     found.behind = inside_flags(sites_, queries, found.closest, result_.sign.method);
     return found;
   }
