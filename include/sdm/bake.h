@@ -1,10 +1,7 @@
-/// Baking: what the materials, textures, colours and geometry of O2 are at the points that belong to O1's
-/// texels, as textures of O1.
-///
-/// Several samples a texel: values on a grid that is finer than the texture, of which each texel is a square.
-///
-/// The geometry of O2 at the points that belong to O1's texels, as textures of O1: normals, tangent-space
-/// normals, displacements, positions, ambient occlusion, thickness, and numbers of faces and materials.
+/// Baking: textures of O1 with what O2 has at the points that belong to O1's texels: its materials, textures
+/// and colours, and its geometry, which is normals, tangent-space normals, displacements, positions, ambient
+/// occlusion, thickness, and numbers of faces and materials. A texel is the mean of one or several samples,
+/// on a regular grid.
 ///
 /// Threads: the functions may be called concurrently, also with the same surface, sites and matches.
 #pragma once

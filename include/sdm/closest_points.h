@@ -1,9 +1,8 @@
 /// Closest points of O2 to arbitrary points: to all of O2, to the faces that face the same way, and to the
 /// parts of an O2 that is too large for one machine.
 ///
-/// Closest points among the faces of O2 that face the same way as the query: they do not find the other skin
-/// of a thin wall, so that a dent deeper than half of the wall is not hidden by it.
-///
+/// Among the faces that face the same way as the query, the other skin of a thin wall is never the closest:
+/// a dent deeper than half of the wall is measured to its own skin.
 /// The direction of a sample of a surface is the outward normal of its face. A face so low that noise turns
 /// it over (its least height is below 1/1000 of the diagonal of the surface's box) has that of its
 /// surroundings instead, if these do not face as it does, within the angle: the sum of the normals of the
@@ -85,9 +84,8 @@ struct FacingPoints {
 /// the first of equally close faces, in double precision.
 ///
 /// Throws sdm::Error as closest_points() does, for an angle out of range, and unless there is a normal for
-/// each point; Cancelled. Cost: linear
-/// in the faces of O2, that of closest_points(), and another search for each point whose closest point is not
-/// allowed.
+/// each point; Cancelled. Cost: linear in the faces of O2, that of closest_points(), and another search for
+/// each point whose closest point is not allowed.
 [[nodiscard]] SDM_API FacingPoints closest_facing_points(const Sites& sites, std::span<const Vec3> points,
                                                          std::span<const Vec3> normals, double facing,
                                                          const ClosestPointOptions& options = {});

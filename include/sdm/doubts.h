@@ -100,9 +100,8 @@ inline constexpr std::tuple kFields<MirroredFit>{
 /// of that of O1 as `found` aligned it, and of that of O1 itself where its principal axes agree with those of
 /// O2. Nothing if O1 fits, to 0.2 % of its radius of gyration, or if 90 % of its samples do, with a trimmed
 /// rms of 1 %. Needs most of the surface of O1. `found`: the alignment of O1, of any options. Errors as of
-/// align(). Cost: linear in O1; if O1 does not fit, also linear
-/// in O2, and that of aligning 256 samples from up to 4 poses, or 24 where principal axes are nearly
-/// interchangeable.
+/// align(). Cost: linear in O1; if O1 does not fit, also linear in O2, and that of aligning 256 samples from
+/// up to 4 poses, or 24 where principal axes are nearly interchangeable.
 [[nodiscard]] SDM_API std::optional<MirroredFit> find_mirrored(const Mesh& o1, const Sites& o2,
                                                                const Alignment& found);
 

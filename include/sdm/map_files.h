@@ -1,12 +1,10 @@
 /// Writing maps and what belongs to them: EXR, pictures, models, pages, report.json and distance fields;
-/// stored shapes, and tables of tolerances. Those of files throw an sdm::Error that names the file and the
-/// fault.
+/// tables of tolerances; and stored shapes, so that a program that starts does not build them again. Those of
+/// files throw an sdm::Error that names the file and the fault.
 ///
 /// report.json is the one form in which files, pages and programs get a Summary. Its keys are documented in
 /// docs/report.md. Functions named _json return JSON text; NaN and infinity are null, and bytes of file names
 /// that are not UTF-8 are dropped.
-///
-/// Shapes as files, so that a program that starts does not build them again.
 ///
 /// Threads: the functions may be called concurrently, unless two of them write the same file.
 #pragma once
@@ -224,9 +222,8 @@ SDM_API void write_plot_png(const std::filesystem::path& file, const std::string
 /// model.glb: O1 with the coloured map as the base-colour texture of a matt material, normals that are smooth
 /// except across edges of more than 40°, and `_DISTANCE` per vertex; any viewer displays it.
 /// `vertex_distances`: one per vertex of surface.mesh(), not finite where there is none. glTF allows finite
-/// numbers only, so the faces of such vertices form a primitive without
-/// `_DISTANCE`. The units m, cm, mm, um, in and ft scale the node to metres; with others or none the node is
-/// not scaled.
+/// numbers only, so the faces of such vertices form a primitive without `_DISTANCE`. The units m, cm, mm, um,
+/// in and ft scale the node to metres; with others or none the node is not scaled.
 SDM_API void write_glb(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                        std::span<const float> vertex_distances, const PictureOptions& options = {});
 
@@ -257,9 +254,9 @@ struct HtmlOptions {
 /// the numbers of `report`, the JSON text of report.json, and O1 in 3D, where every value under the cursor is
 /// that of a texel of the map, bit-identical. Of larger maps than the options have, one texel of each square
 /// is in the page; of O1 with more triangles, a coarser copy whose vertices have their own distances; of O2,
-/// its box. The page states each of these. `vertex_distances`: as
-/// for write_glb. Also throws sdm::Error if the map or the distances belong to another surface, and if
-/// can_write_html() is false. Cost: linear, some tens of milliseconds for 1024² texels.
+/// its box. The page states each of these. `vertex_distances`: as for write_glb. Also throws sdm::Error if
+/// the map or the distances belong to another surface, and if can_write_html() is false. Cost: linear, some
+/// tens of milliseconds for 1024² texels.
 SDM_API void write_html(const std::filesystem::path& file, const Surface& surface, const DistanceMap& map,
                         std::span<const float> vertex_distances, const std::string& report,
                         const HtmlOptions& options = {});

@@ -1,10 +1,6 @@
-/// What O2 has at the points that belong to O1's texels: matches and transfer.
-///
-/// Matches: for each texel of O1's atlas, the point of O2 whose attributes belong there, also where O2 has
-/// thin walls.
-///
-/// Transfer: the values that O2 has at the closest points of O1's texels, such as its colours or
-/// temperatures.
+/// What O2 has at the points that belong to O1's texels. A match is the point of O2 whose attributes belong
+/// to a texel, also where O2 has thin walls; a transfer takes over values of O2, such as colours or
+/// temperatures, from the closest points.
 ///
 /// Threads: the functions may be called concurrently, also with the same Surface and Sites and the same map.
 #pragma once

@@ -1,10 +1,6 @@
-/// What meshes have besides their geometry: attributes at corners, materials with pictures, tiles of texture
-/// coordinates, names of faces.
-///
-/// What a mesh has at the corners of its faces, besides positions and texture coordinates: normals, colours,
-/// and numbers of any name.
-///
-/// Meshes whose texture coordinates lie outside of the unit square: textures that repeat, and UDIM tiles.
+/// What meshes have besides their geometry: attributes at the corners of faces (normals, colours, numbers of
+/// any name), materials with pictures, texture coordinates outside of the unit square (textures that repeat,
+/// UDIM tiles), names of faces.
 ///
 /// Threads: plain values; the functions may be called concurrently, also with the same mesh.
 #pragma once

@@ -1,9 +1,6 @@
-/// Meshes made from a mesh: transformed, edited, welded, its convex hull, or without islands.
-///
-/// Joining boundary edges that coincide but for rounding, as of CAD models whose faces were written one by
-/// one.
-///
-/// Islands: small connected components of a mesh, such as the floating specks of a scan.
+/// Meshes made from a mesh: transformed, edited, its convex hull; welded along boundary edges that coincide
+/// but for rounding, as of CAD models whose faces were written one by one; without islands, which are small
+/// connected components, such as the floating specks of a scan.
 ///
 /// Threads: plain values; the functions may be called concurrently, also with the same mesh; apply()
 /// and transform() with different ones.

@@ -1,8 +1,6 @@
-/// Meshes in files: reading and writing them, and sequences of deforming ones. Every function throws an
-/// sdm::Error that names the file and the fault.
-///
-/// Deforming meshes in files: positions for each frame, and fixed triangles unless asked for. Errors name the
-/// frame, too.
+/// Meshes in files: reading and writing them, and sequences of deforming ones, which are positions for each
+/// frame and triangles that change only if this is asked for. Every function throws an sdm::Error that names
+/// the file, the frame and the fault.
 ///
 /// Threads: the functions may be called concurrently, unless two of them write the same file; an object is
 /// used by one thread at a time.

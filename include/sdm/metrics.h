@@ -150,9 +150,9 @@ struct SurfaceMetrics {
 ///
 /// Throws sdm::Error if a mesh is unusable for another reason (see validate) or its faces have no area, for
 /// options out of range, or if there is not enough memory; Cancelled. Progress is one step, "metrics", whose
-/// fraction never decreases. Cost: building the sites of both, the
-/// Hausdorff distance, a search for each vertex, and a few for each face; more parts where surfaces cross and
-/// where they are closer than their curvature.
+/// fraction never decreases. Cost: building the sites of both, the Hausdorff distance, a search for each
+/// vertex, and a few for each face; more parts where surfaces cross and where they are closer than their
+/// curvature.
 [[nodiscard]] SDM_API SurfaceMetrics surface_metrics(const Mesh& a, const Mesh& b,
                                                      const MetricsOptions& options = {});
 

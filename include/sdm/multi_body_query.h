@@ -239,8 +239,7 @@ class SDM_API MultiBodyQuery {
   /// Returns the distances from the texels of a body to the nearest other body, whatever their filters;
   /// texels with none within `max_distance`, > 0, have no value. Throws sdm::Error for any other distance,
   /// for a body that does not exist, is a compound or has no atlas, or if there is not enough memory. Cost:
-  /// that of
-  /// compute_map to each body whose box is nearer than the distances found so far, all cores.
+  /// that of compute_map to each body whose box is nearer than the distances found so far, all cores.
   [[nodiscard]] NearestMap nearest_map(std::size_t body,
                                        double max_distance = std::numeric_limits<double>::infinity()) const;
   /// The same, into `nearest`, whose memory is reused where possible. If it throws, the values of `nearest`

@@ -110,12 +110,11 @@ struct PlacesOptions {
 
 /// Returns the places of a map: connected regions of texels and vertices out of the tolerances of their faces
 /// by more than the accuracy, or without a value; or, without a tolerance or where nothing is out of it, at
-/// or beyond the 99th percentile of |d| and the accuracy. Regions beyond opposite limits, or of
-/// faces that other rows of the table judge, are separate. Texels
-/// are connected if they are among the eight around each other in a chart of the atlas, or at the same point
-/// of an edge between charts, up to a texel and a half; vertices with the texels around them. A place is
-/// small if its area is less than 1e-5 of that of all texels, or than that of four texels of mean size. Areas
-/// are estimates.
+/// or beyond the 99th percentile of |d| and the accuracy. Regions beyond opposite limits, or of faces that
+/// other rows of the table judge, are separate. Texels are connected if they are among the eight around each
+/// other in a chart of the atlas, or at the same point of an edge between charts, up to a texel and a half;
+/// vertices with the texels around them. A place is small if its area is less than 1e-5 of that of all
+/// texels, or than that of four texels of mean size. Areas are estimates.
 ///
 /// `vertex_distances`: the distance at each vertex of surface.mesh(), NaN if it has no value; empty: none.
 /// Throws sdm::Error if the map or the distances belong to another surface. Cost: linear in texels and, where

@@ -290,8 +290,8 @@ inline constexpr std::tuple kFields<PointDistances>{
 /// x, y, z (double), nx, ny, nz (float, if the file has normals), distance (float; NaN if there is none),
 /// face (int; -1 if there is none), red, green, blue. Throws sdm::Error as PointReader, closest_points and
 /// compute_map do, if the file cannot be written or is the cloud itself, and for a cloud without points;
-/// Cancelled. Cost: a search
-/// per point, and reading the distances back three times; memory for `chunk` points.
+/// Cancelled. Cost: a search per point, and reading the distances back three times; memory for `chunk`
+/// points.
 [[nodiscard]] SDM_API PointDistances measure_points(const std::filesystem::path& cloud, const Sites& sites,
                                                     const std::filesystem::path& ply,
                                                     const PointDistancesOptions& options = {});

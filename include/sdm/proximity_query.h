@@ -1,9 +1,6 @@
 /// Two bodies: separation, collision, penetration depth and contacts, each with its bounds; many poses of one
-/// body; the first contact of two motions.
-///
-/// Proximity of one shape in many poses to bodies at rest, as of a gripper that looks for a grasp.
-///
-/// When two bodies that move from one pose to another first come into contact.
+/// shape beside bodies at rest, as of a gripper that looks for a grasp; and when two bodies that move from
+/// one pose to another first come into contact.
 ///
 /// Threads: an object is used by one thread at a time; objects and functions that share shapes may be used
 /// concurrently.
@@ -148,8 +145,6 @@ inline constexpr auto kOptions<ProximityOptions> = std::tuple{
 /// A closed, orientable body is a solid, with the inside of SignMethod::exact; any other body is a surface
 /// without an inside. The depth of a point inside a solid is its distance to the boundary of the solid: the
 /// parts of its surface that have the inside on one side only.
-///
-/// Threads: an object is used by one thread at a time; objects that share shapes may be used concurrently.
 ///
 /// Functions of one body take its number, 0 or 1, and throw sdm::Error for any other.
 class SDM_API ProximityQuery {
@@ -312,8 +307,6 @@ inline constexpr auto kOptions<PoseQueryOptions> = std::tuple{depth_precision_op
 /// All calls throw sdm::Error for a pose that ProximityQuery::set_pose refuses, and name one such pose, and
 /// if there is not enough memory; values of `results` are then unspecified. Those with `results` also throw
 /// for another number of results than of poses.
-///
-/// Threads: an object is used by one thread at a time; objects that share shapes may be used concurrently.
 class SDM_API PoseQuery {
  public:
   /// Any number of obstacles is allowed, including 0. Throws sdm::Error for options that are out of range.

@@ -157,8 +157,8 @@ struct PartStatisticsOptions {
 };
 
 /// `part_of_face`: for each face of the surface, the number of its part, below `parts`, or kNone for faces
-/// that belong to none. Throws sdm::Error if the map or the parts
-/// belong to another surface. Cost: linear in texels and faces, all cores; eight bytes for each texel.
+/// that belong to none. Throws sdm::Error if the map or the parts belong to another surface. Cost: linear in
+/// texels and faces, all cores; eight bytes for each texel.
 [[nodiscard]] SDM_API std::vector<PartStatistics> part_statistics(const Surface& surface,
                                                                   const DistanceMap& map,
                                                                   std::span<const std::uint32_t> part_of_face,
@@ -187,10 +187,9 @@ class SDM_API CombinedStatistics {
 };
 
 /// The minimum, maximum and mean distance of every texel of an atlas over the added maps; faces without a
-/// texel have none. NaN where no
-/// face owns the texel, where another face or none owned it in an earlier map, or where it
-/// was beyond the maximum distance in one of the maps. Self maps mark the
-/// latter by +∞ instead: the minimum is then that over the other maps.
+/// texel have none. NaN where no face owns the texel, where another face or none owned it in an earlier map,
+/// or where it was beyond the maximum distance in one of the maps. Self maps mark the latter by +∞ instead:
+/// the minimum is then that over the other maps.
 class SDM_API TemporalMaps {
  public:
   /// What a later process needs in order to continue.

@@ -138,9 +138,9 @@ class SDM_API Surface {
   ///
   /// Throws sdm::Error, and changes nothing, as apply() does, if a chart of added faces is wider than the
   /// atlas, if more than 65535 rows would be needed, if no face would own a texel, and if there is not enough
-  /// memory. Cost: by the size of
-  /// the edit, plus copies of the mesh and its maps and a pass over the samples; over the texels where faces
-  /// are added, and over the faces where vertices are moved; the first edit also rasterises all faces.
+  /// memory. Cost: by the size of the edit, plus copies of the mesh and its maps and a pass over the samples;
+  /// over the texels where faces are added, and over the faces where vertices are moved; the first edit also
+  /// rasterises all faces.
   void edit(const MeshEdit& edit);
 
   /// The atlas as bytes, without the mesh: for a cache. They belong to the mesh in its present shape, and

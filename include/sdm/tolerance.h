@@ -40,7 +40,7 @@ struct Tolerance {
   /// at_least ≤ d ≤ at_most.
   Tolerance(double at_least, double at_most) : lower(at_least), upper(at_most) {}
 
-  /// Whether it tells distances apart that differ by their sign only, which unsigned distances do not have.
+  /// Whether distances that differ by their sign only are judged differently: unsigned ones cannot be.
   [[nodiscard]] bool needs_sign() const {
     return lower < 0 && -lower != upper && lower > -std::numeric_limits<double>::infinity();
   }
