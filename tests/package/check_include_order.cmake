@@ -1,7 +1,7 @@
 cmake_minimum_required(VERSION 3.23)
 
 # A folder of src/ includes only itself and the folders before it, so that the graph of includes has neither a
-# circle nor an arrow that points up; and only the table of engines includes the gl engine. Prints the graph: for
+# circle nor an arrow that points up; and only the table of engines includes the gl and the gpu engine. Prints the graph: for
 # each folder the folders that it includes.
 set(order
   core/numbers
@@ -34,6 +34,8 @@ set(order
   gl/device
   gl/polygons
   gl
+  gpu/device
+  gpu
   closest/engines
   map/statistics
   map/places
@@ -113,6 +115,9 @@ foreach(file ${files})
     endif()
     if("${included}" MATCHES "^gl(/|$)" AND NOT "${folder}" MATCHES "^(gl(/|$)|closest/engines$)")
       message(SEND_ERROR "src/${file} may not have ${include}: only the table of engines includes the gl engine")
+    endif()
+    if("${included}" MATCHES "^gpu(/|$)" AND NOT "${folder}" MATCHES "^(gpu(/|$)|closest/engines$)")
+      message(SEND_ERROR "src/${file} may not have ${include}: only the table of engines includes the gpu engine")
     endif()
     if("${included}" MATCHES "^io/mesh/cad/" AND NOT "${folder}" MATCHES "^io/mesh/cad/")
       message(SEND_ERROR "src/${file} may not have ${include}: only the module includes OpenCASCADE")
