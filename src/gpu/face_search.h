@@ -23,8 +23,10 @@ struct FaceList {
   [[nodiscard]] std::uint32_t count() const { return head & 15u; }
   /// Whether there may be others: there was no room for them.
   [[nodiscard]] bool incomplete() const { return (head & 16u) != 0; }
-  [[nodiscard]] std::uint32_t nodes() const { return head >> 5 & 0x1fffu; }  ///< visited, at most 8191
-  [[nodiscard]] std::uint32_t tests() const { return head >> 18; }  ///< faces compared, at most 16383
+  /// Whether the points beside it are too far from each other to be searched for together.
+  [[nodiscard]] bool alone() const { return (head & 32u) != 0; }
+  [[nodiscard]] std::uint32_t nodes() const { return head >> 6 & 0xfffu; }  ///< visited, at most 4095
+  [[nodiscard]] std::uint32_t tests() const { return head >> 18; }          ///< faces compared, at most 16383
 };
 
 /// A point in the unit frame, and nothing farther than `within` is closest; negative if there is nothing to
@@ -37,33 +39,40 @@ struct QueryPoint {
 /// What searches on a device took.
 struct SearchTimes {
   std::size_t dispatches = 0;
-  double upload_ms = 0;  ///< of sites
-  double search_ms = 0;  ///< of points, with their transfers
+  std::size_t alone = 0;  ///< points that were searched for one by one
+  double upload_ms = 0;   ///< of sites
+  double search_ms = 0;   ///< of points, with their transfers
 };
 
 class FaceSearch {
  public:
+  static constexpr std::size_t kTile =
+      64;  ///< points that are searched for together, if they are near each other
+
   /// Opens a device as Device() does.
   explicit FaceSearch(std::string_view wanted);
 
   [[nodiscard]] const Device& device() const { return device_; }
   Device& device() { return device_; }
 
-  /// Sets found[i] to the faces of the sites that may be closest to points[i]. In dispatches that are
-  /// expected to take a twentieth of a second at most, between which the call can be cancelled.
+  /// Sets found[i] to the faces of the sites that may be closest to points[i]; their number is a multiple of
+  /// kTile. In dispatches that are expected to take a twentieth of a second at most, between which the call
+  /// can be cancelled.
   void find(const sites::SitesData& sites, std::span<const QueryPoint> points, std::span<FaceList> found,
             SearchTimes& times);
 
  private:
   const SitesOnDevice& place(const sites::SitesData& sites);
   void reserve(std::size_t points);
+  void search(const SitesOnDevice& sites, std::span<const QueryPoint> points, std::span<FaceList> found,
+              SearchTimes& times);
 
   static constexpr std::size_t kKept = 4;  // shapes
 
   Device device_;
-  Pipeline pipeline_;
+  Pipeline tiles_together_, points_alone_;
   std::vector<std::unique_ptr<SitesOnDevice>> kept_;  // the last ones that were searched, the latest first
-  Buffer points_, results_, read_back_;
+  Buffer points_, results_, read_back_, tiles_;
   std::size_t room_ = 0;         // points of the buffers
   std::size_t dispatch_ = 4096;  // points
 };

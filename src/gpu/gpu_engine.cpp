@@ -59,8 +59,9 @@ class GpuEngine final : public Engine {
     const sites::SitesData& data = internals(sites);
     thread_local std::vector<QueryPoint> placed;
     thread_local std::vector<FaceList> found;
-    placed.resize(points.size());
-    found.resize(points.size());
+    // Whole tiles: what fills the last one is skipped.
+    placed.assign((points.size() + FaceSearch::kTile - 1) / FaceSearch::kTile * FaceSearch::kTile, {{}, -1});
+    found.resize(placed.size());
     place_points(data, points, max_distance, placed);
     SearchTimes times;
     devices().with(options_.device, [&](FaceSearch& search) { search.find(data, placed, found, times); });
@@ -84,6 +85,7 @@ class GpuEngine final : public Engine {
     report_.far += counts.far;
     report_.incomplete += counts.incomplete;
     report_.dispatches += times.dispatches;
+    report_.alone += times.alone;
     report_.upload_ms += times.upload_ms;
     report_.search_ms += times.search_ms;
     report_.finish_ms += finish_ms;

@@ -28,6 +28,7 @@ struct GpuReport {
   std::size_t far = 0;         ///< points so far from O2 that the cpu engine searches for them
   std::size_t incomplete =
       0;  ///< points with more candidates than there is room for, which are searched for in double
+  std::size_t alone = 0;  ///< points that were not searched for with those beside them
   std::size_t dispatches = 0;
   double upload_ms = 0, search_ms = 0, finish_ms = 0;  ///< finish: of all threads
 };

@@ -1,7 +1,6 @@
 #include "gpu/sites_on_device.h"
 
 #include <algorithm>
-#include <type_traits>
 #include <vector>
 
 #include "core/memory.h"
@@ -11,20 +10,39 @@
 namespace sdm::gpu {
 namespace {
 
-// As in shaders/closest_faces.wgsl.
+// As in shaders/faces.wgsl.
+struct ChildBox {
+  float lo[3];
+  std::uint32_t number;
+  float hi[3];
+  std::uint32_t padding;
+};
 struct Face {
   float origin_length[4], along_ac[4], beside_ac[4], normal_ac[4], bc[4];
 };
 struct Errors {
   float by_coordinate, constant, padding[2];
 };
-static_assert(sizeof(tree::WideTree::Node) == 288 && std::is_trivially_copyable_v<tree::WideTree::Node>);
-static_assert(sizeof(Face) == 80 && sizeof(Errors) == 16);
+static_assert(sizeof(ChildBox) == 32 && sizeof(Face) == 80 && sizeof(Errors) == 16);
 
 // See docs/design/gpu.md: twice the error of a distance in single precision, of a point at the largest
 // coordinate m, is at most kByCoordinate m + kByRadius R, and a part of the distance that kFarther of the
 // shader contains.
 constexpr float kByCoordinate = 5e-7f, kByRadius = 1.4e-5f;
+
+// The children of each node; kNone where there is none.
+std::vector<ChildBox> child_boxes(const tree::WideTree& tree) {
+  constexpr std::size_t kWidth = tree::WideTree::kWidth;
+  require_memory(tree.nodes.size() * kWidth * sizeof(ChildBox), "the tree of O2 for the gpu engine");
+  std::vector<ChildBox> boxes(tree.nodes.size() * kWidth);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const tree::WideTree::Node& node = tree.nodes[i / kWidth];
+    const std::size_t slot = i % kWidth;
+    boxes[i].number = slot < node.count ? node.child[slot] : kNone;
+    for (int k = 0; k < 3; ++k) boxes[i].lo[k] = node.lo[k][slot], boxes[i].hi[k] = node.hi[k][slot];
+  }
+  return boxes;
+}
 
 // The frames of the faces in the order of the leaves.
 std::vector<Face> face_frames(const sites::SitesData& sites) {
@@ -64,8 +82,8 @@ SitesOnDevice::SitesOnDevice(Device& device, const sites::SitesData& sites)
     : shape_number(sites.shape_number) {
   const Errors bounds{kByCoordinate, kByRadius * sites.regions.largest_radius, {}};
   errors = upload(device, Device::Use::uniform, std::span(&bounds, 1), "constants");
-  nodes = upload(device, Device::Use::read, std::span<const tree::WideTree::Node>(sites.wide.nodes),
-                 "the tree of O2");
+  boxes =
+      upload(device, Device::Use::read, std::span<const ChildBox>(child_boxes(sites.wide)), "the tree of O2");
   leaves = upload(device, Device::Use::read, std::span<const std::uint32_t>(sites.regions.leaves),
                   "the leaves of O2");
   faces = upload(device, Device::Use::read, std::span<const Face>(face_frames(sites)), "the faces of O2");

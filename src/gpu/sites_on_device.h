@@ -14,7 +14,7 @@ struct SitesOnDevice {
   SitesOnDevice(Device& device, const sites::SitesData& sites);
 
   std::uint64_t shape_number;  ///< of SitesData
-  Buffer errors, nodes, leaves, faces;
+  Buffer errors, boxes, leaves, faces;
 };
 
 }  // namespace sdm::gpu

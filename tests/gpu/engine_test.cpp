@@ -151,7 +151,7 @@ TEST(GpuEngine, MapsBesideEachOtherAndCancellation) {
     return std::memcmp(found.data(), expected.data(), expected.size() * sizeof(float)) == 0;
   };
   std::vector<float> other;
-  std::thread beside([&] { other = map(); });
+  std::jthread beside([&] { other = map(); });
   EXPECT_TRUE(same(map()));
   beside.join();
   EXPECT_TRUE(same(other));
@@ -169,8 +169,8 @@ TEST(GpuEngine, UnknownDevice) {
 TEST(GpuEngine, LostDevice) {
   const Sites sites(test::load("cow.off", "fit"));
   gpu::FaceSearch search("");
-  const gpu::QueryPoint points[] = {{{0, 0, 0}, 1e18f}};
-  gpu::FaceList found[1];
+  const std::vector<gpu::QueryPoint> points(gpu::FaceSearch::kTile, {{0, 0, 0}, 1e18f});
+  std::vector<gpu::FaceList> found(points.size());
   gpu::SearchTimes times;
   search.find(internals(sites), points, found, times);
   EXPECT_GT(found[0].count(), 0u);
