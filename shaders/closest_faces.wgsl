@@ -1,6 +1,6 @@
 // The faces that may be closest to each point of some tiles of 64: a search of the tree for each point, nearest box first, with
 // a stack for each invocation. For tiles whose points are too far from each other to share a search (shaders/closest_tiles.wgsl).
-// Behind shaders/faces.wgsl.
+// Each result has a face that is near, from there. Behind shaders/faces.wgsl.
 
 @group(0) @binding(6) var<storage, read> tiles: array<u32>;
 
@@ -17,6 +17,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
   let error = error_at(max(max(abs(p.x), abs(p.y)), abs(p.z)));
   let within = points[i].w + error;
   var limit = within * within;
+  let from_known = farther(sqrt(squared_to_face(results[i * kResult + 1u], p)), error);
+  limit = min(limit, from_known * from_known);
 
   var stack_child: array<u32, kStack>;
   var stack_bound: array<f32, kStack>;

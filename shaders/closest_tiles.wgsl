@@ -15,9 +15,12 @@ var<workgroup> nodes_of_level: array<array<u32, kOpen>, 2>;
 var<workgroup> leaf_list: array<u32, kOpen>;
 var<workgroup> leaf_square: array<f32, kOpen>;
 var<workgroup> list: array<u32, kList>;
+var<workgroup> list_square: array<f32, kList>;
+var<workgroup> short_list: array<u32, kList>;
 var<workgroup> level_count: array<atomic<u32>, 2>;
 var<workgroup> leaf_count: atomic<u32>;
 var<workgroup> list_count: atomic<u32>;
+var<workgroup> short_count: atomic<u32>;
 var<workgroup> visited: atomic<u32>;
 var<workgroup> tested: atomic<u32>;
 var<workgroup> uniform_value: u32;
@@ -45,6 +48,31 @@ fn squared_to_far_corner(lo: vec3f, hi: vec3f, p: vec3f) -> f32 {
   return dot(far, far);
 }
 
+// A face of O2 whose point `a` is near the middle c of a ball: no face is closest to a point of the ball unless it is within
+// these distances.
+struct Near {
+  face: u32,
+  a: vec3f,
+  shell: f32,   // from the middle, for all faces
+  square: f32,  // to this, 2 radius |b − a| of the farthest point b of the face is added
+}
+fn near_by(face: u32, c: vec3f, radius: f32, error: f32) -> Near {
+  let a = closest_of_face(face, c);
+  let distance = length(c - a);
+  let slack = error + 2e-6 * distance;
+  return Near(face, a, distance + 2.0 * radius, distance * distance + 2.0 * slack * (distance + radius) + slack * slack);
+}
+fn squared_reach(near: Near, radius: f32, farthest: f32, error: f32) -> f32 {
+  let reach = farther(min(near.shell, sqrt(near.square + 2.0 * radius * farthest)), error);
+  return reach * reach;
+}
+
+// The points beside each other are searched for one by one, from a face of O2 that may be near.
+fn leave_alone(point: u32, face: u32) {
+  results[point * kResult] = kIncomplete | kAlone;
+  results[point * kResult + 1u] = face;
+}
+
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
   let i = group.x * kTile + lane;
@@ -63,6 +91,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     atomicStore(&level_count[1], 0u);
     atomicStore(&leaf_count, 0u);
     atomicStore(&list_count, 0u);
+    atomicStore(&short_count, 0u);
     atomicStore(&visited, 0u);
     atomicStore(&tested, 0u);
     nodes_of_level[0][0] = 0u;
@@ -133,7 +162,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
   let leaves_found = same_for_all(lane, atomicLoad(&leaf_count));
   let left = same_for_all(lane, atomicLoad(&level_count[level]));
   if (left > kOpen || leaves_found > kOpen) {
-    results[i * kResult] = kIncomplete | kAlone;
+    leave_alone(i, 0u);
     return;
   }
 
@@ -166,17 +195,19 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     atomicMin(&best, face_of_lane);
   }
   workgroupBarrier();
-  let first = atomicLoad(&best);
-  let a = closest_of_face(first, c);
-  let distance = length(c - a);
-  let square_a = distance * distance + 2.0 * error * (distance + radius) + error * error;
-  let shell = distance + 2.0 * radius;
+  let at_first = near_by(atomicLoad(&best), c, radius, error);
+  workgroupBarrier();
+  if (lane == 0u) {
+    atomicStore(&best, 0xffffffffu);
+    atomicStore(&squared_bound, kInfinity);
+  }
+  workgroupBarrier();
 
-  // The faces that may be closest to a point of the ball.
+  // The faces that may be closest to a point of the ball; then those that may be beside the nearest one.
   for (var item = lane; item < 8u * leaves_found; item += kTile) {
     let leaf = leaf_list[item / 8u];
-    let reach_of_leaf = farther(shell, error);
-    if (leaf_square[item / 8u] > reach_of_leaf * reach_of_leaf) {
+    let shell = farther(at_first.shell, error);
+    if (leaf_square[item / 8u] > shell * shell) {
       continue;
     }
     let face = leaves[leaf] + item % 8u;
@@ -184,20 +215,36 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
       continue;
     }
     atomicAdd(&tested, 1u);
-    let reach = farther(min(shell, sqrt(square_a + 2.0 * radius * farthest_of_face(face, a))), error);
-    if (squared_to_face(face, c) <= reach * reach) {
+    let square = squared_to_face(face, c);
+    if (square <= squared_reach(at_first, radius, farthest_of_face(face, at_first.a), error)) {
+      atomicMin(&squared_bound, bitcast<u32>(square));
       let place = atomicAdd(&list_count, 1u);
       if (place < kList) {
         list[place] = face;
+        list_square[place] = square;
       }
     }
   }
   workgroupBarrier();
-  let count = same_for_all(lane, atomicLoad(&list_count));
-  if (count > kList) {
-    results[i * kResult] = kIncomplete | kAlone;
+  let listed = same_for_all(lane, atomicLoad(&list_count));
+  if (listed == 0u || listed > kList) {
+    leave_alone(i, at_first.face);
     return;
   }
+  for (var k = lane; k < listed; k += kTile) {
+    if (bitcast<u32>(list_square[k]) == atomicLoad(&squared_bound)) {
+      atomicMin(&best, list[k]);
+    }
+  }
+  workgroupBarrier();
+  let at_nearest = near_by(atomicLoad(&best), c, radius, error);
+  for (var k = lane; k < listed; k += kTile) {
+    if (list_square[k] <= squared_reach(at_nearest, radius, farthest_of_face(list[k], at_nearest.a), error)) {
+      short_list[atomicAdd(&short_count, 1u)] = list[k];
+    }
+  }
+  workgroupBarrier();
+  let count = same_for_all(lane, atomicLoad(&short_count));
   if (!used) {
     results[i * kResult] = kIncomplete;
     return;
@@ -205,11 +252,11 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
 
   // Each point by itself. A list that was full before the limit was least is made again.
   var found = start(p, point.w);
-  take_limit(&found, squared_to_face(first, p));
+  take_limit(&found, squared_to_face(at_nearest.face, p));
   var compared = 1u;
   for (var again = 0u; again < 2u; again += 1u) {
     for (var k = 0u; k < count; k += 1u) {
-      let face = list[k];
+      let face = short_list[k];
       let square = squared_to_face(face, p);
       if (square <= found.limit) {
         take(&found, i, face, square);
