@@ -20,12 +20,12 @@ def map(
 
     a, b: meshes in any form (see Mesh). A Surface for ``a`` and a Sites for ``b`` are used as they are.
     {options}
-    engine: 'cpu', 'gl' (on OpenGL) or 'reference' (simple and slow).
+    engine: 'cpu', 'gl' (on OpenGL), 'gpu' (compute shaders) or 'reference' (simple and slow).
     transform: a 4 × 4 affine matrix that moves ``a`` first, for column vectors; a reflection also reverses the faces.
     progress: called as progress(step, fraction), on this thread; False cancels.
 
     The site is closest to within 1e-6 (cpu) or 2e-6 (gl) of the diagonal of both meshes, or to double rounding
-    (reference); the distance is that to this site, stored in float32. Raises Error for meshes and options that cannot be
+    (reference, gpu); the distance is that to this site, stored in float32. Raises Error for meshes and options that cannot be
     used; Cancelled. Cost: the layout of the atlas, and one search per texel, all cores.
 
     A map with ``facing`` has the sign of the side of the matched face, and no ``bounds`` and hausdorff(). Normals of closed

@@ -5,7 +5,7 @@ from typing import Literal
 #: How inside and outside are distinguished.
 Sign = Literal["automatic", "none", "exact", "winding", "side"]
 #: What computes: engines() lists those of this build.
-Engine = Literal["cpu", "gl", "reference"]
+Engine = Literal["cpu", "gl", "gpu", "reference"]
 #: Whether a tolerance is met.
 Verdict = Literal["pass", "fail", "not decided", "doubtful"]
 #: How sure a number is.

@@ -3,7 +3,7 @@
 
 // The words of arguments and results: macros, as signatures are literals. python/sdm/_types.py has them, too.
 #define SDM_SIGN "typing.Literal['automatic', 'none', 'exact', 'winding', 'side']"
-#define SDM_ENGINE "typing.Literal['cpu', 'gl', 'reference']"
+#define SDM_ENGINE "typing.Literal['cpu', 'gl', 'gpu', 'reference']"
 #define SDM_VERDICT "typing.Literal['pass', 'fail', 'not decided', 'doubtful']"
 #define SDM_CERTAINTY "typing.Literal['exact', 'bounded', 'estimate']"
 

@@ -108,6 +108,7 @@ void SitesData::refit(std::span<const Vec3> positions) {
     tree::refit_leaves(tree, refit.boxes);
     tree::refit(wide, tree);
     frames.forget();
+    shape_number = unique_number();
     signs.outdate();
     normal_bounds.forget();
     compute_regions(refit);

@@ -8,6 +8,7 @@
 #include "core/arrays/stored_arrays.h"
 #include "core/intact.h"
 #include "core/lazy/kept.h"
+#include "core/lazy/unique_number.h"
 #include "mesh/crossings/ray_parity.h"
 #include "mesh/topology.h"
 #include "sites/face_frames.h"
@@ -71,7 +72,9 @@ class SitesData {
   Regions regions;      ///< by the leaves of both
   LeafFrames frames;    ///< of the leaves of both
   Pseudonormals normals;
-  Array<std::uint8_t> sliver;                ///< of each face: too thin for a reliable normal
+  Array<std::uint8_t> sliver;  ///< of each face: too thin for a reliable normal
+  std::uint64_t shape_number =
+      unique_number();                       ///< of the present shape, by which copies elsewhere are known
   Kept<inside::ShapeSigns> signs;            ///< of the present shape: see inside::signs_of()
   Kept<facing::NormalBounds> normal_bounds;  ///< of the present shape: see facing::normal_bounds_of()
 

@@ -1,7 +1,7 @@
 cmake_minimum_required(VERSION 3.23)
 
 # A folder of src/ includes only itself and the folders before it, so that the graph of includes has neither a
-# circle nor an arrow that points up; and only the table of engines includes the gl engine. Prints the graph: for
+# circle nor an arrow that points up; and only the table of engines includes the gl and the gpu engine. Prints the graph: for
 # each folder the folders that it includes.
 set(order
   core/numbers
@@ -34,6 +34,8 @@ set(order
   gl/device
   gl/polygons
   gl
+  gpu/device
+  gpu
   closest/engines
   map/statistics
   map/places
@@ -114,6 +116,9 @@ foreach(file ${files})
     if("${included}" MATCHES "^gl(/|$)" AND NOT "${folder}" MATCHES "^(gl(/|$)|closest/engines$)")
       message(SEND_ERROR "src/${file} may not have ${include}: only the table of engines includes the gl engine")
     endif()
+    if("${included}" MATCHES "^gpu(/|$)" AND NOT "${folder}" MATCHES "^(gpu(/|$)|closest/engines$)")
+      message(SEND_ERROR "src/${file} may not have ${include}: only the table of engines includes the gpu engine")
+    endif()
     if("${included}" MATCHES "^io/mesh/cad/" AND NOT "${folder}" MATCHES "^io/mesh/cad/")
       message(SEND_ERROR "src/${file} may not have ${include}: only the module includes OpenCASCADE")
     endif()
@@ -143,6 +148,7 @@ set(readers_of_nodes
   bodies/motion/parts.h             # nodes are divided into faces too, by time
   map/measures/self_measure.cpp  # marks the nodes whose faces are all excluded
   map/measures/thickness_measure.cpp  # bounds the normals below each child of a node
+  gpu/sites_on_device.cpp        # copies the boxes of all nodes
   inside/angles/expansions.cpp  # computes an expansion for each child of a node
   inside/angles/far_field-inl.h  # one search for several points, eight children at a time
   inside/angles/solid_angles.cpp  # nodes whose errors are too large are opened again

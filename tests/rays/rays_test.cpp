@@ -12,6 +12,7 @@
 #include "geometry/barycentric.h"
 #include "geometry/line_triangle.h"
 #include "geometry/vec.h"
+#include "support/engines.h"
 #include "support/error_of.h"
 #include "support/every_case.h"
 #include "support/meshes.h"
@@ -255,9 +256,8 @@ TEST_P(Rays, StartWhereTheMapIsFree) {
     SCOPED_TRACE(steps);
     const Surface surface(test::load("elephant.off", "fit"), {.resolution = 128});
     const Sites sites(test::load("knot1.off", steps));
-    for (const EngineInfo& engine : engines()) {
-      if (!engine.takes_points) continue;
-      const DistanceMap map = compute_map(surface, sites, {.engine = make_engine(engine.name)});
+    for (const std::string& engine : test::engine_names()) {
+      const DistanceMap map = compute_map(surface, sites, {.engine = make_engine(engine)});
       const std::vector<double> free = free_distances(surface, sites, map);
       std::vector<Ray> all, late;
       for (const std::uint32_t texel : test::owned_texels(surface)) {

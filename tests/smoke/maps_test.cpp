@@ -38,16 +38,17 @@ std::vector<double> distances_of_samples(const Surface& surface, const Mesh& o2)
   return distances;
 }
 
-/// Names of engines; the one on OpenGL where there is a device for it.
+/// Names of engines; those on OpenGL and WebGPU where there is a device for them.
 std::vector<std::string> engines_here() {
   std::vector<std::string> names;
   for (const EngineInfo& info : engines()) {
-    if (info.name == "gl") try {
-        (void)gl_devices();
-      } catch (const Error&) {
-        continue;
-      }
-    names.emplace_back(info.name);
+    try {
+      if (info.name == "gl") (void)gl_devices();
+      if (info.name == "gpu") (void)make_engine(info.name);
+      names.emplace_back(info.name);
+    } catch (const Error&) {
+      continue;
+    }
   }
   return names;
 }

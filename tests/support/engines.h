@@ -11,7 +11,8 @@
 
 namespace sdm::test {
 
-/// Those of engines() that find closest points of any points.
+/// Those of engines() that find closest points of any points, and that this build contains: a build with the
+/// gpu engine is tested where it has a device (Debian: mesa-vulkan-drivers).
 [[nodiscard]] std::vector<std::string> engine_names();
 [[nodiscard]] std::string engine_name(const testing::TestParamInfo<std::string>& parameter);
 

@@ -10,6 +10,7 @@
 #include "closest/reference/reference_engine.h"
 #include "core/memory.h"
 #include "gl/gl_engine.h"
+#include "gpu/gpu_engine.h"
 
 namespace sdm {
 namespace {
@@ -28,6 +29,7 @@ constexpr Row kEngines[] = {
     {cpu::CpuEngine::kInfo, make<cpu::CpuEngine>},
     {reference::ReferenceEngine::kInfo, make<reference::ReferenceEngine>},
     {gl::kInfo, [] { return make_gl_engine({}); }},
+    {gpu::kInfo, [] { return gpu::make_gpu_engine({}); }},
 };
 
 constexpr auto kInfos = [] {

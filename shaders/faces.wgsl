@@ -1,0 +1,145 @@
+// What the searches share: the tree and the faces of O2, distances from them, and lists of faces for points.
+
+// A child of a node: eight for each. A number with the highest bit is that of a leaf.
+struct ChildBox {
+  lo: vec3f,
+  number: u32,
+  hi: vec3f,
+  padding: u32,
+}
+
+// A triangle in the frame of its longest side AB (sites/face_frames.h).
+struct Face {
+  origin_length: vec4f,  // A; |AB|
+  along_ac: vec4f,       // the direction of AB; that of AC along AB
+  beside_ac: vec4f,      // the direction beside AB in the plane; that of AC beside AB
+  normal_ac: vec4f,      // the normal; |AC|
+  bc: vec4f,             // the direction of BC along and beside AB; |BC|
+}
+
+struct Errors {
+  by_coordinate: f32,  // of each unit of the largest coordinate of a point
+  constant: f32,
+  padding: vec2f,
+}
+
+@group(0) @binding(0) var<uniform> errors: Errors;
+@group(0) @binding(1) var<storage, read> boxes: array<ChildBox>;
+@group(0) @binding(2) var<storage, read> leaves: array<u32>;  // the first face of each leaf, and an end
+@group(0) @binding(3) var<storage, read> faces: array<Face>;
+@group(0) @binding(4) var<storage, read> points: array<vec4f>;  // and the largest distance; negative: skip the point
+@group(0) @binding(5) var<storage, read_write> results: array<u32>;
+
+const kLeaf = 0x80000000u;
+const kUnused = 0xffffffffu;
+const kMost = 15u;     // faces in a list
+const kResult = 16u;   // numbers of a point: the head, then its list
+const kIncomplete = 16u;
+const kAlone = 32u;    // the tile of a point has too long a list
+const kFarther = 1.000006;
+const kInfinity = 0x7f800000u;
+
+// Twice the error of a distance, but for a part in proportion to it.
+fn error_at(largest_coordinate: f32) -> f32 {
+  return errors.by_coordinate * max(largest_coordinate, 1.0) + errors.constant;
+}
+fn farther(distance: f32, error: f32) -> f32 {
+  return distance * kFarther + error;
+}
+
+fn squared_to_box(box: ChildBox, p: vec3f) -> f32 {
+  let r = p - clamp(p, box.lo, box.hi);
+  return dot(r, r);
+}
+
+fn minus_clamped(t: f32, end: f32) -> f32 {
+  return t - clamp(t, 0.0, end);
+}
+
+// As squared_to_faces() of closest/face_distances-inl.h.
+fn squared_to_face(number: u32, p: vec3f) -> f32 {
+  let face = faces[number];
+  let r = p - face.origin_length.xyz;
+  let u = dot(r, face.along_ac.xyz);
+  let v = dot(r, face.beside_ac.xyz);
+  let h = dot(r, face.normal_ac.xyz);
+  let length = face.origin_length.w;
+  let e = minus_clamped(u, length);
+  let ac = vec2f(face.along_ac.w, face.beside_ac.w);
+  let left_of_ac = v * ac.x - u * ac.y;
+  let e_ac = minus_clamped(u * ac.x + v * ac.y, face.normal_ac.w);
+  let w = u - length;
+  let left_of_bc = v * face.bc.x - w * face.bc.y;
+  let e_bc = minus_clamped(w * face.bc.x + v * face.bc.y, face.bc.z);
+  let beside = min(e * e + v * v, min(e_ac * e_ac + left_of_ac * left_of_ac, e_bc * e_bc + left_of_bc * left_of_bc));
+  let over = min(v, left_of_bc) > 0.0 && left_of_ac < 0.0;
+  return h * h + select(beside, 0.0, over);
+}
+
+// The closest point of a face, or one that is nearly as close.
+fn closest_of_face(number: u32, p: vec3f) -> vec3f {
+  let face = faces[number];
+  let r = p - face.origin_length.xyz;
+  let length = face.origin_length.w;
+  let q = vec2f(dot(r, face.along_ac.xyz), dot(r, face.beside_ac.xyz));
+  let b = vec2f(length, 0.0);
+  let ac = vec2f(face.along_ac.w, face.beside_ac.w);
+  let bc = face.bc.xy;
+  let on_ab = vec2f(clamp(q.x, 0.0, length), 0.0);
+  let on_ac = clamp(dot(q, ac), 0.0, face.normal_ac.w) * ac;
+  let on_bc = b + clamp(dot(q - b, bc), 0.0, face.bc.z) * bc;
+  var nearest = on_ab;
+  if (dot(q - on_ac, q - on_ac) < dot(q - nearest, q - nearest)) {
+    nearest = on_ac;
+  }
+  if (dot(q - on_bc, q - on_bc) < dot(q - nearest, q - nearest)) {
+    nearest = on_bc;
+  }
+  let over = q.y > 0.0 && q.y * ac.x - q.x * ac.y < 0.0 && q.y * bc.x - (q.x - length) * bc.y > 0.0;
+  let in_plane = select(nearest, q, over);
+  return face.origin_length.xyz + in_plane.x * face.along_ac.xyz + in_plane.y * face.beside_ac.xyz;
+}
+
+// The distance from a point to the farthest corner of a face.
+fn farthest_of_face(number: u32, p: vec3f) -> f32 {
+  let face = faces[number];
+  let a = face.origin_length.xyz - p;
+  let b = a + face.origin_length.w * face.along_ac.xyz;
+  let c = a + face.normal_ac.w * (face.along_ac.w * face.along_ac.xyz + face.beside_ac.w * face.beside_ac.xyz);
+  return sqrt(max(dot(a, a), max(dot(b, b), dot(c, c))));
+}
+
+// The search for one point: the limit beyond which no face is closest, and how many faces its list has.
+struct Found {
+  error: f32,
+  limit: f32,     // squared
+  count: u32,
+  left_out: f32,  // the least squared distance of the faces that had no room in the list
+}
+
+fn start(p: vec3f, within: f32) -> Found {
+  let error = error_at(max(max(abs(p.x), abs(p.y)), abs(p.z)));
+  let reach = within + error;
+  return Found(error, reach * reach, 0u, bitcast<f32>(kInfinity));
+}
+
+fn take_limit(found: ptr<function, Found>, square: f32) {
+  let reach = farther(sqrt(square), (*found).error);
+  (*found).limit = min((*found).limit, reach * reach);
+}
+
+fn take(found: ptr<function, Found>, point: u32, face: u32, square: f32) {
+  take_limit(found, square);
+  if ((*found).count < kMost) {
+    (*found).count += 1u;
+    results[point * kResult + (*found).count] = face;
+  } else {
+    (*found).left_out = min((*found).left_out, square);
+  }
+}
+
+fn finish(found: ptr<function, Found>, point: u32, visited: u32, tested: u32) {
+  let incomplete = (*found).left_out <= (*found).limit;
+  let counts = (min(visited, 0xfffu) << 6u) | (min(tested, 0x3fffu) << 18u);
+  results[point * kResult] = (*found).count | select(0u, kIncomplete, incomplete) | counts;
+}

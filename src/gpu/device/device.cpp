@@ -1,0 +1,268 @@
+#include "gpu/device/device.h"
+
+#include <sdm/error.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <mutex>
+#include <utility>
+
+namespace sdm::gpu {
+namespace {
+
+std::string text(const WGPUStringView& view) {
+  if (view.data == nullptr) return {};
+  return view.length == WGPU_STRLEN ? std::string(view.data) : std::string(view.data, view.length);
+}
+
+WGPUStringView view(std::string_view text) {
+  return {text.data(), text.size()};
+}
+
+// Never released: drivers may be gone when a process ends.
+WGPUInstance instance() {
+  static const WGPUInstance only = [] {
+    WGPUInstanceExtras extras{};
+    extras.chain.sType = static_cast<WGPUSType>(WGPUSType_InstanceExtras);
+    extras.backends = WGPUInstanceBackend_Primary;
+    WGPUInstanceDescriptor descriptor{};
+    descriptor.nextInChain = &extras.chain;
+    return wgpu().CreateInstance(&descriptor);
+  }();
+  if (only == nullptr) throw Error("the gpu engine: wgpu-native could not be started");
+  return only;
+}
+
+std::string backend_name(WGPUBackendType type) {
+  switch (type) {
+    case WGPUBackendType_Vulkan:
+      return "Vulkan";
+    case WGPUBackendType_Metal:
+      return "Metal";
+    case WGPUBackendType_D3D12:
+      return "D3D12";
+    default:
+      return "another interface";
+  }
+}
+
+struct Found {
+  Adapter adapter;
+  AdapterName name;
+};
+
+std::vector<Found> find_adapters() {
+  WGPUInstanceEnumerateAdapterOptions options{};
+  options.backends = WGPUInstanceBackend_Primary;
+  std::vector<WGPUAdapter> all(wgpu().InstanceEnumerateAdapters(instance(), &options, nullptr));
+  wgpu().InstanceEnumerateAdapters(instance(), &options, all.data());
+  std::vector<Found> found;
+  for (const WGPUAdapter adapter : all) {
+    Found& each = found.emplace_back(Found{Adapter(adapter), {}});
+    WGPUAdapterInfo info{};
+    if (wgpu().AdapterGetInfo(adapter, &info) != WGPUStatus_Success) continue;
+    each.name = {.name = text(info.device),
+                 .backend = backend_name(info.backendType),
+                 .is_processor = info.adapterType == WGPUAdapterType_CPU};
+    wgpu().AdapterInfoFreeMembers(info);
+  }
+  return found;
+}
+
+bool contains(std::string_view name, std::string_view wanted) {
+  const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
+  return !std::ranges::search(name, wanted, same).empty();
+}
+
+Found choose(std::string_view wanted) {
+  std::vector<Found> all = find_adapters();
+  if (all.empty())
+    throw Error(
+        "the gpu engine found no device with a driver for Vulkan, Metal or D3D12: install a driver (Debian: "
+        "mesa-vulkan-drivers, which also computes on the processor), or use another engine");
+  auto chosen = std::ranges::find_if(all, [&](const Found& each) {
+    return wanted.empty() ? !each.name.is_processor : contains(each.name.name, wanted);
+  });
+  if (chosen == all.end() && wanted.empty()) chosen = all.begin();
+  if (chosen != all.end()) return std::move(*chosen);
+  std::string names;
+  for (const Found& each : all) names += (names.empty() ? "" : ", ") + each.name.name;
+  throw Error("the gpu engine found no device '" + std::string(wanted) + "'; there are: " + names);
+}
+
+constexpr std::size_t kUniformBytes = 16;
+
+WGPUBufferUsage usage(Device::Use use) {
+  switch (use) {
+    case Device::Use::uniform:
+      return WGPUBufferUsage_Uniform | WGPUBufferUsage_CopyDst;
+    case Device::Use::read:
+      return WGPUBufferUsage_Storage | WGPUBufferUsage_CopyDst;
+    case Device::Use::write:
+      return WGPUBufferUsage_Storage | WGPUBufferUsage_CopySrc;
+    default:
+      return WGPUBufferUsage_MapRead | WGPUBufferUsage_CopyDst;
+  }
+}
+
+std::string megabytes(std::size_t bytes) {
+  return std::to_string((bytes + 999'999) / 1'000'000) + " MB";
+}
+
+}  // namespace
+
+// What the device has reported, from any thread.
+struct Device::Faults {
+  mutable std::mutex mutex;
+  std::string lost, error;  // the first of each
+  bool out_of_memory = false;
+
+  static void on_lost(WGPUDevice const*, WGPUDeviceLostReason, WGPUStringView message, void* self, void*) {
+    auto& faults = *static_cast<Faults*>(self);
+    const std::lock_guard lock(faults.mutex);
+    if (faults.lost.empty()) faults.lost = "it was lost (" + text(message) + ")";
+  }
+  static void on_error(WGPUDevice const*, WGPUErrorType type, WGPUStringView message, void* self, void*) {
+    auto& faults = *static_cast<Faults*>(self);
+    const std::lock_guard lock(faults.mutex);
+    faults.out_of_memory |= type == WGPUErrorType_OutOfMemory;
+    if (faults.error.empty()) faults.error = text(message);
+  }
+};
+
+std::vector<AdapterName> adapter_names() {
+  std::vector<AdapterName> names;
+  for (Found& each : find_adapters()) names.push_back(std::move(each.name));
+  return names;
+}
+
+Device::Device(std::string_view wanted) : faults_(std::make_unique<Faults>()) {
+  Found found = choose(wanted);
+  adapter_ = std::move(found.name);
+  WGPULimits limits{};
+  if (wgpu().AdapterGetLimits(found.adapter.get(), &limits) != WGPUStatus_Success)
+    throw Error("the gpu engine: " + adapter_.name + " does not tell its limits");
+  most_bytes_ = std::min<std::size_t>(limits.maxStorageBufferBindingSize, limits.maxBufferSize);
+
+  WGPUDeviceDescriptor descriptor{};
+  descriptor.requiredLimits = &limits;
+  descriptor.deviceLostCallbackInfo = {nullptr, WGPUCallbackMode_AllowSpontaneous, Faults::on_lost,
+                                       faults_.get(), nullptr};
+  descriptor.uncapturedErrorCallbackInfo = {nullptr, Faults::on_error, faults_.get(), nullptr};
+  struct Answer {
+    WGPUDevice device = nullptr;
+    std::string message;
+  } answer;
+  const auto on_device = [](WGPURequestDeviceStatus, WGPUDevice device, WGPUStringView message, void* to,
+                            void*) {
+    *static_cast<Answer*>(to) = {device, text(message)};
+  };
+  // wgpu-native answers before it returns.
+  wgpu().AdapterRequestDevice(found.adapter.get(), &descriptor,
+                              {nullptr, WGPUCallbackMode_AllowSpontaneous, on_device, &answer, nullptr});
+  if (answer.device == nullptr)
+    throw Error("the gpu engine: " + adapter_.name + " cannot be opened (" + answer.message + ")");
+  device_.reset(answer.device);
+  queue_.reset(wgpu().DeviceGetQueue(device_.get()));
+}
+
+Device::~Device() = default;
+
+void Device::check(std::string_view step) const {
+  const std::lock_guard lock(faults_->mutex);
+  const std::string& fault = !faults_->lost.empty() ? faults_->lost : faults_->error;
+  if (fault.empty()) return;
+  const std::string what = faults_->lost.empty() && faults_->out_of_memory ? "not enough memory" : fault;
+  throw Error("the gpu engine: " + adapter_.name + " failed when " + std::string(step) + ": " + what);
+}
+
+Buffer Device::buffer(std::size_t bytes, Use use, std::string_view purpose) {
+  bytes = std::max<std::size_t>((bytes + 3) / 4 * 4, kUniformBytes);
+  if (bytes > most_bytes_)
+    throw Error("the gpu engine needs a buffer of " + megabytes(bytes) + " for " + std::string(purpose) +
+                ", and " + adapter_.name + " permits " + megabytes(most_bytes_) + ": use the cpu engine");
+  WGPUBufferDescriptor descriptor{};
+  descriptor.usage = usage(use);
+  descriptor.size = bytes;
+  Buffer buffer(wgpu().DeviceCreateBuffer(device_.get(), &descriptor));
+  check("it made a buffer of " + megabytes(bytes) + " for " + std::string(purpose));
+  return buffer;
+}
+
+void Device::write(const Buffer& buffer, std::span<const std::byte> bytes) {
+  wgpu().QueueWriteBuffer(queue_.get(), buffer.get(), 0, bytes.data(), bytes.size());
+}
+
+Pipeline Device::pipeline(std::string_view wgsl) {
+  WGPUShaderSourceWGSL source{};
+  source.chain.sType = WGPUSType_ShaderSourceWGSL;
+  source.code = view(wgsl);
+  WGPUShaderModuleDescriptor module_descriptor{};
+  module_descriptor.nextInChain = &source.chain;
+  const ShaderModule module(wgpu().DeviceCreateShaderModule(device_.get(), &module_descriptor));
+  check("it compiled the program");
+  WGPUComputePipelineDescriptor descriptor{};
+  descriptor.compute.module = module.get();
+  descriptor.compute.entryPoint = view("main");
+  Pipeline pipeline(wgpu().DeviceCreateComputePipeline(device_.get(), &descriptor));
+  check("it compiled the program");
+  return pipeline;
+}
+
+BindGroup Device::bind(const Pipeline& pipeline, std::span<const Buffer* const> buffers) {
+  const BindGroupLayout layout(wgpu().ComputePipelineGetBindGroupLayout(pipeline.get(), 0));
+  std::vector<WGPUBindGroupEntry> entries(buffers.size());
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    entries[i].binding = static_cast<std::uint32_t>(i);
+    entries[i].buffer = buffers[i]->get();
+    entries[i].size = WGPU_WHOLE_SIZE;
+  }
+  WGPUBindGroupDescriptor descriptor{};
+  descriptor.layout = layout.get();
+  descriptor.entryCount = entries.size();
+  descriptor.entries = entries.data();
+  BindGroup group(wgpu().DeviceCreateBindGroup(device_.get(), &descriptor));
+  check("it bound buffers");
+  return group;
+}
+
+void Device::run(const Pipeline& pipeline, const BindGroup& group, std::uint32_t workgroups,
+                 const Buffer& result, const Buffer& read_back, std::span<std::byte> to) {
+  const CommandEncoder encoder(wgpu().DeviceCreateCommandEncoder(device_.get(), nullptr));
+  const ComputePass pass(wgpu().CommandEncoderBeginComputePass(encoder.get(), nullptr));
+  wgpu().ComputePassEncoderSetPipeline(pass.get(), pipeline.get());
+  wgpu().ComputePassEncoderSetBindGroup(pass.get(), 0, group.get(), 0, nullptr);
+  wgpu().ComputePassEncoderDispatchWorkgroups(pass.get(), workgroups, 1, 1);
+  wgpu().ComputePassEncoderEnd(pass.get());
+  wgpu().CommandEncoderCopyBufferToBuffer(encoder.get(), result.get(), 0, read_back.get(), 0, to.size());
+  const CommandBuffer commands(wgpu().CommandEncoderFinish(encoder.get(), nullptr));
+  check("it was given work");
+  const WGPUCommandBuffer list[] = {commands.get()};
+  wgpu().QueueSubmit(queue_.get(), 1, list);
+  check("it was given work");
+
+  struct Answer {
+    bool done = false;
+    WGPUMapAsyncStatus status{};
+    std::string message{};
+  } answer;
+  const auto on_mapped = [](WGPUMapAsyncStatus status, WGPUStringView message, void* user, void*) {
+    *static_cast<Answer*>(user) = {true, status, text(message)};
+  };
+  wgpu().BufferMapAsync(read_back.get(), WGPUMapMode_Read, 0, to.size(),
+                        {nullptr, WGPUCallbackMode_AllowSpontaneous, on_mapped, &answer, nullptr});
+  // Callbacks run within a poll, on this thread.
+  while (!answer.done) wgpu().DevicePoll(device_.get(), true, nullptr);
+  check("it computed");
+  if (answer.status != WGPUMapAsyncStatus_Success)
+    throw Error("the gpu engine: " + adapter_.name + " returned no result: " + answer.message);
+  std::memcpy(to.data(), wgpu().BufferGetConstMappedRange(read_back.get(), 0, to.size()), to.size());
+  wgpu().BufferUnmap(read_back.get());
+}
+
+void Device::lose() {
+  wgpu().DeviceDestroy(device_.get());
+}
+
+}  // namespace sdm::gpu

@@ -1,0 +1,74 @@
+// A device that computes, and what a program does with it: buffers, a program of WGSL, and runs of it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gpu/device/wgpu_library.h"
+
+namespace sdm::gpu {
+
+/// What a machine computes with.
+struct AdapterName {
+  std::string name;     ///< as its driver has it
+  std::string backend;  ///< Vulkan, Metal or D3D12
+  bool is_processor = false;
+};
+
+/// All adapters of the machine, in the order of the drivers. Throws sdm::Error if wgpu-native is missing.
+[[nodiscard]] std::vector<AdapterName> adapter_names();
+
+/// One device. Used by one thread at a time.
+class Device {
+ public:
+  /// Opens the first adapter whose name contains `wanted`, in any case of letters; if it is empty, the first
+  /// one that is not a processor, or the first one. Throws sdm::Error if there is none.
+  explicit Device(std::string_view wanted);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  [[nodiscard]] const AdapterName& adapter() const { return adapter_; }
+  /// The largest buffer that a program can read or write.
+  [[nodiscard]] std::size_t most_bytes() const { return most_bytes_; }
+
+  enum class Use { uniform, read, write, read_back };
+  /// Throws sdm::Error if there is not that much memory on the device, or a buffer may not be so large.
+  [[nodiscard]] Buffer buffer(std::size_t bytes, Use use, std::string_view purpose);
+  /// Writes before whatever runs next.
+  void write(const Buffer& buffer, std::span<const std::byte> bytes);
+
+  /// The entry point "main" of a source in WGSL.
+  [[nodiscard]] Pipeline pipeline(std::string_view wgsl);
+  /// Binds buffers to 0, 1, … of group 0.
+  [[nodiscard]] BindGroup bind(const Pipeline& pipeline, std::span<const Buffer* const> buffers);
+
+  /// Runs so many workgroups, and waits for the first bytes of `result`, which pass through `read_back`.
+  void run(const Pipeline& pipeline, const BindGroup& group, std::uint32_t workgroups, const Buffer& result,
+           const Buffer& read_back, std::span<std::byte> to);
+
+  /// What a driver does that takes a device away, for tests.
+  void lose();
+
+ private:
+  struct Faults;
+
+  /// Throws sdm::Error if the device is lost or has reported an error.
+  void check(std::string_view step) const;
+
+  AdapterName adapter_;
+  std::unique_ptr<Faults> faults_;  // outlives the device, whose callbacks write there
+  std::size_t most_bytes_ = 0;
+  struct DeviceReleaser {
+    void operator()(WGPUDeviceImpl* device) const { wgpu().DeviceRelease(device); }
+  };
+  std::unique_ptr<WGPUDeviceImpl, DeviceReleaser> device_;
+  Queue queue_;
+};
+
+}  // namespace sdm::gpu

@@ -1,0 +1,80 @@
+// The search on a device: the faces that may be closest to each of many points.
+#pragma once
+
+#include <sdm/types.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "gpu/sites_on_device.h"
+
+namespace sdm::gpu {
+
+/// The faces that may be closest to a point, as the device writes them.
+struct FaceList {
+  static constexpr std::uint32_t kMost = 15;
+
+  std::uint32_t head;
+  std::uint32_t number[kMost];  ///< of the faces, in the order of the leaves
+
+  [[nodiscard]] std::uint32_t count() const { return head & 15u; }
+  /// Whether there may be others: there was no room for them.
+  [[nodiscard]] bool incomplete() const { return (head & 16u) != 0; }
+  /// Whether the points beside it are too far from each other to be searched for together.
+  [[nodiscard]] bool alone() const { return (head & 32u) != 0; }
+  [[nodiscard]] std::uint32_t nodes() const { return head >> 6 & 0xfffu; }  ///< visited, at most 4095
+  [[nodiscard]] std::uint32_t tests() const { return head >> 18; }          ///< faces compared, at most 16383
+};
+
+/// A point in the unit frame, and nothing farther than `within` is closest; negative if there is nothing to
+/// be found.
+struct QueryPoint {
+  float position[3];
+  float within;
+};
+
+/// What searches on a device took.
+struct SearchTimes {
+  std::size_t dispatches = 0;
+  std::size_t alone = 0;  ///< points that were searched for one by one
+  double upload_ms = 0;   ///< of sites
+  double search_ms = 0;   ///< of points, with their transfers
+};
+
+class FaceSearch {
+ public:
+  static constexpr std::size_t kTile =
+      64;  ///< points that are searched for together, if they are near each other
+
+  /// Opens a device as Device() does.
+  explicit FaceSearch(std::string_view wanted);
+
+  [[nodiscard]] const Device& device() const { return device_; }
+  Device& device() { return device_; }
+
+  /// Sets found[i] to the faces of the sites that may be closest to points[i]; their number is a multiple of
+  /// kTile. In dispatches that are expected to take a twentieth of a second at most, between which the call
+  /// can be cancelled.
+  void find(const sites::SitesData& sites, std::span<const QueryPoint> points, std::span<FaceList> found,
+            SearchTimes& times);
+
+ private:
+  const SitesOnDevice& place(const sites::SitesData& sites);
+  void reserve(std::size_t points);
+  void search(const SitesOnDevice& sites, std::span<const QueryPoint> points, std::span<FaceList> found,
+              SearchTimes& times);
+
+  static constexpr std::size_t kKept = 4;  // shapes
+
+  Device device_;
+  Pipeline tiles_together_, points_alone_;
+  std::vector<std::unique_ptr<SitesOnDevice>> kept_;  // the last ones that were searched, the latest first
+  Buffer points_, results_, read_back_, tiles_;
+  std::size_t room_ = 0;         // points of the buffers
+  std::size_t dispatch_ = 4096;  // points
+};
+
+}  // namespace sdm::gpu

@@ -1,0 +1,69 @@
+#include "gpu/finish.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "closest/exact.h"
+#include "closest/single_point.h"
+#include "core/nothing_found.h"
+
+namespace sdm::gpu {
+namespace {
+
+// Farther than this in the unit frame, single precision does not select faces well.
+constexpr double kFar = 16;
+
+ClosestPoint closest_of(const sites::SitesData& sites, const Vec3& point, const QueryPoint& placed,
+                        const FaceList& found, double max_distance, FinishCounts& counts) {
+  if (placed.within < 0) {
+    counts.far += 1;
+    return closest::closest_point(sites, point, max_distance);
+  }
+  counts.nodes += found.nodes();
+  counts.tests += found.tests();
+  if (found.incomplete()) {
+    counts.incomplete += 1;
+    return closest::exact_closest(sites, point, max_distance);
+  }
+  counts.candidates += found.count();
+  closest::FirstClosest best(sites, point, max_distance);
+  for (std::uint32_t i = 0; i < found.count(); ++i) best.offer(sites.tree.items[found.number[i]]);
+  return best.result();
+}
+
+}  // namespace
+
+void place_points(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
+                  std::span<QueryPoint> placed) {
+  const auto within = static_cast<float>(std::min(1.00001 * max_distance * sites.frame.scale, 1e18));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 unit = sites.frame.to_unit(points[i]);
+    bool near = true;
+    for (int k = 0; k < 3; ++k) near &= std::abs(unit[k]) <= kFar;
+    placed[i].within = near ? within : -1;
+    for (int k = 0; k < 3; ++k) placed[i].position[k] = near ? static_cast<float>(unit[k]) : 0;
+  }
+}
+
+FinishCounts finish(const sites::SitesData& sites, std::span<const Vec3> points,
+                    std::span<const QueryPoint> placed, std::span<const FaceList> found, double max_distance,
+                    const sites::ClosestSink& sink) {
+  FinishCounts counts;
+  sites::ClosestPacket packet;
+  for (std::size_t first = 0; first < points.size(); first += packet.count) {
+    packet.count = std::min(sites::ClosestPacket::kSize, points.size() - first);
+    for (std::size_t i = 0; i < packet.count; ++i) {
+      const Vec3& point = points[first + i];
+      const ClosestPoint closest =
+          closest_of(sites, point, placed[first + i], found[first + i], max_distance, counts);
+      if (closest.type == SiteType::none && max_distance == std::numeric_limits<double>::infinity())
+        throw_nothing_found();
+      packet.set(i, point, closest);
+    }
+    sink(first, packet);
+  }
+  return counts;
+}
+
+}  // namespace sdm::gpu

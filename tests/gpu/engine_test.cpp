@@ -1,0 +1,183 @@
+// The gpu engine: its closest points are those of the reference engine, to the bit.
+#include "closest/engine.h"
+
+#include <gmock/gmock.h>
+#include <sdm/sdm.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "gpu/face_search.h"
+#include "gpu/gpu_engine.h"
+#include "support/error_of.h"
+#include "support/meshes.h"
+#include "support/points.h"
+#include "support/shapes.h"
+
+namespace sdm {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Triangles that are needles, flat ones, points, segments, or copies of others.
+Mesh degenerate(std::mt19937& random) {
+  Mesh mesh = test::soup(300, random);
+  const std::size_t count = mesh.triangles.size();
+  for (std::size_t f = 0; f < count; ++f) {
+    const Triangle t = mesh.triangles[f];
+    const double height = std::pow(10.0, -3 - static_cast<double>(f % 9));
+    if (f % 5 == 0)
+      mesh.positions[t[2]] = 0.5 * (mesh.positions[t[0]] + mesh.positions[t[1]]) + Vec3{height, 0, height};
+    if (f % 7 == 0) mesh.positions[t[1]] = mesh.positions[t[0]];
+    if (f % 11 == 0) mesh.positions[t[2]] = mesh.positions[t[1]];
+    if (f % 3 == 0) {  // the same face, of vertices of its own
+      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+      for (const std::uint32_t v : t) mesh.positions.push_back(mesh.positions[v]);
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+  }
+  return mesh;
+}
+
+// On the surface, near it, in its box, around it and far away; and on vertices and beyond the ends of edges.
+std::vector<Vec3> queries_for(const Mesh& mesh, std::size_t count, std::mt19937& random) {
+  const Box box = bounds(mesh);
+  const Vec3 centre = 0.5 * (box.lo + box.hi), half = 0.5 * (box.hi - box.lo);
+  const double size = norm(half);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Vec3> queries = test::random_surface_points(mesh, count, random);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 direction{unit(random), unit(random), unit(random)};
+    const double far = std::pow(10.0, static_cast<double>(i % 9) - 7);
+    switch (i % 4) {
+      case 0:
+        queries[i] = queries[i] + far * size * direction;
+        break;
+      case 1:
+        queries[i] = centre + 3 * size * direction;
+        break;
+      case 2: {
+        const Triangle& t = mesh.triangles[i % mesh.triangles.size()];
+        const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]];
+        queries[i] = i % 8 == 2 ? a : a + (2 + direction[0]) * (b - a);
+        break;
+      }
+      default:
+        break;
+    }
+  }
+  return queries;
+}
+
+void expect_reference(const Mesh& mesh, double max_distance, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  const Sites sites(mesh);
+  const std::vector<Vec3> points = queries_for(mesh, 20'000, random);
+  const auto of = [&](const char* engine) {
+    std::vector<ClosestPoint> found(points.size());
+    make_engine(engine)->scattered(sites, points, {.max_distance = max_distance}, found);
+    return found;
+  };
+  const std::vector<ClosestPoint> found = of("gpu"), expected = of("reference");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ASSERT_EQ(found[i].type, expected[i].type) << i;
+    if (expected[i].type == SiteType::none) continue;
+    ASSERT_EQ(found[i].distance, expected[i].distance) << i;
+    ASSERT_EQ(found[i].site, expected[i].site) << i;
+    ASSERT_EQ(found[i].point, expected[i].point) << i;
+  }
+}
+
+TEST(GpuEngine, ClosestPointsAreThoseOfTheReferenceEngine) {
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  expect_reference(test::load("armadillo.off"), kAnywhere, 1);
+  expect_reference(test::load("elephant-with-holes.off"), kAnywhere, 2);
+  expect_reference(test::load("boeing.off"), 0.3, 3);
+  for (std::uint32_t seed = 4; seed < 12; ++seed) {
+    std::mt19937 random(seed);
+    Mesh mesh = degenerate(random);
+    const double scale = std::pow(10.0, 3.0 * (seed % 5) - 6);
+    for (Vec3& p : mesh.positions) p = scale * (p + Vec3{3, 0, -5});
+    expect_reference(mesh, seed % 2 == 0 ? kAnywhere : 0.2 * scale, seed);
+  }
+}
+
+TEST(GpuEngine, ManyFacesAtTheSameDistance) {
+  // A point above the tip of a fan of more faces than a list has room for.
+  Mesh fan;
+  fan.positions = {{0, 0, 1}};
+  constexpr std::uint32_t kFaces = 40;
+  for (std::uint32_t i = 0; i < kFaces; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / kFaces;
+    fan.positions.push_back({std::cos(angle), std::sin(angle), 0});
+    fan.triangles.push_back({0, 1 + i, 1 + (i + 1) % kFaces});
+  }
+  const Sites sites(fan);
+  const auto engine = gpu::make_gpu_engine({});
+  const std::vector<ClosestPoint> found =
+      closest_points(sites, std::vector<Vec3>{{0, 0, 2}}, {.engine = engine});
+  EXPECT_EQ(found[0].type, SiteType::vertex);
+  EXPECT_EQ(found[0].site, 0u);
+  EXPECT_EQ(found[0].distance, 1);
+  EXPECT_EQ(gpu::gpu_report(*engine)->incomplete, 1u);
+}
+
+TEST(GpuEngine, FollowsARefit) {
+  Mesh mesh = test::load("cow.off", "fit");
+  Sites sites(mesh);
+  const std::vector<Vec3> points{{0.1, 0.2, 0.3}, {2, 0, 0}};
+  for (int frame = 0; frame < 6; ++frame) {
+    for (Vec3& p : mesh.positions) p = 1.1 * p + Vec3{0.01, 0, 0};
+    sites.refit(mesh.positions);
+    const auto found = closest_points(sites, points, {.engine = make_engine("gpu")}),
+               expected = closest_points(sites, points, {.engine = make_engine("reference")});
+    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(found[i].distance, expected[i].distance);
+  }
+}
+
+TEST(GpuEngine, MapsBesideEachOtherAndCancellation) {
+  const Surface surface(test::load("cow.off", "fit"), {.resolution = 256});
+  const Sites sites(test::load("head.off", "fit,translate:0.5:0:0"));
+  MapOptions options{.engine = make_engine("gpu")};
+  const auto map = [&] { return compute_map(surface, sites, options).distance; };
+  const std::vector<float> expected =
+      compute_map(surface, sites, {.engine = make_engine("reference")}).distance;
+  const auto same = [&](const std::vector<float>& found) {
+    return std::memcmp(found.data(), expected.data(), expected.size() * sizeof(float)) == 0;
+  };
+  std::vector<float> other;
+  std::jthread beside([&] { other = map(); });
+  EXPECT_TRUE(same(map()));
+  beside.join();
+  EXPECT_TRUE(same(other));
+  options.progress = [](std::string_view, double) { return false; };
+  EXPECT_THROW(map(), Cancelled);
+  options.progress = {};
+  EXPECT_TRUE(same(map()));
+}
+
+TEST(GpuEngine, UnknownDevice) {
+  EXPECT_THAT(test::error_of([] { return gpu::make_gpu_engine({.device = "no such device"}); }),
+              HasSubstr("no device 'no such device'"));
+}
+
+TEST(GpuEngine, LostDevice) {
+  const Sites sites(test::load("cow.off", "fit"));
+  gpu::FaceSearch search("");
+  const std::vector<gpu::QueryPoint> points(gpu::FaceSearch::kTile, {{0, 0, 0}, 1e18f});
+  std::vector<gpu::FaceList> found(points.size());
+  gpu::SearchTimes times;
+  search.find(internals(sites), points, found, times);
+  EXPECT_GT(found[0].count(), 0u);
+  search.device().lose();
+  EXPECT_THAT(test::error_of([&] { search.find(internals(sites), points, found, times); }),
+              HasSubstr("lost"));
+}
+
+}  // namespace
+}  // namespace sdm
