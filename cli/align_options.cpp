@@ -22,7 +22,8 @@ std::optional<sdm::Box> box_of(std::string_view text) {
   if (!sdm::read_numbers(text.substr(kBox.size()), {}, 6, numbers)) return std::nullopt;
   sdm::Box box;
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] = numbers[k], box.hi[k] = numbers[k + 3];
+    box.lo[k] = numbers[k];
+    box.hi[k] = numbers[k + 3];
     if (!(box.lo[k] <= box.hi[k])) return std::nullopt;
   }
   return box;
@@ -69,7 +70,11 @@ void add_align_options(CLI::App& app, AlignCommand& command) {
       ->needs(align);
   add_freedom_options(app, command, align);
   app.add_option_function<std::string>(
-         "--align-321", [&command](const std::string& file) { command.on = true, command.points_321 = file; },
+         "--align-321",
+         [&command](const std::string& file) {
+           command.on = true;
+           command.points_321 = file;
+         },
          "Move O1 by six of its points and their places on O2, without a fit: a file with a row of two "
          "points for each, three primary, two secondary and one tertiary")
       ->check(non_empty())
@@ -104,7 +109,8 @@ sdm::Transform read_321(const std::string& file) {
       throw sdm::Error(
           fmt::format("{}: line {} is not six numbers, a point on O1 and its place on O2", file, row));
     const auto& n = *numbers;
-    points.push_back({n[0], n[1], n[2]}), places.push_back({n[3], n[4], n[5]});
+    points.push_back({n[0], n[1], n[2]});
+    places.push_back({n[3], n[4], n[5]});
   }
   if (points.size() != kRows)
     throw sdm::Error(

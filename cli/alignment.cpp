@@ -61,8 +61,10 @@ AlignOutcome timed(const Input& o2, const AlignCommand& command, const sdm::Prog
     outcome.mirrored = calls.mirrored(outcome.alignment);
     if (options.region.whole() && !outcome.other_unit && !outcome.mirrored)
       outcome.scale = calls.scale(outcome.alignment);
-    if (const sdm::FaceNames* names = groups_of(o2); names && names->names.size() > 1)
-      outcome.group_kind = names->kind, outcome.group_names = names->names;
+    if (const sdm::FaceNames* names = groups_of(o2); names && names->names.size() > 1) {
+      outcome.group_kind = names->kind;
+      outcome.group_names = names->names;
+    }
     outcome.time_ms = watch.lap();
     return outcome;
   } catch (const sdm::Cancelled&) {

@@ -29,13 +29,19 @@ void extend(sdm::Box& box, const sdm::Box& other) {
 sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2, const sdm::Box& more) {
   sdm::Box box;
   if (!command.bounds.empty()) {
-    for (std::size_t k = 0; k < 3; ++k) box.lo[k] = command.bounds[k], box.hi[k] = command.bounds[k + 3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.lo[k] = command.bounds[k];
+      box.hi[k] = command.bounds[k + 3];
+    }
   } else {
     box = sdm::bounds(o2);
     const double diagonal = size_of(box);
     const double farthest = command.options.max_distance;
     const double margin = farthest < std::numeric_limits<double>::infinity() ? farthest : 0.1 * diagonal;
-    for (std::size_t k = 0; k < 3; ++k) box.lo[k] -= margin, box.hi[k] += margin;
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.lo[k] -= margin;
+      box.hi[k] += margin;
+    }
     extend(box, more);
   }
   if (command.points.empty()) return sdm::make_grid(box, command.spacing);

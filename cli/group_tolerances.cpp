@@ -174,7 +174,8 @@ std::optional<std::string> note_on_unjudged(const GroupTolerances& table, const 
     const auto& [a, b, c] = input.mesh.triangles[face];
     const std::vector<sdm::Vec3>& p = input.mesh.positions;
     const double area = sdm::norm(sdm::cross(p[b] - p[a], p[c] - p[a]));
-    all += area, judged += has_limits[face] ? area : 0;
+    all += area;
+    judged += has_limits[face] ? area : 0;
   }
   if (judged == 0 || judged == all) return std::nullopt;
   return fmt::format("{} % of the area of {} has no limits and is not judged",

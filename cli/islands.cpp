@@ -41,7 +41,8 @@ std::vector<std::uint8_t> vertices_left(const sdm::Mesh& mesh, const sdm::Mesh& 
       if (!sdm::is_removed(triangle))
         for (const std::uint32_t vertex : triangle) left[vertex] = value;
   };
-  mark(mesh, 1), mark(rest, 0);
+  mark(mesh, 1);
+  mark(rest, 0);
   return left;
 }
 

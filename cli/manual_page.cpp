@@ -39,7 +39,8 @@ std::string paragraphs(std::string_view text) {
     const bool example = line.starts_with(' ');
     if (example != as_is) result += example ? ".PP\n.nf\n" : ".fi\n";
     if (!example && !first) result += ".PP\n";
-    as_is = example, first = false;
+    as_is = example;
+    first = false;
     if (!line.empty()) result += plain(line) + "\n";
   }
   return as_is ? result + ".fi\n" : result;

@@ -84,11 +84,14 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
   picture.accuracy = computed.accuracy;
   std::vector<sdm::FaceNames> names;
   if (!command.groups.rows.empty()) names = sdm::names_of_part(task.on.names, part.source_face);
-  if (picture.colormap == sdm::Colormap::automatic)
-    picture.table = command.groups.rows, picture.names = names;
+  if (picture.colormap == sdm::Colormap::automatic) {
+    picture.table = command.groups.rows;
+    picture.names = names;
+  }
   const sdm::DistanceStatistics distance = sdm::statistics(surface, map);
   sdm::SummaryOptions options = summary_options(task, part, computed.accuracy);
-  options.distance = &distance, options.boundary = boundary;
+  options.distance = &distance;
+  options.boundary = boundary;
   options.colors = task.shared ? task.shared->colors : sdm::color_range(sdm::color_choice(picture), distance);
   const sdm::ExrOptions exr{.layers = command.output.layers,
                             .boundary = boundary,
@@ -204,7 +207,10 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
         computed.at_vertices = sdm::distances_at_vertices(mesh, *task.sites, measure_of(command, {}));
         leave_islands_out(task.on, computed.at_vertices, std::numeric_limits<float>::quiet_NaN());
       },
-      [&] { inspect(task.on), inspect(task.to); },
+      [&] {
+        inspect(task.on);
+        inspect(task.to);
+      },
   });
   if (!command.along)
     check_sign(task.command.picture.tolerance, sdm::choose_sign(*task.sites, task.command.map), task.to);
@@ -213,7 +219,8 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
   computed.map = sdm::compute_map(*surface, *task.sites, measure_of(command, command.map.progress));
   const sdm::DistanceMap& map = computed.map;
   outcome.time.map = watch.lap();
-  outcome.resolution = map.resolution, outcome.rows = map.rows();
+  outcome.resolution = map.resolution;
+  outcome.rows = map.rows();
   computed.accuracy = sdm::engine_accuracy(sdm::engine_info(*command.map.engine), task.on.mesh, task.to.mesh);
   if (sdm::lacks_boundary_signs(map.measured.kind, map.sign.method)) {
     std::vector<std::uint8_t> at_boundary =

@@ -17,8 +17,10 @@ sdm::Box posed(const sdm::Box& box, const sdm::Transform& pose) {
     sdm::Vec3 p;
     for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? box.hi[k] : box.lo[k];
     p = pose(p);
-    for (int k = 0; k < 3; ++k)
-      result.lo[k] = std::min(result.lo[k], p[k]), result.hi[k] = std::max(result.hi[k], p[k]);
+    for (int k = 0; k < 3; ++k) {
+      result.lo[k] = std::min(result.lo[k], p[k]);
+      result.hi[k] = std::max(result.hi[k], p[k]);
+    }
   }
   return result;
 }

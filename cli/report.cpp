@@ -41,7 +41,8 @@ void inspect(Input& input) {
   if (input.info) return;
   input.info = sdm::inspect(input.mesh);
   const auto of_islands = static_cast<std::size_t>(std::ranges::count(input.island_vertices, 1));
-  input.info->vertices -= of_islands, input.info->unused_vertices -= of_islands;
+  input.info->vertices -= of_islands;
+  input.info->unused_vertices -= of_islands;
 }
 
 sdm::ReportedMesh reported(const Input& input) {

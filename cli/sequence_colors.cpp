@@ -35,7 +35,10 @@ sdm::PictureOptions colors_for_frames(const std::function<std::array<Body, 2>()>
     progress(frame);
     try {
       for (Body& body : bodies)
-        if (!body.still()) body.read(frame), body.followed();
+        if (!body.still()) {
+          body.read(frame);
+          body.followed();
+        }
       if (!measured) continue;
       const sdm::Sites o1(mesh_of(bodies[0], changes)), o2(mesh_of(bodies[1], changes));
       sdm::SequencePlayer sample(o1.mesh(), o2.mesh(), both);

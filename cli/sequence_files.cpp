@@ -102,7 +102,8 @@ void SequenceFiles::write_temporal(const sdm::TemporalMaps& temporal, const Movi
     sdm::DistanceStatistics all = sdm::statistics(surface, map);
     use(temporal.largest());
     const sdm::DistanceStatistics largest = sdm::statistics(surface, map);
-    all.max = largest.max, all.p99_abs = std::max(all.p99_abs, largest.p99_abs);
+    all.max = largest.max;
+    all.p99_abs = std::max(all.p99_abs, largest.p99_abs);
     picture = sdm::fixed_colors(picture, all);
   }
   const auto draw = [&](const char* file, std::span<const float> values) {

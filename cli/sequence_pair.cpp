@@ -48,7 +48,10 @@ void MovingPair::move(Frame& frame) {
   naming_frame(frame.index, [&] {
     query_.refit(positions[0], positions[1]);
     for (int b = 0; b < 2; ++b)
-      if (edited_[b]) bounds_[b].rebuild(surface(b)), edited_[b] = false;
+      if (edited_[b]) {
+        bounds_[b].rebuild(surface(b));
+        edited_[b] = false;
+      }
   });
   frame.time.update += watch.lap();
 }

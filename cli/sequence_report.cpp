@@ -131,7 +131,8 @@ bool is_certified(const std::vector<Frame>& frames) {
   for (const Frame& frame : frames)
     for (const auto& d : frame.distances) {
       if (!d || d->judged() != verdict) continue;
-      any |= d->certified, all &= d->certified;
+      any |= d->certified;
+      all &= d->certified;
     }
   return any && (all || verdict == sdm::Verdict::fail);
 }

@@ -60,9 +60,11 @@ std::string broken(std::string_view line, std::size_t width) {
     if (used > indent && used + size > width) {
       result += '\n' + std::string(indent, ' ');
       const std::string_view bare = word.substr(std::min(word.find_first_not_of(' '), word.size()));
-      result += bare, used = indent + characters(bare);
+      result += bare;
+      used = indent + characters(bare);
     } else {
-      result += word, used += size;
+      result += word;
+      used += size;
     }
     if (end == std::string_view::npos) return result;
     line.remove_prefix(end);

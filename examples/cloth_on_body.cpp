@@ -66,7 +66,8 @@ int main() {
     for (const auto& [a, b, length] : springs) {  // half of the change for each end
       const Vec3 along = places[b] - places[a];
       const Vec3 change = (0.5 - 0.5 * length / norm(along)) * along;
-      places[a] = places[a] + change, places[b] = places[b] - change;
+      places[a] = places[a] + change;
+      places[b] = places[b] - change;
     }
     // Vertices nearer than the thickness are pushed out, and slide against friction.
     const std::vector<sdm::ClosestPoint> closest = sdm::closest_points(body, places);
@@ -86,7 +87,8 @@ int main() {
     double fastest = 0, lowest = 1, nearest = 1;
     for (std::size_t i = 0; i < places.size(); ++i) {
       velocities[i] = (1 / kTime) * (places[i] - before[i]);
-      fastest = std::max(fastest, norm(velocities[i])), lowest = std::min(lowest, places[i][2]);
+      fastest = std::max(fastest, norm(velocities[i]));
+      lowest = std::min(lowest, places[i][2]);
     }
     if (step % 600 != 0) continue;
     const std::vector<sdm::ClosestPoint> now = sdm::closest_points(body, places);

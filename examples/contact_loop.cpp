@@ -22,7 +22,10 @@ sdm::Mesh cube() {
 
 int main() {
   sdm::Mesh falling = cube();
-  for (sdm::Vec3& p : falling.positions) p[0] += 0.3, p[2] += 1.2;
+  for (sdm::Vec3& p : falling.positions) {
+    p[0] += 0.3;
+    p[2] += 1.2;
+  }
   sdm::ProximityQuery query(falling, cube());
   double speed = 0;
   for (int frame = 0; frame < 40; ++frame) {

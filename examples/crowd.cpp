@@ -62,11 +62,13 @@ int main() {
         const auto& [vx, vy, vz] = nearest.map.vector[texel];
         const double across = std::max(std::hypot(vx, vy), 1e-6f),
                      weight = 0.1 * std::exp(-across / 0.15) / across;
-        x += weight * (-vx + vy), y += weight * (-vy - vx);
+        x += weight * (-vx + vy);
+        y += weight * (-vy - vx);
       }
       const double speed = std::hypot(x, y), wanted = kTime * std::min(kSpeed, speed);
       const double step = std::min(wanted, 0.45 * separation[i]) / std::max(speed, 1e-9);
-      places[i][0] += step * x, places[i][1] += step * y;
+      places[i][0] += step * x;
+      places[i][1] += step * y;
       closest = std::min(closest, separation[i]);
     }
 

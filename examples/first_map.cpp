@@ -4,7 +4,10 @@
 #include <cstdio>
 
 int main(int argc, char** argv) try {
-  if (argc != 3) return std::puts("usage: first_map O1 O2"), 2;
+  if (argc != 3) {
+    std::puts("usage: first_map O1 O2");
+    return 2;
+  }
   const sdm::Surface surface(sdm::read_mesh(argv[1]));            // O1, laid out in a texture
   const sdm::Sites sites(sdm::read_mesh(argv[2]));                // O2
   const sdm::DistanceMap map = sdm::compute_map(surface, sites);  // distance, vector, closest site
@@ -13,5 +16,6 @@ int main(int argc, char** argv) try {
   std::printf("distance %g to %g, mean %g, error bound %g\n", d.min, d.max, d.mean, bound.value());
   sdm::write_exr("map.exr", surface, map);
 } catch (const sdm::Error& error) {
-  return std::puts(error.what()), 1;
+  std::puts(error.what());
+  return 1;
 }

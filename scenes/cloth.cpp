@@ -44,7 +44,8 @@ Cloth::Cloth(std::uint32_t n, double side) : thickness_(0.9 * side / (n - 1)), h
       for (std::uint32_t x = 0; x + dx < n; ++x)
         add_spring(at(x, y), at(x + dx, y + dy), compliance, across(x, y, dx, dy));
   };
-  add_springs(1, 0, kStretch), add_springs(0, 1, kStretch);
+  add_springs(1, 0, kStretch);
+  add_springs(0, 1, kStretch);
   add_springs(1, 1, kShear);
   for (std::uint32_t y = 0; y + 1 < n; ++y)
     for (std::uint32_t x = 0; x + 1 < n; ++x)
@@ -52,7 +53,8 @@ Cloth::Cloth(std::uint32_t n, double side) : thickness_(0.9 * side / (n - 1)), h
         add_spring(at(x + 1, y), at(x, y + 1), kShear, {at(x, y), at(x + 1, y + 1)});
       else
         add_spring(at(x + 1, y), at(x, y + 1), kShear, {kNone, kNone});
-  add_springs(2, 0, kBend), add_springs(0, 2, kBend);
+  add_springs(2, 0, kBend);
+  add_springs(0, 2, kBend);
   positions_ = previous_ = mesh_.positions;
   velocities_.resize(positions_.size());
   mobility_.assign(positions_.size(), 1);

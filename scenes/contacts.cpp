@@ -21,11 +21,17 @@ Vec3 barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 
 std::vector<VertexContact> find_contacts(std::span<const Vec3> points, const Sites& solid, double margin) {
   Box reach = bounds(solid.mesh());
-  for (int k = 0; k < 3; ++k) reach.lo[k] -= margin, reach.hi[k] += margin;
+  for (int k = 0; k < 3; ++k) {
+    reach.lo[k] -= margin;
+    reach.hi[k] += margin;
+  }
   std::vector<std::uint32_t> indices;
   std::vector<Vec3> near;
   for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (contains(reach, points[i])) indices.push_back(i), near.push_back(points[i]);
+    if (contains(reach, points[i])) {
+      indices.push_back(i);
+      near.push_back(points[i]);
+    }
 
   const SignMethod method = solid.closed() && solid.orientable() ? SignMethod::exact : SignMethod::winding;
   const std::vector<ClosestPoint> closest = closest_points(solid, near);

@@ -58,7 +58,10 @@ class Grid {
     bool mirrored = false;
     for (std::size_t first = 0, i = 0; i < 4; ++i) {
       if (!is_inside(t[i])) continue;
-      if (i != first) std::swap(t[i], t[first]), mirrored = !mirrored;
+      if (i != first) {
+        std::swap(t[i], t[first]);
+        mirrored = !mirrored;
+      }
       ++first;
     }
     if (mirrored) {  // restore the orientation by swapping two corners on the same side

@@ -113,7 +113,9 @@ class Crowd : public Simulation {
     }
     bodies.push_back({"ground", ground(), false});
     for (const Vec3& p : figure_.positions) widest_ = std::max(widest_, std::hypot(p[0], p[1]));
-    poses_.resize(kAgents), maps_.resize(kAgents), next_.resize(kAgents);
+    poses_.resize(kAgents);
+    maps_.resize(kAgents);
+    next_.resize(kAgents);
     show(bodies);
   }
 

@@ -34,9 +34,11 @@ Skeleton man() {
     const auto at = [side](double x, double y, double z) { return Vec3{side * x, y, z}; };
     const std::size_t first = side > 0 ? left : right;
     const auto add_bone = [&](std::size_t parent, const Vec3& joint) { s.bones.push_back({parent, joint}); };
-    add_bone(hips, at(0.05, 0, 0.5)), add_bone(first + thigh, at(0.062, 0, 0.275)),
-        add_bone(first + shin, at(0.07, 0.01, 0.045));
-    add_bone(chest, at(0.115, 0.005, 0.79)), add_bone(first + upper_arm, at(0.18, 0.01, 0.645));
+    add_bone(hips, at(0.05, 0, 0.5));
+    add_bone(first + thigh, at(0.062, 0, 0.275));
+    add_bone(first + shin, at(0.07, 0.01, 0.045));
+    add_bone(chest, at(0.115, 0.005, 0.79));
+    add_bone(first + upper_arm, at(0.18, 0.01, 0.645));
     add_bone(first + forearm, at(0.235, 0, 0.51));
     add(hips, at(0.035, 0, 0.515), 0.06, at(0.03, 0, 0.59), 0.055);
     add(chest, at(0.03, 0, 0.62), 0.055, at(0.05, 0.003, 0.74), 0.06);

@@ -41,7 +41,10 @@ class TearingCloth : public Simulation {
     for (int i = 0; i < kSteps; ++i) {
       speed_ = touches ? kPushingSpeed : speed_ + kStep * kFallAcceleration;
       centre_[2] -= kStep * speed_;
-      if (centre_[2] < kBallRadius) centre_[2] = kBallRadius, speed_ = 0;
+      if (centre_[2] < kBallRadius) {
+        centre_[2] = kBallRadius;
+        speed_ = 0;
+      }
       solids_[0].refit(ball_at(centre_).positions);
       cloth_.step(kStep, solids_);
     }

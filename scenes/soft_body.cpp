@@ -46,7 +46,10 @@ SoftBody::SoftBody(const Mesh& mesh, const Material& material, const Vec3& veloc
   for (Cluster& cluster : clusters_) {
     Vec3 sum{};
     double mass = 0;
-    for (const std::uint32_t v : cluster.vertices) sum += masses_[v] * positions_[v], mass += masses_[v];
+    for (const std::uint32_t v : cluster.vertices) {
+      sum += masses_[v] * positions_[v];
+      mass += masses_[v];
+    }
     for (const std::uint32_t v : cluster.vertices) cluster.rest.push_back(positions_[v] - (1 / mass) * sum);
   }
 }
@@ -78,7 +81,10 @@ void SoftBody::match_shapes() {
   for (Cluster& cluster : clusters_) {
     Vec3 centre{};
     double mass = 0;
-    for (const std::uint32_t v : cluster.vertices) centre += masses_[v] * positions_[v], mass += masses_[v];
+    for (const std::uint32_t v : cluster.vertices) {
+      centre += masses_[v] * positions_[v];
+      mass += masses_[v];
+    }
     centre = (1 / mass) * centre;
     Matrix moment{};  // Σ m (x − centre) restᵀ
     for (std::size_t i = 0; i < cluster.vertices.size(); ++i) {

@@ -88,7 +88,8 @@ void Cloth::reconnect_springs(std::uint32_t particle, std::uint32_t copy) {
     for (const std::uint32_t end : {particle, copy})
       if (std::ranges::any_of(mesh_.triangles,
                               [&](const Triangle& t) { return has(t, end) && has(t, other); })) {
-        s.a = end, s.b = other;
+        s.a = end;
+        s.b = other;
         springs.push_back(s);
       }
   }

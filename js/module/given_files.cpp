@@ -33,7 +33,8 @@ std::map<std::string, std::string_view> FileArguments::others() const {
     const std::string path_of_other(other, lengths[i]);
     all[std::filesystem::path(path_of_other).lexically_normal().string()] = {content_of_other,
                                                                              lengths[i + 1]};
-    other += lengths[i], content_of_other += lengths[i + 1];
+    other += lengths[i];
+    content_of_other += lengths[i + 1];
   }
   return all;
 }

@@ -69,7 +69,10 @@ Result* first_hits(const Sites* sites, const double* origins, const double* dire
   return guarded([&](Result& result) {
     std::vector<Ray> rays(count, read_options<Ray>({lines, bytes, numbers}));
     const auto from = points(origins, count), along = points(directions, count);
-    for (std::size_t i = 0; i < count; ++i) rays[i].origin = from[i], rays[i].direction = along[i];
+    for (std::size_t i = 0; i < count; ++i) {
+      rays[i].origin = from[i];
+      rays[i].direction = along[i];
+    }
     const std::vector<RayHit> hits = sdm::first_hits(*sites, rays, {.progress = host_progress()});
     std::vector<double> t(count), barycentric(2 * count);
     std::vector<std::uint32_t> faces(count);

@@ -21,7 +21,8 @@ to_chars_result __d2fixed_buffered_n(char* first, char* const last, const double
     uint32_t carry = 0;
     for (int k = 0; k < count; ++k) {
       const uint32_t doubled = 2 * limbs[k] + carry;
-      limbs[k] = doubled % kBase, carry = doubled / kBase;
+      limbs[k] = doubled % kBase;
+      carry = doubled / kBase;
     }
     if (carry > 0) limbs[count++] = carry;
   }

@@ -203,7 +203,8 @@ void save_baked(const PyBaked& self, nb::handle file, const std::string& units, 
     std::vector<char> normal_map;
     if (self.frames) {
       normal_map = encode_png(self.image(std::string(name_of(GeometryChannel::normal))), false);
-      options.normals = &self.frames->normals, options.tangents = &self.frames->tangents;
+      options.normals = &self.frames->normals;
+      options.tangents = &self.frames->tangents;
       options.normal_map = normal_map;
     }
     write_baked_glb(path, self.surface, textures_of(self), options);
@@ -215,7 +216,8 @@ nb::dict material_of(const PyBaked& self) {
   nb::dict result;
   result["base_color"] = nb::make_tuple(material.base_color[0], material.base_color[1],
                                         material.base_color[2], material.base_color[3]);
-  result["metallic"] = material.metallic, result["roughness"] = material.roughness;
+  result["metallic"] = material.metallic;
+  result["roughness"] = material.roughness;
   result["emissive"] = nb::make_tuple(material.emissive[0], material.emissive[1], material.emissive[2]);
   result["alpha_mode"] = material.alpha_mode == AlphaMode::opaque ? "OPAQUE"
                          : material.alpha_mode == AlphaMode::mask ? "MASK"

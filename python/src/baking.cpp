@@ -165,7 +165,10 @@ std::unique_ptr<PyBaked> bake_look(const Look& look, BakeAtlas laid, const Atlas
   if (has(wanted, GeometryChannel::normal)) frames.emplace(laid.surface);
   GeometryOptions options;
   if (own != attributes.end()) options.normals = &*own;
-  if (frames) options.drawn_normals = &frames->normals, options.drawn_tangents = &frames->tangents;
+  if (frames) {
+    options.drawn_normals = &frames->normals;
+    options.drawn_tangents = &frames->tangents;
+  }
   options.occlusion = occlusion_options(wanted);
   options.method = wanted.thickness_method;
   options.progress = wanted.progress;

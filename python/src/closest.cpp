@@ -92,8 +92,10 @@ Triangle PyClosestPoints::corners_of(std::size_t i) const {
 StoredFaces PyClosestPoints::stored_faces() const {
   const auto lock = use();
   StoredFaces result{std::vector<Triangle>(size()), std::vector<Vec3>(size())};
-  for (std::size_t i = 0; i < size(); ++i)
-    result.corners[i] = corners_of(i), result.weights[i] = barycentric_of(i);
+  for (std::size_t i = 0; i < size(); ++i) {
+    result.corners[i] = corners_of(i);
+    result.weights[i] = barycentric_of(i);
+  }
   return result;
 }
 

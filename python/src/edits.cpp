@@ -102,8 +102,10 @@ Positions PySites::edit(const MeshEdit& edit) {
 
 Positions PySurface::edit(const MeshEdit& edit) {
   surface.edit(edit);
-  faces = {}, texel_faces = {};
-  ++shape, ++edits;
+  faces = {};
+  texel_faces = {};
+  ++shape;
+  ++edits;
   return positions_of(surface.mesh());
 }
 

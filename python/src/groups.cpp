@@ -161,7 +161,10 @@ Places places(const PyMap& self, nb::handle tolerance, nb::handle names, nb::han
   std::vector<FaceNames> kinds;
   if (!names.is_none()) kinds = names_of(names, surface.mesh().triangles.size());
   std::vector<GroupTolerance> rows;
-  if (!table.is_none()) rows = table_of(table, self.map.sign.method), check_table(rows, kinds);
+  if (!table.is_none()) {
+    rows = table_of(table, self.map.sign.method);
+    check_table(rows, kinds);
+  }
   Places result;
   run(progress, [&](const Progress& report) {
     std::vector<float> at_vertices;

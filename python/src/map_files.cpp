@@ -124,7 +124,10 @@ std::string report(const PyMap& self, const VertexDistances& at_vertices, const 
   set_options(given, options);
   if (options.tolerance) require_sign(*options.tolerance, self.map.sign.method);
   options.max_distance = self.options.max_distance;
-  if (!self.exclusion) options.accuracy = self.accuracy(), options.guard = self.guard();
+  if (!self.exclusion) {
+    options.accuracy = self.accuracy();
+    options.guard = self.guard();
+  }
   MapReport origin = origin_of(self);
   std::string text;
   run(nb::none(), [&](const Progress&) {

@@ -101,9 +101,12 @@ DistanceMap map_from(nb::handle packed, std::size_t values) {
   const nb::tuple state = items(packed, 11);
   DistanceMap map;
   map.resolution = nb::cast<std::uint32_t>(state[0]);
-  map.distance = unpacked<float>(state[1]), map.vector = unpacked<Vec3f>(state[2]);
-  map.site = unpacked<std::uint32_t>(state[3]), map.site_type = unpacked<SiteType>(state[4]);
-  map.sign = value_of<SignUsed>(state[5]), map.measured = value_of<MeasuredDistance>(state[6]);
+  map.distance = unpacked<float>(state[1]);
+  map.vector = unpacked<Vec3f>(state[2]);
+  map.site = unpacked<std::uint32_t>(state[3]);
+  map.site_type = unpacked<SiteType>(state[4]);
+  map.sign = value_of<SignUsed>(state[5]);
+  map.measured = value_of<MeasuredDistance>(state[6]);
   map.beyond_max_distance = nb::cast<std::size_t>(state[7]);
   map.without_match = nb::cast<std::size_t>(state[8]);
   map.unmatched = unpacked<std::uint8_t>(state[9]);
@@ -174,10 +177,12 @@ void bind_map_state() {
       },
       [](PyMap* self, const nb::tuple& from) {
         PyMap made;
-        made.surface_object = from[0], made.sites_object = from[1];
+        made.surface_object = from[0];
+        made.sites_object = from[1];
         made.on = &nb::cast<const PySurface&>(made.surface_object);
         made.to = &nb::cast<const PySites&>(made.sites_object);
-        made.surface_shape = made.on->shape, made.surface_edits = made.on->edits;
+        made.surface_shape = made.on->shape;
+        made.surface_edits = made.on->edits;
         made.sites_shape = made.to->shape;
         take_rule(made, from[2]);
         made.map = map_from(from[3], made.on->surface, made.to->sites);
@@ -195,7 +200,8 @@ void bind_nearest_map_state() {
       },
       [](PyNearestMap* self, const nb::tuple& from) {
         NearestMap nearest;
-        nearest.body = unpacked<std::uint32_t>(from[1]), nearest.part = unpacked<std::uint32_t>(from[2]);
+        nearest.body = unpacked<std::uint32_t>(from[1]);
+        nearest.part = unpacked<std::uint32_t>(from[2]);
         nearest.map = map_from(from[0], nearest.body.size());
         if (nearest.map.resolution == 0 || nearest.map.texels() % nearest.map.resolution != 0 ||
             (!nearest.part.empty() && nearest.part.size() != nearest.body.size()))

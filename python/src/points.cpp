@@ -155,7 +155,8 @@ PointDistances measure(nb::handle cloud, nb::handle o2, nb::handle output, nb::h
     table = table_of(tolerance_table, signs);
     check_table(table, kinds);
   }
-  options.names = kinds, options.table = table;
+  options.names = kinds;
+  options.table = table;
   const auto least = static_cast<std::uint64_t>(integer_of(island_points, "island_points", 0));
   run(progress, [&](const Progress& report) {
     std::optional<CloudIslands> islands;

@@ -18,10 +18,12 @@ class SitesInUse {
     if (nb::isinstance<PySites>(mesh)) {
       const auto& given = nb::cast<const PySites&>(mesh);
       lock_ = given.access.use();
-      sites_ = &given.sites, deviation_ = given.deviation;
+      sites_ = &given.sites;
+      deviation_ = given.deviation;
     } else {
       PyMesh given = given_mesh(mesh, nb::none());
-      mesh_ = std::move(given.mesh), deviation_ = given.deviation;
+      mesh_ = std::move(given.mesh);
+      deviation_ = given.deviation;
     }
   }
   [[nodiscard]] const Mesh& mesh() const { return sites_ ? sites_->mesh() : mesh_; }

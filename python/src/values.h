@@ -128,7 +128,8 @@ class ValueReader {
   void take(void* to, std::size_t size) {
     if (size > left_) throw Error(kDamaged);
     if (size > 0) std::memcpy(to, next_, size);
-    next_ += size, left_ -= size;
+    next_ += size;
+    left_ -= size;
   }
   std::size_t below(std::size_t count) {
     std::uint8_t number = 0;

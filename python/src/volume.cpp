@@ -46,7 +46,10 @@ Box box_of(const Mesh& mesh, nb::handle bounds, std::optional<double> margin, do
   const double around = margin.value_or(max_distance < kInfinity ? max_distance : 0.1 * diagonal);
   if (!(around >= 0) || !std::isfinite(around))
     throw Error("margin must be a finite number that is not negative");
-  for (int k = 0; k < 3; ++k) box.lo[k] -= around, box.hi[k] += around;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] -= around;
+    box.hi[k] += around;
+  }
   return box;
 }
 

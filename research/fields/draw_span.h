@@ -30,8 +30,10 @@ struct SpanVector {
   float start[3], step[3];
 
   SpanVector(const Vec3& at_start, const Vec3& change) {
-    for (int k = 0; k < 3; ++k)
-      start[k] = static_cast<float>(at_start[k]), step[k] = static_cast<float>(change[k]);
+    for (int k = 0; k < 3; ++k) {
+      start[k] = static_cast<float>(at_start[k]);
+      step[k] = static_cast<float>(change[k]);
+    }
   }
 };
 

@@ -97,7 +97,10 @@ class PolygonRows {
     const auto corners = polygon.corners();
     if (corners.empty()) return;
     double lo = corners[0][1], hi = lo;
-    for (const Vec2& c : corners) lo = std::min(lo, c[1]), hi = std::max(hi, c[1]);
+    for (const Vec2& c : corners) {
+      lo = std::min(lo, c[1]);
+      hi = std::max(hi, c[1]);
+    }
     const double low = std::max(std::ceil(lo), row + 0.0), high = std::min(std::floor(hi), row_end - 1.0);
     if (!(low <= high)) return;
     first_ = static_cast<std::uint32_t>(low);

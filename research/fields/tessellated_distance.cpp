@@ -83,7 +83,10 @@ void TessellatedDistance::draw_span(float* squared, std::uint32_t* winner, std::
     const double r = radius(dot(v, right), dot(v, up));
     const double distance = vertex ? hyperboloid(r, height) : r;
     const auto drawn = static_cast<float>(distance * distance);
-    if (drawn < squared[i]) squared[i] = drawn, winner[i] = site.code;
+    if (drawn < squared[i]) {
+      squared[i] = drawn;
+      winner[i] = site.code;
+    }
   }
 }
 

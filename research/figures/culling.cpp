@@ -103,7 +103,8 @@ Figure culling(Run& run) {
     const std::vector<Times> times = take_turns(work, run.choose(3, 1));
     const gl::RasterReport r = gl::raster_report(*with).value(), all = gl::raster_report(*without).value();
     const double saved = static_cast<double>(all.polygons) / static_cast<double>(r.polygons);
-    least_saved = std::min(least_saved, saved), most_saved = std::max(most_saved, saved);
+    least_saved = std::min(least_saved, saved);
+    most_saved = std::max(most_saved, saved);
     same &= same_bits(a.distance, b.distance);
     rows.push_back(table_row(c.name + ", with bounds", r, times[0]));
     rows.push_back(table_row(c.name + ", without", all, times[1]));

@@ -198,7 +198,10 @@ Figure figure8(Run& run) {
   for (const Contender& c : contenders) {
     Series series{.name = c.name};
     for (std::size_t i = 0; i < c.ms.size(); ++i)
-      if (std::isfinite(c.ms[i])) series.x.push_back(static_cast<double>(i)), series.y.push_back(c.ms[i]);
+      if (std::isfinite(c.ms[i])) {
+        series.x.push_back(static_cast<double>(i));
+        series.y.push_back(c.ms[i]);
+      }
     chart.series.push_back(std::move(series));
     const Times times = c.times();
     rows.push_back({c.name, times.text(), fmt::format("{:.3g}×", times.median() / map_ms),

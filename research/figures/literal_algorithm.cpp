@@ -171,10 +171,12 @@ Figure literal_algorithm(Run& run) {
     const std::vector<Result> results = measure(run, surface, Sites(c.o2));
     const Result &all = results[0], &printed = results[1];
     measured["cases"][c.key] = to_json(results);
-    wrong = std::max(wrong, printed.errors.wrong), largest = std::max(largest, printed.errors.largest);
+    wrong = std::max(wrong, printed.errors.wrong);
+    largest = std::max(largest, printed.errors.largest);
     corrected = std::max(corrected, all.errors.wrong);
     const double ratio = 1 / relative_time(printed, results);
-    least_ratio = std::min(least_ratio, ratio), most_ratio = std::max(most_ratio, ratio);
+    least_ratio = std::min(least_ratio, ratio);
+    most_ratio = std::max(most_ratio, ratio);
 
     const View view = view_of(bounds(c.o1), {0.4, -3, 0.6}, 360, 360);
     figure.html.push_back(paragraph(fmt::format("{} ({} and {} triangles), {}²:", c.name,

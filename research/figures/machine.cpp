@@ -50,7 +50,9 @@ Machine this_machine() {
   machine.memory_gb = std::strtod(entry("/proc/meminfo", "MemTotal").c_str(), nullptr) / (1 << 20);
   try {
     const GlDevice device = gl_device(1024);
-    machine.gl_device = device.name, machine.gl_driver = device.driver, machine.gl_software = device.software;
+    machine.gl_device = device.name;
+    machine.gl_driver = device.driver;
+    machine.gl_software = device.software;
   } catch (const Error&) {  // figures that need a device say so
   }
   return machine;

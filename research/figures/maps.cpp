@@ -17,7 +17,8 @@ io::ColorScale common_scale(const Pair& pair) {
   io::ColorScale scale{.map = Colormap::paper2006, .lo = std::numeric_limits<double>::infinity(), .hi = 0};
   for (const Side& side : pair.sides) {
     const DistanceStatistics d = statistics(side.surface, side.map);
-    scale.lo = std::min(scale.lo, d.min), scale.hi = std::max(scale.hi, d.max);
+    scale.lo = std::min(scale.lo, d.min);
+    scale.hi = std::max(scale.hi, d.max);
   }
   return scale;
 }

@@ -19,7 +19,10 @@ struct Side {
   DistanceMap map{};
 
   Side(const Mesh& mesh, std::uint32_t resolution) : surface(mesh, {.resolution = resolution}), sites(mesh) {}
-  void refit(std::span<const Vec3> positions) { surface.refit(positions), sites.refit(positions); }
+  void refit(std::span<const Vec3> positions) {
+    surface.refit(positions);
+    sites.refit(positions);
+  }
 };
 
 /// Two of them, and the maps in both directions.

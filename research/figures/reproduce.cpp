@@ -42,7 +42,9 @@ Reproduction reproduce(const Options& options) {
   Stopwatch watch;
   Reproduction result{.machine = this_machine(), .quick = options.quick};
   Run run;
-  run.quick = options.quick, run.mesh = options.mesh, run.machine = result.machine;
+  run.quick = options.quick;
+  run.mesh = options.mesh;
+  run.machine = result.machine;
   if (!result.machine.gl_device.empty()) run.gl = make_gl_engine({});
   run.step = options.step ? options.step : [](std::string_view) {};
   for (const auto& [key, make] : kFigures) {

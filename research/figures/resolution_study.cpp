@@ -14,8 +14,11 @@ namespace {
 
 void add_row(Method& method, double n, double bytes, double bound, const SurfaceErrors& errors, double unit,
              Times times) {
-  method.n.push_back(n), method.bytes.push_back(bytes), method.bound.push_back(bound / unit);
-  method.nearest.push_back(errors.nearest / unit), method.linear.push_back(errors.linear / unit);
+  method.n.push_back(n);
+  method.bytes.push_back(bytes);
+  method.bound.push_back(bound / unit);
+  method.nearest.push_back(errors.nearest / unit);
+  method.linear.push_back(errors.linear / unit);
   method.times.push_back(std::move(times));
 }
 
@@ -119,7 +122,10 @@ Method study_volumes(Run& run, const Study& study, fields::Method kind,
 
 Box with_room(Box box) {
   const double room = 0.01 * diagonal(box);
-  for (int k = 0; k < 3; ++k) box.lo[k] -= room, box.hi[k] += room;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] -= room;
+    box.hi[k] += room;
+  }
   return box;
 }
 

@@ -82,8 +82,10 @@ struct Case {
         surface(o1, {.resolution = resolution}),
         sites(o2) {
     const DrawOrder pairs = intersecting_pairs(surface, sites), winners = winning_pairs(surface, sites);
-    all = in_order(pairs), winning = in_order(winners);
-    most_all = most_hits(pairs), most_winning = most_hits(winners);
+    all = in_order(pairs);
+    winning = in_order(winners);
+    most_all = most_hits(pairs);
+    most_winning = most_hits(winners);
   }
 };
 
@@ -118,7 +120,8 @@ Figure stencil(Run& run) {
     if (run.gl) c.engine = in_engine(run, c.surface, c.sites);
     chart.series.push_back(series(c.name + ", all pairs", c.all));
     chart.series.push_back(series(c.name + ", winning pairs", c.winning));
-    column(c.name + ", all pairs", c.all.hits), column("winning pairs", c.winning.hits);
+    column(c.name + ", all pairs", c.all.hits);
+    column("winning pairs", c.winning.hits);
     measured[c.key] = {
         {"faces", c.surface.mesh().triangles.size()},   {"all_pairs", c.all.json()},
         {"most_hits_of_all_pairs", c.most_all},         {"winning_pairs", c.winning.json()},

@@ -113,7 +113,9 @@ io::Picture Scenery::paint(const std::function<Rgb(const Seen&)>& color) const {
           const Seen& s = seen_[row * width_ * kSubsamples + column];
           const Rgb c = s.object == kNone ? kPaper : s.texel == kNone ? io::kNoValue : color(s);
           const float light = s.object == kNone ? 1 : 0.6f + 0.4f * s.light;
-          sum[0] += light * c.r, sum[1] += light * c.g, sum[2] += light * c.b;
+          sum[0] += light * c.r;
+          sum[1] += light * c.g;
+          sum[2] += light * c.b;
         }
         const auto mean = [](float total) {
           return static_cast<std::uint8_t>(std::floor(total / (kSubsamples * kSubsamples) + 0.5f));

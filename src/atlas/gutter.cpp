@@ -52,7 +52,9 @@ std::uint32_t Gutter::search(std::uint32_t x, std::uint32_t y) const {
     if (its_ring > std::min(ring, width_)) return;
     const int its_squared = dx * dx + dy * dy;
     if (its_ring == ring && (its_squared > squared || (its_squared == squared && dy > best_row))) return;
-    ring = its_ring, squared = its_squared, best_row = dy;
+    ring = its_ring;
+    squared = its_squared;
+    best_row = dy;
     best = static_cast<std::uint32_t>(static_cast<std::int64_t>(texel) + dx);
   };
   for (int dy = 0; dy <= std::min(ring, width_); ++dy) {

@@ -52,7 +52,10 @@ void check_layers(const FaceGeometry& faces, double columns, double rows, const 
     const auto& [a, b, c] = layout.corners[f];
     const double of_face = 0.5 * std::abs(cross(b - a, c - a));
     texels += of_face;
-    if (of_face > largest) largest = of_face, face = f;
+    if (of_face > largest) {
+      largest = of_face;
+      face = f;
+    }
   }
   const double layers = texels / (columns * rows);
   if (texels > kMostTexels && layers > kMostLayers)

@@ -32,7 +32,10 @@ std::vector<float> values_of(const ChannelLook& look, const Surface& surface, co
     std::array<Vec3, 2> sides{};
     for (std::size_t i = begin * resolution; i < end * resolution; ++i) {
       if (matches.face[i] == kNone) continue;
-      if (owners[i] != owner) owner = owners[i], sides = surface.texel_edges(owner);
+      if (owners[i] != owner) {
+        owner = owners[i];
+        sides = surface.texel_edges(owner);
+      }
       reader.at(matches.point(i), sides, &values[i * look.components]);
     }
   });
@@ -102,8 +105,10 @@ Material common_material(const MeshLook& look) {
   if (used.empty()) return material;
   material = *used.front();
   for (const Material* other : used)
-    if (material.alpha_mode == AlphaMode::opaque && other->alpha_mode != AlphaMode::opaque)
-      material.alpha_mode = other->alpha_mode, material.alpha_cutoff = other->alpha_cutoff;
+    if (material.alpha_mode == AlphaMode::opaque && other->alpha_mode != AlphaMode::opaque) {
+      material.alpha_mode = other->alpha_mode;
+      material.alpha_cutoff = other->alpha_cutoff;
+    }
   material.name.clear();
   for (TextureUse Material::*use :
        {&Material::base_color_texture, &Material::metallic_roughness_texture, &Material::normal_texture,

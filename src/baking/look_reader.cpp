@@ -101,9 +101,10 @@ ChannelLook::ChannelLook(const Mesh& m, const MeshLook& l, BakeChannel c, Pictur
   const auto used = used_materials(look);
   auto next = used.begin();  // in the order of the materials
   for (const Material& material : look.materials)
-    if (next != used.end() && *next == &material)
-      add(material), ++next;
-    else
+    if (next != used.end() && *next == &material) {
+      add(material);
+      ++next;
+    } else
       layers.push_back({&material, nullptr, {}, {}});
   add(kPlain);
   if (channel == BakeChannel::base_color) vertex_colors = attribute_of(look, "color", 3, 4);
@@ -164,7 +165,8 @@ void LookReader::at(const SurfacePoint& point, const std::array<Vec3, 2>& sides,
       break;
     }
     case BakeChannel::metallic_roughness:
-      values[0] = m.roughness * texel[1], values[1] = m.metallic * texel[2];
+      values[0] = m.roughness * texel[1];
+      values[1] = m.metallic * texel[2];
       break;
     case BakeChannel::occlusion:
       values[0] = 1 + m.occlusion_strength * (texel[0] - 1);

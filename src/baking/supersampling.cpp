@@ -131,8 +131,10 @@ std::vector<std::uint32_t> most_frequent_samples(const SampleGrid& grid,
     std::size_t most = 0;
     for (auto at = of_texel.begin(); at != of_texel.end();) {
       const auto end = std::upper_bound(at, of_texel.end(), *at);
-      if (const auto count = static_cast<std::size_t>(end - at); count > most)
-        most = count, numbers[texel] = *at;
+      if (const auto count = static_cast<std::size_t>(end - at); count > most) {
+        most = count;
+        numbers[texel] = *at;
+      }
       at = end;
     }
   });

@@ -68,9 +68,11 @@ Image to_image(const BakedChannel& baked) try {
     for (std::size_t i = begin; i < end; ++i) {
       const float* const values = &baked.values[i * components];
       std::uint8_t* const bytes = &image.bytes[i * image.components];
-      if (mixed)
-        bytes[0] = 255, bytes[1] = plain_byte(values[0]), bytes[2] = plain_byte(values[1]);
-      else if (components == 1)
+      if (mixed) {
+        bytes[0] = 255;
+        bytes[1] = plain_byte(values[0]);
+        bytes[2] = plain_byte(values[1]);
+      } else if (components == 1)
         bytes[0] = plain_byte(values[0]);
       else
         for (std::size_t k = 0; k < components; ++k)

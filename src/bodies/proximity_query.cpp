@@ -28,7 +28,10 @@ struct ProximityQuery::Impl {
       : bodies{shape::PosedBody(std::move(o1)), shape::PosedBody(std::move(o2))},
         answers(options.contact_margin, options.depth_precision),
         separating_contacts(options.contact_margin) {
-    if (options.ignore_internal_edges) external_contacts.emplace(), external_contacts_after.emplace();
+    if (options.ignore_internal_edges) {
+      external_contacts.emplace();
+      external_contacts_after.emplace();
+    }
     begin();
   }
   [[nodiscard]] std::span<const Contact> contacts() {

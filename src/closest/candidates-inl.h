@@ -33,7 +33,8 @@ class Settled {
   void compare(std::span<const Vec3> queries, const float* limit,
                std::span<const SinglePointMemory::Candidate> candidates, Equal equal) {
     for (size_t i = 0; i < queries.size(); ++i) best_[i].distance = std::numeric_limits<double>::infinity();
-    tied_ = 0, equal_ = equal;
+    tied_ = 0;
+    equal_ = equal;
     size_t count = 0;
     for (const SinglePointMemory::Candidate& candidate : candidates) {
       if (!(candidate.bound <= limit[candidate.point])) continue;
@@ -97,9 +98,10 @@ class Settled {
                       from.leaf,
                       static_cast<int>(features_.feature[lane])};
       const uint32_t bit = 1u << from.point;
-      if (here.distance < best.distance)
-        best = here, tied_ &= ~bit;
-      else if (equal_ == Equal::by_name)
+      if (here.distance < best.distance) {
+        best = here;
+        tied_ &= ~bit;
+      } else if (equal_ == Equal::by_name)
         best = name_of(here) < name_of(best) ? here : best;
       else if (here.leaf != best.leaf && (here.point != best.point || site_of(here) != site_of(best)))
         tied_ |= bit;

@@ -72,7 +72,9 @@ struct FromBoxes {
       const BlockVec p = hn::Set(d, c[k]);
       return hn::Sub(p, hn::Min(hn::Max(p, hn::Load(d, node.lo[k] + i)), hn::Load(d, node.hi[k] + i)));
     };
-    x = from(0), y = from(1), z = from(2);
+    x = from(0);
+    y = from(1);
+    z = from(2);
     squared = square_norm(d, x, y, z);
   }
 };
@@ -90,8 +92,10 @@ class Search {
     lists.clear();
     count_work(&WorkCounts::groups);
     Nearest nearest = within_limit(ball);
-    if (last_.found && squared_distance(ball, last_.point) < nearest.squared)  // the previous group is near
-      nearest = last_, nearest.squared = squared_distance(ball, last_.point);
+    if (last_.found && squared_distance(ball, last_.point) < nearest.squared) {  // the previous group is near
+      nearest = last_;
+      nearest.squared = squared_distance(ball, last_.point);
+    }
     improve_in_tree(nearest, ball.centre);
     if (nearest.found) last_ = nearest;
     const CandidateBound reach(ball, nearest.squared, nearest.point, limit_);
@@ -207,7 +211,10 @@ class Search {
     uint32_t *edge = s_.edges.data(), *vertex = s_.vertices.data();
     for (const uint32_t owner : s_.owners) {
       const sites::Regions::Owner &own = regions_.owners[owner], &next = regions_.owners[owner + 1];
-      for (uint32_t k = 0; k < 3; ++k) edge[k] = own.edges + k, vertex[k] = own.vertices + k;
+      for (uint32_t k = 0; k < 3; ++k) {
+        edge[k] = own.edges + k;
+        vertex[k] = own.vertices + k;
+      }
       edge += next.edges - own.edges;
       vertex += next.vertices - own.vertices;
     }

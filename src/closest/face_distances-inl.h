@@ -128,7 +128,10 @@ HWY_INLINE bool compare_faces(const sites::FaceFrames& faces, const float (&poin
     if (near == 0) continue;
     const float least = hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(within, squared, hn::Inf(d))));
     const float limit = std::sqrt(least) * kFarther + error;
-    if (limit * limit < squared_limit) squared_limit = limit * limit, reduced = true;
+    if (limit * limit < squared_limit) {
+      squared_limit = limit * limit;
+      reduced = true;
+    }
     alignas(64) float each[SiteBlock::kWidth];
     hn::Store(squared, d, each);
     for (; near != 0; near &= near - 1) {

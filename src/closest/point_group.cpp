@@ -21,8 +21,10 @@ void AroundPacket(const PointGroup& group, size_t packet, Ball& ball, tree::Floa
   };
   for (int k = 0; k < 3; ++k) {
     auto lo = load(k, 0), hi = lo;
-    for (size_t i = hn::Lanes(d); i < PointGroup::kPacket; i += hn::Lanes(d))
-      lo = hn::Min(lo, load(k, i)), hi = hn::Max(hi, load(k, i));
+    for (size_t i = hn::Lanes(d); i < PointGroup::kPacket; i += hn::Lanes(d)) {
+      lo = hn::Min(lo, load(k, i));
+      hi = hn::Max(hi, load(k, i));
+    }
     box.lo[k] = hn::GetLane(hn::MinOfLanes(d, lo));
     box.hi[k] = hn::GetLane(hn::MaxOfLanes(d, hi));
     ball.centre[k] = 0.5f * (box.lo[k] + box.hi[k]);
@@ -87,8 +89,10 @@ Ball around(std::span<const Ball> balls, std::span<tree::FloatBox> boxes, tree::
   box = boxes[0];
   Ball ball{};
   for (int k = 0; k < 3; ++k) {
-    for (const tree::FloatBox& b : boxes)
-      box.lo[k] = std::min(box.lo[k], b.lo[k]), box.hi[k] = std::max(box.hi[k], b.hi[k]);
+    for (const tree::FloatBox& b : boxes) {
+      box.lo[k] = std::min(box.lo[k], b.lo[k]);
+      box.hi[k] = std::max(box.hi[k], b.hi[k]);
+    }
     ball.centre[k] = 0.5f * (box.lo[k] + box.hi[k]);
   }
   for (const Ball& b : balls) {

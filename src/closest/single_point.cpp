@@ -230,7 +230,10 @@ class PacketSearch {
       used_ |= (near && i < count ? 1u : 0u) << i;
       for (int k = 0; k < 3; ++k) {
         const float x = point_[k][i] = near ? static_cast<float>(unit[k]) : 0;
-        if (near) lo[k] = std::min(lo[k], x), hi[k] = std::max(hi[k], x);
+        if (near) {
+          lo[k] = std::min(lo[k], x);
+          hi[k] = std::max(hi[k], x);
+        }
         most = std::max(most, std::abs(x));
       }
     }

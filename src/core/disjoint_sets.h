@@ -25,7 +25,8 @@ class DisjointSets {
     return x;
   }
   void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a), b = find(b);
+    a = find(a);
+    b = find(b);
     parent_[std::max(a, b)] = std::min(a, b);
   }
 

@@ -36,7 +36,10 @@ PlanarDomain face_domain(const Surface& surface, const surface::Tiles& tiles, st
   Vec2 lo{inf, inf}, hi{-inf, -inf};
   for (const std::uint32_t texel : texels) {
     const Vec2 c = centre(texel, surface.resolution());
-    for (int k = 0; k < 2; ++k) lo[k] = std::min(lo[k], c[k]), hi[k] = std::max(hi[k], c[k]);
+    for (int k = 0; k < 2; ++k) {
+      lo[k] = std::min(lo[k], c[k]);
+      hi[k] = std::max(hi[k], c[k]);
+    }
   }
   domain.outline = ConvexPolygon::rectangle(lo - Vec2{kMargin, kMargin}, hi + Vec2{kMargin, kMargin});
   if (clip == GlClip::stencil) return domain;

@@ -26,8 +26,10 @@ namespace {
 double fragment_bound(std::span<const RasterCorner> corners, const ImageSize& size) {
   float lo[2] = {corners[0].u, corners[0].v}, hi[2] = {corners[0].u, corners[0].v};
   for (const RasterCorner& c : corners) {
-    lo[0] = std::min(lo[0], c.u), hi[0] = std::max(hi[0], c.u);
-    lo[1] = std::min(lo[1], c.v), hi[1] = std::max(hi[1], c.v);
+    lo[0] = std::min(lo[0], c.u);
+    hi[0] = std::max(hi[0], c.u);
+    lo[1] = std::min(lo[1], c.v);
+    hi[1] = std::max(hi[1], c.v);
   }
   const std::array side{static_cast<float>(size.columns), static_cast<float>(size.rows)};
   const auto extent = [&](int k) {

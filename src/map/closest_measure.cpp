@@ -31,7 +31,8 @@ void ClosestMeasure::store_matches(std::size_t first, std::span<const Vec3> poin
   for (std::size_t i = 0; i < closest.count; ++i) {
     const ClosestPoint near = closest.get(i, points[i]);
     const Value value = facing_->value(points[i], facing_->normals[faces[samples[i]]], near);
-    behind |= std::uint32_t{value.negative} << i, unmatched |= std::uint32_t{value.unmatched} << i;
+    behind |= std::uint32_t{value.negative} << i;
+    unmatched |= std::uint32_t{value.unmatched} << i;
     const ClosestPoint& found = value.closest;
     if (found.type != near.type || found.site != near.site) matches.set(i, points[i], found);
   }

@@ -155,7 +155,8 @@ void measure_tiles(const Surface& surface, const FaceMeasure& measure, const sur
           packet.distance[k] = value.closest.distance;
           packet.site[k] = value.closest.site;
           packet.type[k] = value.closest.type;
-          negative |= std::uint32_t{value.negative} << k, unmatched |= std::uint32_t{value.unmatched} << k;
+          negative |= std::uint32_t{value.negative} << k;
+          unmatched |= std::uint32_t{value.unmatched} << k;
         }
         texels(tiles.offsets[tile] + i, packet, negative, unmatched);
       }

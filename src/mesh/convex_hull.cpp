@@ -57,7 +57,10 @@ class Hull {
     std::uint32_t best = 0;
     double most = -1;
     for (std::uint32_t p = 0; p < points_.size(); ++p)
-      if (const double x = value(points_[p]); x > most) most = x, best = p;
+      if (const double x = value(points_[p]); x > most) {
+        most = x;
+        best = p;
+      }
     if (allowed(points_[best])) return best;
     for (std::uint32_t p = 0; p < points_.size(); ++p)
       if (allowed(points_[p])) return p;
@@ -102,15 +105,17 @@ class Hull {
 
   // Replaces the faces that the point sees by those from their outline to the point.
   void extend_to(std::uint32_t point, std::uint32_t face) {
-    seen_.assign(1, face), outline_.clear();
+    seen_.assign(1, face);
+    outline_.clear();
     faces_[face].gone = true;
     for (std::size_t i = 0; i < seen_.size(); ++i)
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t next = faces_[seen_[i]].across[k];
         if (faces_[next].gone) continue;
-        if (sees(point, faces_[next]))
-          faces_[next].gone = true, seen_.push_back(next);
-        else
+        if (sees(point, faces_[next])) {
+          faces_[next].gone = true;
+          seen_.push_back(next);
+        } else
           outline_.push_back({seen_[i], k});
       }
     const auto first = static_cast<std::uint32_t>(faces_.size());

@@ -178,7 +178,10 @@ class EdgeMerge {
     for (std::size_t i = 0; i < changed_.vertices.size(); ++i) {
       std::uint32_t edge = new_edges_[i] - 1, larger = kNone;  // modulo 2^32
       for (const HalfEdge& half_edge : changed_.half_edges.of(i)) {
-        if (half_edge.larger != larger) larger = half_edge.larger, ++edge;
+        if (half_edge.larger != larger) {
+          larger = half_edge.larger;
+          ++edge;
+        }
         face_edges[half_edge.corner / 3][half_edge.corner % 3] = edge;
       }
     }

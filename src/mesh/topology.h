@@ -30,7 +30,11 @@ struct Topology {
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [edges, face_edges, incident, duplicate_faces, collapsed_faces] = self;
-    visit(edges), visit(face_edges), visit(incident), visit(duplicate_faces), visit(collapsed_faces);
+    visit(edges);
+    visit(face_edges);
+    visit(incident);
+    visit(duplicate_faces);
+    visit(collapsed_faces);
   }
 };
 
@@ -50,7 +54,10 @@ struct Orientation {
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [flipped, component, first_face, orientable] = self;
-    visit(flipped), visit(component), visit(first_face), visit(orientable);
+    visit(flipped);
+    visit(component);
+    visit(first_face);
+    visit(orientable);
   }
 };
 [[nodiscard]] Orientation orient(std::span<const Triangle> triangles, const Topology& topology);

@@ -154,7 +154,10 @@ void check_pieces(const Mesh& mesh, const UvTiles& tiles) {
     const auto u = tile_range(mesh.corner_uvs.at(f), 0), v = tile_range(mesh.corner_uvs.at(f), 1);
     const double of_face = (u[1] - u[0] + 1.0) * (v[1] - v[0] + 1.0);
     pieces += of_face;
-    if (of_face > largest) largest = of_face, face = f;
+    if (of_face > largest) {
+      largest = of_face;
+      face = f;
+    }
   }
   const auto text = [](double count) { return std::to_string(static_cast<std::uint64_t>(count)); };
   if (pieces > most)
@@ -224,7 +227,10 @@ Mesh uv_tile_mesh(const Mesh& mesh, const UvTile& tile) try {
   for (const std::uint32_t f : tile.faces) {
     result.triangles.push_back(mesh.triangles.at(f));
     std::array<Vec2, 3>& uvs = result.corner_uvs.emplace_back(mesh.corner_uvs.at(f));
-    for (auto& [u, v] : uvs) u = std::clamp(u - tile.u, 0.0, 1.0), v = std::clamp(v - tile.v, 0.0, 1.0);
+    for (auto& [u, v] : uvs) {
+      u = std::clamp(u - tile.u, 0.0, 1.0);
+      v = std::clamp(v - tile.v, 0.0, 1.0);
+    }
   }
   return result;
 } catch (const std::bad_alloc&) {
@@ -239,8 +245,10 @@ WrappedUvs wrap_uvs(const Mesh& mesh, const UvTiles& tiles) try {
   for (std::uint32_t f = 0; f < result.source_face.size(); ++f) result.source_face[f] = f;
   for (const UvTile& tile : tiles.tiles)
     for (const std::uint32_t f : tile.faces)
-      for (auto& [u, v] : result.mesh.corner_uvs.at(f))
-        u = std::clamp(u - tile.u, 0.0, 1.0), v = std::clamp(v - tile.v, 0.0, 1.0);
+      for (auto& [u, v] : result.mesh.corner_uvs.at(f)) {
+        u = std::clamp(u - tile.u, 0.0, 1.0);
+        v = std::clamp(v - tile.v, 0.0, 1.0);
+      }
   FaceCuts cuts(mesh, result);
   for (const std::uint32_t f : tiles.crossing) cuts.cut(f);
   return result;

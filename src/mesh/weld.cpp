@@ -185,7 +185,8 @@ class VertexSets {
 
   // Whether two vertices are in one set, or may be.
   bool may_unite(std::uint32_t a, std::uint32_t b) {
-    a = of(a), b = of(b);
+    a = of(a);
+    b = of(b);
     if (a == b) return true;
     if (size_[b] < size_[a]) std::swap(a, b);
     std::uint32_t v = a;  // the sets are circular lists
@@ -198,7 +199,8 @@ class VertexSets {
     return true;
   }
   void unite(std::uint32_t a, std::uint32_t b) {
-    a = of(a), b = of(b);
+    a = of(a);
+    b = of(b);
     if (a == b) return;
     const std::uint32_t size = size_[a] + size_[b];
     std::swap(next_[a], next_[b]);

@@ -132,7 +132,8 @@ HWY_INLINE void first_hits_among(const sites::SitesData& sites, std::span<const 
       if (!accepts(i, face)) return false;
       const double t = meet(sites, rays[i], face);
       if (t < hit.t || (t == hit.t && face < hit.face && hit.face != kNone)) {
-        hit.t = t, hit.face = face;
+        hit.t = t;
+        hit.face = face;
         unit.end_at(t);
       }
       return false;
@@ -223,7 +224,10 @@ void FindNearNodes(const sites::SitesData& sites, const tree::FloatBox& box, Nea
       if (near.next.empty() || near.next.back().count == kWidth) near.next.emplace_back();
       tree::WideTree::Node& to = near.next.back();
       const uint32_t at = to.count++;
-      for (int k = 0; k < 3; ++k) to.lo[k][at] = node.lo[k][i], to.hi[k][at] = node.hi[k][i];
+      for (int k = 0; k < 3; ++k) {
+        to.lo[k][at] = node.lo[k][i];
+        to.hi[k][at] = node.hi[k][i];
+      }
       to.child[at] = node.child[i];
     };
     for (const tree::WideTree::Node& node : near.nodes) {

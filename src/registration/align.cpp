@@ -109,7 +109,9 @@ std::vector<GroupResiduals> group_residuals(const Correspondences& pairs,
     if (number == kNone) continue;
     GroupResiduals& group = groups[number];
     const double d = pairs.distances[i];
-    ++group.samples, group.rms += d * d, group.largest = std::max(group.largest, d);
+    ++group.samples;
+    group.rms += d * d;
+    group.largest = std::max(group.largest, d);
   }
   for (GroupResiduals& group : groups)
     if (group.samples > 0) group.rms = std::sqrt(group.rms / static_cast<double>(group.samples));
@@ -142,7 +144,10 @@ Samples relative(Samples samples, const Vec3& centre) {
 bool is_closer(const Correspondences& before, const Correspondences& after, double cut) {
   std::size_t used = 0, all = 0;
   for (std::size_t i = 0; i < after.points.size(); ++i)
-    if (after.is_selected(i)) ++all, used += has_weight(after, i, cut);
+    if (after.is_selected(i)) {
+      ++all;
+      used += has_weight(after, i, cut);
+    }
   if (used == 0) return false;
   const double fraction = static_cast<double>(used) / static_cast<double>(all);
   return residuals(before, fraction).trimmed_rms < residuals(after, fraction).trimmed_rms;
@@ -173,7 +178,9 @@ void add_fractions(const Correspondences& pairs, double cut, double radius, Alig
   for (std::size_t i = 0; i < pairs.distances.size(); ++i) {
     if (!pairs.is_selected(i)) continue;
     const bool has = has_weight(pairs, i, cut);
-    ++result.samples, used += has, fitting += has || pairs.distances[i] <= kRounding * radius;
+    ++result.samples;
+    used += has;
+    fitting += has || pairs.distances[i] <= kRounding * radius;
   }
   if (result.samples == 0) throw Error("no part of O1 is near the region of O2 that it was aligned to");
   const auto all = static_cast<double>(result.samples);

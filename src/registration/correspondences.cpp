@@ -41,7 +41,8 @@ void exclude_other_sides(const Samples& samples, const Affine& pose, const Targe
   for (std::size_t i = 0; i < cosines.size(); ++i) {
     if (!pairs.usable[i]) continue;
     cosines[i] = dot(pose.linear(samples.normals[i]), face_normals[pairs.faces[i]]);
-    ++known, against += cosines[i] < 0;
+    ++known;
+    against += cosines[i] < 0;
   }
   const bool opposite = static_cast<double>(against) > kMost * static_cast<double>(known);
   if (opposite)

@@ -98,11 +98,13 @@ std::optional<MirroredFit> mirrored_fit(const SampleSource& source, const Sites&
   const auto by_axes = [&](double enough) {
     return misfit_by_axes(few.o1, some.o1, o2_points, target, enough);
   };
-  mirror(few.o1.samples), mirror(some.o1.samples);
+  mirror(few.o1.samples);
+  mirror(some.o1.samples);
   const double mirrored = by_axes(most);
   if (!(mirrored <= most)) return std::nullopt;
   // A part that is symmetric to a plane fits both ways.
-  mirror(few.o1.samples), mirror(some.o1.samples);
+  mirror(few.o1.samples);
+  mirror(some.o1.samples);
   const double turned = by_axes(kEverything);
   if (turned <= kFits * radius || !(mirrored <= kMuchBetter * turned)) return std::nullopt;
   return MirroredFit{mirrored / radius, as_given / radius};
@@ -127,8 +129,11 @@ std::optional<ScaleStep> scale_step(const Correspondences& pairs, const Pivot& p
     const double s = dot(pairs.normals[i], pairs.points[i] - pivot.centre);
     const double r = dot(pairs.normals[i], pairs.points[i] - pairs.closest[i]);
     matrix.noalias() += j * j.transpose();
-    mixed += s * j, gradient += r * j;
-    scales += s * s, along += s * r, residuals += r * r;
+    mixed += s * j;
+    gradient += r * j;
+    scales += s * s;
+    along += s * r;
+    residuals += r * r;
     ++count;
   }
   constexpr std::size_t kUnknowns = 7;
@@ -150,7 +155,8 @@ double capped_rms(const Correspondences& pairs, double most) {
   for (std::size_t i = 0; i < pairs.points.size(); ++i) {
     if (!pairs.usable[i]) continue;
     const double d = std::min(pairs.distances[i], most);
-    sum += d * d, ++count;
+    sum += d * d;
+    ++count;
   }
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
 }

@@ -57,7 +57,10 @@ template <class Progress>
     if (i >= candidates.likely && least < kGood * o1.radius) break;
     progress(i);
     const Fit fit = refine(o1, {candidates.poses[i]}, target, limits);
-    if (const double found = mismatch(o1, fit.pose, target); found < least) least = found, best = fit;
+    if (const double found = mismatch(o1, fit.pose, target); found < least) {
+      least = found;
+      best = fit;
+    }
   }
   return best;
 }

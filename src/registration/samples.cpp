@@ -50,7 +50,10 @@ SampleSource surface_source(const Mesh& mesh) {
       // The R2 sequence, Roberts 2018: low discrepancy in the unit square, folded into the triangle.
       double u = fraction(0.5 + 0.7548776662466927 * static_cast<double>(i));
       double v = fraction(0.5 + 0.5698402909980532 * static_cast<double>(i));
-      if (u + v > 1) u = 1 - u, v = 1 - v;
+      if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+      }
       const auto [a, b] = sides(face);
       samples.points.push_back(mesh.positions[mesh.triangles[face][0]] + u * a + v * b);
       samples.normals.push_back(normalized(cross((1 / size) * a, (1 / size) * b)));

@@ -38,7 +38,10 @@ std::optional<OtherUnit> best_unit(const registration::Samples& samples, const S
       std::vector<Vec3> scaled = samples.points;
       for (Vec3& p : scaled) p = factor * p;
       const double misfit = misfit_of(align(scaled, samples.normals, o2, options));
-      if (misfit < best.misfit) best.factor = factor, best.misfit = misfit;
+      if (misfit < best.misfit) {
+        best.factor = factor;
+        best.misfit = misfit;
+      }
     }
   return best.factor != 1 ? std::optional(best) : std::nullopt;
 }
@@ -111,7 +114,10 @@ std::optional<OtherUnit> unit_in_place(const registration::Samples& samples, con
       const double misfit = misfit_in_place({times(factor, samples.points), samples.normals}, target);
       const OtherUnit unit{factor, misfit, as_given, same};
       if (same) return unit;
-      if (misfit <= least) best = unit, least = misfit;
+      if (misfit <= least) {
+        best = unit;
+        least = misfit;
+      }
     }
   return best;
 }

@@ -112,7 +112,10 @@ Simplifier::State::Step Simplifier::State::collapsed(const Wedges& wedges, const
         step.triangles = std::move(result.triangles);
         step.estimate = from.estimate + result.estimate;
         step.mesh = mesh_of(wedges, step.triangles, options.single_precision);
-        if (!has_area(step.mesh)) step.mesh = {}, step.triangles.clear();
+        if (!has_area(step.mesh)) {
+          step.mesh = {};
+          step.triangles.clear();
+        }
         report_.collapse_ms += watch.lap();
       },
       [&] { make_sites(); });
@@ -194,10 +197,12 @@ std::vector<Simplifier::State::Step> Simplifier::State::coarser(const Wedges& we
     }
     if (passes) {
       error = steps.empty() ? std::max(kSecondError * limit, error) : kLarger * error;
-      low = 0, high = kNoLimit;
+      low = 0;
+      high = kNoLimit;
       steps.push_back(std::move(step));
     } else {
-      high = error, ++failures;
+      high = error;
+      ++failures;
       error = low > 0 ? std::sqrt(low * high) : (steps.empty() ? 0.5 : kSmaller) * error;
     }
   }

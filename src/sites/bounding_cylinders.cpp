@@ -106,8 +106,13 @@ class Extents {
  public:
   HWY_INLINE Extents(const float (&axis)[3], const float (&through)[3]) {
     const Lanes d;
-    for (int k = 0; k < 3; ++k) axis_[k] = hn::Set(d, axis[k]), through_[k] = hn::Set(d, through[k]);
-    least_ = hn::Inf(d), most_ = hn::Neg(hn::Inf(d)), squared_reach_ = hn::Zero(d);
+    for (int k = 0; k < 3; ++k) {
+      axis_[k] = hn::Set(d, axis[k]);
+      through_[k] = hn::Set(d, through[k]);
+    }
+    least_ = hn::Inf(d);
+    most_ = hn::Neg(hn::Inf(d));
+    squared_reach_ = hn::Zero(d);
   }
   HWY_INLINE void add(const Faces& faces) {
     const Lanes d;

@@ -143,7 +143,8 @@ Regions build_regions(const RegionSource& s, const tree::AabbTree& tree) {
             for (std::uint32_t k = 0; k < 3; ++k) put(places.corners[f][k], 4 * f + k);
           }
         });
-        regions.vertices.resize(vertices), regions.points.resize(vertices);
+        regions.vertices.resize(vertices);
+        regions.points.resize(vertices);
         regions.bounds.resize(regions.leaves.size() - 1);
         regions.thin.resize(regions.bounds.size());
         places.neighbours.resize(vertices);

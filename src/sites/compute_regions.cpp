@@ -230,7 +230,8 @@ void ComputeVertices(Regions& regions, const Placement& placement, size_t begin,
     }
     for (size_t lane = 0; lane < count; ++lane) {
       VertexRegion& region = regions.vertices[first + lane];
-      point.get(lane, region.point), point.get(lane, regions.points[first + lane].point);
+      point.get(lane, region.point);
+      point.get(lane, regions.points[first + lane].point);
       for (int k = 0; k < kRays; ++k) ray[k].get(lane, region.ray[k]);
     }
   }

@@ -85,7 +85,9 @@ std::array<uint32_t, VertexRegion::kRays> SpreadNeighbours(std::span<const Vec3>
     if (i == size) break;
     choice = neighbours[i];
     to.handicap[i] = std::numeric_limits<float>::infinity();
-    x += to.x[i], y += to.y[i], z += to.z[i];
+    x += to.x[i];
+    y += to.y[i];
+    z += to.z[i];
   }
   return chosen;
 }

@@ -84,7 +84,8 @@ void LeafFrames::forget() {
 LeafFrames::View::View(const LeafFrames& frames, const FrameSource& source)
     : source_(source), version_(frames.version_) {
   const Store& store = frames.shared_.get(source.leaves.size() - 1);
-  frames_ = store.frames.get(), made_ = store.made.get();
+  frames_ = store.frames.get();
+  made_ = store.made.get();
 }
 
 const FaceFrames& LeafFrames::View::make(std::uint32_t leaf) {

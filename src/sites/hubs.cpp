@@ -216,7 +216,10 @@ class Hubs {
  public:
   explicit Hubs(const SitesData& sites) : s_(sites), is_hub_(sites.mesh.positions.size(), 0) {
     for (std::uint32_t v = 0; v < is_hub_.size(); ++v)
-      if (s_.vertex_faces.of(v).size() > kMany) vertices_.push_back(v), is_hub_[v] = 1;
+      if (s_.vertex_faces.of(v).size() > kMany) {
+        vertices_.push_back(v);
+        is_hub_[v] = 1;
+      }
     if (vertices_.empty()) return;
     for (std::uint32_t e = 0; e < s_.topology.edges.size(); ++e)
       if (is_hub_edge(e)) edges_.push_back(e);
@@ -294,7 +297,10 @@ class Hubs {
   static FloatBox everywhere() { return {{-2, -2, -2}, {2, 2, 2}}; }
   static FloatBox widened(Box box, double by) {
     if (!(by < 1) || !finite(box.lo) || !finite(box.hi)) return everywhere();
-    for (int k = 0; k < 3; ++k) box.lo[k] -= by, box.hi[k] += by;
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] -= by;
+      box.hi[k] += by;
+    }
     return FloatBox::around(box);
   }
 

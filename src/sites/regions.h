@@ -83,7 +83,10 @@ struct SitePlaces {
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [corners, edges, neighbours, fans] = self;
-    visit(corners), visit(edges), visit(neighbours), visit(fans);
+    visit(corners);
+    visit(edges);
+    visit(neighbours);
+    visit(fans);
   }
 };
 
@@ -112,8 +115,17 @@ struct Regions {
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [leaves, bounds, thin, owners, faces, edges, vertices, points, largest_radius, enclosed, places] =
         self;
-    visit(leaves), visit(bounds), visit(thin), visit(owners), visit(faces), visit(edges), visit(vertices);
-    visit(points), visit(largest_radius), visit(enclosed), visit(places);
+    visit(leaves);
+    visit(bounds);
+    visit(thin);
+    visit(owners);
+    visit(faces);
+    visit(edges);
+    visit(vertices);
+    visit(points);
+    visit(largest_radius);
+    visit(enclosed);
+    visit(places);
   }
 };
 

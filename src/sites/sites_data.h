@@ -81,9 +81,18 @@ class SitesData {
   /// What is stored; the rest is derived from it. See core/arrays/stored_arrays.h.
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
-    visit(self.mesh.positions), visit(self.mesh.triangles), visit(self.mesh.corner_uvs);
-    visit(self.topology), visit(self.vertex_faces), visit(self.orientation), visit(self.inverted);
-    visit(self.tree), visit(self.wide), visit(self.regions), visit(self.normals), visit(self.sliver);
+    visit(self.mesh.positions);
+    visit(self.mesh.triangles);
+    visit(self.mesh.corner_uvs);
+    visit(self.topology);
+    visit(self.vertex_faces);
+    visit(self.orientation);
+    visit(self.inverted);
+    visit(self.tree);
+    visit(self.wide);
+    visit(self.regions);
+    visit(self.normals);
+    visit(self.sliver);
     visit(self.faces_added_to_tree_);
   }
 

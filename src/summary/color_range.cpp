@@ -77,10 +77,12 @@ ColorRange color_range(const ColorChoice& choice, const DistanceStatistics& dist
 ColorRange widest(const ColorRange& a, const ColorRange& b) {
   ColorRange result = a;
   auto& [lo, hi] = result.range;
-  lo = std::min(lo, b.range[0]), hi = std::max(hi, b.range[1]);
+  lo = std::min(lo, b.range[0]);
+  hi = std::max(hi, b.range[1]);
   const auto one_is = [&](Colormap map) { return a.colormap == map || b.colormap == map; };
   if (one_is(Colormap::sequential) || one_is(Colormap::diverging)) {
-    lo = std::min(lo, 0.0), hi = std::max(hi, 0.0);
+    lo = std::min(lo, 0.0);
+    hi = std::max(hi, 0.0);
     result.colormap = static_cast<Colormap>(rules::colormap_of_range(rules::kSequentialMap, lo, hi));
   }
   if (result.colormap == Colormap::diverging) {

@@ -15,14 +15,19 @@ GroupVerdict joined(std::span<const GroupVerdict> parts) {
   GroupVerdict all = parts.front();
   std::vector<CertifiedVerdict> verdicts;
   std::vector<double> areas;
-  all.faces = 0, all.points = 0, all.area = 0;
+  all.faces = 0;
+  all.points = 0;
+  all.area = 0;
   for (const GroupVerdict& part : parts) {
-    all.faces += part.faces, all.points += part.points, all.area += part.area;
+    all.faces += part.faces;
+    all.points += part.points;
+    all.area += part.area;
     if (part.lowest) {
       all.lowest = std::min(all.lowest.value_or(*part.lowest), *part.lowest);
       all.highest = std::max(all.highest.value_or(*part.highest), *part.highest);
     }
-    verdicts.push_back(part.verdict), areas.push_back(part.area);
+    verdicts.push_back(part.verdict);
+    areas.push_back(part.area);
   }
   all.verdict = summary::combined_verdict(verdicts, areas);
   return all;

@@ -70,7 +70,9 @@ const CertifiedVerdict& decisive(std::span<const CertifiedVerdict> verdicts) {
 CertifiedVerdict summary::combined_verdict(std::span<const CertifiedVerdict> verdicts,
                                            std::span<const double> areas) {
   CertifiedVerdict total = decisive(verdicts);
-  total.shares = {}, total.largest.reset(), total.margin.reset();
+  total.shares = {};
+  total.largest.reset();
+  total.margin.reset();
   double area = 0, margin = std::numeric_limits<double>::infinity();
   bool complete = true;
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
@@ -104,7 +106,9 @@ void CombinedSummary::add(const Surface& surface, const DistanceMap& map, const 
   if (summary.tolerance) verdicts_.push_back(*summary.tolerance);
   if (first) {
     total_ = summary;
-    total_.distribution.reset(), total_.colors.reset(), total_.notes.clear();
+    total_.distribution.reset();
+    total_.colors.reset();
+    total_.notes.clear();
     return;
   }
   extend(total_.extremes, summary.extremes);
@@ -122,7 +126,10 @@ Summary CombinedSummary::summary() const {
   total.distance = statistics_.statistics();
   total.hausdorff = summary::largest_distance(total);
   double area = 0, beyond = 0;
-  for (std::size_t i = 0; i < areas_.size(); ++i) area += areas_[i], beyond += areas_[i] * beyond_[i];
+  for (std::size_t i = 0; i < areas_.size(); ++i) {
+    area += areas_[i];
+    beyond += areas_[i] * beyond_[i];
+  }
   total.beyond_fraction = area > 0 ? beyond / area : 0;
   total.places.reset();
   if (places_.size() == areas_.size()) total.places = combined_places(places_, areas_);

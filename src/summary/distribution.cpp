@@ -22,9 +22,11 @@ DistanceHistogram histogram(const Surface& surface, const DistanceMap& map, cons
     if (std::isfinite(tolerance->upper)) hi = std::max(hi, tolerance->upper);
   }
   if (!(lo < hi)) {  // a single value, or all values beyond the percentile on one side
-    lo = std::min(d.min, lo), hi = std::max(d.max, hi);
+    lo = std::min(d.min, lo);
+    hi = std::max(d.max, hi);
     const double widen = lo < hi ? 0 : lo != 0 ? std::abs(lo) / 2 : 1;
-    lo -= widen, hi += widen;
+    lo -= widen;
+    hi += widen;
   }
   return distance_histogram(surface, map, {lo, hi}, kBins);
 }

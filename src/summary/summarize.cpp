@@ -67,7 +67,8 @@ double beyond_fraction(const Surface& surface, const DistanceMap& map) {
   if (map.without_match == 0)
     return area_fraction_beyond(surface, map, std::numeric_limits<double>::infinity());
   DistanceMap matched;
-  matched.distance = map.distance, matched.without_texel = map.without_texel;
+  matched.distance = map.distance;
+  matched.without_texel = map.without_texel;
   for (std::size_t texel = 0; texel < map.unmatched.size(); ++texel)
     if (map.unmatched[texel] != 0) matched.distance[texel] = 0;
   return area_fraction_beyond(surface, matched, std::numeric_limits<double>::infinity());
@@ -139,7 +140,8 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
        [&] { result.distribution = summary::distribution_of(surface, map, result.distance, options); }});
   const double walls = thickness::thin_walls(wall_lengths);
   result.evidence = evidence_of(surface, map, vertex_distances, error_bound, options.accuracy);
-  result.evidence.guard = options.guard, result.evidence.thin_walls = walls;
+  result.evidence.guard = options.guard;
+  result.evidence.thin_walls = walls;
   result.hausdorff = summary::largest_distance(result);
   if (options.tolerance)
     result.tolerance = certify_tolerance(surface, sites, map, vertex_distances, *options.tolerance,
@@ -161,7 +163,9 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
 Summary summarize_thickness(const Surface& surface, const DistanceMap& map, const SummaryOptions& options) {
   const std::vector<float> unknown(surface.mesh().positions.size(), std::numeric_limits<float>::quiet_NaN());
   Summary result = summarize_self(surface, map, options);
-  result.of_thickness = true, result.measured = map.measured, result.places.reset();
+  result.of_thickness = true;
+  result.measured = map.measured;
+  result.places.reset();
   result.extremes = extremes(surface, map, unknown);
   result.distribution = summary::distribution_of(surface, map, result.distance, options);
   Evidence& evidence = result.evidence;
@@ -171,8 +175,10 @@ Summary summarize_thickness(const Surface& surface, const DistanceMap& map, cons
               .guard = options.guard,
               .error_bound = std::numeric_limits<double>::infinity(),
               .is_signed = false};
-  if (result.extremes)
-    evidence.lowest = result.extremes->min.distance, evidence.highest = result.extremes->max.distance;
+  if (result.extremes) {
+    evidence.lowest = result.extremes->min.distance;
+    evidence.highest = result.extremes->max.distance;
+  }
   if (!options.tolerance) return result;
   CertifiedVerdict& verdict = result.tolerance.emplace();
   static_cast<Judgement&>(verdict) = judge(evidence, *options.tolerance);

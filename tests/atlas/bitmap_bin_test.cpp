@@ -72,7 +72,8 @@ TEST(BitmapBin, FitsStampsUpToItsOwnSize) {
   EXPECT_TRUE(bin.first_fit(stamp, 0, 64));
   stamp.width = 65;
   EXPECT_FALSE(bin.first_fit(stamp, 0, 64));
-  stamp.width = 64, stamp.height = 4;
+  stamp.width = 64;
+  stamp.height = 4;
   EXPECT_FALSE(bin.first_fit(stamp, 0, 64));
 }
 

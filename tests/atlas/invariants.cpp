@@ -195,7 +195,10 @@ void expect_samples(const Surface& surface) {
   std::sort(sorted.begin(), sorted.end());
   std::set<std::uint32_t> faces;
   for (std::uint32_t i = 0; i < surface.map_faces().size(); ++i)
-    if (surface.map_faces()[i] != kNone) owned.push_back(i), faces.insert(surface.map_faces()[i]);
+    if (surface.map_faces()[i] != kNone) {
+      owned.push_back(i);
+      faces.insert(surface.map_faces()[i]);
+    }
   EXPECT_EQ(sorted, owned);
   EXPECT_EQ(static_cast<std::ptrdiff_t>(faces.size()),
             std::ranges::count_if(surface.face_charts(), [](std::uint32_t chart) { return chart != kNone; }))

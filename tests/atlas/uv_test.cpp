@@ -34,7 +34,8 @@ TEST(Uv, UsesTheMeshesOwnCoordinates) {
 TEST(Uv, TexelsNeedNotBeSquare) {
   for (const auto& [columns, rows] : {std::pair(200u, 50u), std::pair(33u, 700u)}) {
     AtlasOptions options = kOptions;
-    options.resolution = columns, options.rows = rows;
+    options.resolution = columns;
+    options.rows = rows;
     const Surface surface(test::height_field(30), options);
     ASSERT_EQ(surface.resolution(), columns);
     ASSERT_EQ(surface.rows(), rows);

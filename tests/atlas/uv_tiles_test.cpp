@@ -21,7 +21,10 @@ using testing::ThrowsMessage;
 
 Mesh with_uvs(Mesh mesh, double scale, const Vec2& offset) {
   for (auto& face : mesh.corner_uvs)
-    for (auto& [u, v] : face) u = scale * u + offset[0], v = scale * v + offset[1];
+    for (auto& [u, v] : face) {
+      u = scale * u + offset[0];
+      v = scale * v + offset[1];
+    }
   return mesh;
 }
 
@@ -97,7 +100,10 @@ TEST(UvTiles, FacesMayCrossManyBorders) {
   mesh.corner_uvs.clear();
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     auto& uvs = mesh.corner_uvs.emplace_back();
-    for (auto& [u, v] : uvs) u = place(random), v = place(random);
+    for (auto& [u, v] : uvs) {
+      u = place(random);
+      v = place(random);
+    }
     if (f % 3 == 0) uvs[0] = {std::round(uvs[0][0]), std::round(uvs[0][1])};  // corners on borders
     if (f % 5 == 0) uvs[1] = {uvs[0][0], uvs[1][1]};                          // and edges along them
   }
@@ -138,7 +144,8 @@ TEST(UvTiles, FacesOnABorderAreWithTheOthers) {
   const auto with_face = [](std::array<Vec2, 3> uvs, const Vec2& offset) {
     Mesh mesh = with_uvs(test::height_field(4), 1, offset);
     for (Vec2& uv : uvs) uv = uv + offset;
-    mesh.triangles.push_back(mesh.triangles[0]), mesh.corner_uvs.push_back(uvs);
+    mesh.triangles.push_back(mesh.triangles[0]);
+    mesh.corner_uvs.push_back(uvs);
     return mesh;
   };
   constexpr std::array<std::array<Vec2, 3>, 5> kOnBorders{{{{{1, 0}, {1, 0}, {1, 1}}},

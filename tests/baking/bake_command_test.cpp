@@ -370,7 +370,8 @@ std::string png_of_side(std::uint32_t side) {
   const auto set = [&](std::size_t at, std::uint32_t value) {
     for (std::size_t k = 0; k < 4; ++k) file[at + k] = static_cast<char>(value >> (24 - 8 * k));
   };
-  set(16, side), set(20, side);
+  set(16, side);
+  set(20, side);
   set(29, crc_of(std::string_view(file).substr(12, 17)));
   return file;
 }

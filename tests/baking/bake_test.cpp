@@ -158,7 +158,8 @@ TEST_F(Baking, NoiseBecomesItsMeanInLinearLight) {
   double sum = 0;
   for (const std::uint32_t texel : test::owned_texels(surface)) {
     const double value = result.values[3 * std::size_t{texel}];
-    sum += value, most = std::max(most, std::abs(value - mean));
+    sum += value;
+    most = std::max(most, std::abs(value - mean));
   }
   EXPECT_NEAR(sum / static_cast<double>(surface.owned_texels()), mean, 0.005);
   EXPECT_LT(most, 0.25);
@@ -171,8 +172,12 @@ TEST_F(Baking, FactorsTexturesAndVertexColorsMultiply) {
   for (std::size_t v = 0; v < high.positions.size(); ++v)
     for (const float x : {0.5f, 0.25f, 1.f}) attributes[0].values.push_back(x);
   Material& m = materials[0];
-  m.base_color = {0.5f, 1, 0.75f, 0.5f}, m.metallic = 0.5f, m.roughness = 0.25f, m.occlusion_strength = 0.5f;
-  m.emissive = {1, 0.5f, 0.25f}, m.alpha_mode = AlphaMode::blend;
+  m.base_color = {0.5f, 1, 0.75f, 0.5f};
+  m.metallic = 0.5f;
+  m.roughness = 0.25f;
+  m.occlusion_strength = 0.5f;
+  m.emissive = {1, 0.5f, 0.25f};
+  m.alpha_mode = AlphaMode::blend;
   for (TextureUse Material::*use : {&Material::base_color_texture, &Material::metallic_roughness_texture,
                                     &Material::occlusion_texture, &Material::emissive_texture})
     m.*use = {.texture = 0};
@@ -196,7 +201,8 @@ TEST_F(Baking, FactorsTexturesAndVertexColorsMultiply) {
 
 TEST_F(Baking, EveryFaceHasItsMaterial) {
   materials.resize(2);
-  materials[0].base_color = {1, 0, 0, 1}, materials[1].base_color = {0, 1, 0, 1};
+  materials[0].base_color = {1, 0, 0, 1};
+  materials[1].base_color = {0, 1, 0, 1};
   for (std::size_t f = 0; f < face_materials.size(); ++f)
     face_materials[f] = f < face_materials.size() / 2 ? 0 : f + 1 < face_materials.size() ? 1 : kNone;
   EXPECT_EQ(varying_channels(high, look()), std::vector{BakeChannel::base_color});
@@ -220,7 +226,8 @@ TEST_F(Baking, WithoutAMatchTexelsHaveNoValueUnlessTheyAreFilled) {
   const BakedChannel open = baked(BakeChannel::base_color, false), filled = baked(BakeChannel::base_color);
   std::size_t matched = 0, too_far = 0;
   for (std::size_t i = 0; i < matches.kind.size(); ++i) {
-    matched += matches.kind[i] == MatchKind::closest, too_far += matches.kind[i] == MatchKind::too_far;
+    matched += matches.kind[i] == MatchKind::closest;
+    too_far += matches.kind[i] == MatchKind::too_far;
     ASSERT_EQ(matches.kind[i] == MatchKind::none, surface.map_faces()[i] == kNone);
     ASSERT_EQ(std::isnan(open.values[3 * i]), matches.kind[i] != MatchKind::closest);
     ASSERT_NEAR(filled.values[3 * i], 0.5, 1e-6);
@@ -233,7 +240,10 @@ TEST_F(Baking, ChannelsThatAreTheSameEverywhereAreFactors) {
   EXPECT_TRUE(varying_channels(high, look()).empty());
   EXPECT_EQ(common_material({}).metallic, 0);
   Material& m = materials[0];
-  m.name = "steel", m.metallic = 1, m.roughness = 0.5f, m.alpha_mode = AlphaMode::mask;
+  m.name = "steel";
+  m.metallic = 1;
+  m.roughness = 0.5f;
+  m.alpha_mode = AlphaMode::mask;
   m.emissive_texture = {.texture = 0};
   pictures.emplace_back();  // one that could not be had
   EXPECT_TRUE(varying_channels(high, look()).empty());

@@ -206,8 +206,14 @@ TEST(BakedGeometry, OcclusionAndThicknessAreThoseOfTheMatchedPoint) {
     ASSERT_FALSE(std::isnan(visible[texel]));
     const Vec3 p = floor.texel_point(texel);
     if (std::abs(p[1]) > 0.3) continue;
-    if (p[0] < -0.9) near += visible[texel], ++of_near;
-    if (p[0] > 0.8) far += visible[texel], ++of_far;
+    if (p[0] < -0.9) {
+      near += visible[texel];
+      ++of_near;
+    }
+    if (p[0] > 0.8) {
+      far += visible[texel];
+      ++of_far;
+    }
   }
   ASSERT_GT(of_near, 0U);
   ASSERT_GT(of_far, 0U);

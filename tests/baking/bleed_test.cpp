@@ -85,7 +85,8 @@ TEST(Bleed, MipmapsOfAChartHaveItsColorsUpToTheGutter) {
 
 TEST(Bleed, ValuesOfAllTexelsAreFilledSmoothly) {
   std::vector<float> values(64 * 64, std::numeric_limits<float>::quiet_NaN());
-  values[64 * 10 + 10] = 1, values[64 * 50 + 50] = 3;
+  values[64 * 10 + 10] = 1;
+  values[64 * 50 + 50] = 3;
   fill_texels(64, 1, values, 4);
   EXPECT_EQ(values[64 * 12 + 12], 1);
   EXPECT_EQ(values[64 * 50 + 47], 3);

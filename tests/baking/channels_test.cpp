@@ -243,7 +243,8 @@ TEST_F(BakedChannels, SamplesAreAveragedInLinearLight) {
       for (std::uint32_t i = 4 * y; i < 4 * y + 4; ++i)
         for (std::uint32_t j = 4 * x; j < 4 * x + 4; ++j) {
           if (fine_positions.values.at("coverage.A")[i * 128 + j] == 0) continue;
-          ++samples, ++counts[fine_faces.numbers.at("face.id")[i * 128 + j]];
+          ++samples;
+          ++counts[fine_faces.numbers.at("face.id")[i * 128 + j]];
           place += fine_positions.values.at("position.Y")[i * 128 + j];
           for (std::uint32_t k = 0; k < 3; ++k) light[k] += linear_of(fine.value(j, i, k));
         }

@@ -40,7 +40,8 @@ double wrong_share(double thickness, std::optional<double> facing) {
   const Surface low(bent_plate(4, thickness), {.resolution = 128});
   const Sites sites(high);
   std::vector<Material> materials(2);
-  materials[0].base_color = {1, 0, 0, 1}, materials[1].base_color = {0, 0, 1, 1};
+  materials[0].base_color = {1, 0, 0, 1};
+  materials[1].base_color = {0, 0, 1, 1};
   std::vector<std::uint32_t> of_faces(high.triangles.size(), 1);
   std::fill_n(of_faces.begin(), of_faces.size() / 2, 0);
   const TexelMatches matches =

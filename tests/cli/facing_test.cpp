@@ -37,7 +37,8 @@ Mesh sheet(double depth) {
       for (std::uint32_t j = 0; j <= n; ++j)
         mesh.positions.push_back({2.0 * i - n, 2.0 * j - n, z - (z > 0 && i == 5 && j == 5 ? depth : 0)});
   const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-    mesh.triangles.push_back({a, b, c}), mesh.triangles.push_back({a, c, d});
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
   };
   for (std::uint32_t i = 0; i < n; ++i)
     for (std::uint32_t j = 0; j < n; ++j) {
@@ -48,8 +49,12 @@ Mesh sheet(double depth) {
   const auto wall = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l) {
     quad(vertex(false, i, j), vertex(false, k, l), vertex(true, k, l), vertex(true, i, j));
   };
-  for (std::uint32_t k = 0; k < n; ++k)
-    wall(k, 0, k + 1, 0), wall(n, k, n, k + 1), wall(n - k, n, n - k - 1, n), wall(0, n - k, 0, n - k - 1);
+  for (std::uint32_t k = 0; k < n; ++k) {
+    wall(k, 0, k + 1, 0);
+    wall(n, k, n, k + 1);
+    wall(n - k, n, n - k - 1, n);
+    wall(0, n - k, 0, n - k - 1);
+  }
   return mesh;
 }
 

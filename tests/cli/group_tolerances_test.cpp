@@ -28,7 +28,10 @@ using ::testing::Not;
 // A cube with named faces, and one that is higher by 0.1: the top is up to 0.1 inside it, the rest on it.
 class GroupTolerancesOption : public testing::Test {
  protected:
-  GroupTolerancesOption() { write_cube(part, 1), write_cube(higher, 1.1); }
+  GroupTolerancesOption() {
+    write_cube(part, 1);
+    write_cube(higher, 1.1);
+  }
 
   static void write_cube(const std::string& file, double height) {
     std::ofstream out(file);

@@ -306,7 +306,8 @@ class Collisions {
   void run() {
     const std::size_t earlier = roll(3);
     if (earlier > 0) run_earlier(earlier == 1);
-    a_ = input(), b_ = input();
+    a_ = input();
+    b_ = input();
     for (std::size_t i = roll(3); i > 0; --i) (void)input();  // files of the user that are not read
     const Arguments arguments = command();
     SCOPED_TRACE(fmt::format("sdm {}", fmt::join(arguments, " ")));
@@ -474,7 +475,8 @@ TEST(RandomCommandLines, LoseNoInput) {
     SCOPED_TRACE(seed);
     Collisions collisions(seed);
     collisions.run();
-    succeeded += collisions.succeeded, conflicted += collisions.conflicted;
+    succeeded += collisions.succeeded;
+    conflicted += collisions.conflicted;
     if (::testing::Test::HasFailure()) return;
   }
   EXPECT_GT(succeeded, all / 4);

@@ -28,7 +28,8 @@ struct Inspection : ::testing::Test {
     ASSERT_EQ(run.code, 0) << run.err;
     EXPECT_THAT(names_in(made), ::testing::ElementsAre("part.ply", "scan.ply", "scan.xyz", "scene.json"));
     truth = Json::parse(contents(made + "/scene.json"));
-    depth = truth["dent"]["depth"], noise = truth["noise"];
+    depth = truth["dent"]["depth"];
+    noise = truth["noise"];
   }
 
   Outcome measure(const std::string& command, const std::string& scan, double tolerance,

@@ -188,7 +188,8 @@ TEST_F(PlacesOutput, TheReachOfIslandsHoldsAfterThePlacement) {
   EXPECT_DOUBLE_EQ(plain.reach, 2 * std::sqrt(3.0) * plain.apart);
   EXPECT_DOUBLE_EQ(found("scale:2"), 2 * plain.reach);
   Transform uneven;
-  uneven.rows[0][0] = 10, uneven.rows[2][2] = 0.5;
+  uneven.rows[0][0] = 10;
+  uneven.rows[2][2] = 0.5;
   const PointIslands placed = CloudIslands(file, 10).found(uneven);
   EXPECT_DOUBLE_EQ(placed.reach, 10 * plain.reach);
   EXPECT_DOUBLE_EQ(placed.apart, 0.5 * plain.apart);

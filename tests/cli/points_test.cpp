@@ -57,13 +57,16 @@ std::vector<Row> read_rows(const std::filesystem::path& file, bool normals) {
   for (std::size_t at = begin; at + size <= bytes.size(); at += size) {
     Row& row = rows.emplace_back();
     const char* from = bytes.data() + at;
-    std::memcpy(row.point.data(), from, 24), from += 24;
+    std::memcpy(row.point.data(), from, 24);
+    from += 24;
     for (int k = 0; normals && k < 3; ++k, from += 4) {
       float x;
-      std::memcpy(&x, from, 4), row.normal[k] = x;
+      std::memcpy(&x, from, 4);
+      row.normal[k] = x;
     }
-    std::memcpy(&row.distance, from, 4), std::memcpy(&row.face, from + 4, 4),
-        std::memcpy(row.rgb.data(), from + 8, 3);
+    std::memcpy(&row.distance, from, 4);
+    std::memcpy(&row.face, from + 4, 4);
+    std::memcpy(row.rgb.data(), from + 8, 3);
   }
   return rows;
 }
@@ -133,8 +136,12 @@ TEST_F(PointsCommand, DistancesAreThoseOfAllFacesInTheOrderOfTheInput) {
     const ClosestPoint c =
         sites::closest_on_face(internals(sites), static_cast<std::uint32_t>(rows[i].face), points[i]);
     EXPECT_NEAR(c.distance, std::abs(rows[i].distance), 1e-5);
-    sum += rows[i].distance, inside += rows[i].distance < 0;
-    if (rows[i].distance > largest) largest = rows[i].distance, at = i;
+    sum += rows[i].distance;
+    inside += rows[i].distance < 0;
+    if (rows[i].distance > largest) {
+      largest = rows[i].distance;
+      at = i;
+    }
   }
   const Json report = Json::parse(found.out);
   EXPECT_EQ(report["o1"]["points"], points.size());
@@ -236,9 +243,12 @@ TEST_F(PointsCommand, FormatsAndPartsAgree) {
     csv += fmt::format("{},{},{},0.5\r\n", p[0], p[1], p[2]);
     ascii += fmt::format("{} {} {} 1 2\n", p[0], p[1], p[2]);
     for (const double x : p) {
-      append(little, x), append(big, static_cast<float>(x), true), append(binary, static_cast<float>(x));
+      append(little, x);
+      append(big, static_cast<float>(x), true);
+      append(binary, static_cast<float>(x));
     }
-    little += '\x07', binary += "\x01\x02\x03\x04\x05\x06\x07\x08";
+    little += '\x07';
+    binary += "\x01\x02\x03\x04\x05\x06\x07\x08";
   }
   const Sites sites(mesh);
   const std::filesystem::path expected = folder / "expected.ply", found = folder / "found.ply";
@@ -281,12 +291,18 @@ std::string las(const std::vector<Vec3>& points, int minor, std::uint8_t format 
     std::ranges::copy(bytes, file.begin() + static_cast<std::ptrdiff_t>(at));
   };
   std::ranges::copy(std::string_view("LASF"), file.begin());
-  put(24, std::uint8_t{1}), put(25, static_cast<std::uint8_t>(minor));
-  put(94, static_cast<std::uint16_t>(header)), put(96, static_cast<std::uint32_t>(header + 10));
-  put(104, format), put(105, static_cast<std::uint16_t>(record));
+  put(24, std::uint8_t{1});
+  put(25, static_cast<std::uint8_t>(minor));
+  put(94, static_cast<std::uint16_t>(header));
+  put(96, static_cast<std::uint32_t>(header + 10));
+  put(104, format);
+  put(105, static_cast<std::uint16_t>(record));
   put(107, static_cast<std::uint32_t>(minor >= 4 ? 0 : points.size()));
   if (minor >= 4) put(247, std::uint64_t{points.size()});
-  for (std::size_t k = 0; k < 3; ++k) put(131 + 8 * k, kLasScale), put(155 + 8 * k, kLasOffset);
+  for (std::size_t k = 0; k < 3; ++k) {
+    put(131 + 8 * k, kLasScale);
+    put(155 + 8 * k, kLasOffset);
+  }
   file.append(10, '\x2a');  // a record of variable length
   for (const Vec3& p : points) {
     for (const double x : p)
@@ -370,7 +386,10 @@ TEST_F(PointsCommand, AlignsAMirroredCloudByItsNormals) {
     for (int i = 0; i < 20; ++i) {
       std::uniform_real_distribution<double> unit(0, 1);
       double u = unit(random), v = unit(random);
-      if (u + v > 1) u = 1 - u, v = 1 - v;
+      if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+      }
       const Vec3 q = p[t[0]] + u * (p[t[1]] - p[t[0]]) + v * (p[t[2]] - p[t[0]]);
       text += fmt::format("{} {} {} {} {} {}\n", -q[0] + 0.02, q[1] - 0.01, q[2], -n[0], n[1], n[2]);
     }

@@ -45,7 +45,10 @@ TEST(DisjointSets, AreTheComponentsWhateverTheOrderOfTheUnions) {
   for (const std::uint32_t count : {1u, 2u, 50u, 2000u}) {
     std::uniform_int_distribution<std::uint32_t> any(0, count - 1);
     std::vector<std::array<std::uint32_t, 2>> pairs(count / 2);
-    for (auto& [a, b] : pairs) a = any(random), b = any(random);
+    for (auto& [a, b] : pairs) {
+      a = any(random);
+      b = any(random);
+    }
     std::vector<std::uint32_t> smallest(count);
     std::iota(smallest.begin(), smallest.end(), 0u);
     for (const auto& [a, b] : pairs) {

@@ -94,7 +94,8 @@ Numbers by_points(const Files& files, const Words& given) {
   sdm::PointDistancesOptions options;
   sdm::ColorChoice colors;
   set(given, options.map, colors, options.text);
-  options.picture.colormap = colors.colormap, options.picture.tolerance = colors.tolerance;
+  options.picture.colormap = colors.colormap;
+  options.picture.tolerance = colors.tolerance;
   return numbers_of(
       sdm::measure_points(files[0], sdm::Sites(sdm::read_mesh(files[1])), files[0] + ".cpp.ply", options)
           .distance);

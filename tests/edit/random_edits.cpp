@@ -63,7 +63,8 @@ void RandomEdits::add(const Mesh& mesh, MeshEdit& edit) {
     const auto c = static_cast<std::uint32_t>(mesh.positions.size() + edit.added_vertices.size());
     edit.added_vertices.push_back(p);
     edit.added_faces.push_back({b, a, c});
-    a = b, b = c;
+    a = b;
+    b = c;
   }
 }
 

@@ -46,11 +46,15 @@ void expect_own_points(const Surface& surface) {
   ASSERT_EQ(owners.size(), std::size_t{surface.rows()} * surface.resolution());
   std::vector<std::uint32_t> count(surface.mesh().triangles.size()), without, samples;
   for (std::uint32_t texel = 0; texel < owners.size(); ++texel)
-    if (owners[texel] != kNone) ++count[owners[texel]], samples.push_back(texel);
+    if (owners[texel] != kNone) {
+      ++count[owners[texel]];
+      samples.push_back(texel);
+    }
   for (std::uint32_t f = 0; f < count.size(); ++f) {
     if (surface.face_charts()[f] == kNone || count[f] > 0) continue;
     samples.push_back(static_cast<std::uint32_t>(owners.size() + without.size()));
-    without.push_back(f), ++count[f];
+    without.push_back(f);
+    ++count[f];
   }
   EXPECT_TRUE(std::ranges::equal(surface.map_faces().subspan(owners.size()), without));
   EXPECT_EQ(internals(surface).face_samples, count);

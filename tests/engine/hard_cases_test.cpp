@@ -83,7 +83,8 @@ TEST_P(HardCases, SliversWhoseNormalIsNoise) {
     double t = 0.5, s = 0.7;
     if (i > 0) {
       for (Vec3& p : mesh.positions) p = test::random_point(kBox, random);
-      t = unit(random), s = unit(random);
+      t = unit(random);
+      s = unit(random);
     }
     const Vec3 a = mesh.positions[1], b = mesh.positions[2];
     mesh.positions.push_back(t * a + (1 - t) * b);

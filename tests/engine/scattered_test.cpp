@@ -192,7 +192,10 @@ TEST_P(ScatteredPoints, ManySizesAway) {
       for (int i = 0; i < 30; ++i) {
         Vec3 direction;
         for (double& x : direction) x = coordinate(random);
-        if (i < 6) direction = {}, direction[i % 3] = i < 3 ? 1 : -1;  // where faces tie
+        if (i < 6) {
+          direction = {};
+          direction[i % 3] = i < 3 ? 1 : -1;
+        }  // where faces tie
         queries.push_back(0.5 * (box.lo + box.hi) +
                           away * norm(box.hi - box.lo) / norm(direction) * direction);
       }

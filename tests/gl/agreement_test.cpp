@@ -126,7 +126,8 @@ TEST(Agreement, WithinAMaximumDistance) {
           wrong += all.distance[t] > limit + tolerance;
           continue;
         }
-        ++beyond, texels_beyond += t < surface.texel_faces().size();
+        ++beyond;
+        texels_beyond += t < surface.texel_faces().size();
         wrong += all.distance[t] < limit - tolerance || !std::isnan(near.vector[t][0]) ||
                  near.site[t] != kNone || near.site_type[t] != SiteType::none;
       }

@@ -58,7 +58,10 @@ TEST(Tiles, PartitionTheOwnedTexels) {
       for (const std::uint32_t texel : tiles.of(tile)) {
         EXPECT_EQ(surface.map_faces()[texel], tiles.faces[tile]);
         const std::uint32_t at[2] = {texel % 256, texel / 256};
-        for (int k = 0; k < 2; ++k) lo[k] = std::min(lo[k], at[k]), hi[k] = std::max(hi[k], at[k]);
+        for (int k = 0; k < 2; ++k) {
+          lo[k] = std::min(lo[k], at[k]);
+          hi[k] = std::max(hi[k], at[k]);
+        }
       }
       for (int k = 0; k < 2; ++k) EXPECT_LT(hi[k] - lo[k], surface::Tiles::kSide);
     }

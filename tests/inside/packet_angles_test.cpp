@@ -69,7 +69,10 @@ TEST(PacketAngles, AreOnTheSideOfSumsInExtendedPrecision) {
               ASSERT_EQ((sides.above >> i & 1u) != 0, exact[i] > limits[i])
                   << radius << ": " << exact[i] << " and " << limits[i];
             }
-          if (radius <= 1e-3) known += std::popcount(sides.known), all += points.size();
+          if (radius <= 1e-3) {
+            known += std::popcount(sides.known);
+            all += points.size();
+          }
         }
       if (far == 0) {
         EXPECT_GT(known, all / 5);
@@ -103,7 +106,10 @@ TEST(PacketAngles, BallsAreOnTheSideOfSumsInExtendedPrecision) {
               kWhole * (brute_force_winding(sites, centres[i]) + (far_from_limit ? 0.5 : -0.1));
           const inside::PacketSides side = inside::side_of_ball(angles, centres[i], radius, limit);
           EXPECT_EQ(side.above & ~side.known, 0u);
-          if (part == 0.1 && far_from_limit) ++tried, known += side.known;
+          if (part == 0.1 && far_from_limit) {
+            ++tried;
+            known += side.known;
+          }
           if (side.known == 0) continue;
           for (int sample = 0; sample < 6; ++sample) {
             const Vec3 direction = normalized(Vec3{u(random), u(random), u(random)});

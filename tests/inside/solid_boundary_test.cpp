@@ -87,7 +87,8 @@ struct CrossedBoxes {
       for (int k = 0; k < 3; ++k) {
         const double reach = k == i % 3 ? 1 : 0.15;
         const double shift = i == 3 && k != 0 ? 0.2 : 0;
-        box.lo[k] = shift - reach * (1 + u(random)), box.hi[k] = shift + reach * (1 + u(random));
+        box.lo[k] = shift - reach * (1 + u(random));
+        box.hi[k] = shift + reach * (1 + u(random));
       }
       boxes.push_back(box);
       mesh = test::joined(mesh, test::box(box.lo, box.hi));

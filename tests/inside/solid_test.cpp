@@ -207,7 +207,10 @@ TEST(Solid, TrianglesKnownToBeApartAre) {
         if ((apart >> i & 1u) != 0) {
           ASSERT_GT(distance, clearance) << size;
         }
-        if (distance > 2 * clearance + 0.1 * size) ++far, found += apart >> i & 1u;
+        if (distance > 2 * clearance + 0.1 * size) {
+          ++far;
+          found += apart >> i & 1u;
+        }
       }
     }
     EXPECT_GT(found, 0.9 * static_cast<double>(far));

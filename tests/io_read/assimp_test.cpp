@@ -55,7 +55,10 @@ void expect_agreement(const std::filesystem::path& file) {
   for (std::size_t c = 0; c < ours.size(); ++c) ASSERT_NEAR(ours[c][0], theirs[c][0], tolerance) << file;
   Vec3 our_sum{}, their_sum{};
   for (std::size_t c = 0; c < ours.size(); ++c)
-    for (int k = 0; k < 3; ++k) our_sum[k] += ours[c][k], their_sum[k] += theirs[c][k];
+    for (int k = 0; k < 3; ++k) {
+      our_sum[k] += ours[c][k];
+      their_sum[k] += theirs[c][k];
+    }
   EXPECT_LE(norm(our_sum - their_sum), tolerance * static_cast<double>(ours.size()));
 }
 

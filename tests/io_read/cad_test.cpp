@@ -85,7 +85,8 @@ TEST(Cad, PartsThatAreFilesAreBesideTheAssembly) {
   namespace fs = std::filesystem;
   const TemporaryFolder folder;
   const fs::path here = std::string(folder / "here"), there = std::string(folder / "there");
-  fs::create_directory(here), fs::create_directory(there);
+  fs::create_directory(here);
+  fs::create_directory(there);
   fs::copy(cad_file("external.step"), there / "external.step");
   fs::copy(cad_file("external_part.stp"), there / "external_part.stp");
   const auto read = [](const fs::path& file) { return read_mesh_file(file); };

@@ -169,7 +169,10 @@ TEST(GltfBudget, SparseMorphTargetsTakeWhatTheyStore) {
   const std::string positions = store.vec3(mesh.positions), faces = store.corners(mesh),
                     target = store.sparse_vec3({{1, 0, 0}}, mesh.positions.size());
   std::string targets = R"({"POSITION":)" + target + "}", weights = "1";
-  for (int i = 1; i < 3000; ++i) targets += R"(,{"POSITION":)" + target + "}", weights += ",0";
+  for (int i = 1; i < 3000; ++i) {
+    targets += R"(,{"POSITION":)" + target + "}";
+    weights += ",0";
+  }
   const Mesh read =
       read_as("a.glb", store.glb(R"("nodes":[{"mesh":0,"weights":[)" + weights +
                                  R"(]}],"meshes":[{"primitives":[{"attributes":{"POSITION":)" + positions +
@@ -184,7 +187,10 @@ TEST(GltfBudget, CopiesAreCharged) {
   const std::string positions = store.vec3(mesh.positions), faces = store.corners(mesh);
   const std::string primitive = R"({"attributes":{"POSITION":)" + positions + R"(},"indices":)" + faces + "}";
   std::string nodes = R"({"mesh":0})", primitives = primitive;
-  for (int i = 1; i < 1000; ++i) nodes += R"(,{"mesh":0})", primitives += "," + primitive;
+  for (int i = 1; i < 1000; ++i) {
+    nodes += R"(,{"mesh":0})";
+    primitives += "," + primitive;
+  }
   EXPECT_THAT(fault_of("a.glb", store.glb(R"("nodes":[)" + nodes + R"(],"meshes":[{"primitives":[)" +
                                           primitives + "]}]")),
               AllOf(HasSubstr("the scene"), Not(HasSubstr("not enough memory"))));

@@ -55,7 +55,10 @@ struct GltfStore {
     std::string indices;
     std::vector<Vec3> values;
     for (std::uint32_t r = 0; r < points.size(); ++r)
-      if (points[r] != Vec3{}) put(indices, r), values.push_back(points[r]);
+      if (points[r] != Vec3{}) {
+        put(indices, r);
+        values.push_back(points[r]);
+      }
     std::string bytes;
     for (const float x : coordinates(values)) put(bytes, x);
     const std::string places = view(indices);

@@ -97,8 +97,10 @@ std::string jpeg(J_COLOR_SPACE space, int components, const JpegOptions& options
   unsigned char* bytes = nullptr;
   unsigned long size = 0;
   jpeg_mem_dest(&writer, &bytes, &size);
-  writer.image_width = kWidth, writer.image_height = kHeight;
-  writer.input_components = components, writer.in_color_space = space;
+  writer.image_width = kWidth;
+  writer.image_height = kHeight;
+  writer.input_components = components;
+  writer.in_color_space = space;
   jpeg_set_defaults(&writer);
   jpeg_set_quality(&writer, 100, TRUE);
   for (int c = 0; c < components; ++c)
@@ -256,7 +258,8 @@ std::string png_of_size(std::uint32_t width, std::uint32_t height) {
     put(bytes, value, std::endian::big);
     file.replace(at, 4, bytes);
   };
-  set(16, width), set(20, height);
+  set(16, width);
+  set(20, height);
   std::string checked = file.substr(12, 17), crc;
   put(crc, static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(checked.data()), 17)),
       std::endian::big);
@@ -266,7 +269,8 @@ std::string png_of_size(std::uint32_t width, std::uint32_t height) {
 /// The same of a JPEG, whose frame header is a marker, its length, the bits, then height and width.
 std::string jpeg_of_size(std::uint16_t width, std::uint16_t height) {
   std::string file = jpeg(JCS_RGB, 3), size;
-  put(size, height, std::endian::big), put(size, width, std::endian::big);
+  put(size, height, std::endian::big);
+  put(size, width, std::endian::big);
   return file.replace(file.find("\xff\xc0") + 5, 4, size);
 }
 

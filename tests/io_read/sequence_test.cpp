@@ -120,8 +120,15 @@ TEST(Sequence, PatternsMatchPrintfNames) {
   const Mesh mesh = tetrahedron();
   const std::string folder = fresh("printf");
   const auto add = [&](const std::string& name) { write("printf/" + name, obj(mesh)); };
-  add("a08.obj"), add("a09.obj"), add("a10.obj"), add("a7.obj"), add("a100.obj"), add("b1.obj"),
-      add("c99.obj"), add("c100.obj"), add("c0101.obj");
+  add("a08.obj");
+  add("a09.obj");
+  add("a10.obj");
+  add("a7.obj");
+  add("a100.obj");
+  add("b1.obj");
+  add("c99.obj");
+  add("c100.obj");
+  add("c0101.obj");
   EXPECT_EQ(MeshSequence(folder + "c%02d.obj").frame_count(), 2u);
   expect_refused(folder + "a%02d.obj", {"from 8 to 100, only 4 have a file"});
   EXPECT_EQ(MeshSequence(folder + "b%d.obj").frame_count(), 1u);

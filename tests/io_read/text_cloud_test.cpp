@@ -332,7 +332,9 @@ TEST(TextCloud, WholeNumbersOfPcd) {
       EXPECT_EQ(points_of(binary), expected) << type << size;
     }
   std::string big = "VERSION .7\nFIELDS x y z\nSIZE 8 2 1\nTYPE U U U\nWIDTH 1\nHEIGHT 1\nDATA binary\n";
-  put(big, std::uint64_t{1} << 63), put(big, std::uint16_t{65535}), put(big, std::uint8_t{255});
+  put(big, std::uint64_t{1} << 63);
+  put(big, std::uint16_t{65535});
+  put(big, std::uint8_t{255});
   EXPECT_EQ(points_of(big), (Points{{0x1p63, 65535, 255}}));
 }
 

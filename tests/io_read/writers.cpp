@@ -198,7 +198,10 @@ std::string gltf_json(const Mesh& mesh, const std::string& nodes, const std::str
   };
   Box box;
   for (const Vec3& p : mesh.positions)
-    for (int k = 0; k < 3; ++k) box.lo[k] = std::min(box.lo[k], p[k]), box.hi[k] = std::max(box.hi[k], p[k]);
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = std::min(box.lo[k], p[k]);
+      box.hi[k] = std::max(box.hi[k], p[k]);
+    }
   const auto list = [](const Vec3& p) {
     return '[' + text(p[0]) + ',' + text(p[1]) + ',' + text(p[2]) + ']';
   };

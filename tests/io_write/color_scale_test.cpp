@@ -23,13 +23,15 @@ DistanceStatistics statistics_of(std::vector<float> distances) {
   DistanceStatistics result{.texels = distances.size()};
   if (distances.empty()) return result;
   const auto [least, most] = std::ranges::minmax(distances);
-  result.min = least, result.max = most;
+  result.min = least;
+  result.max = most;
   std::ranges::sort(distances);
   const auto percentile = [&](double share) {
     const double rank = std::ceil(share * static_cast<double>(distances.size()));
     return distances[static_cast<std::size_t>(rank) - 1];
   };
-  result.p05 = percentile(0.05), result.p95 = percentile(0.95);
+  result.p05 = percentile(0.05);
+  result.p95 = percentile(0.95);
   for (float& d : distances) d = std::abs(d);
   std::ranges::sort(distances);
   result.p99_abs = percentile(0.99);

@@ -146,8 +146,10 @@ TEST(Glb, NormalsAreSmoothOnSmoothSurfaces) {
   const auto [normals, positions] = normals_of(sphere(4));
   for (std::size_t i = 0; i < normals.size(); ++i) {
     double cosine = 0, length = 0;
-    for (int k = 0; k < 3; ++k)
-      cosine += double{normals[i][k]} * positions[i][k], length += double{positions[i][k]} * positions[i][k];
+    for (int k = 0; k < 3; ++k) {
+      cosine += double{normals[i][k]} * positions[i][k];
+      length += double{positions[i][k]} * positions[i][k];
+    }
     EXPECT_GT(cosine / std::sqrt(length), 0.99) << i;
   }
 }

@@ -82,7 +82,8 @@ TEST(Legend, NamesTheOnlyLimit) {
   EXPECT_THAT(of_least.notes, ::testing::Not(::testing::Contains("unsigned")));
   EXPECT_THAT(legend_text({}, 0, 1, scale_of({-0.4, 0.4}), "").notes,
               ::testing::IsSupersetOf({"green: within 0.4", "darker: nearer a limit", "unsigned"}));
-  map.measured.kind = DistanceKind::closest, map.sign.method = SignMethod::exact;
+  map.measured.kind = DistanceKind::closest;
+  map.sign.method = SignMethod::exact;
   EXPECT_THAT(legend_text(map, -1, 1, scale_of({-0.4, 0.4}), "").notes,
               ::testing::Contains("green: within \u00b10.4"));
   for (const ColorScale* scale : {&least, &most}) {

@@ -66,7 +66,10 @@ TEST(WriteMesh, RoundsToSinglePrecisionWhereTheFormatDoes) {
 TEST(WriteMesh, RefusesOtherExtensionsAndFolders) {
   const TemporaryFolder folder;
   for (const char* name : {"mesh.xyz", "mesh", "mesh.gltf"})
-    EXPECT_THAT(error_of([&] { return write_mesh(folder / name, cube()), 0; }),
+    EXPECT_THAT(error_of([&] {
+                  write_mesh(folder / name, cube());
+                  return 0;
+                }),
                 ::testing::HasSubstr(".ply, .obj, .stl or .glb"));
   EXPECT_TRUE(folder.empty());
   EXPECT_THROW(write_mesh(folder.path() / "no" / "mesh.obj", cube()), Error);

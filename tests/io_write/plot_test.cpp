@@ -54,7 +54,8 @@ TEST(Plot, DrawsCurvesInPanels) {
 TEST(Plot, LeavesGaps) {
   const TemporaryFolder folder;
   std::vector<double> values(101, 1.0);
-  values[0] = 0, values[100] = 2;
+  values[0] = 0;
+  values[100] = 2;
   for (std::size_t i = 40; i <= 60; ++i) values[i] = i == 50 ? 1 : kNaN;
   const std::vector<PlotPanel> panels{{"gap", {{"", values}}}};
   write_plot_png(folder / "plot.png", "frame", numbers(101), panels);

@@ -32,7 +32,8 @@ Mesh terrain(int n, const Height& height, double from = -1, double to = 1) {
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       const auto a = static_cast<std::uint32_t>(j * (n + 1) + i), b = a + 1, c = a + n + 2, d = a + n + 1;
-      mesh.triangles.push_back({a, b, c}), mesh.triangles.push_back({a, c, d});
+      mesh.triangles.push_back({a, b, c});
+      mesh.triangles.push_back({a, c, d});
     }
   return mesh;
 }

@@ -133,7 +133,8 @@ TEST_F(ChannelsOfMap, CoverTexelsThatHaveTheirOwnValues) {
 }
 
 TEST_F(ChannelsOfMap, NameWhatTheyNeed) {
-  source.sites = nullptr, source.boundary = {};
+  source.sites = nullptr;
+  source.boundary = {};
   const std::uint32_t texels[] = {surface.sample_texels()[0]};
   for (const char* name : {"closest_face", "closest_uv", "boundary"})
     EXPECT_THROW(static_cast<void>(read<float>(name, texels)), Error) << name;

@@ -37,7 +37,8 @@ void expect_sums(const Mesh& o2, const CoverageMap& map) {
   for (std::uint32_t f = 0; f < o2.triangles.size(); ++f) {
     const double whole = area(corners_of_face(o2, f));
     if (!(whole > 0)) continue;
-    all += whole, share += whole * map.of_face[f];
+    all += whole;
+    share += whole * map.of_face[f];
     if (pieces[f] > 0) {
       EXPECT_NEAR(pieces[f], whole, 1e-12 * whole);
       EXPECT_NEAR(map.of_face[f], covered[f] / whole, 1e-6);

@@ -59,7 +59,8 @@ TEST(Places, AreRegionsAcrossTheChartsOfAnyAtlas) {
       EXPECT_NEAR(place.area, area_of(cap), 0.06 * area_of(cap));
       EXPECT_NEAR(place.fraction, area_of(cap) / (4 * std::numbers::pi), 0.001);
       EXPECT_GT(dot(normalized(place.point), normalized(cap.centre)), std::cos(cap.angle) - 0.02);
-      fractions += place.fraction, area += place.area;
+      fractions += place.fraction;
+      area += place.area;
     }
     EXPECT_NEAR(places.large.fraction, fractions, 1e-12);
     EXPECT_NEAR(places.large.area, area, 1e-12);
@@ -89,8 +90,10 @@ TEST(Places, SingleVerticesAreSmallAndCounted) {
     if (std::ranges::all_of(kCaps, [&](const Cap& cap) {
           return dot(normalized(surface.mesh().positions[v]), normalized(cap.centre)) <
                  std::cos(cap.angle + 0.1);
-        }))
-      vertices[v] = 50, ++spikes;
+        })) {
+      vertices[v] = 50;
+      ++spikes;
+    }
   ASSERT_GT(spikes, 20u);
   const Places places = find_places(surface, map_of(surface, field), vertices, {.tolerance = Tolerance(0.5)});
   EXPECT_EQ(places.large.count, 3u);

@@ -42,12 +42,18 @@ Naive naive(const Surface& surface, const DistanceMap& map) {
     const double weight = areas[surface.map_faces()[texel]];
     result.values.emplace_back(d, weight);
     result.magnitudes.emplace_back(std::abs(d), weight);
-    result.area += weight, result.mean += weight * d, result.rms += weight * d * d;
-    result.mean_abs += weight * std::abs(d), result.negative_area += d < 0 ? weight : 0;
-    result.min = std::min(result.min, d), result.max = std::max(result.max, d);
-    ++result.texels, result.negative += d < 0;
+    result.area += weight;
+    result.mean += weight * d;
+    result.rms += weight * d * d;
+    result.mean_abs += weight * std::abs(d);
+    result.negative_area += d < 0 ? weight : 0;
+    result.min = std::min(result.min, d);
+    result.max = std::max(result.max, d);
+    ++result.texels;
+    result.negative += d < 0;
   }
-  result.mean /= result.area, result.rms = std::sqrt(result.rms / result.area);
+  result.mean /= result.area;
+  result.rms = std::sqrt(result.rms / result.area);
   result.mean_abs /= result.area;
   std::ranges::sort(result.values);
   std::ranges::sort(result.magnitudes);
@@ -199,7 +205,8 @@ TEST(PartStatistics, AreThoseOfAMapOfThePartAlone) {
         continue;
       }
       const double weight = areas[face], d = map.distance[texel];
-      part_area += weight, within += d >= -0.5 && d <= 4 ? weight : 0;
+      part_area += weight;
+      within += d >= -0.5 && d <= 4 ? weight : 0;
     }
     expect_as_naive(parts[p].distance, naive(surface, alone));
     EXPECT_EQ(parts[p].faces, p == 0 ? 288u : 128u);

@@ -29,7 +29,9 @@ TEST(Temporal, ComputesMinimumMeanAndMaximum) {
     double least = 1e300, largest = -1e300, sum = 0;
     for (const DistanceMap& map : all) {
       const double d = map.distance[texel];
-      least = std::fmin(least, d), largest = std::fmax(largest, d), sum += d;
+      least = std::fmin(least, d);
+      largest = std::fmax(largest, d);
+      sum += d;
     }
     if (surface.map_faces()[texel] == kNone) {
       ASSERT_TRUE(std::isnan(maps.least()[texel]) && std::isnan(maps.largest()[texel]) &&

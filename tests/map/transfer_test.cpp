@@ -146,10 +146,13 @@ TEST(TransferAtEdges, TakesTheFaceThatFacesTheSample) {
 TEST_F(Transfer, FillsAllTexelsOfNoFaceAndNoOther) {
   const auto bare = moved({positions, 3}), filled = moved({positions, 3}, /*fill=*/true);
   std::array<float, 3> least, most;
-  least.fill(INFINITY), most.fill(-INFINITY);
+  least.fill(INFINITY);
+  most.fill(-INFINITY);
   for (std::size_t i = 0; i < bare.size(); ++i)
-    if (!std::isnan(bare[i]))
-      least[i % 3] = std::min(least[i % 3], bare[i]), most[i % 3] = std::max(most[i % 3], bare[i]);
+    if (!std::isnan(bare[i])) {
+      least[i % 3] = std::min(least[i % 3], bare[i]);
+      most[i % 3] = std::max(most[i % 3], bare[i]);
+    }
   const std::uint32_t n = map.resolution;
   for (std::uint32_t y = 0; y < map.rows(); ++y)
     for (std::uint32_t x = 0; x < n; ++x) {

@@ -76,11 +76,14 @@ struct Exact {
       const double of_face = 0.5 * norm(cross(b - a, c - a));
       const std::array z{a[2], b[2], c[2]};
       const double sum = z[0] + z[1] + z[2];
-      area += of_face, mean += of_face * sum / 3;
+      area += of_face;
+      mean += of_face * sum / 3;
       rms += of_face * (z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + sum * sum) / 12;
       beyond += of_face * (share_above(z, limit) + 1 - share_above(z, -limit));
     }
-    mean /= area, rms = std::sqrt(rms / area), beyond /= area;
+    mean /= area;
+    rms = std::sqrt(rms / area);
+    beyond /= area;
   }
 };
 
@@ -190,7 +193,8 @@ TEST_F(OwnPoints, HaveTheDistancesOfQueriesThere) {
   std::vector<Vec3> points, normals;
   for_each([&](std::uint32_t i, const Vec3& p) {
     const auto [a, b, c] = corners_of(mesh_, surface_.map_faces()[i]);
-    points.push_back(p), normals.push_back(normalized(cross(b - a, c - a)));
+    points.push_back(p);
+    normals.push_back(normalized(cross(b - a, c - a)));
   });
   const std::size_t first = surface_.texel_faces().size();
   const DistanceMap map = compute_map(surface_, sites_);

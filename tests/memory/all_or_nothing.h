@@ -41,9 +41,16 @@ class Numbers {
   template <class Number>
   requires std::is_arithmetic_v<Number> || std::is_enum_v<Number>
   void add(Number number) { numbers_.push_back(static_cast<double>(number)); }
-  void add(const Mesh& mesh) { add(mesh.positions), add(mesh.triangles), add(mesh.corner_uvs); }
+  void add(const Mesh& mesh) {
+    add(mesh.positions);
+    add(mesh.triangles);
+    add(mesh.corner_uvs);
+  }
   template <class Range>
-  requires requires(const Range& range) { range.begin(), range.end(); }
+  requires requires(const Range& range) {
+    range.begin();
+    range.end();
+  }
   void add(const Range& range) {
     add(std::size(range));
     for (const auto& item : range) add(item);

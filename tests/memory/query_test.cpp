@@ -125,7 +125,8 @@ std::unique_ptr<MultiBodyQuery> bodies() {
 }
 std::unique_ptr<MultiBodyQuery> bodies_with_answers() {
   auto query = bodies();
-  (void)query->separations(4), (void)query->penetration_depths();
+  (void)query->separations(4);
+  (void)query->penetration_depths();
   (void)query->contacts();
   (void)query->separating_contacts();
   return query;

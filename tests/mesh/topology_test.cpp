@@ -177,7 +177,10 @@ TEST(Orient, RestoresFlippedFaces) {
   std::mt19937 random(5);
   std::vector<std::uint8_t> turned(mesh.triangles.size(), 0);
   for (std::size_t f = 1; f < turned.size(); ++f)
-    if (random() % 2) turned[f] = 1, std::swap(mesh.triangles[f][1], mesh.triangles[f][2]);
+    if (random() % 2) {
+      turned[f] = 1;
+      std::swap(mesh.triangles[f][1], mesh.triangles[f][2]);
+    }
   const mesh::Orientation orientation =
       orient(mesh.triangles, mesh::build_topology(mesh.positions.size(), mesh.triangles));
   EXPECT_TRUE(orientation.orientable);

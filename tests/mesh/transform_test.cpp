@@ -53,7 +53,8 @@ TEST(Transform, ProductsApplyTheRightFactorFirst) {
 TEST(Transform, InversesLeadBack) {
   const Transform pose = Transform::translation({3, -2, 1}) * Transform::rotation({20, -70, 130});
   Transform skewed = pose * Transform::scaling(0.01);
-  skewed.rows[0][1] += 0.5, skewed.rows[2][0] = -skewed.rows[2][0];
+  skewed.rows[0][1] += 0.5;
+  skewed.rows[2][0] = -skewed.rows[2][0];
   for (const Transform& map : {Transform(), pose, skewed, Transform::scaling(-4)})
     for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{1, 2, 3}, Vec3{-7, 0.5, 2}})
       for (const Vec3& back : {map.inverse()(map(p)), map(map.inverse()(p))})

@@ -77,8 +77,10 @@ Expected expected_of(const std::vector<Transform>& poses, const Compounds& bodie
       ProximityQuery pair(bodies[a][i].shape, bodies[b][j].shape, {.contact_margin = kCompoundMargin});
       pair.set_pose(0, pose_of(a, i));
       pair.set_pose(1, pose_of(b, j));
-      if (pair.separation().value < expected.separation.value)
-        expected.separation = pair.separation(), expected.nearest = {i, j};
+      if (pair.separation().value < expected.separation.value) {
+        expected.separation = pair.separation();
+        expected.nearest = {i, j};
+      }
       if (const std::span<const Contact> contacts = pair.contacts(); !contacts.empty())
         expected.contacts[{i, j}].assign(contacts.begin(), contacts.end());
       if (!pair.colliding()) continue;
@@ -87,8 +89,12 @@ Expected expected_of(const std::vector<Transform>& poses, const Compounds& bodie
       if (!depth) continue;
       BoundedLength most = expected.depth.value_or(*depth);
       const double lower = std::max(most.lower, depth->lower), upper = std::max(most.upper, depth->upper);
-      if (!expected.depth || depth->value > most.value) most = *depth, expected.deepest = {i, j};
-      most.lower = lower, most.upper = upper;
+      if (!expected.depth || depth->value > most.value) {
+        most = *depth;
+        expected.deepest = {i, j};
+      }
+      most.lower = lower;
+      most.upper = upper;
       expected.depth = most;
     }
   return expected;
@@ -155,7 +161,8 @@ TEST(CompoundBodies, AnswerAsTheirParts) {
           EXPECT_EQ(depth->parts, expected.deepest);
         }
         expect_contacts(world.contacts(), a, b, expected.contacts);
-        collisions += expected.colliding, apart += !expected.colliding;
+        collisions += expected.colliding;
+        apart += !expected.colliding;
       }
   }
   EXPECT_GT(collisions, 20u);
@@ -170,7 +177,8 @@ TEST(CompoundBodies, OfOneShapeAreThatShape) {
   for (int round = 0; round < 20; ++round) {
     for (std::size_t b = 0; b < 3; ++b) {
       const Transform pose = random.pose(0.8);
-      plain.set_pose(b, pose), world.set_pose(b, pose);
+      plain.set_pose(b, pose);
+      world.set_pose(b, pose);
       EXPECT_EQ(plain.pose(b).rows, world.pose(b).rows);
     }
     const auto expected = plain.separations(), found = world.separations();
@@ -191,7 +199,8 @@ TEST(CompoundBodies, ArePairsAsTheirFiltersSay) {
   world.exclude_pair(1, 0);
   ASSERT_EQ(world.colliding().size(), 2u);
   EXPECT_EQ(world.colliding()[0].second, 2u);
-  world.set_filter(2, {.fixed = true}), world.set_filter(1, {.fixed = true});
+  world.set_filter(2, {.fixed = true});
+  world.set_filter(1, {.fixed = true});
   ASSERT_EQ(world.colliding().size(), 1u);
   world.include_pair(0, 1);
   EXPECT_EQ(world.colliding().size(), 2u);

@@ -89,14 +89,18 @@ Mesh fine_cube(std::uint32_t n) {
         for (std::uint32_t j = 0; j < n; ++j) {
           const auto corner = [&](std::uint32_t di, std::uint32_t dj) {
             std::array<std::uint32_t, 3> at;
-            at[k] = side, at[(k + 1) % 3] = i + di, at[(k + 2) % 3] = j + dj;
+            at[k] = side;
+            at[(k + 1) % 3] = i + di;
+            at[(k + 2) % 3] = j + dj;
             return vertex(at);
           };
           const std::uint32_t a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
           if (side == n) {
-            mesh.triangles.push_back({a, b, c}), mesh.triangles.push_back({a, c, d});
+            mesh.triangles.push_back({a, b, c});
+            mesh.triangles.push_back({a, c, d});
           } else {
-            mesh.triangles.push_back({a, c, b}), mesh.triangles.push_back({a, d, c});
+            mesh.triangles.push_back({a, c, b});
+            mesh.triangles.push_back({a, d, c});
           }
         }
   return mesh;
@@ -210,7 +214,11 @@ class Poses {
     double least = 1e9, by = 0;
     for (int k = 0; k < 3; ++k)
       for (const double d : {of_a.lo[k] - of_b.hi[k], of_a.hi[k] - of_b.lo[k]})
-        if (std::abs(d) < least) least = std::abs(d), by = d, axis = k;
+        if (std::abs(d) < least) {
+          least = std::abs(d);
+          by = d;
+          axis = k;
+        }
     Vec3 away{};
     away[axis] = (by < 0 ? -1 : 1) * (least + 0.1);
     b = moved(b, away);
@@ -279,7 +287,8 @@ std::string fault(const Contact& c, const Pose& pose, double upper, double round
     double sum = 0;
     for (int i = 0; i < 3; ++i) {
       if (!(c.on[k].barycentric[i] > -1e-6)) return "barycentric";
-      sum += c.on[k].barycentric[i], at = at + c.on[k].barycentric[i] * mesh.positions[t[i]];
+      sum += c.on[k].barycentric[i];
+      at = at + c.on[k].barycentric[i] * mesh.positions[t[i]];
     }
     if (std::abs(sum - 1) > 1e-9 || norm(at - points[k]) > rounding) return "point off its face";
   }

@@ -249,7 +249,8 @@ TEST(ConvexPair, AnswersOfTiesDoNotDependOnHints) {
                     -67.749430234109084};
   ProximityQuery convex(mesh, mesh), by_trees(mesh, mesh);
   by_trees.refit(mesh.positions, mesh.positions);  // whose faces are no longer known to be convex
-  convex.set_pose(1, tilted), by_trees.set_pose(1, tilted);
+  convex.set_pose(1, tilted);
+  by_trees.set_pose(1, tilted);
   EXPECT_EQ(convex.separation().value, by_trees.separation().value);
   EXPECT_EQ(*convex.separation().witness, *by_trees.separation().witness);
 }

@@ -139,7 +139,8 @@ TEST(ConvexPatch, IsReversedWithTheBodies) {
     const Transform pose = Transform::translation({at(random), at(random), at(random)}) *
                            tilted(300 * at(random), {at(random), at(random), at(random)});
     ProximityQuery query(a, b), exchanged(b, a);
-    query.set_pose(0, pose), exchanged.set_pose(1, pose);
+    query.set_pose(0, pose);
+    exchanged.set_pose(1, pose);
     ASSERT_TRUE(query.colliding());
     EXPECT_NEAR(query.separating_translation().value, exchanged.separating_translation().value, 1e-9);
     // Of two directions that are as short, either may be the first.

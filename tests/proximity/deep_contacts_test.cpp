@@ -61,7 +61,10 @@ bool overlap(const std::vector<const Convex*>& of) {
         if (std::abs(volume) < 1e-9) continue;
         const Vec3 p = (1 / volume) * (all[i].height * across + all[j].height * cross(all[k].n, all[i].n) +
                                        all[k].height * cross(all[i].n, all[j].n));
-        if (contains(all, p, 1e-9)) sum += p, ++corners;
+        if (contains(all, p, 1e-9)) {
+          sum += p;
+          ++corners;
+        }
       }
   return corners > 0 && contains(all, (1.0 / corners) * sum, -1e-9);
 }
@@ -79,7 +82,10 @@ class Regions {
       again = false;
       for (Cell& x : cells_)
         for (Cell& y : cells_)
-          if (x.region < y.region && overlap({x.a, x.b, y.a, y.b})) y.region = x.region, again = true;
+          if (x.region < y.region && overlap({x.a, x.b, y.a, y.b})) {
+            y.region = x.region;
+            again = true;
+          }
     }
   }
   /// The region that a point is in or next to, or −1.
@@ -126,7 +132,8 @@ class Jacks {
       case 0:  // three bars that cross
         for (int k = 0; k < 3; ++k) {
           Box bar{{-w, -w, -w}, {w, w, w}};
-          bar.lo[k] = -1, bar.hi[k] = 1;
+          bar.lo[k] = -1;
+          bar.hi[k] = 1;
           result.push_back(bar);
         }
         return result;

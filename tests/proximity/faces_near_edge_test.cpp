@@ -83,7 +83,8 @@ TEST_F(FacesNearEdgeTest, ContainAllWithinReach) {
         EXPECT_TRUE(candidates.contains(face))
             << face << " of " << mesh.triangles.size() << ", trial " << trial;
       }
-      found += candidates.size(), all += mesh.triangles.size();
+      found += candidates.size();
+      all += mesh.triangles.size();
     }
   }
   EXPECT_GT(near, 1000u);
@@ -124,7 +125,8 @@ TEST_F(FacesNearEdgeTest, ContainAllThatSupportIt) {
         EXPECT_TRUE(candidates.contains(face))
             << face << " of " << mesh.triangles.size() << ", trial " << trial;
       }
-      found += candidates.size(), all += mesh.triangles.size();
+      found += candidates.size();
+      all += mesh.triangles.size();
     }
   }
   EXPECT_GT(supporting, 1000u);

@@ -88,7 +88,8 @@ Slide slide(MultiBodyQuery& world, double depth) {
         for (const Contact& c : pair.contacts) {
           ++result.contacts;
           result.slanted += std::abs(c.normal[2]) < kVertical;  // a floor without an inside has two sides
-          least = std::min(least, c.point1[0] - at[0]), most = std::max(most, c.point1[0] - at[0]);
+          least = std::min(least, c.point1[0] - at[0]);
+          most = std::max(most, c.point1[0] - at[0]);
         }
       ++result.poses;
       result.supported += least < -0.3 && most > 0.3;
@@ -124,7 +125,10 @@ TEST(InternalEdges, KeepTheCornersOfStairs) {
   world.set_pose(0, Transform::translation({0.705, 1.5, -0.005}));  // on the first, against the second
   bool up = false, back = false;
   for (const PairContacts& pair : world.contacts())
-    for (const Contact& c : pair.contacts) up |= c.normal[2] > 0.999, back |= c.normal[0] < -0.999;
+    for (const Contact& c : pair.contacts) {
+      up |= c.normal[2] > 0.999;
+      back |= c.normal[0] < -0.999;
+    }
   EXPECT_TRUE(up);
   EXPECT_TRUE(back);
 }
@@ -143,7 +147,8 @@ TEST(InternalEdges, LeaveConvexBodiesAsTheyAre) {
       const Transform pose =
           Transform::translation({place(random), place(random), place(random)}) *
           Transform::quaternion({normal(random), normal(random), normal(random), normal(random)});
-      plain.set_pose(b, pose), world.set_pose(b, pose);
+      plain.set_pose(b, pose);
+      world.set_pose(b, pose);
     }
     const auto expected = plain.contacts(), found = world.contacts();
     ASSERT_EQ(found.size(), expected.size());
@@ -180,7 +185,9 @@ TEST(InternalEdges, AreThoseOfAWorldInAQueryOfTwo) {
   for (int step = 0; step <= 20; ++step) {
     const Transform pose =
         Transform::translation({2 + step / 7.0, 4.3, -0.03}) * Transform::rotation({0, 0, 17});
-    plain.set_pose(0, pose), pair.set_pose(0, pose), world.set_pose(0, pose);
+    plain.set_pose(0, pose);
+    pair.set_pose(0, pose);
+    world.set_pose(0, pose);
     const std::span<const Contact> found = pair.contacts();
     ASSERT_EQ(world.contacts().size(), 1u);
     const std::span<const Contact> expected = world.contacts()[0].contacts;

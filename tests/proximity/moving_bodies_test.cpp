@@ -70,7 +70,8 @@ TEST(MovingBodies, AreThoseOfEveryPair) {
   for (const unsigned seed : {1u, 2u}) {
     const MovingWorld world(40, 14, 4, seed);
     MultiBodyQuery query(world.shapes);
-    query.set_filter(3, {.fixed = true}), query.set_filter(4, {.fixed = true});
+    query.set_filter(3, {.fixed = true});
+    query.set_filter(4, {.fixed = true});
     for (std::size_t b = 5; b < 10; ++b) query.set_filter(b, {.groups = 2});
     for (std::size_t b = 10; b < 15; ++b) query.set_filter(b, {.mask = 1});
     query.exclude_pair(20, 19);
@@ -90,7 +91,8 @@ TEST(MovingBodies, AreThoseOfEveryPair) {
         ASSERT_EQ(by_pair.contains({a, b}), meets && single.contact) << a << " " << b;
         if (!meets || !single.contact) continue;
         expect_same(by_pair[{a, b}], single);
-        ++contacts, at_first += single.time == 0;
+        ++contacts;
+        at_first += single.time == 0;
       }
     EXPECT_GT(contacts, 20u);
     EXPECT_GT(at_first, 0u);

@@ -72,7 +72,8 @@ WorldAnswers answers_of_pairs(Call call, const std::vector<Shape>& shapes,
     for (std::uint32_t b = a + 1; b < shapes.size(); ++b) {
       if (!meets(a, b)) continue;
       ProximityQuery query(shapes[a], shapes[b], {.contact_margin = margin});
-      query.set_pose(0, poses[a]), query.set_pose(1, poses[b]);
+      query.set_pose(0, poses[a]);
+      query.set_pose(1, poses[b]);
       if (call == Call::colliding && query.colliding()) answers.add(a, b);
       if (call == Call::separations && (query.colliding() || query.separation().value <= max_distance)) {
         answers.add(a, b, query.colliding());
@@ -187,7 +188,8 @@ TEST_F(MovingWorlds, LeaveOutWhatTheFiltersExclude) {
     const auto a = static_cast<std::uint32_t>(random_() % 12),
                b = 12 + static_cast<std::uint32_t>(random_() % 12);
     if (change % 4 != 3) {
-      world.exclude_pair(b, a), world.exclude_pair(a, b);
+      world.exclude_pair(b, a);
+      world.exclude_pair(a, b);
       excluded.insert({a, b});
     } else {
       const Pair back = *excluded.begin();
@@ -229,7 +231,9 @@ TEST_F(MovingWorlds, CostNoMemoryForEachMotion) {
       const std::size_t body = static_cast<std::size_t>(frame) % 3;
       for (const double x : {0.5, 0.0}) {
         world.set_pose(body, Transform::translation({x, 0, 0}) * poses_[body]);
-        (void)world.separations(0.3), (void)world.colliding(), (void)world.contacts();
+        (void)world.separations(0.3);
+        (void)world.colliding();
+        (void)world.contacts();
         (void)world.penetration_depths();
       }
     }

@@ -53,7 +53,8 @@ TEST(Sweep, FindsTheNearPairs) {
           if (std::sqrt(squared) <= reach) expected.push_back({a, b});
         }
       EXPECT_THAT(sweep.near_pairs(boxes, reach), testing::ElementsAreArray(expected)) << n << ' ' << reach;
-      near += expected.size(), far += n * (n - 1) / 2 - expected.size();
+      near += expected.size();
+      far += n * (n - 1) / 2 - expected.size();
     }
   EXPECT_GT(near, 2000u);
   EXPECT_GT(far, 2000u);
@@ -281,7 +282,8 @@ TEST(MultiBodyQuery, RefitsForAnyThreadCount) {
   // All at once, or one after another.
   const Mesh away = moved(meshes[1], {0, 30, 0}), back = moved(meshes[7], {-36, -3, -2});
   std::vector<std::span<const Vec3>> positions(meshes.size());
-  positions[1] = away.positions, positions[7] = back.positions;
+  positions[1] = away.positions;
+  positions[7] = back.positions;
   bodies.refit(positions);
   MultiBodyQuery others(meshes);
   others.refit(7, back.positions);
@@ -311,7 +313,9 @@ TEST(MultiBodyQuery, AllocatesNothingAfterTheFirstFrames) {
     const std::size_t before = allocations();
     for (const auto& frame : frames) {
       for (std::size_t i = 0; i < meshes.size(); ++i) bodies.refit(i, frame[i]);
-      (void)bodies.separations(1), (void)bodies.penetration_depths(), (void)bodies.colliding();
+      (void)bodies.separations(1);
+      (void)bodies.penetration_depths();
+      (void)bodies.colliding();
     }
     return allocations() - before;
   };

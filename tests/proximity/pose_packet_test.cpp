@@ -54,8 +54,10 @@ std::vector<Solids> solids() {
 class PosePackets : public testing::Test {
  protected:
   void set(const Solids& solids, const Transform& rest) {
-    resting_ = std::make_unique<Sites>(solids.resting), moving_ = std::make_unique<Sites>(solids.moving);
-    convex_resting_ = recognise(internals(*resting_)), convex_moving_ = recognise(internals(*moving_));
+    resting_ = std::make_unique<Sites>(solids.resting);
+    moving_ = std::make_unique<Sites>(solids.moving);
+    convex_resting_ = recognise(internals(*resting_));
+    convex_moving_ = recognise(internals(*moving_));
     ASSERT_TRUE(convex_resting_ && convex_moving_);
     rest_ = mesh::Similarity::of(rest);
     decided_ = 0;

@@ -41,7 +41,8 @@ class ManyPoses : public testing::Test {
   }
   [[nodiscard]] ProximityQuery pair(const Transform& pose, std::size_t obstacle) const {
     ProximityQuery result(shape_, obstacles_[obstacle]);
-    result.set_pose(0, pose), result.set_pose(1, places_[obstacle]);
+    result.set_pose(0, pose);
+    result.set_pose(1, places_[obstacle]);
     return result;
   }
 };

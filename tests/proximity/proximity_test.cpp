@@ -137,7 +137,8 @@ TEST(Proximity, DepthIsAsPreciseAsAsked) {
     EXPECT_LE(depth.lower, depth.value);
     EXPECT_LE(depth.value, depth.upper);
     expect_witness(depth);
-    deepest = std::max(deepest, depth.lower), shallowest = std::min(shallowest, depth.upper);
+    deepest = std::max(deepest, depth.lower);
+    shallowest = std::min(shallowest, depth.upper);
     EXPECT_LE(deepest, shallowest);
   }
   EXPECT_LT(shallowest - deepest, 1e-4);
@@ -435,7 +436,9 @@ void expect_steady(const Mesh& a, const Mesh& b) {
     const std::size_t before = allocations();
     for (const std::vector<Vec3>& frame : frames) {
       query.refit(a.positions, frame);
-      (void)query.separation(), (void)query.colliding(), (void)query.penetration_depth();
+      (void)query.separation();
+      (void)query.colliding();
+      (void)query.penetration_depth();
       (void)query.contacts();
     }
     return allocations() - before;

@@ -206,7 +206,9 @@ TEST(RigidBodies, CostNoMemoryForEachPose) {
     const std::size_t before = allocations();
     for (const double x : {1.5, 1.9, 2.005, 7.0}) {
       query.set_pose(1, Transform::translation({x, 0.1, 0}));
-      (void)query.separation(), (void)query.colliding(), (void)query.penetration_depth();
+      (void)query.separation();
+      (void)query.colliding();
+      (void)query.penetration_depth();
       (void)query.contacts();
     }
     return allocations() - before;
@@ -464,7 +466,9 @@ TEST_F(SharedShapes, AllocateNothingAfterTheFirstFrames) {
       for (std::size_t b = 0; b < bodies.size(); ++b)
         bodies.set_pose(b,
                         Transform::translation({0.05 * frame, 0, 0.03 * static_cast<double>(b)}) * poses_[b]);
-      (void)bodies.separations(0.5), (void)bodies.penetration_depths(), (void)bodies.contacts();
+      (void)bodies.separations(0.5);
+      (void)bodies.penetration_depths();
+      (void)bodies.contacts();
     }
     return allocations() - before;
   };

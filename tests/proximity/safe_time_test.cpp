@@ -88,7 +88,8 @@ TEST(SafeTime, IsFreeOfContact) {
         };
         ASSERT_GT(-extent(o2, corners2, -u) - extent(o1, corners1, u), kReserve * (1 - 1e-9));
       }
-      proven += until > safe.now() && until < 1, forever += until == 1;
+      proven += until > safe.now() && until < 1;
+      forever += until == 1;
     };
     const auto& at1 = o1.shape.sites().mesh().positions;
     const auto& at2 = o2.shape.sites().mesh().positions;

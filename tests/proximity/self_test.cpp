@@ -290,7 +290,10 @@ Relation excluded_patches(const Mesh& mesh, const Exclusion& exclusion, double l
       for (const std::uint32_t f : exclusion.faces_of(from))
         for (const std::uint32_t v : mesh.triangles[f])
           for (const std::uint32_t q : at_vertex[v])
-            if (!reach[p][q] && near(p, q)) reach[p][q] = true, open.push_back(q);
+            if (!reach[p][q] && near(p, q)) {
+              reach[p][q] = true;
+              open.push_back(q);
+            }
     }
   }
   for (std::size_t p = 0; p < n; ++p)
@@ -353,7 +356,10 @@ void expect_everything_nearer_excluded(double length) {
   const std::size_t n = mesh.positions.size();
   const Sites sites(mesh);
   std::vector<std::set<std::uint32_t>> around(n);
-  for (const auto& [a, b] : sites.edges()) around[a].insert(b), around[b].insert(a);
+  for (const auto& [a, b] : sites.edges()) {
+    around[a].insert(b);
+    around[b].insert(a);
+  }
   std::vector<std::set<std::uint32_t>> faces(n);
   for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
     for (const std::uint32_t v : mesh.triangles[f]) faces[v].insert(f);
@@ -365,8 +371,10 @@ void expect_everything_nearer_excluded(double length) {
       better = false;
       for (std::uint32_t v = 0; v < n; ++v)
         for (const std::uint32_t w : around[v])
-          if (const double d = way[v] + norm(mesh.positions[w] - mesh.positions[v]); d < way[w])
-            way[w] = d, better = true;
+          if (const double d = way[v] + norm(mesh.positions[w] - mesh.positions[v]); d < way[w]) {
+            way[w] = d;
+            better = true;
+          }
     }
     for (std::uint32_t v = 0; v < n; ++v) {
       if (!(way[v] < length)) continue;
@@ -531,7 +539,8 @@ struct Pairs {
         const double most = std::max(nearest[f], nearest[g]);
         if (out[f][g] || squared_box_distance(a, b) > most * most) continue;
         const double d = oracle::distance(a, b);
-        nearest[f] = std::min(nearest[f], d), nearest[g] = std::min(nearest[g], d);
+        nearest[f] = std::min(nearest[f], d);
+        nearest[g] = std::min(nearest[g], d);
         least = std::min(least, d);
       }
   }
@@ -552,7 +561,8 @@ void expect_as_pairs(SelfProximityQuery& query, const Relation& out) {
   ASSERT_TRUE(separation->witness);
   const auto& [p, q] = *separation->witness;
   EXPECT_NEAR(norm(q - p), separation->value, tolerance);
-  expect_on(mesh, p), expect_on(mesh, q);
+  expect_on(mesh, p);
+  expect_on(mesh, q);
 
   const double margin = 1.3 * pairs.least + 0.01 * diagonal(bounds(mesh));
   const auto contacts = query.contacts(margin);
@@ -567,7 +577,8 @@ void expect_as_pairs(SelfProximityQuery& query, const Relation& out) {
     EXPECT_NEAR(norm(c.point2 - c.point1), -c.depth, tolerance);
     EXPECT_NEAR(norm(c.normal), 1, 1e-9);
     EXPECT_LE(norm(c.point2 - c.point1 - c.depth * c.normal), tolerance);
-    expect_on(mesh, c.point1), expect_on(mesh, c.point2);
+    expect_on(mesh, c.point1);
+    expect_on(mesh, c.point2);
     EXPECT_TRUE(c.patch == patch || c.patch == patch + 1);
     patch = c.patch;
   }
@@ -701,7 +712,8 @@ TEST(Self, FacesAroundAVertexOfManyExcludeEachOther) {
     fan.positions.push_back({std::cos(angle), std::sin(angle), 0});
     fan.triangles.push_back({0, i + 1, (i + 1) % kFaces + 1});
   }
-  fan.positions.push_back({2, 0, 0}), fan.positions.push_back({2, 1, 0});
+  fan.positions.push_back({2, 0, 0});
+  fan.positions.push_back({2, 1, 0});
   fan.triangles.push_back({1, kFaces + 1, kFaces + 2});  // beside the first and the last face
   const Exclusion exclusion(fan);
   for (std::uint32_t f = 0; f <= kFaces; ++f)

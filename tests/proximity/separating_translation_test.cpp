@@ -312,7 +312,9 @@ Mesh of_cells(const std::set<Cell>& cells, const Cell& at) {
         std::array<std::uint32_t, 4> corner;
         for (int i = 0; i < 4; ++i) {
           Cell p = cell;
-          p[k] += side, p[(k + 1) % 3] += i == 1 || i == 2, p[(k + 2) % 3] += i / 2;
+          p[k] += side;
+          p[(k + 1) % 3] += i == 1 || i == 2;
+          p[(k + 2) % 3] += i / 2;
           corner[side == 1 ? i : 3 - i] = vertex(p);
         }
         mesh.triangles.push_back({corner[0], corner[1], corner[2]});

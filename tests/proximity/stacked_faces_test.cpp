@@ -21,7 +21,8 @@ Mesh stack_of_squares(std::uint32_t count) {
     const double x = shift(random), y = shift(random);
     for (const Vec3& p : {Vec3{x, y, 0}, Vec3{x + 1, y, 0}, Vec3{x + 1, y + 1, 0}, Vec3{x, y + 1, 0}})
       mesh.positions.push_back(p);
-    mesh.triangles.push_back({k, k + 1, k + 2}), mesh.triangles.push_back({k, k + 2, k + 3});
+    mesh.triangles.push_back({k, k + 1, k + 2});
+    mesh.triangles.push_back({k, k + 2, k + 3});
   }
   return mesh;
 }

@@ -133,12 +133,18 @@ class Answers {
     for (const double x : {p[0], p[1], p[2]}) add(x);
   }
   void add(const BoundedLength& length) {
-    add(length.value), add(length.lower), add(length.upper);
+    add(length.value);
+    add(length.lower);
+    add(length.upper);
     if (length.witness)
       for (const Vec3& p : *length.witness) add(p);
   }
   void add(const Contact& contact) {
-    add(contact.point1), add(contact.point2), add(contact.normal), add(contact.depth), add(contact.patch);
+    add(contact.point1);
+    add(contact.point2);
+    add(contact.normal);
+    add(contact.depth);
+    add(contact.patch);
     bits_.push_back(contact.id);
     for (const SurfacePoint& on : contact.on) bits_.push_back(on.face);
   }
@@ -169,7 +175,9 @@ Answers answers(const Shape& a, const Shape& b, int poses = 12) {
     if (const auto& depth = query.penetration_depth()) found.add(*depth);
     for (const Contact& contact : query.contacts()) found.add(contact);
     const SeparatingTranslation& way = query.separating_translation();
-    found.add(way.value), found.add(way.lower), found.add(way.translation);
+    found.add(way.value);
+    found.add(way.lower);
+    found.add(way.translation);
     for (const Contact& contact : query.separating_contacts()) found.add(contact);
   }
   return found;

@@ -35,7 +35,8 @@ Mesh tube(std::uint32_t facets, double inner, double outer, double length) {
     return (side * (kLevels + 1) + level) * facets + i % facets;
   };
   const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-    mesh.triangles.push_back({a, b, c}), mesh.triangles.push_back({a, c, d});
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
   };
   for (std::uint32_t i = 0; i < facets; ++i) {
     for (std::uint32_t level = 0; level < kLevels; ++level) {
@@ -172,8 +173,10 @@ void expect_brute_force(const Mesh& mesh, double angle, std::uint32_t resolution
       if (!(speed > 1e-12)) continue;
       const double t = dot(mesh.positions[mesh.triangles[f][0]] - at, normals[f]) / speed;
       const Vec3 q = at + t * n;
-      if (t >= -1e-12 && t < ray && squared_distance(point_of(q), faces[f]) < 1e-24 * size * size)
-        ray = t, turn = speed;
+      if (t >= -1e-12 && t < ray && squared_distance(point_of(q), faces[f]) < 1e-24 * size * size) {
+        ray = t;
+        turn = speed;
+      }
     }
     const double grazing = -std::cos((std::min(angle, 90.0) + 0.1) * std::numbers::pi / 180);
     Real radius = turn > grazing ? ray / 2 : 4 * size;

@@ -204,7 +204,8 @@ TEST(TimeOfContact, OfBodiesThatSlideInParallel) {
       expect_free(above, slide, below, {});
       const Transform turned = Transform::quaternion({normal(random), normal(random), normal(random), 1});
       Mesh above2 = above, below2 = below;
-      transform(above2, turned), transform(below2, turned);
+      transform(above2, turned);
+      transform(below2, turned);
       expect_free(above, {turned * slide.from, turned * slide.to}, below, {turned, turned});
       expect_free(above2, straight(turned({-7, 0.3, 0}), turned({7, -0.4, 0})), below2, {});
       // It turns about the normal of the gap as it slides.
@@ -212,7 +213,8 @@ TEST(TimeOfContact, OfBodiesThatSlideInParallel) {
       Mesh grid1 = height_field(12), grid2 = height_field(20);
       for (Vec3& p : grid1.positions) p[2] = gap;
       for (Vec3& p : grid2.positions) p[2] = 0;
-      transform(grid1, turned), transform(grid2, turned);
+      transform(grid1, turned);
+      transform(grid2, turned);
       expect_free(grid1, straight(turned({-2, 0.3, 0}), turned({2, -0.4, 0})), grid2, {});
     }
 }
@@ -439,7 +441,8 @@ TEST(TimeOfContact, OfSoups) {
     expect_witness(found, shapes, motions, 1e-9);
     for (int step = 0; step < 400 && found.time > 0; ++step)
       ASSERT_GT(separation(found.time * step / 400), 0.5 * tolerance);
-    contacts += found.contact && found.time > 0, none += !found.contact;
+    contacts += found.contact && found.time > 0;
+    none += !found.contact;
   }
   EXPECT_GT(contacts, 30);
   EXPECT_GT(none, 30);

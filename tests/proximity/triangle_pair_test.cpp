@@ -33,7 +33,10 @@ Corners in_cube(std::mt19937& random, double side, const Vec3& middle) {
 
 double largest(const Corners& a, const Corners& b) {
   Box box;
-  for (int k = 0; k < 3; ++k) extend(box, a[k]), extend(box, b[k]);
+  for (int k = 0; k < 3; ++k) {
+    extend(box, a[k]);
+    extend(box, b[k]);
+  }
   return diagonal(box);
 }
 
@@ -196,7 +199,10 @@ TEST(TrianglePair, ExtremeCoordinates) {
   const Corners shape{{{1, 2, 3}, {4, 1, 2}, {2, 5, 1}}}, other{{{2, 2, 2.1}, {2, 3, 9}, {3, 2, 8}}};
   for (const double scale : {1e-60, 1e-30, 1e36}) {
     Corners a = shape, b = other;
-    for (int k = 0; k < 3; ++k) a[k] = scale * a[k], b[k] = scale * b[k];
+    for (int k = 0; k < 3; ++k) {
+      a[k] = scale * a[k];
+      b[k] = scale * b[k];
+    }
     SCOPED_TRACE(scale);
     EXPECT_EQ(triangles_intersect(a, b), triangles_intersect(shape, other));
     EXPECT_NEAR(std::sqrt(closest_points(a, b).squared) / scale,

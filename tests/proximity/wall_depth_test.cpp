@@ -32,8 +32,8 @@ Mesh grid_cube(double half_side, int n) {
         for (int j = 0; j <= n; ++j) {
           Vec3 p{};
           p[axis] = side * half_side;
-          p[(axis + 1) % 3] = half_side * (2.0 * i / n - 1),
-                         p[(axis + 2) % 3] = half_side * (2.0 * j / n - 1);
+          p[(axis + 1) % 3] = half_side * (2.0 * i / n - 1);
+          p[(axis + 2) % 3] = half_side * (2.0 * j / n - 1);
           mesh.positions.push_back(p);
         }
       const auto at = [&](int i, int j) { return first + static_cast<std::uint32_t>(i * (n + 1) + j); };
@@ -148,7 +148,8 @@ TEST(WallDepth, HoldsWhereWallsCross) {
       const BoundedLength depth = *query.penetration_depth();
       EXPECT_LE(depth.upper - depth.lower, precision + 2e-5);
       EXPECT_GE(depth.upper, deepest - 1e-6);
-      lower = std::max(lower, depth.lower), upper = std::min(upper, depth.upper);
+      lower = std::max(lower, depth.lower);
+      upper = std::min(upper, depth.upper);
       ASSERT_TRUE(depth.witness);
       EXPECT_NEAR(norm((*depth.witness)[1] - (*depth.witness)[0]), depth.value, 1e-6);
     }
@@ -312,12 +313,14 @@ TEST(WallColumns, AreComparedWithAllFacesInTheirBox) {
           double least = 1e30, most = -1e30;
           for (const std::uint32_t corner : mesh.triangles[face]) {
             const double at = dot(axes[a], mesh.positions[corner] - origin);
-            least = std::min(least, at), most = std::max(most, at);
+            least = std::min(least, at);
+            most = std::max(most, at);
           }
           overlaps &= least <= hi[a] && most >= lo[a];
         }
         EXPECT_LE(overlaps, meets[face] != 0);
-        in_box += overlaps, found += meets[face];
+        in_box += overlaps;
+        found += meets[face];
         ++faces;
       }
     }

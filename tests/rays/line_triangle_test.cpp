@@ -74,7 +74,8 @@ TEST(LineTriangle, TrianglesAtACornerHaveOneParameterThere) {
     origin[axis] += u(random);
     direction[axis] = u(random) > 0 ? 1 : -3;
     if (i % 4 == 0) {  // along a diagonal, of numbers with few digits
-      origin = {1, 2, 3}, direction = {1, -1, 2};
+      origin = {1, 2, 3};
+      direction = {1, -1, 2};
     }
     const Vec3 at = i % 4 == 0 ? origin + static_cast<double>(i % 16 + 1) * direction : corner;
     std::optional<double> first;

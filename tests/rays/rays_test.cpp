@@ -60,7 +60,10 @@ RayHit brute_force(const Mesh& mesh, std::span<const std::uint32_t> faces, const
     const auto hit = oracle::ray_in_triangle(ray.origin, ray.direction, c);
     if (!hit || hit->last < ray.t_min || hit->first > ray.t_max) continue;
     const double t = std::max(hit->first, ray.t_min);
-    if (t < best.t) best.t = t, best.face = f;
+    if (t < best.t) {
+      best.t = t;
+      best.face = f;
+    }
   }
   return best;
 }
@@ -117,7 +120,10 @@ std::vector<Ray> make_rays(const Mesh& mesh, std::size_t count, unsigned seed) {
   const auto direction = [&] { return Vec3{u(random), u(random), u(random)}; };
   Box box = bounds(mesh);
   const double size = diagonal(box);
-  for (int k = 0; k < 3; ++k) box.lo[k] -= 0.2 * size, box.hi[k] += 0.2 * size;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] -= 0.2 * size;
+    box.hi[k] += 0.2 * size;
+  }
   std::uniform_int_distribution<std::size_t> faces(0, mesh.triangles.size() - 1);
   std::vector<Ray> rays;
   while (rays.size() < count) {
@@ -185,8 +191,10 @@ TEST_P(Rays, AreThoseOfAllFaces) {
     for (const std::uint32_t f : faces)
       if (const auto hit = line_meets_triangle(ray.origin, ray.direction, corners_of(mesh, f));
           hit && hit->last >= ray.t_min && hit->first <= ray.t_max &&
-          std::max(hit->first, ray.t_min) < best.t)
-        best.t = std::max(hit->first, ray.t_min), best.face = f;
+          std::max(hit->first, ray.t_min) < best.t) {
+        best.t = std::max(hit->first, ray.t_min);
+        best.face = f;
+      }
     ASSERT_EQ(hits[i].face, best.face) << i;
     ASSERT_EQ(hits[i].t, best.t) << i;
   }
@@ -245,7 +253,10 @@ TEST(RaysAlone, OfThinFacesAfterARefit) {
   const std::vector<RayHit> hits = first_hits(sites, rays), fresh = first_hits(Sites(mesh), rays);
   for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(equal(hits[i], fresh[i])) << i;
   expect_hits(mesh, std::vector(rays.begin(), rays.begin() + 300));
-  for (Vec3& p : mesh.positions) p[0] = 0, p[1] *= 1e-9;  // slivers and faces without area
+  for (Vec3& p : mesh.positions) {
+    p[0] = 0;
+    p[1] *= 1e-9;
+  }  // slivers and faces without area
   mesh.positions[0] = {0, 1, 1};
   sites.refit(mesh.positions);
   expect_hits(mesh, make_rays(mesh, 300, 7));

@@ -206,7 +206,8 @@ Mesh thin_plate(std::uint32_t n) {
     for (std::uint32_t y = 0; y <= n; ++y)
       for (std::uint32_t x = 0; x <= n; ++x) mesh.positions.push_back({1.0 * x / n, 1.0 * y / n, z});
   const auto square = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-    mesh.triangles.push_back({a, b, c}), mesh.triangles.push_back({a, c, d});
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
   };
   for (std::uint32_t i = 0; i < n; ++i) {
     for (std::uint32_t j = 0; j < n; ++j) {
@@ -646,9 +647,11 @@ TEST(Align321, FaultsAreNamed) {
   bad[2] = {20, 0, 0};
   EXPECT_THAT(error_of([&] { return align_321(bad, good); }),
               HasSubstr("primary points of O1 are on a line"));
-  bad = good, bad[4] = {0, 0, 9};
+  bad = good;
+  bad[4] = {0, 0, 9};
   EXPECT_THAT(error_of([&] { return align_321(good, bad); }), HasSubstr("secondary points on O2"));
-  bad = good, bad[4][1] = std::numeric_limits<double>::quiet_NaN();
+  bad = good;
+  bad[4][1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(error_of([&] { return align_321(good, bad); }), HasSubstr("NaN"));
 }
 

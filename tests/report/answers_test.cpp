@@ -15,7 +15,8 @@ namespace {
 void name_halves(const std::string& file) {
   std::string text = contents(file);
   const std::size_t faces = text.find("\nf "), middle = text.find("\nf ", faces + (text.size() - faces) / 2);
-  text.insert(middle, "\ng sides"), text.insert(faces, "\ng ring");
+  text.insert(middle, "\ng sides");
+  text.insert(faces, "\ng ring");
   std::ofstream(file) << text;
 }
 

@@ -77,7 +77,8 @@ TEST_F(BakedPage, ShowsCoarserCopiesAndSamples) {
 
 // Of few triangles with a texture, the page has colours between their corners.
 TEST_F(BakedPage, DividesTrianglesWithATexture) {
-  high = folder / "high.obj", low = write_obj(folder / "flat.obj", square(2, 0));
+  high = folder / "high.obj";
+  low = write_obj(folder / "flat.obj", square(2, 0));
   std::ofstream(folder / "high.mtl") << "newmtl picture\nmap_Kd picture.png\n";
   Image image{.width = 64, .height = 64, .components = 3, .bits = 8, .bytes = {}};
   const auto wave = [](int at) { return static_cast<int>(128 + 100 * std::sin(at * std::numbers::pi / 32)); };

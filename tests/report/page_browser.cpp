@@ -65,7 +65,8 @@ void PageBrowser::end() {
   kill(process_, SIGKILL);  // if it has not ended; its browser ends with it
   waitpid(process_, nullptr, 0);
   close(socket_);
-  process_ = -1, socket_ = -1;
+  process_ = -1;
+  socket_ = -1;
 }
 
 std::optional<std::string> PageBrowser::answer_to(const std::string& line) {

@@ -81,7 +81,9 @@ TEST_F(Page, ShowsFurtherChannelsAsNumbers) {
   Channel row = channels()[0];
   row.name = "wall_thickness";
   Channel pair = row;
-  pair.name = "pair", pair.planes = {"pair.A", "pair.B"}, pair.type = ChannelType::uint32;
+  pair.name = "pair";
+  pair.planes = {"pair.A", "pair.B"};
+  pair.type = ChannelType::uint32;
   pair.is_length = false;
   EXPECT_EQ(io::array_name(pair, 1), "texel_pair_1");
   add_channels_of_zeros(page(), {io::described(row), io::described(pair)});
@@ -151,7 +153,8 @@ TEST_F(Page, StatesTheWorseVerdictOfPartAndGroups) {
 TEST_F(Page, DrawsTheCoverageOfTheReference) {
   Mesh half = square(2, 0.01);
   for (Vec3& p : half.positions) p[0] = 0.5 * p[0] - 0.5;
-  o1 = write_obj(folder / "half.obj", half), o2 = write_obj(folder / "whole.obj", square(2, 0));
+  o1 = write_obj(folder / "half.obj", half);
+  o2 = write_obj(folder / "whole.obj", square(2, 0));
   const Json report = map({"--resolution", "64", "--tolerance", "0.1", "--min-coverage", "0.5", "--up", "z"});
   const std::string share = report["coverage"]["value"].dump();
   EXPECT_TRUE(passes("covers", page(), {share, folder / "coverage.png"}));
@@ -170,7 +173,8 @@ TEST_F(Page, StatesTheVerdictOfEachGroup) {
   std::string text = contents(o1);
   const std::string table = folder / "table.csv";
   const std::size_t faces = text.find("\nf "), middle = text.find("\nf ", faces + (text.size() - faces) / 2);
-  text.insert(middle, "\ng rest"), text.insert(faces, "\ng ring");
+  text.insert(middle, "\ng rest");
+  text.insert(faces, "\ng ring");
   std::ofstream(o1) << text;
   std::ofstream(table) << "group,lower,upper\nring,0,1\n";
   map({"--resolution", "64", "--tolerance-table", table, "--units", "mm"});
@@ -294,7 +298,10 @@ TEST_F(Page, JudgesAsTheLibrary) {
                       .error_bound = any_of({0, 0.01, 0.1, 0.5}),
                       .is_signed = random() % 4 != 0,
                       .thin_walls = any_of({0.01, 1, 2, kInfinity, kInfinity})};
-    if (evidence.lowest == kInfinity) evidence.lowest.reset(), evidence.highest.reset();
+    if (evidence.lowest == kInfinity) {
+      evidence.lowest.reset();
+      evidence.highest.reset();
+    }
     evidence.unmatched = !evidence.complete && random() % 2 == 0;
     evidence.samples_only = random() % 4 == 0;
     if (evidence.samples_only) evidence.error_bound = kInfinity;
@@ -571,7 +578,10 @@ TEST(SequencePlayer, ThinsOutLongSequences) {
   SequencePlayer player(o1.mesh(), o2.mesh(), false);
   std::vector<double> values;
   constexpr std::size_t kFrames = 300;
-  for (std::size_t i = 0; i < kFrames; ++i) player.add(i, o1, o2), values.push_back(static_cast<double>(i));
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    player.add(i, o1, o2);
+    values.push_back(static_cast<double>(i));
+  }
   EXPECT_EQ(player.frames(), kFrames);
   const std::vector<PlotPanel> panels{{"numbers", {{"", values}}}};
   player.write(folder / "player.html", panels);

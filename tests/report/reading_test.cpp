@@ -28,7 +28,7 @@ TEST_F(Page, LegendNamesTheRangeOfTheReportAndCanBeRead) {
   std::vector<std::string> words = ends_of(report["colors"]["range"]);
   words.emplace_back("2.3");
   EXPECT_TRUE(passes("legend", page(), words));
-  o1 = write_obj(folder / "a.obj", sphere(3)),
+  o1 = write_obj(folder / "a.obj", sphere(3));
   o2 = write_obj(folder / "b.obj", moved(sphere(3), {0.5, 0, 0}));
   report = map({"--resolution", "64"});
   EXPECT_EQ(report["colors"]["map"], "diverging");
@@ -52,11 +52,16 @@ TEST_F(Page, ScalesAreThoseOfPictures) {
     const std::array maps{Colormap::viridis, Colormap::sequential, Colormap::diverging, Colormap::paper2006};
     scale.map = maps[i % 4];
     std::string mode = name_of(scale.map);
-    if (scale.map == Colormap::diverging) scale.hi = std::max(scale.hi, -scale.lo), scale.lo = -scale.hi;
+    if (scale.map == Colormap::diverging) {
+      scale.hi = std::max(scale.hi, -scale.lo);
+      scale.lo = -scale.hi;
+    }
     if (i % 5 == 0) {
       const double lower = scale.lo + 0.3 * (scale.hi - scale.lo),
                    upper = lower + 0.2 * (scale.hi - scale.lo);
-      scale.map = Colormap::viridis, scale.tolerance = Tolerance(lower, upper), mode = "tolerance";
+      scale.map = Colormap::viridis;
+      scale.tolerance = Tolerance(lower, upper);
+      mode = "tolerance";
       constexpr double kInfinity = std::numeric_limits<double>::infinity();
       if (i % 15 == 5) scale.tolerance->lower = -kInfinity;
       if (i % 15 == 10) scale.tolerance->upper = kInfinity;
@@ -68,7 +73,8 @@ TEST_F(Page, ScalesAreThoseOfPictures) {
     for (int k = 0; k < 40; ++k) {
       const double d = 1.2 * size * part(random);
       const io::Rgb c = scale(d);
-      distances.push_back(d), colors.push_back({c.r, c.g, c.b});
+      distances.push_back(d);
+      colors.push_back({c.r, c.g, c.b});
     }
     cases.push_back({{"scale",
                       {{"mode", mode},
@@ -116,7 +122,8 @@ TEST_F(Page, ListsScrollInside) {
 TEST_F(Page, GroupsAreSeenWhenTheyAreChosen) {
   std::string text = contents(o1);
   const std::size_t faces = text.find("\nf "), middle = text.find("\nf ", faces + (text.size() - faces) / 2);
-  text.insert(middle, "\ng sides"), text.insert(faces, "\ng ring");
+  text.insert(middle, "\ng sides");
+  text.insert(faces, "\ng ring");
   std::ofstream(o1) << text;
   const std::string table = folder / "table.csv";
   std::ofstream(table) << "group,lower,upper\nring,0,1\nsides,0,1\n";
@@ -135,7 +142,7 @@ TEST_F(Page, LongTablesShowTheirFirstRows) {
 TEST_F(Page, SectionsAreFilled) {
   map({"--resolution", "128", "--up", "z"});
   EXPECT_TRUE(passes("cutsTorus", page()));
-  o1 = write_obj(folder / "a.obj", sphere(4)),
+  o1 = write_obj(folder / "a.obj", sphere(4));
   o2 = write_obj(folder / "b.obj", moved(sphere(4), {0.5, 0, 0}));
   map({"--resolution", "128", "--up", "z"});
   EXPECT_TRUE(passes("cutsBoth", page()));
@@ -144,7 +151,8 @@ TEST_F(Page, SectionsAreFilled) {
 TEST_F(Page, SectionsOfOpenPartsAreNotFilled) {
   Mesh open = sphere(4);
   open.triangles.pop_back();
-  o1 = write_obj(folder / "a.obj", open), o2 = write_obj(folder / "b.obj", sphere(4));
+  o1 = write_obj(folder / "a.obj", open);
+  o2 = write_obj(folder / "b.obj", sphere(4));
   map({"--resolution", "128", "--up", "z"});
   EXPECT_TRUE(passes("cutsOpen", page()));
   std::ofstream cloud(folder / "cloud.xyz");
@@ -185,7 +193,7 @@ TEST_F(Page, CanBeReadInNarrowWindows) {
 }
 
 TEST_F(Page, SectionsHideCallouts) {
-  o1 = write_obj(folder / "a.obj", sphere(4)),
+  o1 = write_obj(folder / "a.obj", sphere(4));
   o2 = write_obj(folder / "b.obj", moved(sphere(4), {0.1, 0, 0}));
   map({"--resolution", "128", "--up", "z"});
   EXPECT_TRUE(passes("cutsCallouts", page()));

@@ -36,7 +36,8 @@ TEST(DivideEdges, MakesTrianglesOfAboutOneSize) {
   for (const Triangle& t : fine.triangles)
     for (int k = 0; k < 3; ++k) {
       const double length = norm(fine.positions[t[k]] - fine.positions[t[(k + 1) % 3]]);
-      shortest = std::min(shortest, length), longest = std::max(longest, length);
+      shortest = std::min(shortest, length);
+      longest = std::max(longest, length);
     }
   EXPECT_LT(longest, 3 * shortest);
 }
@@ -68,9 +69,13 @@ TEST(MadeScan, IsThePartWithWhatIsSaidAboutIt) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double d = closest[i].distance;
     if (norm(points[i] - scan.dent_place) < 1.05 * scan.dent_radius) {
-      if (d > deepest) deepest = d, at = points[i];
+      if (d > deepest) {
+        deepest = d;
+        at = points[i];
+      }
     } else {
-      squares += d * d, ++outside;
+      squares += d * d;
+      ++outside;
       EXPECT_LT(d, 5 * scan.noise);
     }
   }

@@ -111,7 +111,10 @@ TEST_P(Collision, TouchesDeformsSeparatesAndKeepsMomentumAndShape) {
         energy += 0.5 * squared_norm(velocity);
         momentum += velocity;
       }
-    if (frame == 1) first_energy = energy, first_momentum = momentum;
+    if (frame == 1) {
+      first_energy = energy;
+      first_momentum = momentum;
+    }
     EXPECT_LE(norm(momentum - first_momentum), 1e-6) << frame;
     EXPECT_LE(energy, 1.001 * first_energy) << frame;
     for (std::size_t i = 0; i < 2; ++i) {

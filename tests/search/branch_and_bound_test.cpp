@@ -53,7 +53,8 @@ struct Waves : Policy {
       const auto& [begin, end, upper] = run[i];
       const double middle = 0.5 * (begin + end), radius = 0.5 * (end - begin);
       const double bound = std::min(upper, found.at_middle[i] + slope() * radius);
-      parts.put({begin, middle, bound}), parts.put({middle, end, bound});
+      parts.put({begin, middle, bound});
+      parts.put({middle, end, bound});
     }
   }
   [[nodiscard]] bool within_budget() const { return evaluated < budget; }

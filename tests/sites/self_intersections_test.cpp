@@ -202,7 +202,8 @@ TEST(SelfIntersections, OfManyFacesAtOneVertexOrEdgeEnd) {
   for (int i = 0; i < kFaces; ++i) {
     const double angle = 2 * std::numbers::pi * i / kFaces;
     const Vec3 at{std::cos(angle), std::sin(angle), 0.1 * std::sin(9 * angle)};
-    wheel.positions.push_back(at), book.positions.push_back(at);
+    wheel.positions.push_back(at);
+    book.positions.push_back(at);
     const auto n = static_cast<std::uint32_t>(i);
     wheel.triangles.push_back({0, n + 1, (n + 1) % kFaces + 1});
     book.triangles.push_back({0, 1, n + 2});

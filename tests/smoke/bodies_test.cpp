@@ -272,7 +272,10 @@ TEST(SmokeBodies, NearestMapsAreToTheNearestBody) {
       Mesh mesh = meshes[b];
       transform(mesh, poses[b]);
       const double d = oracle::brute_force(mesh, surface.texel_point(t));
-      if (d < least) least = d, body = b;
+      if (d < least) {
+        least = d;
+        body = b;
+      }
     }
     if (least > 2 - 1e-5) continue;
     EXPECT_NEAR(std::abs(nearest.map.distance[t]), least, 1e-5);

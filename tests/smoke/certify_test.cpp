@@ -124,7 +124,8 @@ TEST(SmokeMetrics, OfCrossingMeshesHoldTheMeansOfRandomPoints) {
   double mean = 0, within = 0;
   for (const Vec3& p : points) {
     const double d = oracle::brute_force(b, p);
-    mean += d / 2000, within += d <= 0.4 ? 1.0 / 2000 : 0;
+    mean += d / 2000;
+    within += d <= 0.4 ? 1.0 / 2000 : 0;
   }
   expect_bounds(metrics.from[0].mean, mean, 0.08);
   expect_bounds(metrics.from[0].within[0], within, 0.04);
@@ -221,7 +222,10 @@ TEST(SmokeTolerance, VerdictsOfMapsAndGroupsAreThoseOfTheTruth) {
   withhold_pass(groups);
   EXPECT_EQ(groups.verdict, Verdict::doubtful);
   std::vector<GroupPoints> points(1);
-  points[0].kind = "group", points[0].row = table[0], points[0].points = 7, points[0].faces = 2;
+  points[0].kind = "group";
+  points[0].row = table[0];
+  points[0].points = 7;
+  points[0].faces = 2;
   points[0].evidence = {.lowest = -0.0005, .highest = 0.002};
   points[0].above = 2;
   EXPECT_EQ(judge_groups(points, {}, SignMethod::exact, DistanceKind::closest).verdict, Verdict::fail);
@@ -358,12 +362,17 @@ TEST(SmokeSummary, HasVerdictNotesAndNumbers) {
   EXPECT_EQ(nlohmann::json::parse(summary_json(summary))["units"], "mm");
   EXPECT_EQ(nlohmann::json::parse(mesh_json(report.on))["triangles"], 32);
   Tessellation tessellation;
-  tessellation.format = "STEP", tessellation.largest_deviation = 0.01;
+  tessellation.format = "STEP";
+  tessellation.largest_deviation = 0.01;
   EXPECT_EQ(nlohmann::json::parse(tessellation_json(tessellation))["format"], "STEP");
   EXPECT_THAT(note_on(tessellation, "a.step"), ::testing::HasSubstr("a.step"));
 
   DistanceStatistics distances;
-  distances.min = 0, distances.max = 0.9, distances.p99_abs = 0.8, distances.p01 = 0, distances.p99 = 0.8;
+  distances.min = 0;
+  distances.max = 0.9;
+  distances.p99_abs = 0.8;
+  distances.p01 = 0;
+  distances.p99 = 0.8;
   const ColorRange range = color_range({}, distances);
   EXPECT_EQ(range.colormap, Colormap::viridis);
   EXPECT_GE(range.range[1], 0.8);

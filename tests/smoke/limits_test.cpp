@@ -198,10 +198,12 @@ TEST(SmokeLimits, VerdictsAreStatedWithTheirReason) {
            samples = good;
   close.highest = 0.49;
   incomplete.complete = false;
-  unmatched.complete = false, unmatched.unmatched = true;
+  unmatched.complete = false;
+  unmatched.unmatched = true;
   estimated.estimated_signs = true;
   unknown.accuracy = std::numeric_limits<double>::infinity();
-  samples.samples_only = true, samples.error_bound = std::numeric_limits<double>::infinity();
+  samples.samples_only = true;
+  samples.error_bound = std::numeric_limits<double>::infinity();
   EXPECT_EQ(stated(good, 0.5).first, Verdict::pass);
   EXPECT_EQ(stated(good, 0.15).first, Verdict::fail);
   EXPECT_EQ(stated(close, 0.5).first, Verdict::not_decided);
@@ -217,8 +219,14 @@ TEST(SmokeLimits, VerdictsAreStatedWithTheirReason) {
 
 TEST(SmokeLimits, ColorsFollowTheDistances) {
   DistanceStatistics distances;
-  distances.min = -1, distances.max = 1, distances.p99_abs = 0.9, distances.p01 = -0.9, distances.p99 = 0.9;
-  distances.texels = 100, distances.p05 = -0.8, distances.p95 = 0.8;
+  distances.min = -1;
+  distances.max = 1;
+  distances.p99_abs = 0.9;
+  distances.p01 = -0.9;
+  distances.p99 = 0.9;
+  distances.texels = 100;
+  distances.p05 = -0.8;
+  distances.p95 = 0.8;
   EXPECT_EQ(color_range({}, distances).colormap, Colormap::diverging);
   EXPECT_EQ(color_range({.tolerance = Tolerance(0.2)}, distances).colormap, Colormap::automatic);
   EXPECT_EQ(color_range({.range = std::array{0.0, 2.0}}, distances).range[1], 2);

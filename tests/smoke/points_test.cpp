@@ -119,7 +119,10 @@ TEST(SmokePoints, FacingPointsAgreeWithBruteForce) {
         const Vec3 n = normalized(cross(q - p, r - p)), m = normalized(normals[i]);
         if (normals[i] == Vec3{} || dot(n, m) <= std::cos(angle * std::acos(-1.0) / 180)) continue;
         const double distance = oracle::distance(points[i], p, q, r);
-        if (distance < least) least = distance, of_least = n;
+        if (distance < least) {
+          least = distance;
+          of_least = n;
+        }
       }
       ASSERT_EQ(found.unmatched[i] != 0, std::isinf(least)) << i;
       if (std::isinf(least)) continue;
@@ -145,7 +148,10 @@ TEST(SmokePoints, PartsOfAMeshMergeToTheClosestPointsOfTheWhole) {
     for (std::uint32_t v = 0; v < vertices.size(); ++v) vertices[v] = v;
     for (std::uint32_t f = 0; f < whole.triangles.size(); ++f) {
       const auto& [a, b, c] = whole.triangles[f];
-      if ((a + b + c) % 3 == remainder) part.triangles.push_back(whole.triangles[f]), faces.push_back(f);
+      if ((a + b + c) % 3 == remainder) {
+        part.triangles.push_back(whole.triangles[f]);
+        faces.push_back(f);
+      }
     }
     const Sites own(part);
     for (const auto& edge : own.edges())

@@ -42,7 +42,8 @@ inline Mesh grid_block(const Vec3& lo, const Vec3& hi, int n) {
         for (int j = 0; j <= n; ++j) {
           Vec3 p{};
           p[axis] = high ? hi[axis] : lo[axis];
-          p[u] = lo[u] + (hi[u] - lo[u]) * i / n, p[v] = lo[v] + (hi[v] - lo[v]) * j / n;
+          p[u] = lo[u] + (hi[u] - lo[u]) * i / n;
+          p[v] = lo[v] + (hi[v] - lo[v]) * j / n;
           mesh.positions.push_back(p);
         }
       const auto at = [&](int i, int j) { return first + static_cast<std::uint32_t>(i * (n + 1) + j); };
@@ -89,7 +90,10 @@ inline std::vector<Mesh> awkward_meshes() {
 inline Box around(const Mesh& mesh) {
   Box box = bounds(mesh);
   const double margin = 0.5 * scene_diagonal(mesh, mesh);
-  for (std::size_t k = 0; k < 3; ++k) box.lo[k] -= margin, box.hi[k] += margin;
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.lo[k] -= margin;
+    box.hi[k] += margin;
+  }
   return box;
 }
 

@@ -274,7 +274,8 @@ TEST_P(Traversal, WideSearchesWithoutAnOrderFindTheAcceptedLeavesUntilOneEndsThe
   for (int i = 0; i < 20; ++i) {
     const Vec3 p = point(), q = point();
     Box around;
-    extend(around, p), extend(around, q);
+    extend(around, p);
+    extend(around, q);
     const tree::FloatBox box = tree::FloatBox::around(around);
     std::vector<std::uint32_t> found, expected;
     EXPECT_TRUE(visit(wide, stack, OverlappingLeaves{box, found}));

@@ -22,16 +22,29 @@ struct Scale {
 
   [[nodiscard]] bool shows(double v) const { return std::isfinite(v) && (!log || v > 0); }
   void include(double v) {
-    if (shows(v)) lo = std::min(lo, v), hi = std::max(hi, v);
+    if (shows(v)) {
+      lo = std::min(lo, v);
+      hi = std::max(hi, v);
+    }
   }
   void finish(const Axis& axis) {
-    if (!(lo <= hi)) lo = log ? 1 : 0, hi = log ? 10 : 1;
+    if (!(lo <= hi)) {
+      lo = log ? 1 : 0;
+      hi = log ? 10 : 1;
+    }
     if (log) {
-      lo = std::pow(10, std::log10(lo) - 0.04), hi = std::pow(10, std::log10(hi) + 0.04);
-      if (hi / lo < 2) lo /= 1.5, hi *= 1.5;
+      lo = std::pow(10, std::log10(lo) - 0.04);
+      hi = std::pow(10, std::log10(hi) + 0.04);
+      if (hi / lo < 2) {
+        lo /= 1.5;
+        hi *= 1.5;
+      }
       return;
     }
-    if (axis.from_zero) lo = std::min(lo, 0.0), hi = std::max(hi, 0.0);
+    if (axis.from_zero) {
+      lo = std::min(lo, 0.0);
+      hi = std::max(hi, 0.0);
+    }
     if (!(hi > lo)) hi = lo + std::max(1e-9, 0.1 * std::abs(lo));
     hi += 0.04 * (hi - lo);
     if (!axis.from_zero || lo < 0) lo -= 0.04 * (hi - lo);
@@ -90,8 +103,12 @@ std::vector<std::vector<std::size_t>> legend_rows(const Chart& chart) {
   double used = 0;
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     const double width = 46 + width_of(chart.series[i].name);
-    if (used > 0 && used + width > kWidth - 40) rows.emplace_back(), used = 0;
-    rows.back().push_back(i), used += width;
+    if (used > 0 && used + width > kWidth - 40) {
+      rows.emplace_back();
+      used = 0;
+    }
+    rows.back().push_back(i);
+    used += width;
   }
   return rows;
 }
@@ -106,9 +123,13 @@ std::string to_svg(const Chart& chart) {
   Scale x{chart.x.log}, y{chart.y.log};
   for (const Series& s : chart.series)
     for (std::size_t i = 0; i < s.x.size(); ++i)
-      if (x.shows(s.x[i]) && y.shows(s.y[i])) x.include(s.x[i]), y.include(s.y[i]);
+      if (x.shows(s.x[i]) && y.shows(s.y[i])) {
+        x.include(s.x[i]);
+        y.include(s.y[i]);
+      }
   for (const Mark& mark : chart.marks) x.include(mark.x);
-  x.finish(chart.x), y.finish(chart.y);
+  x.finish(chart.x);
+  y.finish(chart.y);
 
   const auto rows = legend_rows(chart);
   const double top = kTitle + kEntry * static_cast<double>(rows.size()) + 6, bottom = top + kPlot;

@@ -17,7 +17,10 @@ std::string draw(std::string_view title, const std::vector<std::array<Vec2, 3>>&
   Vec2 lo = faces[0][0], hi = lo;
   for (const auto& face : faces)
     for (const Vec2& c : face)
-      for (int k = 0; k < 2; ++k) lo[k] = std::min(lo[k], c[k]), hi[k] = std::max(hi[k], c[k]);
+      for (int k = 0; k < 2; ++k) {
+        lo[k] = std::min(lo[k], c[k]);
+        hi[k] = std::max(hi[k], c[k]);
+      }
   const double size = std::min(per_unit, kMost / (hi[0] - lo[0]));
   const double title_width = 8.0 * static_cast<double>(title.size());
   const auto place = [&](const Vec2& p) {

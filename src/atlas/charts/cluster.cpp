@@ -229,7 +229,10 @@ class Clustering {
       }
       for (const std::uint32_t c : open) grown[c] = 0;
       open = take_over_borders(merged, target, borders);
-      for (const std::uint32_t c : merged) busy[target[c]] = 0, grown[target[c]] = 1;
+      for (const std::uint32_t c : merged) {
+        busy[target[c]] = 0;
+        grown[target[c]] = 1;
+      }
     }
     for (std::uint32_t& label : label_)
       while (label != kNone && target[label] != label) label = target[label] = target[target[label]];

@@ -210,7 +210,10 @@ std::vector<Placement> pack(std::span<const Shape> shapes, const PackOptions& op
       if (packings[k]) {
         // Rows are filled about equally at scales that differ little.
         const double fitting = shares[k] * packer.cells() / packings[k]->rows;
-        if (std::abs(fitting - shares[k]) < off) guess = fitting, off = std::abs(fitting - shares[k]);
+        if (std::abs(fitting - shares[k]) < off) {
+          guess = fitting;
+          off = std::abs(fitting - shares[k]);
+        }
       }
       if (packings[k] && packings[k]->rows <= packer.cells()) {
         low = shares[k];

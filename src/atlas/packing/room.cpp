@@ -10,7 +10,10 @@ namespace {
 // The columns that the part of the triangle between two rows of y touches.
 std::array<double, 2> range_between(const std::array<Vec2, 3>& t, double top, double bottom) {
   double left = std::numeric_limits<double>::infinity(), right = -left;
-  const auto include = [&](double x) { left = std::min(left, x), right = std::max(right, x); };
+  const auto include = [&](double x) {
+    left = std::min(left, x);
+    right = std::max(right, x);
+  };
   for (int k = 0; k < 3; ++k) {
     const Vec2 &a = t[k], &b = t[(k + 1) % 3];
     if (a[1] >= top && a[1] <= bottom) include(a[0]);
@@ -44,8 +47,10 @@ TouchedRows::TouchedRows(const std::array<Vec2, 3>& t, std::uint32_t gutter) {
     const auto from = static_cast<std::size_t>(std::max(0.0, row - gutter));
     const auto to = static_cast<std::size_t>(std::min(last - first, row + gutter));
     double left = std::numeric_limits<double>::infinity(), right = -left;
-    for (std::size_t i = from; i <= to; ++i)
-      left = std::min(left, ranges[i][0]), right = std::max(right, ranges[i][1]);
+    for (std::size_t i = from; i <= to; ++i) {
+      left = std::min(left, ranges[i][0]);
+      right = std::max(right, ranges[i][1]);
+    }
     columns[y - first_row] = {at_least_0(left - gutter), at_least_0(right + gutter) + 1};
   }
 }

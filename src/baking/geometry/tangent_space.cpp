@@ -48,8 +48,10 @@ std::vector<std::array<MikkCorner, 3>> mikk_triangles(const Surface& surface,
       MikkCorner& corner = triangles[i][k];
       const Vec3 p = mesh.positions[mesh.triangles[face][k]] - centre,
                  n = normalized(normals.of_corner(face, k));
-      for (int c = 0; c < 3; ++c)
-        corner.position[c] = static_cast<float>(p[c]), corner.normal[c] = static_cast<float>(n[c]);
+      for (int c = 0; c < 3; ++c) {
+        corner.position[c] = static_cast<float>(p[c]);
+        corner.normal[c] = static_cast<float>(n[c]);
+      }
       corner.uv = uv_of(surface, places[k]);
     }
   }

@@ -39,7 +39,10 @@ std::span<const Contact> ContactFinder::find(const Bodies& bodies, const pairs::
   const bool alone = near_.leaves[0].size() + near_.leaves[1].size() <= kFewLeaves;
   const auto for_each = [&](std::size_t count, const auto& body) {
     const auto range = [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) poll(), body(i);
+      for (std::size_t i = begin; i < end; ++i) {
+        poll();
+        body(i);
+      }
     };
     if (alone)
       range(0, count);
@@ -69,7 +72,8 @@ std::span<const Contact> ContactFinder::find(const Bodies& bodies, const pairs::
       found_[i].find_at_edges(candidates_[task.side], task.leaves);
   });
 
-  contacts_.clear(), boxes_.clear();
+  contacts_.clear();
+  boxes_.clear();
   const std::span<const FeatureContacts> found(found_.data(), tasks_.size());
   for (const FeatureContacts& of : found) {
     contacts_.insert(contacts_.end(), of.contacts().begin(), of.contacts().end());

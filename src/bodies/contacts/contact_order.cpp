@@ -26,7 +26,10 @@ void ContactOrder::sort(std::vector<Contact>& contacts, double same) {
   place_.clear();
   for (const std::uint32_t c : order_) {
     std::uint32_t& number = number_[contacts[c].patch];
-    if (number == kNone) number = static_cast<std::uint32_t>(place_.size()), place_.push_back(0);
+    if (number == kNone) {
+      number = static_cast<std::uint32_t>(place_.size());
+      place_.push_back(0);
+    }
     ++place_[number];
   }
   std::exclusive_scan(place_.begin(), place_.end(), place_.begin(), 0u);

@@ -33,7 +33,12 @@ struct ContactRegions::Search {
 // 1-Lipschitz: in a ball whose centre is farther than its radius and the margin, nothing is in contact.
 void ContactRegions::find(const shape::Body& on, const shape::Body& other, const mesh::Similarity& to_other,
                           double margin, const pairs::NearFaces& near, int side) {
-  on_ = &on, other_ = &other, to_other_ = &to_other, margin_ = margin, near_ = &near, side_ = side;
+  on_ = &on;
+  other_ = &other;
+  to_other_ = &to_other;
+  margin_ = margin;
+  near_ = &near;
+  side_ = side;
   regions_.clear();
   tree::visit(internals(on.sites()).wide, stack_, Search{*this});
   std::ranges::sort(regions_, {}, [](const ContactRegion& r) { return std::pair(r.node, r.first_leaf); });

@@ -38,7 +38,8 @@ SurfacePoint deep_point(const shape::Body& solid, const EdgeInside& line, double
     near_face = point.face;
     if (point.distance < kGreater * deepest.distance) deepest = point;
     parts[count] = {point.at, part.to, -point.distance, part.to_depth};
-    part.to = point.at, part.to_depth = -point.distance;
+    part.to = point.at;
+    part.to_depth = -point.distance;
   }
   return deepest;
 }

@@ -63,7 +63,9 @@ constexpr float kUnitRounding = 4e-6f;
 
 void DeepestVertex::start(const shape::Body& on, const shape::Body& other, const mesh::Similarity& to_other,
                           const mesh::Similarity& from_other) {
-  on_ = &on, other_ = &other, to_other_ = &to_other;
+  on_ = &on;
+  other_ = &other;
+  to_other_ = &to_other;
   const UnitFrame& frame = internals(on.sites()).frame;
   to_unit_ = {from_other.map, frame.scale * from_other.scale};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -71,7 +73,9 @@ void DeepestVertex::start(const shape::Body& on, const shape::Body& other, const
     to_unit_.map.offset[k] = (to_unit_.map.offset[k] - frame.origin[k]) * frame.scale;
   }
   best_ = {};
-  vertices_.clear(), groups_.clear(), faces_.clear();
+  vertices_.clear();
+  groups_.clear();
+  faces_.clear();
   for (std::vector<float>& row : at_) row.clear();
 }
 

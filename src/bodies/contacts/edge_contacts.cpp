@@ -56,7 +56,8 @@ struct Slab {
       : height(dot(normal, edge.a - face[0])), rise(dot(normal, edge.b - edge.a)) {
     if (rise != 0) {
       const double up = (limit - height) / rise, down = (-limit - height) / rise;
-      from = std::max(0.0, std::min(up, down)), to = std::min(1.0, std::max(up, down));
+      from = std::max(0.0, std::min(up, down));
+      to = std::min(1.0, std::max(up, down));
     } else if (std::abs(height) > limit) {
       to = -1;
     }
@@ -221,12 +222,16 @@ void EdgeContacts::add_touching(Part part) {
 
 void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, double margin, double reach,
                                  double tolerance) {
-  supported_.clear(), parts_.clear();
+  supported_.clear();
+  parts_.clear();
   if (intervals_.empty() || reach == 0) return;
   const sites::SitesData& sites = internals(other.sites());
   // Only the parts in contact, which are between these, may be supported.
   double from = 1, to = 0;
-  for (const Interval& i : intervals_) from = std::min(from, i.from), to = std::max(to, i.to);
+  for (const Interval& i : intervals_) {
+    from = std::min(from, i.from);
+    to = std::max(to, i.to);
+  }
   const Vec3 along = edge.b - edge.a;
   const FacesNearEdge::Segment in_contact{edge.a + from * along, edge.a + to * along};
   const double below = other.solid() ? reach : 0;  // a surface has no inside
@@ -245,8 +250,10 @@ void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, dou
     });
     if (continued == parts_.end())
       parts_.push_back({part.from, part.to, i});
-    else if (part.to > continued->to)
-      continued->to = part.to, continued->last = i;
+    else if (part.to > continued->to) {
+      continued->to = part.to;
+      continued->last = i;
+    }
   }
 }
 
@@ -290,7 +297,8 @@ std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const 
                                                         double margin, double reach, double tolerance) {
   const sites::SitesData& sites = internals(other.sites());
   const Vec3 along = edge.b - edge.a;
-  found_.clear(), in_contact_.clear();
+  found_.clear();
+  in_contact_.clear();
   find_intervals(edge, other, margin);
   find_supports(edge, other, margin, reach, tolerance);
   const double rounding = kUnitDistanceRounding / sites.frame.scale;
@@ -325,7 +333,8 @@ std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const 
         const double limit = i->distance + rounding;
         const Part part = limit >= margin + rounding ? Part{i->from, i->to}
                                                      : within(edge, sites, i->face, limit, i->closest);
-        from = std::min(from, part.from), to = std::max(to, part.to);
+        from = std::min(from, part.from);
+        to = std::max(to, part.to);
       }
       found_.push_back({.t = 0.5 * (from + to), .near_face = nearest->face});
     }

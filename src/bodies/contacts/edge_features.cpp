@@ -112,9 +112,10 @@ void FeatureContacts::find_on_edge(std::uint32_t edge, bool a_touches, bool b_to
         continue;
       }
       feature.key = (kEdge | kSupported | edge) + found[i].number * kNextOnEdge;
-      if (found[i].way_out.place == WayOut::Place::beside)
-        feature.point = found[i].way_out.point, feature.own_face = found[i].way_out.own_face;
-      else
+      if (found[i].way_out.place == WayOut::Place::beside) {
+        feature.point = found[i].way_out.point;
+        feature.own_face = found[i].way_out.own_face;
+      } else
         feature.support = found[i].support;
     }
     if (may_be_deep) deepen(in_other, part, first, on_part);
@@ -193,7 +194,8 @@ void FeatureContacts::deepen(const EdgeContacts::Edge& edge, const EdgeContacts:
     const auto from_face = [&](const Vec3& p) {
       return sites::closest_on_face(internals(other().sites()), near_face, p).distance;
     };
-    line.from_depth = from_face(line.from), line.to_depth = from_face(line.to);
+    line.from_depth = from_face(line.from);
+    line.to_depth = from_face(line.to);
     const double most = std::max(line.from_depth, line.to_depth);
     if (!part.from_a) line.from_depth = 0;
     if (!part.to_b) line.to_depth = 0;

@@ -65,8 +65,10 @@ class Boxes {
     const Lanes d;
     float cosine = 0, rest = 0, w[3];
     for (int k = 0; k < 3; ++k) cosine += side[k] * segment_.direction[k];
-    for (int k = 0; k < 3; ++k)
-      w[k] = side[k] - cosine * segment_.direction[k], rest -= w[k] * segment_.start[k];
+    for (int k = 0; k < 3; ++k) {
+      w[k] = side[k] - cosine * segment_.direction[k];
+      rest -= w[k] * segment_.start[k];
+    }
     const float behind =
         std::max(supporting.reach * (1 + std::abs(cosine)) * kSupportSine, supporting.margin) +
         2 * segment_.rounding;
@@ -83,7 +85,8 @@ class Boxes {
       for (int k = 0; k < 3; ++k) {
         const Vec lo = hn::Mul(hn::Sub(hn::Sub(hn::Load(d, node.lo[k] + i), reach_), start_[k]), inverse_[k]);
         const Vec hi = hn::Mul(hn::Sub(hn::Add(hn::Load(d, node.hi[k] + i), reach_), start_[k]), inverse_[k]);
-        from = hn::Max(from, hn::Min(lo, hi)), to = hn::Min(to, hn::Max(lo, hi));
+        from = hn::Max(from, hn::Min(lo, hi));
+        to = hn::Min(to, hn::Max(lo, hi));
       }
       auto open = hn::Le(from, to);
       for (int h = 0; h < count_; ++h) {
@@ -118,8 +121,10 @@ struct Discs {
   HWY_INLINE Discs(const sites::FaceBounds& bounds, size_t i, const UnitSegment& segment) {
     const Lanes d;
     Vec start[3], direction[3];
-    load(bounds.normal, i, normal), load(bounds.centre, i, to_centre);
-    splat(segment.start, start), splat(segment.direction, direction);
+    load(bounds.normal, i, normal);
+    load(bounds.centre, i, to_centre);
+    splat(segment.start, start);
+    splat(segment.direction, direction);
     for (int k = 0; k < 3; ++k) to_centre[k] = hn::Sub(to_centre[k], start[k]);
     radius = hn::Add(hn::Load(d, bounds.radius + i), hn::Set(d, segment.rounding));
     height = hn::Neg(dot(normal, to_centre));

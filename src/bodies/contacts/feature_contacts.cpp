@@ -34,8 +34,12 @@ Vec3 weights_in(const Mesh& mesh, std::uint32_t face, const Vec3& p) {
 }  // namespace
 
 void FeatureContacts::start(ContactCandidates& candidates) {
-  candidates_ = &candidates, face_ = kNone;
-  features_.clear(), contacts_.clear(), boxes_.clear(), bridges_.clear();
+  candidates_ = &candidates;
+  face_ = kNone;
+  features_.clear();
+  contacts_.clear();
+  boxes_.clear();
+  bridges_.clear();
 }
 
 void FeatureContacts::find_at_vertices(ContactCandidates& candidates, Regions regions) {
@@ -201,9 +205,10 @@ Box FeatureContacts::box_of(Regions part) {
   unit.lo.fill(std::numeric_limits<float>::infinity());
   unit.hi.fill(-std::numeric_limits<float>::infinity());
   const auto extend_by = [&](std::span<const float, 3> lo, std::span<const float, 3> hi) {
-    for (int k = 0; k < 3; ++k)
-      unit.lo[k] = std::min(unit.lo[k], lo[k] - kBoxRounding),
+    for (int k = 0; k < 3; ++k) {
+      unit.lo[k] = std::min(unit.lo[k], lo[k] - kBoxRounding);
       unit.hi[k] = std::max(unit.hi[k], hi[k] + kBoxRounding);
+    }
   };
   for (const ContactRegion& region : part) {
     if (region.is_inside()) {
@@ -306,8 +311,10 @@ void FeatureContacts::find_support(Feature& feature) {
     way_out = way_out_.find(around, other(), support, closest, tolerance());
   }
   if (way_out.place == WayOut::Place::here) feature.support = support;
-  if (way_out.place == WayOut::Place::beside)
-    feature.point = way_out.point, feature.own_face = way_out.own_face;
+  if (way_out.place == WayOut::Place::beside) {
+    feature.point = way_out.point;
+    feature.own_face = way_out.own_face;
+  }
 }
 
 void FeatureContacts::add_contacts() {
@@ -320,17 +327,21 @@ void FeatureContacts::add_contact(const Feature& feature) {
   SurfacePoint closest = feature.point;
   const Vec3& p = closest.at;
   bool is_boundary = true;
-  if (const Support& support = feature.support; support.face != kNone)
-    closest.distance = support.height,
-    closest.vector = -support.height * sites_of_other.normals.face[support.face], closest.face = support.face;
-  else
+  if (const Support& support = feature.support; support.face != kNone) {
+    closest.distance = support.height;
+    closest.vector = -support.height * sites_of_other.normals.face[support.face];
+    closest.face = support.face;
+  } else
     is_boundary = at_boundary(other(), closest);
   const bool inside = other().solid() && closest.distance < 0;
   const Vec3 face_normal = sites_of_other.normals.face[closest.face];
   if (!is_boundary) {
     other().require_boundary();
     const auto boundary = other().boundary().closest(p);
-    if (boundary.point) closest.vector = *boundary.point - p, closest.face = boundary.face;
+    if (boundary.point) {
+      closest.vector = *boundary.point - p;
+      closest.face = boundary.face;
+    }
   }
   const double depth = pose.scale * (inside ? norm(closest.vector) : -closest.distance);
   const Vec3 vector = pose.map.linear(closest.vector), point = pose.map(p);

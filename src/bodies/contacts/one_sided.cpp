@@ -11,11 +11,15 @@ namespace sdm::contacts {
 
 void OneSidedVertices::start(const shape::Body& on, const shape::Body& other,
                              const mesh::Similarity& to_other, double margin) {
-  on_ = &on, other_ = &other, to_other_ = &to_other, margin_ = margin;
+  on_ = &on;
+  other_ = &other;
+  to_other_ = &to_other;
+  margin_ = margin;
   // Nearer points may be on either side.
   rounding_ = kUnitDistanceRounding / internals(other.sites()).frame.scale;
   for (const std::uint32_t vertex : added_) vertices_[vertex] = {};
-  added_.clear(), points_.clear();
+  added_.clear();
+  points_.clear();
   const std::size_t count = internals(on.sites()).regions.points.size();
   if (vertices_.size() < count) vertices_.resize(count);
 }
@@ -26,7 +30,10 @@ void OneSidedVertices::add_face(const Triangle& corners, bool near) {
   if (!near && parent(0) != kNone && parent(0) == parent(1) && parent(1) == parent(2)) return;
   for (const std::uint32_t vertex : corners) {
     Vertex& v = vertices_[vertex];
-    if (v.parent == kNone) v.parent = vertex, added_.push_back(vertex);
+    if (v.parent == kNone) {
+      v.parent = vertex;
+      added_.push_back(vertex);
+    }
     v.alone = v.alone && near;
   }
   if (near) return;

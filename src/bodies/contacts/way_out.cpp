@@ -69,8 +69,10 @@ WayOutFinder::OnPiece WayOutFinder::closest_on_pieces(const SurfaceAround& aroun
             ? closest_on_segment(at, piece.edge[0], piece.edge[1])
             : around.to_other->map(
                   sites::closest_on_face(*around.sites, piece.face, around.from_other->map(at)).point);
-    if (const double squared = squared_norm(closest - at); squared < least)
-      least = squared, best = {closest, piece.face};
+    if (const double squared = squared_norm(closest - at); squared < least) {
+      least = squared;
+      best = {closest, piece.face};
+    }
   }
   return best;
 }

@@ -46,8 +46,10 @@ Vec3 mean_of_corners(const Mesh& mesh) {
   Vec3 mean{};
   double count = 0;
   for (const Triangle& triangle : mesh.triangles)
-    for (const std::uint32_t vertex : triangle)
-      count += 1, mean = mean + (1 / count) * (mesh.positions[vertex] - mean);
+    for (const std::uint32_t vertex : triangle) {
+      count += 1;
+      mean = mean + (1 / count) * (mesh.positions[vertex] - mean);
+    }
   return mean;
 }
 
@@ -188,7 +190,8 @@ std::unique_ptr<const ConvexMesh> recognise(const sites::SitesData& sites) {
   Box box;
   for (const Triangle& triangle : mesh.triangles)
     for (const std::uint32_t vertex : triangle) extend(box, mesh.positions[vertex]);
-  convex->size = diagonal(box), convex->lengths = convex->size + norm(convex->centre);
+  convex->size = diagonal(box);
+  convex->lengths = convex->size + norm(convex->centre);
   convex->inner_radius = (1 - kDoubleRounding) * radius - kDoubleRounding * norm(convex->centre);
   set_vertices(*convex, sites);
   set_planes(*convex, mesh);

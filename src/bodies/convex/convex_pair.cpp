@@ -64,7 +64,8 @@ Features features_at(const Triangle& triangle, std::span<const std::uint32_t> ve
   for (const std::uint32_t v : vertices) {
     const unsigned at = (triangle[0] == v ? 1 : 0) | (triangle[1] == v ? 2 : 0) | (triangle[2] == v ? 4 : 0);
     const unsigned ends_there = (at >> 1 | at << 2) & 7;  // the sides before these corners
-    result.corners &= at, result.sides &= at | ends_there;
+    result.corners &= at;
+    result.sides &= at | ends_there;
   }
   return result;
 }

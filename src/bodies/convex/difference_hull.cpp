@@ -31,8 +31,11 @@ __extension__ using Integer = __int128;
 // six products at most 6 · 2^123.
 int side_of_plane(const GridPoint& a, const GridPoint& b, const GridPoint& c, const GridPoint& d) {
   std::array<std::int64_t, 3> u, v, w;
-  for (int k = 0; k < 3; ++k)
-    u[k] = b.grid[k] - a.grid[k], v[k] = c.grid[k] - a.grid[k], w[k] = d.grid[k] - a.grid[k];
+  for (int k = 0; k < 3; ++k) {
+    u[k] = b.grid[k] - a.grid[k];
+    v[k] = c.grid[k] - a.grid[k];
+    w[k] = d.grid[k] - a.grid[k];
+  }
   const auto minor = [&](int i, int j) { return Integer{u[i]} * v[j] - Integer{u[j]} * v[i]; };
   const Integer determinant = w[0] * minor(1, 2) + w[1] * minor(2, 0) + w[2] * minor(0, 1);
   return (determinant > 0) - (determinant < 0);
@@ -48,7 +51,8 @@ class Grid {
     for (int k = 0; k < 3; ++k) {
       constexpr double kShift = 0x3p51;  // numbers of this size are integers
       const double rounded = (to_ * p.w[k] + kShift) - kShift;
-      point.w[k] = from_ * rounded, point.grid[k] = static_cast<std::int64_t>(rounded);
+      point.w[k] = from_ * rounded;
+      point.grid[k] = static_cast<std::int64_t>(rounded);
     }
     point.distance = norm(point.w);
     return point;
@@ -65,7 +69,8 @@ class DifferenceHull {
   DifferenceHull(const std::array<GridPoint, 4>& p, double size, ExitWorkspace& workspace)
       : size_(size), w_(workspace) {
     w_.points.assign(p.begin(), p.end());
-    w_.facets.clear(), w_.order.clear();
+    w_.facets.clear();
+    w_.order.clear();
     if (side_of_plane(p[0], p[1], p[2], p[3]) > 0) std::swap(w_.points[0], w_.points[1]);
     constexpr std::array<std::array<std::uint32_t, 3>, 4> kCorners{
         {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
@@ -118,12 +123,14 @@ class DifferenceHull {
       const std::array<std::uint32_t, 3>& corner = w_.facets[face].corner;
       const std::uint32_t from = corner[(side + 1) % 3], to = corner[side];
       const auto added = static_cast<std::uint32_t>(w_.facets.size());
-      w_.facets[face].across[side] = added, w_.from[from] = added;
+      w_.facets[face].across[side] = added;
+      w_.from[from] = added;
       add({from, to, point}, {face, 0, 0});
     }
     for (std::uint32_t f = first; f < w_.facets.size(); ++f) {
       const std::uint32_t next = w_.from[w_.facets[f].corner[1]];
-      w_.facets[f].across[1] = next, w_.facets[next].across[2] = f;
+      w_.facets[f].across[1] = next;
+      w_.facets[next].across[2] = f;
     }
     return true;
   }
@@ -173,7 +180,8 @@ class DifferenceHull {
   // Removes the faces that p sees, which are connected, and collects the sides of those around them.
   void find_horizon(std::uint32_t above, const GridPoint& p) {
     w_.horizon.clear();
-    w_.open.clear(), w_.open.push_back(above);
+    w_.open.clear();
+    w_.open.push_back(above);
     w_.facets[above].removed = true;
     while (!w_.open.empty()) {
       const std::uint32_t face = w_.open.back();
@@ -239,7 +247,10 @@ class ExitSearch {
   // The point of the difference that is farthest along u, which bounds the exit.
   GridPoint farthest(const Vec3& u, const std::array<std::uint32_t, 2>& near = {kNone, kNone}) {
     const SimplexPoint p = support_(u, near);
-    if (const double along = dot(u, p.w); along < exit_.upper) exit_.upper = along, exit_.direction = u;
+    if (const double along = dot(u, p.w); along < exit_.upper) {
+      exit_.upper = along;
+      exit_.direction = u;
+    }
     return grid_(p);
   }
   // Some point along u, or along −u, for which far(p) is more than `enough`, if there is one.

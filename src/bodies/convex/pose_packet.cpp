@@ -128,8 +128,10 @@ void DecidePoses(const PosePacket::Data& data, std::span<const Transform> poses,
   OpenPoses open;
   place(data, PoseEntries(poses), open);
   open.count = poses.size();
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    open.pose[i] = static_cast<std::uint8_t>(i), relations[i] = Relation::unknown;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    open.pose[i] = static_cast<std::uint8_t>(i);
+    relations[i] = Relation::unknown;
+  }
   for (const char step : data.steps) {
     if (open.count < data.least_open) return;
     if (step == kApart)

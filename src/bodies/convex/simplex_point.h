@@ -50,7 +50,9 @@ struct SimplexPoints {
       const Vec3 &a = w((i + 1) % 4), n = cross(w((i + 2) % 4) - a, w((i + 3) % 4) - a);
       const double length = norm(n), distance = std::abs(dot(n, a)) / length;
       if (!(distance < least)) continue;
-      least = distance, farthest = i, outwards = ((dot(n, w(i) - a) > 0 ? -1 : 1) / length) * n;
+      least = distance;
+      farthest = i;
+      outwards = ((dot(n, w(i) - a) > 0 ? -1 : 1) / length) * n;
     }
     for (int i = farthest; i < 3; ++i) points[i] = points[i + 1];
     count = 3;
@@ -116,7 +118,8 @@ struct SimplexPoints {
   bool keep(const Nearest& nearest, Vec3& v) {
     for (int i = 0; i < nearest.count; ++i)  // in increasing order
       if (nearest.kept[i] != i) points[i] = points[nearest.kept[i]];
-    count = nearest.count, v = nearest.v;
+    count = nearest.count;
+    v = nearest.v;
     return true;
   }
   // The origin is not beyond the face that the last point was seen from.

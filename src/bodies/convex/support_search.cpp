@@ -54,8 +54,10 @@ HWY_INLINE std::uint32_t climb(const ConvexMesh& mesh, const Vec3& u, std::uint3
     std::uint32_t next = vertex;
     double most = least;
     for (const Spoke& spoke : mesh.spokes.of(vertex))
-      if (const double higher = dot(u, mesh.points[spoke.end] - from); higher > most)
-        most = higher, next = spoke.end;
+      if (const double higher = dot(u, mesh.points[spoke.end] - from); higher > most) {
+        most = higher;
+        next = spoke.end;
+      }
     if (next == vertex) return vertex;
     vertex = next;
   }
@@ -180,7 +182,10 @@ std::uint32_t FarthestVertex(const ConvexMesh& mesh, const Vec3& u, std::uint32_
   std::uint32_t farthest = 0;
   double most = -std::numeric_limits<double>::infinity();
   for (std::uint32_t v = 0; v < mesh.points.size(); ++v)
-    if (const double along = dot(u, mesh.points[v]); along > most) most = along, farthest = v;
+    if (const double along = dot(u, mesh.points[v]); along > most) {
+      most = along;
+      farthest = v;
+    }
   return farthest;
 }
 

@@ -104,9 +104,12 @@ class Touching {
     } else {
       ++faces.count;
     }
-    for (; at > 0 && faces.along[at - 1] < along; --at)
-      faces.number[at] = faces.number[at - 1], faces.along[at] = faces.along[at - 1];
-    faces.number[at] = face, faces.along[at] = along;
+    for (; at > 0 && faces.along[at - 1] < along; --at) {
+      faces.number[at] = faces.number[at - 1];
+      faces.along[at] = faces.along[at - 1];
+    }
+    faces.number[at] = face;
+    faces.along[at] = along;
   }
 
   // Whether the plane has the other body strictly outside, and its own one nowhere outside.
@@ -142,7 +145,10 @@ class Touching {
     for (double least = height(vertex);;) {
       const std::uint32_t before = vertex;
       for (const Spoke& spoke : meshes_[side]->spokes.of(before))
-        if (const double h = height(spoke.end); h < least) least = h, vertex = spoke.end;
+        if (const double h = height(spoke.end); h < least) {
+          least = h;
+          vertex = spoke.end;
+        }
       if (vertex == before) return vertex;
     }
   }

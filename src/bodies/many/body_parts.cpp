@@ -21,7 +21,8 @@ Box around(const Vec3& middle, const Box& box) {
   Box about;
   for (int k = 0; k < 3; ++k) {
     const double half = std::max(std::abs(box.lo[k] - middle[k]), std::abs(box.hi[k] - middle[k]));
-    about.lo[k] = middle[k] - half, about.hi[k] = middle[k] + half;
+    about.lo[k] = middle[k] - half;
+    about.hi[k] = middle[k] + half;
   }
   return about;
 }
@@ -79,7 +80,10 @@ BodyParts::BodyParts(std::vector<std::vector<BodyPart>> bodies, std::vector<Shap
     places_.push_back(place);
     first_.push_back(static_cast<std::uint32_t>(body_of_.size()));
   }
-  if (std::ranges::none_of(places_, &Place::compound)) places_.clear(), local_.clear();
+  if (std::ranges::none_of(places_, &Place::compound)) {
+    places_.clear();
+    local_.clear();
+  }
 }
 
 std::uint32_t BodyParts::checked(std::size_t body, std::size_t part) const {
@@ -130,7 +134,8 @@ void BodyParts::to_bodies(std::vector<Answer>& pairs) const {
   for (Answer& pair : pairs) {
     const std::uint32_t first = body_of_[pair.first], second = body_of_[pair.second];
     pair.parts = {pair.first - begin(first), pair.second - begin(second)};
-    pair.first = first, pair.second = second;
+    pair.first = first;
+    pair.second = second;
   }
 }
 
@@ -160,7 +165,8 @@ void BodyParts::merge(std::vector<PairDepth>& pairs) const {
     const double lower = std::max(pair.penetration_depth.lower, next.penetration_depth.lower);
     const double upper = std::max(pair.penetration_depth.upper, next.penetration_depth.upper);
     if (next.penetration_depth.value > pair.penetration_depth.value) pair = next;
-    pair.penetration_depth.lower = lower, pair.penetration_depth.upper = upper;
+    pair.penetration_depth.lower = lower;
+    pair.penetration_depth.upper = upper;
   });
 }
 

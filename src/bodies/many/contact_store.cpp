@@ -16,7 +16,8 @@ void ContactStore::store(NearPairs& near, std::span<const std::size_t> unknown) 
   // Contacts out of use are removed once they are half of all, which costs a constant time for each that was
   // added.
   const std::size_t most = 2 * (count + more);
-  reserve_for(contacts_, most), reserve_for(next_, most);
+  reserve_for(contacts_, most);
+  reserve_for(next_, most);
   if (contacts_.size() + more > most) keep_only_near(near);
   for (std::size_t u = 0; u < unknown.size(); ++u) {
     NearPair& pair = near.list()[unknown[u]];

@@ -72,10 +72,14 @@ void find_faces(const sites::SitesData& sites, const SurfacePoint& point, Intern
 
 void InternalContacts::follow(std::span<const shape::PosedBody> bodies, const PairFilter& filter) {
   bodies_ = bodies;
-  fixed_.clear(), boxes_.clear(), neighbours_.clear();
+  fixed_.clear();
+  boxes_.clear();
+  neighbours_.clear();
   for (std::uint32_t b = 0; b < bodies.size(); ++b)
-    if ((filter[b].fixed || filter.in_compound(b)) && bodies[b].body().solid())
-      fixed_.push_back(b), boxes_.push_back(bodies[b].tight_box());
+    if ((filter[b].fixed || filter.in_compound(b)) && bodies[b].body().solid()) {
+      fixed_.push_back(b);
+      boxes_.push_back(bodies[b].tight_box());
+    }
   double reach = 0;
   for (const std::uint32_t b : fixed_)
     reach = std::max(reach, kBeyond * bodies[b].pose().scale * diagonal_of(bodies[b]));
@@ -128,7 +132,8 @@ bool InternalContacts::leads_into_neighbour(const Contact& contact, const Sweep:
 void InternalContacts::leave_out(std::vector<PairContacts>& pairs) {
   std::size_t count = 0;
   for (const PairContacts& pair : pairs) count += pair.contacts.size();
-  external_.clear(), external_.reserve(count);  // so that spans of it stay valid
+  external_.clear();
+  external_.reserve(count);  // so that spans of it stay valid
   for (PairContacts& pair : pairs) {
     const std::size_t first = external_.size();
     for (const Contact& contact : pair.contacts)

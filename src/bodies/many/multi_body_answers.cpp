@@ -58,7 +58,10 @@ void MultiBodyQuery::Impl::find_separations(double max_distance) {
            !(pair.separation_known || (pair.apart >= max_distance && !pair.colliding));
   };
   complete(max_distance, is_unknown, [&](pair::PairAnswers& answers, std::size_t) {
-    if (answers.within(max_distance)) (void)answers.separation(), (void)answers.colliding();
+    if (answers.within(max_distance)) {
+      (void)answers.separation();
+      (void)answers.colliding();
+    }
   });
   candidates = 0;
   for (const bodies::NearPair& pair : near.list()) candidates += pair.gap <= max_distance;
@@ -86,7 +89,10 @@ void MultiBodyQuery::Impl::find_separations(double max_distance) {
   };
   complete(
       reach, [&](const bodies::NearPair& pair) { return is_contained(pair) && !pair.separation_known; },
-      [](pair::PairAnswers& answers, std::size_t) { (void)answers.separation(), (void)answers.colliding(); });
+      [](pair::PairAnswers& answers, std::size_t) {
+        (void)answers.separation();
+        (void)answers.colliding();
+      });
   list_separations_if([&](const bodies::NearPair& pair) {
     return is_near(pair) || (is_contained(pair) && pair.separation_known);
   });

@@ -58,8 +58,10 @@ void NearPairs::follow(std::span<const shape::PosedBody> bodies, double reach) t
   for (const std::uint32_t body : moved_.list()) boxes_[body] = bodies[body].tight_box();
   if (!complete_ || needed > reach_.listed || moved_.list().size() > kFewMoved)
     adopt(sweep_.near_pairs(boxes_, needed, std::cref(filter_)));
-  else
-    find_near_moved(needed), adopt(found_);
+  else {
+    find_near_moved(needed);
+    adopt(found_);
+  }
   moved_.clear();
   reach_.listed = needed;
   complete_ = true;
@@ -93,7 +95,8 @@ void NearPairs::adopt(std::span<const Sweep::Pair> found) {
   next_.clear();
   // Whatever way pairs are found next time, there is room for as many.
   const std::size_t most = std::max(found.size(), list_.size());
-  reserve_for(next_, most), reserve_for(near_moved_, most);
+  reserve_for(next_, most);
+  reserve_for(near_moved_, most);
   if (found.data() != found_.data()) reserve_for(found_, most);
   auto before = list_.begin();
   const auto drop_until = [&](const auto& reached) {
@@ -128,7 +131,9 @@ std::uint32_t NearPairs::new_state() {
 }
 
 void NearPairs::forget() noexcept {
-  list_.clear(), states_.clear(), unused_.clear();
+  list_.clear();
+  states_.clear();
+  unused_.clear();
   complete_ = false;
 }
 

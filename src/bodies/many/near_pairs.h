@@ -50,7 +50,10 @@ class MovedBodies {
   explicit MovedBodies(std::size_t bodies);
 
   void add(std::size_t body) noexcept {
-    if (!flags_[body]) flags_[body] = 1, list_.push_back(static_cast<std::uint32_t>(body));
+    if (!flags_[body]) {
+      flags_[body] = 1;
+      list_.push_back(static_cast<std::uint32_t>(body));
+    }
   }
   void clear() noexcept;
   [[nodiscard]] std::span<const std::uint32_t> list() const { return list_; }

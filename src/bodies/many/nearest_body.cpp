@@ -84,8 +84,12 @@ class BlockSearch {
         const ClosestPoint c = found.get(k, at_[first + k]);
         if (c.type == SiteType::none) continue;
         const double distance = pose.scale * c.distance;
-        if (std::pair(distance, body) < std::pair(distance_[i], body_[i]))
-          closest_[i] = c, local_[i] = at_[first + k], distance_[i] = distance, body_[i] = body;
+        if (std::pair(distance, body) < std::pair(distance_[i], body_[i])) {
+          closest_[i] = c;
+          local_[i] = at_[first + k];
+          distance_[i] = distance;
+          body_[i] = body;
+        }
       }
     };
     closest::closest_points(internals(bodies_[body].body().sites()), std::span(at_).first(count),

@@ -49,7 +49,10 @@ class PairSeparator {
   [[nodiscard]] pair::PairAnswers& answers() { return answers_; }
 
   /// Before the pairs of two bodies are added.
-  void clear() { members_.clear(), pairs_.clear(); }
+  void clear() {
+    members_.clear();
+    pairs_.clear();
+  }
   /// Adds the pair that begin() was called for.
   void add(const World& world, const Sweep::Pair& pair);
   /// Adds all other pairs of parts of two bodies.

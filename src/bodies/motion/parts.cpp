@@ -82,7 +82,9 @@ Part Parts::fitted(std::span<const std::uint32_t> faces, const Part& box) const 
   for (std::size_t f = 0; f < faces.size(); f += every)
     for (int i = 0; i < 3; ++i) {
       const Eigen::Vector3d r = registration::vector(corner(faces[f], i) - from);
-      sum += r, squares += r * r.transpose(), ++count;
+      sum += r;
+      squares += r * r.transpose();
+      ++count;
     }
   const Eigen::Matrix3d moments = squares - sum * sum.transpose() / count;
   const auto principal = registration::spectrum(moments);

@@ -41,7 +41,10 @@ class Rises {
       return;
     }
     const double angle = motion_.angle();
-    if (bound == speed) side_ = cross(u_, motion_.axis()), across_ = norm(side_);
+    if (bound == speed) {
+      side_ = cross(u_, motion_.axis());
+      across_ = norm(side_);
+    }
     std::array<double, 3> extent{};
     if (bound == taylor) find(in_mesh(angle * side_), extent);
     if (bound == circle) find((dot(u_, motion_.axis()) * motion_.scale()) * motion_.mesh_axis(), extent);
@@ -128,7 +131,8 @@ double SafeTime::until(const Part& part1, const Part& part2, const Vec3& u) cons
   double longest = 0;
   std::array<Rise, 3> rise1, rise2;
   for (const auto bound : {Rises::speed, Rises::taylor, Rises::circle}) {
-    rises1.bound(bound, rise1), rises2.bound(bound, rise2);
+    rises1.bound(bound, rise1);
+    rises2.bound(bound, rise2);
     // All pairs of points stay apart: then so do their hulls.
     double safe = rest;
     for (std::size_t i = 0; i < part1.points; ++i)

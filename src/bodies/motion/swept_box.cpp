@@ -30,7 +30,8 @@ Box swept_box(const shape::Body& body, const DividedMotion& motion) {
     const double rounding = 2 * motion.rounding()[k];
     box.lo[k] = std::max(std::min(from - at_first, to - at_last) - bend, std::min(from, to) - radius);
     box.hi[k] = std::min(std::max(from + at_first, to + at_last) + bend, std::max(from, to) + radius);
-    box.lo[k] -= rounding, box.hi[k] += rounding;
+    box.lo[k] -= rounding;
+    box.hi[k] += rounding;
   }
   return box;
 }

@@ -90,10 +90,13 @@ std::span<const Contact> PairAnswers::contacts_within(double margin) {
 
 bool PairAnswers::surfaces_within(double distance) {
   if (!known_.separation && known_.beyond < distance) {
-    if (boxes_or_balls_apart(distance))
-      known_.beyond = distance, known_.intersecting = known_.colliding = false;
-    else if (distance > 0 && !find_closest(distance))
-      known_.beyond = distance, known_.intersecting = false;
+    if (boxes_or_balls_apart(distance)) {
+      known_.beyond = distance;
+      known_.intersecting = known_.colliding = false;
+    } else if (distance > 0 && !find_closest(distance)) {
+      known_.beyond = distance;
+      known_.intersecting = false;
+    }
   }
   return known_.separation && known_.separation->value <= distance;
 }

@@ -44,7 +44,10 @@ struct KnownAnswers : Hints {
   void forget(const Hints& hints) {
     static_cast<Hints&>(*this) = hints;
     beyond = -1;
-    intersecting.reset(), colliding.reset(), separation.reset(), depth.reset();
+    intersecting.reset();
+    colliding.reset();
+    separation.reset();
+    depth.reset();
   }
 };
 

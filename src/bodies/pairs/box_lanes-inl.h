@@ -45,7 +45,8 @@ struct CentredBox {
   // The bounding box of `box` in another frame, enlarged by the rounding error.
   CentredBox(const CentredBox& box, const FrameMap& map) {
     for (int k = 0; k < 3; ++k) {
-      centre[k] = map.offset[k], half[k] = map.error;
+      centre[k] = map.offset[k];
+      half[k] = map.error;
       for (int j = 0; j < 3; ++j) {
         centre[k] += map.row[k][j] * box.centre[j];
         half[k] += std::abs(map.row[k][j]) * box.half[j];

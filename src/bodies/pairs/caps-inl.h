@@ -27,9 +27,12 @@ struct Cap {
 
   void add(const Place& leaf, float extent, const tree::FloatBox& box) {
     tree::WideTree::Node& group = boxes[count / kWidth];
-    for (int k = 0; k < 3; ++k)
-      group.lo[k][count % kWidth] = box.lo[k], group.hi[k][count % kWidth] = box.hi[k];
-    place[count] = leaf, along[count] = extent;
+    for (int k = 0; k < 3; ++k) {
+      group.lo[k][count % kWidth] = box.lo[k];
+      group.hi[k][count % kWidth] = box.hi[k];
+    }
+    place[count] = leaf;
+    along[count] = extent;
     ++count;
   }
 };
@@ -113,7 +116,10 @@ class Caps {
         [&](const PairWorkspace::Ahead& leaf) HWY_ATTR {
           const float along =
               least_along(s_.sites[side]->regions, leaf.leaf_number(), closest_.direction().along[side]);
-          if (along < least) least = along, first = leaf;
+          if (along < least) {
+            least = along;
+            first = leaf;
+          }
         });
     return least;
   }

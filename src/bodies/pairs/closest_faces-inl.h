@@ -52,7 +52,8 @@ class ClosestFaces {
  public:
   ClosestFaces(const Surfaces& surfaces, double bound, PairWorkspace& workspace)
       : s_(surfaces), w_(workspace), bound_(bound) {
-    w_.candidates.clear(), w_.ties.clear();
+    w_.candidates.clear();
+    w_.ties.clear();
     limit_ = s_.maps.round_up(limit_in_double());
   }
 

@@ -18,7 +18,10 @@ struct Cylinder {
 
   Cylinder(const sites::BoundingCylinders& all, size_t i)
       : radius(all.radius[i]), half_height(all.half_height[i]) {
-    for (int k = 0; k < 3; ++k) centre[k] = all.centre[k][i], axis[k] = all.axis[k][i];
+    for (int k = 0; k < 3; ++k) {
+      centre[k] = all.centre[k][i];
+      axis[k] = all.axis[k][i];
+    }
   }
 };
 
@@ -43,7 +46,8 @@ class CylinderDistances {
     const FrameMap& map = maps.to[side];
     float squared = 0;
     for (int k = 0; k < 3; ++k) {
-      seen_centre_[k] = map.offset[k], seen_axis_[k] = 0;
+      seen_centre_[k] = map.offset[k];
+      seen_axis_[k] = 0;
       for (int j = 0; j < 3; ++j) {
         seen_centre_[k] += map.row[k][j] * other.centre[j];
         seen_axis_[k] += map.row[k][j] * other.axis[j];
@@ -97,7 +101,9 @@ class CylinderDistances {
     float rest = direction_.offset - maps_.to[0].error, squared_v = 0, cosine_v = 0, squared_u = 0;
     for (int k = 0; k < 3; ++k) {
       rest += v[k] * other_.centre[k];
-      squared_v += v[k] * v[k], squared_u += u[k] * u[k], cosine_v += v[k] * other_.axis[k];
+      squared_v += v[k] * v[k];
+      squared_u += u[k] * u[k];
+      cosine_v += v[k] * other_.axis[k];
     }
     rest -= extent_of_other(cosine_v, squared_v);
     const Vec mine = half_extent(radius, half_height, dot(d, axis, u), hn::Set(d, squared_u));
@@ -117,7 +123,8 @@ class CylinderDistances {
     float cosine = 0, squared = 0;
     for (int j = 0; j < 3; ++j) {
       const float v = u[0] * map.row[0][j] + u[1] * map.row[1][j] + u[2] * map.row[2][j];
-      cosine += v * other_.axis[j], squared += v * v;
+      cosine += v * other_.axis[j];
+      squared += v * v;
     }
     return extent_of_other(cosine, squared);
   }

@@ -143,7 +143,10 @@ struct PlacedBox {
   float centre[3], side[3][3] = {};
 
   explicit PlacedBox(const CentredBox& box) {
-    for (int k = 0; k < 3; ++k) centre[k] = box.centre[k], side[k][k] = box.half[k];
+    for (int k = 0; k < 3; ++k) {
+      centre[k] = box.centre[k];
+      side[k][k] = box.half[k];
+    }
   }
   // Transforms a box from O2's frame.
   PlacedBox(const CentredBox& box, const FrameMap& map) {

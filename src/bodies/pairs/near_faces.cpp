@@ -82,7 +82,8 @@ class NearFacesSearch {
       float between = map.offset[k] - box1.centre[k];
       for (int j = 0; j < 3; ++j) between += map.row[k][j] * box2.centre[j];
       squared += between * between;
-      half1 += box1.half[k] * box1.half[k], half2 += box2.half[k] * box2.half[k];
+      half1 += box1.half[k] * box1.half[k];
+      half2 += box2.half[k] * box2.half[k];
     }
     return std::sqrt(squared) + std::sqrt(half1) + map.stretch * std::sqrt(half2) + map.error < reach_;
   }
@@ -124,7 +125,8 @@ class NearFacesSearch {
     uint32_t known1 = near_.of_leaf[0][leaf1], known2 = near_.of_leaf[1][leaf2];
     const uint32_t all1 = (1u << count1) - 1, all2 = (1u << count2) - 1;
     if (known1 == all1 && known2 == all2) return;
-    load_faces(0, leaf1), load_faces(1, leaf2);
+    load_faces(0, leaf1);
+    load_faces(1, leaf2);
     // The first pair that is near: of a leaf without known faces, it is the same whatever is known of others.
     uint32_t first1 = kNone, first2 = kNone;
     const Lanes d;
@@ -139,8 +141,12 @@ class NearFacesSearch {
         if ((open >> i & 1) == 0 || maps_.unit[0] * (least[i] - maps_.to[0].error) > limit_) continue;
         if ((known1 >> i & 1) != 0 && (known2 >> j & 1) != 0) continue;
         if (exact_ && !intersect(faces_[0].first() + i, faces_[1].first() + j)) continue;
-        if (first1 == kNone) first1 = faces_[0].first() + i, first2 = faces_[1].first() + j;
-        known1 |= 1u << i, known2 |= 1u << j;
+        if (first1 == kNone) {
+          first1 = faces_[0].first() + i;
+          first2 = faces_[1].first() + j;
+        }
+        known1 |= 1u << i;
+        known2 |= 1u << j;
       }
     }
     if (first1 == kNone) return;

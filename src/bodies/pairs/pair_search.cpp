@@ -38,7 +38,8 @@ class PairSearch {
 
   // `separate`: the closest faces, or those that intersect, with their points; otherwise faces alone.
   Separation run() {
-    w_.overlapping.clear(), w_.apart.clear();
+    w_.overlapping.clear();
+    w_.apart.clear();
     // Caps of large meshes are mostly too large as long as there is no bound: trying costs a tenth of the
     // search.
     if (!separate || !closest_.bounded() || !pair_caps()) w_.overlapping.assign(1, {});

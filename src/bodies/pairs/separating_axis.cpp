@@ -62,7 +62,11 @@ class SeparatingAxis {
     if (overlap < 0) return true;
     // Compared without roots: overlap / |axis|.
     const double squared = overlap * overlap, size = squared_norm(axis);
-    if (squared * least_size_ < least_ * size) least_ = squared, least_size_ = size, best_ = axis;
+    if (squared * least_size_ < least_ * size) {
+      least_ = squared;
+      least_size_ = size;
+      best_ = axis;
+    }
     return false;
   }
 

@@ -52,7 +52,8 @@ std::uint64_t side_at(const SupportFeature& feature, const Vec2& at) {
     const auto &a = corners[i], &b = corners[(i + 1) % corners.size()];
     const double squared = squared_distance(at, a.at, b.at);
     if (!(squared < least)) continue;
-    least = squared, ends = {a.vertex, b.vertex};
+    least = squared;
+    ends = {a.vertex, b.vertex};
   }
   const std::vector<std::uint32_t>& numbers = feature.convex().vertex;
   std::uint64_t result = 0;
@@ -67,7 +68,8 @@ std::uint64_t side_at(const SupportFeature& feature, const Vec2& at) {
 
 std::span<const Contact> ConvexPatch::find(const shape::PosedBody& o1, const shape::PosedBody& o2,
                                            const Vec3& t, double size, double tolerance) {
-  t_ = t, normal_ = normalized(t) + Vec3{};  // no −0
+  t_ = t;
+  normal_ = normalized(t) + Vec3{};  // no −0
   near_ = kNear * size;
   const ContactPlane plane = plane_across(normal_, centre(o1.box()), size);
   features_[0].find(o1, -normal_, plane);

@@ -33,7 +33,10 @@ struct Plane {
 class Planes {
  public:
   void add(const Plane& plane) {
-    if (count_ == all_.size()) std::shift_left(all_.begin(), all_.end(), 1), --count_;
+    if (count_ == all_.size()) {
+      std::shift_left(all_.begin(), all_.end(), 1);
+      --count_;
+    }
     all_[count_++] = plane;
   }
 

@@ -33,9 +33,13 @@ double OverlapCover::Cube::reach() const {
 }
 
 void OverlapCover::start(const shape::PosedBody& o1, const shape::PosedBody& o2, double error) {
-  bodies_ = {&o1, &o2}, to_frame_ = {inverse(o1.pose().map), inverse(o2.pose().map)}, error_ = error;
+  bodies_ = {&o1, &o2};
+  to_frame_ = {inverse(o1.pose().map), inverse(o2.pose().map)};
+  error_ = error;
   measured_ = 0;
-  pairs_.clear(), deep_.clear(), open_.clear();
+  pairs_.clear();
+  deep_.clear();
+  open_.clear();
   // Lists are used in the same order by each search, so that equal searches need no more memory.
   unused_.resize(lists_.size());
   std::iota(unused_.rbegin(), unused_.rend(), 0u);

@@ -29,8 +29,11 @@ double twice_area(const Vec2& a, const Vec2& b, const Vec2& c) {
 }  // namespace
 
 void SupportFeature::find(const shape::PosedBody& body, const Vec3& up, const ContactPlane& plane) {
-  body_ = &body, convex_ = body.body().convex_solid(), plane_ = plane;
-  faces_.clear(), corners_.clear();
+  body_ = &body;
+  convex_ = body.body().convex_solid();
+  plane_ = plane;
+  faces_.clear();
+  corners_.clear();
   const auto& rows = body.pose().map.rows;
   const Vec3 local = normalized(up[0] * rows[0] + up[1] * rows[1] + up[2] * rows[2]);
   const std::uint32_t farthest = convex::farthest_vertex(*convex_, local);
@@ -38,7 +41,10 @@ void SupportFeature::find(const shape::PosedBody& body, const Vec3& up, const Co
   double most = kNearlyParallel;
   for (const convex::Spoke& spoke : convex_->spokes.of(farthest))
     for (const std::uint32_t face : spoke.faces)
-      if (const double along = dot(convex_->normals[face], local); along > most) most = along, best = face;
+      if (const double along = dot(convex_->normals[face], local); along > most) {
+        most = along;
+        best = face;
+      }
   has_area_ = best != kNone;
   if (has_area_) return find_faces(best);
   find_edge(farthest, local);
@@ -51,8 +57,11 @@ void SupportFeature::find_edge(std::uint32_t vertex, const Vec3& up) {
   faces_.assign(1, convex_->first_face[vertex]);
   for (const convex::Spoke& spoke : convex_->spokes.of(vertex)) {
     const Vec3 along = convex_->points[vertex] - convex_->points[spoke.end];
-    if (const double drop = dot(up, along) / norm(along); drop < least)
-      least = drop, end = spoke.end, faces_[0] = spoke.first_face();
+    if (const double drop = dot(up, along) / norm(along); drop < least) {
+      least = drop;
+      end = spoke.end;
+      faces_[0] = spoke.first_face();
+    }
   }
   for (const std::uint32_t v : {vertex, end})
     if (v != kNone) corners_.push_back({plane_(point(convex_->vertex[v])), convex_->vertex[v]});
@@ -62,7 +71,10 @@ void SupportFeature::find_edge(std::uint32_t vertex, const Vec3& up) {
 void SupportFeature::find_faces(std::uint32_t best) {
   const sites::SitesData& sites = internals(body_->body().sites());
   if (marks_.size() < sites.mesh.triangles.size()) marks_.resize(sites.mesh.triangles.size());
-  if (++search_ == 0) std::ranges::fill(marks_, 0), search_ = 1;
+  if (++search_ == 0) {
+    std::ranges::fill(marks_, 0);
+    search_ = 1;
+  }
   const auto add = [&](std::uint32_t face) {
     if (marks_[face] == search_ || dot(convex_->normals[best], convex_->normals[face]) < kSameFace) return;
     marks_[face] = search_;
@@ -141,8 +153,11 @@ SupportFeature::Above SupportFeature::above_face(const Vec2& at) const {
     const double area = twice_area(corner[0], corner[1], corner[2]);
     Vec3 found;
     for (int k = 0; k < 3; ++k) found[k] = twice_area(at, corner[(k + 1) % 3], corner[(k + 2) % 3]) / area;
-    if (const double least = std::min({found[0], found[1], found[2]}); least > most)
-      most = least, best = face, weights = found;
+    if (const double least = std::min({found[0], found[1], found[2]}); least > most) {
+      most = least;
+      best = face;
+      weights = found;
+    }
   }
   for (double& w : weights) w = std::max(w, 0.0);
   return between(best, (1 / (weights[0] + weights[1] + weights[2])) * weights);

@@ -65,7 +65,10 @@ Body::Body(ArrayReader stored, bool trusted)
   Array<sites::BoundingCylinders> cylinders;
   bool is_convex = false;
   std::vector<std::uint8_t> atlas;
-  stored(cylinders), stored(contact_parts_), stored(is_convex), stored(atlas);
+  stored(cylinders);
+  stored(contact_parts_);
+  stored(is_convex);
+  stored(atlas);
   stored.finish();
   follow_positions();
   const sites::SitesData& sites = internals(sites_);
@@ -80,7 +83,11 @@ void Body::store(const std::function<void(std::span<const std::byte>)>& write) c
   const bool is_convex = convex_ != nullptr;
   const std::vector<std::uint8_t> atlas = surface_ ? surface_->stored_atlas() : std::vector<std::uint8_t>{};
   ArrayWriter list;
-  list(internals(sites_)), list(cylinders_.nodes), list(contact_parts_), list(is_convex), list(atlas);
+  list(internals(sites_));
+  list(cylinders_.nodes);
+  list(contact_parts_);
+  list(is_convex);
+  list(atlas);
   list.write(kFormat, write);
 }
 

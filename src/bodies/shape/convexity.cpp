@@ -35,7 +35,9 @@ class VerticesAbove {
     // The normal of a needle, which is not reliable, excludes nothing.
     normal = kNormalError * sides < kSingleRounding * norm(normal) ? normalized(normal) : Vec3{};
     for (int k = 0; k < 3; ++k) normal_[k] = static_cast<float>(normal[k]);
-    plane_ = plane, height_ = 0, enough_ = enough;
+    plane_ = plane;
+    height_ = 0;
+    enough_ = enough;
     least_ = static_cast<float>(dot(normal, a) - 4 * kSingleRounding);
     tree::visit(sites_.wide, open_, *this);
     return height_;
@@ -101,8 +103,10 @@ double convexity_deficit(const sites::SitesData& sites, const inside::InsideTest
   Vec3 middle{};
   double count = 0, deficit = 0;
   for (const std::uint32_t face : sites.tree.items)
-    for (const std::uint32_t vertex : mesh.triangles[face])
-      count += 1, middle += (1 / count) * (mesh.positions[vertex] - middle);
+    for (const std::uint32_t vertex : mesh.triangles[face]) {
+      count += 1;
+      middle += (1 / count) * (mesh.positions[vertex] - middle);
+    }
   VerticesAbove above(sites);
   for (const std::uint32_t face : sites.tree.items) {
     const auto& [a, b, c] = mesh.triangles[face];

@@ -27,7 +27,10 @@ Sample sample_of(const sites::SitesData& sites, std::size_t k) {
   const std::uint32_t face = sites.tree.items[(2 * k + 1) * faces / (2 * kSamples)];
   const auto n = static_cast<double>(k);
   double u = std::fmod(0.5 + 0.7548776662466927 * n, 1), v = std::fmod(0.5 + 0.5698402909980532 * n, 1);
-  if (u + v > 1) u = 1 - u, v = 1 - v;
+  if (u + v > 1) {
+    u = 1 - u;
+    v = 1 - v;
+  }
   const auto& [i, j, l] = sites.mesh.triangles[face];
   const Vec3 &a = sites.mesh.positions[i], &b = sites.mesh.positions[j], &c = sites.mesh.positions[l];
   const Vec3 normal = normalized(cross(b - a, c - a));

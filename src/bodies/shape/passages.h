@@ -107,8 +107,10 @@ class Passages {
     polygon.count = 3;
     cross(std::span(polygon.corners).first<3>(), solid_.inverted[face] != 0);
     if (column_.side_count == 0) {
-      polygon.clip(-1, 0, -lo(1)), polygon.clip(1, 0, hi(1));
-      polygon.clip(0, -1, -lo(2)), polygon.clip(0, 1, hi(2));
+      polygon.clip(-1, 0, -lo(1));
+      polygon.clip(1, 0, hi(1));
+      polygon.clip(0, -1, -lo(2));
+      polygon.clip(0, 1, hi(2));
     }
     for (std::size_t i = 0; i < column_.side_count; ++i) {
       const Vec3& h = column_.sides[i];
@@ -127,7 +129,8 @@ class Passages {
       const Vec3 &p = corners[(k + 1) % 3], &q = corners[(k + 2) % 3];
       areas[k] = p[1] * q[2] - p[2] * q[1];
       const double rounding = error_ * (std::abs(p[1]) + std::abs(p[2]) + std::abs(q[1]) + std::abs(q[2]));
-      left &= areas[k] > -rounding, right &= areas[k] < rounding;
+      left &= areas[k] > -rounding;
+      right &= areas[k] < rounding;
       clear &= std::abs(areas[k]) > rounding;
     }
     if (!left && !right) return;

@@ -69,8 +69,10 @@ class PosedBody {
   [[nodiscard]] Box tight_box() const {
     const Vec3 reach{ball_.radius, ball_.radius, ball_.radius};
     Box box{ball_.centre - reach, ball_.centre + reach};
-    for (int k = 0; k < 3; ++k)
-      box.lo[k] = std::max(box.lo[k], box_.lo[k]), box.hi[k] = std::min(box.hi[k], box_.hi[k]);
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = std::max(box.lo[k], box_.lo[k]);
+      box.hi[k] = std::min(box.hi[k], box_.hi[k]);
+    }
     return box;
   }
 

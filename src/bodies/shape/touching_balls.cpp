@@ -57,7 +57,9 @@ class TouchingBalls {
   // The bound for points x′ of a triangle.
   double bound(const Corners& at) {
     pieces_[0] = {.at = at};
-    count_ = 1, searches_ = 0, bound_ = 0;
+    count_ = 1;
+    searches_ = 0;
+    bound_ = 0;
     while (count_ > 0) {
       Piece piece = pieces_[--count_];
       if (!settle(piece)) return kNoBound;
@@ -136,8 +138,10 @@ class TouchingBalls {
   bool divide(const Piece& piece, const std::array<std::uint32_t, 3>& mixed) {
     Piece parent{.at = piece.at};  // without other functions
     for (const std::uint32_t m : mixed)
-      if (m != kNone)
-        parent.faces[parent.count] = piece.faces[m], parent.values[parent.count++] = piece.values[m];
+      if (m != kNone) {
+        parent.faces[parent.count] = piece.faces[m];
+        parent.values[parent.count++] = piece.values[m];
+      }
     if (parent.count > 1) {
       const CornerValues difference = parent.values[0] - parent.values[1];
       for (int k = 0; k < 3; ++k) {

@@ -102,9 +102,13 @@ WallColumn WallColumn::around(const Corners& triangle, const Vec3& origin, const
     double x = q[2] - p[2], y = p[1] - q[1];
     const double length = std::hypot(x, y);
     if (!(length > 0)) continue;
-    x /= length, y /= length;
+    x /= length;
+    y /= length;
     // Towards the third corner, if the triangle is seen as a line.
-    if (x * (r[1] - p[1]) + y * (r[2] - p[2]) > 0) x = -x, y = -y;
+    if (x * (r[1] - p[1]) + y * (r[2] - p[2]) > 0) {
+      x = -x;
+      y = -y;
+    }
     column.sides[column.side_count++] = {
         x, y, std::max({x * p[1] + y * p[2], x * q[1] + y * q[2], x * r[1] + y * r[2]})};
   }
@@ -114,7 +118,10 @@ WallColumn WallColumn::around(const Corners& triangle, const Vec3& origin, const
 }
 
 void WallColumn::enlarge(double by) {
-  for (const int a : {1, 2}) lo[a] -= by, hi[a] += by;
+  for (const int a : {1, 2}) {
+    lo[a] -= by;
+    hi[a] += by;
+  }
   for (std::size_t i = 0; i < side_count; ++i) sides[i][2] += by;
 }
 
@@ -122,7 +129,8 @@ WallColumn WallColumn::around(const Ball& ball, const Vec3& u) {
   const Vec3 any = std::abs(u[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 v = normalized(cross(u, any));
   WallColumn column{.origin = ball.centre, .axes = {u, v, cross(u, v)}};
-  column.lo.fill(-ball.radius), column.hi.fill(ball.radius);
+  column.lo.fill(-ball.radius);
+  column.hi.fill(ball.radius);
   return column;
 }
 

@@ -54,7 +54,8 @@ double angle_at_edge(const sites::SitesData& solid, std::uint32_t face, int side
   for (const std::uint32_t v : solid.mesh.triangles[other]) {
     if (v == solid.topology.edges[edge][0] || v == solid.topology.edges[edge][1]) continue;
     const Vec3 to = solid.mesh.positions[v] - from;
-    height = std::max(height, dot(n, to)), reach = std::max(reach, norm(to));
+    height = std::max(height, dot(n, to));
+    reach = std::max(reach, norm(to));
   }
   // No point inside is closest to the interior of a convex edge.
   return height < -kAngleRounding * reach ? 0 : 0.5 * angle(n, m);
@@ -104,7 +105,10 @@ double angle_at_vertex(const sites::SitesData& solid, std::uint32_t vertex) {
     for (const Vec3& n : faces) nearest = std::min(nearest, angle(g, n));
     beside = std::max(beside, nearest);
     for (const Vec3& h : rays)
-      if (dot(g, h) < least) least = dot(g, h), farthest = {g, h};
+      if (dot(g, h) < least) {
+        least = dot(g, h);
+        farthest = {g, h};
+      }
   }
   const Vec3 middle = normalized(farthest[0] + farthest[1]);
   double cap = 0;

@@ -21,7 +21,10 @@ struct AreaVector {
   Vec3 sum{};
   double area = 0;
 
-  void add(const AreaVector& other, double times) { sum += times * other.sum, area += times * other.area; }
+  void add(const AreaVector& other, double times) {
+    sum += times * other.sum;
+    area += times * other.area;
+  }
 };
 
 AreaVector area_vector(const Mesh& mesh, std::size_t face, const Vec3& normal) {

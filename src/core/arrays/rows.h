@@ -30,7 +30,8 @@ struct CompressedRows {
   template <class Self, class Visit>
   static void for_each_member(Self& self, const Visit& visit) {
     auto& [offsets, items] = self;
-    visit(offsets), visit(items);
+    visit(offsets);
+    visit(items);
   }
 };
 

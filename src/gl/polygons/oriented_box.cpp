@@ -112,8 +112,10 @@ OrientedBox around_vertex(const SiteRegion& region, double reach, double slack) 
   Vec3 lo{}, hi{0, 0, reach};
   for (int i = 0; i < edges.count; ++i) {
     const double s = dot(edges.rays[i], side), t = dot(edges.rays[i], other);
-    lo[0] = std::min(lo[0], s), hi[0] = std::max(hi[0], s);
-    lo[1] = std::min(lo[1], t), hi[1] = std::max(hi[1], t);
+    lo[0] = std::min(lo[0], s);
+    hi[0] = std::max(hi[0], s);
+    lo[1] = std::min(lo[1], t);
+    hi[1] = std::max(hi[1], t);
   }
   for (int k = 0; k < 2; ++k) {
     lo[k] = reach * std::max(lo[k] / least, -1.0);

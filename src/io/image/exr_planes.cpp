@@ -108,8 +108,10 @@ std::vector<std::uint8_t> differences(std::span<const std::uint32_t> values) {
   std::vector<std::uint8_t> split(2 * half), result(2 * half);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto value = std::bit_cast<std::array<std::uint8_t, 4>>(values[i]);
-    split[2 * i] = value[0], split[2 * i + 1] = value[2];
-    split[half + 2 * i] = value[1], split[half + 2 * i + 1] = value[3];
+    split[2 * i] = value[0];
+    split[2 * i + 1] = value[2];
+    split[half + 2 * i] = value[1];
+    split[half + 2 * i + 1] = value[3];
   }
   result[0] = split[0];
   for (std::size_t i = 1; i < split.size(); ++i)

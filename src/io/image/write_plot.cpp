@@ -29,14 +29,22 @@ struct Range {
 
   void include(std::span<const double> values) {
     for (const double v : values)
-      if (std::isfinite(v)) lo = std::min(lo, v), hi = std::max(hi, v);
+      if (std::isfinite(v)) {
+        lo = std::min(lo, v);
+        hi = std::max(hi, v);
+      }
   }
   // Makes the range nonempty, even if there are no values or only one.
   void widen() {
-    if (!(lo <= hi)) lo = 0, hi = 1;
+    if (!(lo <= hi)) {
+      lo = 0;
+      hi = 1;
+    }
     const double least = std::max(1e-9 * std::max(std::abs(lo), std::abs(hi)), 1e-30);
-    if (hi - lo < least)
-      lo -= least > 1e-30 ? 0.05 * std::abs(lo) : 0.5, hi += least > 1e-30 ? 0.05 * std::abs(hi) : 0.5;
+    if (hi - lo < least) {
+      lo -= least > 1e-30 ? 0.05 * std::abs(lo) : 0.5;
+      hi += least > 1e-30 ? 0.05 * std::abs(hi) : 0.5;
+    }
   }
   [[nodiscard]] double part(double v) const { return (v - lo) / (hi - lo); }
 };
@@ -99,7 +107,8 @@ void draw_panel(Canvas& canvas, double top, std::span<const double> places, cons
   Frame frame{top + kTop, {}, {}};
   frame.x.include(places);
   for (const Curve& curve : panel.curves) frame.y.include(curve.values);
-  frame.x.widen(), frame.y.widen();
+  frame.x.widen();
+  frame.y.widen();
   canvas.set_color(kInk);
   canvas.text(kLeft, top + kTop - 12, panel.title, kTitleSize, kWidth / 2, true);
   draw_grid(canvas, frame);

@@ -51,7 +51,10 @@ void write_distance_png(const std::filesystem::path& file, const Surface& surfac
   const AtlasPicture picture(surface, options.largest);
   float least = std::numeric_limits<float>::infinity(), most = -least;
   for (const float d : std::span(map.distance).first(map.texels()))
-    if (std::isfinite(d)) least = std::min(least, d), most = std::max(most, d);
+    if (std::isfinite(d)) {
+      least = std::min(least, d);
+      most = std::max(most, d);
+    }
   LegendText text = legend_text(map, least, most, scale, options.units);
   if (least <= most)  // views.png and the reports have those of the vertices too
     for (std::size_t i = 0; i < 2; ++i) text.notes[i] += " (texels)";

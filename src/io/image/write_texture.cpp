@@ -22,10 +22,16 @@ PictureOptions texture_range(const PictureOptions& options, const DistanceStatis
   if (options.range) return fixed_colors(plain, distances);
   // A texture is data: no outlier is cut off, and nothing is rounded.
   double lo = distances.texels > 0 ? distances.min : 0, hi = distances.texels > 0 ? distances.max : 0;
-  if (std::max(std::abs(lo), std::abs(hi)) <= options.accuracy) lo = 0, hi = options.accuracy;
+  if (std::max(std::abs(lo), std::abs(hi)) <= options.accuracy) {
+    lo = 0;
+    hi = options.accuracy;
+  }
   if (plain.colormap == Colormap::automatic)
     plain.colormap = lo < 0 && hi > 0 ? Colormap::diverging : Colormap::viridis;
-  if (plain.colormap == Colormap::diverging) hi = std::max(std::abs(lo), std::abs(hi)), lo = -hi;
+  if (plain.colormap == Colormap::diverging) {
+    hi = std::max(std::abs(lo), std::abs(hi));
+    lo = -hi;
+  }
   if (!(lo < hi)) hi = lo + (lo != 0 ? std::abs(lo) : 1);
   plain.range = {lo, hi};
   return plain;

@@ -47,7 +47,8 @@ std::vector<Mark> marks_of(const std::optional<Extremes>& extremes, const std::s
     marks.push_back({extreme.point, std::string(name) + " " + value_label(extreme.distance) +
                                         (units.empty() ? "" : " " + units)});
   };
-  add("min", extremes->min), add("max", extremes->max);
+  add("min", extremes->min);
+  add("max", extremes->max);
   return marks;
 }
 

@@ -50,8 +50,10 @@ Json extremes_json(const Summary& summary) {
   Json json{{"min", to_json(summary.extremes->min)}, {"max", to_json(summary.extremes->max)}};
   if (!summary.of_points) return json;
   for (const auto& [key, index] :
-       {std::pair("min", summary.extreme_points[0]), std::pair("max", summary.extreme_points[1])})
-    json[key]["at"] = "point", json[key]["index"] = index;
+       {std::pair("min", summary.extreme_points[0]), std::pair("max", summary.extreme_points[1])}) {
+    json[key]["at"] = "point";
+    json[key]["index"] = index;
+  }
   return json;
 }
 
@@ -236,7 +238,10 @@ Json to_json(const Summary& summary) {
   json["measured"]["settings"] = settings_json(summary.measured.settings);
   json["sign"] = fields_json(summary.sign);
   json["distance"] = to_json(d);
-  if (summary.of_points) json["distance"]["kind"] = "bounded", json["distance"]["weights"] = "points";
+  if (summary.of_points) {
+    json["distance"]["kind"] = "bounded";
+    json["distance"]["weights"] = "points";
+  }
   json["extremes"] = extremes_json(summary);
   json[summary.of_points ? "points_with_value" : "texels_with_value"] = d.texels;
   json[summary.of_points ? "negative_points" : "negative_texels"] = d.negative_texels;

@@ -53,7 +53,8 @@ bool PlyAttributes::add_group(const PlyHeader::Element& element, const char* nam
                               std::initializer_list<std::string_view> properties,
                               std::vector<std::size_t>& others) {
   Column column;
-  column.attribute.name = name, column.attribute.components = properties.size();
+  column.attribute.name = name;
+  column.attribute.components = properties.size();
   column.attribute.domain = domain;
   for (const std::string_view property : properties) {
     const auto place = element.find({property});

@@ -69,7 +69,8 @@ class MtlReader {
  private:
   void begin() {
     materials_.list.emplace_back().name = words_of_line();
-    diffuse_.reset(), emitted_.reset();
+    diffuse_.reset();
+    emitted_.reset();
   }
   void read_statement(Material& material) {
     if (in_.accept("Kd")) {

@@ -25,7 +25,10 @@ struct HighestIndex {
   const char* at = nullptr;
 
   void add(std::uint32_t other, const char* place) {
-    if (!at || other > index) index = other, at = place;
+    if (!at || other > index) {
+      index = other;
+      at = place;
+    }
   }
 };
 
@@ -153,7 +156,8 @@ class ObjReader {
         with_attributes_ ? "texture coordinates that do not exist are" : "the texture coordinates are",
         in_.line_of(impossible_uv_->second), impossible_uv_->first, mesh_.uvs.size()));
     if (!with_attributes_) {  // a mesh has them at all corners, attributes at some
-      mesh_.uvs.clear(), mesh_.corner_uvs.clear();
+      mesh_.uvs.clear();
+      mesh_.corner_uvs.clear();
       return;
     }
     for (std::uint32_t& row : mesh_.corner_uvs)

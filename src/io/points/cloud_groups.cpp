@@ -50,7 +50,8 @@ void CloudGroups::add_facing(std::uint32_t face, double d) {
 void CloudGroups::count(std::uint32_t face, double d, double accuracy) {
   for_each_row(face, [&](std::size_t r) {
     const map::ToleranceLimits limits(rows_.rows[r].group.tolerance, accuracy);
-    found_[r].below += limits.below(d), found_[r].above += limits.above(d);
+    found_[r].below += limits.below(d);
+    found_[r].above += limits.above(d);
   });
 }
 
@@ -71,7 +72,8 @@ GroupVerdicts CloudGroups::verdicts(const PointsWithoutGroup& without_group, con
     const summary::GroupRows::Row& row = rows_.rows[r];
     const Found& found = found_[r];
     Evidence evidence = like;
-    evidence.lowest = found.range.lowest, evidence.highest = found.range.highest;
+    evidence.lowest = found.range.lowest;
+    evidence.highest = found.range.highest;
     evidence.estimated_signs = has_estimated_signs(measured_, sign_);
     if (sign_ == SignMethod::side &&
         summary::passes_by_side(evidence, row.group.tolerance,
@@ -94,8 +96,10 @@ GroupVerdicts CloudGroups::verdicts(const PointsWithoutGroup& without_group, con
 
 Evidence facing_evidence(const Evidence& like, const summary::DistanceRange& range, bool unmatched) {
   Evidence evidence = like;
-  evidence.lowest = range.lowest, evidence.highest = range.highest;
-  evidence.complete = !unmatched, evidence.unmatched = unmatched;
+  evidence.lowest = range.lowest;
+  evidence.highest = range.highest;
+  evidence.complete = !unmatched;
+  evidence.unmatched = unmatched;
   evidence.estimated_signs = false;
   evidence.thin_walls = std::numeric_limits<double>::infinity();
   return evidence;

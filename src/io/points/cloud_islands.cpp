@@ -35,7 +35,10 @@ PointCells cells_of(const std::filesystem::path& cloud, const CloudIslandsOption
   if (options.chunk == 0) throw Error("the number of points in memory must be greater than 0");
   UsualBox usual;
   std::uint64_t count = 0;
-  for_each_point(cloud, options, [&](const Vec3& p) { usual.add(p), ++count; });
+  for_each_point(cloud, options, [&](const Vec3& p) {
+    usual.add(p);
+    ++count;
+  });
   PointCells cells(usual.box(), count);
   for_each_point(cloud, options, [&](const Vec3& p) { cells.add(p, 0, {.points = 1}); });
   return cells;

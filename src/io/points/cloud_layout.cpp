@@ -163,7 +163,8 @@ CloudLayout las_layout(std::string_view bytes) {
     throw Error("the header of the LAS file has impossible sizes; it is damaged");
   for (std::size_t k = 0; k < 3; ++k) {
     layout.columns[k] = {4 * k, Type::int32};
-    layout.scale[k] = at(131 + 8 * k, double{}), layout.offset[k] = at(155 + 8 * k, double{});
+    layout.scale[k] = at(131 + 8 * k, double{});
+    layout.offset[k] = at(155 + 8 * k, double{});
     if (!std::isfinite(layout.scale[k]) || !std::isfinite(layout.offset[k]) || layout.scale[k] == 0)
       throw Error("the scale or the offset in the header of the LAS file is zero or not a number");
   }

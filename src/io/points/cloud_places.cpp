@@ -40,7 +40,8 @@ Places CloudPlaces::places(std::span<const FaceNames> names) const {
   constexpr double kLeastFraction = 1e-5, kLeastPoints = 4;
   const auto all = static_cast<double>(std::max<std::uint64_t>(found_.counted(), 1));
   Places result;
-  result.limits = limits_.of_all(), result.by_tolerance = limits_.by_tolerance();
+  result.limits = limits_.of_all();
+  result.by_tolerance = limits_.by_tolerance();
   result.least_fraction = std::clamp(kLeastPoints / all, kLeastFraction, 1.0);
   std::vector<Place> places;
   for (const CellPoints& cluster : cells_.clusters())

@@ -102,7 +102,8 @@ class Measurement {
     if (map.facing && !result_.has_normals)
       throw Error(cloud_ + ": the cloud has no normals, by which the faces that face its points are chosen");
     if (!options_.along) {
-      result_.sign = choose_sign(sites_, map), result_.measured = measured_distance(map);
+      result_.sign = choose_sign(sites_, map);
+      result_.measured = measured_distance(map);
       return;
     }
     if (map.facing || map.engine || map.sign != SignMethod::automatic)
@@ -223,9 +224,12 @@ class Measurement {
   [[nodiscard]] std::vector<std::uint8_t> signs_of(std::span<const ClosestPoint> closest) const {
     if (!lacks_boundary_signs(result_.measured.kind, result_.sign.method)) return {};
     DistanceMap map;
-    map.site.resize(closest.size()), map.site_type.resize(closest.size());
-    for (std::size_t i = 0; i < closest.size(); ++i)
-      map.site[i] = closest[i].site, map.site_type[i] = closest[i].type;
+    map.site.resize(closest.size());
+    map.site_type.resize(closest.size());
+    for (std::size_t i = 0; i < closest.size(); ++i) {
+      map.site[i] = closest[i].site;
+      map.site_type[i] = closest[i].type;
+    }
     std::vector<std::uint8_t> flags = boundary_mask(sites_, map);
     for (std::uint8_t& flag : flags) flag = flag == 0 ? 1 : 0;
     return flags;
@@ -236,7 +240,8 @@ class Measurement {
                                   const MapOptions& map) const {
     if (options_.along) {
       AlongOptions along = *options_.along;
-      along.max_distance = map.max_distance, along.progress = {};
+      along.max_distance = map.max_distance;
+      along.progress = {};
       return closest_points_along(sites_, queries, normals, along);
     }
     if (map.facing) {
@@ -278,7 +283,10 @@ class Measurement {
       ++result_.islands->points;
       return;
     }
-    if (valid) extend(result_.bounds, point), usual_.add(point);
+    if (valid) {
+      extend(result_.bounds, point);
+      usual_.add(point);
+    }
     result_.beyond_max_distance += valid && !has_value && !unmatched;
     result_.without_match += valid && unmatched;
     if (!has_value) return;

@@ -38,7 +38,8 @@ Box UsualBox::box() const {
     std::vector<double> along;
     for (const Vec3& p : sample_) along.push_back(p[k]);
     std::ranges::sort(along);
-    box.lo[k] = along[outside], box.hi[k] = along[along.size() - 1 - outside];
+    box.lo[k] = along[outside];
+    box.hi[k] = along[along.size() - 1 - outside];
   }
   return box;
 }
@@ -99,7 +100,9 @@ void PointCells::find_clusters(std::vector<Cell>& keys, std::vector<std::uint32_
   for (std::uint32_t i = 0; i < keys.size(); ++i) {
     for (int n = 0; n < 13; ++n) {  // half of the 26 around it
       Cell other = keys[i];
-      other.at[0] += n / 9 - 1, other.at[1] += n / 3 % 3 - 1, other.at[2] += n % 3 - 1;
+      other.at[0] += n / 9 - 1;
+      other.at[1] += n / 3 % 3 - 1;
+      other.at[2] += n % 3 - 1;
       const auto found = std::ranges::lower_bound(keys, other);
       if (found != keys.end() && *found == other)
         sets.unite(i, static_cast<std::uint32_t>(found - keys.begin()));

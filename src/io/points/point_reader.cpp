@@ -76,7 +76,10 @@ PointSample sample_points(const std::filesystem::path& file, std::size_t most,
         const std::uint64_t place = seen < most ? seen : random() % (seen + 1);
         ++seen;
         if (place >= most) continue;
-        if (place == sample.points.size()) sample.points.emplace_back(), sample.normals.emplace_back();
+        if (place == sample.points.size()) {
+          sample.points.emplace_back();
+          sample.normals.emplace_back();
+        }
         sample.points[place] = p;
         if (!normals.empty()) sample.normals[place] = normals[i];
       }

@@ -33,7 +33,8 @@ Summary summarize(const PointDistances& found, const PointDistancesOptions& opti
   if (found.min) {
     summary.extremes = {{found.min->distance, found.min->point}, {found.max->distance, found.max->point}};
     summary.extreme_points = {found.min->index, found.max->index};
-    summary.evidence.lowest = found.min->distance, summary.evidence.highest = found.max->distance;
+    summary.evidence.lowest = found.min->distance;
+    summary.evidence.highest = found.max->distance;
   }
   if (found.note_on_walls) summary.notes.push_back(*found.note_on_walls);
   if (!picture.tolerance) return summary;

@@ -133,8 +133,10 @@ std::vector<NamedFaces> faces_of_groups(std::span<const FaceNames> names,
         result[row].kind = kind.kind;
         if (first)
           copies.emplace_back(*first, row);
-        else
-          first = row, faces_of[n] = &result[row].faces;
+        else {
+          first = row;
+          faces_of[n] = &result[row].faces;
+        }
       }
     }
     for (std::uint32_t f = 0; f < kind.of_face.size(); ++f)

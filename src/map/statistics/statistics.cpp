@@ -34,13 +34,20 @@ std::optional<Extremes> extremes(const Surface& surface, const DistanceMap& map,
   for (std::size_t texel = 0; texel < owners.size(); ++texel) {
     const double d = map.distance[texel];
     if (owners[texel] == kNone || std::isinf(d)) continue;
-    if (less(d)) result.min.distance = d, least = texel;
-    if (greater(d)) result.max.distance = d, most = texel;
+    if (less(d)) {
+      result.min.distance = d;
+      least = texel;
+    }
+    if (greater(d)) {
+      result.max.distance = d;
+      most = texel;
+    }
   }
   const auto place = [&](Extreme& extreme, std::size_t texel) {
     if (!std::isnan(extreme.distance)) extreme.point = surface.texel_point(static_cast<std::uint32_t>(texel));
   };
-  place(result.min, least), place(result.max, most);
+  place(result.min, least);
+  place(result.max, most);
   for (const Triangle& triangle : surface.mesh().triangles) {
     if (is_removed(triangle)) continue;
     for (const std::uint32_t v : triangle) {

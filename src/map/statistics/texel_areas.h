@@ -52,7 +52,8 @@ namespace sdm::map {
         std::min(static_cast<int>(kStrataPerOctave * std::log2(kFewTexels / size)), kStrata - 1);
     stratum_of[face] = static_cast<std::uint8_t>(below);
     areas[face] = texel;
-    strata[below].faces += area, strata[below].texels += samples[face] * texel;
+    strata[below].faces += area;
+    strata[below].texels += samples[face] * texel;
   }
   for (std::uint32_t face = 0; face < areas.size(); ++face)
     if (stratum_of[face] < kStrata)

@@ -21,16 +21,26 @@ struct WeightedSums {
   float least = std::numeric_limits<float>::infinity(), most = -least;
 
   void add(float d, double weight) {
-    ++texels, negative += d < 0;
-    area += weight, distance += weight * d, square += weight * d * d, magnitude += weight * std::abs(d);
+    ++texels;
+    negative += d < 0;
+    area += weight;
+    distance += weight * d;
+    square += weight * d * d;
+    magnitude += weight * std::abs(d);
     negative_area += d < 0 ? weight : 0;
-    least = std::min(least, d), most = std::max(most, d);
+    least = std::min(least, d);
+    most = std::max(most, d);
   }
   void operator+=(const WeightedSums& other) {
-    texels += other.texels, negative += other.negative;
-    area += other.area, distance += other.distance;
-    square += other.square, magnitude += other.magnitude, negative_area += other.negative_area;
-    least = std::min(least, other.least), most = std::max(most, other.most);
+    texels += other.texels;
+    negative += other.negative;
+    area += other.area;
+    distance += other.distance;
+    square += other.square;
+    magnitude += other.magnitude;
+    negative_area += other.negative_area;
+    least = std::min(least, other.least);
+    most = std::max(most, other.most);
   }
 };
 
@@ -61,9 +71,14 @@ DistanceStatistics statistics_of(const WeightedSums& all, const Percentiles& per
   const std::vector<float> values = percentiles(false, std::span(kShares)),
                            magnitudes = all.negative > 0 ? percentiles(true, std::span(kMagnitudeShares))
                                                          : std::vector(values.begin() + 2, values.end());
-  result.p01 = values[0], result.p05 = values[1], result.p50 = values[2];
-  result.p95 = values[3], result.p99 = values[4];
-  result.p50_abs = magnitudes[0], result.p95_abs = magnitudes[1], result.p99_abs = magnitudes[2];
+  result.p01 = values[0];
+  result.p05 = values[1];
+  result.p50 = values[2];
+  result.p95 = values[3];
+  result.p99 = values[4];
+  result.p50_abs = magnitudes[0];
+  result.p95_abs = magnitudes[1];
+  result.p99_abs = magnitudes[2];
   result.p999_abs = magnitudes[3];
   return result;
 }

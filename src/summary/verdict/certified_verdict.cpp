@@ -43,13 +43,15 @@ Judgement judge(const Judgement& of_samples, const ToleranceProof& proof) {
   result.nearest_is_lower = proof.witness ? proof.at_lower : of_samples.nearest_is_lower;
   switch (proof.proof) {
     case Proof::holds:
-      result.verdict = Verdict::pass, result.reason = VerdictReason::all_within;
+      result.verdict = Verdict::pass;
+      result.reason = VerdictReason::all_within;
       result.certified = true;
       break;
     case Proof::fails:
       result.verdict = Verdict::fail;
       result.reason = proof.witness ? VerdictReason::exceeded : VerdictReason::without_match;
-      result.certified = true, result.within = false;
+      result.certified = true;
+      result.within = false;
       break;
     case Proof::undecided:
       result.verdict = Verdict::not_decided;
@@ -122,22 +124,27 @@ void summary::Certifier::decide_by_facing(CertifiedVerdict& verdict, const Faces
   verdict.by_facing = verdict.proof && verdict.proof->proof != Proof::undecided;
   if (*verdict.by_facing)
     static_cast<Judgement&>(verdict) = judge(verdict, *verdict.proof);
-  else if (!options_.accept_doubts)
-    verdict.verdict = Verdict::doubtful, verdict.reason = VerdictReason::in_doubt;
+  else if (!options_.accept_doubts) {
+    verdict.verdict = Verdict::doubtful;
+    verdict.reason = VerdictReason::in_doubt;
+  }
 }
 
 void summary::decide_thin_walls(CertifiedVerdict& verdict, const std::optional<Evidence>& by_facing,
                                 bool accept_doubts) {
   if (verdict.reason != VerdictReason::thin_walls) return;
-  verdict.verdict = Verdict::pass, verdict.reason = VerdictReason::all_within;
+  verdict.verdict = Verdict::pass;
+  verdict.reason = VerdictReason::all_within;
   verdict.certified = true;
   Judgement other{.verdict = Verdict::not_decided};
   if (by_facing) other = judge(*by_facing, verdict.tolerance);
   verdict.by_facing = other.verdict != Verdict::not_decided;
   if (*verdict.by_facing)
     static_cast<Judgement&>(verdict) = other;
-  else if (!accept_doubts)
-    verdict.verdict = Verdict::doubtful, verdict.reason = VerdictReason::in_doubt;
+  else if (!accept_doubts) {
+    verdict.verdict = Verdict::doubtful;
+    verdict.reason = VerdictReason::in_doubt;
+  }
 }
 
 CertifiedVerdict summary::Certifier::operator()(const ToleranceVerdict& verdict, const Faces& faces) {
@@ -182,7 +189,8 @@ void withhold_pass(Summary& summary, bool accept_doubts) {
   if (!summary.tolerance || summary.doubts.empty() || accept_doubts) return;
   CertifiedVerdict& verdict = *summary.tolerance;
   if (verdict.verdict != Verdict::pass) return;
-  verdict.verdict = Verdict::doubtful, verdict.reason = VerdictReason::in_doubt;
+  verdict.verdict = Verdict::doubtful;
+  verdict.reason = VerdictReason::in_doubt;
 }
 
 }  // namespace sdm

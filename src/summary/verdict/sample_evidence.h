@@ -75,7 +75,8 @@ class SignedSamples {
 
 /// A failure by samples without a sign is none.
 inline void withhold_failure(Judgement& judgement) {
-  judgement.verdict = Verdict::not_decided, judgement.reason = VerdictReason::estimated_signs;
+  judgement.verdict = Verdict::not_decided;
+  judgement.reason = VerdictReason::estimated_signs;
   judgement.within = true;
 }
 

@@ -24,7 +24,10 @@ Corners random_triangle(std::mt19937& random, int kind) {
   if (kind == 2) t[2] = t[0] + s * (t[1] - t[0]) + 1e-9 * Vec3{1, 2, 3};  // a needle
   if (kind == 3) t[1] = t[0];                                             // a segment
   if (kind == 4) t[1] = t[2] = t[0];                                      // a point
-  if (kind == 5) t[1] = t[0] + 1e-6 * (t[1] - t[0]), t[2] = t[0] + 1e-6 * (t[2] - t[0]);
+  if (kind == 5) {
+    t[1] = t[0] + 1e-6 * (t[1] - t[0]);
+    t[2] = t[0] + 1e-6 * (t[2] - t[0]);
+  }
   return t;
 }
 
@@ -104,7 +107,10 @@ TEST(Part, BoundsContainAllDistances) {
     for (int i = 0; i < pieces.count; ++i) most = std::max(most, pieces.part[i].upper);
     for (int i = 0; i < 60; ++i) {
       Vec3 w{weight(random), weight(random), weight(random)};
-      if (i < 3) w = {}, w[i] = 1;
+      if (i < 3) {
+        w = {};
+        w[i] = 1;
+      }
       w = (1 / (w[0] + w[1] + w[2])) * w;
       const double d = nearest(w[0] * part.at[0] + w[1] * part.at[1] + w[2] * part.at[2]);
       ASSERT_LE(d, part.upper + 1e-14);

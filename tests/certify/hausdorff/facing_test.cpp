@@ -124,8 +124,10 @@ Mesh plate(std::uint32_t n) {
     const auto wall = [&](std::uint32_t from, std::uint32_t to) {
       quad(to, from, bottom + from, bottom + to);
     };
-    wall(i, i + 1), wall(n * row + i + 1, n * row + i);
-    wall((i + 1) * row, i * row), wall(i * row + n, (i + 1) * row + n);
+    wall(i, i + 1);
+    wall(n * row + i + 1, n * row + i);
+    wall((i + 1) * row, i * row);
+    wall(i * row + n, (i + 1) * row + n);
   }
   return mesh;
 }

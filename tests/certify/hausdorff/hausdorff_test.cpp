@@ -217,7 +217,8 @@ TEST(Hausdorff, BoundsOfAllPrecisionsOverlap) {
   for (double precision = 0.1; precision > 1e-11; precision /= 10) {
     const HausdorffDistance found = one_sided_hausdorff(a, sites, {.precision = precision});
     check(found, a, b, precision);
-    lower = std::max(lower, found.distance.lower), upper = std::min(upper, found.distance.upper);
+    lower = std::max(lower, found.distance.lower);
+    upper = std::min(upper, found.distance.upper);
     EXPECT_LE(lower, upper) << precision;
   }
   EXPECT_LE(upper - lower, 1e-10);

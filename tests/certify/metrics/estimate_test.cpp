@@ -128,7 +128,8 @@ std::map<std::string, int> hits(const Mesh& a, const Mesh& b, MetricsOptions opt
       const auto count = [&](const std::string& name, const BoundedNumber& number, double expected) {
         result[name + std::to_string(from)] += number.lower <= expected && expected <= number.upper;
       };
-      count("mean", m.mean, truth.mean.value), count("rms", m.rms, truth.rms.value);
+      count("mean", m.mean, truth.mean.value);
+      count("rms", m.rms, truth.rms.value);
       for (std::size_t i = 0; i < m.percentiles.size(); ++i)
         count("percentile", m.percentiles[i], truth.percentiles[i].value);
     }
@@ -184,7 +185,8 @@ TEST(MetricsEstimate, AgreesWithCertifiedBounds) {
                            .precision = 3e-3 * size,
                            .fraction_precision = 1e-2};
     const SurfaceMetrics certified = surface_metrics(a, b, options);
-    options.estimate = true, options.most_points = 8192;
+    options.estimate = true;
+    options.most_points = 8192;
     const SurfaceMetrics estimated = surface_metrics(a, b, options);
     expect_consistent(certified, estimated, options);
     EXPECT_EQ(estimated.confidence, 0.99);

@@ -47,9 +47,15 @@ struct Sampled {
     for (const Vec3& p : random_surface_points(a, points, random)) sorted.push_back(distance(p));
     std::ranges::sort(sorted);
     double fourth = 0;
-    for (const double d : sorted) mean += d, square += d * d, fourth += d * d * d * d;
+    for (const double d : sorted) {
+      mean += d;
+      square += d * d;
+      fourth += d * d * d * d;
+    }
     const auto n = static_cast<double>(points);
-    mean /= n, square /= n, fourth /= n;
+    mean /= n;
+    square /= n;
+    fourth /= n;
     mean_error = std::sqrt(std::max(0.0, square - mean * mean) / n);
     square_error = std::sqrt(std::max(0.0, fourth - square * square) / n);
   }
@@ -96,7 +102,8 @@ void expect_close(const DirectedMetrics& m, const MetricsOptions& options, doubl
     const double asked = std::max(options.precision.value_or(usual), O::kLeast * size);
     EXPECT_LE(number.upper - number.lower, asked + 1e-11 * size);
   };
-  check(m.mean), check(m.rms);
+  check(m.mean);
+  check(m.rms);
   for (const BoundedNumber& p : m.percentiles) check(p);
   for (const BoundedNumber& f : m.within) EXPECT_LE(f.upper - f.lower, options.fraction_precision + 1e-11);
 }
@@ -121,7 +128,9 @@ TEST(LinearOnTriangle, AgreesWithSums) {
       for (int j = 0; i + j < kSide; ++j, ++cells) {
         const double u = (i + 1.0 / 3) / kSide, v = (j + 1.0 / 3) / kSide;
         const double f = at[0] + u * (at[1] - at[0]) + v * (at[2] - at[0]);
-        mean += std::max(0.0, f), square += std::max(0.0, f) * std::max(0.0, f), within += f <= limit ? 1 : 0;
+        mean += std::max(0.0, f);
+        square += std::max(0.0, f) * std::max(0.0, f);
+        within += f <= limit ? 1 : 0;
       }
     EXPECT_NEAR(linear.mean(), mean / cells, 0.01);
     EXPECT_NEAR(linear.mean_square(), square / cells, 0.01);
@@ -156,7 +165,10 @@ TEST(MetricParts, BoundTheDistanceOfEachPoint) {
         if (step % 2 == 1) bound_thoroughly(b, part);
         for (int k = 0; k < 8; ++k) {
           double s = unit(random), t = unit(random);
-          if (s + t > 1) s = 1 - s, t = 1 - t;
+          if (s + t > 1) {
+            s = 1 - s;
+            t = 1 - t;
+          }
           const Vec3 weights{1 - s - t, s, t};
           Vec3 p{};
           for (int i = 0; i < 3; ++i) p = p + weights[i] * part.corner[i].at;
@@ -204,7 +216,9 @@ Mesh measured_block(int n, double noise) {
         for (int j = 0; j < n; ++j) {
           const auto corner = [&](int u, int v) {
             std::array<int, 3> at{};
-            at[axis] = side, at[(axis + 1) % 3] = i + u, at[(axis + 2) % 3] = j + v;
+            at[axis] = side;
+            at[(axis + 1) % 3] = i + u;
+            at[(axis + 2) % 3] = j + v;
             return vertex(at);
           };
           const std::array<std::uint32_t, 4> quad{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
@@ -322,14 +336,17 @@ TEST(SurfaceMetrics, CloserBoundsAgreeWithWiderOnes) {
   MetricsOptions options{.tolerances = {0.1}};
   DirectedMetrics before = surface_metrics(a, b, options).from[0];
   for (const double precision : {1e-2, 1e-3, 3e-4}) {
-    options.precision = precision, options.fraction_precision = precision;
+    options.precision = precision;
+    options.fraction_precision = precision;
     const DirectedMetrics m = surface_metrics(a, b, options).from[0];
     expect_close(m, options, scene_diagonal(a, b));
     const auto agree = [](const BoundedNumber& x, const BoundedNumber& y) {
       EXPECT_LE(std::max(x.lower, y.lower), std::min(x.upper, y.upper));
     };
-    agree(m.mean, before.mean), agree(m.rms, before.rms);
-    agree(m.percentiles[0], before.percentiles[0]), agree(m.within[0], before.within[0]);
+    agree(m.mean, before.mean);
+    agree(m.rms, before.rms);
+    agree(m.percentiles[0], before.percentiles[0]);
+    agree(m.within[0], before.within[0]);
     before = m;
   }
 }

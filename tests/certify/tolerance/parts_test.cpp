@@ -29,7 +29,8 @@ TEST(PartVerdicts, GoodPartsPassAndDefectsFail) {
       const CertifiedVerdict verdict = verdict_of(good, sites, kLimit);
       EXPECT_EQ(verdict.verdict, Verdict::pass) << static_cast<int>(verdict.reason);
       EXPECT_TRUE(verdict.certified);
-      passed += verdict.verdict == Verdict::pass, proofs += verdict.proof.has_value();
+      passed += verdict.verdict == Verdict::pass;
+      proofs += verdict.proof.has_value();
     }
     const CertifiedVerdict verdict = verdict_of(with_defect(part, kLimit), sites, kLimit);
     EXPECT_EQ(verdict.verdict, Verdict::fail);

@@ -51,7 +51,8 @@ Extent extent_of(const Mesh& a, const SignedOracle& distance, int n) {
     for (int i = 0; i <= n; ++i)
       for (int j = 0; i + j <= n; ++j) {
         const double d = distance(p + (1.0 * i / n) * u + (1.0 * j / n) * v);
-        extent.lowest = std::min(extent.lowest, d), extent.highest = std::max(extent.highest, d);
+        extent.lowest = std::min(extent.lowest, d);
+        extent.highest = std::max(extent.highest, d);
       }
   }
   return extent;

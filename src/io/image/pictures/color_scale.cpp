@@ -79,7 +79,10 @@ Rgb ColorScale::band(double distance) const {
 
 ColorScale color_scale(const PictureOptions& fixed) {
   ColorScale scale{.map = fixed.colormap, .accuracy = fixed.accuracy};
-  if (fixed.colormap == Colormap::automatic) scale.map = Colormap::viridis, scale.tolerance = fixed.tolerance;
+  if (fixed.colormap == Colormap::automatic) {
+    scale.map = Colormap::viridis;
+    scale.tolerance = fixed.tolerance;
+  }
   std::tie(scale.lo, scale.hi) = std::pair((*fixed.range)[0], (*fixed.range)[1]);
   return scale;
 }
@@ -118,7 +121,8 @@ ColorChoice color_choice(const PictureOptions& options) {
 
 PictureOptions fixed_colors(const PictureOptions& options, const ColorRange& colors) {
   PictureOptions fixed = options;
-  fixed.colormap = colors.colormap, fixed.range = colors.range;
+  fixed.colormap = colors.colormap;
+  fixed.range = colors.range;
   return fixed;
 }
 

@@ -10,7 +10,7 @@ namespace {
 /// The scale with these limits.
 ColorScale banded(ColorScale scale, const Tolerance& t) {
   const auto [lo, hi] = std::pair(scale.lo, scale.hi);
-  scale.lo = rules::banded_lo(t.lower, t.upper, lo, hi),
+  scale.lo = rules::banded_lo(t.lower, t.upper, lo, hi);
   scale.hi = rules::banded_hi(t.lower, t.upper, lo, hi);
   scale.tolerance = t;
   return scale;

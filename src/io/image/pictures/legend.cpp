@@ -77,7 +77,8 @@ std::vector<ScaleLabel> scale_labels(const ColorScale& scale) {
     const bool is_round = std::abs(steps - std::round(steps)) < 1e-6;
     labels.push_back({value, close ? "" : is_round ? tick_label(value, step) : value_label(value), is_limit});
   };
-  add(lo, false), add(hi, false);
+  add(lo, false);
+  add(hi, false);
   if (scale.tolerance)
     for (const double limit : {scale.tolerance->lower, scale.tolerance->upper})
       if (limit > lo && limit < hi) add(limit, true);

@@ -56,7 +56,10 @@ Picture draw_site_legend(std::uint32_t rows, bool has_missing) {
     y += type == SiteType::face ? 34 : kRow;
     text(name, 15, false);
     double x = kEdge;
-    for (const Rgb color : examples(type)) swatch(x, color), x += kSwatch + 4;
+    for (const Rgb color : examples(type)) {
+      swatch(x, color);
+      x += kSwatch + 4;
+    }
   }
   if (has_missing) {
     y += kRow;

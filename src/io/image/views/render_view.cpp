@@ -81,7 +81,10 @@ class SurfaceColors {
           const std::size_t texel = texel_at(column, row);
           if (!is_of_chart(texel, chart)) continue;
           const double away = std::max(std::abs(column + 0.5 - place[0]), std::abs(row + 0.5 - place[1]));
-          if (away < nearest) nearest = away, found = texel;
+          if (away < nearest) {
+            nearest = away;
+            found = texel;
+          }
         }
       if (found) return color_of_texel(*found);
     }

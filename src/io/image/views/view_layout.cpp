@@ -76,7 +76,8 @@ ViewLayout layout_views(const Box& box, UpAxis up_axis) {
     }
     x += width + kViewGap;
   }
-  layout.width = x, layout.height = 2 * height + 3 * kViewGap;
+  layout.width = x;
+  layout.height = 2 * height + 3 * kViewGap;
   return layout;
 }
 
@@ -96,8 +97,10 @@ Projection view_from(std::span<const Box> boxes, const Vec3& towards, UpAxis up_
       Vec3 p;
       for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? box.hi[k] : box.lo[k];
       const Vec3 seen{dot(p, view.right), dot(p, view.up), dot(p, view.towards)};
-      for (int k = 0; k < 3; ++k)
-        least[k] = std::min(least[k], seen[k]), most[k] = std::max(most[k], seen[k]);
+      for (int k = 0; k < 3; ++k) {
+        least[k] = std::min(least[k], seen[k]);
+        most[k] = std::max(most[k], seen[k]);
+      }
     }
   const double wide = std::max(most[0] - least[0], 1e-300), tall = std::max(most[1] - least[1], 1e-300);
   view.scale = std::min((width - 2 * kMargin) / wide, (height - 2 * kMargin) / tall);

@@ -70,7 +70,8 @@ class Channel {
       const ssize_t sent = ::send(socket_, at, size, MSG_NOSIGNAL);
       if (sent < 0 && errno == EINTR) continue;
       if (sent <= 0) throw BrokenChannel();
-      at += sent, size -= static_cast<std::size_t>(sent);
+      at += sent;
+      size -= static_cast<std::size_t>(sent);
     }
   }
 
@@ -83,7 +84,8 @@ class Channel {
         continue;
       }
       if (received <= 0) throw BrokenChannel();
-      at += received, size -= static_cast<std::size_t>(received);
+      at += received;
+      size -= static_cast<std::size_t>(received);
     }
   }
 
@@ -239,7 +241,10 @@ class ChildProcess {
   }
   ~ChildProcess() {
     close(socket_);
-    if (!reaped_) kill(id_, SIGKILL), reap();
+    if (!reaped_) {
+      kill(id_, SIGKILL);
+      reap();
+    }
   }
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;

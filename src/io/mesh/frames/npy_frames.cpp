@@ -133,7 +133,8 @@ class NpyFrames : public FrameSource {
       read_columns(first, count);
     else
       file_.read(header_.data_begin + first * frame_bytes_, bytes_.data(), frame_bytes_);
-    first_ = first, frames_ = count;
+    first_ = first;
+    frames_ = count;
   }
 
   // Reads Fortran order, where element (t, v, k) has the index t + T·(v + V·k), a run of columns (v, k) at a

@@ -28,10 +28,14 @@ tinygltf::Primitive primitive_of(GlbModel& glb, const DrawnSurface& drawn, const
   };
   auto& accessor = glb.model.accessors[add_attribute("POSITION", TINYGLTF_TYPE_VEC3, Vec3f{}, position)];
   Vec3f lo, hi, q;
-  lo.fill(std::numeric_limits<float>::infinity()), hi.fill(-std::numeric_limits<float>::infinity());
+  lo.fill(std::numeric_limits<float>::infinity());
+  hi.fill(-std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < count; ++i) {
     position(i, q);
-    for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], q[k]), hi[k] = std::max(hi[k], q[k]);
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], q[k]);
+      hi[k] = std::max(hi[k], q[k]);
+    }
   }
   accessor.minValues.assign(lo.begin(), lo.end());
   accessor.maxValues.assign(hi.begin(), hi.end());

@@ -130,10 +130,14 @@ void write_model(std::ostream& out, const Mesh& mesh) {
       vertices.size(), TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER,
       [&](std::size_t i, Vec3f& p) { p = single(mesh.positions[vertices[i].first]); });
   Vec3f lo, hi;
-  lo.fill(std::numeric_limits<float>::infinity()), hi.fill(-std::numeric_limits<float>::infinity());
+  lo.fill(std::numeric_limits<float>::infinity());
+  hi.fill(-std::numeric_limits<float>::infinity());
   for (const auto& vertex : vertices) {
     const Vec3f p = single(mesh.positions[vertex.first]);
-    for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], p[k]), hi[k] = std::max(hi[k], p[k]);
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], p[k]);
+      hi[k] = std::max(hi[k], p[k]);
+    }
   }
   glb.model.accessors[static_cast<std::size_t>(positions)].minValues.assign(lo.begin(), lo.end());
   glb.model.accessors[static_cast<std::size_t>(positions)].maxValues.assign(hi.begin(), hi.end());

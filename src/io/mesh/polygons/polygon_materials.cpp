@@ -30,7 +30,8 @@ void PolygonMaterials::move_notes(std::vector<std::string>& notes) {
   for (const LeftOut& o : left_out)
     notes.push_back(fmt::format("{} of the material{} {} is left out: {}", o.what,
                                 o.materials.size() == 1 ? "" : "s", first_of(o.materials), o.why));
-  left_out.clear(), left_out_of.clear();
+  left_out.clear();
+  left_out_of.clear();
 }
 
 std::string first_of(const std::vector<std::string>& names) {

@@ -60,7 +60,10 @@ class PositionTable {
     const std::size_t mask = slots_.size() - 1;
     for (std::size_t slot = hash(p, body) & mask;; slot = (slot + 1) & mask) {
       if (slots_[slot] == kNone) {
-        if (body != 0) bodies_.resize(index, 0), bodies_.push_back(body);
+        if (body != 0) {
+          bodies_.resize(index, 0);
+          bodies_.push_back(body);
+        }
         return slots_[slot] = index;
       }
       if (positions_[slots_[slot]] == p && body_of(slots_[slot]) == body) return slots_[slot];
@@ -186,7 +189,10 @@ Mesh to_mesh(const PolygonMesh& polygons, std::vector<std::uint32_t>& renumbered
   const bool with_uvs = all_corners_have_uvs(polygons);
   const std::size_t triangle_count = polygons.corners.size() - 2 * polygons.ends.size();
   mesh.triangles.reserve(triangle_count);
-  if (places) places->clear(), places->reserve(triangle_count);
+  if (places) {
+    places->clear();
+    places->reserve(triangle_count);
+  }
   if (with_uvs) mesh.corner_uvs.reserve(triangle_count);
 
   triangle_ends.clear();

@@ -215,7 +215,9 @@ DetailedView::DetailedView(const BakedFrom& from, const Mesh& o1) try {
   std::vector<std::uint32_t> position, normal, color, surface;
   for (const std::uint32_t v : walk.vertex) {
     position.insert(position.end(), vertices[v].begin(), vertices[v].begin() + 3);
-    normal.push_back(vertices[v][3]), color.push_back(vertices[v][4]), surface.push_back(vertices[v][5]);
+    normal.push_back(vertices[v][3]);
+    color.push_back(vertices[v][4]);
+    surface.push_back(vertices[v][5]);
   }
   data->arrays.add("high_triangle", corner_codes(walk.triangles));
   data->arrays.add_guessed("high_position", position, 3, guesses_of(walk.triangles));

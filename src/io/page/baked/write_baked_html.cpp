@@ -98,7 +98,8 @@ void write_baked_html(const std::filesystem::path& file, const Surface& surface,
   compress(arrays);
   Json page = common_json(options.up);
   page["place"] = detailed.steps.json();
-  page["low"] = low, page["high"] = detailed.counts;
+  page["low"] = low;
+  page["high"] = detailed.counts;
   page["pictures"] = pictures;
   page["base_color"] = options.material.base_color;
   page["emissive"] = options.material.emissive;

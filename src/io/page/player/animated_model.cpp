@@ -107,10 +107,14 @@ class Writer {
         glb_.add_accessor<Triple>(count, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT,
                                   TINYGLTF_TARGET_ARRAY_BUFFER, [&](std::size_t i, Triple& t) { t = at(i); });
     Triple lo, hi;
-    lo.fill(std::numeric_limits<float>::infinity()), hi.fill(-lo[0]);
+    lo.fill(std::numeric_limits<float>::infinity());
+    hi.fill(-lo[0]);
     for (std::size_t i = 0; i < count; ++i) {
       const Triple t = at(i);
-      for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], t[k]), hi[k] = std::max(hi[k], t[k]);
+      for (int k = 0; k < 3; ++k) {
+        lo[k] = std::min(lo[k], t[k]);
+        hi[k] = std::max(hi[k], t[k]);
+      }
     }
     glb_.model.accessors[accessor].minValues.assign(lo.begin(), lo.end());
     glb_.model.accessors[accessor].maxValues.assign(hi.begin(), hi.end());

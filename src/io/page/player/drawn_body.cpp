@@ -29,7 +29,10 @@ DrawnBody::DrawnBody(const Mesh& mesh) : of_body_(present(mesh)) {
     drawn_ = of_body_;
     for (Triangle& t : drawn_)
       for (std::uint32_t& v : t) {
-        if (number[v] == kNone) number[v] = static_cast<std::uint32_t>(used_.size()), used_.push_back(v);
+        if (number[v] == kNone) {
+          number[v] = static_cast<std::uint32_t>(used_.size());
+          used_.push_back(v);
+        }
         v = number[v];
       }
     vertices_ = used_.size();

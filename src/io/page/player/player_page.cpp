@@ -104,9 +104,11 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
   page["units"] = options.units;
   page["names"] = options.names;
   page["xxh3"] = options.xxh3;
-  page["origin"] = box.lo, page["step"] = step;
+  page["origin"] = box.lo;
+  page["step"] = step;
   page["reach"] = reach;
-  page["added"] = content.added, page["stride"] = content.stride;
+  page["added"] = content.added;
+  page["stride"] = content.stride;
   Json shown = Json::array();
   for (const PlayerFrame& frame : content.frames) shown.push_back(frame.number);
   page["shown"] = shown;

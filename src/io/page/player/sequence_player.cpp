@@ -28,14 +28,17 @@ constexpr std::size_t kMostCoordinates = 8'000'000;  // of all frames
 /// The distances of all frames together: of the vertices drawn, each with the same weight.
 DistanceStatistics pooled(const std::vector<PlayerFrame>& frames) {
   DistanceStatistics s;
-  s.min = std::numeric_limits<double>::infinity(), s.max = -s.min;
+  s.min = std::numeric_limits<double>::infinity();
+  s.max = -s.min;
   std::vector<float> values, magnitudes;
   for (const PlayerFrame& frame : frames)
     for (const auto& distances : frame.distances)
       for (const float d : distances) {
         if (!std::isfinite(d)) continue;
-        s.min = std::min<double>(s.min, d), s.max = std::max<double>(s.max, d);
-        values.push_back(d), magnitudes.push_back(std::abs(d));
+        s.min = std::min<double>(s.min, d);
+        s.max = std::max<double>(s.max, d);
+        values.push_back(d);
+        magnitudes.push_back(std::abs(d));
       }
   s.texels = magnitudes.size();
   if (magnitudes.empty()) return {};
@@ -44,7 +47,8 @@ DistanceStatistics pooled(const std::vector<PlayerFrame>& frames) {
     std::ranges::nth_element(of, of.begin() + place);
     return of[static_cast<std::size_t>(place)];
   };
-  s.p05 = percentile(values, 0.05), s.p95 = percentile(values, 0.95),
+  s.p05 = percentile(values, 0.05);
+  s.p95 = percentile(values, 0.95);
   s.p99_abs = percentile(magnitudes, 0.99);
   return s;
 }

@@ -56,14 +56,18 @@ void AreaSums::add(const AreaSums& other) {
 
 AreaByValue AreaSums::fractions() const {
   AreaByValue result;
-  result.lo = lo_, result.hi = hi_;
+  result.lo = lo_;
+  result.hi = hi_;
   double total = without_value_;
   for (const double area : by_bin_) total += area;
   result.area = fractions_of(by_bin_, total);
   result.without_value = total > 0 ? without_value_ / total : 0;
   std::vector<double> used;
   for (std::uint32_t key = 0; key < kKeys; ++key)
-    if (by_key_[key] > 0) result.keys.push_back(key), used.push_back(by_key_[key]);
+    if (by_key_[key] > 0) {
+      result.keys.push_back(key);
+      used.push_back(by_key_[key]);
+    }
   result.area_of_key = fractions_of(used, total);
   return result;
 }
@@ -73,7 +77,10 @@ AreaByValue area_by_value(const Surface& surface, const DistanceMap& map) {
   const auto samples = surface.sample_texels();
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
   for (const std::uint32_t texel : samples)
-    if (const double d = map.distance[texel]; std::isfinite(d)) lo = std::min(lo, d), hi = std::max(hi, d);
+    if (const double d = map.distance[texel]; std::isfinite(d)) {
+      lo = std::min(lo, d);
+      hi = std::max(hi, d);
+    }
   if (lo > hi) lo = hi = 0;
 
   const std::vector<double> areas = relative_texel_areas(surface);

@@ -108,7 +108,10 @@ std::vector<std::array<std::uint32_t, 3>> guesses_of(std::span<const Triangle> t
   };
   for (std::uint32_t f = 0; f < triangles.size(); ++f) {
     for (const std::uint32_t v : triangles[f])
-      if (v == guesses.size()) guesses.push_back(guess(triangles[f], v)), last.push_back(kNone);
+      if (v == guesses.size()) {
+        guesses.push_back(guess(triangles[f], v));
+        last.push_back(kNone);
+      }
     for (const std::uint32_t v : triangles[f]) last[v] = f;
   }
   return guesses;

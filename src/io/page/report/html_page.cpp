@@ -73,7 +73,8 @@ HtmlPage html_page(const Surface& surface, const DistanceMap& map, std::span<con
            listed = json_of_texels(surface, map, thickest_texels(surface, map));
        },
        [&] { area = area_by_value(surface, map); }});
-  arrays.add(std::move(model_arrays)), arrays.add(std::move(ghost_arrays));
+  arrays.add(std::move(model_arrays));
+  arrays.add(std::move(ghost_arrays));
   page = common_json(options.up);
   page["area"] = add_area(arrays, area);
   page["map"] = map_json;

@@ -38,7 +38,10 @@ bool is_float(ChannelType type) {
 
 PageChannels::PageChannels() {
   for (const Channel& channel : sdm::channels())
-    if (channel.on_page) channels_.push_back(channel), planes_ += channel.components();
+    if (channel.on_page) {
+      channels_.push_back(channel);
+      planes_ += channel.components();
+    }
 }
 
 void PageChannels::read(const ChannelSource& source, std::span<const std::uint32_t> texels, std::size_t first,

@@ -46,7 +46,8 @@ class Picks {
   /// Whether a number is shown; called with ascending numbers.
   bool operator()(std::uint64_t number) {
     if (part_ >= parts_ || number != next_) return false;
-    ++part_, advance();
+    ++part_;
+    advance();
     return true;
   }
 
@@ -85,7 +86,8 @@ Box usual_box(std::span<const Shown> sample, const Box& all) {
     const std::size_t outside = along.size() / 200;
     const double least = along[outside], most = along[along.size() - 1 - outside];
     const double margin = 0.1 * (most - least);
-    box.lo[k] = std::max(all.lo[k], least - margin), box.hi[k] = std::min(all.hi[k], most + margin);
+    box.lo[k] = std::max(all.lo[k], least - margin);
+    box.hi[k] = std::min(all.hi[k], most + margin);
   }
   return box;
 }

@@ -67,7 +67,8 @@ void TextLines::fail(std::string_view fault) const {
 // Fills the buffer, with what is left at its front. A line that does not end in a full buffer is too long.
 void TextLines::refill() {
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
-  end_ -= begin_, begin_ = 0;
+  end_ -= begin_;
+  begin_ = 0;
   stream_.read(buffer_.data() + end_, static_cast<std::streamsize>(buffer_.size() - end_));
   end_ += static_cast<std::size_t>(stream_.gcount());
   if (stream_.bad()) throw Error("cannot be read");

@@ -127,7 +127,10 @@ std::string_view RowScanner::text() {
   while (at != end_ && !is_separator(*at) && !(at != first && is_comment(at))) ++at;
   const char* last = at;
   while (last != first && is_blank(last[-1])) --last;
-  if (!finish_cell(last)) at_ = end_, more_ = false;  // not reached: a cell ends where it is taken to end
+  if (!finish_cell(last)) {
+    at_ = end_;
+    more_ = false;
+  }  // not reached: a cell ends where it is taken to end
   return {first, static_cast<std::size_t>(last - first)};
 }
 

@@ -30,7 +30,8 @@ void TextRows::read(std::size_t most, std::vector<Vec3>& points, std::vector<Vec
     if (lines_.number() == table_.dialect.header_line || is_empty_row(*line)) continue;
     if (rows_ == count_.value_or(0)) {
       if (const auto count = lone_count(*line)) {
-        count_ = count, rows_ = 0;
+        count_ = count;
+        rows_ = 0;
         continue;
       }
       if (count_) lines_.fail(kMoreRows);

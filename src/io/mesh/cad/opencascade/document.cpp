@@ -125,8 +125,13 @@ class StepReader : public STEPCAFControl_Reader {
   /// Reads the shapes, and sets what a document has of files. Throws where a shape would be missing.
   void read(const CadRequest& request, Handle(TDocStd_Document) & document, Document& result) {
     // What else there is, is not used.
-    SetLayerMode(false), SetPropsMode(false), SetGDTMode(false), SetMatMode(false), SetViewMode(false);
-    SetNameMode(request.labels), SetColorMode(request.labels);
+    SetLayerMode(false);
+    SetPropsMode(false);
+    SetGDTMode(false);
+    SetMatMode(false);
+    SetViewMode(false);
+    SetNameMode(request.labels);
+    SetColorMode(request.labels);
     // Those of faces are read by name_faces(): OpenCASCADE crashes where shape representations are empty or
     // refer to each other.
     Interface_Static::SetIVal("read.stepcaf.subshapes.name", 0);
@@ -235,7 +240,9 @@ class StepReader : public STEPCAFControl_Reader {
 
 std::string read_iges(const CadRequest& request, Handle(TDocStd_Document) & document) {
   IGESCAFControl_Reader reader;
-  reader.SetLayerMode(false), reader.SetNameMode(request.labels), reader.SetColorMode(request.labels);
+  reader.SetLayerMode(false);
+  reader.SetNameMode(request.labels);
+  reader.SetColorMode(request.labels);
   if (reader.ReadFile(request.file) != IFSelect_RetDone) throw std::runtime_error(kDamaged);
   std::string unit;
   if (const auto name = reader.IGESModel()->GlobalSection().UnitName(); !name.IsNull())
