@@ -1,19 +1,25 @@
 // The types of what is declared, in TypeScript: js/declared_types.mjs writes them into the package.
 #include <sdm/bounds.h>
+#include <sdm/closest_points.h>
 #include <sdm/hausdorff.h>
 #include <sdm/match.h>
 #include <sdm/proximity_query.h>
 #include <sdm/rays.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/statistics.h>
+#include <sdm/summary.h>
 #include <sdm/surface.h>
 
+#include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "module/all_measures.h"
 #include "module/options.h"
+#include "module/points.h"
+#include "module/reports.h"
 #include "module/result.h"
 
 namespace sdm::js {
@@ -34,7 +40,9 @@ const std::vector<std::pair<std::string, Words>>& enumerations() {
       {"MapMeasure", words_of<MapMeasure>()},
       {"ThicknessMethod", words_of<ThicknessMethod>()},
       {"AttributeDomain", words_of<AttributeDomain>()},
-      {"Certainty", words_of<Certainty>()}};
+      {"Certainty", words_of<Certainty>()},
+      {"Colormap", words_of<Colormap>()},
+      {"UpAxis", words_of<UpAxis>()}};
   return all;
 }
 
@@ -45,9 +53,17 @@ std::string type_of(const Words& of) {
 }
 
 std::string type_of(const OptionInfo& option) {
-  if (option.type == "flag") return "boolean";
-  if (option.type == "direction") return "'normal' | readonly [x: number, y: number, z: number]";
-  return option.type == "word" ? type_of(option.words) : "number";
+  static const std::map<std::string_view, const char*> kTypes{
+      {"flag", "boolean"},
+      {"number", "number"},
+      {"integer", "number"},
+      {"numbers", "readonly number[]"},
+      {"text", "string"},
+      {"interval", "readonly [least: number, largest: number]"},
+      {"tolerance", "number | readonly [least: number, largest: number]"},
+      {"point", "readonly [x: number, y: number, z: number]"},
+      {"direction", "'normal' | readonly [x: number, y: number, z: number]"}};
+  return option.type == "word" ? type_of(option.words) : kTypes.at(option.type);
 }
 
 /// Of a field, as js/src/results.ts reads it.
@@ -111,11 +127,15 @@ SDM_EXPORT(sdm_declared_types) Result* declared_types() {
     text += options_interface<MapOptions, AlongOptions>("MapOptions");
     text += options_interface<ExclusionRule, SelfProximityOptions>("SelfOptions");
     text += options_interface<ThicknessOptions>("ThicknessOptions");
+    text += options_interface<ClosestPointOptions>("ClosestPointOptions");
+    text += options_interface<SignedDistanceOptions>("SignedDistanceOptions");
     text += options_interface<HausdorffOptions>("HausdorffOptions");
     text += options_interface<MatchOptions>("MatchOptions");
     text += options_interface<ProximityOptions>("ProximityOptions");
     text += options_interface<Ray>("RayOptions");
     text += options_interface<AttributeArray, TransferOptions>("TransferOptions");
+    text += options_interface<SummaryOptions, MapLimit>("SummaryOptions");
+    text += options_interface<PageOptions>("PageOptions");
     text += results_interface<DistanceStatistics>("DistanceStatistics");
     text += results_interface<BoundedLength>("BoundedLength");
     result.put_text("text", std::move(text));

@@ -2,7 +2,6 @@
 #include <sdm/error.h>
 #include <sdm/hausdorff.h>
 #include <sdm/map.h>
-#include <sdm/map_files.h>
 #include <sdm/sampling_bound.h>
 #include <sdm/sites.h>
 #include <sdm/statistics.h>
@@ -19,29 +18,6 @@
 #include "module/transferred.h"
 
 namespace sdm::js {
-
-namespace {
-
-template <Worded Enum>
-void add_words(std::string& lines, const char* option) {
-  lines += option;
-  for (const char* const word : kWords<Enum>) lines.append(" ").append(word);
-  lines += "\n";
-}
-
-}  // namespace
-
-/// The words of options that are passed by numbers, in the order of these: a line for each option, after its
-/// name.
-SDM_EXPORT(sdm_words) Result* words() {
-  return guarded([](Result& result) {
-    std::string lines;
-    add_words<SignMethod>(lines, "sign");
-    add_words<Colormap>(lines, "colormap");
-    add_words<UpAxis>(lines, "up");
-    result.put_text("words", std::move(lines));
-  });
-}
 
 SDM_EXPORT(sdm_new_surface)
 Result* new_surface(const double* positions, std::uint32_t vertices, const std::uint32_t* indices,

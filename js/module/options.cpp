@@ -1,6 +1,20 @@
 #include "module/options.h"
 
+#include <limits>
+
 namespace sdm::js {
+
+bool read_tolerance(const GivenValue& given, std::optional<Tolerance>& value) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::vector<double> numbers;
+  if (!read_numbers(given.words, {-kInfinity, kInfinity}, 0, numbers)) return false;
+  const bool one = numbers.size() == 1;
+  if (numbers.size() > 2 || one != !std::isnan(given.number)) return false;
+  const Tolerance read = one ? Tolerance(numbers[0]) : Tolerance(numbers[0], numbers[1]);
+  if (!(read.lower <= read.upper) || (std::isinf(read.lower) && std::isinf(read.upper))) return false;
+  value = read;
+  return true;
+}
 
 std::vector<GivenValue> values_of(const GivenOptions& given) {
   std::vector<GivenValue> values;

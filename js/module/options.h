@@ -3,9 +3,12 @@
 
 #include <sdm/error.h>
 #include <sdm/options.h>
+#include <sdm/tolerance.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -31,7 +34,13 @@ struct GivenValue {
   [[nodiscard]] std::string_view text() const {
     return words.starts_with('"') ? words.substr(1, words.size() - 2) : std::string_view();
   }
+  /// The string, or the numbers with commas between them.
+  [[nodiscard]] std::string_view text_or_numbers() const { return text().empty() ? words : text(); }
 };
+
+/// Reads a number, or an array of two, of which one may be infinite: a limit that there is not. Returns
+/// false, and changes nothing, for anything else.
+[[nodiscard]] bool read_tolerance(const GivenValue& given, std::optional<Tolerance>& value);
 
 [[nodiscard]] std::vector<GivenValue> values_of(const GivenOptions& given);
 
@@ -47,8 +56,13 @@ template <class Struct, class Value>
     if (std::is_integral_v<Type> && given.number != std::floor(given.number)) return false;
     options.*option.member = static_cast<Type>(given.number);
     return true;
-  } else if constexpr (std::is_same_v<Type, Vec3>) {
-    return read_value(option, given.text().empty() ? given.words : given.text(), options);
+  } else if constexpr (std::is_same_v<Type, Tolerance>) {
+    return read_tolerance(given, options.*option.member);
+  } else if constexpr (std::is_same_v<Type, Vec3> || std::is_same_v<Type, std::vector<double>> ||
+                       std::is_same_v<Type, std::array<double, 2>>) {
+    return read_value(option, given.text_or_numbers(), options);
+  } else if constexpr (std::is_same_v<Type, std::string>) {
+    return given.words.starts_with('"') && read_value(option, given.text(), options);
   } else {
     return read_value(option, given.text(), options);
   }

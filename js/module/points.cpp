@@ -1,4 +1,6 @@
 // Closest points of any points, their signs, and rays.
+#include "module/points.h"
+
 #include <sdm/closest_points.h>
 #include <sdm/rays.h>
 #include <sdm/sites.h>
@@ -37,20 +39,24 @@ void put_closest(Result& result, const Sites& sites, std::span<const Vec3> queri
 }  // namespace
 
 SDM_EXPORT(sdm_closest_points)
-Result* closest_points(const Sites* sites, const double* data, std::uint32_t count, double max_distance) {
+Result* closest_points(const Sites* sites, const double* data, std::uint32_t count, const char* lines,
+                       std::uint32_t bytes, const double* numbers) {
   return guarded([&](Result& result) {
+    auto options = read_options<ClosestPointOptions>({lines, bytes, numbers});
+    options.progress = host_progress();
     const auto queries = points(data, count);
-    const auto closest =
-        sdm::closest_points(*sites, queries, {.max_distance = max_distance, .progress = host_progress()});
+    const auto closest = sdm::closest_points(*sites, queries, options);
     put_closest(result, *sites, queries, closest);
   });
 }
 
 SDM_EXPORT(sdm_signed_distance)
-Result* signed_distance(const Sites* sites, const double* data, std::uint32_t count, std::uint32_t method) {
+Result* signed_distance(const Sites* sites, const double* data, std::uint32_t count, const char* lines,
+                        std::uint32_t bytes, const double* numbers) {
   return guarded([&](Result& result) {
+    const auto options = read_options<SignedDistanceOptions>({lines, bytes, numbers});
     const auto queries = points(data, count);
-    const SignUsed used = choose_sign(*sites, static_cast<SignMethod>(method));
+    const SignUsed used = choose_sign(*sites, options.sign);
     const auto closest = sdm::closest_points(*sites, queries, {.progress = host_progress()});
     const auto inside = inside_flags(*sites, queries, closest, used.method);
     std::vector<double> distances(count);

@@ -1,4 +1,6 @@
 // Summaries of maps, and report.html.
+#include "module/reports.h"
+
 #include <sdm/engine.h>
 #include <sdm/error.h>
 #include <sdm/map_files.h>
@@ -9,8 +11,10 @@
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -23,21 +27,15 @@
 namespace sdm::js {
 namespace {
 
-/// What JavaScript passes: limits of the tolerance and of the colours, NaN for none, and words as JSON.
-struct Choices {
-  double lower, upper, color_lo, color_hi, max_distance;
-  std::uint32_t colormap, up;
-  const char* words;
-  std::uint32_t words_size;
-};
-
 /// A map, what it was computed from and by, and what is asked of it.
 struct Asked {
   const DistanceMap& map;
   const Surface& surface;
   const Sites& sites;
   GivenMeasure measure;
-  Choices choices;
+  SummaryOptions options;
+  std::optional<double> max_distance;
+  std::string_view files;  ///< JSON: the names of the files of both meshes, and their XXH3
 };
 
 struct Reported {
@@ -62,20 +60,14 @@ double max_distance_of(const Measure& measure) {
       measure);
 }
 
-SummaryOptions summary_options(const Asked& asked, const Measure& measure, const std::string& units) {
-  const Choices& choices = asked.choices;
+SummaryOptions summary_options(const Asked& asked, const Measure& measure) {
   const Mesh& mesh = asked.surface.mesh();
-  SummaryOptions options{
-      .units = units,
-      .max_distance = std::isnan(choices.max_distance) ? max_distance_of(measure) : choices.max_distance,
-      .accuracy = asked.map.measured.kind == DistanceKind::thickness
-                      ? thickness_accuracy(mesh)
-                      : engine_accuracy(engines().front(), mesh, asked.sites.mesh()),
-      .colormap = static_cast<Colormap>(choices.colormap),
-      .progress = host_progress(),
-  };
-  if (!std::isnan(choices.lower)) options.tolerance = Tolerance{choices.lower, choices.upper};
-  if (!std::isnan(choices.color_lo)) options.range = {choices.color_lo, choices.color_hi};
+  SummaryOptions options = asked.options;
+  options.max_distance = asked.max_distance.value_or(max_distance_of(measure));
+  options.accuracy = asked.map.measured.kind == DistanceKind::thickness
+                         ? thickness_accuracy(mesh)
+                         : engine_accuracy(engines().front(), mesh, asked.sites.mesh());
+  options.progress = host_progress();
   return options;
 }
 
@@ -95,17 +87,15 @@ Summary summary_of(const Asked& asked, std::span<const float> at_vertices, const
 }
 
 Reported report_of(const Asked& asked) {
-  const Choices& choices = asked.choices;
-  const auto words = nlohmann::json::parse(std::string_view(choices.words, choices.words_size));
-  const std::string units = words.at("units");
+  const auto files = nlohmann::json::parse(asked.files);
   Reported result;
   Summary summary;
   with_measure(asked.surface.mesh(), asked.measure, [&](const Measure& measure) {
     result.at_vertices = distances_at_vertices(asked.surface.mesh(), asked.sites, measure);
-    summary = summary_of(asked, result.at_vertices, summary_options(asked, measure, units));
+    summary = summary_of(asked, result.at_vertices, summary_options(asked, measure));
   });
   const auto mesh = [&](const Mesh& of, std::size_t i) {
-    return ReportedMesh{.file = words.at("names").at(i), .info = inspect(of), .xxh3 = words.at("xxh3").at(i)};
+    return ReportedMesh{.file = files.at("names").at(i), .info = inspect(of), .xxh3 = files.at("xxh3").at(i)};
   };
   result.json = report_json({.on = mesh(asked.surface.mesh(), 0),
                              .to = mesh(asked.sites.mesh(), 1),
@@ -125,16 +115,19 @@ struct Draft {
 SDM_EXPORT(sdm_map_summary)
 Result* map_summary(const DistanceMap* map, const Surface* surface, const Sites* sites, const char* lines,
                     std::uint32_t bytes, const double* numbers, const double* rest, std::uint32_t vertices,
-                    double lower, double upper, double color_lo, double color_hi, double max_distance,
-                    std::uint32_t colormap, std::uint32_t up, const char* words, std::uint32_t words_size) {
+                    const char* asked_lines, std::uint32_t asked_bytes, const double* asked_numbers,
+                    const char* files, std::uint32_t files_size) {
   return guarded([&](Result& result) {
-    result.put_text(
-        "json", report_of({*map,
-                           *surface,
-                           *sites,
-                           {{lines, bytes, numbers}, points(rest, vertices)},
-                           {lower, upper, color_lo, color_hi, max_distance, colormap, up, words, words_size}})
-                    .json);
+    const auto [options, limit] =
+        read_all_options<SummaryOptions, MapLimit>({asked_lines, asked_bytes, asked_numbers});
+    const Asked asked{*map,
+                      *surface,
+                      *sites,
+                      {{lines, bytes, numbers}, points(rest, vertices)},
+                      options,
+                      limit.max_distance,
+                      {files, files_size}};
+    result.put_text("json", report_of(asked).json);
   });
 }
 
@@ -142,20 +135,23 @@ Result* map_summary(const DistanceMap* map, const Surface* surface, const Sites*
 SDM_EXPORT(sdm_new_report)
 Result* new_report(const DistanceMap* map, const Surface* surface, const Sites* sites, const char* lines,
                    std::uint32_t bytes, const double* numbers, const double* rest, std::uint32_t vertices,
-                   double lower, double upper, double color_lo, double color_hi, double max_distance,
-                   std::uint32_t colormap, std::uint32_t up, const char* words, std::uint32_t words_size) {
+                   const char* asked_lines, std::uint32_t asked_bytes, const double* asked_numbers,
+                   const char* files, std::uint32_t files_size) {
   return guarded([&](Result& result) {
-    auto [at_vertices, json] =
-        report_of({*map,
-                   *surface,
-                   *sites,
-                   {{lines, bytes, numbers}, points(rest, vertices)},
-                   {lower, upper, color_lo, color_hi, max_distance, colormap, up, words, words_size}});
+    const auto [options, limit, page] =
+        read_all_options<SummaryOptions, MapLimit, PageOptions>({asked_lines, asked_bytes, asked_numbers});
+    auto [at_vertices, json] = report_of({*map,
+                                          *surface,
+                                          *sites,
+                                          {{lines, bytes, numbers}, points(rest, vertices)},
+                                          options,
+                                          limit.max_distance,
+                                          {files, files_size}});
     const bool of_itself = is_of_itself(map->measured.kind);
     auto draft = std::make_unique<Draft>(
         Draft{.page = io::html_page(*surface, *map, at_vertices,
                                     {.other = of_itself ? nullptr : &sites->mesh(),
-                                     .up = up == 1 ? UpAxis::z : UpAxis::y,
+                                     .up = page.up,
                                      .places = of_itself ? ListedPlaces::least : ListedPlaces::deviating}),
               .report = std::move(json)});
     std::vector<std::uint32_t> lengths;

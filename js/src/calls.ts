@@ -36,6 +36,10 @@ export const anything: Check = () => {};
 const number = check((value) => typeof value === 'number' && !Number.isNaN(value), 'a number');
 const flag = check((value) => typeof value === 'boolean', 'true or false');
 const word = check((value) => typeof value === 'string', 'a string');
+const twoWords = check(
+  (value) => Array.isArray(value) && value.length === 2 && value.every((one) => typeof one === 'string'),
+  'two strings',
+);
 const bytes = check(isBytes, 'a Uint8Array or an ArrayBuffer');
 const callback = check((value) => typeof value === 'function', 'a function');
 const whole = (least: number, most = 0xffffffff) =>
@@ -130,15 +134,7 @@ export const mesh = { positions: numbers, indices: optional(numbers) };
 const file = { bytes, name: word };
 export const ofSurface = { uvs: numbers, storedAtlas: bytes };
 export const ofMap = { rest: numbers };
-const ofSummary = {
-  tolerance: anything,
-  units: word,
-  colormap: anything,
-  range: anything,
-  names: anything,
-  xxh3: anything,
-  maxDistance: number,
-};
+const ofFiles = { names: twoWords, xxh3: twoWords };
 const aSurface = object(Surface, 'a Surface');
 const sites = object(Sites, 'Sites');
 
@@ -162,8 +158,8 @@ const kCalls: [Kind: { prototype: object }, calls: Record<string, Call>][] = [
     Sites,
     {
       refit: take({ positions: numbers }),
-      closestPoints: take({ points: numbers }, { maxDistance: number }),
-      signedDistance: take({ points: numbers }, { sign: anything }),
+      closestPoints: takeDeclared({ points: numbers }),
+      signedDistance: takeDeclared({ points: numbers }),
       firstHits: takeDeclared({ origins: numbers, directions: numbers }),
       hausdorff: takeDeclared({ other: sites }),
     },
@@ -179,8 +175,8 @@ const kCalls: [Kind: { prototype: object }, calls: Record<string, Call>][] = [
       computeSamples: takeDeclared({ first: whole(0), count: whole(0) }, ofMap),
       valuesOfSamples: take({ first: whole(0), count: whole(0) }),
       transfer: takeDeclared({ values: numbers }),
-      summary: take({}, ofSummary),
-      report: take({}, { ...ofSummary, up: anything }),
+      summary: takeDeclared({}, ofFiles),
+      report: takeDeclared({}, ofFiles),
     },
   ],
   [

@@ -9,11 +9,22 @@ export function shown(value: unknown): string {
   return name.endsWith('s') ? name : `${/^[AEIOU]/.test(name) ? 'an' : 'a'} ${name}`;
 }
 
-const isDirection = (value: unknown): value is ArrayLike<number> =>
-  (Array.isArray(value) || ArrayBuffer.isView(value)) &&
-  [1, 2, 3].includes((value as unknown as ArrayLike<unknown>).length) &&
-  Array.from(value as unknown as ArrayLike<unknown>).every((one) => typeof one === 'number');
-const worded = (value: unknown) => (isDirection(value) ? Array.from(value).join() : shown(value));
+// More numbers than an option may be are named, not written out.
+const kMostNumbers = 1000;
+const areNumbers = (value: unknown): value is ArrayLike<number> => {
+  if (!Array.isArray(value) && !ArrayBuffer.isView(value)) return false;
+  const { length } = value as unknown as ArrayLike<unknown>;
+  return (
+    length > 0 &&
+    length <= kMostNumbers &&
+    Array.from(value as unknown as ArrayLike<unknown>).every((one) => typeof one === 'number')
+  );
+};
+/** A string is whole, however long, but without ends of lines, which divide the options. */
+function worded(value: unknown): string {
+  if (typeof value === 'string') return `"${value.replace(/\n/g, ' ')}"`;
+  return areNumbers(value) ? Array.from(value).join() : shown(value);
+}
 
 /** Options that C++ declares, all but progress: their names with their values in words, and the numbers. */
 export function declaredOptions(given: object): [string, Float64Array] {

@@ -25,14 +25,16 @@ export type {
 } from './matches.js';
 export type { FaceNames, MeshFile, ReadMeshOptions } from './mesh_file.js';
 export type { PoolMap, PoolMapOptions, PoolSites, PoolSurface, SdmPool } from './pool.js';
-export type { Colormap, MapSummary, ReportOptions, SummaryOptions } from './report.js';
+export type { MapSummary, ReportOptions, SummaryOptions } from './report.js';
 export type { Contacts, Pair } from './pair.js';
 export type {
+  ClosestPointOptions,
   ClosestPoints,
   Hausdorff,
   HausdorffOptions,
   RayHits,
   RayOptions,
+  SignedDistanceOptions,
   SignedDistances,
   Sites,
 } from './sites.js';

@@ -1,5 +1,5 @@
 // A WebAssembly module of the library: its memory, its calls and their results.
-import { text, wordNumber } from './bytes.js';
+import { text } from './bytes.js';
 import { type Threads, hostImports } from './host.js';
 import { readResult } from './results.js';
 import { startThreads } from './threads.js';
@@ -46,7 +46,6 @@ export class Module {
   private progress: Progress | undefined;
   private lastWords = '';
   private fault: SdmError | undefined;
-  private wordsOf: Map<string, readonly string[]> | undefined;
   /** The page that reports are written into. */
   reportPage: (() => Promise<string>) | undefined;
   private readonly freed = new FinalizationRegistry<() => void>((free) => free());
@@ -172,24 +171,6 @@ export class Module {
   free(name: string, address: Address): void {
     if (this.progress) throw new SdmError('input', 'the library was called by a callback of progress');
     if (!this.broken) this.run(name, [address]);
-  }
-
-  /** The words of an option that is passed by a number, in the order of these. */
-  private words(option: string): readonly string[] {
-    this.wordsOf ??= new Map(
-      this.call<{ words: string }>('sdm_words', [])
-        .words.trimEnd()
-        .split('\n')
-        .map((line) => {
-          const [name, ...words] = line.split(' ');
-          return [name!, words];
-        }),
-    );
-    return this.wordsOf.get(option)!;
-  }
-  /** The number of a word that an option has. */
-  number(option: string, word: string): number {
-    return wordNumber(this.words(option), word, option);
   }
 
   /** A copy of bytes of the module. */

@@ -3,11 +3,13 @@ import { type CallOptions, type Connection, type Made, type Options, Remote } fr
 import { type MapSummary, type ReportOptions, type SummaryOptions } from './report.js';
 import { type Contacts } from './pair.js';
 import {
+  type ClosestPointOptions,
   type ClosestPoints,
   type Hausdorff,
   type HausdorffOptions,
   type RayOptions,
   type RayHits,
+  type SignedDistanceOptions,
   type SignedDistances,
 } from './sites.js';
 import { type MapOptions } from './measures.js';
@@ -36,10 +38,10 @@ export class WorkerSites extends Remote {
     return this.call('refit', [positions], options);
   }
   /** As of Sites, with the same errors. */
-  closestPoints(points: Points, options?: { maxDistance?: number } & CallOptions): Promise<ClosestPoints> {
+  closestPoints(points: Points, options?: Options<ClosestPointOptions>): Promise<ClosestPoints> {
     return this.call('closestPoints', [points], options);
   }
-  signedDistance(points: Points, options?: { sign?: SignMethod } & CallOptions): Promise<SignedDistances> {
+  signedDistance(points: Points, options?: Options<SignedDistanceOptions>): Promise<SignedDistances> {
     return this.call('signedDistance', [points], options);
   }
   firstHits(origins: Points, directions: Points, options?: Options<RayOptions>): Promise<RayHits> {

@@ -1,33 +1,20 @@
 // Summaries and reports of maps, of the module `full`.
 import { type Bytes } from './bytes.js';
+import type * as declared from './declared.js';
+import { declaredOptions } from './given.js';
 import { type MeasureArguments } from './measures.js';
 import { type Module } from './module.js';
-import { type kColormapNames } from './rules.js';
 import { type Progress, SdmError } from './types.js';
 
-export type Colormap = (typeof kColormapNames)[number];
-
-export interface SummaryOptions {
-  /** The least and the largest distance allowed: the verdict PASS or FAIL is proven between the samples, too. */
-  tolerance?: [least: number, largest: number];
-  /** Of all lengths, such as `mm`. */
-  units?: string;
-  colormap?: Colormap;
-  /** The distances at the ends of the colours. */
-  range?: [number, number];
+export interface SummaryOptions extends declared.SummaryOptions {
   /** The names of O1's and O2's files. */
   names?: [string, string];
   /** XXH3 of these files, as of MeshFile. */
   xxh3?: [string, string];
-  /** That of the map: by default, of what it was computed with last. */
-  maxDistance?: number;
   progress?: Progress;
 }
 
-export interface ReportOptions extends SummaryOptions {
-  /** The axis of the meshes that points up. */
-  up?: 'y' | 'z';
-}
+export interface ReportOptions extends SummaryOptions, declared.PageOptions {}
 
 /** The keys of report.json, which docs/report.md of the project lists. */
 export type MapSummary = { distance: Record<string, number>; [key: string]: unknown };
@@ -35,37 +22,9 @@ export type MapSummary = { distance: Record<string, number>; [key: string]: unkn
 /** The addresses of a map, its surface and its sites, and the options by which it was computed. */
 export type Computed = [map: number, surface: number, sites: number, ...MeasureArguments];
 
-/** Two of a kind, or what stands for none. The module reads as many. */
-function two<Value>(
-  given: readonly Value[] | undefined,
-  none: readonly [Value, Value],
-  type: 'number' | 'string',
-  option: string,
-): readonly Value[] {
-  if (given === undefined) return none;
-  if (
-    !Array.isArray(given) ||
-    given.length !== 2 ||
-    given.some((value) => typeof value !== type || Number.isNaN(value))
-  )
-    throw new SdmError('input', `${option} is ${JSON.stringify(given)}: it must be two ${type}s`);
-  return given;
-}
-
-/** The numbers and words of the options, as the module takes them. */
-function argumentsOf(module: Module, options: ReportOptions) {
-  const none = [NaN, NaN] as const;
-  const limits = [
-    ...two(options.tolerance, none, 'number', 'tolerance'),
-    ...two(options.range, none, 'number', 'range'),
-  ];
-  const words = JSON.stringify({
-    units: options.units ?? '',
-    names: two(options.names, ['O1', 'O2'], 'string', 'names'),
-    xxh3: two(options.xxh3, ['', ''], 'string', 'xxh3'),
-  });
-  const colormap = module.number('colormap', options.colormap ?? 'automatic');
-  return [...limits, options.maxDistance ?? NaN, colormap, module.number('up', options.up ?? 'y'), words];
+/** The options and the files of the meshes, as the module takes them. */
+function argumentsOf({ names = ['O1', 'O2'], xxh3 = ['', ''], ...given }: ReportOptions) {
+  return [...declaredOptions(given), JSON.stringify({ names, xxh3 })];
 }
 
 function demandFull(module: Module, name: string): void {
@@ -75,7 +34,7 @@ function demandFull(module: Module, name: string): void {
 
 export function summaryOf(module: Module, map: Computed, options: SummaryOptions): MapSummary {
   demandFull(module, 'summary');
-  const values = [...map, ...argumentsOf(module, options)];
+  const values = [...map, ...argumentsOf(options)];
   return JSON.parse(module.call<{ json: string }>('sdm_map_summary', values, options.progress).json);
 }
 
@@ -98,7 +57,7 @@ export async function reportOf(module: Module, map: () => Computed, options: Rep
     );
   const { address, lengths, planes } = module.call<{ address: number; lengths: Uint32Array; planes: Bytes }>(
     'sdm_new_report',
-    [...map(), ...argumentsOf(module, options)],
+    [...map(), ...argumentsOf(options)],
     options.progress,
   );
   try {

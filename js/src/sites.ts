@@ -46,6 +46,14 @@ export interface Hausdorff {
   larger: BoundedLength;
 }
 
+export interface ClosestPointOptions extends declared.ClosestPointOptions {
+  progress?: Progress;
+}
+
+export interface SignedDistanceOptions extends declared.SignedDistanceOptions {
+  progress?: Progress;
+}
+
 export interface HausdorffOptions extends declared.HausdorffOptions {
   progress?: Progress;
 }
@@ -84,18 +92,17 @@ export class Sites extends Owned {
    * more, where they lie close together, the distance may be larger than the least one by at most 10⁻⁶ of the diagonal of the mesh
    * and the points, and depends on the others by as much.
    */
-  closestPoints(points: Points, options: { maxDistance?: number; progress?: Progress } = {}): ClosestPoints {
+  closestPoints(points: Points, { progress, ...given }: ClosestPointOptions = {}): ClosestPoints {
     const at = coordinates(points, 'points');
-    const values = [this.handle, at, at.length / 3, options.maxDistance ?? Infinity];
-    return this.module.call<ClosestPoints>('sdm_closest_points', values, options.progress);
+    const values = [this.handle, at, at.length / 3, ...declaredOptions(given)];
+    return this.module.call<ClosestPoints>('sdm_closest_points', values, progress);
   }
 
   /** Distances that are negative inside, of closestPoints(). Of an open mesh, `automatic` gives none a sign. */
-  signedDistance(points: Points, options: { sign?: SignMethod; progress?: Progress } = {}): SignedDistances {
+  signedDistance(points: Points, { progress, ...given }: SignedDistanceOptions = {}): SignedDistances {
     const at = coordinates(points, 'points');
-    const method = this.module.number('sign', options.sign ?? 'automatic');
-    const values = [this.handle, at, at.length / 3, method];
-    return this.module.call<SignedDistances>('sdm_signed_distance', values, options.progress);
+    const values = [this.handle, at, at.length / 3, ...declaredOptions(given)];
+    return this.module.call<SignedDistances>('sdm_signed_distance', values, progress);
   }
 
   /** The first point on each ray from an origin along a direction, at origin + t · direction. */

@@ -43,9 +43,8 @@ import {
   roundedLo,
   scaleReach,
 } from './rules.js';
-import { type Colormap } from './report.js';
 import { type Atlas } from './surface.js';
-import { SdmError } from './types.js';
+import { type Colormap, SdmError } from './types.js';
 
 /**
  * The positions and indices of a geometry, as surface(), sites() and their constructors take them: `...fromBufferGeometry(geometry)`.

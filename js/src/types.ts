@@ -6,6 +6,7 @@ export type {
   AttributeDomain,
   BoundedLength,
   Certainty,
+  Colormap,
   MapMeasure,
   MatchMethod,
   SignMethod,

@@ -107,9 +107,12 @@ test('summaries and reports have the verdict', { timeout: 120000 }, async () => 
   assert.equal(summary.o1.file, 'part <1>.stl');
   assert.ok(summary.distance.min > 0.09 && summary.distance.max < 0.11);
   assert.equal((await map.summary({ tolerance: [-0.05, 0.05] })).tolerance.verdict, 'FAIL');
+  assert.deepEqual((await map.summary({ tolerance: 0.05 })).tolerance, (await map.summary({ tolerance: [-0.05, 0.05] })).tolerance);
+  assert.equal((await map.summary({ tolerance: [0.05, Infinity] })).tolerance.verdict, 'PASS');
+  assert.ok((await map.summary({ bands: [0, 0.05, 0.2] })).bands.some(({ upper }) => upper === 0.05));
   await assert.rejects(map.summary({ tolerance: [1, -1] }), { kind: 'input' });
   await assert.rejects(map.summary({ tolerance: [NaN, 1] }), { kind: 'input', message: /tolerance is/ });
-  await assert.rejects(map.summary({ tolerance: [1] }), { kind: 'input', message: /two numbers/ });
+  await assert.rejects(map.summary({ tolerance: [1] }), { kind: 'input', message: /^tolerance is 1: it must be / });
   await assert.rejects(map.summary({ names: ['one'] }), { kind: 'input', message: /two strings/ });
   const html = await map.report({ ...options, tolerance: [-0.2, 0.2] });
   const json = (id) => JSON.parse(html.match(new RegExp(`<script type="application/json" id="${id}">(.*?)</script>`, 's'))[1]);

@@ -73,9 +73,19 @@ test('arguments of another kind are errors that name them, and leave the module 
     [() => sites.closestPoints('0 0 1'), 'points is "0 0 1": it must be an array of numbers'],
     [() => sites.closestPoints(['0', '0', '1']), 'points[0] is "0": it must be a number'],
     [() => sites.closestPoints(new BigInt64Array(3)), 'points is a BigInt64Array: it must be an array of numbers'],
-    [() => sites.closestPoints([0, 0, 1], { maxDistance: '5' }), 'maxDistance is "5": it must be a number'],
-    [() => sites.closestPoints([0, 0, 1], { maxDistance: NaN }), 'maxDistance is NaN: it must be a number'],
-    [() => sites.closestPoints([0, 0, 1], { maxdistance: 5 }), 'closestPoints has no option maxdistance; it has maxDistance'],
+    [() => sites.closestPoints([0, 0, 1], { maxDistance: '5' }), 'maxDistance is "5": it must be a number greater than 0'],
+    [() => sites.closestPoints([0, 0, 1], { maxDistance: NaN }), 'maxDistance is NaN: it must be a number greater than 0'],
+    [() => sites.closestPoints([0, 0, 1], { maxdistance: 5 }), 'unknown option maxdistance; did you mean maxDistance?'],
+    [() => sites.signedDistance([0, 0, 1], { sign: 'exakt' }), 'sign is "exakt": it must be automatic, none, exact, winding or side'],
+    [() => sites.signedDistance([0, 0, 1], { maxDistance: 5 }), 'unknown option maxDistance'],
+    [() => map.summary({ tolerance: 'wide' }), 'tolerance is "wide": it must be a number of at least 0, or two, LO:HI, the smaller one first'],
+    [() => map.summary({ tolerance: -1 }), 'tolerance is -1: it must be a number of at least 0, or two, LO:HI, the smaller one first'],
+    [() => map.summary({ range: [1, 0] }), 'range is 1,0: it must be two numbers, the smaller one first'],
+    [() => map.summary({ colormap: 'jet' }), 'colormap is "jet": it must be automatic, viridis, sequential, diverging or paper2006'],
+    [() => map.summary({ bands: 'all' }), 'bands is "all": it must be numbers'],
+    [() => map.summary({ units: 5 }), 'units is 5: it must be text'],
+    [() => map.summary({ acceptDoubts: 1 }), 'acceptDoubts is 1: it must be true or false'],
+    [() => map.summary({ up: 'z' }), 'unknown option up'],
     [() => sites.closestPoints([0, 0, 1], 5), 'the last argument of closestPoints is 5: it must be an object of options'],
     [() => new full.Sites(triangle, { resolution: 16 }), 'indices is an object: it must be an array of numbers'],
     [() => new full.Sites(triangle, ['0', '1', '2']), 'indices[0] is "0": it must be a number'],
@@ -98,7 +108,7 @@ test('arguments of another kind are errors that name them, and leave the module 
     [() => full.readMesh('solid', 'a.stl'), 'bytes is "solid": it must be a Uint8Array or an ArrayBuffer'],
   ];
   for (const [call, message] of refused) assert.throws(call, { name: 'SdmError', kind: 'input', message });
-  await assert.rejects(map.report({ unit: 'mm' }), { kind: 'input', message: /^report has no option unit; it has tolerance, units/ });
+  await assert.rejects(map.report({ unit: 'mm' }), { kind: 'input', message: /^unknown option unit; did you mean units\?$/ });
   for (const threads of [1e6, 0, -1, 1.5, '2'])
     for (const begin of [start, createWorker])
       await assert.rejects(begin({ threads }), { kind: 'input', message: /^threads is .*: it must be an integer from 1 to 256$/ });
