@@ -181,7 +181,7 @@ TEST(Usage, WrongUsageEndsWithTwo) {
                                                           {"--atlas", "chart"},
                                                           {"--atlas", "0"},
                                                           {"--sign", "maybe"},
-                                                          {"--engine", "gpu"},
+                                                          {"--engine", "cuda"},
                                                           {"--colormap", "jet"},
                                                           {"--max-stretch", "1"},
                                                           {"--max-stretch", "nan"},

@@ -74,7 +74,7 @@ void expect_agreement(const Mesh& o1, const Mesh& o2, const AtlasOptions& atlas)
       from_reference.compare(t, map.distance[t], reference->distance[t]);
     EXPECT_TRUE(from_reference.none());
   }
-  for (const std::string& engine : test::engine_names()) {
+  for (const std::string& engine : test::engine_names_with_gpu()) {
     SCOPED_TRACE(engine);
     test::expect_closest_points(sites, points, closest_points(sites, points, {.engine = make_engine(engine)}),
                                 expected, tolerance);

@@ -23,7 +23,8 @@ class Properties : public testing::TestWithParam<std::string> {
     return compute_map(surface, sites, {.engine = make_engine(GetParam())});
   }
 };
-INSTANTIATE_TEST_SUITE_P(Engines, Properties, testing::ValuesIn(test::engine_names()), test::engine_name);
+INSTANTIATE_TEST_SUITE_P(Engines, Properties, testing::ValuesIn(test::engine_names_with_gpu()),
+                         test::engine_name);
 
 TEST_P(Properties, RigidMotionOfBothPreservesDistances) {
   const char* motion = "rotate:20:-130:77,translate:0.3:-0.4:0.25";

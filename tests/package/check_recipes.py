@@ -22,7 +22,7 @@ CONDA = {
     "libisal-dev": "isa-l", "liblzf-dev": "liblzf",
     "libcairo2-dev": "cairo", "libfreetype-dev": "freetype", "fonts-dejavu-core": None, "libfmt-dev": "fmt", "libtinygltf-dev": "tinygltf",
     "nlohmann-json3-dev": "nlohmann_json", "libcli11-dev": "cli11", "nodejs": "nodejs", "libmeshoptimizer-dev": "meshoptimizer",
-    "glmark2-data": None,
+    "glmark2-data": None, "mesa-vulkan-drivers": None,
 }  # fmt: skip
 # vcpkg's ports for those that sdm::sdm needs.
 VCPKG = {"libtbb-dev": "tbb", "libhwy-dev": "highway", "libmeshoptimizer-dev": "meshoptimizer", "libboost-dev": "boost-multiprecision", "libeigen3-dev": "eigen3",

@@ -253,10 +253,10 @@ TEST(RaysAlone, OfThinFacesAfterARefit) {
   const std::vector<RayHit> hits = first_hits(sites, rays), fresh = first_hits(Sites(mesh), rays);
   for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(equal(hits[i], fresh[i])) << i;
   expect_hits(mesh, std::vector(rays.begin(), rays.begin() + 300));
-  for (Vec3& p : mesh.positions) {
+  for (Vec3& p : mesh.positions) {  // slivers and faces without area
     p[0] = 0;
     p[1] *= 1e-9;
-  }  // slivers and faces without area
+  }
   mesh.positions[0] = {0, 1, 1};
   sites.refit(mesh.positions);
   expect_hits(mesh, make_rays(mesh, 300, 7));

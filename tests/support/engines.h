@@ -11,9 +11,12 @@
 
 namespace sdm::test {
 
-/// Those of engines() that find closest points of any points, and that this build contains: a build with the
-/// gpu engine is tested where it has a device (Debian: mesa-vulkan-drivers).
+/// Those of engines() that find closest points of any points, without gpu, whose results are those of
+/// reference to the bit, but slow on a processor.
 [[nodiscard]] std::vector<std::string> engine_names();
+/// The same with gpu, if the build contains it: it is tested where it has a device (Debian:
+/// mesa-vulkan-drivers).
+[[nodiscard]] std::vector<std::string> engine_names_with_gpu();
 [[nodiscard]] std::string engine_name(const testing::TestParamInfo<std::string>& parameter);
 
 /// The cpu engine on every set, and each other engine.
