@@ -41,7 +41,10 @@ const SitesOnDevice& FaceSearch::place(const sites::SitesData& sites) {
 void FaceSearch::reserve(std::size_t points) {
   if (points <= room_) return;
   room_ = 0;
-  points_.reset(), results_.reset(), read_back_.reset(), tiles_.reset();
+  points_.reset();
+  results_.reset();
+  read_back_.reset();
+  tiles_.reset();
   points_ = device_.buffer(points * sizeof(QueryPoint), Device::Use::read, "points");
   results_ = device_.buffer(points * sizeof(FaceList), Device::Use::write, "results");
   read_back_ = device_.buffer(points * sizeof(FaceList), Device::Use::read_back, "results");

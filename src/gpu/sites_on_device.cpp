@@ -63,7 +63,9 @@ std::vector<Face> face_frames(const sites::SitesData& sites) {
     face.along_ac[3] = frames.ac.along[0];
     face.beside_ac[3] = frames.ac.beside[0];
     face.normal_ac[3] = frames.ac.length[0];
-    face.bc[0] = frames.bc.along[0], face.bc[1] = frames.bc.beside[0], face.bc[2] = frames.bc.length[0];
+    face.bc[0] = frames.bc.along[0];
+    face.bc[1] = frames.bc.beside[0];
+    face.bc[2] = frames.bc.length[0];
     face.bc[3] = 0;
   }
   return faces;
