@@ -60,7 +60,7 @@ std::string type_of(const OptionInfo& option) {
       {"numbers", "readonly number[]"},
       {"text", "string"},
       {"interval", "readonly [least: number, largest: number]"},
-      {"tolerance", "number | readonly [least: number, largest: number]"},
+      {"tolerance", "number | string | readonly [least: number, largest: number]"},
       {"point", "readonly [x: number, y: number, z: number]"},
       {"direction", "'normal' | readonly [x: number, y: number, z: number]"}};
   return option.type == "word" ? type_of(option.words) : kTypes.at(option.type);

@@ -5,6 +5,8 @@
 namespace sdm::js {
 
 bool read_tolerance(const GivenValue& given, std::optional<Tolerance>& value) {
+  if (given.words.starts_with('"'))
+    return OptionForm<std::optional<Tolerance>>::read(given.text(), OptionRange{}, value);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<double> numbers;
   if (!read_numbers(given.words, {-kInfinity, kInfinity}, 0, numbers)) return false;

@@ -38,8 +38,8 @@ struct GivenValue {
   [[nodiscard]] std::string_view text_or_numbers() const { return text().empty() ? words : text(); }
 };
 
-/// Reads a number, or an array of two, of which one may be infinite: a limit that there is not. Returns
-/// false, and changes nothing, for anything else.
+/// Reads a number, a text T or LO:HI, or an array of two numbers, of which one may be infinite: no limit.
+/// Returns false, and changes nothing, for anything else.
 [[nodiscard]] bool read_tolerance(const GivenValue& given, std::optional<Tolerance>& value);
 
 [[nodiscard]] std::vector<GivenValue> values_of(const GivenOptions& given);

@@ -1,4 +1,5 @@
 #include "research/literal/literal_engine.h"
+#include "core/lazy/device_pool.h"
 #include "gl/raster_report.h"
 
 #include <sdm/error.h>
@@ -16,7 +17,7 @@
 #include "closest/closest_points.h"
 #include "core/stopwatch.h"
 #include "gl/confirm.h"
-#include "gl/device/device_pool.h"
+#include "gl/device/context.h"
 #include "gl/gl_engine.h"
 #include "gl/map_drawing.h"
 #include "research/literal/rasteriser.h"
@@ -31,7 +32,7 @@ constexpr EngineInfo kUnconfirmedInfo{.name = gl::kInfo.name,
                                       .takes_points = false};
 
 struct Devices {
-  gl::DevicePool<Device> pool;
+  DevicePool<Device> pool;
   gl::TileTreeCache tiles;
   gl::TileTreeCache whole_faces{1 << 16};  // texels: no map is larger
 };
@@ -148,6 +149,7 @@ void LiteralEngine::map(const Surface& surface, const Sites& sites, const engine
                         const engine::SampleSink& sink) const {
   gl::RasterReport report;
   const Drawn drawn = devices().pool.with(options_.device, [&](const Device& device, double ms) {
+    const gl::Context::Current current(device.context());
     report.device = device.context().device();
     report.clip = options_.clip;
     report.texels = surface.owned_texels();

@@ -9,9 +9,10 @@
 #include <utility>
 
 #include "closest/blocks.h"
+#include "core/lazy/device_pool.h"
 #include "core/stopwatch.h"
 #include "gl/confirm.h"
-#include "gl/device/device_pool.h"
+#include "gl/device/context.h"
 #include "gl/draw_winners.h"
 #include "gl/raster_report.h"
 
@@ -58,6 +59,7 @@ void GlEngine::map(const Surface& surface, const Sites& sites, const engine::Eng
   RasterReport report;
   const RasterWinners winners =
       devices().pool.with(options_.device, [&](const RasterDevice& device, double ms) {
+        const Context::Current current(device.context());
         report.device = device.context().device();
         report.clip = options_.clip;
         report.texels = surface.owned_texels();
@@ -89,6 +91,7 @@ void GlEngine::map(const Surface& surface, const Sites& sites, const engine::Eng
 GlDevice gl_device(std::uint32_t resolution, const GlOptions& options) {
   check_options(options);
   return gl::devices().pool.with(options.device, [&](const gl::RasterDevice& device, double) {
+    const gl::Context::Current current(device.context());
     gl::Rasteriser::check_size(device.context(), {resolution, resolution});
     return device.context().device();
   });

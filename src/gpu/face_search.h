@@ -56,8 +56,7 @@ class FaceSearch {
   Device& device() { return device_; }
 
   /// Sets found[i] to the faces of the sites that may be closest to points[i]; their number is a multiple of
-  /// kTile. In dispatches that are expected to take a twentieth of a second at most, between which the call
-  /// can be cancelled.
+  /// kTile. In dispatches that are expected to take 10 to 30 ms, between which the call can be cancelled.
   void find(const sites::SitesData& sites, std::span<const QueryPoint> points, std::span<FaceList> found,
             SearchTimes& times);
 

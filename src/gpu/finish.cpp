@@ -16,10 +16,7 @@ constexpr double kFar = 16;
 
 ClosestPoint closest_of(const sites::SitesData& sites, const Vec3& point, const QueryPoint& placed,
                         const FaceList& found, double max_distance, FinishCounts& counts) {
-  if (placed.within < 0) {
-    counts.far += 1;
-    return closest::closest_point(sites, point, max_distance);
-  }
+  if (placed.within < 0) return closest::closest_point(sites, point, max_distance);
   counts.nodes += found.nodes();
   counts.tests += found.tests();
   if (found.incomplete()) {

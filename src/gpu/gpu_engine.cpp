@@ -1,13 +1,10 @@
 #include "gpu/gpu_engine.h"
 
-#include <sdm/error.h>
-
-#include <map>
 #include <mutex>
 #include <utility>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/lazy/device_pool.h"
 #include "core/stopwatch.h"
 #include "gpu/face_search.h"
 #include "gpu/finish.h"
@@ -15,33 +12,9 @@
 namespace sdm::gpu {
 namespace {
 
-// The open devices of the process by requested name, each used by one thread at a time. Never destroyed: at
-// the end of a process drivers may be gone before it.
-class DevicePool {
- public:
-  template <class Use>
-  auto with(const std::string& wanted, const Use& use) {
-    const std::lock_guard lock(mutex_);
-    const Alone alone;
-    try {
-      std::unique_ptr<FaceSearch>& open = open_[wanted];
-      if (!open) open = std::make_unique<FaceSearch>(wanted);
-      return use(*open);
-    } catch (const Cancelled&) {
-      throw;
-    } catch (const Error&) {
-      open_.erase(wanted);  // it may be lost: the next call opens it anew
-      throw;
-    }
-  }
-
- private:
-  std::mutex mutex_;
-  std::map<std::string, std::unique_ptr<FaceSearch>, std::less<>> open_;
-};
-
-DevicePool& devices() {
-  static DevicePool& all = *new DevicePool;
+// Never destroyed (see DevicePool).
+DevicePool<FaceSearch>& devices() {
+  static DevicePool<FaceSearch>& all = *new DevicePool<FaceSearch>;
   return all;
 }
 
@@ -49,7 +22,7 @@ class GpuEngine final : public Engine {
  public:
   explicit GpuEngine(GpuOptions options) : options_(std::move(options)) {
     report_.device =
-        devices().with(options_.device, [](FaceSearch& search) { return search.device().adapter().name; });
+        devices().with(options_.device, [](FaceSearch& search, double) { return search.device().name(); });
   }
 
   [[nodiscard]] const EngineInfo& info() const override { return kInfo; }
@@ -64,7 +37,8 @@ class GpuEngine final : public Engine {
     found.resize(placed.size());
     place_points(data, points, max_distance, placed);
     SearchTimes times;
-    devices().with(options_.device, [&](FaceSearch& search) { search.find(data, placed, found, times); });
+    devices().with(options_.device,
+                   [&](FaceSearch& search, double) { search.find(data, placed, found, times); });
     Stopwatch watch;
     const FinishCounts counts = finish(data, points, placed, found, max_distance, sink);
     add(points.size(), times, counts, watch.lap());
@@ -82,7 +56,6 @@ class GpuEngine final : public Engine {
     report_.nodes += counts.nodes;
     report_.tests += counts.tests;
     report_.candidates += counts.candidates;
-    report_.far += counts.far;
     report_.incomplete += counts.incomplete;
     report_.dispatches += times.dispatches;
     report_.alone += times.alone;

@@ -25,7 +25,6 @@ struct GpuReport {
   std::size_t nodes = 0;       ///< visited on the device
   std::size_t tests = 0;       ///< of a point and a face on the device
   std::size_t candidates = 0;  ///< compared in double precision
-  std::size_t far = 0;         ///< points so far from O2 that the cpu engine searches for them
   std::size_t incomplete =
       0;  ///< points with more candidates than there is room for, which are searched for in double
   std::size_t alone = 0;  ///< points that were not searched for with those beside them

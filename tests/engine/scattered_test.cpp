@@ -18,6 +18,7 @@
 #include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
+#include "support/degenerate.h"
 #include "support/points.h"
 #include "support/shapes.h"
 #include "support/simd_targets.h"
@@ -29,25 +30,6 @@ constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
 Mesh moved(Mesh mesh, double scale, double offset) {
   for (Vec3& p : mesh.positions) p = scale * p + Vec3{offset, offset, offset};
-  return mesh;
-}
-
-// Triangles that are needles, points, segments, or copies of others.
-Mesh degenerate(std::mt19937& random) {
-  Mesh mesh = test::soup(200, random);
-  const std::size_t count = mesh.triangles.size();
-  for (std::size_t f = 0; f < count; ++f) {
-    const Triangle t = mesh.triangles[f];
-    if (f % 5 == 0)
-      mesh.positions[t[2]] = 0.5 * (mesh.positions[t[0]] + mesh.positions[t[1]]) + Vec3{1e-9, 0, 1e-12};
-    if (f % 7 == 0) mesh.positions[t[1]] = mesh.positions[t[0]];
-    if (f % 11 == 0) mesh.positions[t[2]] = mesh.positions[t[1]];
-    if (f % 3 == 0) {  // the same face, of vertices of its own
-      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-      for (const std::uint32_t v : t) mesh.positions.push_back(mesh.positions[v]);
-      mesh.triangles.push_back({first, first + 1, first + 2});
-    }
-  }
   return mesh;
 }
 
@@ -128,7 +110,7 @@ TEST_P(ScatteredPoints, LeastDistanceOfAllFaces) {
 TEST_P(ScatteredPoints, DegenerateFacesAndCopies) {
   std::mt19937 random(2);
   for (const double scale : {1.0, 1e-9, 1e9}) {
-    const Mesh mesh = moved(degenerate(random), scale, 0);
+    const Mesh mesh = moved(test::degenerate_soup(200, random), scale, 0);
     expect_least(Sites(mesh), queries_for(mesh, 400, random));
   }
 }
@@ -182,8 +164,8 @@ ClosestPoint first_of_all_faces(const sites::SitesData& sites, const Vec3& q) {
 TEST_P(ScatteredPoints, ManySizesAway) {
   std::mt19937 random(12);
   std::normal_distribution<double> coordinate;
-  const Mesh all[] = {test::soup(200, random), degenerate(random), test::sphere(3), test::cube(),
-                      moved(test::soup(200, random), 1e-9, 1e-3)};
+  const Mesh all[] = {test::soup(200, random), test::degenerate_soup(200, random), test::sphere(3),
+                      test::cube(), moved(test::soup(200, random), 1e-9, 1e-3)};
   for (const Mesh& mesh : all) {
     const Sites sites(mesh);
     const Box box = bounds(mesh);
@@ -192,10 +174,10 @@ TEST_P(ScatteredPoints, ManySizesAway) {
       for (int i = 0; i < 30; ++i) {
         Vec3 direction;
         for (double& x : direction) x = coordinate(random);
-        if (i < 6) {
+        if (i < 6) {  // where faces tie
           direction = {};
           direction[i % 3] = i < 3 ? 1 : -1;
-        }  // where faces tie
+        }
         queries.push_back(0.5 * (box.lo + box.hi) +
                           away * norm(box.hi - box.lo) / norm(direction) * direction);
       }

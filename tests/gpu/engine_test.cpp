@@ -14,6 +14,7 @@
 #include "geometry/vec.h"
 #include "gpu/face_search.h"
 #include "gpu/gpu_engine.h"
+#include "support/degenerate.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
 #include "support/points.h"
@@ -23,26 +24,6 @@ namespace sdm {
 namespace {
 
 using ::testing::HasSubstr;
-
-// Triangles that are needles, flat ones, points, segments, or copies of others.
-Mesh degenerate(std::mt19937& random) {
-  Mesh mesh = test::soup(300, random);
-  const std::size_t count = mesh.triangles.size();
-  for (std::size_t f = 0; f < count; ++f) {
-    const Triangle t = mesh.triangles[f];
-    const double height = std::pow(10.0, -3 - static_cast<double>(f % 9));
-    if (f % 5 == 0)
-      mesh.positions[t[2]] = 0.5 * (mesh.positions[t[0]] + mesh.positions[t[1]]) + Vec3{height, 0, height};
-    if (f % 7 == 0) mesh.positions[t[1]] = mesh.positions[t[0]];
-    if (f % 11 == 0) mesh.positions[t[2]] = mesh.positions[t[1]];
-    if (f % 3 == 0) {  // the same face, of vertices of its own
-      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-      for (const std::uint32_t v : t) mesh.positions.push_back(mesh.positions[v]);
-      mesh.triangles.push_back({first, first + 1, first + 2});
-    }
-  }
-  return mesh;
-}
 
 // On the surface, near it, in its box, around it and far away; and on vertices and beyond the ends of edges.
 std::vector<Vec3> queries_for(const Mesh& mesh, std::size_t count, std::mt19937& random) {
@@ -100,7 +81,7 @@ TEST(GpuEngine, ClosestPointsAreThoseOfTheReferenceEngine) {
   expect_reference(test::load("boeing.off"), 0.3, 3);
   for (std::uint32_t seed = 4; seed < 12; ++seed) {
     std::mt19937 random(seed);
-    Mesh mesh = degenerate(random);
+    Mesh mesh = test::degenerate_soup(300, random);
     const double scale = std::pow(10.0, 3.0 * (seed % 5) - 6);
     for (Vec3& p : mesh.positions) p = scale * (p + Vec3{3, 0, -5});
     expect_reference(mesh, seed % 2 == 0 ? kAnywhere : 0.2 * scale, seed);
@@ -127,13 +108,19 @@ TEST(GpuEngine, ManyFacesAtTheSameDistance) {
   EXPECT_EQ(gpu::gpu_report(*engine)->incomplete, 1u);
 }
 
-TEST(GpuEngine, FollowsARefit) {
+TEST(GpuEngine, FollowsRefitsAndEdits) {
   Mesh mesh = test::load("cow.off", "fit");
   Sites sites(mesh);
   const std::vector<Vec3> points{{0.1, 0.2, 0.3}, {2, 0, 0}};
   for (int frame = 0; frame < 6; ++frame) {
     for (Vec3& p : mesh.positions) p = 1.1 * p + Vec3{0.01, 0, 0};
-    sites.refit(mesh.positions);
+    if (frame < 4) {
+      sites.refit(mesh.positions);
+    } else {
+      // The closest face is no more.
+      const ClosestPoint closest = closest_points(sites, points, {})[0];
+      sites.edit({.removed_faces = {point_on_face(sites, closest.type, closest.site, points[0]).face}});
+    }
     const auto found = closest_points(sites, points, {.engine = make_engine("gpu")}),
                expected = closest_points(sites, points, {.engine = make_engine("reference")});
     for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(found[i].distance, expected[i].distance);

@@ -108,6 +108,7 @@ test('summaries and reports have the verdict', { timeout: 120000 }, async () => 
   assert.ok(summary.distance.min > 0.09 && summary.distance.max < 0.11);
   assert.equal((await map.summary({ tolerance: [-0.05, 0.05] })).tolerance.verdict, 'FAIL');
   assert.deepEqual((await map.summary({ tolerance: 0.05 })).tolerance, (await map.summary({ tolerance: [-0.05, 0.05] })).tolerance);
+  assert.deepEqual((await map.summary({ tolerance: '-0.05:0.05' })).tolerance, (await map.summary({ tolerance: 0.05 })).tolerance);
   assert.equal((await map.summary({ tolerance: [0.05, Infinity] })).tolerance.verdict, 'PASS');
   assert.ok((await map.summary({ bands: [0, 0.05, 0.2] })).bands.some(({ upper }) => upper === 0.05));
   await assert.rejects(map.summary({ tolerance: [1, -1] }), { kind: 'input' });

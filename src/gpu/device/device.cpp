@@ -34,22 +34,10 @@ WGPUInstance instance() {
   return only;
 }
 
-std::string backend_name(WGPUBackendType type) {
-  switch (type) {
-    case WGPUBackendType_Vulkan:
-      return "Vulkan";
-    case WGPUBackendType_Metal:
-      return "Metal";
-    case WGPUBackendType_D3D12:
-      return "D3D12";
-    default:
-      return "another interface";
-  }
-}
-
 struct Found {
   Adapter adapter;
-  AdapterName name;
+  std::string name;
+  bool is_processor = false;
 };
 
 std::vector<Found> find_adapters() {
@@ -62,9 +50,8 @@ std::vector<Found> find_adapters() {
     Found& each = found.emplace_back(Found{Adapter(adapter), {}});
     WGPUAdapterInfo info{};
     if (wgpu().AdapterGetInfo(adapter, &info) != WGPUStatus_Success) continue;
-    each.name = {.name = text(info.device),
-                 .backend = backend_name(info.backendType),
-                 .is_processor = info.adapterType == WGPUAdapterType_CPU};
+    each.name = text(info.device);
+    each.is_processor = info.adapterType == WGPUAdapterType_CPU;
     wgpu().AdapterInfoFreeMembers(info);
   }
   return found;
@@ -82,12 +69,12 @@ Found choose(std::string_view wanted) {
         "the gpu engine found no device with a driver for Vulkan, Metal or D3D12: install a driver (Debian: "
         "mesa-vulkan-drivers, which also computes on the processor), or use another engine");
   auto chosen = std::ranges::find_if(all, [&](const Found& each) {
-    return wanted.empty() ? !each.name.is_processor : contains(each.name.name, wanted);
+    return wanted.empty() ? !each.is_processor : contains(each.name, wanted);
   });
   if (chosen == all.end() && wanted.empty()) chosen = all.begin();
   if (chosen != all.end()) return std::move(*chosen);
   std::string names;
-  for (const Found& each : all) names += (names.empty() ? "" : ", ") + each.name.name;
+  for (const Found& each : all) names += (names.empty() ? "" : ", ") + each.name;
   throw Error("the gpu engine found no device '" + std::string(wanted) + "'; there are: " + names);
 }
 
@@ -131,18 +118,12 @@ struct Device::Faults {
   }
 };
 
-std::vector<AdapterName> adapter_names() {
-  std::vector<AdapterName> names;
-  for (Found& each : find_adapters()) names.push_back(std::move(each.name));
-  return names;
-}
-
 Device::Device(std::string_view wanted) : faults_(std::make_unique<Faults>()) {
   Found found = choose(wanted);
-  adapter_ = std::move(found.name);
+  name_ = std::move(found.name);
   WGPULimits limits{};
   if (wgpu().AdapterGetLimits(found.adapter.get(), &limits) != WGPUStatus_Success)
-    throw Error("the gpu engine: " + adapter_.name + " does not tell its limits");
+    throw Error("the gpu engine: " + name_ + " does not report its limits");
   most_bytes_ = std::min<std::size_t>(limits.maxStorageBufferBindingSize, limits.maxBufferSize);
 
   WGPUDeviceDescriptor descriptor{};
@@ -162,7 +143,7 @@ Device::Device(std::string_view wanted) : faults_(std::make_unique<Faults>()) {
   wgpu().AdapterRequestDevice(found.adapter.get(), &descriptor,
                               {nullptr, WGPUCallbackMode_AllowSpontaneous, on_device, &answer, nullptr});
   if (answer.device == nullptr)
-    throw Error("the gpu engine: " + adapter_.name + " cannot be opened (" + answer.message + ")");
+    throw Error("the gpu engine: " + name_ + " cannot be opened (" + answer.message + ")");
   device_.reset(answer.device);
   queue_.reset(wgpu().DeviceGetQueue(device_.get()));
 }
@@ -174,14 +155,14 @@ void Device::check(std::string_view step) const {
   const std::string& fault = !faults_->lost.empty() ? faults_->lost : faults_->error;
   if (fault.empty()) return;
   const std::string what = faults_->lost.empty() && faults_->out_of_memory ? "not enough memory" : fault;
-  throw Error("the gpu engine: " + adapter_.name + " failed when " + std::string(step) + ": " + what);
+  throw Error("the gpu engine: " + name_ + " failed when " + std::string(step) + ": " + what);
 }
 
 Buffer Device::buffer(std::size_t bytes, Use use, std::string_view purpose) {
   bytes = std::max<std::size_t>((bytes + 3) / 4 * 4, kUniformBytes);
   if (bytes > most_bytes_)
     throw Error("the gpu engine needs a buffer of " + megabytes(bytes) + " for " + std::string(purpose) +
-                ", and " + adapter_.name + " permits " + megabytes(most_bytes_) + ": use the cpu engine");
+                ", and " + name_ + " permits " + megabytes(most_bytes_) + ": use the cpu engine");
   WGPUBufferDescriptor descriptor{};
   descriptor.usage = usage(use);
   descriptor.size = bytes;
@@ -256,7 +237,7 @@ void Device::run(const Pipeline& pipeline, const BindGroup& group, std::uint32_t
   while (!answer.done) wgpu().DevicePoll(device_.get(), true, nullptr);
   check("it computed");
   if (answer.status != WGPUMapAsyncStatus_Success)
-    throw Error("the gpu engine: " + adapter_.name + " returned no result: " + answer.message);
+    throw Error("the gpu engine: " + name_ + " returned no result: " + answer.message);
   std::memcpy(to.data(), wgpu().BufferGetConstMappedRange(read_back.get(), 0, to.size()), to.size());
   wgpu().BufferUnmap(read_back.get());
 }

@@ -7,21 +7,10 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "gpu/device/wgpu_library.h"
 
 namespace sdm::gpu {
-
-/// What a machine computes with.
-struct AdapterName {
-  std::string name;     ///< as its driver has it
-  std::string backend;  ///< Vulkan, Metal or D3D12
-  bool is_processor = false;
-};
-
-/// All adapters of the machine, in the order of the drivers. Throws sdm::Error if wgpu-native is missing.
-[[nodiscard]] std::vector<AdapterName> adapter_names();
 
 /// One device. Used by one thread at a time.
 class Device {
@@ -33,7 +22,8 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  [[nodiscard]] const AdapterName& adapter() const { return adapter_; }
+  /// As its driver has it.
+  [[nodiscard]] const std::string& name() const { return name_; }
   /// The largest buffer that a program can read or write.
   [[nodiscard]] std::size_t most_bytes() const { return most_bytes_; }
 
@@ -61,7 +51,7 @@ class Device {
   /// Throws sdm::Error if the device is lost or has reported an error.
   void check(std::string_view step) const;
 
-  AdapterName adapter_;
+  std::string name_;
   std::unique_ptr<Faults> faults_;  // outlives the device, whose callbacks write there
   std::size_t most_bytes_ = 0;
   struct DeviceReleaser {

@@ -130,7 +130,7 @@ std::string_view RowScanner::text() {
   if (!finish_cell(last)) {
     at_ = end_;
     more_ = false;
-  }  // not reached: a cell ends where it is taken to end
+  }
   return {first, static_cast<std::size_t>(last - first)};
 }
 
