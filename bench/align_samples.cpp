@@ -38,7 +38,7 @@ Mesh scanned(Mesh mesh, double noise, double missing, double outliers) {
   for (std::size_t i = 0; i < apart; ++i) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     Vec3 p;
-    for (int k = 0; k < 3; ++k) p[k] = box.lo[k] + unit(random) * (box.hi[k] - box.lo[k]);
+    for (int k = 0; k < 3; ++k) p[k] = box.lower[k] + unit(random) * (box.upper[k] - box.lower[k]);
     const double side = 0.003 * size;
     for (const Vec3& offset : {Vec3{}, Vec3{side, 0, 0}, Vec3{0, side, 0}})
       mesh.positions.push_back(p + offset);
@@ -94,7 +94,7 @@ int main(int argc, char** argv) try {
   const Box box = bounds(mesh);
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 p;
-    for (int k = 0; k < 3; ++k) p[k] = corner >> k & 1 ? box.hi[k] : box.lo[k];
+    for (int k = 0; k < 3; ++k) p[k] = corner >> k & 1 ? box.upper[k] : box.lower[k];
     error = std::max(error, norm((found.transform * motion)(p)-p) / size);
   }
   bench::write_array<Vec3>(out / "vertices1", used_vertices(o1));

@@ -25,8 +25,8 @@ namespace {
 
 Box enlarged(Box box, double by) {
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] -= by;
-    box.hi[k] += by;
+    box.lower[k] -= by;
+    box.upper[k] += by;
   }
   return box;
 }
@@ -63,7 +63,7 @@ Outcome against_openvdb(const Trial& trial, const std::string& file, double cell
   const Mesh mesh = load(file);
   Box box = bounds(mesh);
   double longest = 0;
-  for (int k = 0; k < 3; ++k) longest = std::max(longest, box.hi[k] - box.lo[k]);
+  for (int k = 0; k < 3; ++k) longest = std::max(longest, box.upper[k] - box.lower[k]);
   const double spacing = longest / cells_across;
   const Grid grid = make_grid(enlarged(box, (kCells + 1) * spacing), spacing);
   const FieldOptions options{.max_distance = kCells * spacing};

@@ -4,7 +4,7 @@
 //
 //   build/dev/bench/gpu [--device NAME] [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json
 //   FILE]
-#include "gpu/gpu_engine.h"
+#include <sdm/gpu.h>
 
 #include <sdm/sdm.h>
 
@@ -26,9 +26,9 @@ Outcome measure(const Trial& trial, const Surface& surface, const Sites& sites, 
   const auto map_by = [&](const std::shared_ptr<const Engine>& engine) {
     return compute_map(surface, sites, {.engine = engine, .sign = SignMethod::none}).distance;
   };
-  const auto gpu = gpu::make_gpu_engine({.device = device}), cpu = make_engine("cpu");
+  const auto gpu = make_gpu_engine({.device = device}), cpu = make_engine("cpu");
   const std::vector<float> ours = map_by(gpu), expected = map_by(make_engine("reference"));
-  const gpu::GpuReport report = gpu::gpu_report(*gpu).value();
+  const GpuReport report = gpu_report(*gpu).value();
   std::fprintf(stderr, "on %s\n", report.device.c_str());
   if (std::memcmp(ours.data(), expected.data(), ours.size() * sizeof(float)) != 0) return {};
 

@@ -19,7 +19,7 @@ std::vector<Vec3> uniform(const Mesh& mesh, std::size_t count, double factor) {
   std::uniform_real_distribution<double> part(0.5 - factor / 2, 0.5 + factor / 2);
   std::vector<Vec3> points(count);
   for (Vec3& p : points)
-    for (int k = 0; k < 3; ++k) p[k] = box.lo[k] + part(random) * (box.hi[k] - box.lo[k]);
+    for (int k = 0; k < 3; ++k) p[k] = box.lower[k] + part(random) * (box.upper[k] - box.lower[k]);
   return points;
 }
 std::vector<Vec3> in_box(const Mesh& mesh, std::size_t count) {
@@ -33,7 +33,7 @@ std::vector<Vec3> far_away(const Mesh& mesh, std::size_t count) {
   std::uniform_real_distribution<double> coordinate(-5, 5);
   std::vector<Vec3> points(count);
   for (Vec3& p : points)
-    p = 0.5 * (box.lo + box.hi) + Vec3{coordinate(random), coordinate(random), coordinate(random)};
+    p = 0.5 * (box.lower + box.upper) + Vec3{coordinate(random), coordinate(random), coordinate(random)};
   return points;
 }
 
@@ -45,7 +45,7 @@ std::vector<Vec3> remote(const Mesh& mesh, std::size_t count) {
   std::vector<Vec3> points(count);
   for (Vec3& p : points) {
     for (double& x : p) x = coordinate(random);
-    p = 0.5 * (box.lo + box.hi) + 30 * diagonal(box) / norm(p) * p;
+    p = 0.5 * (box.lower + box.upper) + 30 * diagonal(box) / norm(p) * p;
   }
   return points;
 }
@@ -61,8 +61,8 @@ std::vector<Vec3> grid(const Mesh& mesh, std::size_t count) {
         Vec3& p = points.emplace_back();
         const std::size_t index[3] = {x, y, z};
         for (int k = 0; k < 3; ++k)
-          p[k] =
-              std::lerp(box.lo[k], box.hi[k], static_cast<double>(index[k]) / static_cast<double>(side - 1));
+          p[k] = std::lerp(box.lower[k], box.upper[k],
+                           static_cast<double>(index[k]) / static_cast<double>(side - 1));
       }
   return points;
 }

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <limits>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -98,7 +97,6 @@ int main(int argc, char** argv) try {
   std::mt19937 random(1);
   const std::vector<Affine> placements = bench::random_poses(Sites(m1), Sites(m2), count, random);
   ProximityQuery query(m1, m2);
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<double> separation(count), separation_us(count, kInfinity), colliding_us(count, kInfinity),
       contacts_us(count, kInfinity), contacts_all_us(count, kInfinity),
       separating_contacts_us(count, kInfinity);

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -199,7 +198,6 @@ std::vector<Case> cases() {
                       .run = [=](const Trial& trial) { return measure(trial, kind, max_distance); },
                       .repetitions = 15});
   };
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   add("letters", scenes::SceneKind::letters, kInfinity, "two letters, 1 high");
   add("letters-near", scenes::SceneKind::letters, 0.1, "two letters, occlusion up to 0.1");
   add("bunnies", scenes::SceneKind::bunnies, kInfinity, "two bunnies");

@@ -24,8 +24,8 @@ Mesh paper_box(const Mesh& figure) {
   constexpr double margin = 0.12;
   Box box = bounds(figure);
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] -= margin;
-    box.hi[k] += margin;
+    box.lower[k] -= margin;
+    box.upper[k] += margin;
   }
   return scenes::box_mesh(box);
 }

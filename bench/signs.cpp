@@ -143,7 +143,7 @@ Outcome map_case(const Trial& trial, const Mesh& o1, const Mesh& o2, SignMethod 
 // Without its lowest part, by the heights of faces.
 Mesh opened(Mesh mesh) {
   const Box box = bounds(mesh);
-  const double least = box.lo[2] + 0.1 * (box.hi[2] - box.lo[2]);
+  const double least = box.lower[2] + 0.1 * (box.upper[2] - box.lower[2]);
   std::erase_if(mesh.triangles, [&](const Triangle& t) { return mesh.positions[t[0]][2] < least; });
   return mesh;
 }

@@ -22,9 +22,9 @@ std::optional<sdm::Box> box_of(std::string_view text) {
   if (!sdm::read_numbers(text.substr(kBox.size()), {}, 6, numbers)) return std::nullopt;
   sdm::Box box;
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] = numbers[k];
-    box.hi[k] = numbers[k + 3];
-    if (!(box.lo[k] <= box.hi[k])) return std::nullopt;
+    box.lower[k] = numbers[k];
+    box.upper[k] = numbers[k + 3];
+    if (!(box.lower[k] <= box.upper[k])) return std::nullopt;
   }
   return box;
 }

@@ -57,6 +57,7 @@ AlignOutcome timed(const Input& o2, const AlignCommand& command, const sdm::Prog
   const sdm::AlignOptions options = options_of(command, o2, progress);
   try {
     AlignOutcome outcome{calls.align(options), command, size_of(sdm::bounds(o2.mesh))};
+    outcome.settings = sdm::settings_json(options, options.freedoms);
     if (command.judged) outcome.other_unit = calls.other_unit(outcome.alignment, options);
     outcome.mirrored = calls.mirrored(outcome.alignment);
     if (options.region.whole() && !outcome.other_unit && !outcome.mirrored)
@@ -192,6 +193,7 @@ std::vector<std::string> in_words(const AlignOutcome& outcome, const std::string
 Json to_json(const AlignOutcome& outcome, const std::string& units) {
   Json json = sdm::to_json(outcome.alignment);
   add_choices(json, outcome);
+  json["settings"] = outcome.settings;
   json["text"] = fmt::format("{}", fmt::join(in_words(outcome, units), ", "));
   json["time_ms"] = outcome.time_ms;
   return json;

@@ -18,6 +18,7 @@ struct AlignOutcome {
   AlignCommand command;
   double size = 0;  ///< the diagonal of O2
   double time_ms = 0;
+  nlohmann::ordered_json settings{};  ///< the options of align()
   std::optional<sdm::OtherUnit> other_unit{};
   std::optional<sdm::MirroredFit> mirrored{};
   std::optional<sdm::OtherScale> scale{};

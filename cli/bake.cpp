@@ -59,7 +59,7 @@ std::array<Input, 2> load(const BakeCommand& command) {
   return inputs;
 }
 
-void check_matches(const BakeCommand& command, const MatchCounts& counts) {
+void check_matches(const BakeCommand& command, const sdm::MatchCounts& counts) {
   if (counts.matched() > 0) return;
   throw sdm::Error(fmt::format(
       "no point of {} is {}{} of {}: nothing can be baked; are both in the same place and in the same units?",
@@ -123,7 +123,7 @@ sdm::TexelMatches match(const BakeCommand& command, Input& high, Input& low, Det
     matches = sdm::match_texels(*result.low.surface, *detailed.sites, sdm::match_options(command.request));
   };
   sdm::run_concurrently({decode, find});
-  result.matches = counts_of(matches);
+  result.matches = matches.counts();
   check_matches(command, result.matches);
   return matches;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "format.h"
+#include "src/io/json/report_json.h"
 
 namespace {
 
@@ -25,31 +26,7 @@ Json atlas_json(const BakeCommand& command, const sdm::Surface& surface) {
 
 }  // namespace
 
-MatchCounts counts_of(const sdm::TexelMatches& matches) {
-  MatchCounts counts;
-  for (const sdm::MatchKind kind : matches.kind) switch (kind) {
-      case sdm::MatchKind::none:
-        break;
-      case sdm::MatchKind::closest:
-        ++counts.closest;
-        break;
-      case sdm::MatchKind::facing:
-        ++counts.facing;
-        break;
-      case sdm::MatchKind::ray:
-        ++counts.ray;
-        break;
-      case sdm::MatchKind::too_far:
-        ++counts.too_far;
-        break;
-      case sdm::MatchKind::facing_away:
-        ++counts.facing_away;
-    }
-  return counts;
-}
-
 Json report_of(const BakeCommand& command, const Input& high, const Input& low, const BakeResult& result) {
-  const MatchCounts& counts = result.matches;
   Json report{{"version", sdm::kVersion},
               {"high", to_json(high)},
               {"low", to_json(low)},
@@ -62,12 +39,9 @@ Json report_of(const BakeCommand& command, const Input& high, const Input& low, 
   report["match"] = name_of(matching.method);
   report["facing"] = facing ? Json(matching.facing) : Json();
   report["cage"] = command.request.cage ? Json(*command.request.cage) : Json();
-  report["texels"] = {{"closest", counts.closest},
-                      {"facing", counts.facing},
-                      {"ray", counts.ray},
-                      {"too_far", counts.too_far},
-                      {"facing_away", counts.facing_away}};
+  report["texels"] = sdm::fields_json(result.matches);
   report["textures"] = result.channels.report;
+  report["settings"] = sdm::settings_json(command.request);
   report["notes"] = result.notes;
   report["time_ms"] = {{"import", result.time.import},
                        {"match", result.time.match},
@@ -79,7 +53,7 @@ Json report_of(const BakeCommand& command, const Input& high, const Input& low, 
 
 std::string text_of(const BakeCommand& command, const BakeResult& result) {
   const sdm::Surface& surface = *result.low.surface;
-  const MatchCounts& counts = result.matches;
+  const sdm::MatchCounts& counts = result.matches;
   const std::uint32_t side = command.request.side();
   std::string text = fmt::format("{} -> {}\n", command.high, command.low);
   text += fmt::format("  baked     {}, {} x {} texels{}\n", fmt::join(result.channels.names, ", "),

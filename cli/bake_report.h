@@ -16,18 +16,9 @@ struct BakeTimes {
   double import = 0, match = 0, bake = 0, output = 0, total = 0;
 };
 
-/// The numbers of samples that faces own, by how a point was found for them.
-struct MatchCounts {
-  std::size_t closest = 0, facing = 0, ray = 0, too_far = 0, facing_away = 0;
-
-  [[nodiscard]] std::size_t matched() const { return closest + facing + ray; }
-};
-
-[[nodiscard]] MatchCounts counts_of(const sdm::TexelMatches& matches);
-
 struct BakeResult {
   BakeSurface low{};
-  MatchCounts matches{};
+  sdm::MatchCounts matches{};  ///< of samples
   BakedChannels channels{};
   Notes notes{};
   BakeTimes time{};

@@ -75,6 +75,7 @@ nlohmann::ordered_json report_of(const BodiesCommand& command, const std::vector
   report["units"] = command.units;
   if (!command.out.empty()) report["resolution"] = command.atlas.resolution;
   report["max_distance"] = command.max_distance;  // null: no limit
+  report["settings"] = sdm::settings_json(command.options);
   report["pairs"] = nlohmann::ordered_json::array();
   for (const PairResults& pair : pairs)
     report["pairs"].push_back(sdm::to_json(pair.separation, pair.penetration_depth));

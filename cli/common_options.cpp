@@ -1,6 +1,8 @@
 #include "common_options.h"
 
 #include <sdm/execution.h>
+#include <sdm/gl.h>
+#include <sdm/gpu.h>
 #include <sdm/map.h>
 
 #include <algorithm>
@@ -89,6 +91,7 @@ void add_engine_option(CLI::App& app, sdm::EngineInfo& engine) {
 
 std::shared_ptr<const sdm::Engine> make_engine(const sdm::EngineInfo& engine, const sdm::GlOptions& gl,
                                                const sdm::AtlasOptions& atlas) {
+  if (engine.name == "gpu") return sdm::make_gpu_engine({.device = gl.device});
   if (engine.name != "gl") return sdm::make_engine(engine.name);
   (void)sdm::gl_device(std::max(atlas.resolution, atlas.rows.value_or(0)),
                        gl);  // fails before a surface is built

@@ -1,6 +1,8 @@
 #include "devices.h"
 
+#include <sdm/error.h>
 #include <sdm/gl.h>
+#include <sdm/gpu.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -8,6 +10,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "format.h"
@@ -15,37 +18,60 @@
 
 namespace {
 
-nlohmann::ordered_json devices_json(const std::vector<sdm::GlDevice>& devices) {
-  auto list = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    list.push_back({{"index", i}});
-    list.back().update(sdm::fields_json(devices[i]));
+using Json = nlohmann::ordered_json;
+
+/// The devices of an engine, and why there are none.
+struct EngineDevices {
+  std::string_view engine;
+  Json devices = Json::array();
+  std::string fault{};
+};
+
+template <class Find>
+EngineDevices devices_of(std::string_view engine, const Find& find) {
+  EngineDevices all{engine};
+  try {
+    for (const auto& device : find()) {
+      Json json{{"engine", engine}, {"index", all.devices.size()}};
+      json.update(sdm::fields_json(device));
+      all.devices.push_back(std::move(json));
+    }
+  } catch (const sdm::Error& error) {
+    all.fault = error.what();
   }
-  return list;
+  return all;
 }
 
-void print_table(std::ostream& out, const std::vector<sdm::GlDevice>& devices) {
+void print_table(std::ostream& out, const Json& devices) {
   std::size_t width = 0;
-  for (const sdm::GlDevice& device : devices) width = std::max(width, device.name.size());
-  for (std::size_t i = 0; i < devices.size(); ++i)
-    out << fmt::format("{}  {:<{}}  {}  {}\n", i, devices[i].name, width,
-                       devices[i].software ? "software" : "hardware", devices[i].driver);
+  const auto text = [](const Json& device, const char* key) { return device[key].get<std::string>(); };
+  for (const Json& device : devices) width = std::max(width, text(device, "name").size());
+  for (const Json& device : devices)
+    out << fmt::format("{:<3}  {}  {:<{}}  {}  {}\n", text(device, "engine"), device["index"].dump(),
+                       text(device, "name"), width, device["software"] ? "software" : "hardware",
+                       text(device, "driver"));
+}
+
+void list_devices(bool json) {
+  const EngineDevices gl = devices_of("gl", sdm::gl_devices), gpu = devices_of("gpu", sdm::gpu_devices);
+  if (gl.devices.empty() && gpu.devices.empty()) throw sdm::Error(gl.fault + "; " + gpu.fault);
+  for (const EngineDevices* engine : {&gl, &gpu})
+    if (engine->devices.empty()) std::cerr << "sdm: note: " << engine->fault << '\n';
+  Json all = gl.devices;
+  for (const Json& device : gpu.devices) all.push_back(device);
+  if (json)
+    std::cout << all.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  else
+    print_table(std::cout, all);
 }
 
 }  // namespace
 
 void add_devices_command(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("devices", "List the devices for --engine gl, in order of preference");
+  CLI::App* command = app.add_subcommand(
+      "devices", "List the devices for --engine gl and --engine gpu, of each in order of preference");
   const auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON");
   command->footer("Example:\n  sdm devices");
-  command->callback([json] {
-    const std::vector<sdm::GlDevice> devices = sdm::gl_devices();
-    if (*json)
-      std::cout << devices_json(devices).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-                << '\n';
-    else
-      print_table(std::cout, devices);
-  });
+  command->callback([json] { list_devices(*json); });
 }

@@ -1,4 +1,4 @@
-// `sdm devices`: lists the devices available to the gl engine.
+// `sdm devices`: lists the devices available to the gl and gpu engines.
 #pragma once
 
 namespace CLI {

@@ -19,8 +19,8 @@ namespace {
 
 void extend(sdm::Box& box, const sdm::Box& other) {
   for (std::size_t k = 0; k < 3; ++k) {
-    box.lo[k] = std::min(box.lo[k], other.lo[k]);
-    box.hi[k] = std::max(box.hi[k], other.hi[k]);
+    box.lower[k] = std::min(box.lower[k], other.lower[k]);
+    box.upper[k] = std::max(box.upper[k], other.upper[k]);
   }
 }
 
@@ -30,8 +30,8 @@ sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2, const sdm::B
   sdm::Box box;
   if (!command.bounds.empty()) {
     for (std::size_t k = 0; k < 3; ++k) {
-      box.lo[k] = command.bounds[k];
-      box.hi[k] = command.bounds[k + 3];
+      box.lower[k] = command.bounds[k];
+      box.upper[k] = command.bounds[k + 3];
     }
   } else {
     box = sdm::bounds(o2);
@@ -39,8 +39,8 @@ sdm::Grid grid_of(const FieldCommand& command, const sdm::Mesh& o2, const sdm::B
     const double farthest = command.options.max_distance;
     const double margin = farthest < std::numeric_limits<double>::infinity() ? farthest : 0.1 * diagonal;
     for (std::size_t k = 0; k < 3; ++k) {
-      box.lo[k] -= margin;
-      box.hi[k] += margin;
+      box.lower[k] -= margin;
+      box.upper[k] += margin;
     }
     extend(box, more);
   }

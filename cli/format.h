@@ -17,7 +17,7 @@
 
 /// The diagonal of a box.
 [[nodiscard]] inline double size_of(const sdm::Box& box) {
-  return std::hypot(box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]);
+  return std::hypot(box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]);
 }
 
 /// A coordinate, to 1e-5 of `size` or better, and to `digits` significant digits at least: wherever a mesh

@@ -181,6 +181,7 @@ Json report_of(const HausdorffCommand& command, const InputPair& pair, const Hau
                          {"certified", v.certified},
                          {"guard", answer.guard}};
   }
+  json["settings"] = sdm::settings_json(command.options);
   json["doubts"] = sdm::to_json(answer.doubts);
   json["notes"] = answer.notes;
   return json;

@@ -122,7 +122,7 @@ void print_table(std::ostream& out, const std::string& file, const Info& all) {
   const auto row = [&](const char* name, const std::string& value) {
     out << fmt::format("{:<20}{}\n", name, value);
   };
-  const sdm::Vec3 &lo = info.bounds.lo, &hi = info.bounds.hi;
+  const sdm::Vec3 &lo = info.bounds.lower, &hi = info.bounds.upper;
   const double size = size_of(info.bounds);
   row("file", file);
   row("vertices", fmt::to_string(info.vertices));

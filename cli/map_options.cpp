@@ -51,7 +51,7 @@ void add_options(CLI::App& app, MapCommand& c) {
   add_engine_option(app, c.engine);
   add_declared_options(
       app, c.gl, {},
-      {{"device", "gl: the device, by its number in `sdm devices` or part of its name.", "gl_device"},
+      {{"device", "gl, gpu: the device, by its number in `sdm devices` or part of its name."},
        {"clip",
         "gl: how polygons are clipped to faces of O1: by planes or, as in the paper, by a stencil cache."},
        {"stencil_values", "gl, --clip stencil: the number of stencil values."},
@@ -77,7 +77,9 @@ void check_combination(const CLI::App& app, const MapCommand& c) {
       t && std::max(std::abs(t->lower), std::abs(t->upper)) > c.map.max_distance)
     throw CLI::ValidationError("--tolerance",
                                "must not be greater than --max-distance, beyond which texels have no value");
-  for (const char* option : {"--gl-device", "--clip", "--stencil-values", "--no-bound-culling"})
+  if (app.count("--device") > 0 && c.engine.name != "gl" && c.engine.name != "gpu")
+    throw CLI::ValidationError("--device", "needs --engine gl or gpu");
+  for (const char* option : {"--clip", "--stencil-values", "--no-bound-culling"})
     if (app.count(option) > 0 && c.engine.name != "gl")
       throw CLI::ValidationError(option, "needs --engine gl");
   if (app.count("--stencil-values") > 0 && c.gl.clip != sdm::GlClip::stencil)

@@ -61,8 +61,6 @@ sdm::SummaryOptions summary_options(const MapTask& task, const AtlasPart& part, 
           .guard = guard_of(task),
           .tolerance = command.picture.tolerance,
           .table = command.groups.rows,
-          .colormap = command.picture.colormap,
-          .range = command.picture.range,
           .bands = command.bands,
           .names = task.on.names,
           .whole = &task.on.mesh,
@@ -175,6 +173,7 @@ Json report_of(const MapTask& task, const AtlasPart& part, const ComputedMap& co
     report["colors"]["by_group"] = command.picture.colormap == sdm::Colormap::automatic;
   }
   if (outcome.raster) report["raster"] = sdm::to_json(*outcome.raster);
+  if (outcome.gpu) report["gpu"] = sdm::fields_json(*outcome.gpu);
   return report;
 }
 
@@ -229,6 +228,7 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
     outcome.boundary_vertices = static_cast<std::size_t>(std::ranges::count(at_boundary, 1));
   }
   outcome.raster = sdm::gl_report(*command.map.engine);
+  outcome.gpu = sdm::gpu_report(*command.map.engine);
   computed.ms = total.lap();
   return computed;
 }

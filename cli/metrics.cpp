@@ -97,6 +97,7 @@ Json metrics_report(const MetricsCommand& command, const InputPair& pair, const 
       json["fail_if"].push_back(
           {{"text", command.conditions[i].text}, {"verdict", sdm::name_of(answer.verdicts[i])}});
   }
+  json["settings"] = sdm::settings_json(command.options);
   json["notes"] = answer.notes;
   return json;
 }

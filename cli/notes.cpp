@@ -15,11 +15,11 @@ sdm::Box posed(const sdm::Box& box, const sdm::Transform& pose) {
   sdm::Box result;
   for (int corner = 0; corner < 8; ++corner) {
     sdm::Vec3 p;
-    for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? box.hi[k] : box.lo[k];
+    for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? box.upper[k] : box.lower[k];
     p = pose(p);
     for (int k = 0; k < 3; ++k) {
-      result.lo[k] = std::min(result.lo[k], p[k]);
-      result.hi[k] = std::max(result.hi[k], p[k]);
+      result.lower[k] = std::min(result.lower[k], p[k]);
+      result.upper[k] = std::max(result.upper[k], p[k]);
     }
   }
   return result;

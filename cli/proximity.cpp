@@ -46,6 +46,7 @@ void run(const PairCommand& command, const AlignCommand& align) {
   const auto report = [&] {
     Json json = report_on(pair, command.units);
     if (aligned) json["alignment"] = to_json(*aligned, command.units);
+    json["settings"] = sdm::settings_json(command.options);
     json["notes"] = all_notes;
     json.update(answers);
     json["time_ms"] = {{"import", pair.import_ms}, {"build", build_ms}, {"query", query_ms}};

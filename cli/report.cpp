@@ -209,5 +209,6 @@ std::string summary(const Input& on, const Input& to, const Outcome& outcome) {
   if (outcome.raster)
     add("  raster    {}, {} polygons, overdraw {}\n", outcome.raster->device.name, outcome.raster->polygons,
         number(outcome.raster->overdraw()));
+  if (outcome.gpu) add("  gpu       {}\n", outcome.gpu->device);
   return text;
 }

@@ -55,6 +55,7 @@ struct Outcome {
   std::optional<bool> embedded{};          ///< the other mesh does not intersect itself; if it has an inside
   std::optional<sdm::GroupVerdicts> groups{};  ///< if there is a table of tolerances
   std::optional<sdm::GlReport> raster;
+  std::optional<sdm::GpuReport> gpu;
   sdm::ReportTimes time;
 };
 

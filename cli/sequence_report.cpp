@@ -103,14 +103,9 @@ Json to_json(const Frame& frame, std::span<const sdm::Contact> contacts) {
   if (std::ranges::any_of(frame.distances, [](const auto& d) { return d && d->verdict; }))
     json["doubts"] = to_json(frame.doubts);
   for (int b = 0; b < 2; ++b)
-    if (const auto& topology = frame.topology[b])
-      json["topology"][kBodies[b]] = {{"removed_faces", topology->removed_faces},
-                                      {"reconnected_faces", topology->reconnected_faces},
-                                      {"added_faces", topology->added_faces},
-                                      {"new_layout", topology->new_layout}};
-  const FrameTimes& t = frame.time;
-  json["time_ms"] = {{"read", t.read}, {"update", t.update}, {"query", t.query},  {"error", t.error},
-                     {"map", t.map},   {"write", t.write},   {"total", t.total()}};
+    if (const auto& topology = frame.topology[b]) json["topology"][kBodies[b]] = sdm::fields_json(*topology);
+  json["time_ms"] = sdm::fields_json(frame.time);
+  json["time_ms"]["total"] = frame.time.total();
   return json;
 }
 

@@ -29,6 +29,21 @@ struct TopologyReport {
   bool new_layout = false;  ///< nothing stays: the body has another mesh and another atlas
 };
 
+template <>
+inline constexpr std::tuple sdm::kFields<FrameTimes>{
+    Field{"read", &FrameTimes::read, "Reading the meshes."},
+    Field{"update", &FrameTimes::update, "Moving the bodies."},
+    Field{"query", &FrameTimes::query, "The queries."},
+    Field{"error", &FrameTimes::error, "The error bound."},
+    Field{"map", &FrameTimes::map, "The maps."},
+    Field{"write", &FrameTimes::write, "Writing files."}};
+template <>
+inline constexpr std::tuple sdm::kFields<TopologyReport>{
+    Field{"removed_faces", &TopologyReport::removed_faces, "Faces that are gone."},
+    Field{"reconnected_faces", &TopologyReport::reconnected_faces, "Faces with other vertices."},
+    Field{"added_faces", &TopologyReport::added_faces, "Faces that are new."},
+    Field{"new_layout", &TopologyReport::new_layout, "Whether the body has another mesh and another atlas."}};
+
 struct Frame {
   std::size_t index = 0;
   sdm::BoundedLength separation;

@@ -123,6 +123,7 @@ Json report_of(const SimplifyCommand& command, const SimplifyOutcome& outcome) {
   json["levels"] = Json::array();
   for (std::size_t i = 0; i < outcome.levels.size(); ++i)
     json["levels"].push_back(level_json(command, i, outcome.levels[i]));
+  json["settings"] = sdm::settings_json(command.levels);
   json["candidates"] = outcome.report.candidates;
   json["notes"] = outcome.notes;
   json["time_ms"] = {{"import", outcome.import_ms},

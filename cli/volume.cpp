@@ -33,6 +33,7 @@ nlohmann::ordered_json report_of(const FieldCommand& command, const Input& o2, c
   json["o2"] = to_json(o2);
   json["units"] = command.units;
   json.update(sdm::to_json(outcome.field));
+  json["settings"] = sdm::settings_json(command.options);
   json["work"] = {{"field_bytes", report.field_bytes}, {"working_bytes", report.working_bytes}};
   json["notes"] = o2.notes;
   json["file"] = command.out.string();

@@ -19,7 +19,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/sdm-config-version.cmake
 install(FILES ${PROJECT_BINARY_DIR}/sdm-config.cmake ${PROJECT_BINARY_DIR}/sdm-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sdm COMPONENT devel)
 
-# pkg-config files: sdm, and sdm-io for file input and output.
+# pkg-config files: sdm, sdm-bodies, sdm-bake, and sdm-io for file input and output.
 cmake_path(SET lib_folder NORMALIZE "/${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 cmake_path(RELATIVE_PATH lib_folder BASE_DIRECTORY / OUTPUT_VARIABLE lib_folder)
 string(REGEX REPLACE "[^/]+" ".." SDM_PC_PREFIX "${lib_folder}")
@@ -30,7 +30,10 @@ endif()
 set(SDM_PC_LIBS "${CMAKE_DL_LIBS}")
 list(TRANSFORM SDM_PC_LIBS PREPEND "-l")
 configure_file(cmake/sdm.pc.in ${PROJECT_BINARY_DIR}/sdm.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/sdm.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT devel)
+foreach(part bodies bake)
+  configure_file(cmake/sdm-part.pc.in ${PROJECT_BINARY_DIR}/sdm-${part}.pc @ONLY)
+endforeach()
+install(FILES ${PROJECT_BINARY_DIR}/sdm.pc ${PROJECT_BINARY_DIR}/sdm-bodies.pc ${PROJECT_BINARY_DIR}/sdm-bake.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT devel)
 if(SDM_BUILD_IO)
   set(SDM_PC_TINYGLTF "")
   if(TinyGLTF_FOUND)

@@ -34,11 +34,19 @@ function(sdm_divide_sources target)
   endforeach()
 endfunction()
 
+# sdm_object_properties(<objects>): of objects that are part of a library.
+function(sdm_object_properties objects)
+  set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  if(NOT BUILD_SHARED_LIBS)
+    set_target_properties(${objects} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  endif()
+endfunction()
+
 # sdm_add_library(<name> SOURCES <file>... [LINK <target>...] [LINK_PRIVATE <target>...])
 # Adds the exported library sdm::<name without sdm_>, static or shared as set by BUILD_SHARED_LIBS, from the object
-# library <name>_objects. All symbols except those of the public API (SDM_API) are hidden, and internal headers are on
-# no user's include path. Tests and benchmarks of internals link <name>_internals, which provides the objects themselves
-# if the library is shared.
+# library <name>_objects. Internal headers are on no user's include path: tests and benchmarks of internals link
+# <name>_internals, which adds it. A shared library exports its internals, too, as the other libraries of the project use them;
+# programs that contain a static one (SDM_API) do not.
 function(sdm_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LINK_PRIVATE" ${ARGN})
   set(internal_folders ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/src)
@@ -47,8 +55,7 @@ function(sdm_add_library name)
   target_include_directories(${name}_objects
     PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include
     PRIVATE ${internal_folders})
-  set_target_properties(${name}_objects PROPERTIES
-    POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  sdm_object_properties(${name}_objects)
   target_link_libraries(${name}_objects PRIVATE ${ARG_LINK} ${ARG_LINK_PRIVATE})
   sdm_compile_options(${name}_objects)
 
@@ -66,14 +73,7 @@ function(sdm_add_library name)
 
   add_library(${name}_internals INTERFACE)
   target_include_directories(${name}_internals INTERFACE ${internal_folders})
-  if(BUILD_SHARED_LIBS)
-    list(TRANSFORM ARG_LINK APPEND _internals)
-    target_sources(${name}_internals INTERFACE $<TARGET_OBJECTS:${name}_objects>)
-    target_include_directories(${name}_internals INTERFACE ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include)
-    target_link_libraries(${name}_internals INTERFACE ${ARG_LINK} ${ARG_LINK_PRIVATE})
-  else()
-    target_link_libraries(${name}_internals INTERFACE ${name})
-  endif()
+  target_link_libraries(${name}_internals INTERFACE ${name})
   set_property(GLOBAL APPEND PROPERTY SDM_LIBRARIES ${name})
 endfunction()
 
@@ -108,9 +108,6 @@ endfunction()
 function(sdm_link_private name)
   target_link_libraries(${name}_objects PRIVATE ${ARGN})
   target_link_libraries(${name} PRIVATE ${ARGN})
-  if(BUILD_SHARED_LIBS)
-    target_link_libraries(${name}_internals INTERFACE ${ARGN})
-  endif()
 endfunction()
 
 # Sets strict warnings and C++20 for a target of the project.

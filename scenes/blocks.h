@@ -19,7 +19,7 @@ class UnionMesh {
  public:
   explicit UnionMesh(const Blocks& blocks) : blocks_(blocks) {
     for (int k = 0; k < 3; ++k) {
-      for (const Box& b : blocks) at_[k].insert(at_[k].end(), {b.lo[k], b.hi[k]});
+      for (const Box& b : blocks) at_[k].insert(at_[k].end(), {b.lower[k], b.upper[k]});
       std::ranges::sort(at_[k]);
       at_[k].erase(std::unique(at_[k].begin(), at_[k].end()), at_[k].end());
     }
@@ -47,7 +47,7 @@ class UnionMesh {
     }
     return std::ranges::any_of(blocks_, [&](const Box& b) {
       for (int k = 0; k < 3; ++k)
-        if (middle[k] < b.lo[k] || middle[k] > b.hi[k]) return false;
+        if (middle[k] < b.lower[k] || middle[k] > b.upper[k]) return false;
       return true;
     });
   }

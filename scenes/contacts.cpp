@@ -22,8 +22,8 @@ Vec3 barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 std::vector<VertexContact> find_contacts(std::span<const Vec3> points, const Sites& solid, double margin) {
   Box reach = bounds(solid.mesh());
   for (int k = 0; k < 3; ++k) {
-    reach.lo[k] -= margin;
-    reach.hi[k] += margin;
+    reach.lower[k] -= margin;
+    reach.upper[k] += margin;
   }
   std::vector<std::uint32_t> indices;
   std::vector<Vec3> near;

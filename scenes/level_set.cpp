@@ -13,9 +13,9 @@ namespace {
 class Grid {
  public:
   Grid(const std::function<double(const Vec3&)>& field, const Box& box, double spacing)
-      : origin_(box.lo), spacing_(spacing) {
+      : origin_(box.lower), spacing_(spacing) {
     for (int k = 0; k < 3; ++k)
-      size_[k] = static_cast<std::size_t>(std::ceil((box.hi[k] - box.lo[k]) / spacing)) + 1;
+      size_[k] = static_cast<std::size_t>(std::ceil((box.upper[k] - box.lower[k]) / spacing)) + 1;
     values_.resize(size_[0] * size_[1] * size_[2]);
     parallel_for(values_.size(), 1024, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) values_[i] = field(point(i));

@@ -66,7 +66,7 @@ class Normal {
 /// Removes the faces that are farthest along the longest side of the box, away from `keep`, with `fraction`
 /// of the area, and the vertices of no other face. Returns the fraction removed.
 double cut_end(Mesh& mesh, const Box& box, const Vec3& keep, double fraction) {
-  const Vec3 size = box.hi - box.lo;
+  const Vec3 size = box.upper - box.lower;
   const auto axis = static_cast<std::size_t>(std::ranges::max_element(size) - size.begin());
   const double away = keep[axis] > centre(box)[axis] ? -1 : 1;
   std::vector<double> along, areas;

@@ -93,7 +93,7 @@ struct Fit {
 
 Fit fit_of(const Mesh& mesh) {
   const Box box = bounds(mesh);
-  const Vec3 size = box.hi - box.lo;
+  const Vec3 size = box.upper - box.lower;
   const double longest = std::max({size[0], size[1], size[2]});
   if (!(longest > 0)) throw Error("transform step 'fit' requires a mesh with positive extent");
   return {centre(box), longest};

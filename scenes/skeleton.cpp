@@ -1,7 +1,5 @@
 #include "scenes/skeleton.h"
 
-#include <limits>
-
 namespace sdm::scenes {
 namespace {
 
@@ -17,7 +15,7 @@ double distance(const Muscle& muscle, const Vec3& p) {
 
 // The smooth minimum −k log Σ exp(−d/k); exponents are relative to the smallest distance.
 double skin_distance(const Skeleton& skeleton, const Vec3& p) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (const Muscle& muscle : skeleton.muscles) least = std::min(least, distance(muscle, p));
   double sum = 0;
   for (const Muscle& muscle : skeleton.muscles) sum += std::exp((least - distance(muscle, p)) / kBlend);
@@ -38,7 +36,7 @@ std::vector<Motion> pose(const Skeleton& skeleton, std::span<const Matrix> rotat
 // muscle shapes.
 Skin::Skin(const Skeleton& skeleton, std::span<const Vec3> rest) : rest_(rest.begin(), rest.end()) {
   for (const Vec3& p : rest_) {
-    double least = std::numeric_limits<double>::infinity(), sum = 0;
+    double least = kInfinity, sum = 0;
     for (const Muscle& muscle : skeleton.muscles) least = std::min(least, distance(muscle, p));
     std::vector<double>& weights = weights_.emplace_back(skeleton.bones.size(), 0.0);
     for (const Muscle& muscle : skeleton.muscles) {

@@ -1,7 +1,6 @@
 #include "scenes/soft_body.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace sdm::scenes {
 namespace {
@@ -31,7 +30,7 @@ SoftBody::SoftBody(const Mesh& mesh, const Material& material, const Vec3& veloc
   // is in none.
   const auto neighbours = neighbours_of(mesh);
   masses_.assign(n, 0);  // for now, the number of clusters of each vertex
-  std::vector<double> to_seed(n, std::numeric_limits<double>::infinity());
+  std::vector<double> to_seed(n, kInfinity);
   std::size_t seed = 0;
   while (seed < n) {
     add_cluster(neighbours, static_cast<std::uint32_t>(seed), material.cluster_radius);

@@ -21,7 +21,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -269,9 +268,9 @@ struct BakeRequest {
   std::optional<MatchMethod> match{};       ///< nothing: `facing` if an angle is given, else `closest`
   std::optional<double> facing{};           ///< as of MatchOptions
   std::optional<double> cage{};             ///< the same
-  double max_distance = std::numeric_limits<double>::infinity();        ///< the same
-  std::uint32_t occlusion_rays = 64;                                    ///< AmbientOcclusionOptions::rays
-  double occlusion_distance = std::numeric_limits<double>::infinity();  ///< its maximum distance
+  double max_distance = kInfinity;          ///< the same
+  std::uint32_t occlusion_rays = 64;        ///< AmbientOcclusionOptions::rays
+  double occlusion_distance = kInfinity;    ///< its maximum distance
   ThicknessMethod thickness_method = ThicknessMethod::ball;
   Progress progress{};
 

@@ -20,7 +20,6 @@
 #include <sdm/types.h>
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <tuple>
@@ -32,7 +31,7 @@ namespace sdm {
 struct ClosestPointOptions {
   std::shared_ptr<const Engine> engine{};  ///< null: the cpu engine
   /// Greater than 0, in units of the meshes. Points farther than this have no site (SiteType::none).
-  double max_distance = std::numeric_limits<double>::infinity();
+  double max_distance = kInfinity;
   Progress progress{};
 };
 
@@ -92,10 +91,10 @@ struct FacingPoints {
 
 /// The closest point of the parts merged so far to a query.
 struct ClosestInParts {
-  double distance = std::numeric_limits<double>::infinity();  ///< ≥ 0, = |vector|
-  Vec3 vector{};                                              ///< closest point − query
-  std::uint32_t site = kNone;                                 ///< its number in the whole O2
-  std::uint32_t face = kNone;                                 ///< the face it was computed from
+  double distance = kInfinity;  ///< ≥ 0, = |vector|
+  Vec3 vector{};                ///< closest point − query
+  std::uint32_t site = kNone;   ///< its number in the whole O2
+  std::uint32_t face = kNone;   ///< the face it was computed from
   SiteType type = SiteType::none;
 };
 

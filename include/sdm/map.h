@@ -17,7 +17,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -82,7 +81,7 @@ struct MapOptions {
   std::shared_ptr<const Engine> engine{};  ///< null: the cpu engine
   SignMethod sign = SignMethod::automatic;
   /// Greater than 0, in units of the meshes. Texels farther than this have no value (NaN).
-  double max_distance = std::numeric_limits<double>::infinity();
+  double max_distance = kInfinity;
   /// An angle in degrees, above 0 and up to 180: distances are to the closest of the faces of O2 whose normal
   /// is within it of the normal of the sample's face (see sdm/closest_points.h). Nothing: to the closest
   /// point.

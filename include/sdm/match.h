@@ -37,6 +37,24 @@ enum class MatchKind : std::uint8_t {
   facing_away  ///< unmatched: no face faces as the sample does, at any distance
 };
 
+/// The numbers of texels that faces own, by their MatchKind.
+struct MatchCounts {
+  std::size_t closest = 0, facing = 0, ray = 0;  ///< with a point
+  std::size_t too_far = 0, facing_away = 0;      ///< without one
+
+  /// The number of texels with a point.
+  [[nodiscard]] std::size_t matched() const { return closest + facing + ray; }
+};
+
+template <>
+inline constexpr std::tuple kFields<MatchCounts>{
+    Field{"closest", &MatchCounts::closest, "Texels whose point is the closest one."},
+    Field{"facing", &MatchCounts::facing, "Texels whose point is the closest one that faces as they do."},
+    Field{"ray", &MatchCounts::ray, "Texels whose point a ray along the normal hits."},
+    Field{"too_far", &MatchCounts::too_far,
+          "Texels without a point: nothing is within the largest distance."},
+    Field{"facing_away", &MatchCounts::facing_away, "Texels without a point: no face faces as they do."}};
+
 /// A point of O2 for each texel of the atlas of O1 (resolution · rows(), row 0 at the top).
 struct TexelMatches {
   std::uint32_t resolution = 0;  ///< texels per row
@@ -51,6 +69,14 @@ struct TexelMatches {
   /// The number of texels of a kind. Cost: linear.
   [[nodiscard]] std::size_t count(MatchKind of) const {
     return static_cast<std::size_t>(std::count(kind.begin(), kind.end(), of));
+  }
+  /// The numbers of texels of each kind. Cost: linear.
+  [[nodiscard]] MatchCounts counts() const {
+    return {.closest = count(MatchKind::closest),
+            .facing = count(MatchKind::facing),
+            .ray = count(MatchKind::ray),
+            .too_far = count(MatchKind::too_far),
+            .facing_away = count(MatchKind::facing_away)};
   }
   /// The point of a texel; no face without one. Its weights are not negative.
   [[nodiscard]] SurfacePoint point(std::size_t texel) const {
@@ -78,9 +104,9 @@ struct MatchOptions {
   double facing = 90;
   /// How far along the normal, to either side, `ray` searches for hits: greater than 0, in units of the
   /// meshes. Beyond a part of O1, hits may belong to another part of O2.
-  double cage = std::numeric_limits<double>::infinity();
+  double cage = kInfinity;
   /// Greater than 0, in units of the meshes. Points of O2 farther than this do not match.
-  double max_distance = std::numeric_limits<double>::infinity();
+  double max_distance = kInfinity;
   /// Normals at the corners of O1's faces, such as those of its file, for `ray`; null: smooth_normals(),
   /// which leave no gap between the rays of faces that meet at an edge.
   const MeshAttribute* normals = nullptr;

@@ -1,5 +1,5 @@
 /// Measures: what is measured at the samples of a surface. Besides the closest point (sdm/map.h): along a
-/// line, and the wall thickness; and any of all, of which programs choose while they run.
+/// line, to the same mesh, and the wall thickness; and any of all, of which programs choose while they run.
 ///
 /// Threads: the functions may be called concurrently, also with the same Surface and Sites.
 #pragma once
@@ -10,7 +10,6 @@
 #include <sdm/mesh.h>
 #include <sdm/names.h>
 #include <sdm/options.h>
-#include <sdm/self_proximity_query.h>
 #include <sdm/sites.h>
 #include <sdm/surface.h>
 #include <sdm/types.h>
@@ -18,7 +17,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -51,7 +49,7 @@ struct AlongOptions {
   /// The direction of all lines, of any length. Nothing: the normal of each sample's face, or of each point.
   std::optional<Vec3> direction{};
   /// Greater than 0, in units of the meshes. Texels farther than this have no value (NaN).
-  double max_distance = std::numeric_limits<double>::infinity();
+  double max_distance = kInfinity;
   Progress progress{};
 };
 
@@ -178,6 +176,121 @@ struct WallEstimate {
 
 /// The largest error of a thickness, in units of the mesh: of rounding.
 [[nodiscard]] SDM_API double thickness_accuracy(const Mesh& mesh);
+
+/// The neighbourhood of a face along the surface, to which no distances are measured.
+struct ExclusionRule {
+  /// Exclude the face and this many rings of faces around it, connected by shared vertices; ≥ 1.
+  std::uint32_t rings = 1;
+  /// If set, replaces `rings`: exclude everything closer than this along the surface at rest; > 0, in units
+  /// of the mesh.
+  std::optional<double> geodesic{};
+};
+
+inline constexpr std::array kGeodesicExcludes{ExcludedOption{"rings"}};
+
+template <>
+inline constexpr auto kOptions<ExclusionRule> = std::tuple{
+    Option{.name = "rings",
+           .member = &ExclusionRule::rings,
+           .text = "Each face excludes itself and this many rings of neighbours, which share vertices.",
+           .range = {1, 1 << 20},
+           .value = "K"},
+    Option{.name = "geodesic",
+           .member = &ExclusionRule::geodesic,
+           .text = "Instead: each face excludes what is closer than this along the surface (conservatively).",
+           .range = kPositive,
+           .unit = "length",
+           .value = "L",
+           .excludes = kGeodesicExcludes}};
+
+/// Options of an Exclusion.
+struct ExclusionOptions {
+  ExclusionRule rule{};
+  Progress progress{};
+};
+
+/// The faces that each face of a mesh excludes: itself and its neighbourhood. The relation is symmetric. It
+/// depends on the mesh at rest only, not on later deformation. It is stored for patches: groups of faces that
+/// exclude the same faces.
+///
+/// With rings, every face is a patch of its own. With a geodesic length L, faces form patches around seeds
+/// about L/6 apart, which lie in balls of radius L/4; faces too large for that are patches of their own.
+/// Patches P and Q exclude each other if a chain of patches, consecutive ones sharing a vertex, leads from P
+/// to Q such that every patch of it is less than L from P in a straight line at rest, and likewise a chain
+/// from Q to P. Distances are those of single faces, and of the spheres around the bounding boxes of patches
+/// of several faces. No point that is not excluded is therefore nearer than L along the surface at rest: the
+/// shortest path to it would run through such a chain. The rule is conservative: it excludes whole patches,
+/// and so what is up to about 2 L away in a straight line, besides the length of large faces; on fine meshes,
+/// 1.6 L. Where the surface at rest folds back within that, it excludes the other side as well.
+class SDM_API Exclusion {
+ public:
+  /// Throws sdm::Error when the mesh is unusable (see validate), for a rule out of range, with rings if more
+  /// than 100 pairs of faces for each face, and more than 100 million, share a vertex, and if there is not
+  /// enough memory; Cancelled. Memory: with a geodesic length, whatever it is, up to about 200 numbers per
+  /// face of a surface with well-shaped faces, but always as many as faces share a vertex; with rings, the
+  /// sizes of all neighbourhoods, equal ones of many faces once. Cost: linear in the sizes of all, most of it
+  /// on all cores.
+  explicit Exclusion(const Mesh& rest, const ExclusionOptions& options = {});
+
+  /// The number of faces of the mesh.
+  [[nodiscard]] std::size_t faces() const { return patch_of_.size(); }
+  /// The number of patches.
+  [[nodiscard]] std::size_t patches() const { return face_offsets_.size() - 1; }
+  /// The patch of a face.
+  [[nodiscard]] std::uint32_t patch_of(std::uint32_t face) const { return patch_of_[face]; }
+  /// The faces of a patch, in increasing order.
+  [[nodiscard]] std::span<const std::uint32_t> faces_of(std::uint32_t patch) const {
+    return {patch_faces_.data() + face_offsets_[patch], patch_faces_.data() + face_offsets_[patch + 1]};
+  }
+  /// The patches whose faces the faces of `patch` exclude, itself among them, in increasing order.
+  [[nodiscard]] std::span<const std::uint32_t> excluded_by(std::uint32_t patch) const {
+    const std::uint32_t row = row_of(patch);
+    return {excluded_.data() + offsets_[row], excluded_.data() + offsets_[row + 1]};
+  }
+  /// Whether two faces exclude each other. Cost: a binary search.
+  [[nodiscard]] bool excludes(std::uint32_t face1, std::uint32_t face2) const;
+
+ private:
+  void keep_mutual();
+  [[nodiscard]] std::uint32_t row_of(std::uint32_t patch) const {
+    return rows_.empty() ? patch : rows_[patch];
+  }
+
+  std::vector<std::uint32_t> patch_of_;                    ///< of each face
+  std::vector<std::uint32_t> patch_faces_, face_offsets_;  ///< the faces of each patch, and where they start
+  std::vector<std::uint32_t> rows_;      ///< of each patch: which of the rows below it has; empty: its own
+  std::vector<std::uint32_t> excluded_;  ///< patches, by the row
+  std::vector<std::size_t> offsets_;     ///< of each row in excluded_, and an end
+};
+
+/// A measure (sdm/measure.h): the distance to the closest point of the faces of the same mesh that the
+/// sample's face does not exclude. Distances are unsigned, exact up to double rounding, stored in float. A
+/// texel with nothing in range, because every face is excluded or farther than max_distance, has the distance
+/// +∞, the vector 0, kNone and SiteType::none, and counts as beyond_max_distance; NaN means that no face owns
+/// the texel. At a vertex, faces that Sites ignores do not count; NaN means that there are no others. Within
+/// a face the distance is 1-Lipschitz; between faces it may jump, as their exclusions differ: the map is of
+/// DistanceKind::self, whose samples do not bound the points between them.
+///
+/// Surface and Sites must be built from the same mesh and positions, the exclusion from the same mesh at
+/// rest. Throws sdm::Error if their numbers of faces differ, for a maximum distance out of range, or if there
+/// is not enough memory; Cancelled. Cost: one search per texel that skips what is excluded; all cores.
+struct SelfOptions {
+  const Exclusion& exclusion;       ///< must outlive the options
+  double max_distance = kInfinity;  ///< > 0, in units of the mesh: anything farther is ignored
+  Progress progress{};
+};
+
+/// Options of a mesh and itself, with the rule in place of the exclusion: of a SelfProximityQuery, and of
+/// every door but C++.
+struct SelfProximityOptions {
+  ExclusionRule exclusion{};
+  double max_distance = kInfinity;  ///< > 0, in units of the mesh: anything farther is ignored
+  Progress progress{};              ///< of the construction
+};
+
+template <>
+inline constexpr auto kOptions<SelfProximityOptions> = std::tuple{max_distance_option<SelfProximityOptions>(
+    "Samples without a surface within this distance have no value.")};
 
 /// A measure is its options: of the closest point of O2 or, with MapOptions::facing, of the faces that face
 /// the same way; along lines; to the rest of the same mesh; of the wall thickness. Of the last two, O2 is the

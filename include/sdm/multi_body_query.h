@@ -14,7 +14,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -55,6 +54,14 @@ struct PairSeparation {
   PartPair parts{};  ///< those that are the separation apart
 };
 
+template <>
+inline constexpr std::tuple kFields<PairSeparation>{
+    Field{"first", &PairSeparation::first, "The body of the lower index."},
+    Field{"second", &PairSeparation::second, "The other body."},
+    Field{"separation", &PairSeparation::separation, "The distance between them; 0 if they collide."},
+    Field{"colliding", &PairSeparation::colliding, "Whether they collide."},
+    Field{"parts", &PairSeparation::parts, "The parts that are the separation apart."}};
+
 /// ProximityQuery::penetration_depth() of a pair that collides: O1 is `first`, O2 is `second`.
 struct PairDepth {
   std::uint32_t first = kNone, second = kNone;  ///< first < second
@@ -62,11 +69,24 @@ struct PairDepth {
   PartPair parts{};  ///< those whose depth is `value`
 };
 
+template <>
+inline constexpr std::tuple kFields<PairDepth>{
+    Field{"first", &PairDepth::first, "The body of the lower index."},
+    Field{"second", &PairDepth::second, "The other body."},
+    Field{"penetration_depth", &PairDepth::penetration_depth, "How deep they penetrate."},
+    Field{"parts", &PairDepth::parts, "The parts whose depth it is."}};
+
 /// ProximityQuery::separating_translation() of a pair that collides: O1 is `first`, O2 is `second`.
 struct PairTranslation {
   std::uint32_t first = kNone, second = kNone;  ///< first < second
   SeparatingTranslation separating_translation{};
 };
+
+template <>
+inline constexpr std::tuple kFields<PairTranslation>{
+    Field{"first", &PairTranslation::first, "The body of the lower index."},
+    Field{"second", &PairTranslation::second, "The other body."},
+    Field{"separating_translation", &PairTranslation::separating_translation, "The way apart."}};
 
 /// ProximityQuery::contacts() or separating_contacts() of a pair: O1 is `first`, O2 is `second`. Of compound
 /// bodies, there is one of these for each pair of parts that has contacts, with patches and ids of its own.
@@ -82,6 +102,13 @@ struct PairTimeOfContact {
   TimeOfContact time_of_contact{};
   PartPair parts{};  ///< those that come into contact first
 };
+
+template <>
+inline constexpr std::tuple kFields<PairTimeOfContact>{
+    Field{"first", &PairTimeOfContact::first, "The body of the lower index."},
+    Field{"second", &PairTimeOfContact::second, "The other body."},
+    Field{"time_of_contact", &PairTimeOfContact::time_of_contact, "Their first contact."},
+    Field{"parts", &PairTimeOfContact::parts, "The parts that come into contact first."}};
 
 /// Options of MultiBodyQuery::time_of_contact().
 struct TimeOfContactOptions {
@@ -186,8 +213,7 @@ class SDM_API MultiBodyQuery {
   [[nodiscard]] std::span<const BodyPair> colliding();
   /// Returns the pairs that collide or whose separation is at most `max_distance`, > 0. Throws sdm::Error for
   /// any other.
-  [[nodiscard]] std::span<const PairSeparation> separations(
-      double max_distance = std::numeric_limits<double>::infinity());
+  [[nodiscard]] std::span<const PairSeparation> separations(double max_distance = kInfinity);
   /// Returns the depths of the pairs that collide and of which one is a solid.
   [[nodiscard]] std::span<const PairDepth> penetration_depths();
   /// Returns the pairs that have contacts, within ProximityOptions::contact_margin; with
@@ -240,8 +266,7 @@ class SDM_API MultiBodyQuery {
   /// texels with none within `max_distance`, > 0, have no value. Throws sdm::Error for any other distance,
   /// for a body that does not exist, is a compound or has no atlas, or if there is not enough memory. Cost:
   /// that of compute_map to each body whose box is nearer than the distances found so far, all cores.
-  [[nodiscard]] NearestMap nearest_map(std::size_t body,
-                                       double max_distance = std::numeric_limits<double>::infinity()) const;
+  [[nodiscard]] NearestMap nearest_map(std::size_t body, double max_distance = kInfinity) const;
   /// The same, into `nearest`, whose memory is reused where possible. If it throws, the values of `nearest`
   /// are unspecified.
   void nearest_map(std::size_t body, double max_distance, NearestMap& nearest) const;

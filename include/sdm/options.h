@@ -37,7 +37,7 @@ struct OptionRange {
 /// The finite numbers greater than 0.
 inline constexpr OptionRange kPositive{0, std::numeric_limits<double>::max(), true};
 /// The numbers greater than 0, infinity included.
-inline constexpr OptionRange kPositiveOrInfinite{0, std::numeric_limits<double>::infinity(), true};
+inline constexpr OptionRange kPositiveOrInfinite{0, kInfinity, true};
 
 /// An angle between normals, in degrees.
 inline constexpr OptionRange kAngle{0, 180, true};
@@ -340,8 +340,9 @@ struct OptionInfo {
 
 /// An option with its value.
 struct GivenOption {
-  std::string name;   ///< as the field's
-  std::string value;  ///< as text; empty if absent
+  std::string name;    ///< as the field's
+  std::string value;   ///< as text; empty if absent
+  std::string type{};  ///< OptionForm::kType
 };
 
 /// A name as a door spells it.
@@ -430,7 +431,8 @@ template <class Struct>
 [[nodiscard]] std::vector<GivenOption> settings_of(const Struct& options) {
   std::vector<GivenOption> settings;
   for_each_option<Struct>([&]<class Value>(const Option<Struct, Value>& option) {
-    settings.push_back({option.name, OptionForm<Value>::text(options.*option.member)});
+    settings.push_back(
+        {option.name, OptionForm<Value>::text(options.*option.member), OptionForm<Value>::kType});
   });
   return settings;
 }

@@ -251,9 +251,9 @@ struct PointDistances {
   /// The verdicts on the groups of options.table: each point with a value is of the groups of its closest
   /// face; those without one are of no group, and fail. Doubts are not considered.
   std::optional<GroupVerdicts> groups;
-  double accuracy = 0;  ///< of a distance: that of the engine for the box of O2 and the points
-  double thin_walls = std::numeric_limits<double>::infinity();  ///< Evidence::thin_walls, with a tolerance
-  std::optional<std::string> note_on_walls{};                   ///< note_on_walls() of all tolerances
+  double accuracy = 0;            ///< of a distance: that of the engine for the box of O2 and the points
+  double thin_walls = kInfinity;  ///< Evidence::thin_walls, with a tolerance
+  std::optional<std::string> note_on_walls{};  ///< note_on_walls() of all tolerances
   /// The evidence of the distances to faces that face the same way, where walls are thin and there are
   /// normals.
   std::optional<Evidence> by_facing{};

@@ -19,7 +19,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -330,8 +329,8 @@ class SDM_API PoseQuery {
   /// Returns the smallest distance between the surfaces of the shape and of any obstacle for each pose:
   /// exact, 0 if they intersect; infinite if it is more than `max_distance`, > 0. Throws sdm::Error for any
   /// other maximum distance. A smaller one takes less time.
-  [[nodiscard]] std::vector<double> separations(
-      std::span<const Transform> poses, double max_distance = std::numeric_limits<double>::infinity());
+  [[nodiscard]] std::vector<double> separations(std::span<const Transform> poses,
+                                                double max_distance = kInfinity);
   /// The same, into `results`.
   void separations(std::span<const Transform> poses, double max_distance, std::span<double> results);
 

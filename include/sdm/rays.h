@@ -11,7 +11,6 @@
 #include <sdm/types.h>
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -22,7 +21,7 @@ namespace sdm {
 struct Ray {
   Vec3 origin{}, direction{};
   double t_min = 0;  ///< at least 0; up to here the ray is known to be free, for example by free_distances()
-  double t_max = std::numeric_limits<double>::infinity();
+  double t_max = kInfinity;
 };
 
 template <>
@@ -30,16 +29,14 @@ inline constexpr std::tuple kOptions<Ray>{
     Option{.name = "t_min",
            .member = &Ray::t_min,
            .text = "Rays begin there, at origin + t · direction.",
-           .range = {.least = 0, .most = std::numeric_limits<double>::infinity()}},
-    Option{.name = "t_max",
-           .member = &Ray::t_max,
-           .text = "Rays end there.",
-           .range = {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}}};
+           .range = {.least = 0, .most = kInfinity}},
+    Option{
+        .name = "t_max", .member = &Ray::t_max, .text = "Rays end there.", .range = {-kInfinity, kInfinity}}};
 
 /// The first point of O2 on a ray; without a face if the ray does not meet O2. The weights of the face's
 /// corners are not negative; their point is that of t to rounding; of a needle, to 1e-7 of its length.
 struct RayHit : SurfacePoint {
-  double t = std::numeric_limits<double>::infinity();
+  double t = kInfinity;
 
   friend bool operator==(const RayHit&, const RayHit&) = default;
 };
@@ -84,7 +81,7 @@ struct RayOptions {
 struct AmbientOcclusionOptions {
   std::uint32_t rays = 64;  ///< for each sample, 1 to 65536
   /// Greater than 0, in units of the meshes. O2 occludes nothing that is farther away than this.
-  double max_distance = std::numeric_limits<double>::infinity();
+  double max_distance = kInfinity;
   std::uint64_t seed = 0;  ///< of the directions
   Progress progress{};
 };

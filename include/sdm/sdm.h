@@ -10,6 +10,7 @@
 #include <sdm/error.h>
 #include <sdm/execution.h>
 #include <sdm/gl.h>
+#include <sdm/gpu.h>
 #include <sdm/hausdorff.h>
 #include <sdm/map.h>
 #include <sdm/match.h>

@@ -32,10 +32,10 @@ enum class SiteType : std::uint8_t { vertex = 0, edge = 1, face = 2, none = 0xFF
 /// The closest point of O2 to a query, and the site it lies on.
 struct ClosestPoint {
   Vec3 point{};
-  double distance = std::numeric_limits<double>::infinity();  ///< ≥ 0, = |point − query|
-  std::uint32_t site = kNone;                                 ///< index among the sites of its type
-  SiteType type = SiteType::none;                             ///< none: no site within the maximum distance
-  std::uint32_t face = kNone;                                 ///< a face that the site belongs to
+  double distance = kInfinity;     ///< ≥ 0, = |point − query|
+  std::uint32_t site = kNone;      ///< index among the sites of its type
+  SiteType type = SiteType::none;  ///< none: no site within the maximum distance
+  std::uint32_t face = kNone;      ///< a face that the site belongs to
 };
 
 /// O2: the sites of a mesh with their regions of influence, pseudonormals, and an AABB tree.

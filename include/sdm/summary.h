@@ -23,7 +23,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -153,9 +152,9 @@ struct Summary {
   double beyond_fraction = 0;       ///< theirs of the area of all texels, an estimate; or of all points
   std::size_t without_match = 0;    ///< samples without a value, as no face of O2 faces as they do
   std::size_t boundary_texels = 0;  ///< whose closest point lies on the boundary of an open mesh
-  double max_distance = std::numeric_limits<double>::infinity();  ///< infinite if there is no limit
-  Evidence evidence{};                                            ///< with the accuracy and the error bound
-  LargestDistance hausdorff{};  ///< of a map: the one-sided Hausdorff distance
+  double max_distance = kInfinity;  ///< infinite if there is no limit
+  Evidence evidence{};              ///< with the accuracy and the error bound
+  LargestDistance hausdorff{};      ///< of a map: the one-sided Hausdorff distance
   std::optional<CertifiedVerdict> tolerance{};
   std::optional<Places> places{};              ///< where it deviates most; nothing of wall thickness
   std::optional<Coverage> coverage{};          ///< of O2, if it was asked for
@@ -170,14 +169,14 @@ struct Summary {
 /// Options of summarize().
 struct SummaryOptions {
   std::string units{};
-  double max_distance = std::numeric_limits<double>::infinity();  ///< that of the map
-  double accuracy = 0;  ///< of the engine: engine_accuracy(); infinite if unknown
-  double guard = 0;     ///< Evidence::guard
+  double max_distance = kInfinity;  ///< that of the map
+  double accuracy = 0;              ///< of the engine: engine_accuracy(); infinite if unknown
+  double guard = 0;                 ///< Evidence::guard
   std::optional<Tolerance> tolerance{};
   std::span<const GroupTolerance> table{};  ///< of groups of `names`, for the places
   Colormap colormap = Colormap::automatic;
   std::optional<std::array<double, 2>> range{};  ///< of the colours
-  std::optional<ColorRange> colors{};            ///< shared with other maps; in place of the two above
+  std::optional<ColorRange> colors{};            ///< shared with other maps; excludes the two above
   std::vector<double> bands{};                   ///< edges; empty: default_bands(), if there is a tolerance
   std::span<const FaceNames> names{};            ///< of the faces of `whole`
   const Mesh* whole = nullptr;                   ///< the mesh of which the surface is a part; null: its own

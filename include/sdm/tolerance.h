@@ -18,7 +18,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -41,9 +40,7 @@ struct Tolerance {
   Tolerance(double at_least, double at_most) : lower(at_least), upper(at_most) {}
 
   /// Whether distances that differ by their sign only are judged differently: unsigned ones cannot be.
-  [[nodiscard]] bool needs_sign() const {
-    return lower < 0 && -lower != upper && lower > -std::numeric_limits<double>::infinity();
-  }
+  [[nodiscard]] bool needs_sign() const { return lower < 0 && -lower != upper && lower > -kInfinity; }
   friend bool operator==(const Tolerance&, const Tolerance&) = default;
 };
 
@@ -133,7 +130,7 @@ struct Evidence {
   /// The thickness that walls of O2 are below on more than a small part of it, as of thin_walls(): samples
   /// do not decide limits that are larger than half of it. Infinite if distances are not to the closest
   /// point.
-  double thin_walls = std::numeric_limits<double>::infinity();
+  double thin_walls = kInfinity;
 };
 
 template <>

@@ -134,6 +134,9 @@ namespace sdm {
 /// Three indices of vertices, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;
 
+/// No limit.
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// The index that represents "no face", "no site" and "no texel".
 inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
@@ -145,12 +148,10 @@ struct SurfacePoint {
   friend bool operator==(const SurfacePoint&, const SurfacePoint&) = default;
 };
 
-/// Axis-aligned box; empty while lo > hi.
+/// Axis-aligned box; empty while lower > upper.
 struct Box {
-  Vec3 lo{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-          std::numeric_limits<double>::infinity()};
-  Vec3 hi{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
-          -std::numeric_limits<double>::infinity()};
+  Vec3 lower{kInfinity, kInfinity, kInfinity};
+  Vec3 upper{-kInfinity, -kInfinity, -kInfinity};
 };
 
 /// Whether a field is an index, and there is none.
@@ -163,7 +164,8 @@ template <class Struct, class Value>
 }
 
 template <>
-inline constexpr std::tuple kFields<Box>{Field{"lo", &Box::lo, "The corner with the least coordinates."},
-                                         Field{"hi", &Box::hi, "The corner with the largest ones."}};
+inline constexpr std::tuple kFields<Box>{
+    Field{"lower", &Box::lower, "The corner with the least coordinates."},
+    Field{"upper", &Box::upper, "The corner with the largest ones."}};
 
 }  // namespace sdm

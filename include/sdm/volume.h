@@ -60,7 +60,7 @@ inline constexpr std::tuple kFields<Grid>{
 struct FieldOptions {
   SignMethod sign = SignMethod::automatic;
   /// Greater than 0, in units of the mesh. Points farther than this have no value (NaN).
-  double max_distance = std::numeric_limits<double>::infinity();
+  double max_distance = kInfinity;
   bool sites = false;  ///< also store the closest sites
   Progress progress{};
 };
@@ -78,7 +78,7 @@ struct DistanceField {
   std::vector<float> distance;      ///< negative inside O2 if signed
   std::vector<std::uint32_t> site;  ///< index of the closest site among those of its type; empty unless asked
   std::vector<SiteType> site_type;  ///< empty unless asked for
-  double max_distance = std::numeric_limits<double>::infinity();  ///< as FieldOptions::max_distance
+  double max_distance = kInfinity;  ///< as FieldOptions::max_distance
   /// Upper bound on the error of a distance, rounding to float included: 1e-6 of the diagonal of the box of
   /// O2 and the grid.
   double accuracy = 0;
@@ -124,8 +124,7 @@ struct FieldReport {
 struct FieldSample : BoundedNumber {
   /// Nothing is known of the distance.
   FieldSample()
-      : BoundedNumber{std::numeric_limits<double>::quiet_NaN(), Certainty::bounded,
-                      -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()} {}
+      : BoundedNumber{std::numeric_limits<double>::quiet_NaN(), Certainty::bounded, -kInfinity, kInfinity} {}
 
   double magnitude =
       0;  ///< ≤ |distance|: beyond the maximum distance of a signed field more than the bounds imply

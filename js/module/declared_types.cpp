@@ -138,6 +138,7 @@ SDM_EXPORT(sdm_declared_types) Result* declared_types() {
     text += options_interface<PageOptions>("PageOptions");
     text += results_interface<DistanceStatistics>("DistanceStatistics");
     text += results_interface<BoundedLength>("BoundedLength");
+    text += results_interface<MatchCounts>("MatchCounts");
     result.put_text("text", std::move(text));
   });
 }

@@ -51,11 +51,7 @@ Result* match(const Surface* surface, const Sites* sites, const char* lines, std
     auto matches = std::make_unique<TexelMatches>(match_texels(*surface, *sites, options));
     result.put("resolution", matches->resolution);
     result.put("rows", matches->rows());
-    result.put("counts/closest", matches->count(MatchKind::closest));
-    result.put("counts/facing", matches->count(MatchKind::facing));
-    result.put("counts/ray", matches->count(MatchKind::ray));
-    result.put("counts/too_far", matches->count(MatchKind::too_far));
-    result.put("counts/facing_away", matches->count(MatchKind::facing_away));
+    result.put_fields("counts/", matches->counts());
     result.put_object(std::move(matches));
   });
 }
@@ -137,7 +133,7 @@ SDM_EXPORT(sdm_drawn_model) Result* drawn_model(const Surface* surface, bool wit
     io::ModelVertices vertices =
         io::model_vertices(*surface, normals, io::drawn_faces(mesh), frames ? &frames->tangents : nullptr);
     const Box box = bounds(mesh);
-    const Vec3 origin = 0.5 * (box.lo + box.hi);
+    const Vec3 origin = 0.5 * (box.lower + box.upper);
     const Vec2 extent{1.0 * surface->resolution(), 1.0 * surface->rows()};
     const auto put = [&](const char* name, std::size_t components, const auto& value) {
       std::vector<float> values(components * vertices.place.size());

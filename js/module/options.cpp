@@ -1,13 +1,10 @@
 #include "module/options.h"
 
-#include <limits>
-
 namespace sdm::js {
 
 bool read_tolerance(const GivenValue& given, std::optional<Tolerance>& value) {
   if (given.words.starts_with('"'))
     return OptionForm<std::optional<Tolerance>>::read(given.text(), OptionRange{}, value);
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<double> numbers;
   if (!read_numbers(given.words, {-kInfinity, kInfinity}, 0, numbers)) return false;
   const bool one = numbers.size() == 1;

@@ -9,7 +9,6 @@
 
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
@@ -55,7 +54,7 @@ double max_distance_of(const Measure& measure) {
         if constexpr (requires { options.max_distance; })
           return options.max_distance;
         else
-          return std::numeric_limits<double>::infinity();
+          return kInfinity;
       },
       measure);
 }

@@ -18,7 +18,6 @@ export type {
   BakedTexture,
   DrawnModel,
   MatchArrays,
-  MatchCounts,
   MatchOptions,
   Matches,
   NormalOptions,

@@ -7,21 +7,10 @@ import { Owned } from './owned.js';
 import { type Sites } from './sites.js';
 import { type Surface } from './surface.js';
 import { type TransferOptions, transferred } from './transfer.js';
-import { type Progress, SdmError } from './types.js';
+import { type MatchCounts, type Progress, SdmError } from './types.js';
 
 export interface MatchOptions extends declared.MatchOptions {
   progress?: Progress;
-}
-
-/** How many texels have a point of each kind, and how many have none. */
-export interface MatchCounts {
-  closest: number;
-  facing: number;
-  ray: number;
-  /** Without a point: nothing is within the largest distance. */
-  tooFar: number;
-  /** Without a point: no face faces as the texel does. */
-  facingAway: number;
 }
 
 /** The kinds of texels in MatchArrays. */

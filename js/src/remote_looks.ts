@@ -1,15 +1,10 @@
 // What is baked in a worker: looks, matches and animations.
 import { type CallOptions, type Connection, type Made, type Options, Remote } from './connection.js';
 import { type Picture } from './look.js';
-import {
-  type BakedLook,
-  type DrawnModel,
-  type MatchArrays,
-  type MatchCounts,
-  type NormalOptions,
-} from './matches.js';
+import { type BakedLook, type DrawnModel, type MatchArrays, type NormalOptions } from './matches.js';
 import { type WorkerSites, type WorkerSurface } from './remote.js';
 import { type TransferOptions } from './transfer.js';
+import { type MatchCounts } from './types.js';
 
 /** The look of a mesh file in a worker. */
 export class WorkerLook extends Remote {

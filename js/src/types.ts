@@ -8,6 +8,7 @@ export type {
   Certainty,
   Colormap,
   MapMeasure,
+  MatchCounts,
   MatchMethod,
   SignMethod,
   ThicknessMethod,

@@ -24,7 +24,6 @@ namespace sdm::python {
 namespace nb = nanobind;
 
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The n × 3 numbers of an array: the caller's own if they are float64 in C order, otherwise a copy.
 class Points {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <limits>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -202,8 +201,8 @@ void bind_batches(nb::module_& module) {
                                : closest_of_stack(meshes, faces, points, query, progress);
       },
       nb::arg("meshes"), nb::arg("faces").none(), nb::arg("points"), nb::kw_only(),
-      nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("sign") = "none",
-      nb::arg("gradients") = false, nb::arg("progress") = nb::none(),
+      nb::arg("max_distance") = kInfinity, nb::arg("sign") = "none", nb::arg("gradients") = false,
+      nb::arg("progress") = nb::none(),
       nb::sig("def closest_points_batch(meshes: collections.abc.Sequence[object], faces: object, points: "
               "collections.abc.Sequence[object], *, "
               "max_distance: float = ..., sign: " SDM_SIGN " = 'none', gradients: bool = False, progress: "

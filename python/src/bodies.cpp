@@ -3,7 +3,6 @@
 #include <sdm/error.h>
 
 #include <array>
-#include <limits>
 #include <string>
 
 #include "arrays.h"
@@ -32,19 +31,9 @@ struct PySeparatingTranslations {
 }  // namespace
 
 template <>
-inline constexpr auto kMembers<PairSeparation> =
-    std::tuple{&PairSeparation::first, &PairSeparation::second, &PairSeparation::separation,
-               &PairSeparation::colliding, &PairSeparation::parts};
-template <>
 inline constexpr auto kMembers<PySeparations> = std::tuple{&PySeparations::pairs};
 template <>
-inline constexpr auto kMembers<PairDepth> =
-    std::tuple{&PairDepth::first, &PairDepth::second, &PairDepth::penetration_depth, &PairDepth::parts};
-template <>
 inline constexpr auto kMembers<PyPenetrationDepths> = std::tuple{&PyPenetrationDepths::pairs};
-template <>
-inline constexpr auto kMembers<PairTranslation> =
-    std::tuple{&PairTranslation::first, &PairTranslation::second, &PairTranslation::separating_translation};
 template <>
 inline constexpr auto kMembers<PySeparatingTranslations> = std::tuple{&PySeparatingTranslations::pairs};
 
@@ -319,8 +308,7 @@ void bind_answers(nb::class_<PyMultiBodyQuery>& query) {
             });
             return result.release();
           },
-          nb::rv_policy::take_ownership, nb::kw_only(),
-          nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
+          nb::rv_policy::take_ownership, nb::kw_only(), nb::arg("max_distance") = kInfinity,
           nb::sig("def separations(self, *, max_distance: float = ...) -> Separations"),
           R"(Returns the pairs that collide or whose separation is at most max_distance, > 0, in units of the
 meshes.)")
@@ -391,8 +379,7 @@ void bind_nearest(nb::class_<PyMultiBodyQuery>& query) {
                       [&] { self.query.nearest_map(index_of(body), max_distance, result->nearest); });
             return result.release();
           },
-          nb::rv_policy::take_ownership, nb::arg("body"), nb::kw_only(),
-          nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
+          nb::rv_policy::take_ownership, nb::arg("body"), nb::kw_only(), nb::arg("max_distance") = kInfinity,
           nb::sig("def nearest_map(self, body: int, *, max_distance: float = ...) -> NearestMap"),
           R"(Returns the distances from the texels of a body to the nearest other body; texels with none
 within max_distance, > 0, have no value. Raises Error for a body that does not exist, is a Compound, or whose
@@ -408,7 +395,7 @@ Shape has no resolution.)")
             const std::size_t count = distances.size();
             return array_of<float>(std::move(distances), {count});
           },
-          nb::arg("body"), nb::kw_only(), nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
+          nb::arg("body"), nb::kw_only(), nb::arg("max_distance") = kInfinity,
           nb::sig("def distances_at_vertices(self, body: int, *, max_distance: float = ...) -> "
                   "numpy.typing.NDArray[numpy.float32]"),
           R"(Returns the distance from each vertex of a body to the nearest other body, (n,) float32,

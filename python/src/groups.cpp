@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -33,9 +32,8 @@ Tolerance group_tolerance_of(nb::handle value, SignMethod sign) {
   const bool is_pair = nb::isinstance<nb::tuple>(value) || nb::isinstance<nb::list>(value);
   if (!is_pair || nb::len(value) != 2 || value[0].is_none() == value[1].is_none())
     return tolerance_of(value, sign);
-  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-  return value[0].is_none() ? Tolerance(-kNoLimit, real_of(value[1]))
-                            : Tolerance(real_of(value[0]), kNoLimit);
+  return value[0].is_none() ? Tolerance(-kInfinity, real_of(value[1]))
+                            : Tolerance(real_of(value[0]), kInfinity);
 }
 
 void check(const FaceNames& names) {

@@ -33,7 +33,7 @@ double least_beyond(const PyMap& self) {
   if (self.map.sign.method == SignMethod::none) return max_distance;
   const Box box = sdm::bounds(self.to->sites.mesh());
   double deepest = kInfinity;
-  for (int k = 0; k < 3; ++k) deepest = std::min(deepest, (box.hi[k] - box.lo[k]) / 2);
+  for (int k = 0; k < 3; ++k) deepest = std::min(deepest, (box.upper[k] - box.lower[k]) / 2);
   return deepest < max_distance ? max_distance : -deepest;
 }
 

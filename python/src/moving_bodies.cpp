@@ -16,10 +16,6 @@ struct PyTimesOfContact {
 }  // namespace
 
 template <>
-inline constexpr auto kMembers<PairTimeOfContact> =
-    std::tuple{&PairTimeOfContact::first, &PairTimeOfContact::second, &PairTimeOfContact::time_of_contact,
-               &PairTimeOfContact::parts};
-template <>
 inline constexpr auto kMembers<PyTimesOfContact> = std::tuple{&PyTimesOfContact::pairs};
 
 namespace {

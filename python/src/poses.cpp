@@ -6,7 +6,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -66,8 +65,7 @@ void bind_answers_of_poses(nb::class_<PyPoseQuery>& query) {
             const std::size_t count = found.size();
             return array_of<double>(std::move(found), {count});
           },
-          nb::arg("poses").none(), nb::kw_only(),
-          nb::arg("max_distance") = std::numeric_limits<double>::infinity(),
+          nb::arg("poses").none(), nb::kw_only(), nb::arg("max_distance") = kInfinity,
           nb::sig("def separations(self, poses: object, *, max_distance: float = ...) -> "
                   "numpy.typing.NDArray[numpy.float64]"),
           R"(Returns the smallest distances between the surfaces of the shape and of any obstacle, (n,) float64:

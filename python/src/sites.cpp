@@ -139,8 +139,8 @@ void bind_closest(nb::class_<PySites>& sites) {
         return closest(self, points, {max_distance, sign, gradients, engine, progress}).release();
       },
       nb::rv_policy::take_ownership, nb::arg("points").none(), nb::kw_only(),
-      nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("sign") = "none",
-      nb::arg("gradients") = false, nb::arg("engine") = "cpu", nb::arg("progress") = nb::none(),
+      nb::arg("max_distance") = kInfinity, nb::arg("sign") = "none", nb::arg("gradients") = false,
+      nb::arg("engine") = "cpu", nb::arg("progress") = nb::none(),
       nb::sig("def closest_points(self, points: object, *, max_distance: float = ..., sign: " SDM_SIGN " "
               "= 'none', "
               "gradients: bool = False, engine: " SDM_ENGINE " = 'cpu', progress: "
@@ -179,7 +179,7 @@ void bind_signs(nb::class_<PySites>& sites) {
             return closest(self, points, {max_distance, sign, false, "cpu", progress})->distance();
           },
           nb::arg("points").none(), nb::kw_only(), nb::arg("sign") = "exact",
-          nb::arg("max_distance") = std::numeric_limits<double>::infinity(), nb::arg("progress") = nb::none(),
+          nb::arg("max_distance") = kInfinity, nb::arg("progress") = nb::none(),
           nb::sig("def signed_distance(self, points: object, *, sign: " SDM_SIGN " = 'exact', "
                   "max_distance: float = ..., "
                   "progress: collections.abc.Callable[[str, float], bool | None] | None = None) -> "
@@ -193,8 +193,7 @@ array([-0.5,  1. ]))")
       .def(
           "contains",
           [](nb::handle self, nb::handle points, const char* sign, nb::handle progress) {
-            const auto found = closest(
-                self, points, {std::numeric_limits<double>::infinity(), sign, false, "cpu", progress});
+            const auto found = closest(self, points, {kInfinity, sign, false, "cpu", progress});
             std::vector<std::uint8_t> inside = std::move(found->found.inside);
             inside.resize(found->size());
             return array_of<bool>(std::move(inside), {found->size()});

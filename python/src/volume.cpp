@@ -42,13 +42,14 @@ Box box_of(const Mesh& mesh, nb::handle bounds, std::optional<double> margin, do
     return {corners.get()[0], corners.get()[1]};
   }
   Box box = sdm::bounds(mesh);
-  const double diagonal = std::hypot(box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]);
+  const double diagonal =
+      std::hypot(box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]);
   const double around = margin.value_or(max_distance < kInfinity ? max_distance : 0.1 * diagonal);
   if (!(around >= 0) || !std::isfinite(around))
     throw Error("margin must be a finite number that is not negative");
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] -= around;
-    box.hi[k] += around;
+    box.lower[k] -= around;
+    box.upper[k] += around;
   }
   return box;
 }

@@ -53,10 +53,10 @@ SliceRules::SliceRules(const DrawingTask& task, const UnitGrid& grid) {
   const tree::FloatBox& o2 = task.sites.tree.box(0);
   double size = 0, reach = 0;
   for (int k = 0; k < 3; ++k) {
-    const double lo = grid.at(k, 0), hi = grid.at(k, grid.dims[k] - 1);
-    size =
-        std::max({size, std::abs(lo), std::abs(hi), std::abs(double{o2.lo[k]}), std::abs(double{o2.hi[k]})});
-    const double farthest = std::max(hi - o2.lo[k], o2.hi[k] - lo);
+    const double lower = grid.at(k, 0), upper = grid.at(k, grid.dims[k] - 1);
+    size = std::max({size, std::abs(lower), std::abs(upper), std::abs(double{o2.lower[k]}),
+                     std::abs(double{o2.upper[k]})});
+    const double farthest = std::max(upper - o2.lower[k], o2.upper[k] - lower);
     reach += farthest * farthest;
   }
   if (!(size < kFarAway))

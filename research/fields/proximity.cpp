@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <mutex>
 #include <new>
 
@@ -16,8 +15,6 @@
 
 namespace sdm::fields {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // What the samples of some faces have in common.
 struct Extremes {

@@ -66,8 +66,8 @@ class ScanConversion {
   };
 
   [[nodiscard]] SliceRange slices_of(const DrawnSite& site) const {
-    const double first = std::ceil((site.box.lo[2] - rules_.limit - grid_.origin[2]) / grid_.step[2]);
-    const double last = std::floor((site.box.hi[2] + rules_.limit - grid_.origin[2]) / grid_.step[2]);
+    const double first = std::ceil((site.box.lower[2] - rules_.limit - grid_.origin[2]) / grid_.step[2]);
+    const double last = std::floor((site.box.upper[2] + rules_.limit - grid_.origin[2]) / grid_.step[2]);
     const double begin = std::max(first, 0.0), end = std::min(last + 1, grid_.dims[2] + 0.0);
     if (!(begin < end)) return {0, 0};
     return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};

@@ -12,9 +12,9 @@ namespace sdm::fields {
 
 /// A rectangle of a slice; coordinates in a slice are those of its points, (i, j).
 struct SliceRect {
-  Vec2 lo, hi;
+  Vec2 lower, upper;
 
-  [[nodiscard]] bool empty() const { return !(lo[0] <= hi[0] && lo[1] <= hi[1]); }
+  [[nodiscard]] bool empty() const { return !(lower[0] <= upper[0] && lower[1] <= upper[1]); }
 };
 
 /// A slice of a grid: a plane of constant z.
@@ -25,7 +25,7 @@ class Slice {
   [[nodiscard]] double z() const { return z_; }
   /// The distance between the slice and a site along z.
   [[nodiscard]] double gap(const DrawnSite& site) const {
-    return std::max({0.0, site.box.lo[2] - z_, z_ - site.box.hi[2]});
+    return std::max({0.0, site.box.lower[2] - z_, z_ - site.box.upper[2]});
   }
   /// All points, with half a cell around them.
   [[nodiscard]] SliceRect whole() const { return {{-0.5, -0.5}, {grid_.dims[0] - 0.5, grid_.dims[1] - 0.5}}; }
@@ -33,8 +33,8 @@ class Slice {
   [[nodiscard]] SliceRect around(const DrawnSite& site, double radius) const {
     SliceRect rect = whole();
     for (int k = 0; k < 2; ++k) {
-      rect.lo[k] = std::max(rect.lo[k], (site.box.lo[k] - radius - grid_.origin[k]) / grid_.step[k]);
-      rect.hi[k] = std::min(rect.hi[k], (site.box.hi[k] + radius - grid_.origin[k]) / grid_.step[k]);
+      rect.lower[k] = std::max(rect.lower[k], (site.box.lower[k] - radius - grid_.origin[k]) / grid_.step[k]);
+      rect.upper[k] = std::min(rect.upper[k], (site.box.upper[k] + radius - grid_.origin[k]) / grid_.step[k]);
     }
     return rect;
   }
@@ -50,18 +50,18 @@ class Slice {
       wall.value += slack;
       double least = wall.value, most = wall.value;  // over the rectangle
       for (int k = 0; k < 2; ++k) {
-        const double a = wall.gradient[k] * rect.lo[k], b = wall.gradient[k] * rect.hi[k];
+        const double a = wall.gradient[k] * rect.lower[k], b = wall.gradient[k] * rect.upper[k];
         least += std::min(a, b);
         most += std::max(a, b);
       }
       if (most < 0) return {};
       if (least >= 0) continue;
-      if (whole_rect) polygon = gl::ConvexPolygon::rectangle(rect.lo, rect.hi);
+      if (whole_rect) polygon = gl::ConvexPolygon::rectangle(rect.lower, rect.upper);
       whole_rect = false;
       polygon.cut(wall);
       if (polygon.empty()) return polygon;
     }
-    return whole_rect ? gl::ConvexPolygon::rectangle(rect.lo, rect.hi) : polygon;
+    return whole_rect ? gl::ConvexPolygon::rectangle(rect.lower, rect.upper) : polygon;
   }
 
   /// Cuts the polygon by −distance ≤ (x − anchor)·axis ≤ distance.
@@ -96,12 +96,13 @@ class PolygonRows {
     count_ = 0;
     const auto corners = polygon.corners();
     if (corners.empty()) return;
-    double lo = corners[0][1], hi = lo;
+    double lower = corners[0][1], upper = lower;
     for (const Vec2& c : corners) {
-      lo = std::min(lo, c[1]);
-      hi = std::max(hi, c[1]);
+      lower = std::min(lower, c[1]);
+      upper = std::max(upper, c[1]);
     }
-    const double low = std::max(std::ceil(lo), row + 0.0), high = std::min(std::floor(hi), row_end - 1.0);
+    const double low = std::max(std::ceil(lower), row + 0.0),
+                 high = std::min(std::floor(upper), row_end - 1.0);
     if (!(low <= high)) return;
     first_ = static_cast<std::uint32_t>(low);
     count_ = static_cast<std::uint32_t>(high) - first_ + 1;

@@ -154,9 +154,10 @@ class SliceSweep {
   }
 
   [[nodiscard]] bool may_retire(const Slice& slice, const DrawnSite& site) const {
-    if (!(site.box.hi[2] < slice.z())) return false;
+    if (!(site.box.upper[2] < slice.z())) return false;
     for (int k = 0; k < 2; ++k)
-      if (site.box.lo[k] < grid_.at(k, 0) || site.box.hi[k] > grid_.at(k, grid_.dims[k] - 1)) return false;
+      if (site.box.lower[k] < grid_.at(k, 0) || site.box.upper[k] > grid_.at(k, grid_.dims[k] - 1))
+        return false;
     return true;
   }
 

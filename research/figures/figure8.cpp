@@ -61,7 +61,7 @@ using Grids = std::array<Grid, 2>;
 /// that in which the bodies are largest.
 Grid paper_grid(const Box& box, double share) {
   std::array<int, 3> axes{0, 1, 2};
-  std::ranges::sort(axes, {}, [&](int k) { return box.hi[k] - box.lo[k]; });
+  std::ranges::sort(axes, {}, [&](int k) { return box.upper[k] - box.lower[k]; });
   const std::array<double, 3> points{150, 180, 256};
   std::array<std::uint32_t, 3> dims{};
   for (int i = 0; i < 3; ++i) dims[axes[i]] = static_cast<std::uint32_t>(std::lround(share * points[i]));

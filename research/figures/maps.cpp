@@ -14,11 +14,12 @@ constexpr io::Rgb kBodies[] = {{120, 164, 214}, {226, 170, 98}};
 
 /// A common scale for both maps, so that a colour means the same distance on both bodies.
 io::ColorScale common_scale(const Pair& pair) {
-  io::ColorScale scale{.map = Colormap::paper2006, .lo = std::numeric_limits<double>::infinity(), .hi = 0};
+  io::ColorScale scale{
+      .map = Colormap::paper2006, .lower = std::numeric_limits<double>::infinity(), .upper = 0};
   for (const Side& side : pair.sides) {
     const DistanceStatistics d = statistics(side.surface, side.map);
-    scale.lo = std::min(scale.lo, d.min);
-    scale.hi = std::max(scale.hi, d.max);
+    scale.lower = std::min(scale.lower, d.min);
+    scale.upper = std::max(scale.upper, d.max);
   }
   return scale;
 }

@@ -123,8 +123,8 @@ Method study_volumes(Run& run, const Study& study, fields::Method kind,
 Box with_room(Box box) {
   const double room = 0.01 * diagonal(box);
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] -= room;
-    box.hi[k] += room;
+    box.lower[k] -= room;
+    box.upper[k] += room;
   }
   return box;
 }

@@ -135,7 +135,7 @@ View view_of(const Box& bounds, const Vec3& from, std::uint32_t width, std::uint
   double away = 0;
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 p;
-    for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? bounds.hi[k] : bounds.lo[k];
+    for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? bounds.upper[k] : bounds.lower[k];
     const Vec3 d = p - view.target;
     away = std::max({away, dot(d, toward) + std::abs(dot(d, up)) / tangent,
                      dot(d, toward) + std::abs(dot(d, right)) / tangent_across});

@@ -39,13 +39,13 @@ ConvexPolygon plane_around(const OrientedBox& box, const PlanarDomain& domain) {
   const Vec2 middle = domain.image_origin +
                       Vec2{(bb * dot(a, d) - ab * dot(b, d)) / det, (aa * dot(b, d) - ab * dot(a, d)) / det};
   const double radius = norm(box.half) / std::sqrt(least) + 1;
-  Vec2 lo, hi;
+  Vec2 lower, upper;
   for (int k = 0; k < 2; ++k) {
-    lo[k] = std::max(middle[k] - radius, -kFar);
-    hi[k] = std::min(middle[k] + radius, kFar);
-    if (!(lo[k] < hi[k])) return {};
+    lower[k] = std::max(middle[k] - radius, -kFar);
+    upper[k] = std::min(middle[k] + radius, kFar);
+    if (!(lower[k] < upper[k])) return {};
   }
-  return ConvexPolygon::rectangle(lo, hi);
+  return ConvexPolygon::rectangle(lower, upper);
 }
 
 }  // namespace

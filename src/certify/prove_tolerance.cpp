@@ -52,8 +52,7 @@ void lower_by_face(const sites::SitesData& b, const Corners& corners, std::uint3
   }
   const tree::FloatBox around = tree::FloatBox::around(box);
   const auto bound = [&](std::uint32_t node, const tree::FloatBox& other) {
-    if (matching != nullptr && !matching->may_allow(face, node))
-      return std::numeric_limits<double>::infinity();
+    if (matching != nullptr && !matching->may_allow(face, node)) return kInfinity;
     return (1 - 1e-12) * norm(tree::gap(around, other)) - kFewRoundings * size;
   };
   const auto enter = [&](double distance) { return distance < least.value * b.frame.scale; };
@@ -272,7 +271,7 @@ class Prover {
       const bool behind = sign_ != SignMethod::none && matching_->behind(at.faces[0], at.point);
       return {at.point, at.closest, at.faces[0], at.faces[1], behind ? -distance : distance};
     }
-    constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+    constexpr double kAnywhere = kInfinity;
     const auto estimate = [&] {
       return inside::InsideTest(b_, sign_)(at.point, closest::exact_closest(b_, at.point, kAnywhere));
     };
@@ -291,9 +290,8 @@ class Prover {
 
 void check_question(const Tolerance& tolerance, const ToleranceProofOptions& options) {
   const bool has_limit = std::isfinite(tolerance.lower) || std::isfinite(tolerance.upper);
-  if (!(tolerance.lower <= tolerance.upper && has_limit &&
-        tolerance.upper > -std::numeric_limits<double>::infinity() &&
-        tolerance.lower < std::numeric_limits<double>::infinity()))
+  if (!(tolerance.lower <= tolerance.upper && has_limit && tolerance.upper > -kInfinity &&
+        tolerance.lower < kInfinity))
     throw Error("the tolerance to prove must be two numbers, the smaller one first, of which one is finite");
   if (!(options.accuracy >= 0)) throw Error("the accuracy of a tolerance's proof must be at least 0");
 }

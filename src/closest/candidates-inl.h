@@ -32,7 +32,7 @@ class Settled {
   // Compares the candidates that are within the limits of their points.
   void compare(std::span<const Vec3> queries, const float* limit,
                std::span<const SinglePointMemory::Candidate> candidates, Equal equal) {
-    for (size_t i = 0; i < queries.size(); ++i) best_[i].distance = std::numeric_limits<double>::infinity();
+    for (size_t i = 0; i < queries.size(); ++i) best_[i].distance = kInfinity;
     tied_ = 0;
     equal_ = equal;
     size_t count = 0;
@@ -57,8 +57,7 @@ class Settled {
 
   [[nodiscard]] ClosestPoint closest(size_t point, double max_distance) const {
     const Best& best = best_[point];
-    if (!(best.distance <= max_distance) || best.distance == std::numeric_limits<double>::infinity())
-      return {};
+    if (!(best.distance <= max_distance) || best.distance == kInfinity) return {};
     const auto [type, site] = site_of(best);
     return {.point = best.point, .distance = best.distance, .site = site, .type = type, .face = best.face};
   }

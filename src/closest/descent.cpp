@@ -70,7 +70,7 @@ struct FromBoxes {
   HWY_INLINE FromBoxes(Block d, const tree::WideTree::Node& node, size_t i, const float* c) {
     const auto from = [&](int k) HWY_ATTR {
       const BlockVec p = hn::Set(d, c[k]);
-      return hn::Sub(p, hn::Min(hn::Max(p, hn::Load(d, node.lo[k] + i)), hn::Load(d, node.hi[k] + i)));
+      return hn::Sub(p, hn::Min(hn::Max(p, hn::Load(d, node.lower[k] + i)), hn::Load(d, node.upper[k] + i)));
     };
     x = from(0);
     y = from(1);

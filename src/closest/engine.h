@@ -7,7 +7,6 @@
 #include <sdm/surface.h>
 
 #include <functional>
-#include <limits>
 #include <span>
 
 #include "sites/closest_packet.h"
@@ -20,7 +19,7 @@ using SampleSink =
     std::function<void(std::size_t first, std::span<const Vec3> points, const sites::ClosestPacket& closest)>;
 
 struct EngineOptions {
-  double max_distance = std::numeric_limits<double>::infinity();  ///< > 0
+  double max_distance = kInfinity;  ///< > 0
   Progress progress{};
 };
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <tuple>
 
@@ -39,7 +38,7 @@ class FirstClosest {
   [[nodiscard]] double distance() const { return best_.distance; }
   [[nodiscard]] ClosestPoint result() const {
     ClosestPoint result = best_;
-    if (result.type == SiteType::none) result.distance = std::numeric_limits<double>::infinity();
+    if (result.type == SiteType::none) result.distance = kInfinity;
     return result;
   }
 
@@ -55,7 +54,7 @@ class FirstClosest {
 template <class MayAllow, class Allows>
 [[nodiscard]] ClosestPoint exact_closest(const sites::SitesData& sites, const Vec3& q, double max_distance,
                                          const MayAllow& may_allow, const Allows& allows) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
+  constexpr double kNever = kInfinity;
   const Vec3 unit = sites.frame.to_unit(q);
   FirstClosest best(sites, q, max_distance);
   const auto bound = [&](std::uint32_t node, const tree::FloatBox& box) {

@@ -81,7 +81,8 @@ HWY_INLINE uint32_t near_children(const tree::WideTree::Node& node, const float 
   const Block d;
   uint32_t near = 0;
   for (size_t i = 0; i < SiteBlock::kWidth; i += hn::Lanes(d)) {
-    const BlockVec least = squared_to_boxes(d, splat(d, point), load(d, node.lo, i), load(d, node.hi, i));
+    const BlockVec least =
+        squared_to_boxes(d, splat(d, point), load(d, node.lower, i), load(d, node.upper, i));
     hn::Store(least, d, squared + i);
     near |= bits_of(d, hn::Le(least, hn::Set(d, squared_limit))) << i;
   }

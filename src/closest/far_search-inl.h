@@ -64,7 +64,7 @@ class FarSearch {
     const Block d;
     uint32_t near = 0;
     for (size_t i = 0; i < SiteBlock::kWidth; i += hn::Lanes(d)) {
-      const Vec3Of<BlockVec> q = splat(d, point_), lo = load(d, node.lo, i), hi = load(d, node.hi, i);
+      const Vec3Of<BlockVec> q = splat(d, point_), lo = load(d, node.lower, i), hi = load(d, node.upper, i);
       const BlockVec least =
           relative_distance({hn::Min(hn::Max(q.x, lo.x), hi.x), hn::Min(hn::Max(q.y, lo.y), hi.y),
                              hn::Min(hn::Max(q.z, lo.z), hi.z)});

@@ -7,7 +7,6 @@
 #include <hwy/highway.h>
 
 #include <bit>
-#include <limits>
 
 #include "closest/closest_points.h"
 #include "core/nothing_found.h"
@@ -190,7 +189,7 @@ void finish_packet(const sites::SitesData& sites, const uint32_t* winners, const
     pending &= ~lanes;
     uint32_t open = lanes;
     if (site.packed == kNone) {
-      if (max_distance == std::numeric_limits<double>::infinity()) throw_nothing_found();
+      if (max_distance == kInfinity) throw_nothing_found();
       continue;
     }
     if (site.packed != SiteId::kUnsettled) open &= ~on_site(sites, site, p, lanes);
@@ -202,7 +201,7 @@ void finish_packet(const sites::SitesData& sites, const uint32_t* winners, const
                     : sites::closest_around_face(sites, sites.face_of(site.type(), site.site()), queries[i]));
     }
   }
-  if (max_distance < std::numeric_limits<double>::infinity())
+  if (max_distance < kInfinity)
     for (size_t i = 0; i < count; ++i)
       if (!(found.distance[i] <= max_distance)) found.type[i] = SiteType::none;
 }

@@ -25,9 +25,9 @@ void AroundPacket(const PointGroup& group, size_t packet, Ball& ball, tree::Floa
       lo = hn::Min(lo, load(k, i));
       hi = hn::Max(hi, load(k, i));
     }
-    box.lo[k] = hn::GetLane(hn::MinOfLanes(d, lo));
-    box.hi[k] = hn::GetLane(hn::MaxOfLanes(d, hi));
-    ball.centre[k] = 0.5f * (box.lo[k] + box.hi[k]);
+    box.lower[k] = hn::GetLane(hn::MinOfLanes(d, lo));
+    box.upper[k] = hn::GetLane(hn::MaxOfLanes(d, hi));
+    ball.centre[k] = 0.5f * (box.lower[k] + box.upper[k]);
   }
   auto most = hn::Zero(d);
   for (size_t i = 0; i < PointGroup::kPacket; i += hn::Lanes(d)) {
@@ -90,10 +90,10 @@ Ball around(std::span<const Ball> balls, std::span<tree::FloatBox> boxes, tree::
   Ball ball{};
   for (int k = 0; k < 3; ++k) {
     for (const tree::FloatBox& b : boxes) {
-      box.lo[k] = std::min(box.lo[k], b.lo[k]);
-      box.hi[k] = std::max(box.hi[k], b.hi[k]);
+      box.lower[k] = std::min(box.lower[k], b.lower[k]);
+      box.upper[k] = std::max(box.upper[k], b.upper[k]);
     }
-    ball.centre[k] = 0.5f * (box.lo[k] + box.hi[k]);
+    ball.centre[k] = 0.5f * (box.lower[k] + box.upper[k]);
   }
   for (const Ball& b : balls) {
     float squared = 0;

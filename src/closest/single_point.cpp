@@ -67,8 +67,7 @@ class PointSearch {
     number_ = number;
     const ClosestPoint found = search(query, known);
     if constexpr (Faces::kAll)
-      if (found.type == SiteType::none && max_distance_ == std::numeric_limits<double>::infinity())
-        throw_nothing_found();
+      if (found.type == SiteType::none && max_distance_ == kInfinity) throw_nothing_found();
     return found;
   }
 
@@ -190,7 +189,7 @@ class PacketSearch {
     };
     near_ = 0;
     for (size_t i = 0; i < kSize; i += hn::Lanes(d)) {
-      const PointVec least = squared_to_boxes(d, load(d, point_, i), side(node.lo), side(node.hi));
+      const PointVec least = squared_to_boxes(d, load(d, point_, i), side(node.lower), side(node.upper));
       near_ |= bits_of(d, hn::Le(least, hn::Load(d, squared_limit_ + i))) << i;
     }
     return near_ != 0;

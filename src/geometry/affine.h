@@ -36,13 +36,13 @@ inline Box image(const Affine& map, const Box& box) {
   for (int i = 0; i < 3; ++i) {
     double magnitude = std::abs(map.offset[i]);
     for (int j = 0; j < 3; ++j) {
-      const double a = map.rows[i][j] * box.lo[j], b = map.rows[i][j] * box.hi[j];
-      result.lo[i] += std::min(a, b);
-      result.hi[i] += std::max(a, b);
+      const double a = map.rows[i][j] * box.lower[j], b = map.rows[i][j] * box.upper[j];
+      result.lower[i] += std::min(a, b);
+      result.upper[i] += std::max(a, b);
       magnitude += std::max(std::abs(a), std::abs(b));
     }
-    result.lo[i] -= 1e-15 * magnitude;
-    result.hi[i] += 1e-15 * magnitude;
+    result.lower[i] -= 1e-15 * magnitude;
+    result.upper[i] += 1e-15 * magnitude;
   }
   return result;
 }

@@ -32,7 +32,7 @@ int Sweep::sort(std::span<const Box> boxes) {
   const int axis = widest_axis(boxes);
   order_.resize(boxes.size());
   std::iota(order_.begin(), order_.end(), 0u);
-  std::ranges::sort(order_, {}, [&](std::uint32_t b) { return std::pair(boxes[b].lo[axis], b); });
+  std::ranges::sort(order_, {}, [&](std::uint32_t b) { return std::pair(boxes[b].lower[axis], b); });
   sorted_.clear();
   for (const std::uint32_t b : order_) sorted_.push_back(boxes[b]);
   return axis;
@@ -48,11 +48,11 @@ std::span<const Sweep::Pair> Sweep::near_pairs(std::span<const Box> boxes, doubl
     const Box box = sorted_[i];
     for (std::size_t j = i + 1; j < sorted_.size(); ++j) {
       const Box& other = sorted_[j];
-      if (kRoundedDown * (other.lo[axis] - box.hi[axis]) > max_distance) break;
+      if (kRoundedDown * (other.lower[axis] - box.upper[axis]) > max_distance) break;
       // Most are too far apart along one of the other axes. Without branches:
       bool far = false;
       for (int k = 0; k < 3; ++k)
-        far |= (other.lo[k] - box.hi[k] > surely_far) | (box.lo[k] - other.hi[k] > surely_far);
+        far |= (other.lower[k] - box.upper[k] > surely_far) | (box.lower[k] - other.upper[k] > surely_far);
       if (!far && box_distance(box, other) <= max_distance && (!filter || filter(order_[i], order_[j])))
         pairs_.push_back({std::min(order_[i], order_[j]), std::max(order_[i], order_[j])});
     }
@@ -84,11 +84,11 @@ std::uint32_t BoxGroups::build(std::uint32_t begin, std::uint32_t end) {
   const auto node = static_cast<std::uint32_t>(nodes_.size());
   nodes_.push_back({box, begin, end, kNone, kNone, false});
   if (end - begin <= kLeafBoxes) return node;
-  const Vec3 size = box.hi - box.lo;
+  const Vec3 size = box.upper - box.lower;
   const auto axis = static_cast<std::size_t>(std::ranges::max_element(size) - size.begin());
   const std::uint32_t middle = begin + (end - begin) / 2;
   const auto twice_centre = [&](std::uint32_t i) {
-    return std::pair(boxes_[i].lo[axis] + boxes_[i].hi[axis], i);
+    return std::pair(boxes_[i].lower[axis] + boxes_[i].upper[axis], i);
   };
   std::ranges::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, {},
                            twice_centre);

@@ -19,7 +19,7 @@ enum class TriangleFeature : std::uint8_t { corner, side, interior };
 
 struct ClosestFeature {
   Vec3 point{};
-  double squared = std::numeric_limits<double>::infinity();  ///< |point − p|²
+  double squared = kInfinity;  ///< |point − p|²
   TriangleFeature feature = TriangleFeature::interior;
   int index = 0;  ///< of the corner, or of the side, which starts at this corner
 };

@@ -59,8 +59,8 @@ std::vector<std::uint32_t> morton_order(std::span<const Vec3> points, const Box&
   for (const Vec3& p : points) extend(cells, p);
   Vec3 cells_per_unit{};
   for (int k = 0; k < 3; ++k) {
-    cells.lo[k] = std::clamp(cells.lo[k], box.lo[k], box.hi[k]);
-    const double size = std::clamp(cells.hi[k], box.lo[k], box.hi[k]) - cells.lo[k];
+    cells.lower[k] = std::clamp(cells.lower[k], box.lower[k], box.upper[k]);
+    const double size = std::clamp(cells.upper[k], box.lower[k], box.upper[k]) - cells.lower[k];
     if (size > 0) cells_per_unit[k] = (1 << kAxisBits) / size;
   }
   std::vector<Coded> items(points.size());
@@ -68,7 +68,7 @@ std::vector<std::uint32_t> morton_order(std::span<const Vec3> points, const Box&
     for (std::size_t i = begin; i < end; ++i) {
       std::uint32_t code = 0;
       for (int k = 0; k < 3; ++k) {
-        const double cell = (points[i][k] - cells.lo[k]) * cells_per_unit[k];
+        const double cell = (points[i][k] - cells.lower[k]) * cells_per_unit[k];
         constexpr double kLast = (1 << kAxisBits) - 1;
         code |= spread(static_cast<std::uint32_t>(cell > 0 ? std::min(cell, kLast) : 0.0)) << k;
       }
@@ -128,12 +128,12 @@ void order(std::span<Item> items) {
 std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points) {
   Box box;
   for (const Vec3& p : points) extend(box, p);
-  const Vec3 size = points.empty() ? Vec3{} : box.hi - box.lo;
+  const Vec3 size = points.empty() ? Vec3{} : box.upper - box.lower;
   const double longest = std::max({size[0], size[1], size[2]});
   const double scale = longest > 0 ? 1 / longest : 0;
   std::vector<Item> items(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 q = scale * (points[i] - box.lo);
+    const Vec3 q = scale * (points[i] - box.lower);
     items[i] = {{static_cast<float>(q[0]), static_cast<float>(q[1]), static_cast<float>(q[2])},
                 static_cast<std::uint32_t>(i)};
   }

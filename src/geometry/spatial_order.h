@@ -34,7 +34,7 @@ namespace sdm::core {
 /// The extent of points along one axis.
 struct Side {
   std::size_t axis;
-  float lo, hi;
+  float lower, upper;
 };
 
 /// The longest side of the box around the items' points, `point` of each. There must be an item.
@@ -65,9 +65,9 @@ template <class Item, class Weight>
 SplitRange split_range(std::span<Item> items, const Side& side, std::size_t weight, const Weight& weight_of) {
   constexpr std::size_t kBins = 64, kWorthwhile = 96;
   if (items.size() < kWorthwhile) return {0, items.size(), 0};
-  const float per_bin = kBins / (side.hi - side.lo);
+  const float per_bin = kBins / (side.upper - side.lower);
   const auto bin_of = [&](const Item& item) {
-    const float bin = (item.point[side.axis] - side.lo) * per_bin;
+    const float bin = (item.point[side.axis] - side.lower) * per_bin;
     return bin < kBins - 1 ? static_cast<std::size_t>(bin) : kBins - 1;  // the last one for NaN, too
   };
   std::array<std::size_t, kBins> weights{};

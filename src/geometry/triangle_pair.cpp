@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include "geometry/point_triangle.h"
@@ -109,7 +108,7 @@ bool triangles_intersect(const Corners& a, const Corners& b) {
 
 namespace {
 
-constexpr PointPair kNoPoints{std::numeric_limits<double>::infinity(), {}, {}};
+constexpr PointPair kNoPoints{kInfinity, {}, {}};
 
 void offer(PointPair& best, const Vec3& point1, const Vec3& point2) {
   const double squared = squared_norm(point2 - point1);
@@ -184,7 +183,7 @@ bool farther_apart(const TriangleSides& a, const TriangleSides& b, double distan
 Box box_of(const Corners& triangle) {
   Box box;
   for (int k = 0; k < 3; ++k)
-    std::tie(box.lo[k], box.hi[k]) = std::minmax({triangle[0][k], triangle[1][k], triangle[2][k]});
+    std::tie(box.lower[k], box.upper[k]) = std::minmax({triangle[0][k], triangle[1][k], triangle[2][k]});
   return box;
 }
 

@@ -8,7 +8,7 @@
 namespace sdm::core {
 
 UnitFrame UnitFrame::of(const Box& box) {
-  const Vec3 size = box.hi - box.lo;
+  const Vec3 size = box.upper - box.lower;
   const double longest = std::max({size[0], size[1], size[2]});
   UnitFrame frame;
   frame.origin = centre(box);

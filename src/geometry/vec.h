@@ -14,35 +14,35 @@ inline bool finite(const Vec3& a) {
 
 inline void extend(Box& box, const Vec3& p) {
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] = std::min(box.lo[k], p[k]);
-    box.hi[k] = std::max(box.hi[k], p[k]);
+    box.lower[k] = std::min(box.lower[k], p[k]);
+    box.upper[k] = std::max(box.upper[k], p[k]);
   }
 }
 inline void extend(Box& box, const Box& other) {
-  extend(box, other.lo);
-  extend(box, other.hi);
+  extend(box, other.lower);
+  extend(box, other.upper);
 }
 inline bool contains(const Box& box, const Vec3& p) {
   for (int k = 0; k < 3; ++k)
-    if (!(box.lo[k] <= p[k] && p[k] <= box.hi[k])) return false;
+    if (!(box.lower[k] <= p[k] && p[k] <= box.upper[k])) return false;
   return true;
 }
 inline bool overlap(const Box& a, const Box& b) {
   for (int k = 0; k < 3; ++k)
-    if (a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]) return false;
+    if (a.upper[k] < b.lower[k] || b.upper[k] < a.lower[k]) return false;
   return true;
 }
 /// The distance between two boxes along each axis; 0 where they overlap.
 inline Vec3 gap(const Box& a, const Box& b) {
   Vec3 gap;
-  for (int k = 0; k < 3; ++k) gap[k] = std::max({a.lo[k] - b.hi[k], b.lo[k] - a.hi[k], 0.0});
+  for (int k = 0; k < 3; ++k) gap[k] = std::max({a.lower[k] - b.upper[k], b.lower[k] - a.upper[k], 0.0});
   return gap;
 }
 inline Vec3 centre(const Box& box) {
-  return 0.5 * (box.lo + box.hi);
+  return 0.5 * (box.lower + box.upper);
 }
 inline double diagonal(const Box& box) {
-  return norm(box.hi - box.lo);
+  return norm(box.upper - box.lower);
 }
 
 /// The point of the segment from a to b that is closest to x, for a = b as well.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "closest/closest_points.h"
 #include "core/parallel.h"
@@ -52,7 +51,7 @@ void set_bounds(DomainTree& tree, const sites::SitesData& sites, double slack, d
       const tree::FloatBox& box = tree.tree.box(nodes[i]);
       Vec3 middle;
       for (int k = 0; k < 3; ++k)
-        middle[k] = 0.5 * (double{box.lo[k]} + box.hi[k]) / frame.scale + frame.origin[k];
+        middle[k] = 0.5 * (double{box.lower[k]} + box.upper[k]) / frame.scale + frame.origin[k];
       middles.push_back(middle);
     }
     const auto bound = [&](std::size_t first, const sites::ClosestPacket& closest) {
@@ -62,11 +61,11 @@ void set_bounds(DomainTree& tree, const sites::SitesData& sites, double slack, d
         const Vec3 p = frame.to_unit(closest.get(i, middles[first + i]).point);
         Vec3 farthest;
         for (int k = 0; k < 3; ++k)
-          farthest[k] = std::max(std::abs(box.lo[k] - p[k]), std::abs(box.hi[k] - p[k]));
+          farthest[k] = std::max(std::abs(box.lower[k] - p[k]), std::abs(box.upper[k] - p[k]));
         tree.bound[node] = std::min(largest, norm(farthest) + slack);
       }
     };
-    closest::closest_points(sites, middles, std::numeric_limits<double>::infinity(), bound);
+    closest::closest_points(sites, middles, kInfinity, bound);
   });
   raise_to_root(tree);
 }

@@ -3,7 +3,6 @@
 
 #include <sdm/error.h>
 
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -56,8 +55,7 @@ RasterWinners draw_winners(const RasterDevice& device, const DrawTask& task, Ras
   RasterImage image = rasteriser.read_back();
   rasteriser.count_into(report);
   report.time_ms.read_back = watch.lap();
-  if (task.options.max_distance == std::numeric_limits<double>::infinity())
-    expect_no_cracks(task.surface, image.winners, report);
+  if (task.options.max_distance == kInfinity) expect_no_cracks(task.surface, image.winners, report);
   return {.winners = std::move(image.winners),
           .depths = std::move(image.depths),
           .depth_unit = 1 / rules.to_depth / task.sites.frame.scale,

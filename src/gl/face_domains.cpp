@@ -1,7 +1,6 @@
 #include "gl/face_domains.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace sdm::gl {
 namespace {
@@ -32,16 +31,15 @@ PlanarDomain face_domain(const Surface& surface, const surface::Tiles& tiles, st
   const std::array<Vec3, 2> edges = surface.texel_edges(face);
   for (int k = 0; k < 2; ++k) domain.edges[k] = frame.scale * edges[k];
 
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Vec2 lo{inf, inf}, hi{-inf, -inf};
+  Vec2 lower{kInfinity, kInfinity}, upper{-kInfinity, -kInfinity};
   for (const std::uint32_t texel : texels) {
     const Vec2 c = centre(texel, surface.resolution());
     for (int k = 0; k < 2; ++k) {
-      lo[k] = std::min(lo[k], c[k]);
-      hi[k] = std::max(hi[k], c[k]);
+      lower[k] = std::min(lower[k], c[k]);
+      upper[k] = std::max(upper[k], c[k]);
     }
   }
-  domain.outline = ConvexPolygon::rectangle(lo - Vec2{kMargin, kMargin}, hi + Vec2{kMargin, kMargin});
+  domain.outline = ConvexPolygon::rectangle(lower - Vec2{kMargin, kMargin}, upper + Vec2{kMargin, kMargin});
   if (clip == GlClip::stencil) return domain;
 
   // Cuts parallel to the sides, but through the outermost texels instead of the sides themselves: tighter,
@@ -53,7 +51,7 @@ PlanarDomain face_domain(const Surface& surface, const surface::Tiles& tiles, st
     const double turn = cross(side, corner[(k + 2) % 3] - corner[k]) > 0 ? 1 : -1;
     const Vec2 inward = (turn / length) * Vec2{-side[1], side[0]};
     if (!std::isfinite(inward[0]) || !std::isfinite(inward[1])) continue;
-    double least = inf;
+    double least = kInfinity;
     for (const std::uint32_t texel : texels)
       least = std::min(least, dot(inward, centre(texel, surface.resolution())));
     domain.outline.cut({kMargin - least, inward});

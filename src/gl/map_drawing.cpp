@@ -18,8 +18,8 @@ struct Extent {
   Extent(const tree::FloatBox& o1, const tree::FloatBox& o2) : size(0), reach(0) {
     for (int k = 0; k < 3; ++k) {
       for (const tree::FloatBox* box : {&o1, &o2})
-        size = std::max({size, std::abs(double{box->lo[k]}), std::abs(double{box->hi[k]})});
-      const double farthest = std::max(double{o1.hi[k]} - o2.lo[k], double{o2.hi[k]} - o1.lo[k]);
+        size = std::max({size, std::abs(double{box->lower[k]}), std::abs(double{box->upper[k]})});
+      const double farthest = std::max(double{o1.upper[k]} - o2.lower[k], double{o2.upper[k]} - o1.lower[k]);
       reach += farthest * farthest;
     }
     reach = std::sqrt(reach);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "closest/exact.h"
 #include "closest/single_point.h"
@@ -54,8 +53,7 @@ FinishCounts finish(const sites::SitesData& sites, std::span<const Vec3> points,
       const Vec3& point = points[first + i];
       const ClosestPoint closest =
           closest_of(sites, point, placed[first + i], found[first + i], max_distance, counts);
-      if (closest.type == SiteType::none && max_distance == std::numeric_limits<double>::infinity())
-        throw_nothing_found();
+      if (closest.type == SiteType::none && max_distance == kInfinity) throw_nothing_found();
       packet.set(i, point, closest);
     }
     sink(first, packet);

@@ -70,15 +70,22 @@ class GpuEngine final : public Engine {
 };
 
 }  // namespace
+}  // namespace sdm::gpu
+
+namespace sdm {
+
+std::vector<GpuDevice> gpu_devices() {
+  return gpu::devices_by_preference();
+}
 
 std::shared_ptr<const Engine> make_gpu_engine(const GpuOptions& options) {
-  return std::make_shared<const GpuEngine>(options);
+  return std::make_shared<const gpu::GpuEngine>(options);
 }
 
 std::optional<GpuReport> gpu_report(const Engine& engine) {
-  const auto* gpu = dynamic_cast<const GpuEngine*>(&engine);
+  const auto* gpu = dynamic_cast<const gpu::GpuEngine*>(&engine);
   if (gpu == nullptr) return std::nullopt;
   return gpu->report();
 }
 
-}  // namespace sdm::gpu
+}  // namespace sdm

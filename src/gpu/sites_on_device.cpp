@@ -12,9 +12,9 @@ namespace {
 
 // As in shaders/faces.wgsl.
 struct ChildBox {
-  float lo[3];
+  float lower[3];
   std::uint32_t number;
-  float hi[3];
+  float upper[3];
   std::uint32_t padding;
 };
 struct Face {
@@ -39,7 +39,8 @@ std::vector<ChildBox> child_boxes(const tree::WideTree& tree) {
     const tree::WideTree::Node& node = tree.nodes[i / kWidth];
     const std::size_t slot = i % kWidth;
     boxes[i].number = slot < node.count ? node.child[slot] : kNone;
-    for (int k = 0; k < 3; ++k) boxes[i].lo[k] = node.lo[k][slot], boxes[i].hi[k] = node.hi[k][slot];
+    for (int k = 0; k < 3; ++k)
+      boxes[i].lower[k] = node.lower[k][slot], boxes[i].upper[k] = node.upper[k][slot];
   }
   return boxes;
 }

@@ -111,10 +111,10 @@ void AppendOverlapping(const tree::AabbTree& tree, const FaceBoxes& boxes, std::
   const size_t begin = begin_of(leaf), end = begin + tree.items_of(leaf).size();
   const size_t begin_other = begin_of(other), end_other = begin_other + tree.items_of(other).size();
   for (size_t i = begin; i < end; i += hn::Lanes(d)) {
-    PairVec lo[3], hi[3];
+    PairVec lower[3], upper[3];
     for (size_t k = 0; k < 3; ++k) {
-      lo[k] = hn::LoadU(d, boxes.lo[k].data() + i);
-      hi[k] = hn::LoadU(d, boxes.hi[k].data() + i);
+      lower[k] = hn::LoadU(d, boxes.lower[k].data() + i);
+      upper[k] = hn::LoadU(d, boxes.upper[k].data() + i);
     }
     const size_t left = end - i;
     for (size_t j = begin_other; j < end_other; ++j) {
@@ -122,8 +122,8 @@ void AppendOverlapping(const tree::AabbTree& tree, const FaceBoxes& boxes, std::
       const size_t count = leaf != other ? left : j > i ? std::min(left, j - i) : 0;
       auto meet = hn::FirstN(d, count);
       for (size_t k = 0; k < 3; ++k)
-        meet = hn::And(meet, hn::And(hn::Le(lo[k], hn::Set(d, boxes.hi[k][j])),
-                                     hn::Le(hn::Set(d, boxes.lo[k][j]), hi[k])));
+        meet = hn::And(meet, hn::And(hn::Le(lower[k], hn::Set(d, boxes.upper[k][j])),
+                                     hn::Le(hn::Set(d, boxes.lower[k][j]), upper[k])));
       std::uint8_t bytes[8] = {};
       hn::StoreMaskBits(d, meet, bytes);
       for (std::uint32_t bits = bytes[0]; bits != 0; bits &= bits - 1)
@@ -144,7 +144,7 @@ HWY_EXPORT(AppendOverlapping);
 void FaceBoxes::set(const sites::SitesData& sites, double margin) {
   const Array<std::uint32_t>& faces = sites.tree.items;
   // Vectors read beyond the last one.
-  for (auto* boxes : {&lo, &hi})
+  for (auto* boxes : {&lower, &upper})
     for (std::vector<float>& values : *boxes) values.resize(faces.size() + TrianglePairs::kMost);
   const auto by = static_cast<float>(margin);
   parallel_for(faces.size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -154,8 +154,8 @@ void FaceBoxes::set(const sites::SitesData& sites, double margin) {
         extend(exact, sites.frame.to_unit(sites.mesh.positions[v]));
       const auto box = tree::FloatBox::around(exact);
       for (std::size_t k = 0; k < 3; ++k) {
-        lo[k][i] = box.lo[k] - by;
-        hi[k][i] = box.hi[k] + by;
+        lower[k][i] = box.lower[k] - by;
+        upper[k][i] = box.upper[k] + by;
       }
     }
   });

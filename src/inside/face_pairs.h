@@ -15,7 +15,7 @@ using FacePair = std::array<std::uint32_t, 2>;
 /// The boxes of faces in single precision, in the order of the leaves of the tree, all of them enlarged: two
 /// that do not overlap are farther apart than twice the margin.
 struct FaceBoxes {
-  std::array<std::vector<float>, 3> lo, hi;
+  std::array<std::vector<float>, 3> lower, upper;
 
   /// `margin` in the unit frame, larger than the rounding there. Reuses the memory.
   /// Cost: linear, all cores.

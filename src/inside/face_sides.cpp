@@ -20,8 +20,8 @@ double offset_beside_faces(const sites::SitesData& sites) {
   const tree::FloatBox& box = sites.tree.box(0);
   double largest = 0;
   for (int k = 0; k < 3; ++k)
-    largest = std::max({largest, std::abs(sites.frame.origin[k] + unit * box.lo[k]),
-                        std::abs(sites.frame.origin[k] + unit * box.hi[k])});
+    largest = std::max({largest, std::abs(sites.frame.origin[k] + unit * box.lower[k]),
+                        std::abs(sites.frame.origin[k] + unit * box.upper[k])});
   const double rounding = 1e-14 * largest;
   const double offset = std::max(1e-9 * unit, rounding);
   return offset > 0.25 * kClearance * unit ? 0 : offset;

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -54,8 +53,8 @@ class WindingWalk {
 };
 
 double way_out(const Box& box, const Vec3& point) {
-  double way = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 3; ++k) way = std::min({way, point[k] - box.lo[k], box.hi[k] - point[k]});
+  double way = kInfinity;
+  for (int k = 0; k < 3; ++k) way = std::min({way, point[k] - box.lower[k], box.upper[k] - point[k]});
   return std::max(way, 0.0);
 }
 
@@ -64,7 +63,7 @@ void WindingWalk::start(std::uint64_t shape) {
   shape_ = shape;
   prepared_ = false;
   overlapping_ = 1;
-  clear_.fill(-std::numeric_limits<double>::infinity());
+  clear_.fill(-kInfinity);
 }
 
 void WindingWalk::keep(const Vec3& point, double clear, int number) {
@@ -85,8 +84,8 @@ void WindingWalk::approach(const ShapeSigns& signs, const sites::SitesData& soli
   // More than the rounding of segments.
   const Vec3 margin{1e-5, 1e-5, 1e-5};
   rays::find_near_nodes(solid,
-                        tree::FloatBox::around({solid.frame.to_unit(prepared_box_.lo) - margin,
-                                                solid.frame.to_unit(prepared_box_.hi) + margin}),
+                        tree::FloatBox::around({solid.frame.to_unit(prepared_box_.lower) - margin,
+                                                solid.frame.to_unit(prepared_box_.upper) + margin}),
                         prepared_nodes_);
   prepared_ = true;
 }
@@ -192,7 +191,7 @@ constexpr double kWidestOfSparse = 0.25;
 
 // The answer of a test of a solid, which holds as far as clear balls overlap.
 WindingNumber::Side of_solid(bool inside) {
-  return {inside, std::numeric_limits<double>::infinity()};
+  return {inside, kInfinity};
 }
 
 }  // namespace
@@ -351,7 +350,7 @@ std::uint32_t InsideTest::above_half(std::span<const Vec3> queries, const Closes
   if (count >= kFewest) {
     Box box;
     for (const Vec3& query : std::span(open_queries).first(count)) extend(box, query);
-    if (largest < widest * norm(box.hi - box.lo) && packet_trials.due(signs_->number)) {
+    if (largest < widest * norm(box.upper - box.lower) && packet_trials.due(signs_->number)) {
       sides = winding_->above_half(std::span(open_queries).first(count), std::span(open_closest).first(count),
                                    few);
       packet_trials.learn(2 * static_cast<std::size_t>(std::popcount(sides.known)) >= count);

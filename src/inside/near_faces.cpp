@@ -136,8 +136,8 @@ Box box_of_face(const Mesh& mesh, std::uint32_t face) {
   const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
   Box box;
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] = std::min(std::min(a[k], b[k]), c[k]);
-    box.hi[k] = std::max(std::max(a[k], b[k]), c[k]);
+    box.lower[k] = std::min(std::min(a[k], b[k]), c[k]);
+    box.upper[k] = std::max(std::max(a[k], b[k]), c[k]);
   }
   return box;
 }
@@ -146,12 +146,12 @@ Box box_of_face(const Mesh& mesh, std::uint32_t face) {
 Box enlarged_box(const sites::SitesData& sites, std::uint32_t face) {
   const double margin = kClearance / sites.frame.scale;
   const Box box = box_of_face(sites.mesh, face);
-  return {box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}};
+  return {box.lower - Vec3{margin, margin, margin}, box.upper + Vec3{margin, margin, margin}};
 }
 
 bool meet(const tree::FloatBox& a, const tree::FloatBox& b) {
   bool apart = false;
-  for (int k = 0; k < 3; ++k) apart = apart || a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k];
+  for (int k = 0; k < 3; ++k) apart = apart || a.upper[k] < b.lower[k] || b.upper[k] < a.lower[k];
   return !apart;
 }
 
@@ -203,8 +203,8 @@ class NearPairs {
     constexpr float kMargin = 1.25F * static_cast<float>(kClearance);
     tree::FloatBox enlarged = sites_.tree.box(leaf);
     for (int k = 0; k < 3; ++k) {
-      enlarged.lo[k] -= kMargin;
-      enlarged.hi[k] += kMargin;
+      enlarged.lower[k] -= kMargin;
+      enlarged.upper[k] += kMargin;
     }
     // Nodes with earlier leaves only have been compared.
     const auto enter = [&](tree::Subtree below) {
@@ -296,7 +296,7 @@ void find_near_faces(const sites::SitesData& sites, std::uint32_t face, std::vec
   near.clear();
   const Box enlarged = enlarged_box(sites, face);
   const auto unit =
-      tree::FloatBox::around({sites.frame.to_unit(enlarged.lo), sites.frame.to_unit(enlarged.hi)});
+      tree::FloatBox::around({sites.frame.to_unit(enlarged.lower), sites.frame.to_unit(enlarged.upper)});
   const auto enter = [&](tree::Subtree below) { return meet(sites.tree.box(below.root), unit); };
   const auto visit_leaf = [&](std::uint32_t leaf) {
     for (const std::uint32_t other : sites.tree.items_of(leaf))

@@ -51,7 +51,7 @@ bool OpenSides::clear(std::uint32_t face) const {
   Box box;
   for (const Vec3& corner : unit_corners(sites_, face)) extend(box, corner);
   const Vec3 margin{kClearance, kClearance, kClearance};
-  const auto enlarged = tree::FloatBox::around({box.lo - margin, box.hi + margin});
+  const auto enlarged = tree::FloatBox::around({box.lower - margin, box.upper + margin});
   bool met = false;
   const auto enter = [&](tree::Subtree below) {
     return !met && gap(closing_.faces.tree.box(below.root), enlarged) == Vec3{};

@@ -38,7 +38,7 @@ struct Segment {
   [[nodiscard]] bool meets(const tree::FloatBox& box) const {
     double first = 0, last = 1;
     for (int k = 0; k < 3; ++k) {
-      const double lo = box.lo[k] - rounding - start[k], hi = box.hi[k] + rounding - start[k];
+      const double lo = box.lower[k] - rounding - start[k], hi = box.upper[k] + rounding - start[k];
       if (inverse_along[k] == 0) {
         if (lo > 0 || hi < 0) return false;
         continue;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "geometry/affine.h"
@@ -60,10 +59,10 @@ std::optional<int> winding_by_segments(const FaceTree& faces, const Affine& pose
   const tree::FloatBox& box = faces.tree.box(0);
   const Vec3 p = faces.frame.to_unit(inverse(pose)(point));
   int axis = 0;
-  double way = std::numeric_limits<double>::infinity();
+  double way = kInfinity;
   bool up = false;
   for (int k = 0; k < 3; ++k) {
-    const double below = p[k] - box.lo[k], above = box.hi[k] - p[k];
+    const double below = p[k] - box.lower[k], above = box.upper[k] - p[k];
     if (below < -kMargin || above < -kMargin) return 0;
     if (below < way) {
       way = below;

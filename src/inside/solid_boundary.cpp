@@ -1,7 +1,6 @@
 #include "inside/solid_boundary.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "core/cancellation.h"
 #include "core/parallel.h"
@@ -24,9 +23,8 @@ constexpr double kThin = 1e-5, kThinnest = 1e-9;
 constexpr std::size_t kFewCuts = 6, kMostCuts = 24;
 constexpr double kFinest = 2e-3;
 constexpr std::size_t kGrain = 256;
-// The work of dividing, in comparisons of two triangles, that a volume has for each face: far more than where
-// faces cross few others. A winding number takes as long as some of them, and one for each face nearby.
-constexpr std::size_t kWorkOfEachFace = 20'000, kWorkOfEachCell = 16;
+// A winding number takes as long as some comparisons of two triangles, and one for each face nearby.
+constexpr std::size_t kWorkOfEachCell = 16;
 
 // Whether `piece` lies in triangle t: in its plane, and within its sides.
 bool covers(const Corners& t, const Corners& piece) {
@@ -286,10 +284,10 @@ class SolidBoundary::ClosestSearch : public search::Policy {
   // Bounds in the unit frame.
   Closest operator()() {
     // Beyond the box there is no solid, so the boundary is met on the way out.
-    closest_.upper = std::numeric_limits<double>::infinity();
+    closest_.upper = kInfinity;
     const tree::FloatBox& box = solid_.tree.box(0);
     for (int k = 0; k < 3; ++k)
-      for (const double end : {double{box.lo[k]}, double{box.hi[k]}})
+      for (const double end : {double{box.lower[k]}, double{box.upper[k]}})
         closest_.upper = std::min(closest_.upper, std::abs(end - q_[k]) + 2 * kBeside);
     parts_.start(-closest_.upper, 0);
     put_node(0);
@@ -372,102 +370,6 @@ SolidBoundary::Closest SolidBoundary::closest(const Vec3& p) const {
   const Closest found = ClosestSearch(*this, solid_.frame.to_unit(p), parts)();
   const double unit = 1 / solid_.frame.scale;
   return {unit * found.lower, unit * found.upper, found.point, found.face};
-}
-
-// The volume by a run of faces, by the divergence theorem: V = Σ a·(b × c) / 6 over triangles abc of the
-// boundary. Largest pieces first.
-class SolidBoundary::VolumeSum {
- public:
-  // Six times the volume, and what the parts that may or may not be boundary contribute.
-  double sure = 0, unsure = 0;
-
-  VolumeSum(const SolidBoundary& boundary, std::span<const std::uint32_t> faces)
-      : boundary_(boundary), work_left_(kWorkOfEachFace * faces.size()), windings_(faces.size()) {
-    for (std::uint32_t i = 0; i < faces.size(); ++i) add(boundary.whole_face(faces[i]), i, kNone);
-  }
-
-  // Divides pieces within the budget of work, which does not depend on the number of threads.
-  void divide() {
-    Division division;
-    while (!open_.empty()) {
-      const Open next = open_.front();
-      std::ranges::pop_heap(open_, {}, &Open::size);
-      open_.pop_back();
-      if (work_left_ == 0) {
-        unsure += next.size;
-        continue;
-      }
-      const Piece& piece = next.piece;
-      boundary_.divide(piece, near_of(piece.face, next.within), windings_[next.number], division);
-      work_left_ -= std::min(work_left_, division.work);
-      const auto number = static_cast<std::uint32_t>(near_.size());
-      near_.push_back(division.near);
-      for (const Piece& part : division.pieces) add(part, next.number, number);
-    }
-  }
-
- private:
-  struct Open {
-    double size = 0;  // its part of the sum, without its sign
-    Piece piece;
-    std::uint32_t number = 0;      // of its face, in this run
-    std::uint32_t within = kNone;  // the number in near_ of the piece that it is a part of
-  };
-
-  [[nodiscard]] std::span<const std::uint32_t> near_of(std::uint32_t face, std::uint32_t within) const {
-    return within == kNone ? boundary_.mixed(face).near : near_[within];
-  }
-  // `within`: kNone for a whole face.
-  void add(const Piece& piece, std::uint32_t number, std::uint32_t within) {
-    if (piece.sides == Sides::buried || repeats_earlier_face(piece, within)) return;
-    const auto& [a, b, c] = piece.at;
-    const double flux = dot(a, cross(b, c)) * (boundary_.solid_.inverted[piece.face] ? -1 : 1);
-    if (piece.sides == Sides::unknown && !boundary_.solid_.sliver[piece.face]) {
-      open_.push_back({std::abs(flux), piece, number, within});
-      std::ranges::push_heap(open_, {}, &Open::size);
-    } else if (piece.sides == Sides::boundary || piece.sides == Sides::reversed) {
-      sure += piece.sides == Sides::boundary ? flux : -flux;
-    } else {
-      unsure += std::abs(flux);
-    }
-  }
-  // A piece that lies in an earlier face counts there, whatever its sides are.
-  bool repeats_earlier_face(const Piece& piece, std::uint32_t within) {
-    if (boundary_.sides_[piece.face] != Sides::mixed) return false;
-    const std::span<const std::uint32_t> near = near_of(piece.face, within);
-    work_left_ -= std::min(work_left_, near.size());
-    return boundary_.repeats_earlier_face(piece, near);
-  }
-
-  const SolidBoundary& boundary_;
-  std::size_t work_left_;
-  std::vector<Windings> windings_;                // of each face
-  std::vector<Open> open_;                        // a heap
-  std::vector<std::vector<std::uint32_t>> near_;  // of each divided piece
-};
-
-SolidBoundary::Volume SolidBoundary::volume() const {
-  const Array<std::uint32_t>& faces = solid_.tree.items;
-  // Partial sums that do not depend on the number of threads.
-  struct Sum {
-    double sure = 0, unsure = 0;
-  };
-  std::vector<Sum> sums((faces.size() + kGrain - 1) / kGrain);
-  parallel_for(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      VolumeSum sum(*this,
-                    std::span(faces).subspan(kGrain * i).first(std::min(kGrain, faces.size() - kGrain * i)));
-      sum.divide();
-      sums[i] = {sum.sure, sum.unsure};
-    }
-  });
-  Sum all;
-  for (const Sum& sum : sums) {
-    all.sure += sum.sure;
-    all.unsure += sum.unsure;
-  }
-  const double unit = 1 / (6 * solid_.frame.scale * solid_.frame.scale * solid_.frame.scale);
-  return {unit * std::max(0.0, all.sure - all.unsure), unit * (all.sure + all.unsure)};
 }
 
 }  // namespace sdm::inside

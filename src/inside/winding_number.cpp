@@ -18,7 +18,7 @@ namespace sdm::inside {
 namespace {
 
 constexpr double kSphere = 4 * std::numbers::pi;
-constexpr double kNoLimit = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoThreshold = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint32_t kLeafFaces = 4;
 
 bool certain(const SolidAngle& angle, double limit) {
@@ -75,11 +75,11 @@ double WindingNumber::operator()(const Vec3& q, double error) const {
   if (sites_.tree.nodes.empty()) return 0;
   poll();
   if (const std::optional<int> number = closed(q)) {
-    const SolidAngle angle = closing_.angles->at(q, kNoLimit, kSphere * error).angle;
+    const SolidAngle angle = closing_.angles->at(q, kNoThreshold, kSphere * error).angle;
     // Near an edge of a closing face, the rounding of its angle may be large.
     if (angle.error <= std::max(kSphere * error, 1e-10)) return *number - angle.value / kSphere;
   }
-  return mesh_angles().at(q, kNoLimit, kSphere * error).angle.value / kSphere;
+  return mesh_angles().at(q, kNoThreshold, kSphere * error).angle.value / kSphere;
 }
 
 // The mesh has w = n − s/4π, with s the solid angle of the closing faces: w > 1/2 where s < 4π(n − 1/2).
@@ -143,7 +143,7 @@ PacketSides WindingNumber::above_half(std::span<const Vec3> points, std::span<co
   }
   for (std::size_t i = 0; i < used.size(); ++i) {
     const std::optional<int> number = closed(points[i], closest[i], few);
-    used[i] = number ? kSphere * (*number - 0.5) : kNoLimit;
+    used[i] = number ? kSphere * (*number - 0.5) : kNoThreshold;
   }
   const PacketSides sides = sides_of_packet(*closing_.angles, points, used);
   return {sides.known, sides.known & ~sides.above};

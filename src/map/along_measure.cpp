@@ -41,7 +41,7 @@ class LineSearch final : public FaceSearch {
     for (const Sample& sample : samples) {
       const Vec3 u = line_of(sample), m = sample.normal.value_or(u);
       const bool measured = u != Vec3{} && std::abs(dot(m, u)) > kParallel;
-      const double t_max = measured ? std::numeric_limits<double>::infinity() : -1;  // -1: no hit
+      const double t_max = measured ? kInfinity : -1;  // -1: no hit
       rays_.push_back({.origin = sample.point, .direction = u, .t_max = t_max});
       rays_.push_back({.origin = sample.point, .direction = -1.0 * u, .t_max = t_max});
       towards_.push_back(dot(m, u) > 0 ? u : -1.0 * u);

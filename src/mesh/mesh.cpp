@@ -136,7 +136,8 @@ Box bounds(const Mesh& mesh) {
     for (std::size_t f = begin; f < end; ++f)
       if (!is_removed(mesh.triangles[f]))
         for (const std::uint32_t v : mesh.triangles[f]) extend(part, mesh.positions[v]);
-    if (!(part.lo[0] <= part.hi[0])) return;  // only removed faces: an empty box would extend to infinity
+    if (!(part.lower[0] <= part.upper[0]))
+      return;  // only removed faces: an empty box would extend to infinity
     const std::lock_guard lock(mutex);
     extend(box, part);
   });

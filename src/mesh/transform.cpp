@@ -135,7 +135,7 @@ Transform operator*(const Transform& a, const Transform& b) {
 
 Transform fit_to_unit(const Mesh& mesh) {
   const Box box = bounds(mesh);
-  const Vec3 size = box.hi - box.lo;
+  const Vec3 size = box.upper - box.lower;
   const double longest = std::max({size[0], size[1], size[2]});
   if (!(longest > 0)) throw Error("fit_to_unit() requires a mesh with positive extent");
   return Transform::scaling(1 / longest) * Transform::translation(-centre(box));

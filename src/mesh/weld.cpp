@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <new>
 #include <numeric>
 #include <tuple>
@@ -24,7 +23,6 @@ constexpr double kMostOfLength = 0.25;    // of the shorter edge: gaps longer th
 constexpr double kMostOfDiagonal = 1e-3;  // without a tolerance
 constexpr std::uint32_t kLeafSize = 4;
 constexpr std::size_t kWeldGrain = 256;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct BoundaryEdge {
   std::uint32_t face;
@@ -69,7 +67,7 @@ class Matching {
     std::vector<Box> boxes(edges.size());
     std::vector<std::uint32_t> indices(edges.size());
     for (std::uint32_t e = 0; e < edges.size(); ++e) {
-      boxes[e].lo = boxes[e].hi = frame_.to_unit(middle(e));
+      boxes[e].lower = boxes[e].upper = frame_.to_unit(middle(e));
       indices[e] = e;
     }
     tree_ = tree::build_aabb_tree(boxes, std::move(indices), kLeafSize);

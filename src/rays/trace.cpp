@@ -21,7 +21,7 @@ namespace {
 double meet(const sites::SitesData& sites, const Ray& ray, std::uint32_t face) {
   const auto hit = line_meets_triangle(ray.origin, ray.direction, corners_of(sites.mesh, face));
   if (hit && hit->last >= ray.t_min && hit->first <= ray.t_max) return std::max(hit->first, ray.t_min);
-  return std::numeric_limits<double>::infinity();
+  return kInfinity;
 }
 
 }  // namespace
@@ -60,9 +60,9 @@ HWY_INLINE uint32_t boxes_met(const tree::WideTree::Node& node, const UnitRay& r
     for (int k = 0; k < 3; ++k) {
       const BlockVec inverse = hn::Set(d, ray.inverse[k]);
       const BlockVec lo =
-          hn::Mul(hn::Sub(hn::Load(d, node.lo[k] + i), hn::Set(d, ray.beyond_lo[k])), inverse);
+          hn::Mul(hn::Sub(hn::Load(d, node.lower[k] + i), hn::Set(d, ray.beyond_lo[k])), inverse);
       const BlockVec hi =
-          hn::Mul(hn::Sub(hn::Load(d, node.hi[k] + i), hn::Set(d, ray.before_hi[k])), inverse);
+          hn::Mul(hn::Sub(hn::Load(d, node.upper[k] + i), hn::Set(d, ray.before_hi[k])), inverse);
       first = hn::Max(first, hn::Min(lo, hi));
       last = hn::Min(last, hn::Max(lo, hi));
     }
@@ -208,8 +208,8 @@ HWY_INLINE uint32_t boxes_meeting(const tree::WideTree::Node& node, const tree::
     const Block d;
     auto meet = hn::FirstN(d, kWidth);
     for (int k = 0; k < 3; ++k)
-      meet = hn::And(meet, hn::And(hn::Le(hn::Load(d, node.lo[k] + i), hn::Set(d, box.hi[k])),
-                                   hn::Ge(hn::Load(d, node.hi[k] + i), hn::Set(d, box.lo[k]))));
+      meet = hn::And(meet, hn::And(hn::Le(hn::Load(d, node.lower[k] + i), hn::Set(d, box.upper[k])),
+                                   hn::Ge(hn::Load(d, node.upper[k] + i), hn::Set(d, box.lower[k]))));
     return meet;
   });
 }
@@ -225,8 +225,8 @@ void FindNearNodes(const sites::SitesData& sites, const tree::FloatBox& box, Nea
       tree::WideTree::Node& to = near.next.back();
       const uint32_t at = to.count++;
       for (int k = 0; k < 3; ++k) {
-        to.lo[k][at] = node.lo[k][i];
-        to.hi[k][at] = node.hi[k][i];
+        to.lower[k][at] = node.lower[k][i];
+        to.upper[k][at] = node.upper[k][i];
       }
       to.child[at] = node.child[i];
     };
@@ -250,7 +250,6 @@ void FindNearNodes(const sites::SitesData& sites, const tree::FloatBox& box, Nea
 }
 
 void Occluded(const sites::SitesData& sites, std::span<const Ray> rays, Scratch& scratch, uint8_t* result) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < rays.size(); ++i) {
     result[i] = 0;
     UnitRay unit;

@@ -132,7 +132,7 @@ void check(const AlignOptions& options, const Mesh& o2) {
     if (group != kNone && group >= faces) throw Error("the number of a group is not below that of the faces");
   for (const Box& box : options.region.boxes)
     for (int k = 0; k < 3; ++k)
-      if (!(box.lo[k] <= box.hi[k])) throw Error("a box of the region of the alignment is empty");
+      if (!(box.lower[k] <= box.upper[k])) throw Error("a box of the region of the alignment is empty");
 }
 
 Samples relative(Samples samples, const Vec3& centre) {

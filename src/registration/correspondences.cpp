@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "closest/blocks.h"
 #include "closest/closest_points.h"
@@ -64,7 +63,7 @@ bool in_region(const AlignRegion& region, std::uint32_t face, const Vec3& point)
   if (!region.faces.empty() && region.faces[face] != 0) return true;
   return std::ranges::any_of(region.boxes, [&](const Box& box) {
     for (int k = 0; k < 3; ++k)
-      if (!(point[k] >= box.lo[k] && point[k] <= box.hi[k])) return false;
+      if (!(point[k] >= box.lower[k] && point[k] <= box.upper[k])) return false;
     return true;
   });
 }
@@ -123,7 +122,7 @@ Correspondences find_correspondences(const Samples& samples, const Affine& pose,
   };
   closest::for_each_block(count, {}, "align", [&](std::size_t begin, std::size_t end) {
     const std::span<const Vec3> block = std::span(pairs.points).subspan(begin, end - begin);
-    closest::closest_points(data, block, std::numeric_limits<double>::infinity(),
+    closest::closest_points(data, block, kInfinity,
                             [&](std::size_t first, const sites::ClosestPacket& packet) {
                               for (std::size_t k = 0; k < packet.count; ++k) {
                                 const std::size_t i = begin + first + k;

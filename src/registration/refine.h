@@ -1,8 +1,6 @@
 // The steps of an alignment: from a start to the nearest optimum.
 #pragma once
 
-#include <limits>
-
 #include "geometry/affine.h"
 #include "registration/correspondences.h"
 #include "registration/locked_motion.h"
@@ -11,7 +9,7 @@
 
 namespace sdm::registration {
 
-inline constexpr double kEverything = std::numeric_limits<double>::infinity();
+inline constexpr double kEverything = kInfinity;
 inline constexpr std::size_t kThin = 4096;  // samples that show which motions are determined
 
 /// The state of a registration: a pose of samples that are relative to their centre.

@@ -80,7 +80,7 @@ double misfit_in_place(const registration::Samples& samples, const registration:
 double distance_of_corners(const Box& a, const Box& b) {
   double most = 0;
   for (int k = 0; k < 3; ++k)
-    most = std::max({most, std::abs(a.lo[k] - b.lo[k]), std::abs(a.hi[k] - b.hi[k])});
+    most = std::max({most, std::abs(a.lower[k] - b.lower[k]), std::abs(a.upper[k] - b.upper[k])});
   return most / diagonal(b);
 }
 
@@ -108,7 +108,7 @@ std::optional<OtherUnit> unit_in_place(const registration::Samples& samples, con
   double least = as_given > kFits ? std::min(kMuchBetter * as_given, kFits) : 0;
   for (const auto& [ratio, name] : kLargerUnits)
     for (const double factor : {ratio, 1 / ratio}) {
-      const double apart = distance_of_corners({factor * box.lo, factor * box.hi}, to);
+      const double apart = distance_of_corners({factor * box.lower, factor * box.upper}, to);
       const bool same = apart <= kSame;
       if (!same && !(least > 0 && apart <= kFar)) continue;
       const double misfit = misfit_in_place({times(factor, samples.points), samples.normals}, target);

@@ -29,7 +29,7 @@ class Parts {
   void start(double lower, double precision) {
     lower_ = lower;
     precision_ = precision;
-    settled_ = -std::numeric_limits<double>::infinity();
+    settled_ = -kInfinity;
     forget();
   }
   void raise(double value) { lower_ = std::max(lower_, value); }

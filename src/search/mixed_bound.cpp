@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <optional>
 
 namespace sdm::search {
@@ -129,7 +128,7 @@ class LargestValue {
     const Row entered = row(entering);
     double share[3];
     int leaving = -1;
-    double ratio = std::numeric_limits<double>::infinity();
+    double ratio = kInfinity;
     for (int n = 0; n < 3; ++n) {
       const Row& column = inverse_[n];
       share[n] = entered[0] * column[0] + entered[1] * column[1] + entered[2] * column[2];

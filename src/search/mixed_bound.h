@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 namespace sdm::search {
@@ -14,7 +13,7 @@ namespace sdm::search {
 using CornerValues = Vec3;
 
 struct MixedBound {
-  double value = std::numeric_limits<double>::infinity();  ///< infinite if there are no functions
+  double value = kInfinity;  ///< infinite if there are no functions
   /// Barycentric coordinates of a point where the functions may be as large; 0 where the bound asks for it.
   CornerValues weights{1.0 / 3, 1.0 / 3, 1.0 / 3};
   std::array<std::uint32_t, 3> mixed{kNone, kNone, kNone};  ///< the functions in the mean, others kNone

@@ -169,8 +169,8 @@ void Enclose(const tree::WideTree::Node& node, size_t i, const ForEachPart& for_
   for_each_part([&](const auto& parts) HWY_ATTR { mean.add(parts); });
   mean.get(axis);
   for (int k = 0; k < 3; ++k) {
-    middle[k] = 0.5f * (node.lo[k][i] + node.hi[k][i]);
-    const float half = 0.5f * (node.hi[k][i] - node.lo[k][i]);
+    middle[k] = 0.5f * (node.lower[k][i] + node.upper[k][i]);
+    const float half = 0.5f * (node.upper[k][i] - node.lower[k][i]);
     squared += half * half;
   }
   Extents extents(axis, middle);

@@ -127,7 +127,7 @@ bool Contain(const tree::AabbTree::Node* nodes, const uint32_t* leaves, size_t c
     const double box[] = {least[0], least[1], least[2], 0, most[0], most[1], most[2], 0};
     const Triangle* const begin = corners + node.first;
     for (size_t k = 0; k < 4; k += hn::Lanes(d)) {
-      auto lo = hn::Set(d, std::numeric_limits<double>::infinity()), hi = hn::Neg(lo);
+      auto lo = hn::Set(d, kInfinity), hi = hn::Neg(lo);
       for (size_t i = 0; i < node.count; ++i)
         for (const std::uint32_t corner : begin[i]) {
           const auto p = hn::LoadU(d, placed[corner].data() + k);

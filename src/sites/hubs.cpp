@@ -207,7 +207,7 @@ struct Forest {
   void add(const AabbTree& more) {
     roots.push_back(static_cast<std::uint32_t>(tree.nodes.size()));
     const FloatBox& box = more.box(0);
-    boxes.push_back({{box.lo[0], box.lo[1], box.lo[2]}, {box.hi[0], box.hi[1], box.hi[2]}});
+    boxes.push_back({{box.lower[0], box.lower[1], box.lower[2]}, {box.upper[0], box.upper[1], box.upper[2]}});
     append(tree, more);
   }
 };
@@ -296,10 +296,10 @@ class Hubs {
   // What contains every direction: of faces too small or too large to compute theirs.
   static FloatBox everywhere() { return {{-2, -2, -2}, {2, 2, 2}}; }
   static FloatBox widened(Box box, double by) {
-    if (!(by < 1) || !finite(box.lo) || !finite(box.hi)) return everywhere();
+    if (!(by < 1) || !finite(box.lower) || !finite(box.upper)) return everywhere();
     for (int k = 0; k < 3; ++k) {
-      box.lo[k] -= by;
-      box.hi[k] += by;
+      box.lower[k] -= by;
+      box.upper[k] += by;
     }
     return FloatBox::around(box);
   }

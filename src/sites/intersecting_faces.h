@@ -26,7 +26,7 @@ struct FaceSoup {
 [[nodiscard]] inline bool overlap(const tree::AabbTree& tree, const tree::NodePair& pair) {
   const tree::FloatBox &a = tree.box(pair[0]), &b = tree.box(pair[1]);
   for (int k = 0; k < 3; ++k)
-    if (a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]) return false;
+    if (a.upper[k] < b.lower[k] || b.upper[k] < a.lower[k]) return false;
   return true;
 }
 

@@ -71,7 +71,7 @@ void find_leaf_boxes(const Regions& regions, const UnitFrame& frame, std::span<c
       Box box;
       for (std::uint32_t i = regions.leaves[leaf]; i < regions.leaves[leaf + 1]; ++i)
         for (const std::uint32_t v : regions.places.corners[i]) extend(box, placed[v]);
-      boxes[leaf] = tree::FloatBox::around({frame.to_unit(box.lo), frame.to_unit(box.hi)});
+      boxes[leaf] = tree::FloatBox::around({frame.to_unit(box.lower), frame.to_unit(box.upper)});
     }
   });
 }

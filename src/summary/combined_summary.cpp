@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "map/statistics/texel_areas.h"
 #include "summary/combined_verdict.h"
@@ -46,7 +45,6 @@ void extend(Evidence& all, const Evidence& more) {
 /// The margin of a map among others: a map without samples has no limit, one of which a sample has no value
 /// is worse than all others.
 double comparable_margin(const ToleranceVerdict& v) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   return v.margin.value_or(v.reason == VerdictReason::nothing_measured ? kInfinity : -kInfinity);
 }
 
@@ -73,7 +71,7 @@ CertifiedVerdict summary::combined_verdict(std::span<const CertifiedVerdict> ver
   total.shares = {};
   total.largest.reset();
   total.margin.reset();
-  double area = 0, margin = std::numeric_limits<double>::infinity();
+  double area = 0, margin = kInfinity;
   bool complete = true;
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     const CertifiedVerdict& v = verdicts[i];

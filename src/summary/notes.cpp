@@ -27,7 +27,7 @@ std::string text_of(double number, int digits) {
 }
 
 bool is_empty(const Box& box) {
-  return !(box.lo[0] <= box.hi[0]);
+  return !(box.lower[0] <= box.upper[0]);
 }
 
 std::optional<std::string> note_of_lengths(std::span<const double> lengths, double limit,

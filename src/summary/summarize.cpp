@@ -22,7 +22,11 @@ DistanceStatistics statistics_of(const Surface& surface, const DistanceMap& map,
 }
 
 ColorRange colors_of(const SummaryOptions& options, const DistanceStatistics& distance) {
-  if (options.colors) return *options.colors;
+  if (options.colors) {
+    if (options.colormap != Colormap::automatic || options.range)
+      throw Error("colors excludes colormap and range");
+    return *options.colors;
+  }
   return color_range({.colormap = options.colormap,
                       .range = options.range,
                       .tolerance = options.tolerance,
@@ -64,14 +68,13 @@ std::vector<std::string> notes_of(const Surface& surface, const Sites& sites, co
 /// The share of the area whose texels are beyond the maximum distance, and not without a match.
 double beyond_fraction(const Surface& surface, const DistanceMap& map) {
   if (map.beyond_max_distance == 0) return 0;
-  if (map.without_match == 0)
-    return area_fraction_beyond(surface, map, std::numeric_limits<double>::infinity());
+  if (map.without_match == 0) return area_fraction_beyond(surface, map, kInfinity);
   DistanceMap matched;
   matched.distance = map.distance;
   matched.without_texel = map.without_texel;
   for (std::size_t texel = 0; texel < map.unmatched.size(); ++texel)
     if (map.unmatched[texel] != 0) matched.distance[texel] = 0;
-  return area_fraction_beyond(surface, matched, std::numeric_limits<double>::infinity());
+  return area_fraction_beyond(surface, matched, kInfinity);
 }
 
 Places places_of(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
@@ -173,7 +176,7 @@ Summary summarize_thickness(const Surface& surface, const DistanceMap& map, cons
               .samples_only = true,
               .accuracy = options.accuracy,
               .guard = options.guard,
-              .error_bound = std::numeric_limits<double>::infinity(),
+              .error_bound = kInfinity,
               .is_signed = false};
   if (result.extremes) {
     evidence.lowest = result.extremes->min.distance;

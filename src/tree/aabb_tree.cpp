@@ -35,10 +35,10 @@ float next(float x, bool above) {
 FloatBox FloatBox::around(const Box& box) {
   FloatBox out;
   for (int k = 0; k < 3; ++k) {
-    out.lo[k] = static_cast<float>(box.lo[k]);
-    out.hi[k] = static_cast<float>(box.hi[k]);
-    if (out.lo[k] > box.lo[k]) out.lo[k] = next(out.lo[k], false);
-    if (out.hi[k] < box.hi[k]) out.hi[k] = next(out.hi[k], true);
+    out.lower[k] = static_cast<float>(box.lower[k]);
+    out.upper[k] = static_cast<float>(box.upper[k]);
+    if (out.lower[k] > box.lower[k]) out.lower[k] = next(out.lower[k], false);
+    if (out.upper[k] < box.upper[k]) out.upper[k] = next(out.upper[k], true);
   }
   return out;
 }

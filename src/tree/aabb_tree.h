@@ -15,7 +15,7 @@ namespace sdm::tree {
 
 /// A box in single precision, rounded outwards: it contains the box that it is made from.
 struct FloatBox {
-  std::array<float, 3> lo, hi;
+  std::array<float, 3> lower, upper;
 
   static FloatBox around(const Box& box);
 };
@@ -24,27 +24,29 @@ struct FloatBox {
 inline FloatBox unite(const FloatBox& a, const FloatBox& b) {
   FloatBox box;
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] = std::min(a.lo[k], b.lo[k]);
-    box.hi[k] = std::max(a.hi[k], b.hi[k]);
+    box.lower[k] = std::min(a.lower[k], b.lower[k]);
+    box.upper[k] = std::max(a.upper[k], b.upper[k]);
   }
   return box;
 }
 
 /// Half the area of the surface of a box.
 inline float half_area(const FloatBox& box) {
-  const float x = box.hi[0] - box.lo[0], y = box.hi[1] - box.lo[1], z = box.hi[2] - box.lo[2];
+  const float x = box.upper[0] - box.lower[0], y = box.upper[1] - box.lower[1],
+              z = box.upper[2] - box.lower[2];
   return x * y + y * z + z * x;
 }
 
 /// The distance between two boxes, or a box and a point, along each axis; 0 where they overlap.
 inline Vec3 gap(const FloatBox& a, const FloatBox& b) {
   Vec3 gap;
-  for (int k = 0; k < 3; ++k) gap[k] = std::max({0.0, double{a.lo[k]} - b.hi[k], double{b.lo[k]} - a.hi[k]});
+  for (int k = 0; k < 3; ++k)
+    gap[k] = std::max({0.0, double{a.lower[k]} - b.upper[k], double{b.lower[k]} - a.upper[k]});
   return gap;
 }
 inline Vec3 gap(const FloatBox& box, const Vec3& p) {
   Vec3 gap;
-  for (int k = 0; k < 3; ++k) gap[k] = std::max({box.lo[k] - p[k], p[k] - box.hi[k], 0.0});
+  for (int k = 0; k < 3; ++k) gap[k] = std::max({box.lower[k] - p[k], p[k] - box.upper[k], 0.0});
   return gap;
 }
 

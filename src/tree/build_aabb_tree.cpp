@@ -42,8 +42,8 @@ struct Bounds {
 
 // The box of an item, with its index in an unused lane.
 Bounds item_of(const FloatBox& box, uint32_t index) {
-  return {{{-box.lo[0], -box.lo[1], -box.lo[2], std::bit_cast<float>(index)},
-           {box.hi[0], box.hi[1], box.hi[2], 0}}};
+  return {{{-box.lower[0], -box.lower[1], -box.lower[2], std::bit_cast<float>(index)},
+           {box.upper[0], box.upper[1], box.upper[2], 0}}};
 }
 uint32_t index_of(const Bounds& item) {
   return std::bit_cast<uint32_t>(item.reach[0][3]);
@@ -107,8 +107,8 @@ class Builder {
     bound(items + begin, items + end, box, centres);
     AabbTree::Node& node = nodes_[slot];
     for (int k = 0; k < 3; ++k) {
-      node.box.lo[k] = -box.reach[0][k];
-      node.box.hi[k] = box.reach[1][k];
+      node.box.lower[k] = -box.reach[0][k];
+      node.box.upper[k] = box.reach[1][k];
     }
     if (end - begin <= leaf_size_) {
       node.first = begin;

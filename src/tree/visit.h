@@ -120,8 +120,8 @@ struct Place {
   const WideTree::Node& node = wide.nodes[place.slot / WideTree::kWidth];
   FloatBox box;
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] = node.lo[k][place.slot % WideTree::kWidth];
-    box.hi[k] = node.hi[k][place.slot % WideTree::kWidth];
+    box.lower[k] = node.lower[k][place.slot % WideTree::kWidth];
+    box.upper[k] = node.upper[k][place.slot % WideTree::kWidth];
   }
   return box;
 }

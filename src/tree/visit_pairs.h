@@ -83,7 +83,7 @@ void for_each_child_pair(const AabbTree& tree, const NodePair& pair, const Put& 
   }
   const auto size = [&](std::uint32_t i) {
     const FloatBox& box = tree.nodes[i].box;
-    return box.hi[0] - box.lo[0] + box.hi[1] - box.lo[1] + box.hi[2] - box.lo[2];
+    return box.upper[0] - box.lower[0] + box.upper[1] - box.lower[1] + box.upper[2] - box.lower[2];
   };
   if (tree.nodes[b].leaf() || (!tree.nodes[a].leaf() && size(a) >= size(b))) {
     if (tree.nodes[a].leaf()) return;

@@ -80,8 +80,8 @@ void refit(WideTree& wide, const AabbTree& tree) {
       for (std::uint32_t i = 0; i < node.count; ++i) {
         const FloatBox& box = tree.nodes[node.source[i]].box;
         for (int k = 0; k < 3; ++k) {
-          node.lo[k][i] = box.lo[k];
-          node.hi[k][i] = box.hi[k];
+          node.lower[k][i] = box.lower[k];
+          node.upper[k][i] = box.upper[k];
         }
       }
     }
@@ -171,12 +171,12 @@ class WideTreeCheck {
     for (std::uint32_t i = 0; i < node.count; ++i) {
       const FloatBox& box = nodes_[node.source[i]].box;
       for (int k = 0; k < 3; ++k) {
-        expected.lo[k][i] = box.lo[k];
-        expected.hi[k][i] = box.hi[k];
+        expected.lower[k][i] = box.lower[k];
+        expected.upper[k][i] = box.upper[k];
       }
     }
-    return std::memcmp(expected.lo, node.lo, sizeof node.lo) == 0 &&
-           std::memcmp(expected.hi, node.hi, sizeof node.hi) == 0;
+    return std::memcmp(expected.lower, node.lower, sizeof node.lower) == 0 &&
+           std::memcmp(expected.upper, node.upper, sizeof node.upper) == 0;
   }
 
   const std::span<const WideTree::Node> wide_;
@@ -190,8 +190,8 @@ class WideTreeCheck {
 bool is_inside(const FloatBox& box, const FloatBox& outer) {
   bool inside = true;
   for (int k = 0; k < 3; ++k) {
-    inside &= outer.lo[k] <= box.lo[k];
-    inside &= box.hi[k] <= outer.hi[k];
+    inside &= outer.lower[k] <= box.lower[k];
+    inside &= box.upper[k] <= outer.upper[k];
   }
   return inside;
 }

@@ -20,8 +20,8 @@ struct WideTree {
   [[nodiscard]] static constexpr std::uint32_t leaf(std::uint32_t number) { return number | kLeafBit; }
 
   struct Node {
-    alignas(32) float lo[3][kWidth] = {};  ///< 0 in unused lanes: vector loads read them
-    alignas(32) float hi[3][kWidth] = {};
+    alignas(32) float lower[3][kWidth] = {};  ///< 0 in unused lanes: vector loads read them
+    alignas(32) float upper[3][kWidth] = {};
     std::uint32_t child[kWidth] = {};
     std::uint32_t source[kWidth] = {};  ///< node of the binary tree for each child
     std::uint32_t count = 0;            ///< children in use, which come first
@@ -47,7 +47,8 @@ inline void squared_distances(const WideTree::Node& node, const FloatBox& box,
   for (int i = 0; i < WideTree::kWidth; ++i) squared[i] = 0;
   for (int k = 0; k < 3; ++k)
     for (int i = 0; i < WideTree::kWidth; ++i) {
-      const float gap = std::max(std::max(node.lo[k][i] - box.hi[k], box.lo[k] - node.hi[k][i]), 0.0f);
+      const float gap =
+          std::max(std::max(node.lower[k][i] - box.upper[k], box.lower[k] - node.upper[k][i]), 0.0f);
       squared[i] += gap * gap;
     }
 }

@@ -20,7 +20,7 @@ DistanceField compute_field(const Sites& sites, const Grid& grid, const FieldOpt
 
 DistanceField compute_field(const Sites& sites, const Grid& grid, const FieldOptions& options,
                             FieldReport& report) try {
-  const bool only_near = options.max_distance < std::numeric_limits<double>::infinity();
+  const bool only_near = options.max_distance < kInfinity;
   return volume::field_by_engine(sites, grid, options, cpu::CpuEngine(), only_near, report);
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a distance field");

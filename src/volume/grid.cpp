@@ -23,8 +23,8 @@ void check_dims(const std::array<std::uint32_t, 3>& dims) {
 
 void check_box(const Box& box) {
   for (int k = 0; k < 3; ++k)
-    if (!(box.lo[k] <= box.hi[k]) || !(std::abs(box.lo[k]) <= kMostCoordinate) ||
-        !(std::abs(box.hi[k]) <= kMostCoordinate))
+    if (!(box.lower[k] <= box.upper[k]) || !(std::abs(box.lower[k]) <= kMostCoordinate) ||
+        !(std::abs(box.upper[k]) <= kMostCoordinate))
       throw Error("the bounds of a grid must be a box, from low to high, with coordinates of at most 1e37");
 }
 
@@ -52,11 +52,11 @@ Box volume::box_of(const Grid& grid) {
 Grid make_grid(const Box& bounds, const std::array<std::uint32_t, 3>& dims) {
   check_dims(dims);
   check_box(bounds);
-  Grid grid{.origin = bounds.lo, .spacing = {1, 1, 1}, .dims = dims};
+  Grid grid{.origin = bounds.lower, .spacing = {1, 1, 1}, .dims = dims};
   for (int k = 0; k < 3; ++k) {
-    const double length = bounds.hi[k] - bounds.lo[k];
+    const double length = bounds.upper[k] - bounds.lower[k];
     if (dims[k] == 1) {
-      grid.origin[k] = bounds.lo[k] + 0.5 * length;
+      grid.origin[k] = bounds.lower[k] + 0.5 * length;
       grid.spacing[k] = length > 0 ? length : 1;
     } else if (length > 0) {
       grid.spacing[k] = length / (dims[k] - 1);
@@ -75,12 +75,12 @@ Grid make_grid(const Box& bounds, double spacing) {
   Grid grid{.origin = {}, .spacing = {spacing, spacing, spacing}, .dims = {}};
   for (int k = 0; k < 3; ++k) {
     // Rounding adds no cell.
-    const double cells = std::ceil((1 - 1e-12) * (bounds.hi[k] - bounds.lo[k]) / spacing);
+    const double cells = std::ceil((1 - 1e-12) * (bounds.upper[k] - bounds.lower[k]) / spacing);
     if (!(cells < Grid::kMostPoints))
       throw Error("a grid with this spacing has more than " + std::to_string(Grid::kMostPoints) +
                   " points along " + axis_name(k) + "; choose a larger spacing");
     grid.dims[k] = static_cast<std::uint32_t>(cells) + 1;
-    grid.origin[k] = 0.5 * (bounds.lo[k] + bounds.hi[k] - cells * spacing);
+    grid.origin[k] = 0.5 * (bounds.lower[k] + bounds.upper[k] - cells * spacing);
   }
   volume::check_grid(grid);
   return grid;

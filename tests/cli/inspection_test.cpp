@@ -53,7 +53,7 @@ struct Inspection : ::testing::Test {
     };
     const Box box = bounds(load("fandisk.off"));
     double error = 0;
-    for (const Vec3& corner : {box.lo, box.hi, Vec3{box.lo[0], box.hi[1], box.lo[2]}})
+    for (const Vec3& corner : {box.lower, box.upper, Vec3{box.lower[0], box.upper[1], box.lower[2]}})
       error =
           std::max(error, norm(map(report["alignment"]["matrix"], map(truth["matrix"], corner)) - corner));
     return error;

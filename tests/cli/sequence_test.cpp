@@ -172,7 +172,7 @@ TEST_F(SequenceCommand, PlacesAllFramesAsTheFirst) {
   // The torus moves by 0.5 a frame; fitted, its width is 1.
   const Box box = inspect(ring(12)).bounds;
   const double first = all[0]["separation"]["value"], last = all[11]["separation"]["value"];
-  EXPECT_NEAR(last - first, 11 * 0.5 / (box.hi[0] - box.lo[0]), 0.1);
+  EXPECT_NEAR(last - first, 11 * 0.5 / (box.upper[0] - box.lower[0]), 0.1);
 }
 
 TEST_F(SequenceCommand, RefusesSequencesThatDoNotFit) {

@@ -23,8 +23,8 @@ TEST_F(VolumeCommand, WritesTheFieldOfTheLibrary) {
   const Sites sites(read_mesh(o2));
   Box box = bounds(sites.mesh());
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] -= 0.2;
-    box.hi[k] += 0.2;
+    box.lower[k] -= 0.2;
+    box.upper[k] += 0.2;
   }
   const DistanceField expected =
       compute_field(sites, make_grid(box, {20, 21, 9}), {.max_distance = 0.2, .sites = true});

@@ -83,7 +83,7 @@ map in/ball.ply in/box.ply -o out --resolution 32 --range 1 0
 map in/ball.ply in/box.ply -o out --resolution 64 --write exr,csv --engine reference
 map in/ball.ply in/box.ply -o out --resolution 64 --write csv --engine gl
 map in/ball.ply in/box.ply -o out --resolution 64 --write csv --engine gl --clip stencil --stencil-values 7 --no-bound-culling
-map in/ball.ply in/box.ply -o out --resolution 64 --engine gl --gl-device nowhere
+map in/ball.ply in/box.ply -o out --resolution 64 --engine gl --device nowhere
 map in/ball.ply in/box.ply -o out --resolution 64 --engine quantum
 map in/plate.ply in/dented.ply -o out --resolution 64 --write csv --engine reference --facing
 map in/ball.ply in/box.ply -o out --resolution 64 --write csv --threads 1

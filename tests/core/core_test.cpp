@@ -221,7 +221,7 @@ TEST(SpatialOrder, AlignedPacketsAreCompact) {
       for (std::size_t first = 0; first < order.size(); first += size) {
         Box box;
         for (std::size_t i = first; i < first + size; ++i) extend(box, points[order[i]]);
-        EXPECT_EQ(box.hi - box.lo, (Vec3{side - 1, side - 1, 0}));
+        EXPECT_EQ(box.upper - box.lower, (Vec3{side - 1, side - 1, 0}));
       }
   }
 }

@@ -42,7 +42,7 @@ TEST(MeshEdit, RemovedFacesCountNowhere) {
   const Box cube = bounds(test::cube());
   const auto first = static_cast<std::uint32_t>(test::cube().triangles.size());
   apply(mesh, {.removed_faces = {first, first + 1, first + 2, first + 3}});
-  EXPECT_EQ(bounds(mesh).hi, cube.hi);
+  EXPECT_EQ(bounds(mesh).upper, cube.upper);
   const MeshInfo info = inspect(mesh), alone = inspect(test::cube());
   EXPECT_EQ(info.components, 1u);
   EXPECT_EQ(info.edges, alone.edges);
@@ -59,8 +59,8 @@ TEST(MeshEdit, BoundsIgnoreLongRunsOfRemovedFaces) {
   MeshEdit edit;
   for (std::uint32_t f = 0; f < faces; ++f) edit.removed_faces.push_back(f);
   apply(mesh, edit);
-  EXPECT_EQ(bounds(mesh).lo, (Vec3{4, -1, -1}));
-  EXPECT_EQ(bounds(mesh).hi, (Vec3{6, 1, 1}));
+  EXPECT_EQ(bounds(mesh).lower, (Vec3{4, -1, -1}));
+  EXPECT_EQ(bounds(mesh).upper, (Vec3{6, 1, 1}));
 }
 
 TEST(MeshEdit, RefusesWhatIsInvalidAndChangesNothing) {

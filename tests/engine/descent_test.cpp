@@ -176,7 +176,7 @@ TEST(Reference, IsTheFirstOfAllFacesOneByOne) {
     const Box box = bounds(mesh);
     std::mt19937 random(4);
     for (int i = 0; i < 40; ++i) {
-      const Vec3 q = test::random_point({2 * box.lo - box.hi, 2 * box.hi - box.lo}, random);
+      const Vec3 q = test::random_point({2 * box.lower - box.upper, 2 * box.upper - box.lower}, random);
       const auto order = [](const ClosestPoint& c) { return std::tuple(c.distance, c.type, c.site, c.face); };
       ClosestPoint expected;
       for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face)
@@ -206,7 +206,8 @@ TEST(Descent, AgreesWithTheReferenceOnScatteredPoints) {
       const test::UseSimdTarget use(target);
       std::mt19937 random(3);
       std::vector<Vec3> queries(60);
-      for (Vec3& q : queries) q = test::random_point({2 * box.lo - box.hi, 2 * box.hi - box.lo}, random);
+      for (Vec3& q : queries)
+        q = test::random_point({2 * box.lower - box.upper, 2 * box.upper - box.lower}, random);
       const auto found = closest_points(sites, queries);
       for (std::size_t i = 0; i < queries.size(); ++i) {
         const ClosestPoint expected = reference::reference_closest(internals(sites), queries[i],

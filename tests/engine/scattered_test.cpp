@@ -36,7 +36,7 @@ Mesh moved(Mesh mesh, double scale, double offset) {
 // Around a mesh, far from it, near it, and on its vertices and edges.
 std::vector<Vec3> queries_for(const Mesh& mesh, std::size_t count, std::mt19937& random) {
   const Box box = bounds(mesh);
-  const Vec3 centre = 0.5 * (box.lo + box.hi), half = 0.5 * (box.hi - box.lo);
+  const Vec3 centre = 0.5 * (box.lower + box.upper), half = 0.5 * (box.upper - box.lower);
   std::uniform_real_distribution<double> unit(-1, 1);
   std::uniform_int_distribution<std::size_t> any(0, mesh.triangles.size() - 1);
   std::vector<Vec3> queries(count);
@@ -178,8 +178,8 @@ TEST_P(ScatteredPoints, ManySizesAway) {
           direction = {};
           direction[i % 3] = i < 3 ? 1 : -1;
         }
-        queries.push_back(0.5 * (box.lo + box.hi) +
-                          away * norm(box.hi - box.lo) / norm(direction) * direction);
+        queries.push_back(0.5 * (box.lower + box.upper) +
+                          away * norm(box.upper - box.lower) / norm(direction) * direction);
       }
     expect_least(sites, queries);
     for (const Vec3& q : queries) {

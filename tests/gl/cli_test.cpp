@@ -64,7 +64,7 @@ TEST_F(GlCommand, ReportsTheStatisticsOfTheCpuEngineAndItsCounters) {
 TEST_F(GlCommand, OptionsReachTheEngine) {
   const Json planes = report({"--engine", "gl"});
   const Json stencil = report({"--engine", "gl", "--clip", "stencil", "--stencil-values", "3",
-                               "--no-bound-culling", "--gl-device", "0"});
+                               "--no-bound-culling", "--device", "0"});
   expect_same_statistics(stencil, planes);
   expect_laws(stencil);
   EXPECT_EQ(stencil["raster"]["clip"], "stencil");
@@ -77,7 +77,7 @@ TEST_F(GlCommand, InvalidOptionsAreUsageErrorsAndUnknownDevicesFail) {
   EXPECT_EQ(run_sdm(map({"--engine", "gl", "--stencil-values", "0"})).code, 2);
   EXPECT_EQ(run_sdm(map({"--engine", "gl", "--stencil-values", "256"})).code, 2);
   EXPECT_EQ(run_sdm(map({"--engine", "gl", "--clip", "scissors"})).code, 2);
-  const Outcome unknown = run_sdm(map({"--engine", "gl", "--gl-device", "no such device"}));
+  const Outcome unknown = run_sdm(map({"--engine", "gl", "--device", "no such device"}));
   EXPECT_EQ(unknown.code, 1);
   EXPECT_NE(unknown.err.find("no such device"), std::string::npos) << unknown.err;
   EXPECT_FALSE(std::filesystem::exists(out));

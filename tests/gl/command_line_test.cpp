@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/gl.h>
+#include <sdm/gpu.h>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/samples.h"
+#include "support/error_of.h"
 #include "support/run_sdm.h"
 
 namespace sdm::test {
@@ -16,31 +18,38 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using Json = nlohmann::json;
 
-TEST(DevicesCommand, ListsTheDevicesOfTheLibrary) {
-  const std::vector<GlDevice> devices = gl_devices();
+TEST(DevicesCommand, ListsTheDevicesOfBothEngines) {
   const Outcome table = run_sdm({"devices"});
   const Outcome json = run_sdm({"devices", "--json"});
   EXPECT_EQ(table.code, 0) << table.err;
   EXPECT_EQ(json.code, 0) << json.err;
-  EXPECT_EQ(std::ranges::count(table.out, '\n'), devices.size());
   Json expected = Json::array();
-  for (const GlDevice& device : devices) {
-    EXPECT_THAT(table.out,
-                AllOf(HasSubstr(std::to_string(expected.size()) + "  " + device.name),
-                      HasSubstr(device.driver), HasSubstr(device.software ? "software" : "hardware")));
-    expected.push_back({{"index", expected.size()},
-                        {"name", device.name},
-                        {"driver", device.driver},
-                        {"software", device.software}});
-  }
+  const auto expect = [&](const std::string& engine, const auto& devices) {
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+      const auto& device = devices[i];
+      EXPECT_THAT(table.out,
+                  AllOf(HasSubstr(std::to_string(i) + "  " + device.name), HasSubstr(device.driver),
+                        HasSubstr(device.software ? "software" : "hardware")));
+      expected.push_back({{"engine", engine},
+                          {"index", i},
+                          {"name", device.name},
+                          {"driver", device.driver},
+                          {"software", device.software}});
+    }
+  };
+  expect("gl", gl_devices());
+  if (error_of(gpu_devices).empty())
+    expect("gpu", gpu_devices());
+  else
+    EXPECT_THAT(table.err, HasSubstr(error_of(gpu_devices)));
+  EXPECT_EQ(std::ranges::count(table.out, '\n'), expected.size());
   EXPECT_EQ(Json::parse(json.out), expected);
 }
 
 struct GlCommandOptions : ::testing::Test, TwoTori {};
 
 TEST_F(GlCommandOptions, RequireTheGlEngine) {
-  for (const std::vector<std::string>& option : {std::vector<std::string>{"--gl-device", "0"},
-                                                 {"--clip", "planes"},
+  for (const std::vector<std::string>& option : {std::vector<std::string>{"--clip", "planes"},
                                                  {"--clip", "stencil"},
                                                  {"--stencil-values", "255"},
                                                  {"--no-bound-culling"}})
@@ -53,6 +62,8 @@ TEST_F(GlCommandOptions, RequireTheGlEngine) {
       EXPECT_THAT(run.err, StartsWith("sdm: error: " + option[0] + ": needs --engine gl\n"));
       EXPECT_EQ(run.out, "");
     }
+  EXPECT_THAT(run_sdm(map({"--device", "0"})).err,
+              StartsWith("sdm: error: --device: needs --engine gl or gpu\n"));
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
@@ -79,7 +90,8 @@ struct WithoutDevice : ::testing::Test, TwoTori {
 
 TEST_F(WithoutDevice, MissingDriverIsOneSentence) {
   for (const char* name : {"__EGL_VENDOR_LIBRARY_DIRS", "__EGL_VENDOR_LIBRARY_FILENAMES"}) {
-    const Conditions conditions{.environment = {std::string(name) + "=/nowhere"}};
+    const Conditions conditions{.environment = {std::string(name) + "=/nowhere", "VK_DRIVER_FILES=/nowhere",
+                                                "VK_ICD_FILENAMES=/nowhere"}};
     expect_failure(run_sdm({"devices"}, conditions), "no device", "libgl1-mesa-dri");
     expect_failure(run_sdm(map({"--engine", "gl"}), conditions), "no device", "libgl1-mesa-dri");
     EXPECT_EQ(run_sdm(map({"--quiet"}), conditions).code, 0) << "the cpu engine needs none";
@@ -89,14 +101,15 @@ TEST_F(WithoutDevice, MissingDriverIsOneSentence) {
 
 TEST_F(WithoutDevice, OldOpenGLIsOneSentence) {
   const Conditions mesa_44{
-      .environment = {"__EGL_VENDOR_LIBRARY_FILENAMES=/usr/share/glvnd/egl_vendor.d/50_mesa.json",
+      .environment = {"VK_DRIVER_FILES=/nowhere", "VK_ICD_FILENAMES=/nowhere",
+                      "__EGL_VENDOR_LIBRARY_FILENAMES=/usr/share/glvnd/egl_vendor.d/50_mesa.json",
                       "MESA_GL_VERSION_OVERRIDE=4.4"}};
   expect_failure(run_sdm({"devices"}, mesa_44), "no OpenGL 4.5", "driver");
   expect_failure(run_sdm(map({"--engine", "gl"}), mesa_44), "no OpenGL 4.5", "driver");
 }
 
 TEST_F(WithoutDevice, UnknownDeviceErrorListsTheDevices) {
-  expect_failure(run_sdm(map({"--engine", "gl", "--gl-device", "no such device"})), "no such device",
+  expect_failure(run_sdm(map({"--engine", "gl", "--device", "no such device"})), "no such device",
                  gl_devices()[0].name);
 }
 

@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
+#include <sdm/gpu.h>
 #include "geometry/vec.h"
 #include "gpu/face_search.h"
-#include "gpu/gpu_engine.h"
 #include "support/degenerate.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
@@ -28,7 +28,7 @@ using ::testing::HasSubstr;
 // On the surface, near it, in its box, around it and far away; and on vertices and beyond the ends of edges.
 std::vector<Vec3> queries_for(const Mesh& mesh, std::size_t count, std::mt19937& random) {
   const Box box = bounds(mesh);
-  const Vec3 centre = 0.5 * (box.lo + box.hi), half = 0.5 * (box.hi - box.lo);
+  const Vec3 centre = 0.5 * (box.lower + box.upper), half = 0.5 * (box.upper - box.lower);
   const double size = norm(half);
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<Vec3> queries = test::random_surface_points(mesh, count, random);
@@ -99,13 +99,13 @@ TEST(GpuEngine, ManyFacesAtTheSameDistance) {
     fan.triangles.push_back({0, 1 + i, 1 + (i + 1) % kFaces});
   }
   const Sites sites(fan);
-  const auto engine = gpu::make_gpu_engine({});
+  const auto engine = make_gpu_engine({});
   const std::vector<ClosestPoint> found =
       closest_points(sites, std::vector<Vec3>{{0, 0, 2}}, {.engine = engine});
   EXPECT_EQ(found[0].type, SiteType::vertex);
   EXPECT_EQ(found[0].site, 0u);
   EXPECT_EQ(found[0].distance, 1);
-  EXPECT_EQ(gpu::gpu_report(*engine)->incomplete, 1u);
+  EXPECT_EQ(gpu_report(*engine)->incomplete, 1u);
 }
 
 TEST(GpuEngine, FollowsRefitsAndEdits) {
@@ -149,7 +149,7 @@ TEST(GpuEngine, MapsBesideEachOtherAndCancellation) {
 }
 
 TEST(GpuEngine, UnknownDevice) {
-  EXPECT_THAT(test::error_of([] { return gpu::make_gpu_engine({.device = "no such device"}); }),
+  EXPECT_THAT(test::error_of([] { return make_gpu_engine({.device = "no such device"}); }),
               HasSubstr("no device 'no such device'"));
 }
 

@@ -27,21 +27,22 @@ double distance_from_rest(const Box& rectangle, const std::vector<Box>& others, 
   for (std::size_t i = first; i < others.size(); ++i) {
     const Box& other = others[i];
     bool meets = true;
-    for (int k = 0; k < 3; ++k) meets &= rectangle.lo[k] < other.hi[k] && other.lo[k] < rectangle.hi[k];
+    for (int k = 0; k < 3; ++k)
+      meets &= rectangle.lower[k] < other.upper[k] && other.lower[k] < rectangle.upper[k];
     if (!meets) continue;
     // Up to four rectangles around what is removed.
     double least = std::numeric_limits<double>::infinity();
     Box rest = rectangle;
     for (int k = 0; k < 3; ++k) {
-      if (rectangle.lo[k] == rectangle.hi[k]) continue;
-      if (rest.lo[k] < other.lo[k]) {
+      if (rectangle.lower[k] == rectangle.upper[k]) continue;
+      if (rest.lower[k] < other.lower[k]) {
         Box part = rest;
-        part.hi[k] = rest.lo[k] = other.lo[k];
+        part.upper[k] = rest.lower[k] = other.lower[k];
         least = std::min(least, distance_from_rest(part, others, i + 1, p));
       }
-      if (other.hi[k] < rest.hi[k]) {
+      if (other.upper[k] < rest.upper[k]) {
         Box part = rest;
-        part.lo[k] = rest.hi[k] = other.hi[k];
+        part.lower[k] = rest.upper[k] = other.upper[k];
         least = std::min(least, distance_from_rest(part, others, i + 1, p));
       }
     }
@@ -49,7 +50,7 @@ double distance_from_rest(const Box& rectangle, const std::vector<Box>& others, 
   }
   double squared = 0;
   for (int k = 0; k < 3; ++k) {
-    const double d = p[k] - std::clamp(p[k], rectangle.lo[k], rectangle.hi[k]);
+    const double d = p[k] - std::clamp(p[k], rectangle.lower[k], rectangle.upper[k]);
     squared += d * d;
   }
   return std::sqrt(squared);
@@ -60,9 +61,9 @@ double distance_from_boundary(const std::vector<Box>& boxes, const Vec3& p) {
   double least = std::numeric_limits<double>::infinity();
   for (const Box& box : boxes)
     for (int k = 0; k < 3; ++k)
-      for (const double at : {box.lo[k], box.hi[k]}) {
+      for (const double at : {box.lower[k], box.upper[k]}) {
         Box side = box;
-        side.lo[k] = side.hi[k] = at;
+        side.lower[k] = side.upper[k] = at;
         least = std::min(least, distance_from_rest(side, boxes, 0, p));
       }
   return least;
@@ -70,7 +71,7 @@ double distance_from_boundary(const std::vector<Box>& boxes, const Vec3& p) {
 
 bool contains(const Box& box, const Vec3& p, double margin) {
   for (int k = 0; k < 3; ++k)
-    if (p[k] < box.lo[k] + margin || box.hi[k] - margin < p[k]) return false;
+    if (p[k] < box.lower[k] + margin || box.upper[k] - margin < p[k]) return false;
   return true;
 }
 
@@ -87,14 +88,14 @@ struct CrossedBoxes {
       for (int k = 0; k < 3; ++k) {
         const double reach = k == i % 3 ? 1 : 0.15;
         const double shift = i == 3 && k != 0 ? 0.2 : 0;
-        box.lo[k] = shift - reach * (1 + u(random));
-        box.hi[k] = shift + reach * (1 + u(random));
+        box.lower[k] = shift - reach * (1 + u(random));
+        box.upper[k] = shift + reach * (1 + u(random));
       }
       boxes.push_back(box);
-      mesh = test::joined(mesh, test::box(box.lo, box.hi));
+      mesh = test::joined(mesh, test::box(box.lower, box.upper));
       for (int n = 0; n < points_of_each; ++n) {
         Vec3& p = points.emplace_back();
-        for (int k = 0; k < 3; ++k) p[k] = box.lo[k] + u(random) * (box.hi[k] - box.lo[k]);
+        for (int k = 0; k < 3; ++k) p[k] = box.lower[k] + u(random) * (box.upper[k] - box.lower[k]);
       }
     }
   }

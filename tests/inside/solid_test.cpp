@@ -94,8 +94,8 @@ TEST(Solid, CrossingsOfFacesInLanesAreThoseOfTheTree) {
       Box box;
       for (const Vec3& end : {p, q}) extend(box, internals(sites).frame.to_unit(end));
       const Vec3 margin{1e-5, 1e-5, 1e-5};
-      rays::find_near_nodes(internals(sites), tree::FloatBox::around({box.lo - margin, box.hi + margin}),
-                            near);
+      rays::find_near_nodes(internals(sites),
+                            tree::FloatBox::around({box.lower - margin, box.upper + margin}), near);
       ASSERT_EQ(crossings(internals(sites), rays::Segment{p, q}, &near), expected) << i;
     }
   }

@@ -62,7 +62,7 @@ Mesh beside(const Mesh& mesh) {
 
 double diagonal_of(const Mesh& mesh) {
   const Box box = bounds(mesh);
-  return norm(box.hi - box.lo);
+  return norm(box.upper - box.lower);
 }
 
 /// Whether some of the distances are those of the reference engine, which shares no search with the cpu
@@ -234,7 +234,7 @@ bool remote_points() {
 /// Without its lowest tenth.
 Mesh opened(Mesh mesh) {
   const Box box = bounds(mesh);
-  const double least = box.lo[2] + 0.1 * (box.hi[2] - box.lo[2]);
+  const double least = box.lower[2] + 0.1 * (box.upper[2] - box.lower[2]);
   std::erase_if(mesh.triangles, [&](const Triangle& t) { return mesh.positions[t[0]][2] < least; });
   return mesh;
 }

@@ -243,8 +243,8 @@ TEST(Cad, AssembliesAreConvertedToMillimetresAndNamed) {
   const MeshInfo info = inspect(file.mesh);
   EXPECT_EQ(info.components, 2u);
   EXPECT_TRUE(info.closed && info.oriented);
-  EXPECT_NEAR(info.bounds.hi[0], 50.8, 1e-9);
-  EXPECT_NEAR(info.bounds.hi[2], 10.5 * 25.4, 1e-9);
+  EXPECT_NEAR(info.bounds.upper[0], 50.8, 1e-9);
+  EXPECT_NEAR(info.bounds.upper[2], 10.5 * 25.4, 1e-9);
   EXPECT_EQ(file.tessellation->file_unit, "INCH");
   EXPECT_THAT(names_of_kind(file, "object").names, ElementsAre("plate", "plate (2)"));
 

@@ -36,8 +36,8 @@ double volume(const Mesh& mesh) {
 void expect_box(const Mesh& mesh, const Vec3& lo, const Vec3& hi, double tolerance = 0) {
   const Box box = bounds(mesh);
   for (int k = 0; k < 3; ++k) {
-    EXPECT_NEAR(box.lo[k], lo[k], tolerance);
-    EXPECT_NEAR(box.hi[k], hi[k], tolerance);
+    EXPECT_NEAR(box.lower[k], lo[k], tolerance);
+    EXPECT_NEAR(box.upper[k], hi[k], tolerance);
   }
 }
 

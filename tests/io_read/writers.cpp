@@ -199,17 +199,18 @@ std::string gltf_json(const Mesh& mesh, const std::string& nodes, const std::str
   Box box;
   for (const Vec3& p : mesh.positions)
     for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::min(box.lo[k], p[k]);
-      box.hi[k] = std::max(box.hi[k], p[k]);
+      box.lower[k] = std::min(box.lower[k], p[k]);
+      box.upper[k] = std::max(box.upper[k], p[k]);
     }
   const auto list = [](const Vec3& p) {
     return '[' + text(p[0]) + ',' + text(p[1]) + ',' + text(p[2]) + ']';
   };
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
          R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"indices":2}]}],"accessors":[)" +
-         R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":)" + n + R"(,"min":)" + list(box.lo) +
-         R"(,"max":)" + list(box.hi) + R"(},{"bufferView":1,"componentType":5126,"type":"VEC2","count":)" +
-         n + R"(},{"bufferView":2,"componentType":5125,"type":"SCALAR","count":)" + n +
+         R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":)" + n + R"(,"min":)" +
+         list(box.lower) + R"(,"max":)" + list(box.upper) +
+         R"(},{"bufferView":1,"componentType":5126,"type":"VEC2","count":)" + n +
+         R"(},{"bufferView":2,"componentType":5125,"type":"SCALAR","count":)" + n +
          R"(}],"bufferViews":[{"buffer":0,"byteLength":)" + bytes(12) + R"(},{"buffer":0,"byteOffset":)" +
          bytes(12) + R"(,"byteLength":)" + bytes(8) + R"(},{"buffer":0,"byteOffset":)" + bytes(20) +
          R"(,"byteLength":)" + bytes(4) + R"(}],"buffers":[{"byteLength":)" + bytes(24) + buffer_uri + "}]}";

@@ -51,8 +51,8 @@ std::vector<float> with_outlier(float value, float outlier) {
 
 TEST(ColorScale, SpansTheUnsignedMapWithViridis) {
   const ColorScale scale = scale_of({kNaN, 3, 5, 4});
-  EXPECT_EQ(scale.lo, 3);
-  EXPECT_EQ(scale.hi, 5);
+  EXPECT_EQ(scale.lower, 3);
+  EXPECT_EQ(scale.upper, 5);
   EXPECT_EQ(scale(3), (Rgb{68, 1, 84}));
   EXPECT_EQ(scale(4), (Rgb{33, 145, 140}));
   EXPECT_EQ(scale(5), (Rgb{253, 231, 37}));
@@ -62,8 +62,8 @@ TEST(ColorScale, SpansTheUnsignedMapWithViridis) {
 
 TEST(ColorScale, IsSymmetricAboutZeroForSignedMaps) {
   const ColorScale scale = scale_of({-1, 4, kNaN});
-  EXPECT_EQ(scale.lo, -4);
-  EXPECT_EQ(scale.hi, 4);
+  EXPECT_EQ(scale.lower, -4);
+  EXPECT_EQ(scale.upper, 4);
   EXPECT_EQ(scale(0), (Rgb{255, 255, 255}));
   EXPECT_GT(scale(-1).b, scale(-1).r);
   EXPECT_GT(scale(1).r, scale(1).b);
@@ -73,8 +73,8 @@ TEST(ColorScale, BeginsAtZeroForMapsOfOneSign) {
   const ColorScale above = scale_of({0.5f, 4}), below = scale_of({-4, -0.5f});
   EXPECT_EQ(above.map, Colormap::viridis);
   EXPECT_EQ(below.map, Colormap::sequential);
-  EXPECT_EQ(std::pair(above.lo, above.hi), std::pair(0.0, 4.0));
-  EXPECT_EQ(std::pair(below.lo, below.hi), std::pair(-4.0, 0.0));
+  EXPECT_EQ(std::pair(above.lower, above.upper), std::pair(0.0, 4.0));
+  EXPECT_EQ(std::pair(below.lower, below.upper), std::pair(-4.0, 0.0));
   for (const double d : {0.0, 0.5, 3.0, 4.0, 5.0}) EXPECT_EQ(above(d), below(-d)) << d;
 }
 
@@ -90,8 +90,8 @@ TEST(ColorScale, IsSequentialIfOneSideHasLittleOfTheArea) {
   for (const float sign : {1.0f, -1.0f}) {
     const ColorScale scale = scale_of(with_others(4 * sign, -1 * sign, 4));
     EXPECT_EQ(scale.map, Colormap::sequential);
-    EXPECT_EQ(scale.lo, sign > 0 ? -1 : -4);
-    EXPECT_EQ(scale.hi, sign > 0 ? 4 : 1);
+    EXPECT_EQ(scale.lower, sign > 0 ? -1 : -4);
+    EXPECT_EQ(scale.upper, sign > 0 ? 4 : 1);
     EXPECT_EQ(scale(0), (Rgb{68, 1, 84}));
     EXPECT_EQ(scale(4 * sign), (Rgb{253, 231, 37}));
     for (const double d : {0.001, 0.2, 1.0, 9.0}) {
@@ -103,19 +103,19 @@ TEST(ColorScale, IsSequentialIfOneSideHasLittleOfTheArea) {
     EXPECT_EQ(scale_of(with_others(4 * sign, -0.3f * sign, 30)).map, Colormap::sequential);
   }
   // As far as it is deep, but half of the other side at most.
-  EXPECT_EQ(scale_of(with_others(4, -40, 2)).lo, -2);
-  EXPECT_EQ(scale_of(with_others(4, -40, 2)).hi, 4);
+  EXPECT_EQ(scale_of(with_others(4, -40, 2)).lower, -2);
+  EXPECT_EQ(scale_of(with_others(4, -40, 2)).upper, 4);
   // Rounding is no other side.
   const ColorScale rounding = scale_of(with_others(4, -1e-7f, 40), {.accuracy = 1e-6});
   EXPECT_EQ(rounding.map, Colormap::viridis);
-  EXPECT_EQ(rounding.lo, 0);
+  EXPECT_EQ(rounding.lower, 0);
   const ColorScale few = scale_of(with_others(4, -1, 4), {.accuracy = 1e-3});
   EXPECT_EQ(few(-5e-4), few(0));
 }
 
 // Nothing that is red could be a distance of the longer side.
 TEST(ColorScale, TheShorterSideHasColoursOfItsOwn) {
-  const ColorScale scale{.map = Colormap::sequential, .lo = -1, .hi = 2};
+  const ColorScale scale{.map = Colormap::sequential, .lower = -1, .upper = 2};
   for (int i = 0; i <= 100; ++i)
     for (int k = 1; k <= 100; ++k) {
       const Rgb a = scale(0.02 * i), b = scale(-0.01 * k);
@@ -124,7 +124,7 @@ TEST(ColorScale, TheShorterSideHasColoursOfItsOwn) {
 }
 
 TEST(ColorScale, EndsAreRound) {
-  const auto range = [](const ColorScale& scale) { return std::pair(scale.lo, scale.hi); };
+  const auto range = [](const ColorScale& scale) { return std::pair(scale.lower, scale.upper); };
   EXPECT_EQ(range(scale_of({0.0137f, 0.001f})), std::pair(0.0, 0.014));
   EXPECT_EQ(range(scale_of({-0.0137f, 0.01f})), std::pair(-0.015, 0.015));
   EXPECT_EQ(range(scale_of({0, 0.29f})), std::pair(0.0, 0.3));
@@ -133,8 +133,8 @@ TEST(ColorScale, EndsAreRound) {
   EXPECT_EQ(range(scale_of({-0.01f, 0.01f}, {.tolerance = Tolerance(-0.05, 0.01)})), std::pair(-0.1, 0.06));
   for (const float d : {1e-38f, 1e-20f, 1e20f, 3e38f}) {
     const ColorScale scale = scale_of({0, d});
-    EXPECT_GE(scale.hi, d);
-    EXPECT_LE(scale.hi, 1.5 * d);
+    EXPECT_GE(scale.upper, d);
+    EXPECT_LE(scale.upper, 1.5 * d);
   }
 }
 
@@ -155,29 +155,29 @@ TEST(ColorScale, OfSeveralMapsIsSequentialOnlyIfOneSideIsShort) {
 TEST(ColorScale, EndsAtThe99thPercentileOfTheMagnitude) {
   std::vector<float> both = with_outlier(0.5f, -40);
   both[0] = -0.25f;
-  EXPECT_EQ(scale_of(both).lo, -0.3);  // rounded
-  EXPECT_EQ(scale_of(both).hi, 0.5);
+  EXPECT_EQ(scale_of(both).lower, -0.3);  // rounded
+  EXPECT_EQ(scale_of(both).upper, 0.5);
   std::fill_n(both.begin(), 10, -0.25f);
   EXPECT_EQ(scale_of(both).map, Colormap::diverging);
-  EXPECT_EQ(scale_of(both).lo, -0.5);
-  EXPECT_EQ(scale_of(both).hi, 0.5);
+  EXPECT_EQ(scale_of(both).lower, -0.5);
+  EXPECT_EQ(scale_of(both).upper, 0.5);
   std::vector<float> positive = with_outlier(0.5f, 40);
   positive[0] = 0.25f;
   EXPECT_EQ(scale_of(positive).map, Colormap::viridis);
-  EXPECT_EQ(scale_of(positive).lo, 0.25);
-  EXPECT_EQ(scale_of(positive).hi, 0.5);
-  EXPECT_EQ(scale_of(positive, {.range = {{0, 3}}}).hi, 3);
-  EXPECT_EQ(scale_of(positive, {.tolerance = 0.1}).hi, 0.5);
-  EXPECT_EQ(scale_of(positive, {.tolerance = 2}).hi, 4);
+  EXPECT_EQ(scale_of(positive).lower, 0.25);
+  EXPECT_EQ(scale_of(positive).upper, 0.5);
+  EXPECT_EQ(scale_of(positive, {.range = {{0, 3}}}).upper, 3);
+  EXPECT_EQ(scale_of(positive, {.tolerance = 0.1}).upper, 0.5);
+  EXPECT_EQ(scale_of(positive, {.tolerance = 2}).upper, 4);
 }
 
 TEST(ColorScale, ShowsWhatDiffersWhereNearlyAllIsEqual) {
-  EXPECT_EQ(scale_of(with_outlier(0, 3)).hi, 3);
-  EXPECT_EQ(scale_of(with_outlier(2, 3)).lo, 2);
-  EXPECT_EQ(scale_of(with_outlier(2, 3)).hi, 3);
+  EXPECT_EQ(scale_of(with_outlier(0, 3)).upper, 3);
+  EXPECT_EQ(scale_of(with_outlier(2, 3)).lower, 2);
+  EXPECT_EQ(scale_of(with_outlier(2, 3)).upper, 3);
   // Rounding errors are no values to be told apart.
-  EXPECT_EQ(scale_of(with_outlier(1e-7f, -3), {.accuracy = 1e-6}).lo, -3);
-  EXPECT_EQ(scale_of(with_outlier(1e-7f, -3), {.accuracy = 1e-6}).hi, 0);
+  EXPECT_EQ(scale_of(with_outlier(1e-7f, -3), {.accuracy = 1e-6}).lower, -3);
+  EXPECT_EQ(scale_of(with_outlier(1e-7f, -3), {.accuracy = 1e-6}).upper, 0);
 }
 
 TEST(ColorScale, FixedOptionsStayAsTheyAre) {
@@ -245,7 +245,7 @@ TEST(ColorScale, StepsWithinTheToleranceTellHowCloseItIs) {
     }
   }
   // No upper limit, but that of the scale.
-  const ColorScale wall{.lo = 0, .hi = 3, .tolerance = Tolerance(1, 100)};
+  const ColorScale wall{.lower = 0, .upper = 3, .tolerance = Tolerance(1, 100)};
   EXPECT_EQ(wall(1.01), scale(0.4));
   EXPECT_EQ(wall(50), scale(0));
 }
@@ -262,8 +262,8 @@ TEST(ColorScale, HasARangeForMapsWithoutValues) {
       for (const Colormap colors : {Colormap::automatic, Colormap::viridis, Colormap::sequential,
                                     Colormap::diverging, Colormap::paper2006}) {
         const ColorScale scale = scale_of(distances, {.colormap = colors, .tolerance = tolerance});
-        EXPECT_LT(scale.lo, scale.hi);
-        EXPECT_TRUE(std::isfinite(scale.lo) && std::isfinite(scale.hi));
+        EXPECT_LT(scale.lower, scale.upper);
+        EXPECT_TRUE(std::isfinite(scale.lower) && std::isfinite(scale.upper));
       }
 }
 

@@ -7,7 +7,6 @@
 #include <sdm/error.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 namespace sdm {
@@ -48,8 +47,8 @@ TEST(Legend, NamesTheEndsAndTheLimits) {
     const std::vector<ScaleLabel> labels = scale_labels(scale);
     ASSERT_GE(labels.size(), 5u);
     ASSERT_LE(labels.size(), 13u);
-    EXPECT_EQ(labels.front().value, scale.lo);
-    EXPECT_EQ(labels.back().value, scale.hi);
+    EXPECT_EQ(labels.front().value, scale.lower);
+    EXPECT_EQ(labels.back().value, scale.upper);
     std::vector<double> limits;
     for (std::size_t k = 0; k < labels.size(); ++k) {
       if (labels[k].is_limit) limits.push_back(labels[k].value);
@@ -59,14 +58,13 @@ TEST(Legend, NamesTheEndsAndTheLimits) {
     }
     EXPECT_EQ(limits, (std::vector<double>{tolerance.lower, tolerance.upper}));
   }
-  const std::vector<ScaleLabel> labels = scale_labels({.map = Colormap::viridis, .lo = 0, .hi = 0.137});
+  const std::vector<ScaleLabel> labels = scale_labels({.map = Colormap::viridis, .lower = 0, .upper = 0.137});
   EXPECT_EQ(labels.front().text, "0.00");
   EXPECT_EQ(labels.back().text, "0.137");
 }
 
 // What has no limit on a side names none there, and darkens towards the other one only.
 TEST(Legend, NamesTheOnlyLimit) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const DistanceStatistics d{.texels = 9, .min = 0.05, .max = 0.73, .p05 = 0.1, .p95 = 0.7, .p99_abs = 0.73};
   DistanceMap map;
   map.measured.kind = DistanceKind::thickness;
@@ -92,7 +90,7 @@ TEST(Legend, NamesTheOnlyLimit) {
       if (label.is_limit) limits.push_back(label.value);
     EXPECT_EQ(limits, std::vector{scale == &least ? 0.1 : 0.4});
   }
-  EXPECT_EQ(least.hi, 0.8);
+  EXPECT_EQ(least.upper, 0.8);
   EXPECT_EQ(least(0.1), kWithin.back());
   EXPECT_EQ(least(0.8), kWithin.front());
   EXPECT_EQ(least(5), kWithin.front());
@@ -107,7 +105,7 @@ TEST(Legend, ShowsTheColoursFromTopToBottom) {
   const auto close = [](Rgb a, Rgb b) {
     return std::abs(a.r - b.r) < 9 && std::abs(a.g - b.g) < 9 && std::abs(a.b - b.b) < 9;
   };
-  const ColorScale scale{.map = Colormap::viridis, .lo = -2, .hi = 5};
+  const ColorScale scale{.map = Colormap::viridis, .lower = -2, .upper = 5};
   for (const std::uint32_t resolution : {16u, 1024u, 8192u}) {
     const Picture legend = draw_legend(scale, {"Distance", "mm", {"note"}, true}, resolution);
     ASSERT_EQ(legend.pixels.size(), std::size_t{legend.width} * legend.height);

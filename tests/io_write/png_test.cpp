@@ -93,8 +93,8 @@ TEST_F(Pictures, NothingInRangeHasItsOwnColourOutsideTheScale) {
   const DistanceMap endless = map_of(surface, field(std::numeric_limits<double>::infinity())),
                     nan = map_of(surface, field(std::nan("")));
   ASSERT_GT(endless.beyond_max_distance, 0u);
-  EXPECT_EQ(color_scale(surface, endless, {}).lo, color_scale(surface, nan, {}).lo);
-  EXPECT_EQ(color_scale(surface, endless, {}).hi, color_scale(surface, nan, {}).hi);
+  EXPECT_EQ(color_scale(surface, endless, {}).lower, color_scale(surface, nan, {}).lower);
+  EXPECT_EQ(color_scale(surface, endless, {}).upper, color_scale(surface, nan, {}).upper);
   write_distance_png(folder / "distance.png", surface, endless);
   write_direction_png(folder / "direction.png", surface, endless);
   write_voronoi_png(folder / "voronoi.png", surface, endless);

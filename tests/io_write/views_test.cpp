@@ -9,7 +9,6 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -27,8 +26,6 @@ namespace sdm::test {
 namespace {
 
 using namespace io;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Projection looking_down(std::uint32_t width, std::uint32_t height, double scale) {
   return {.centre = {0.5, 0.5, 0.5}, .scale = scale, .width = width, .height = height};
@@ -101,7 +98,7 @@ TEST(ViewLayout, PlacesTheBoxInEveryCell) {
         EXPECT_NEAR(norm(cross(view.projection.right, view.projection.up) - view.projection.towards), 0, 0);
         for (int corner = 0; corner < 8; ++corner) {
           Vec3 point;
-          for (int k = 0; k < 3; ++k) point[k] = corner >> k & 1 ? box.hi[k] : box.lo[k];
+          for (int k = 0; k < 3; ++k) point[k] = corner >> k & 1 ? box.upper[k] : box.lower[k];
           const Vec3 at = view.projection(point);
           EXPECT_GE(at[0], 0);
           EXPECT_LE(at[0], view.projection.width);
@@ -117,9 +114,9 @@ TEST(ViewLayout, PlacesTheBoxInEveryCell) {
 TEST(ViewLayout, ShowsWhatIsNearOfTheOtherMesh) {
   const Box part{{0, 0, 0}, {1, 1, 1}};
   const Box shown = shown_box(part, {{-1e9, 0.5, 0.4}, {0.5, 1.1, 0.6}});
-  EXPECT_DOUBLE_EQ(shown.lo[0], -0.5 * std::sqrt(3));
-  EXPECT_EQ(shown.hi, (Vec3{1, 1.1, 1}));
-  EXPECT_EQ(shown.lo[1], 0);
+  EXPECT_DOUBLE_EQ(shown.lower[0], -0.5 * std::sqrt(3));
+  EXPECT_EQ(shown.upper, (Vec3{1, 1.1, 1}));
+  EXPECT_EQ(shown.lower[1], 0);
 }
 
 /// Of a cube, distance and colour grow along x; of O2, a cube behind it, the part beside it is seen.
@@ -248,7 +245,7 @@ TEST(FaceScales, HaveTheBandsOfTheGroupsOfAFace) {
       {.kind = "group", .names = {"narrow", "wide"}, .of_face = {0, 1, kNone}}};
   const std::vector<GroupTolerance> table{{"narrow", Tolerance(-1, 1)}, {"wide", Tolerance(-4, 4)}};
   PictureOptions options{.table = table, .names = names};
-  const ColorScale scale{.map = Colormap::diverging, .lo = -5, .hi = 5};
+  const ColorScale scale{.map = Colormap::diverging, .lower = -5, .upper = 5};
   const FaceScales by_group(scale, options);
   EXPECT_EQ(by_group(0, 0.1), kWithin[0]);
   EXPECT_EQ(by_group(0, 1.5), kAbove[1]);
@@ -260,7 +257,7 @@ TEST(FaceScales, HaveTheBandsOfTheGroupsOfAFace) {
   const FaceScales both(scale, options);
   EXPECT_EQ(both(1, 3), kAbove[1]);
   EXPECT_EQ(both(2, 1), kWithin[2]);
-  EXPECT_EQ(both.of_legend().lo, -2);
+  EXPECT_EQ(both.of_legend().lower, -2);
   LegendText text{"Distance", "mm", {"min 1", "beyond: as the ends"}, false};
   both.describe(text);
   EXPECT_EQ(text.labels.size(), 2u);

@@ -94,7 +94,7 @@ std::vector<Vec3> random_points(const Mesh& around, std::size_t count, unsigned 
   std::uniform_real_distribution<double> any(-0.5, 1.5);
   std::vector<Vec3> points(count);
   for (Vec3& point : points)
-    for (std::size_t k = 0; k < 3; ++k) point[k] = box.lo[k] + any(random) * (box.hi[k] - box.lo[k]);
+    for (std::size_t k = 0; k < 3; ++k) point[k] = box.lower[k] + any(random) * (box.upper[k] - box.lower[k]);
   return points;
 }
 

@@ -4,7 +4,6 @@
 #include <sdm/sdm.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "geometry/vec.h"
@@ -197,7 +196,6 @@ TEST(Along, SignsAreThoseOfTheSideOfTheFace) {
 TEST(Along, RefusesOptionsOutOfRange) {
   const Surface surface(test::cube(), {.resolution = 64});
   const Sites sites(test::cube());
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const Vec3& direction : {Vec3{0, 0, 0}, Vec3{kInfinity, 0, 0}, Vec3{0, std::nan(""), 1}})
     EXPECT_NE(test::error_of([&] {
                 (void)compute_map(surface, sites, AlongOptions{.direction = direction});

@@ -86,7 +86,7 @@ std::vector<Vec3> queries_for(const Mesh& mesh, std::size_t count) {
   std::uniform_real_distribution<double> uniform(-0.5, 1.5);
   for (std::size_t i = 0; i < count; ++i) {
     Vec3 p;
-    for (int k = 0; k < 3; ++k) p[k] = box.lo[k] + uniform(random) * (box.hi[k] - box.lo[k]);
+    for (int k = 0; k < 3; ++k) p[k] = box.lower[k] + uniform(random) * (box.upper[k] - box.lower[k]);
     const Vec3 &a = mesh.positions[random() % mesh.positions.size()],
                &b = mesh.positions[random() % mesh.positions.size()];
     queries.push_back(p);

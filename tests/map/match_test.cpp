@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -26,8 +25,6 @@
 namespace sdm::test {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
 bool allowed(const Vec3& n, const Vec3& m, double angle, double slack) {
   if (n == Vec3{} || m == Vec3{}) return false;
   return dot(n, m) > (angle == 90 ? 0 : std::cos(angle * std::numbers::pi / 180)) + slack;
@@ -42,7 +39,7 @@ Vec3 point_of(const Mesh& mesh, const SurfacePoint& at) {
 /// The least distance to the faces for which use(face).
 template <class Use>
 double least_distance(const Mesh& mesh, const Vec3& q, const Use& use) {
-  double least = kInfinite;
+  double least = kInfinity;
   for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
     if (!use(f)) continue;
     const auto& [a, b, c] = mesh.triangles[f];
@@ -99,7 +96,8 @@ TEST(Match, ClosestAndFacingPointsAreThoseOfBruteForceAtEveryTexelOf40Pairs) {
   for (const auto& [o1, o2] : pairs) {
     const Surface surface(o1, {.resolution = 24});
     const Sites sites(o2);
-    const double angle = texels % 2 == 0 ? 90 : 25, error = 2e-6 * norm(bounds(o1).hi - bounds(o2).lo) + 1e-6;
+    const double angle = texels % 2 == 0 ? 90 : 25,
+                 error = 2e-6 * norm(bounds(o1).upper - bounds(o2).lower) + 1e-6;
     const TexelMatches closest = match_texels(surface, sites, {.method = MatchMethod::closest});
     const TexelMatches facing = match_texels(surface, sites, {.facing = angle});
     for (std::size_t i = 0; i < closest.kind.size(); ++i)
@@ -148,7 +146,7 @@ TEST(Match, RaysEndAtTheHitsOfBruteForceAtEveryTexelOf40Pairs) {
       const Vec3 normal = normal_of(o1, surface.map_faces()[texel]);
       // Of faces enlarged, and made smaller, by more than the rounding of the normals.
       const auto least = [&](double margin) {
-        double found = kInfinite;
+        double found = kInfinity;
         for (std::uint32_t f = 0; f < o2.triangles.size(); ++f)
           if (allowed(normal_of(o2, f), normal, angle, margin))
             if (const auto t = on_line(o2, f, q, u, margin); t && std::abs(*t) <= kCage - margin)
@@ -199,7 +197,7 @@ TEST(Match, NoHitIsLostBesideFacesThatFaceAway) {
   for (const std::uint32_t texel : test::owned_texels(surface)) {
     ASSERT_EQ(matches.kind[texel], MatchKind::ray);
     const Vec3 q = surface.texel_point(texel);
-    double least = kInfinite;
+    double least = kInfinity;
     for (std::uint32_t f = 0; f < faces; ++f) {
       const auto& [a, b, c] = o2.triangles[f];
       // Rational arithmetic is slow: only of faces that may be below the texel.
@@ -303,13 +301,13 @@ TEST(Match, StatesWhyATexelHasNoPoint) {
     const auto of = [&](const Surface& surface, double max_distance, double cage) {
       return match_texels(surface, sites, {.method = method, .cage = cage, .max_distance = max_distance});
     };
-    EXPECT_EQ(of(near, 0.1, kInfinite).count(MatchKind::too_far), texels);
-    EXPECT_EQ(of(turned, kInfinite, kInfinite).count(MatchKind::facing_away), turned.owned_texels());
+    EXPECT_EQ(of(near, 0.1, kInfinity).count(MatchKind::too_far), texels);
+    EXPECT_EQ(of(turned, kInfinity, kInfinity).count(MatchKind::facing_away), turned.owned_texels());
     EXPECT_EQ(
-        of(near, kInfinite, kInfinite).count(method == MatchMethod::ray ? MatchKind::ray : MatchKind::facing),
+        of(near, kInfinity, kInfinity).count(method == MatchMethod::ray ? MatchKind::ray : MatchKind::facing),
         texels);
     // Beyond the cage there is still the closest point.
-    EXPECT_EQ(of(near, kInfinite, 0.2).count(MatchKind::facing), texels);
+    EXPECT_EQ(of(near, kInfinity, 0.2).count(MatchKind::facing), texels);
   }
   EXPECT_EQ(match_texels(near, sites, {.method = MatchMethod::closest, .max_distance = 0.1})
                 .count(MatchKind::too_far),

@@ -58,7 +58,6 @@ TYPED_TEST(DeclaredOptions, AreRefusedBeyondTheEndsOfTheirRange) {
     if (info.type != "number" && info.type != "integer") return;
     const OptionRange& range = info.range;
     const bool whole = info.type == "integer";
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     if (range.least > OptionRange{}.least) {
       expect(range.least, !range.above);
       expect(whole ? range.least - 1 : std::nextafter(range.least, -kInfinity), false);
@@ -200,7 +199,7 @@ TEST(Options, AMapNamesThoseOfItsMeasure) {
   const Surface surface(test::cube(), {.resolution = 16});
   const DistanceMap map = compute_map(surface, Sites(test::cube()), {.max_distance = 2.5});
   std::string settings;
-  for (const auto& [name, value] : map.measured.settings) settings += name + "=" + value + " ";
+  for (const auto& [name, value, type] : map.measured.settings) settings += name + "=" + value + " ";
   EXPECT_EQ(settings, "max_distance=2.5 sign=automatic facing= ");
 }
 

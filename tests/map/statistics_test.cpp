@@ -210,7 +210,7 @@ TEST(PartStatistics, AreThoseOfAMapOfThePartAlone) {
     }
     expect_as_naive(parts[p].distance, naive(surface, alone));
     EXPECT_EQ(parts[p].faces, p == 0 ? 288u : 128u);
-    EXPECT_EQ(parts[p].box.lo[0] > 2, p == 1);
+    EXPECT_EQ(parts[p].box.lower[0] > 2, p == 1);
     EXPECT_NEAR(parts[p].tolerance.value().within, within / part_area, 1e-6);
     const ToleranceShares& t = *parts[p].tolerance;
     EXPECT_NEAR(t.below + t.within + t.above + t.without_value, 1, 1e-9);

@@ -63,17 +63,16 @@ TEST(Temporal, TexelsThatLackedAValueHaveNone) {
 }
 
 TEST(Temporal, NothingInRangeIsInfinitelyFar) {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
   const Surface surface(ring(12), {.resolution = 32});
   for (const int missing : {0, 1, 2}) {
     TemporalMaps maps;
     for (int t = 0; t < 3; ++t)
-      maps.add(map_of(surface, [&](const Vec3&) { return t == missing ? kInf : 1.0 + t; }));
+      maps.add(map_of(surface, [&](const Vec3&) { return t == missing ? kInfinity : 1.0 + t; }));
     for (const std::uint32_t texel : surface.sample_texels()) {
       if (texel >= maps.least().size()) continue;  // of a face without a texel
       ASSERT_EQ(maps.least()[texel], missing == 0 ? 2 : 1);
-      ASSERT_EQ(maps.largest()[texel], kInf);
-      ASSERT_EQ(maps.mean()[texel], kInf);
+      ASSERT_EQ(maps.largest()[texel], kInfinity);
+      ASSERT_EQ(maps.mean()[texel], kInfinity);
     }
   }
 }

@@ -18,7 +18,7 @@ TEST(Inspect, ClosedMesh) {
   EXPECT_TRUE(info.closed && info.orientable && info.oriented && info.manifold);
   EXPECT_FALSE(info.has_uvs);
   EXPECT_NEAR(info.area, 1.5 + std::sqrt(3) / 2, 1e-15);
-  EXPECT_EQ(info.bounds.hi, (Vec3{1, 1, 1}));
+  EXPECT_EQ(info.bounds.upper, (Vec3{1, 1, 1}));
 }
 
 TEST(Inspect, EulerCharacteristicOfATorusIsZero) {

@@ -71,9 +71,9 @@ TEST(Validate, RejectsTextureCoordinatesOfSomeTrianglesOnly) {
 TEST(Bounds, EncloseExactlyTheUsedVertices) {
   Mesh mesh = test::tetrahedron();
   mesh.positions.push_back({100, 100, 100});
-  EXPECT_EQ(bounds(mesh).lo, (Vec3{0, 0, 0}));
-  EXPECT_EQ(bounds(mesh).hi, (Vec3{1, 1, 1}));
-  EXPECT_GT(bounds({}).lo[0], bounds({}).hi[0]);
+  EXPECT_EQ(bounds(mesh).lower, (Vec3{0, 0, 0}));
+  EXPECT_EQ(bounds(mesh).upper, (Vec3{1, 1, 1}));
+  EXPECT_GT(bounds({}).lower[0], bounds({}).upper[0]);
 }
 
 TEST(Bounds, AreFoundByValidationToo) {
@@ -83,10 +83,10 @@ TEST(Bounds, AreFoundByValidationToo) {
   const auto last = static_cast<std::uint32_t>(mesh.positions.size() - 1);
   mesh.triangles.insert(mesh.triangles.end(), {{last - 1, last - 1, last - 1}, {0, 0, last}});
   const Box box = mesh::validated_bounds(mesh);
-  EXPECT_EQ(box.lo, bounds(mesh).lo);
-  EXPECT_EQ(box.hi, bounds(mesh).hi);
-  EXPECT_EQ(box.hi[2], 5);
-  EXPECT_LT(box.hi[0], 100);
+  EXPECT_EQ(box.lower, bounds(mesh).lower);
+  EXPECT_EQ(box.upper, bounds(mesh).upper);
+  EXPECT_EQ(box.upper[2], 5);
+  EXPECT_LT(box.upper[0], 100);
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ TEST(Weld, NeverCollapsesAFace) {
   std::mt19937 random(7);
   for (int trial = 0; trial < 200; ++trial) {
     const Mesh mesh = test::soup(40, random);
-    const double size = norm(bounds(mesh).hi - bounds(mesh).lo);
+    const double size = norm(bounds(mesh).upper - bounds(mesh).lower);
     const double tolerance = size * std::pow(10, std::uniform_real_distribution(-3.0, 0.0)(random));
     const Welded welded = weld(mesh, {tolerance});
     EXPECT_FALSE(collapses_a_face(mesh, welded.mesh)) << trial;

@@ -193,14 +193,14 @@ class Poses {
     const int axis = pick(3);
     Vec3 by;
     for (int k = 0; k < 3; ++k) {
-      const double low = of_a.lo[k] - of_b.hi[k], high = of_a.hi[k] - of_b.lo[k];
+      const double low = of_a.lower[k] - of_b.upper[k], high = of_a.upper[k] - of_b.lower[k];
       const double offset = pick(2) == 0 ? 0 : depth * number(-1, 1);
       if (k == axis)
         by[k] = pick(2) == 0 ? low + depth : high - depth;
       else if (const int where = pick(5); where < 2)
         by[k] = number(low, high);
       else if (where < 4)
-        by[k] = (where == 2 ? of_a.lo[k] - of_b.lo[k] : of_a.hi[k] - of_b.hi[k]) + offset;
+        by[k] = (where == 2 ? of_a.lower[k] - of_b.lower[k] : of_a.upper[k] - of_b.upper[k]) + offset;
       else
         by[k] = 0.5 * (low + high) + offset;
     }
@@ -213,7 +213,7 @@ class Poses {
     int axis = 0;
     double least = 1e9, by = 0;
     for (int k = 0; k < 3; ++k)
-      for (const double d : {of_a.lo[k] - of_b.hi[k], of_a.hi[k] - of_b.lo[k]})
+      for (const double d : {of_a.lower[k] - of_b.upper[k], of_a.upper[k] - of_b.lower[k]})
         if (std::abs(d) < least) {
           least = std::abs(d);
           by = d;
@@ -366,7 +366,7 @@ TEST(ContactDepth, OfATiltedCubeAcrossTheEdgeOfATableIsThatOfItsDeepestPoint) {
     Mesh tilted = cube(0.25);
     transform(tilted.positions, Transform::quaternion({1, 0, 0.5 * tilt, 0}));
     const Box box = bounds(tilted);
-    tilted = moved(tilted, {0.75 - box.lo[0], 0.1, -box.lo[2] - 0.005});
+    tilted = moved(tilted, {0.75 - box.lower[0], 0.1, -box.lower[2] - 0.005});
     const Pose pose{.bodies = {tilted, kTable}};
     ProximityQuery query(tilted, kTable);
     int carried = 0;

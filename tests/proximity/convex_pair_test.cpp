@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <string>
 #include <tuple>
@@ -21,8 +20,6 @@
 
 namespace sdm::convex {
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 std::unique_ptr<const ConvexMesh> recognised(const Mesh& mesh) {
   return recognise(internals(Sites(mesh)));
@@ -119,7 +116,7 @@ class ConvexPairs : public testing::Test {
   void expect_same(const Sites& o1, const Sites& o2, const ConvexMesh& c1, const ConvexMesh& c2,
                    const Affine& pose, double scale, Simplex& warm) {
     const pairs::MeshPair pair{internals(o1), internals(o2), pose};
-    const pairs::Separation expected = pairs::find_closest(pair, kInfinite, workspace_);
+    const pairs::Separation expected = pairs::find_closest(pair, kInfinity, workspace_);
     const bool colliding = pairs::colliding(pair, workspace_);
     if (expected.intersecting) {
       const pairs::Separation first = pairs::find_intersection(pair, workspace_);
@@ -131,7 +128,7 @@ class ConvexPairs : public testing::Test {
     for (Simplex cold; Simplex * simplex : {&cold, &warm}) {
       ++tried_;
       pairs::FacePair hint = pairs::kNoFaces;
-      const auto found = convex.find_closest(kInfinite, *simplex, hint);
+      const auto found = convex.find_closest(kInfinity, *simplex, hint);
       if (convex.found_overlap()) {
         ++found_;
         EXPECT_TRUE(colliding);
@@ -257,7 +254,7 @@ TEST(ConvexPair, AnswersOfTiesDoNotDependOnHints) {
 
 // How far inside all planes of the faces of a convex mesh about the origin, moved by a pose.
 double depth_below_planes(const Mesh& mesh, const Transform& pose, const Vec3& p) {
-  double least = kInfinite;
+  double least = kInfinity;
   for (const auto& [i, j, k] : mesh.triangles) {
     const Vec3 a = pose(mesh.positions[i]), b = pose(mesh.positions[j]), c = pose(mesh.positions[k]);
     const Vec3 n = normalized(cross(b - a, c - a));

@@ -37,8 +37,8 @@ Convex convex(const Box& block, const Transform& pose) {
     Vec3 e{};
     e[k] = 1;
     const Vec3 n = pose(e) - origin;
-    result.push_back({n, block.hi[k] + dot(n, origin)});
-    result.push_back({-n, -block.lo[k] - dot(n, origin)});
+    result.push_back({n, block.upper[k] + dot(n, origin)});
+    result.push_back({-n, -block.lower[k] - dot(n, origin)});
   }
   return result;
 }
@@ -132,8 +132,8 @@ class Jacks {
       case 0:  // three bars that cross
         for (int k = 0; k < 3; ++k) {
           Box bar{{-w, -w, -w}, {w, w, w}};
-          bar.lo[k] = -1;
-          bar.hi[k] = 1;
+          bar.lower[k] = -1;
+          bar.upper[k] = 1;
           result.push_back(bar);
         }
         return result;

@@ -78,8 +78,9 @@ IntegerPair integer_pair(const std::vector<Shape>& shapes, int i) {
   const Box a = box_of(shapes[pair.a], pair.poses[0]), b = box_of(shapes[pair.b], pair.poses[1]);
   Vec3 shift;
   for (int k = 0; k < 3; ++k)
-    shift[k] = std::uniform_int_distribution<int>(static_cast<int>(std::lround(b.lo[k] - a.hi[k])),
-                                                  static_cast<int>(std::lround(b.hi[k] - a.lo[k])))(random);
+    shift[k] =
+        std::uniform_int_distribution<int>(static_cast<int>(std::lround(b.lower[k] - a.upper[k])),
+                                           static_cast<int>(std::lround(b.upper[k] - a.lower[k])))(random);
   pair.poses[0] = common * Transform::translation(shift) * pair.poses[0];
   pair.poses[1] = common * pair.poses[1];
   return pair;
@@ -179,8 +180,8 @@ TEST(IntegerPoses, DepthOfAFaceWhoseCentreIsOnTheSurface) {
     const Transform rotation =
         Transform::rotation({90.0 * (turn % 4), 90.0 * (turn / 4 % 4), 90.0 * (turn / 16)});
     const Box turned = box_of(cube, rotation);
-    check({Transform::translation(
-               {1 - std::round(turned.lo[0]), 2 - std::round(turned.lo[1]), -std::round(turned.lo[2])}) *
+    check({Transform::translation({1 - std::round(turned.lower[0]), 2 - std::round(turned.lower[1]),
+                                   -std::round(turned.lower[2])}) *
                rotation,
            Transform{}});
   }

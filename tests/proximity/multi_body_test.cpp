@@ -29,7 +29,7 @@ Box random_box(std::mt19937& random, double size) {
   std::uniform_real_distribution<double> side(0, size);
   Box box;
   extend(box, random_point({{0, 0, 0}, {10, 3, 1}}, random));
-  extend(box, box.lo + Vec3{side(random), side(random), side(random)});
+  extend(box, box.lower + Vec3{side(random), side(random), side(random)});
   return box;
 }
 
@@ -47,7 +47,7 @@ TEST(Sweep, FindsTheNearPairs) {
           double squared = 0;
           for (int k = 0; k < 3; ++k) {
             const double gap =
-                std::max({0.0, boxes[a].lo[k] - boxes[b].hi[k], boxes[b].lo[k] - boxes[a].hi[k]});
+                std::max({0.0, boxes[a].lower[k] - boxes[b].upper[k], boxes[b].lower[k] - boxes[a].upper[k]});
             squared += gap * gap;
           }
           if (std::sqrt(squared) <= reach) expected.push_back({a, b});

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
 
@@ -15,8 +14,6 @@
 
 namespace sdm::test {
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// A body that moves among three obstacles, of which the last one has no inside.
 class ManyPoses : public testing::Test {
@@ -55,7 +52,7 @@ TEST_F(ManyPoses, HaveTheAnswersOfPairs) {
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     SCOPED_TRACE(i);
     bool hit = false;
-    double least = kInfinite;
+    double least = kInfinity;
     BoundedNumber deepest;
     for (std::size_t obstacle = 0; obstacle < obstacles_.size(); ++obstacle) {
       ProximityQuery expected = pair(poses_[i], obstacle);
@@ -68,14 +65,14 @@ TEST_F(ManyPoses, HaveTheAnswersOfPairs) {
     }
     EXPECT_EQ(colliding[i] != 0, hit);
     EXPECT_EQ(separations[i], least);
-    EXPECT_EQ(near[i], least <= 0.5 ? least : kInfinite);
+    EXPECT_EQ(near[i], least <= 0.5 ? least : kInfinity);
     EXPECT_EQ(depths[i].value, deepest.value);
     EXPECT_EQ(depths[i].lower, deepest.lower);
     EXPECT_EQ(depths[i].upper, deepest.upper);
     EXPECT_EQ(depths[i].certainty, hit ? Certainty::bounded : Certainty::exact);
   }
   EXPECT_GT(std::ranges::count(colliding, 1), 20);
-  EXPECT_GT(std::ranges::count(near, kInfinite), 5);
+  EXPECT_GT(std::ranges::count(near, kInfinity), 5);
 }
 
 TEST_F(ManyPoses, DoNotDependOnTheirOrderOrTheThreads) {
@@ -155,7 +152,7 @@ TEST_F(ManyPoses, OfOpenSurfacesHaveNoDepth) {
   }
   PoseQuery alone(shape_, std::vector<Shape>{});
   EXPECT_THAT(alone.colliding(poses_), testing::Each(0));
-  EXPECT_THAT(alone.separations(poses_), testing::Each(kInfinite));
+  EXPECT_THAT(alone.separations(poses_), testing::Each(kInfinity));
   EXPECT_TRUE(alone.colliding({}).empty());
 }
 

@@ -20,8 +20,6 @@
 namespace sdm::test {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
 // A strip of n × m squares along x, `length` long and 1 wide, bent about the y axis as `place` says.
 template <class Place>
 Mesh strip(std::uint32_t n, std::uint32_t m, double length, const Place& place) {
@@ -116,7 +114,7 @@ void expect_exclusion(const Exclusion& exclusion, const Relation& expected) {
 }
 
 void expect_self_map(const Surface& surface, const Sites& sites, const DistanceMap& map,
-                     const Relation& excluded, double max_distance = kInf) {
+                     const Relation& excluded, double max_distance = kInfinity) {
   const Mesh& mesh = sites.mesh();
   std::size_t none = 0;
   const double tolerance = 1e-6 * diagonal(bounds(mesh));
@@ -128,11 +126,11 @@ void expect_self_map(const Surface& surface, const Sites& sites, const DistanceM
       continue;
     }
     const Vec3 p = surface.texel_point(texel);
-    double expected = kInf;
+    double expected = kInfinity;
     for (std::uint32_t g = 0; g < mesh.triangles.size(); ++g)
       if (const auto [a, b, c] = corners(mesh, g); !excluded[face][g])
         expected = std::min(expected, oracle::distance(p, a, b, c));
-    if (expected == kInf || expected > max_distance) {
+    if (expected == kInfinity || expected > max_distance) {
       ++none;
       ASSERT_EQ(d, std::numeric_limits<float>::infinity());
       ASSERT_EQ(map.vector[texel], (Vec3f{0, 0, 0}));
@@ -262,7 +260,7 @@ Relation excluded_patches(const Mesh& mesh, const Exclusion& exclusion, double l
     Box box;
     for (const std::uint32_t f : exclusion.faces_of(p))
       for (const Vec3& c : corners(mesh, f)) extend(box, c);
-    balls[p].centre = 0.5 * (box.lo + box.hi);
+    balls[p].centre = 0.5 * (box.lower + box.upper);
     for (const std::uint32_t f : exclusion.faces_of(p)) {
       for (const Vec3& c : corners(mesh, f))
         balls[p].radius = std::max(balls[p].radius, norm(c - balls[p].centre));
@@ -328,7 +326,7 @@ TEST(Self, ExclusionOfPatchesReachesALittleFartherThanItsLength) {
     for (std::uint32_t p = 0; p < exclusion.patches(); ++p)
       for (const std::uint32_t q : exclusion.excluded_by(p)) {
         ASSERT_TRUE(std::ranges::binary_search(exclusion.excluded_by(q), p));
-        double least = kInf;
+        double least = kInfinity;
         for (const std::uint32_t f : exclusion.faces_of(p))
           for (const std::uint32_t g : exclusion.faces_of(q))
             for (const Vec3& a : corners(mesh, f))
@@ -365,7 +363,7 @@ void expect_everything_nearer_excluded(double length) {
     for (const std::uint32_t v : mesh.triangles[f]) faces[v].insert(f);
   std::size_t pairs = 0;
   for (std::uint32_t start = 0; start < n; start += 7) {
-    std::vector<double> way(n, kInf);  // Bellman and Ford
+    std::vector<double> way(n, kInfinity);  // Bellman and Ford
     way[start] = 0;
     for (bool better = true; better;) {
       better = false;
@@ -462,7 +460,7 @@ TEST(Self, NoDistanceWhereAllIsExcluded) {
   EXPECT_TRUE(std::isnan(statistics(surface, map).max));
   EXPECT_EQ(area_fraction_beyond(surface, map, 1), 1);
   for (const float d : distances_at_vertices(sites.mesh(), sites, SelfOptions{.exclusion = exclusion}))
-    EXPECT_EQ(d, kInf);
+    EXPECT_EQ(d, kInfinity);
   SelfProximityQuery query(mesh);
   EXPECT_FALSE(query.separation());
   EXPECT_TRUE(query.contacts(10).empty());
@@ -479,7 +477,7 @@ TEST(Self, NoDistanceWithinALengthBeyondTheMesh) {
   EXPECT_EQ(compute_map(surface, sites, SelfOptions{.exclusion = exclusion}).beyond_max_distance,
             surface.sample_texels().size());
   for (const float d : distances_at_vertices(sites.mesh(), sites, SelfOptions{.exclusion = exclusion}))
-    ASSERT_EQ(d, kInf);
+    ASSERT_EQ(d, kInfinity);
   EXPECT_FALSE(SelfProximityQuery(mesh, {.exclusion = rule}).separation());
 
   // Another sheet, which is not connected to the first, is not excluded.
@@ -498,7 +496,7 @@ TEST(Self, VerticesHaveTheMinimumOfTheirFaces) {
   const std::vector<float> found =
       distances_at_vertices(sites.mesh(), sites, SelfOptions{.exclusion = Exclusion(mesh, {.rule = rule})});
   const Relation out = excluded(mesh, rule);
-  std::vector<double> expected(mesh.positions.size(), kInf);
+  std::vector<double> expected(mesh.positions.size(), kInfinity);
   for (std::uint32_t f = 0; f < out.size(); ++f)
     for (const std::uint32_t v : mesh.triangles[f])
       for (std::uint32_t g = 0; g < out.size(); ++g)
@@ -530,9 +528,9 @@ TEST(Self, IgnoresDegenerateAndDuplicateFaces) {
 // The pairs that count, by CGAL.
 struct Pairs {
   std::vector<double> nearest;  // of each face
-  double least = kInf;
+  double least = kInfinity;
 
-  Pairs(const Mesh& mesh, const Relation& out) : nearest(out.size(), kInf) {
+  Pairs(const Mesh& mesh, const Relation& out) : nearest(out.size(), kInfinity) {
     for (std::size_t f = 0; f < out.size(); ++f)
       for (std::size_t g = 0; g < f; ++g) {
         const Corners a = corners(mesh, f), b = corners(mesh, g);
@@ -728,12 +726,12 @@ TEST(Self, FacesAroundAVertexOfManyExcludeEachOther) {
 TEST(Self, RejectsOptionsOutOfRange) {
   const Mesh mesh = folded(0.2);
   EXPECT_THROW(Exclusion(mesh, {.rule = {.rings = 0}}), Error);
-  for (const double bad : {0.0, -1.0, kInf, std::nan("")})
+  for (const double bad : {0.0, -1.0, kInfinity, std::nan("")})
     EXPECT_THROW(Exclusion(mesh, {.rule = {.geodesic = bad}}), Error);
   EXPECT_THROW(SelfProximityQuery(mesh, {.max_distance = 0}), Error);
   SelfProximityQuery query(mesh);
   EXPECT_THROW((void)query.contacts(-1), Error);
-  EXPECT_THROW((void)query.contacts(kInf), Error);
+  EXPECT_THROW((void)query.contacts(kInfinity), Error);
   const Surface surface(mesh, {.resolution = 64}), other(flat(3, 3), {.resolution = 64});
   EXPECT_THROW((void)compute_map(surface, query.sites(), SelfOptions{.exclusion = Exclusion(flat(3, 3))}),
                Error);

@@ -18,7 +18,6 @@
 namespace sdm {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kLevels = 4;  // of a tube, along its axis
 
 // A tube about the z axis, from −length / 2 to length / 2, with annular ends.
@@ -152,7 +151,7 @@ Real largest_radius(const Point& p, const Point& n, const std::array<Point, 3>& 
 // The ball and the ray of each texel, over all faces of a mesh of one solid that is oriented outwards.
 void expect_brute_force(const Mesh& mesh, double angle, std::uint32_t resolution) {
   const Measured map(mesh, resolution, angle);
-  const double size = norm(bounds(mesh).hi - bounds(mesh).lo);
+  const double size = norm(bounds(mesh).upper - bounds(mesh).lower);
   std::vector<Vec3> normals;
   std::vector<std::array<Point, 3>> faces;
   for (const auto& [a, b, c] : mesh.triangles) {

@@ -4,7 +4,6 @@
 #include <sdm/sdm.h>
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <random>
 #include <vector>
@@ -24,8 +23,6 @@
 
 namespace sdm {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Corners corners_of(const Mesh& mesh, std::uint32_t face) {
   const auto& [a, b, c] = mesh.triangles[face];
@@ -121,8 +118,8 @@ std::vector<Ray> make_rays(const Mesh& mesh, std::size_t count, unsigned seed) {
   Box box = bounds(mesh);
   const double size = diagonal(box);
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] -= 0.2 * size;
-    box.hi[k] += 0.2 * size;
+    box.lower[k] -= 0.2 * size;
+    box.upper[k] += 0.2 * size;
   }
   std::uniform_int_distribution<std::size_t> faces(0, mesh.triangles.size() - 1);
   std::vector<Ray> rays;

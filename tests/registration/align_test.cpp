@@ -48,7 +48,7 @@ double displacement(const Mesh& mesh, const Transform& map) {
   double largest = 0;
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 p;
-    for (int k = 0; k < 3; ++k) p[k] = corner >> k & 1 ? box.hi[k] : box.lo[k];
+    for (int k = 0; k < 3; ++k) p[k] = corner >> k & 1 ? box.upper[k] : box.lower[k];
     largest = std::max(largest, norm(map(p) - p));
   }
   return largest;

@@ -51,7 +51,8 @@ TEST(AreaByValue, AgreesWithAreasBeyondLimits) {
   for (std::size_t i = 0; i < AreaByValue::kBins; ++i) {
     sum += area.area[i];
     if (i % 100 != 99) continue;
-    const double edge = area.lo + static_cast<double>(i + 1) * (area.hi - area.lo) / AreaByValue::kBins;
+    const double edge =
+        area.lower + static_cast<double>(i + 1) * (area.upper - area.lower) / AreaByValue::kBins;
     EXPECT_NEAR(sum, 1 - area_fraction_beyond(surface, map, edge), 1e-5);
   }
   EXPECT_NEAR(sum, 1, 1e-5);

@@ -13,7 +13,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
@@ -279,7 +278,6 @@ TEST_F(Page, ListsThePlacesOfTheReport) {
 
 TEST_F(Page, JudgesAsTheLibrary) {
   map({"--resolution", "64"});
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::mt19937 random(5);
   const auto any_of = [&](std::initializer_list<double> values) {
     return values.begin()[random() % values.size()];

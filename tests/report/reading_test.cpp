@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <random>
 
 #include "io/image/pictures/color_scale.h"
@@ -48,21 +47,20 @@ TEST_F(Page, ScalesAreThoseOfPictures) {
   for (int i = 0; i < 400; ++i) {
     const double size = std::pow(10, exponent(random)), a = size * part(random), b = size * part(random);
     io::ColorScale scale{
-        .lo = std::min(a, b), .hi = std::max(a, b), .accuracy = i % 3 == 0 ? 1e-3 * size : 0};
+        .lower = std::min(a, b), .upper = std::max(a, b), .accuracy = i % 3 == 0 ? 1e-3 * size : 0};
     const std::array maps{Colormap::viridis, Colormap::sequential, Colormap::diverging, Colormap::paper2006};
     scale.map = maps[i % 4];
     std::string mode = name_of(scale.map);
     if (scale.map == Colormap::diverging) {
-      scale.hi = std::max(scale.hi, -scale.lo);
-      scale.lo = -scale.hi;
+      scale.upper = std::max(scale.upper, -scale.lower);
+      scale.lower = -scale.upper;
     }
     if (i % 5 == 0) {
-      const double lower = scale.lo + 0.3 * (scale.hi - scale.lo),
-                   upper = lower + 0.2 * (scale.hi - scale.lo);
+      const double lower = scale.lower + 0.3 * (scale.upper - scale.lower),
+                   upper = lower + 0.2 * (scale.upper - scale.lower);
       scale.map = Colormap::viridis;
       scale.tolerance = Tolerance(lower, upper);
       mode = "tolerance";
-      constexpr double kInfinity = std::numeric_limits<double>::infinity();
       if (i % 15 == 5) scale.tolerance->lower = -kInfinity;
       if (i % 15 == 10) scale.tolerance->upper = kInfinity;
     }
@@ -78,8 +76,8 @@ TEST_F(Page, ScalesAreThoseOfPictures) {
     }
     cases.push_back({{"scale",
                       {{"mode", mode},
-                       {"lo", scale.lo},
-                       {"hi", scale.hi},
+                       {"lo", scale.lower},
+                       {"hi", scale.upper},
                        {"lower", tolerance.lower},
                        {"upper", tolerance.upper},
                        {"accuracy", scale.accuracy}}},

@@ -12,7 +12,6 @@ namespace sdm::test {
 namespace {
 
 using ::testing::HasSubstr;
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 struct Pose {
   std::string name;
@@ -22,7 +21,7 @@ struct Pose {
 TEST(FieldProximityBounds, HoldForTheSurfaces) {
   const Mesh o2 = ring(24), ball = placed(sphere(2), "scale:0.35");
   const Grid grid = make_grid(around(o2, 0.3), {40, 40, 24});
-  for (const double band : {kUnlimited, 0.15})
+  for (const double band : {kInfinity, 0.15})
     for (const Pose& pose : {Pose{"apart", {0, 0, 1.2}}, Pose{"in_the_hole", {0, 0, 0}},
                              Pose{"touching", {0, 0.3, 0.4}}, Pose{"penetrating", {0.8, 0.1, 0.1}},
                              Pose{"within", {1, 0, 0}}, Pose{"outside_the_grid", {4, 4, 4}}}) {
@@ -50,7 +49,7 @@ TEST(FieldProximityBounds, HoldForTheSurfaces) {
         EXPECT_NEAR(found.separation.value, separation.value, found.error_bound);
         EXPECT_NEAR(found.depth->value, deepest, found.error_bound);
       }
-      if (band == kUnlimited &&
+      if (band == kInfinity &&
           (pose.name == "apart" || pose.name == "within" || pose.name == "outside_the_grid")) {
         EXPECT_EQ(found.colliding_certainty, Certainty::exact);
       }
@@ -59,7 +58,7 @@ TEST(FieldProximityBounds, HoldForTheSurfaces) {
 
 TEST(FieldProximityBounds, GetCloserWithTheGrid) {
   const Mesh o2 = ring(24), o1 = moved(sphere(2), {0, 0, 2});
-  double before = kUnlimited;
+  double before = kInfinity;
   for (const std::uint32_t n : {10u, 20u, 40u}) {
     const Grid grid = make_grid({{-2, -2, -1}, {2, 2, 3.2}}, {n, n, n});
     const fields::Proximity found = fields::proximity(compute_field(Sites(o2), grid), o1);
@@ -73,7 +72,7 @@ TEST(FieldProximityBounds, OfUnsignedFields) {
   const Box box = around(open, 0.5);
   const DistanceField field = compute_field(Sites(open), make_grid(box, {24, 24, 24}));
   const Box b = bounds(open);
-  const Mesh above = moved(placed(sphere(1), "scale:0.05"), {0.5, 0.5, b.hi[2] + 0.3});
+  const Mesh above = moved(placed(sphere(1), "scale:0.05"), {0.5, 0.5, b.upper[2] + 0.3});
   fields::Proximity found = fields::proximity(field, above);
   EXPECT_FALSE(found.depth);
   EXPECT_FALSE(found.colliding);

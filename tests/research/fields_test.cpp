@@ -17,8 +17,6 @@ using fields::Method;
 using fields::MethodInfo;
 using ::testing::HasSubstr;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 void expect_agreement(const FieldScene& scene, double band) {
   const Sites sites(scene.mesh);
   const DistanceField expected = reference_field(sites, scene.grid, {.max_distance = band});

@@ -34,10 +34,10 @@ TEST_P(Letters, AreClosedConnectedAndOfGenusZero) {
 
 TEST_P(Letters, HaveUnitHeightAndTheirDepthAndAreCentred) {
   const Box box = bounds(GetParam().mesh());
-  EXPECT_NEAR(box.hi[1] - box.lo[1], 1, 1e-3);
-  EXPECT_DOUBLE_EQ(box.hi[2], 0.15);
+  EXPECT_NEAR(box.upper[1] - box.lower[1], 1, 1e-3);
+  EXPECT_DOUBLE_EQ(box.upper[2], 0.15);
   EXPECT_LE(norm(centre(box)), 1e-3);
-  for (int k = 0; k < 3; ++k) EXPECT_LT(box.hi[k] - box.lo[k], 1 + 1e-9);
+  for (int k = 0; k < 3; ++k) EXPECT_LT(box.upper[k] - box.lower[k], 1 + 1e-9);
 }
 
 // Front and back are flat and congruent, and the sides are vertical: the volume is the area of the front
@@ -82,11 +82,11 @@ TEST(Letters, AreReadableFromTheFront) {
   };
   const Mesh e = letter_e(), g = letter_g();
   for (const Mesh* mesh : {&e, &g}) {
-    EXPECT_TRUE(fills(*mesh, bounds(*mesh).lo[0] + 0.1, 0));     // the back
-    EXPECT_FALSE(fills(*mesh, bounds(*mesh).hi[0] - 0.1, 0.2));  // the opening
+    EXPECT_TRUE(fills(*mesh, bounds(*mesh).lower[0] + 0.1, 0));     // the back
+    EXPECT_FALSE(fills(*mesh, bounds(*mesh).upper[0] - 0.1, 0.2));  // the opening
   }
   for (const double y : {-0.45, 0.05, 0.45}) EXPECT_TRUE(fills(e, 0.2, y)) << y;  // the arms
-  EXPECT_TRUE(fills(g, bounds(g).hi[0] - 0.1, -0.2));                             // the bar
+  EXPECT_TRUE(fills(g, bounds(g).upper[0] - 0.1, -0.2));                          // the bar
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Letters,

@@ -61,8 +61,8 @@ TEST(Placement, FitMakesTheLongestSideOneAndCentresIt) {
   place(mesh, parse_placement("fit"));
   const Box box = bounds(mesh);
   expect_near(centre(box), {0, 0, 0});
-  EXPECT_NEAR(box.hi[0] - box.lo[0], 1, 1e-15);
-  EXPECT_LT(box.hi[1] - box.lo[1], 1);
+  EXPECT_NEAR(box.upper[0] - box.lower[0], 1, 1e-15);
+  EXPECT_LT(box.upper[1] - box.lower[1], 1);
 }
 
 TEST(Placement, MirrorImagesKeepTheirOrientation) {

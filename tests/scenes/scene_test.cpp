@@ -150,8 +150,8 @@ TEST(Scene, FigureWalksInPlaceInsideItsBox) {
     EXPECT_NEAR(volume(now), volume(first), 0.05 * volume(first));
     const Box reach = bounds(now);
     for (int k = 0; k < 3; ++k) {
-      EXPECT_GT(reach.lo[k], room.lo[k] + 0.05);
-      EXPECT_LT(reach.hi[k], room.hi[k] - 0.05);
+      EXPECT_GT(reach.lower[k], room.lower[k] + 0.05);
+      EXPECT_LT(reach.upper[k], room.upper[k] - 0.05);
     }
     EXPECT_EQ(scene.bodies()[1].mesh.positions, box.positions);
     most_strained = std::max(most_strained, strained(now, first));

@@ -28,7 +28,7 @@ TEST(TearScene, ABallTearsTheClothAndFallsThrough) {
     mesh.positions = cloth.mesh.positions;
     ASSERT_EQ(mesh.triangles, cloth.mesh.triangles);
     for (const Vec3& p : cloth.mesh.positions) ASSERT_TRUE(finite(p) && p[2] > -0.01);
-    lowest = std::min(lowest, bounds(scene.bodies()[1].mesh).hi[2]);
+    lowest = std::min(lowest, bounds(scene.bodies()[1].mesh).upper[2]);
   }
   EXPECT_GT(frames_with_tears, 3u);
   EXPECT_GT(mesh.positions.size(), first.positions.size() + 20);

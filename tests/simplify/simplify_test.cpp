@@ -51,8 +51,8 @@ void expect_vertices_of(const Mesh& input, const Mesh& result) {
 void expect_certificate(const Mesh& input, const Simplified& simplified) {
   const BoundedLength& d = simplified.deviation;
   double coordinate = 0;
-  for (const double x : bounds(input).hi) coordinate = std::max(coordinate, std::abs(x));
-  for (const double x : bounds(input).lo) coordinate = std::max(coordinate, std::abs(x));
+  for (const double x : bounds(input).upper) coordinate = std::max(coordinate, std::abs(x));
+  for (const double x : bounds(input).lower) coordinate = std::max(coordinate, std::abs(x));
   const double rounding = 1e-9 * box_diagonal(input) + 4e-12 * coordinate;
   EXPECT_LE(d.lower, d.upper);
   EXPECT_LE(sampled(input, simplified.mesh), d.upper + rounding);

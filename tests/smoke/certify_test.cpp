@@ -27,8 +27,6 @@
 namespace sdm::test {
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-
 void expect_bounds(const BoundedNumber& number, double truth, double slack = 1e-9) {
   EXPECT_LE(number.lower, truth + slack);
   EXPECT_GE(number.upper, truth - slack);
@@ -240,7 +238,7 @@ TEST(SmokeTolerance, PassesOfFacingMapsAreProven) {
   const MapOptions options{.facing = 50};
   const DistanceMap map = compute_map(surface, sites, options);
   const std::vector<float> vertices = distances_at_vertices(thinner, sites, options);
-  const CertifyOptions certify{.error_bound = kNoLimit, .accuracy = 1e-5};
+  const CertifyOptions certify{.error_bound = kInfinity, .accuracy = 1e-5};
   const CertifiedVerdict passes = certify_tolerance(surface, sites, map, vertices, 0.031, certify);
   EXPECT_EQ(passes.verdict, Verdict::pass);
   ASSERT_TRUE(passes.proof);

@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <random>
@@ -29,8 +28,6 @@
 
 namespace sdm::test {
 namespace {
-
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 std::vector<double> distances_of_samples(const Surface& surface, const Mesh& o2) {
   std::vector<double> distances;
@@ -109,7 +106,7 @@ TEST(SmokeMaps, OfAwkwardMeshesAgreeWithBruteForce) {
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     const Mesh& o2 = meshes[i];
     Mesh o1 = meshes[(i + 3) % meshes.size()];
-    const Vec3 to = bounds(o2).lo, from = bounds(o1).lo;
+    const Vec3 to = bounds(o2).lower, from = bounds(o1).lower;
     const double scale = scene_diagonal(o2, o2) / scene_diagonal(o1, o1);
     o1 = mapped_by(o1, [&](const Vec3& p) { return to + scale * (p - from); });
     for (const AtlasKind kind : {AtlasKind::charts, AtlasKind::triangles}) {

@@ -36,7 +36,7 @@ TEST(SmokeMeshes, InspectionCountsWhatIsThere) {
   Mesh empty;
   EXPECT_THROW(validate(empty), Error);
   validate(single_triangle());
-  EXPECT_EQ(bounds(cube()).hi, (Vec3{1, 1, 1}));
+  EXPECT_EQ(bounds(cube()).upper, (Vec3{1, 1, 1}));
 }
 
 TEST(SmokeMeshes, TransformsAreUndoneByTheirInverses) {
@@ -50,7 +50,7 @@ TEST(SmokeMeshes, TransformsAreUndoneByTheirInverses) {
   Mesh mesh = torus(5, 3);
   transform(mesh, fit_to_unit(mesh));
   const Box box = bounds(mesh);
-  EXPECT_NEAR(std::max(box.hi[0] - box.lo[0], box.hi[1] - box.lo[1]), 1, 1e-12);
+  EXPECT_NEAR(std::max(box.upper[0] - box.lower[0], box.upper[1] - box.lower[1]), 1, 1e-12);
   Transform mirror;
   mirror.rows[2][2] = -1;
   transform(mesh, mirror);

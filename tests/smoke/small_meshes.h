@@ -91,8 +91,8 @@ inline Box around(const Mesh& mesh) {
   Box box = bounds(mesh);
   const double margin = 0.5 * scene_diagonal(mesh, mesh);
   for (std::size_t k = 0; k < 3; ++k) {
-    box.lo[k] -= margin;
-    box.hi[k] += margin;
+    box.lower[k] -= margin;
+    box.upper[k] += margin;
   }
   return box;
 }

@@ -8,7 +8,7 @@ namespace sdm::test {
 
 Vec3 random_point(const Box& box, std::mt19937& random) {
   Vec3 p;
-  for (int k = 0; k < 3; ++k) p[k] = std::uniform_real_distribution(box.lo[k], box.hi[k])(random);
+  for (int k = 0; k < 3; ++k) p[k] = std::uniform_real_distribution(box.lower[k], box.upper[k])(random);
   return p;
 }
 

@@ -39,11 +39,12 @@ std::vector<std::uint32_t> all(std::size_t count) {
 
 bool contains(const tree::FloatBox& outer, const Vec3& lo, const Vec3& hi) {
   for (int k = 0; k < 3; ++k)
-    if (lo[k] < outer.lo[k] || hi[k] > outer.hi[k]) return false;
+    if (lo[k] < outer.lower[k] || hi[k] > outer.upper[k]) return false;
   return true;
 }
 bool contains(const tree::FloatBox& outer, const tree::FloatBox& inner) {
-  return contains(outer, {inner.lo[0], inner.lo[1], inner.lo[2]}, {inner.hi[0], inner.hi[1], inner.hi[2]});
+  return contains(outer, {inner.lower[0], inner.lower[1], inner.lower[2]},
+                  {inner.upper[0], inner.upper[1], inner.upper[2]});
 }
 
 // Every item in one leaf; every box holds what is below it; children after parents; leaves no larger than
@@ -59,7 +60,7 @@ void expect_valid(const tree::AabbTree& tree, std::span<const Box> boxes, std::u
       next_item += node.count;
       for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
         ++seen[tree.items[k]];
-        EXPECT_TRUE(contains(node.box, boxes[tree.items[k]].lo, boxes[tree.items[k]].hi));
+        EXPECT_TRUE(contains(node.box, boxes[tree.items[k]].lower, boxes[tree.items[k]].upper));
       }
     } else {
       ASSERT_GT(node.right, i + 1);
@@ -92,8 +93,8 @@ TEST(AabbTree, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(many.items, single.items);
   ASSERT_EQ(many.nodes.size(), single.nodes.size());
   for (std::size_t i = 0; i < many.nodes.size(); ++i) {
-    EXPECT_EQ(many.nodes[i].box.lo, single.nodes[i].box.lo);
-    EXPECT_EQ(many.nodes[i].box.hi, single.nodes[i].box.hi);
+    EXPECT_EQ(many.nodes[i].box.lower, single.nodes[i].box.lower);
+    EXPECT_EQ(many.nodes[i].box.upper, single.nodes[i].box.upper);
     EXPECT_EQ(many.nodes[i].right, single.nodes[i].right);
     EXPECT_EQ(many.nodes[i].first, single.nodes[i].first);
     EXPECT_EQ(many.nodes[i].count, single.nodes[i].count);
@@ -106,16 +107,16 @@ TEST(AabbTree, RefitGivesTheSmallestBoxesOfMovedItems) {
   const tree::AabbTree before = tree;
   refit(tree, boxes);
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
-    EXPECT_EQ(tree.nodes[i].box.lo, before.nodes[i].box.lo);
-    EXPECT_EQ(tree.nodes[i].box.hi, before.nodes[i].box.hi);
+    EXPECT_EQ(tree.nodes[i].box.lower, before.nodes[i].box.lower);
+    EXPECT_EQ(tree.nodes[i].box.upper, before.nodes[i].box.upper);
   }
   const auto moved = random_boxes(5000, 4);
   refit(tree, moved);
   expect_valid(tree, moved, 4);
   Box whole;
   for (const Box& box : moved) extend(whole, box);
-  EXPECT_EQ(tree.nodes[0].box.lo, tree::FloatBox::around(whole).lo);
-  EXPECT_EQ(tree.nodes[0].box.hi, tree::FloatBox::around(whole).hi);
+  EXPECT_EQ(tree.nodes[0].box.lower, tree::FloatBox::around(whole).lower);
+  EXPECT_EQ(tree.nodes[0].box.upper, tree::FloatBox::around(whole).upper);
 }
 
 TEST(WideTree, ReachesEveryLeafOnceWithItsBox) {
@@ -135,8 +136,8 @@ TEST(WideTree, ReachesEveryLeafOnceWithItsBox) {
       for (std::uint32_t i = 0; i < node.count; ++i) {
         const tree::FloatBox& box = tree.nodes[node.source[i]].box;
         for (int k = 0; k < 3; ++k) {
-          EXPECT_EQ(node.lo[k][i], box.lo[k]);
-          EXPECT_EQ(node.hi[k][i], box.hi[k]);
+          EXPECT_EQ(node.lower[k][i], box.lower[k]);
+          EXPECT_EQ(node.upper[k][i], box.upper[k]);
         }
         const bool is_leaf = tree::WideTree::is_leaf(node.child[i]);
         EXPECT_EQ((node.leaves >> i & 1) == 1, is_leaf);
@@ -403,9 +404,9 @@ TEST(UnitFrame, BringsAnySizeIntoTheCubeByAPowerOfTwo) {
     const UnitFrame frame = UnitFrame::of(box);
     int exponent = 0;
     EXPECT_EQ(std::frexp(frame.scale, &exponent), 0.5);
-    for (const Vec3& corner : {box.lo, box.hi})
+    for (const Vec3& corner : {box.lower, box.upper})
       for (double x : frame.to_unit(corner)) EXPECT_LE(std::abs(x), 1);
-    EXPECT_GT(std::abs(frame.to_unit(box.hi)[0]), 0.25);
+    EXPECT_GT(std::abs(frame.to_unit(box.upper)[0]), 0.25);
   }
   EXPECT_EQ(UnitFrame::of({{5, 5, 5}, {5, 5, 5}}).to_unit({5, 5, 5}), (Vec3{0, 0, 0}));
 }
@@ -417,8 +418,8 @@ TEST(AabbTree, IsNotDeepWhateverTheBoxes) {
     for (int axis = 0; axis < 3; ++axis)
       for (double size = 1; size > 1e-30; size *= ratio) {
         Box box{{}, {1e-30, 1e-30, 1e-30}};
-        box.hi[axis] = size;
-        box.lo[axis] = 0.999 * size;
+        box.upper[axis] = size;
+        box.lower[axis] = 0.999 * size;
         boxes.push_back(box);
       }
     const tree::AabbTree tree = tree::build_aabb_tree(boxes, all(boxes.size()), 8);

@@ -11,7 +11,6 @@ namespace {
 
 using ::testing::HasSubstr;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(Grids, HaveTheCornersOfTheirBox) {
   const Grid grid = make_grid({{-1, 0, 2}, {1, 3, 4}}, {5, 4, 1});

@@ -131,8 +131,8 @@ TEST_F(OpenVdb, AgreesWithFields) {
     constexpr float kCells = 3;  // of the band
     Box box = bounds(mesh);
     for (int k = 0; k < 3; ++k) {
-      box.lo[k] -= 4.3 * spacing;
-      box.hi[k] += 4.1 * spacing;
+      box.lower[k] -= 4.3 * spacing;
+      box.upper[k] += 4.1 * spacing;
     }
     const Grid grid = make_grid(box, spacing);
     const DistanceField field = compute_field(Sites(mesh), grid, {.max_distance = kCells * spacing});

@@ -11,19 +11,18 @@ namespace sdm::test {
 namespace {
 
 using ::testing::HasSubstr;
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 std::vector<Vec3> random_points(const Box& box, std::size_t count) {
   std::mt19937 random(11);
   std::vector<Vec3> points(count);
   for (Vec3& p : points)
-    for (int k = 0; k < 3; ++k) p[k] = std::uniform_real_distribution(box.lo[k], box.hi[k])(random);
+    for (int k = 0; k < 3; ++k) p[k] = std::uniform_real_distribution(box.lower[k], box.upper[k])(random);
   return points;
 }
 
 TEST(FieldSamples, HaveBoundsThatHold) {
   for (const FieldScene& scene : field_scenes())
-    for (const double band : {kUnlimited, 0.05 * diagonal_of(scene)}) {
+    for (const double band : {kInfinity, 0.05 * diagonal_of(scene)}) {
       SCOPED_TRACE(scene.name + ", band " + std::to_string(band));
       const DistanceField field = compute_field(Sites(scene.mesh), scene.grid, {.max_distance = band});
       const bool is_signed = field.sign.method == SignMethod::exact;
@@ -75,7 +74,7 @@ TEST(FieldSamples, OfWrongInputAreErrors) {
   const Grid grid = make_grid({{-2, -2, -2}, {2, 2, 2}}, {3, 3, 3});
   DistanceField field = compute_field(Sites(cube()), grid);
   EXPECT_THAT(error_of([&] {
-                return sample_field(field, std::vector{Vec3{kUnlimited, 0, 0}});
+                return sample_field(field, std::vector{Vec3{kInfinity, 0, 0}});
               }),
               HasSubstr("point 0"));
   field.distance.pop_back();

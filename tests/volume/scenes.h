@@ -24,8 +24,8 @@ inline Box around(const Mesh& mesh, double margin) {
   Box box = bounds(mesh);
   const double by = margin * diagonal(box);
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] -= by;
-    box.hi[k] += by;
+    box.lower[k] -= by;
+    box.upper[k] += by;
   }
   return box;
 }
@@ -34,8 +34,8 @@ inline Box in_the_middle(const Mesh& mesh, double part) {
   const Box box = bounds(mesh);
   Box result{centre(box), centre(box)};
   for (int k = 0; k < 3; ++k) {
-    result.lo[k] -= part * diagonal(box);
-    result.hi[k] += part * diagonal(box);
+    result.lower[k] -= part * diagonal(box);
+    result.upper[k] += part * diagonal(box);
   }
   return result;
 }
@@ -67,8 +67,8 @@ inline std::vector<FieldScene> field_scenes() {
   add("inside_mesh", eight, make_grid(in_the_middle(eight, 0.1), {16, 17, 18}));
   Box beside = bounds(eight);
   for (int k = 0; k < 3; ++k) {
-    beside.lo[k] += 2;
-    beside.hi[k] += 3;
+    beside.lower[k] += 2;
+    beside.upper[k] += 3;
   }
   add("beside_mesh", eight, make_grid(beside, {12, 13, 14}));
   add("far_away", ring(16), make_grid({{1e3, 2e3, 0}, {3e3, 3e3, 1e3}}, {9, 8, 7}));

@@ -18,39 +18,39 @@ constexpr double kTextSize = 14, kCharacter = 7.4;
 /// One axis: its range, and where values lie within it, from 0 to 1.
 struct Scale {
   bool log = false;
-  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  double lower = std::numeric_limits<double>::infinity(), upper = -lower;
 
   [[nodiscard]] bool shows(double v) const { return std::isfinite(v) && (!log || v > 0); }
   void include(double v) {
     if (shows(v)) {
-      lo = std::min(lo, v);
-      hi = std::max(hi, v);
+      lower = std::min(lower, v);
+      upper = std::max(upper, v);
     }
   }
   void finish(const Axis& axis) {
-    if (!(lo <= hi)) {
-      lo = log ? 1 : 0;
-      hi = log ? 10 : 1;
+    if (!(lower <= upper)) {
+      lower = log ? 1 : 0;
+      upper = log ? 10 : 1;
     }
     if (log) {
-      lo = std::pow(10, std::log10(lo) - 0.04);
-      hi = std::pow(10, std::log10(hi) + 0.04);
-      if (hi / lo < 2) {
-        lo /= 1.5;
-        hi *= 1.5;
+      lower = std::pow(10, std::log10(lower) - 0.04);
+      upper = std::pow(10, std::log10(upper) + 0.04);
+      if (upper / lower < 2) {
+        lower /= 1.5;
+        upper *= 1.5;
       }
       return;
     }
     if (axis.from_zero) {
-      lo = std::min(lo, 0.0);
-      hi = std::max(hi, 0.0);
+      lower = std::min(lower, 0.0);
+      upper = std::max(upper, 0.0);
     }
-    if (!(hi > lo)) hi = lo + std::max(1e-9, 0.1 * std::abs(lo));
-    hi += 0.04 * (hi - lo);
-    if (!axis.from_zero || lo < 0) lo -= 0.04 * (hi - lo);
+    if (!(upper > lower)) upper = lower + std::max(1e-9, 0.1 * std::abs(lower));
+    upper += 0.04 * (upper - lower);
+    if (!axis.from_zero || lower < 0) lower -= 0.04 * (upper - lower);
   }
   [[nodiscard]] double part(double v) const {
-    return log ? std::log(v / lo) / std::log(hi / lo) : (v - lo) / (hi - lo);
+    return log ? std::log(v / lower) / std::log(upper / lower) : (v - lower) / (upper - lower);
   }
 };
 
@@ -68,13 +68,14 @@ std::string log_label(double v) {
 
 /// Powers of ten, and 2 and 5 times those while there are few decades.
 std::vector<Tick> log_ticks(const Scale& scale) {
-  const double decades = std::log10(scale.hi / scale.lo);
+  const double decades = std::log10(scale.upper / scale.lower);
   std::vector<Tick> result;
   const int step = decades > 8 ? 2 : 1;
-  for (int e = static_cast<int>(std::floor(std::log10(scale.lo))); e <= std::ceil(std::log10(scale.hi)); ++e)
+  for (int e = static_cast<int>(std::floor(std::log10(scale.lower))); e <= std::ceil(std::log10(scale.upper));
+       ++e)
     for (const int digit : {1, 2, 5}) {
       const double v = digit * std::pow(10, e);
-      if (v < scale.lo || v > scale.hi) continue;
+      if (v < scale.lower || v > scale.upper) continue;
       if (digit != 1 && decades > 3) continue;
       result.push_back({v, e % step == 0 ? log_label(v) : ""});
     }
@@ -83,7 +84,7 @@ std::vector<Tick> log_ticks(const Scale& scale) {
 
 std::vector<Tick> ticks_of(const Scale& scale, int count) {
   if (scale.log) return log_ticks(scale);
-  const std::vector<double> values = io::ticks(scale.lo, scale.hi, count);
+  const std::vector<double> values = io::ticks(scale.lower, scale.upper, count);
   const double step = values.size() > 1 ? values[1] - values[0] : 1;
   std::vector<Tick> result;
   result.reserve(values.size());
@@ -156,7 +157,7 @@ std::string to_svg(const Chart& chart) {
     svg.text({kLeft - 8, height + 5}, label, kTextSize, "end");
   }
   for (const auto& [value, label] : ticks_of(x, 8)) {
-    const double across = at(value, y.lo)[0];
+    const double across = at(value, y.lower)[0];
     svg.line({across, top}, {across, bottom}, {kGridColor});
     svg.text({across, bottom + 19}, label, kTextSize, "middle");
   }
@@ -167,7 +168,7 @@ std::string to_svg(const Chart& chart) {
   svg.text({20, (top + bottom) / 2}, chart.y.label, kTextSize, "middle", false, -90);
 
   for (const Mark& mark : chart.marks) {
-    const double across = at(mark.x, y.lo)[0];
+    const double across = at(mark.x, y.lower)[0];
     svg.line({across, top}, {across, bottom}, {kAxisColor, 1.5, true});
     const bool left_half = x.part(mark.x) < 0.6;
     svg.text({across + (left_half ? 6 : -6), top + 18}, mark.label, kTextSize, left_half ? "start" : "end");

@@ -10,21 +10,22 @@ namespace sdm::atlas {
 namespace {
 
 struct Rectangle {
-  GridPoint lo, hi;
+  GridPoint lower, upper;
 };
 
 Rectangle bounds_of(const GridTriangle& t) {
   Rectangle box{t[0], t[0]};
   for (const GridPoint& p : t)
     for (int k = 0; k < 2; ++k) {
-      box.lo[k] = std::min(box.lo[k], p[k]);
-      box.hi[k] = std::max(box.hi[k], p[k]);
+      box.lower[k] = std::min(box.lower[k], p[k]);
+      box.upper[k] = std::max(box.upper[k], p[k]);
     }
   return box;
 }
 
 bool boxes_meet(const Rectangle& a, const Rectangle& b) {
-  return a.lo[0] < b.hi[0] && b.lo[0] < a.hi[0] && a.lo[1] < b.hi[1] && b.lo[1] < a.hi[1];
+  return a.lower[0] < b.upper[0] && b.lower[0] < a.upper[0] && a.lower[1] < b.upper[1] &&
+         b.lower[1] < a.upper[1];
 }
 
 // Whether an edge of `a` has all of `b` on its outer side.
@@ -55,11 +56,12 @@ class Buckets {
     Rectangle all = boxes[0];
     for (const Rectangle& b : boxes)
       for (int k = 0; k < 2; ++k) {
-        all.lo[k] = std::min(all.lo[k], b.lo[k]);
-        all.hi[k] = std::max(all.hi[k], b.hi[k]);
+        all.lower[k] = std::min(all.lower[k], b.lower[k]);
+        all.upper[k] = std::max(all.upper[k], b.upper[k]);
       }
-    origin_ = all.lo;
-    const double width = std::max(1, all.hi[0] - all.lo[0]), height = std::max(1, all.hi[1] - all.lo[1]);
+    origin_ = all.lower;
+    const double width = std::max(1, all.upper[0] - all.lower[0]),
+                 height = std::max(1, all.upper[1] - all.lower[1]);
     cell_ = std::max(1.0, std::sqrt(width * height / static_cast<double>(boxes.size())));
     // Cells are squares, so that long thin sets have few cells across, but there are at most a few cells per
     // triangle, and cells are not so small that the lists grow long.
@@ -69,8 +71,8 @@ class Buckets {
       rows_ = static_cast<std::int64_t>(height / cell_) + 1;
       double entries = static_cast<double>(columns_) * static_cast<double>(rows_);
       for (const Rectangle& b : boxes)
-        entries += static_cast<double>(column(b.hi[0]) - column(b.lo[0]) + 1) *
-                   static_cast<double>(row(b.hi[1]) - row(b.lo[1]) + 1);
+        entries += static_cast<double>(column(b.upper[0]) - column(b.lower[0]) + 1) *
+                   static_cast<double>(row(b.upper[1]) - row(b.lower[1]) + 1);
       if (entries <= limit || (columns_ == 1 && rows_ == 1)) break;
     }
     fill(boxes);
@@ -94,8 +96,8 @@ class Buckets {
     const auto cells = static_cast<std::size_t>(columns_ * rows_);
     lists_ = make_rows<std::uint32_t, std::size_t>(cells, [&](const auto& put) {
       for (std::uint32_t i = 0; i < boxes.size(); ++i)
-        for (std::int64_t y = row(boxes[i].lo[1]); y <= row(boxes[i].hi[1]); ++y)
-          for (std::int64_t x = column(boxes[i].lo[0]); x <= column(boxes[i].hi[0]); ++x)
+        for (std::int64_t y = row(boxes[i].lower[1]); y <= row(boxes[i].upper[1]); ++y)
+          for (std::int64_t x = column(boxes[i].lower[0]); x <= column(boxes[i].upper[0]); ++x)
             put(static_cast<std::size_t>(y * columns_ + x), i);
     });
   }
@@ -140,7 +142,8 @@ void for_each_overlap(std::span<const GridTriangle> triangles, double slack, std
         // Among the cells that two boxes share, only the one with the low corner of their intersection tests
         // the pair.
         if (!boxes_meet(a, b)) continue;
-        if (buckets.cell_of(std::max(a.lo[0], b.lo[0]), std::max(a.lo[1], b.lo[1])) != cell) continue;
+        if (buckets.cell_of(std::max(a.lower[0], b.lower[0]), std::max(a.lower[1], b.lower[1])) != cell)
+          continue;
         const std::size_t first = solid[list[i]], second = solid[list[j]];
         if (interiors_meet(triangles[first], triangles[second], slack) && found(Pair(first, second))) return;
       }

@@ -1,7 +1,6 @@
 #include "atlas/charts/shape.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "atlas/charts/tangent_frame.h"
 #include "core/parallel.h"
@@ -17,21 +16,21 @@ constexpr std::size_t kDirections = 256;
 Vec2 least_rectangle(std::vector<Vec2> points) {
   const auto hull = convex_hull(std::move(points), [](const Vec2& p) -> const Vec2& { return p; });
   Vec2 best = {1, 0};
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   const std::size_t stride = hull.size() / kDirections + 1;
   for (std::size_t i = 0; i < hull.size(); i += stride) {
     const Vec2 edge = hull[(i + 1) % hull.size()] - hull[i];
     const double length = std::hypot(edge[0], edge[1]);
     if (!(length > 0)) continue;
     const Vec2 along = (1 / length) * edge;
-    double lo = 0, hi = 0, height = 0;  // relative to the edge's start, all of the hull on its left
+    double lower = 0, upper = 0, height = 0;  // relative to the edge's start, all of the hull on its left
     for (const Vec2& p : hull) {
-      lo = std::min(lo, dot(along, p - hull[i]));
-      hi = std::max(hi, dot(along, p - hull[i]));
+      lower = std::min(lower, dot(along, p - hull[i]));
+      upper = std::max(upper, dot(along, p - hull[i]));
       height = std::max(height, cross(along, p - hull[i]));
     }
-    if ((hi - lo) * height < least) {
-      least = (hi - lo) * height;
+    if ((upper - lower) * height < least) {
+      least = (upper - lower) * height;
       best = along;
     }
   }

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "geometry/vec.h"
 
@@ -39,7 +38,7 @@ void for_each_centre(std::array<Vec2, 3> t, Visit visit) {
   const auto [lo, hi] = std::minmax({t[0][1], t[1][1], t[2][1]});
   for (auto y = static_cast<std::int64_t>(std::ceil(lo - 0.5)); static_cast<double>(y) + 0.5 <= hi; ++y) {
     const double row = static_cast<double>(y) + 0.5;
-    double left = std::numeric_limits<double>::infinity(), right = -left;
+    double left = kInfinity, right = -left;
     for (int k = 0; k < 3; ++k) {
       const Vec2 &a = t[k], &b = t[(k + 1) % 3];
       if (std::min(a[1], b[1]) > row || std::max(a[1], b[1]) < row) continue;

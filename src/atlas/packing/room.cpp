@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace sdm::atlas {
 namespace {
 
 // The columns that the part of the triangle between two rows of y touches.
 std::array<double, 2> range_between(const std::array<Vec2, 3>& t, double top, double bottom) {
-  double left = std::numeric_limits<double>::infinity(), right = -left;
+  double left = kInfinity, right = -left;
   const auto include = [&](double x) {
     left = std::min(left, x);
     right = std::max(right, x);
@@ -46,7 +45,7 @@ TouchedRows::TouchedRows(const std::array<Vec2, 3>& t, std::uint32_t gutter) {
     const double row = y - first;
     const auto from = static_cast<std::size_t>(std::max(0.0, row - gutter));
     const auto to = static_cast<std::size_t>(std::min(last - first, row + gutter));
-    double left = std::numeric_limits<double>::infinity(), right = -left;
+    double left = kInfinity, right = -left;
     for (std::size_t i = from; i <= to; ++i) {
       left = std::min(left, ranges[i][0]);
       right = std::max(right, ranges[i][1]);

@@ -38,7 +38,7 @@ std::vector<std::array<MikkCorner, 3>> mikk_triangles(const Surface& surface,
                                                       std::span<const std::uint32_t> faces) {
   const Mesh& mesh = surface.mesh();
   const Box box = bounds(mesh);
-  const Vec3 centre = 0.5 * (box.lo + box.hi);  // single precision resolves what is near it
+  const Vec3 centre = 0.5 * (box.lower + box.upper);  // single precision resolves what is near it
   std::vector<std::array<MikkCorner, 3>> triangles(faces.size());
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const std::uint32_t face = faces[i];

@@ -77,8 +77,8 @@ ContactRegions::Position ContactRegions::find_position(Node& node, const shape::
   const sites::SitesData& sites = internals(other_->sites());
   const Vec3& centre = ball.centre;
   const double free = ball.radius + margin_, inside = depth * ball.radius;
-  const double known = node.face == kNone ? std::numeric_limits<double>::infinity()
-                                          : sites::closest_on_face(sites, node.face, centre).distance;
+  const double known =
+      node.face == kNone ? kInfinity : sites::closest_on_face(sites, node.face, centre).distance;
   if (known <= std::min(free, inside)) return Position::undecided;
   // Sets node.known, or returns false if the surface is farther away.
   const auto is_within = [&](double reach) {
@@ -91,7 +91,7 @@ ContactRegions::Position ContactRegions::find_position(Node& node, const shape::
   if (!is_within(free)) {
     // The surface does not meet this ball, which is on the side of any other such ball that it overlaps.
     if (!(norm(centre - node.known.centre) < (1 - kRelativeRounding) * (free + node.known.radius)))
-      (void)is_within(std::numeric_limits<double>::infinity());
+      (void)is_within(kInfinity);
     if (!node.known.inside) return Position::free;
     if (inside <= free || !is_within(inside)) return Position::inside;
   }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -46,7 +45,7 @@ class ContactRegions {
   /// A ball that the surface of the other body does not meet.
   struct OneSided {
     Vec3 centre{};
-    double radius = -std::numeric_limits<double>::infinity();  ///< unknown
+    double radius = -kInfinity;  ///< unknown
     bool inside = false;
   };
   /// What is known of a node of the wide tree, or a leaf.

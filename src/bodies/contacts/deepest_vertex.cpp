@@ -131,7 +131,7 @@ double DeepestVertex::exact_bound(const Vec3& at, std::size_t i) const {
     return sites::closest_on_face(internals(other_->sites()), face, at).distance;
   };
   const std::uint32_t group = std::prev(std::ranges::upper_bound(groups_, i, {}, &Group::first))->face;
-  double bound = group == kNone ? std::numeric_limits<double>::infinity() : distance(group);
+  double bound = group == kNone ? kInfinity : distance(group);
   for (const std::uint32_t face : faces_) bound = std::min(bound, distance(face));
   return bound;
 }

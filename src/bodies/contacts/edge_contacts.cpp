@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -23,7 +22,7 @@ constexpr double kSameHeight = 0.1;
 
 bool is_inside(const shape::Body& body, const Vec3& point) {
   if (!body.solid()) return false;
-  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  constexpr double kAnywhere = kInfinity;
   return body.inside()(point, closest::closest_point(internals(body.sites()), point, kAnywhere));
 }
 

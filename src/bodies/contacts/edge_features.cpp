@@ -138,7 +138,8 @@ void FeatureContacts::find_inside_edges(const ContactRegion& region) {
   const double shortest = kLongEdge * query().size;
   const double unit = shortest / to_other().scale * sites.frame.scale;
   const auto is_short = [&](const tree::FloatBox& box) {
-    return norm(Vec3{box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]}) <= unit;
+    return norm(Vec3{box.upper[0] - box.lower[0], box.upper[1] - box.lower[1],
+                     box.upper[2] - box.lower[2]}) <= unit;
   };
   if (is_short(sites.tree.box(region.source))) return;
   OneSidedVertices& vertices = candidates_->vertices();

@@ -83,8 +83,10 @@ class Boxes {
     for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
       Vec from = hn::Zero(d), to = hn::Set(d, 1.0f);
       for (int k = 0; k < 3; ++k) {
-        const Vec lo = hn::Mul(hn::Sub(hn::Sub(hn::Load(d, node.lo[k] + i), reach_), start_[k]), inverse_[k]);
-        const Vec hi = hn::Mul(hn::Sub(hn::Add(hn::Load(d, node.hi[k] + i), reach_), start_[k]), inverse_[k]);
+        const Vec lo =
+            hn::Mul(hn::Sub(hn::Sub(hn::Load(d, node.lower[k] + i), reach_), start_[k]), inverse_[k]);
+        const Vec hi =
+            hn::Mul(hn::Sub(hn::Add(hn::Load(d, node.upper[k] + i), reach_), start_[k]), inverse_[k]);
         from = hn::Max(from, hn::Min(lo, hi));
         to = hn::Min(to, hn::Max(lo, hi));
       }
@@ -92,8 +94,8 @@ class Boxes {
       for (int h = 0; h < count_; ++h) {
         Vec most = half_spaces_[h].rest;
         for (int k = 0; k < 3; ++k)
-          most = hn::Add(most, hn::Max(hn::Mul(half_spaces_[h].w[k], hn::Load(d, node.lo[k] + i)),
-                                       hn::Mul(half_spaces_[h].w[k], hn::Load(d, node.hi[k] + i))));
+          most = hn::Add(most, hn::Max(hn::Mul(half_spaces_[h].w[k], hn::Load(d, node.lower[k] + i)),
+                                       hn::Mul(half_spaces_[h].w[k], hn::Load(d, node.upper[k] + i))));
         open = hn::And(open, hn::Ge(most, hn::Zero(d)));
       }
       children |= bits(open, i);
@@ -266,14 +268,14 @@ std::optional<FacesNearEdge::UnitSegment> to_unit(const sites::SitesData& sites,
   const double around = (1 + kSegmentRounding) * frame.scale * reach + kSegmentRounding;
   double from = 0, to = 1, most = 0;
   for (int k = 0; k < 3; ++k) {
-    const double lo = box.lo[k] - around - a[k], hi = box.hi[k] + around - a[k];
+    const double lo = box.lower[k] - around - a[k], hi = box.upper[k] + around - a[k];
     if (along[k] != 0) {
       from = std::max(from, std::min(lo / along[k], hi / along[k]));
       to = std::min(to, std::max(lo / along[k], hi / along[k]));
     } else if (lo > 0 || hi < 0) {
       return {};
     }
-    most = std::max({most, std::abs(box.lo[k] - around), std::abs(box.hi[k] + around)});
+    most = std::max({most, std::abs(box.lower[k] - around), std::abs(box.upper[k] + around)});
   }
   if (!(from <= to)) return {};
   const Vec3 part = (to - from) * along;

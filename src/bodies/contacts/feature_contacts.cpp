@@ -86,7 +86,7 @@ void FeatureContacts::find_deepest(Regions part) {
   const Box box = box_of(part);
   if (found.vertex != kNone)
     add_deepest(part, found, box);
-  else if (box.lo[0] <= box.hi[0])
+  else if (box.lower[0] <= box.upper[0])
     bridges_.push_back(image(query().bodies[query().side]->pose().map, box));
 }
 
@@ -202,18 +202,18 @@ Box FeatureContacts::box_of(Regions part) {
   const sites::SitesData& sites = internals(on().sites());
   constexpr auto kBoxRounding = static_cast<float>(kSingleRounding);
   tree::FloatBox unit;
-  unit.lo.fill(std::numeric_limits<float>::infinity());
-  unit.hi.fill(-std::numeric_limits<float>::infinity());
+  unit.lower.fill(std::numeric_limits<float>::infinity());
+  unit.upper.fill(-std::numeric_limits<float>::infinity());
   const auto extend_by = [&](std::span<const float, 3> lo, std::span<const float, 3> hi) {
     for (int k = 0; k < 3; ++k) {
-      unit.lo[k] = std::min(unit.lo[k], lo[k] - kBoxRounding);
-      unit.hi[k] = std::max(unit.hi[k], hi[k] + kBoxRounding);
+      unit.lower[k] = std::min(unit.lower[k], lo[k] - kBoxRounding);
+      unit.upper[k] = std::max(unit.upper[k], hi[k] + kBoxRounding);
     }
   };
   for (const ContactRegion& region : part) {
     if (region.is_inside()) {
       const tree::FloatBox& whole = sites.tree.box(region.source);
-      extend_by(whole.lo, whole.hi);
+      extend_by(whole.lower, whole.upper);
       continue;
     }
     for (std::uint32_t leaf = region.first_leaf; leaf < region.last_leaf; ++leaf) {
@@ -230,9 +230,9 @@ Box FeatureContacts::box_of(Regions part) {
       }
     }
   }
-  if (unit.lo[0] > unit.hi[0]) return {};
+  if (unit.lower[0] > unit.upper[0]) return {};
   Box box;
-  for (const auto& corner : {unit.lo, unit.hi})
+  for (const auto& corner : {unit.lower, unit.upper})
     extend(box, sites.frame.origin + (1 / sites.frame.scale) * Vec3{corner[0], corner[1], corner[2]});
   return box;
 }

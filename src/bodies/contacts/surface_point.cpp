@@ -11,8 +11,7 @@ SurfacePoint measure(const shape::Body& body, const Vec3& at, double reach) {
   const sites::SitesData& sites = internals(body.sites());
   const double limit = (1 + kUnitDistanceRounding) * reach + kUnitDistanceRounding / sites.frame.scale;
   ClosestPoint closest = closest::closest_point(sites, at, limit);
-  if (closest.type == SiteType::none)
-    closest = closest::closest_point(sites, at, std::numeric_limits<double>::infinity());
+  if (closest.type == SiteType::none) closest = closest::closest_point(sites, at, kInfinity);
   return {.at = at,
           .distance = body.inside()(at, closest) ? -closest.distance : closest.distance,
           .vector = closest.point - at,
@@ -21,9 +20,9 @@ SurfacePoint measure(const shape::Body& body, const Vec3& at, double reach) {
 }
 
 SurfacePoint measure_near(const shape::Body& body, const Vec3& at, std::uint32_t face) {
-  return measure(body, at,
-                 face == kNone ? std::numeric_limits<double>::infinity()
-                               : sites::closest_on_face(internals(body.sites()), face, at).distance);
+  return measure(
+      body, at,
+      face == kNone ? kInfinity : sites::closest_on_face(internals(body.sites()), face, at).distance);
 }
 
 bool at_boundary(const shape::Body& body, const SurfacePoint& point) {

@@ -1,16 +1,14 @@
 // A point, and the closest point of the other body.
 #pragma once
 
-#include <limits>
-
 #include "bodies/shape/body.h"
 
 namespace sdm::contacts {
 
 struct SurfacePoint {
   Vec3 at{};
-  double distance = std::numeric_limits<double>::infinity();  ///< to the surface; negative inside
-  Vec3 vector{};                                              ///< to the closest point
+  double distance = kInfinity;  ///< to the surface; negative inside
+  Vec3 vector{};                ///< to the closest point
   ClosestPoint closest{};
   std::uint32_t face = kNone;  ///< a face of the closest site
 };

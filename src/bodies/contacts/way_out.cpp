@@ -1,7 +1,6 @@
 #include "bodies/contacts/way_out.h"
 
 #include <cmath>
-#include <limits>
 
 #include "geometry/vec.h"
 #include "sites/closest_on_face.h"
@@ -62,7 +61,7 @@ void WayOutFinder::find_pieces(const SurfaceAround& around, const Vec3& normal) 
 
 WayOutFinder::OnPiece WayOutFinder::closest_on_pieces(const SurfaceAround& around, const Vec3& at) const {
   OnPiece best;
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (const Piece& piece : pieces_) {
     const Vec3 closest =
         piece.is_edge

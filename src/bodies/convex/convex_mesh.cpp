@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -67,7 +66,7 @@ bool is_star_about(const Vec3& centre, const Mesh& mesh, int outward) {
 
 // Sets the normals of the faces. Returns the distance of the nearest plane of one from the centre.
 double set_normals(ConvexMesh& convex, const Mesh& mesh) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   convex.normals.reserve(mesh.triangles.size());
   for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
     const auto [a, b, c] = corners_of(mesh, face);
@@ -146,7 +145,7 @@ void set_coordinates(ConvexMesh& convex) {
 // is higher than v by more than e along a unit vector u, then along u + e / s · a none is higher at all, nor
 // any other point p, as the mesh is convex: u·(p − v) ≤ e / s · |p − v|.
 double least_sharpness(const ConvexMesh& convex) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (std::size_t v = 0; v < convex.points.size(); ++v) {
     Vec3 a{};
     for (const Spoke& spoke : convex.spokes.of(v))

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "bodies/convex/touching.h"
@@ -137,7 +136,7 @@ class Proof {
     const ConvexMesh& mesh = *meshes_[side];
     const auto& rows = pair_.pose.rows;
     const Vec3 up = side == 0 ? u : -(u[0] * rows[0] + u[1] * rows[1] + u[2] * rows[2]);
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (const std::uint32_t v : features_[side].vertices())
       for (const Spoke& spoke : mesh.spokes.of(v))
         if (!features_[side].contains(spoke.end))

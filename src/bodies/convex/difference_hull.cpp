@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -201,7 +200,7 @@ class DifferenceHull {
   }
 
   const double size_;
-  double beyond_ = std::numeric_limits<double>::infinity();
+  double beyond_ = kInfinity;
   ExitWorkspace& w_;
 };
 
@@ -287,7 +286,7 @@ class ExitSearch {
   double size_;
   Grid grid_;
   ExitWorkspace& workspace_;
-  ConvexExit exit_{.upper = std::numeric_limits<double>::infinity()};
+  ConvexExit exit_{.upper = kInfinity};
 };
 
 }  // namespace

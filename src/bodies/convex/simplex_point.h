@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "geometry/vec.h"
 
@@ -43,7 +42,7 @@ struct SimplexPoints {
   /// Keeps three of four points: those whose plane is nearest to the origin. Returns its unit normal, away
   /// from the point left out; 0 if no three points have a plane.
   Vec3 keep_nearest_face() {
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     int farthest = 3;
     Vec3 outwards{};
     for (int i = 0; i < 4; ++i) {
@@ -62,7 +61,7 @@ struct SimplexPoints {
   /// The distance of the origin from the nearest plane of four points that enclose it, at most; negative if
   /// they do not.
   [[nodiscard]] double depth_of_origin() const {
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (int i = 0; i < 4; ++i) {
       const Vec3 &a = w(i), &b = w((i + 1) % 4), &c = w((i + 2) % 4), &d = w((i + 3) % 4);
       const Vec3 n = cross(b - a, c - a);
@@ -79,7 +78,7 @@ struct SimplexPoints {
   static constexpr double kSliver = 1e-15;
 
   struct Nearest {
-    double squared = std::numeric_limits<double>::infinity();
+    double squared = kInfinity;
     Vec3 v{};
     int count = 0;
     std::array<int, 3> kept{};

@@ -180,7 +180,7 @@ std::uint32_t FarthestVertex(const ConvexMesh& mesh, const Vec3& u, std::uint32_
   if (mesh.climbs)
     return climb(mesh, u, near != kNone ? near : nearly_farthest_vertex(mesh, u), kFewRoundings * mesh.size);
   std::uint32_t farthest = 0;
-  double most = -std::numeric_limits<double>::infinity();
+  double most = -kInfinity;
   for (std::uint32_t v = 0; v < mesh.points.size(); ++v)
     if (const double along = dot(u, mesh.points[v]); along > most) {
       most = along;

@@ -20,9 +20,9 @@ bool is_identity(const Transform& pose) {
 Box around(const Vec3& middle, const Box& box) {
   Box about;
   for (int k = 0; k < 3; ++k) {
-    const double half = std::max(std::abs(box.lo[k] - middle[k]), std::abs(box.hi[k] - middle[k]));
-    about.lo[k] = middle[k] - half;
-    about.hi[k] = middle[k] + half;
+    const double half = std::max(std::abs(box.lower[k] - middle[k]), std::abs(box.upper[k] - middle[k]));
+    about.lower[k] = middle[k] - half;
+    about.upper[k] = middle[k] + half;
   }
   return about;
 }

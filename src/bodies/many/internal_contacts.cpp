@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "closest/closest_points.h"
 #include "geometry/vec.h"
@@ -19,7 +18,7 @@ constexpr double kAlong = 0.996;    // the cosine of 5°: a direction along a no
 constexpr double kBeyond = 1e-3;
 
 double diagonal_of(const shape::PosedBody& body) {
-  return norm(body.body().box().hi - body.body().box().lo);
+  return norm(body.body().box().upper - body.body().box().lower);
 }
 
 // Whether the edge is convex, or has not two faces with normals. Of a surface without an inside, either side
@@ -188,7 +187,7 @@ bool InternalContacts::covered(std::uint32_t body, std::uint32_t face, const Vec
     const shape::PosedBody& other = bodies_[pair[1]];
     const Vec3 there = inverse(other.pose().map)(probe);
     if (!sdm::contains(other.body().box(), there)) return false;
-    constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+    constexpr double kAnywhere = kInfinity;
     const ClosestPoint closest = closest::closest_point(internals(other.body().sites()), there, kAnywhere);
     return other.body().inside()(there, closest);
   });

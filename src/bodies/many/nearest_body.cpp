@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -26,7 +25,7 @@ class BlockSearch {
 
   void find(std::span<const Vec3> points) {
     std::fill_n(closest_.begin(), points.size(), ClosestPoint{});
-    std::fill_n(distance_.begin(), points.size(), std::numeric_limits<double>::infinity());
+    std::fill_n(distance_.begin(), points.size(), kInfinity);
     std::fill_n(body_.begin(), points.size(), kNone);
     sort_bodies(points);
     for (const auto& [distance, body] : order_) {

@@ -40,7 +40,7 @@ class PosedShape {
   }
 
   double separation(std::span<const shape::PosedBody> obstacles, double max_distance) {
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (std::size_t i = 0; i < obstacles.size() && least > 0; ++i) {
       answers_.begin(body_, obstacles[i], hints_[i]);
       if (answers_.surfaces_within(std::min(max_distance, least)))

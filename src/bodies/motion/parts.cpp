@@ -61,8 +61,8 @@ Part Parts::box_of_tree(std::uint32_t node) const {
   const tree::FloatBox& box = sites_.tree.box(node);
   Part part;
   for (int k = 0; k < 3; ++k) {
-    part.point[0][k] = origin_[k] + unit_ * (0.5 * (double{box.lo[k]} + box.hi[k]));
-    part.half[k] = unit_ * (0.5 * (double{box.hi[k]} - box.lo[k]));
+    part.point[0][k] = origin_[k] + unit_ * (0.5 * (double{box.lower[k]} + box.upper[k]));
+    part.half[k] = unit_ * (0.5 * (double{box.upper[k]} - box.lower[k]));
     part.axis[k][k] = 1;
   }
   part.radius[0] = from_axis(part.point[0]) + motion_.scale() * norm(part.half);
@@ -102,10 +102,10 @@ Part Parts::fitted(std::span<const std::uint32_t> faces, const Part& box) const 
       radius = std::max(radius, squared_norm(cross(p, motion_.mesh_axis())));
       reach = std::max(reach, squared_norm(p));
     }
-  part.half = 0.5 * (extent.hi - extent.lo);
+  part.half = 0.5 * (extent.upper - extent.lower);
   if (principal.found && area(part.half) < area(box.half)) {
     part.point[0] = from;
-    for (int k = 0; k < 3; ++k) part.point[0] += (0.5 * (extent.lo[k] + extent.hi[k])) * part.axis[k];
+    for (int k = 0; k < 3; ++k) part.point[0] += (0.5 * (extent.lower[k] + extent.upper[k])) * part.axis[k];
   } else {
     part = box;
   }

@@ -7,7 +7,7 @@
 namespace sdm::motion {
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kForever = kInfinity;
 
 // A bound on u·x for a point x of a part, s after now: at + speed s + bend s² / 2.
 struct Rise {

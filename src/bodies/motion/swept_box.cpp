@@ -13,7 +13,7 @@ namespace sdm::motion {
 Box swept_box(const shape::Body& body, const DividedMotion& motion) {
   Vec3 half;  // of the box about the centre of the motion that contains all faces
   for (int k = 0; k < 3; ++k)
-    half[k] = std::max(body.box().hi[k] - motion.middle()[k], motion.middle()[k] - body.box().lo[k]);
+    half[k] = std::max(body.box().upper[k] - motion.middle()[k], motion.middle()[k] - body.box().lower[k]);
   const auto& [ball_centre, ball_radius] = body.ball();
   const double radius =
       motion.scale() * std::min(norm(half), norm(ball_centre - motion.middle()) + ball_radius);
@@ -28,10 +28,10 @@ Box swept_box(const shape::Body& body, const DividedMotion& motion) {
     const double from = motion.start()[k], to = from + motion.shift()[k];
     const double at_first = extent(first[k]), at_last = extent(last[k]);
     const double rounding = 2 * motion.rounding()[k];
-    box.lo[k] = std::max(std::min(from - at_first, to - at_last) - bend, std::min(from, to) - radius);
-    box.hi[k] = std::min(std::max(from + at_first, to + at_last) + bend, std::max(from, to) + radius);
-    box.lo[k] -= rounding;
-    box.hi[k] += rounding;
+    box.lower[k] = std::max(std::min(from - at_first, to - at_last) - bend, std::min(from, to) - radius);
+    box.upper[k] = std::min(std::max(from + at_first, to + at_last) + bend, std::max(from, to) + radius);
+    box.lower[k] -= rounding;
+    box.upper[k] += rounding;
   }
   return box;
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "bodies/pairs/collision.h"
@@ -14,8 +13,6 @@
 
 namespace sdm::pair {
 namespace {
-
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 mesh::Similarity between(const mesh::Similarity& from, const mesh::Similarity& to) {
   if (to.map == Affine{}) return from;
@@ -54,7 +51,7 @@ const std::array<mesh::Similarity, 2>& PairAnswers::to_other() {
 }
 
 const BoundedLength& PairAnswers::separation() {
-  if (!known_.separation) find_closest(kNoLimit);
+  if (!known_.separation) find_closest(kInfinity);
   return *known_.separation;
 }
 
@@ -139,7 +136,7 @@ bool PairAnswers::find_closest(double bound) {
   const pairs::Separation c =
       found ? *found : pairs::find_closest(pair, own_bound, workspace_, known_.closest_faces);
   if (c.face1 == kNone) {
-    if (bound == kNoLimit) throw_nothing_found();
+    if (bound == kInfinity) throw_nothing_found();
     return false;
   }
   known_.intersecting = c.intersecting;

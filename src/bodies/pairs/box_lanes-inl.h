@@ -38,8 +38,8 @@ struct CentredBox {
 
   explicit CentredBox(const tree::FloatBox& box) {
     for (int k = 0; k < 3; ++k) {
-      centre[k] = 0.5f * (box.lo[k] + box.hi[k]);
-      half[k] = 0.5f * (box.hi[k] - box.lo[k]);
+      centre[k] = 0.5f * (box.lower[k] + box.upper[k]);
+      half[k] = 0.5f * (box.upper[k] - box.lower[k]);
     }
   }
   // The bounding box of `box` in another frame, enlarged by the rounding error.
@@ -69,7 +69,7 @@ class BoxDistances {
     const Vec one_half = hn::Set(d, 0.5f);
     Vec centre[3], half[3], gap[3];
     for (int k = 0; k < 3; ++k) {
-      const Vec lo = hn::Load(d, node.lo[k] + i), hi = hn::Load(d, node.hi[k] + i);
+      const Vec lo = hn::Load(d, node.lower[k] + i), hi = hn::Load(d, node.upper[k] + i);
       centre[k] = hn::Mul(one_half, hn::Add(lo, hi));
       half[k] = hn::Mul(one_half, hn::Sub(hi, lo));
       gap[k] = hn::Sub(hn::Abs(hn::Sub(centre[k], hn::Set(d, seen_.centre[k]))),

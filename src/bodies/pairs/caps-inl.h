@@ -28,8 +28,8 @@ struct Cap {
   void add(const Place& leaf, float extent, const tree::FloatBox& box) {
     tree::WideTree::Node& group = boxes[count / kWidth];
     for (int k = 0; k < 3; ++k) {
-      group.lo[k][count % kWidth] = box.lo[k];
-      group.hi[k][count % kWidth] = box.hi[k];
+      group.lower[k][count % kWidth] = box.lower[k];
+      group.upper[k][count % kWidth] = box.upper[k];
     }
     place[count] = leaf;
     along[count] = extent;
@@ -103,7 +103,7 @@ class Caps {
     Vec least = hn::Zero(d);
     for (int k = 0; k < 3; ++k) {
       const float u = closest_.direction().along[side][k];
-      least = hn::MulAdd(hn::Set(d, u), hn::Load(d, (u > 0 ? node.lo : node.hi)[k] + i), least);
+      least = hn::MulAdd(hn::Set(d, u), hn::Load(d, (u > 0 ? node.lower : node.upper)[k] + i), least);
     }
     return least;
   }
@@ -178,7 +178,7 @@ class Caps {
       for (size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
         Vec corner[3][3];
         leaf.corners(i, corner);
-        hn::Store(Extent::of(corner, axis).lo, d, least + i);
+        hn::Store(Extent::of(corner, axis).lower, d, least + i);
       }
       for (uint32_t i = 0; i < leaf.count(); ++i) {
         if (!(least[i] <= most)) continue;

@@ -8,7 +8,6 @@
 #endif
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "bodies/pairs/face_lanes-inl.h"
@@ -23,7 +22,7 @@ using Candidate = PairWorkspace::Candidate;
 using Tie = PairWorkspace::Tie;
 using tree::Place;
 
-constexpr double kNoDistance = std::numeric_limits<double>::infinity();
+constexpr double kNoDistance = kInfinity;
 
 // The surfaces of a search, and the maps between their frames.
 struct Surfaces {
@@ -62,7 +61,7 @@ class ClosestFaces {
     Vec3 middle[2];
     for (int side = 0; side < 2; ++side) {
       const tree::FloatBox& box = s_.sites[side]->tree.box(0);
-      for (int k = 0; k < 3; ++k) middle[side][k] = 0.5 * (double{box.lo[k]} + box.hi[k]);
+      for (int k = 0; k < 3; ++k) middle[side][k] = 0.5 * (double{box.lower[k]} + box.upper[k]);
       middle[side] = s_.sites[side]->frame.origin + (1 / s_.sites[side]->frame.scale) * middle[side];
     }
     direction_ = s_.maps.direction(s_.pair.pose(middle[1]) - middle[0]);

@@ -15,7 +15,7 @@ namespace sdm::pairs::HWY_NAMESPACE {
 
 // The interval that something covers along an axis.
 struct Extent {
-  Vec lo, hi;
+  Vec lower, upper;
 
   static HWY_INLINE Extent of(Vec a, Vec b, Vec c) {
     return {hn::Min(hn::Min(a, b), c), hn::Max(hn::Max(a, b), c)};
@@ -25,7 +25,7 @@ struct Extent {
   }
 };
 HWY_INLINE Vec gap(const Extent& a, const Extent& b) {
-  return hn::Max(hn::Sub(a.lo, b.hi), hn::Sub(b.lo, a.hi));
+  return hn::Max(hn::Sub(a.lower, b.upper), hn::Sub(b.lower, a.upper));
 }
 
 // The faces of a leaf, in O1's frame.

@@ -4,7 +4,6 @@
 #include <sdm/sites.h>
 
 #include <array>
-#include <limits>
 
 #include "geometry/affine.h"
 #include "geometry/triangle_pair.h"
@@ -39,9 +38,9 @@ struct MeshPair {
 
 /// The closest points of two surfaces.
 struct Separation {
-  double distance = std::numeric_limits<double>::infinity();  ///< |point2 − point1|, to rounding
-  bool intersecting = false;  ///< decided exactly; if so the distance is 0 and both points are one
-  Vec3 point1{}, point2{};    ///< with O2 posed
+  double distance = kInfinity;  ///< |point2 − point1|, to rounding
+  bool intersecting = false;    ///< decided exactly; if so the distance is 0 and both points are one
+  Vec3 point1{}, point2{};      ///< with O2 posed
   std::uint32_t face1 = kNone,
                 face2 = kNone;  ///< faces that contain the points; kNone: nothing within the requested bound
 };

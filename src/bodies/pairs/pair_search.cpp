@@ -126,7 +126,7 @@ class PairSearch {
     for (uint32_t i = 0; i < node.count; ++i) {
       if (least[i] > 0) continue;
       float size = 0;
-      for (int k = 0; k < 3; ++k) size += node.hi[k][i] - node.lo[k][i];
+      for (int k = 0; k < 3; ++k) size += node.upper[k][i] - node.lower[k][i];
       const float half = s_.maps.unit[side] * size / 6;
       least[i] = std::min(0.0f, std::abs(least[i] + half) - half);
     }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
@@ -19,9 +18,11 @@ class SeparatingAxis {
     const UnitFrame &frame1 = pair.o1.frame, &frame2 = pair.o2.frame;
     const double unit1 = 1 / frame1.scale, unit2 = 1 / frame2.scale;
     const auto middle = [](const tree::FloatBox& box, int k) {
-      return 0.5 * (double{box.lo[k]} + box.hi[k]);
+      return 0.5 * (double{box.lower[k]} + box.upper[k]);
     };
-    const auto half = [](const tree::FloatBox& box, int k) { return 0.5 * (double{box.hi[k]} - box.lo[k]); };
+    const auto half = [](const tree::FloatBox& box, int k) {
+      return 0.5 * (double{box.upper[k]} - box.lower[k]);
+    };
     for (int k = 0; k < 3; ++k) {
       const Vec3& row = pair.pose.rows[k];
       double at = pair.pose.offset[k], size = std::abs(at) + std::abs(frame1.origin[k]) + unit1;
@@ -83,10 +84,10 @@ class SeparatingAxis {
   // The largest x·u over the surface, at most.
   static double extent(const sites::SitesData& sites, const Vec3& u) {
     const tree::WideTree::Node& root = sites.wide.nodes[0];
-    double most = -std::numeric_limits<double>::infinity();
+    double most = -kInfinity;
     for (std::uint32_t i = 0; i < root.count; ++i) {
       double along = 0;
-      for (int k = 0; k < 3; ++k) along += u[k] * double{(u[k] > 0 ? root.hi : root.lo)[k][i]};
+      for (int k = 0; k < 3; ++k) along += u[k] * double{(u[k] > 0 ? root.upper : root.lower)[k][i]};
       most = std::max(most, along);
     }
     return dot(u, sites.frame.origin) + most / sites.frame.scale;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 
 #include "bodies/convex/difference_hull.h"
 #include "bodies/separate/free_translations.h"
@@ -39,7 +38,7 @@ class MovedPairs final : public TranslatedBodies {
   [[nodiscard]] const BoundedLength& separation(const Vec3& translation) override {
     ++tries_;
     separation_ = {};
-    separation_.value = std::numeric_limits<double>::infinity();
+    separation_.value = kInfinity;
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
       begin(k, translation);
       if (separation_.value > 0 && answers_.surfaces_within(separation_.value) &&
@@ -77,8 +76,7 @@ std::array<Box, 2> boxes_of(std::span<const PosedPair> pairs) {
 // The point of the difference of all O1 and all O2 that is farthest along u.
 convex::SimplexPoint farthest_of_all(std::span<const PosedPair> pairs, const Vec3& u) {
   std::array<Vec3, 2> points{};
-  std::array<double, 2> heights{-std::numeric_limits<double>::infinity(),
-                                -std::numeric_limits<double>::infinity()};
+  std::array<double, 2> heights{-kInfinity, -kInfinity};
   const auto compare = [&](int side, const shape::PosedBody& body, const Vec3& direction) {
     std::uint32_t vertex = kNone;
     const Vec3 p = farthest(body, body.body().convex_solid(), direction, vertex);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "bodies/convex/convex_mesh.h"
@@ -46,7 +45,7 @@ std::size_t corner_at(const SupportFeature& feature, const Vec2& at, double near
 // Both ends of the side of a feature that is nearest to a point, as numbers in its ConvexMesh.
 std::uint64_t side_at(const SupportFeature& feature, const Vec2& at) {
   const std::span<const SupportFeature::Corner> corners = feature.corners();
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   std::array<std::uint32_t, 2> ends{};
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const auto &a = corners[i], &b = corners[(i + 1) % corners.size()];

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -63,15 +62,14 @@ void OverlapCover::start(const shape::PosedBody& o1, const shape::PosedBody& o2,
 // The radius of a ball of one body, and the distance of its centre to the surface of the other one.
 double OverlapCover::measure(int body, const shape::Ball& ball, const Vec3& translation) {
   const shape::PosedBody& solid = *bodies_[1 - body];
-  if (!solid.body().solid()) return -std::numeric_limits<double>::infinity();
+  if (!solid.body().solid()) return -kInfinity;
   const Vec3 p = body == 0 ? ball.centre + translation : ball.centre - translation;
   // Outside the box the distance is at least that to the box.
   if (const double outside = norm(gap(Box{p, p}, solid.box())); outside > ball.radius)
     return ball.radius - outside;
   ++measured_;
   const Vec3 q = to_frame_[1 - body](p);
-  const ClosestPoint closest =
-      closest::closest_point(internals(solid.body().sites()), q, std::numeric_limits<double>::infinity());
+  const ClosestPoint closest = closest::closest_point(internals(solid.body().sites()), q, kInfinity);
   const double distance = solid.pose().scale * closest.distance;
   return ball.radius + (solid.body().inside()(q, closest) ? distance : -distance) - error_;
 }
@@ -110,7 +108,7 @@ void OverlapCover::release(std::uint32_t list) {
 // and cover a part of it: v changes by at most the reach.
 bool OverlapCover::covered_by_pairs(Cube& cube) {
   const double reach = cube.reach();
-  double best = -std::numeric_limits<double>::infinity();
+  double best = -kInfinity;
   values_.clear();
   for (const std::uint32_t i : lists_[cube.list].pairs) {
     const double v = pairs_[i].radius - norm(cube.centre - pairs_[i].centre);

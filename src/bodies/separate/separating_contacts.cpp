@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "geometry/barycentric.h"
 #include "geometry/vec.h"
@@ -148,7 +147,7 @@ void SeparatingContacts::keep_per_patch(std::size_t most) {
 void SeparatingContacts::choose(std::span<const Contact> patch, std::size_t most) {
   chosen_.assign(patch.size(), patch.size() <= most ? 1 : 0);
   if (patch.size() <= most) return;
-  distances_.assign(patch.size(), std::numeric_limits<double>::infinity());
+  distances_.assign(patch.size(), kInfinity);
   std::size_t next = 0;  // the deepest
   for (std::size_t count = 0; count < most; ++count) {
     chosen_[next] = 1;

@@ -37,8 +37,8 @@ class TranslationSearch {
     extend(box, o2.box());
     size_ = diagonal(box);
     for (int k = 0; k < 3; ++k)
-      rounding_ =
-          std::max({rounding_, kSpaceRounding * std::abs(box.lo[k]), kSpaceRounding * std::abs(box.hi[k])});
+      rounding_ = std::max(
+          {rounding_, kSpaceRounding * std::abs(box.lower[k]), kSpaceRounding * std::abs(box.upper[k])});
   }
 
   SeparatingTranslation find() {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include "bodies/convex/support_search.h"
@@ -144,7 +143,7 @@ SupportFeature::Above SupportFeature::above(const Vec2& at) const {
 // The point is on the face that contains it, or that it is least outside of.
 SupportFeature::Above SupportFeature::above_face(const Vec2& at) const {
   const Mesh& mesh = mesh_of(*body_);
-  double most = -std::numeric_limits<double>::infinity();
+  double most = -kInfinity;
   std::uint32_t best = faces_[0];
   Vec3 weights{1, 0, 0};
   for (const std::uint32_t face : faces_) {

@@ -33,7 +33,7 @@ Ball ball_about(const Vec3& centre, const sites::SitesData& sites) {
   const auto include = [&](const tree::WideTree::Node& node, std::uint32_t i) {
     double to_corner = 0;
     for (int k = 0; k < 3; ++k) {
-      const double x = std::max(c[k] - node.lo[k][i], node.hi[k][i] - c[k]);
+      const double x = std::max(c[k] - node.lower[k][i], node.upper[k][i] - c[k]);
       to_corner += x * x;
     }
     squared = std::max(squared, to_corner);
@@ -167,7 +167,7 @@ void Body::follow_positions() {
   is_convex_.outdate();
   refitted_convex_.forget();
   box_ = bounds(sites_.mesh());
-  ball_ = ball_about(0.5 * (box_.lo + box_.hi), internals(sites_));
+  ball_ = ball_about(0.5 * (box_.lower + box_.upper), internals(sites_));
   if (boundary_->value) boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
   if (convexity_->value) convexity_ = std::make_unique<Lazy<double>>();
   if (inner_balls_->value) inner_balls_ = std::make_unique<Lazy<InnerBalls>>();

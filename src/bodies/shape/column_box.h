@@ -40,10 +40,12 @@ class ColumnBox {
       const auto& [x, y, z] = axes_[a];
       const float ax = std::abs(x), ay = std::abs(y), az = std::abs(z), c = 2 * middle_[a], h = 2 * half_[a];
       for (int i = 0; i < kWidth; ++i) {
-        const float at = x * (node.lo[0][i] + node.hi[0][i]) + y * (node.lo[1][i] + node.hi[1][i]) +
-                         z * (node.lo[2][i] + node.hi[2][i]);
-        const float reach = ax * (node.hi[0][i] - node.lo[0][i]) + ay * (node.hi[1][i] - node.lo[1][i]) +
-                            az * (node.hi[2][i] - node.lo[2][i]);
+        const float at = x * (node.lower[0][i] + node.upper[0][i]) +
+                         y * (node.lower[1][i] + node.upper[1][i]) +
+                         z * (node.lower[2][i] + node.upper[2][i]);
+        const float reach = ax * (node.upper[0][i] - node.lower[0][i]) +
+                            ay * (node.upper[1][i] - node.lower[1][i]) +
+                            az * (node.upper[2][i] - node.lower[2][i]);
         beyond[i] = std::max(beyond[i], std::abs(at - c) - reach - h);
       }
     }

@@ -8,8 +8,8 @@ namespace sdm::shape {
 std::vector<ContactPart> contact_parts(const tree::AabbTree& tree) {
   const auto size = [&](std::uint32_t node) {
     const tree::FloatBox& box = tree.box(node);
-    return norm(
-        {double{box.hi[0]} - box.lo[0], double{box.hi[1]} - box.lo[1], double{box.hi[2]} - box.lo[2]});
+    return norm({double{box.upper[0]} - box.lower[0], double{box.upper[1]} - box.lower[1],
+                 double{box.upper[2]} - box.lower[2]});
   };
   std::vector<ContactPart> parts(tree.nodes.size());
   if (parts.empty()) return parts;

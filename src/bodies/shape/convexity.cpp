@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "closest/closest_points.h"
@@ -51,7 +50,7 @@ class VerticesAbove {
   std::uint32_t bound(const tree::OpenNode&, const tree::WideTree::Node& node, float (&most)[kLanes]) const {
     for (float& x : most) x = 0;
     for (int k = 0; k < 3; ++k) {
-      const float* far = normal_[k] > 0 ? node.hi[k] : node.lo[k];
+      const float* far = normal_[k] > 0 ? node.upper[k] : node.lower[k];
       for (int i = 0; i < kLanes; ++i) most[i] += normal_[k] * far[i];
     }
     return (1u << node.count) - 1;
@@ -70,7 +69,7 @@ class VerticesAbove {
   static double bound_on_height(const Corners& plane, const Vec3& p) {
     const Vec3 u = plane[1] - plane[0], v = plane[2] - plane[0], normal = cross(u, v), x = p - plane[0];
     const double area = norm(normal);
-    if (!(area > 0)) return std::numeric_limits<double>::infinity();
+    if (!(area > 0)) return kInfinity;
     const double sides = std::max({squared_norm(u), squared_norm(v), squared_norm(v - u)});
     return std::abs(dot(normal, x)) / area + kNormalError * norm(x) * (1 + sides / area);
   }
@@ -94,12 +93,12 @@ bool without_area(const Corners& corners, const Box& box) {
 }  // namespace
 
 double convexity_deficit(const sites::SitesData& sites, const inside::InsideTest& inside) {
-  constexpr double kNot = std::numeric_limits<double>::infinity();
+  constexpr double kNot = kInfinity;
   if (!sites.is_solid()) return kNot;
   const Mesh& mesh = sites.mesh;
   const Box box = bounds(mesh);
   for (int k = 0; k < 3; ++k)
-    if (!(box.lo[k] < box.hi[k])) return kNot;
+    if (!(box.lower[k] < box.upper[k])) return kNot;
   Vec3 middle{};
   double count = 0, deficit = 0;
   for (const std::uint32_t face : sites.tree.items)
@@ -122,7 +121,7 @@ double convexity_deficit(const sites::SitesData& sites, const inside::InsideTest
     if (!(height <= kNearlyConvex * below)) return kNot;
     deficit = std::max(deficit, height / below);
   }
-  const ClosestPoint closest = closest::closest_point(sites, middle, std::numeric_limits<double>::infinity());
+  const ClosestPoint closest = closest::closest_point(sites, middle, kInfinity);
   return inside(middle, closest) ? deficit : kNot;
 }
 

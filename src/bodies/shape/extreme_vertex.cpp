@@ -33,7 +33,7 @@ class Search {
   std::uint32_t bound(const tree::OpenNode&, const tree::WideTree::Node& node, float (&most)[kWidth]) const {
     for (float& x : most) x = 0;
     for (int k = 0; k < 3; ++k) {
-      const float* far = unit_u_[k] > 0 ? node.hi[k] : node.lo[k];
+      const float* far = unit_u_[k] > 0 ? node.upper[k] : node.lower[k];
       for (int i = 0; i < kWidth; ++i) most[i] += unit_u_[k] * far[i];
     }
     return (1u << node.count) - 1;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "closest/closest_points.h"
@@ -42,8 +41,7 @@ std::optional<Ball> ball_at(const sites::SitesData& sites, const inside::InsideT
   double radius = largest;
   for (int step = 0; step < kMostSteps; ++step) {
     const Vec3 centre = sample.at + radius * sample.inward;
-    const ClosestPoint closest =
-        closest::closest_point(sites, centre, std::numeric_limits<double>::infinity());
+    const ClosestPoint closest = closest::closest_point(sites, centre, kInfinity);
     if (closest.distance >= (1 - kSettled) * radius || step + 1 == kMostSteps) {
       if (closest.distance == 0 || !inside(centre, closest)) return {};
       return Ball{centre, closest.distance};

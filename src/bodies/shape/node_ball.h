@@ -22,7 +22,7 @@ struct Ball {
       tree::box_of(sites.tree, sites.wide, {.slot = tree::WideTree::kWidth * node + i});
   Vec3 centre, half;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double lo = box.lo[k], hi = box.hi[k];
+    const double lo = box.lower[k], hi = box.upper[k];
     centre[k] = sites.frame.origin[k] + 0.5 * (lo + hi) / sites.frame.scale;
     half[k] = (0.5 * (hi - lo) + kSingleRounding) / sites.frame.scale;
   }

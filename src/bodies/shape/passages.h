@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -37,8 +36,12 @@ class Passages {
         error_(kDoubleRounding * (1 / solid.frame.scale + norm(column.origin))),
         faces_(faces) {
     thread_local std::vector<tree::OpenNode> stack;
-    const Search search{
-        *this, {solid.frame, column.origin, column.axes, {lo(0), lo(1), lo(2)}, {hi(0), hi(1), hi(2)}}};
+    const Search search{*this,
+                        {solid.frame,
+                         column.origin,
+                         column.axes,
+                         {lower(0), lower(1), lower(2)},
+                         {upper(0), upper(1), upper(2)}}};
     tree::visit(solid.wide, stack, search);
   }
 
@@ -59,12 +62,12 @@ class Passages {
 
   /// The levels at which a polygon is, above a plane through the origin.
   [[nodiscard]] Levels levels(const Polygon& polygon, const Vec2& slope = {}) const {
-    Levels levels{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    Levels levels{kInfinity, -kInfinity};
     for (const Vec3& p : std::span(polygon.corners).first(polygon.count)) {
       const double level = p[0] - slope[0] * p[1] - slope[1] * p[2];
-      levels = {std::min(levels.lo, level), std::max(levels.hi, level)};
+      levels = {std::min(levels.lower, level), std::max(levels.upper, level)};
     }
-    return {levels.lo - error_, levels.hi + error_};
+    return {levels.lower - error_, levels.upper + error_};
   }
 
  private:
@@ -73,8 +76,12 @@ class Passages {
     int change;  // of the winding number, upwards
   };
 
-  [[nodiscard]] double lo(int axis) const { return (axis == 0 ? limits_.lo : column_.lo[axis]) - error_; }
-  [[nodiscard]] double hi(int axis) const { return (axis == 0 ? limits_.hi : column_.hi[axis]) + error_; }
+  [[nodiscard]] double lower(int axis) const {
+    return (axis == 0 ? limits_.lower : column_.lower[axis]) - error_;
+  }
+  [[nodiscard]] double upper(int axis) const {
+    return (axis == 0 ? limits_.upper : column_.upper[axis]) + error_;
+  }
 
   // The policy of the search for faces in the box around the column.
   struct Search {
@@ -102,15 +109,15 @@ class Passages {
     for (const int a : {1, 2, 0}) {
       for (int k = 0; k < 3; ++k) polygon.corners[k][a] = dot(column_.axes[a], from[k]);
       const double x = polygon.corners[0][a], y = polygon.corners[1][a], z = polygon.corners[2][a];
-      if (std::max({x, y, z}) < lo(a) || std::min({x, y, z}) > hi(a)) return;
+      if (std::max({x, y, z}) < lower(a) || std::min({x, y, z}) > upper(a)) return;
     }
     polygon.count = 3;
     cross(std::span(polygon.corners).first<3>(), solid_.inverted[face] != 0);
     if (column_.side_count == 0) {
-      polygon.clip(-1, 0, -lo(1));
-      polygon.clip(1, 0, hi(1));
-      polygon.clip(0, -1, -lo(2));
-      polygon.clip(0, 1, hi(2));
+      polygon.clip(-1, 0, -lower(1));
+      polygon.clip(1, 0, upper(1));
+      polygon.clip(0, -1, -lower(2));
+      polygon.clip(0, 1, upper(2));
     }
     for (std::size_t i = 0; i < column_.side_count; ++i) {
       const Vec3& h = column_.sides[i];
@@ -135,9 +142,9 @@ class Passages {
     }
     if (!left && !right) return;
     if (!clear || crossing_count_ == crossings_.size()) {
-      const auto [lo, hi] = std::minmax({corners[0][0], corners[1][0], corners[2][0]});
-      if (hi >= 0) unclear_above_ = std::min(unclear_above_, lo);
-      if (lo <= 0) unclear_below_ = std::max(unclear_below_, hi);
+      const auto [lower, upper] = std::minmax({corners[0][0], corners[1][0], corners[2][0]});
+      if (upper >= 0) unclear_above_ = std::min(unclear_above_, lower);
+      if (lower <= 0) unclear_below_ = std::max(unclear_below_, upper);
       return;
     }
     const double level = (areas[0] * corners[0][0] + areas[1] * corners[1][0] + areas[2] * corners[2][0]) /
@@ -155,7 +162,7 @@ class Passages {
   std::size_t crossing_count_ = 0;
   bool overflow_ = false;
   // Where the winding number is not clear, from the origin.
-  double unclear_above_ = std::numeric_limits<double>::infinity(), unclear_below_ = -unclear_above_;
+  double unclear_above_ = kInfinity, unclear_below_ = -unclear_above_;
 };
 
 }  // namespace sdm::shape

@@ -10,7 +10,7 @@ namespace sdm::shape {
 Box check_posed(const mesh::Similarity& pose, const Box& box) {
   const Box posed = image(pose.map, box);
   for (int k = 0; k < 3; ++k)
-    if (!(posed.lo[k] >= -mesh::kMaxCoordinate && posed.hi[k] <= mesh::kMaxCoordinate))
+    if (!(posed.lower[k] >= -mesh::kMaxCoordinate && posed.upper[k] <= mesh::kMaxCoordinate))
       throw Error("the pose moves it beyond 1e37, too far for the computation; use smaller values");
   return posed;
 }

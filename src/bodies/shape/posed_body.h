@@ -70,8 +70,8 @@ class PosedBody {
     const Vec3 reach{ball_.radius, ball_.radius, ball_.radius};
     Box box{ball_.centre - reach, ball_.centre + reach};
     for (int k = 0; k < 3; ++k) {
-      box.lo[k] = std::max(box.lo[k], box_.lo[k]);
-      box.hi[k] = std::min(box.hi[k], box_.hi[k]);
+      box.lower[k] = std::max(box.lower[k], box_.lower[k]);
+      box.upper[k] = std::min(box.upper[k], box_.upper[k]);
     }
     return box;
   }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "closest/closest_points.h"
@@ -18,7 +17,7 @@ namespace {
 
 using search::CornerValues;
 
-constexpr double kNoBound = std::numeric_limits<double>::infinity();
+constexpr double kNoBound = kInfinity;
 constexpr int kMostSearches = 48;
 // If a ball that is smaller by this fraction touches the boundary, the bound is close enough: closer ones
 // take many searches.

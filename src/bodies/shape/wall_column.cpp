@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -18,8 +17,6 @@
 namespace sdm::shape {
 namespace {
 
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-
 // The plane of a triangle is of use for levels if it is less steep than that.
 constexpr double kLeastCosine = 0.5;
 
@@ -28,11 +25,11 @@ constexpr std::size_t kMostInColumn = 64;
 
 // The most depth of points between levels of the part that leave at the next exits above and below.
 double between_exits(const Levels& part, const Levels& exits) {
-  const double lo = std::max(part.lo, exits.lo), hi = std::min(part.hi, exits.hi);
+  const double lo = std::max(part.lower, exits.lower), hi = std::min(part.upper, exits.upper);
   if (lo > hi) return 0;
-  if (exits.lo == -kUnlimited && exits.hi == kUnlimited) return kUnlimited;
-  const double deepest = std::clamp(0.5 * (exits.lo + exits.hi), lo, hi);
-  return std::min(deepest - exits.lo, exits.hi - deepest);
+  if (exits.lower == -kInfinity && exits.upper == kInfinity) return kInfinity;
+  const double deepest = std::clamp(0.5 * (exits.lower + exits.upper), lo, hi);
+  return std::min(deepest - exits.lower, exits.upper - deepest);
 }
 
 /// The bound of a part between the levels `taken` of faces, if what is at other levels is outside where
@@ -40,23 +37,23 @@ double between_exits(const Levels& part, const Levels& exits) {
 template <class IsOutside>
 double bound_between(std::span<Levels> taken, const Levels& part, const Levels& limits, double least,
                      const IsOutside& is_outside) {
-  std::ranges::sort(taken, {}, &Levels::lo);
-  double bound = 0, lo = limits.lo, exit = -kUnlimited;
+  std::ranges::sort(taken, {}, &Levels::lower);
+  double bound = 0, lo = limits.lower, exit = -kInfinity;
   const auto pass = [&](double hi) {
     if (!(hi - lo > least) || !is_outside(0.5 * (lo + hi))) return;
     bound = std::max(bound, between_exits(part, {exit, lo}));
     exit = hi;
   };
   for (const Levels& t : taken) {
-    pass(t.lo);
-    lo = std::max(lo, t.hi);
+    pass(t.lower);
+    lo = std::max(lo, t.upper);
   }
-  pass(limits.hi);
-  return std::max(bound, between_exits(part, {exit, kUnlimited}));
+  pass(limits.upper);
+  return std::max(bound, between_exits(part, {exit, kInfinity}));
 }
 
 bool outside(const sites::SitesData& solid, const inside::InsideTest& inside, const Vec3& p) {
-  return !inside(p, closest::closest_point(solid, p, kUnlimited));
+  return !inside(p, closest::closest_point(solid, p, kInfinity));
 }
 
 }  // namespace
@@ -96,7 +93,7 @@ WallColumn WallColumn::around(const Corners& triangle, const Vec3& origin, const
   for (int k = 0; k < 3; ++k)
     for (int a = 0; a < 3; ++a) corners[k][a] = dot(column.axes[a], triangle[k] - origin);
   for (int a = 0; a < 3; ++a)
-    std::tie(column.lo[a], column.hi[a]) = std::minmax({corners[0][a], corners[1][a], corners[2][a]});
+    std::tie(column.lower[a], column.upper[a]) = std::minmax({corners[0][a], corners[1][a], corners[2][a]});
   for (int k = 0; k < 3; ++k) {
     const Vec3 &p = corners[k], &q = corners[(k + 1) % 3], &r = corners[(k + 2) % 3];
     double x = q[2] - p[2], y = p[1] - q[1];
@@ -119,8 +116,8 @@ WallColumn WallColumn::around(const Corners& triangle, const Vec3& origin, const
 
 void WallColumn::enlarge(double by) {
   for (const int a : {1, 2}) {
-    lo[a] -= by;
-    hi[a] += by;
+    lower[a] -= by;
+    upper[a] += by;
   }
   for (std::size_t i = 0; i < side_count; ++i) sides[i][2] += by;
 }
@@ -129,8 +126,8 @@ WallColumn WallColumn::around(const Ball& ball, const Vec3& u) {
   const Vec3 any = std::abs(u[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 v = normalized(cross(u, any));
   WallColumn column{.origin = ball.centre, .axes = {u, v, cross(u, v)}};
-  column.lo.fill(-ball.radius);
-  column.hi.fill(ball.radius);
+  column.lower.fill(-ball.radius);
+  column.upper.fill(ball.radius);
   return column;
 }
 
@@ -141,15 +138,16 @@ double bound_in_column(const sites::SitesData& solid, const inside::InsideTest& 
   faces.clear();
   // Sections farther away would not bound anything by `enough`.
   const double reach = 2 * enough;
-  const Passages passages(solid, column, {column.lo[0] - reach, column.hi[0] + reach}, kMostInColumn, faces);
-  if (passages.overflow()) return kUnlimited;
-  const double v = 0.5 * (column.lo[1] + column.hi[1]), w = 0.5 * (column.lo[2] + column.hi[2]);
+  const Passages passages(solid, column, {column.lower[0] - reach, column.upper[0] + reach}, kMostInColumn,
+                          faces);
+  if (passages.overflow()) return kInfinity;
+  const double v = 0.5 * (column.lower[1] + column.upper[1]), w = 0.5 * (column.lower[2] + column.upper[2]);
   const double least = kLeastGap / solid.frame.scale;
-  double best = kUnlimited;
+  double best = kInfinity;
   for (const bool sloping : {false, true}) {
     if (best <= enough || (sloping && !column.slope)) break;
     const Vec2 slope = sloping ? *column.slope : Vec2{};
-    const Levels part = sloping ? Levels{0, 0} : Levels{column.lo[0], column.hi[0]};
+    const Levels part = sloping ? Levels{0, 0} : Levels{column.lower[0], column.upper[0]};
     const auto is_outside = [&](double level) {
       if (winding)
         if (const std::optional<int> change = passages.change(level)) return *winding + *change == 0;
@@ -159,7 +157,8 @@ double bound_in_column(const sites::SitesData& solid, const inside::InsideTest& 
     };
     taken.clear();
     for (const Polygon& face : faces) taken.push_back(passages.levels(face, slope));
-    best = std::min(best, bound_between(taken, part, {part.lo - reach, part.hi + reach}, least, is_outside));
+    best = std::min(best,
+                    bound_between(taken, part, {part.lower - reach, part.upper + reach}, least, is_outside));
   }
   return best;
 }

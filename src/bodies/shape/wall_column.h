@@ -13,7 +13,7 @@
 namespace sdm::shape {
 
 struct Levels {
-  double lo, hi;
+  double lower, upper;
 };
 
 /// A convex polygon, along the axes of a column.
@@ -30,9 +30,9 @@ struct Polygon {
 /// What is above and below a part along a direction u, |u| = 1: a prism without ends. The level of a point x
 /// is u·(x − origin).
 struct WallColumn {
-  Vec3 origin{};                     ///< a point of the part
-  std::array<Vec3, 3> axes{};        ///< u, and two directions across
-  std::array<double, 3> lo{}, hi{};  ///< of the points of the part, along the axes
+  Vec3 origin{};                           ///< a point of the part
+  std::array<Vec3, 3> axes{};              ///< u, and two directions across
+  std::array<double, 3> lower{}, upper{};  ///< of the points of the part, along the axes
   /// The half-planes h of the directions across that contain a triangle: h[0] x + h[1] y ≤ h[2].
   std::array<Vec3, 3> sides{};
   std::size_t side_count = 0;

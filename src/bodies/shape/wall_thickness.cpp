@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,7 +21,7 @@ namespace {
 
 using inside::Sides;
 
-constexpr double kNoWall = std::numeric_limits<double>::infinity();
+constexpr double kNoWall = kInfinity;
 // Added to angles and their cosines, for rounding.
 constexpr double kAngleRounding = 1e-6;
 // Weights of corners, at a point of a face that is not right above or below edges of regular meshes.
@@ -200,7 +199,7 @@ bool WallThickness::is_within(tree::Subtree subtree, NearBall& near) const {
   if (squared_norm(gap(node.box, near.at)) > near.reach * near.reach) return true;
   double to_corner = 0;
   for (int k = 0; k < 3; ++k) {
-    const double x = std::max(near.at[k] - node.box.lo[k], node.box.hi[k] - near.at[k]);
+    const double x = std::max(near.at[k] - node.box.lower[k], node.box.upper[k] - near.at[k]);
     to_corner += x * x;
   }
   const bool covered = to_corner <= near.reach * near.reach;
@@ -273,19 +272,20 @@ double WallThickness::find_in_column(const TouchedTriangle& triangle) const {
     WallColumn column = WallColumn::around(corners, beside, triangle.normal);
     column.enlarge(wider);
     faces.clear();
-    const Levels limits{column.lo[0] - kDeepest / solid.frame.scale, 0};
+    const Levels limits{column.lower[0] - kDeepest / solid.frame.scale, 0};
     const Passages passages(solid, column, limits, kMostBelow, faces);
     if (passages.overflow()) return kNoWall;
     taken.clear();
     for (const Polygon& polygon : faces) taken.push_back(passages.levels(polygon));
-    std::ranges::sort(taken, {}, &Levels::lo);
-    double depth = kNoWall, lo = limits.lo;
+    std::ranges::sort(taken, {}, &Levels::lower);
+    double depth = kNoWall, lo = limits.lower;
     const double least = kLeastGap / solid.frame.scale;
     for (const Levels& t : taken) {
-      if (t.lo > 0) break;
+      if (t.lower > 0) break;
       // The winding number inside is 1.
-      if (t.lo - lo > least && passages.change(t.lo - 0.5 * least) == -1) depth = column.hi[0] - t.lo;
-      lo = std::max(lo, t.hi);
+      if (t.lower - lo > least && passages.change(t.lower - 0.5 * least) == -1)
+        depth = column.upper[0] - t.lower;
+      lo = std::max(lo, t.upper);
     }
     if (depth == kNoWall) return kNoWall;
     const double needed = depth * std::tan(0.5 * triangle.angle);

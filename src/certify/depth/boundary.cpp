@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "certify/depth/face_distances.h"
@@ -132,7 +131,7 @@ std::optional<std::array<BoundaryPart, 2>> KnownBoundary::nearest(const Vec3& ce
   const std::size_t none = known_.size();
   std::array<std::size_t, 2> nearest{none, none};
   std::array<double, 2> squared;
-  squared.fill(std::numeric_limits<double>::infinity());
+  squared.fill(kInfinity);
   for (std::size_t i = none - std::min(none, kRecent); i < none; ++i) {
     const double s = squared_norm(known_[i].from - centre);
     const std::uint32_t face = known_[i].boundary.face;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <utility>
 
 #include "closest/closest_points.h"
@@ -13,7 +12,7 @@
 namespace sdm::depth {
 namespace {
 
-constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+constexpr double kAnywhere = kInfinity;
 // Nodes larger than this, relative to the smaller body, are divided at once: hardly any is excluded as a
 // whole.
 constexpr double kCoarse = 1.0 / 16;

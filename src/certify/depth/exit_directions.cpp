@@ -35,7 +35,7 @@ Vec3 ExitDirections::in_body(const Vec3& u) const {
 }
 
 double ExitDirections::bound(const Corners& triangle) const {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (std::size_t i = 0; i < size_; ++i) {
     const Direction& d = directions_[i];
     least = std::min(
@@ -53,7 +53,7 @@ void ExitDirections::values(const Corners& triangle, std::vector<CornerValues>& 
 }
 
 double ExitDirections::bound(const shape::Ball& ball, std::size_t first) const {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (std::size_t i = first; i < size_; ++i)
     least = std::min(least, directions_[i].most - dot(directions_[i].u, ball.centre) + ball.radius);
   return least;
@@ -71,7 +71,7 @@ ExitDirections::OfChildren ExitDirections::bound_children(const tree::WideTree::
     for (const float x : d.in_unit) size += std::abs(x);
     most.fill(d.most_in_unit + kExitRounding * size);
     for (int k = 0; k < 3; ++k) {
-      const float* near = d.in_unit[k] > 0 ? node.lo[k] : node.hi[k];
+      const float* near = d.in_unit[k] > 0 ? node.lower[k] : node.upper[k];
       for (std::size_t i = 0; i < most.size(); ++i) most[i] -= d.in_unit[k] * near[i];
     }
     for (std::size_t i = 0; i < most.size(); ++i) least[i] = std::min(least[i], most[i]);

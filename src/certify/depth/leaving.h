@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <variant>
 #include <vector>
 
@@ -21,14 +20,14 @@ struct NodePart {
 /// A face, or a part of one that dividing it into quarters results in.
 struct TrianglePart {
   Corners at{};
-  CornerValues weights{};  ///< of the corners, at the centre of the part
-  std::uint64_t step = 0;  ///< of SurfacePart::place: its quarters are a quarter step apart
-  RecentBounds bounds{};   ///< found for the triangle, or for those that it is part of
-  double gap = 0;          ///< between the bounds on the depth of the centre, in space
-  double max_distance = std::numeric_limits<double>::infinity();  ///< from the centre to the surface
-  std::size_t known = 0;       ///< number of parts of the boundary that it may be bounded by
-  std::uint32_t measured = 0;  ///< how often
-  bool stale = true;           ///< whether it is still to be bounded by all of `bounds`
+  CornerValues weights{};           ///< of the corners, at the centre of the part
+  std::uint64_t step = 0;           ///< of SurfacePart::place: its quarters are a quarter step apart
+  RecentBounds bounds{};            ///< found for the triangle, or for those that it is part of
+  double gap = 0;                   ///< between the bounds on the depth of the centre, in space
+  double max_distance = kInfinity;  ///< from the centre to the surface
+  std::size_t known = 0;            ///< number of parts of the boundary that it may be bounded by
+  std::uint32_t measured = 0;       ///< how often
+  bool stale = true;                ///< whether it is still to be bounded by all of `bounds`
 };
 
 /// A node or a triangle of the surface of a body, in the frame of the solid.
@@ -37,8 +36,8 @@ struct SurfacePart {
   std::uint64_t place = 0;  ///< in the order of the tree
   shape::Ball
       ball{};  ///< contains the part; measured is its centre: of a triangle, where its bound is attained
-  double upper = std::numeric_limits<double>::infinity();  ///< bound on the depth of its points, in space
-  std::size_t exits = 0;  ///< number of exit directions that it is bounded by
+  double upper = kInfinity;  ///< bound on the depth of its points, in space
+  std::size_t exits = 0;     ///< number of exit directions that it is bounded by
   std::variant<NodePart, TrianglePart> what{};
 
   void limit(double bound) { upper = std::min(upper, bound); }

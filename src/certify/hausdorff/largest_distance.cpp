@@ -25,7 +25,7 @@ namespace {
 
 double largest_coordinate(const Box& box) {
   double largest = 0;
-  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.lo[k]), std::abs(box.hi[k])});
+  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.lower[k]), std::abs(box.upper[k])});
   return largest;
 }
 

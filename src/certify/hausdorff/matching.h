@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -49,7 +48,7 @@ class Matching {
 
   /// Whether a point of a face of A is behind the faces that it is measured to.
   [[nodiscard]] bool behind(std::uint32_t face, const Vec3& p) const {
-    constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+    constexpr double kAnywhere = kInfinity;
     return rule_->search.match(p, normal(face), kAnywhere, closest::exact_closest(b_, p, kAnywhere)).behind;
   }
 

@@ -32,7 +32,7 @@ struct Nearest {
     // Corners are compared with each other and with the feet on edges and in the interior. Each of these is
     // given by weights ≥ 0 of corners, so it lies on the triangle, even where rounding makes it a poor
     // choice.
-    squared = std::numeric_limits<double>::infinity();
+    squared = kInfinity;
     for (int k = 0; k < 3; ++k)
       if (const double s = squared_norm(r[k]); s < squared) {
         to = r[k];
@@ -98,7 +98,7 @@ FaceDistance face_distance(const Vec3& p, const Corners& face) {
   const Vec3 normal = normalized(cross(face[1] - face[0], face[2] - face[1]));
   const double side = dot(normal, nearest.to) < 0 ? -1 : 1;
   for (const Vec3& u : {normalized(nearest.to), side * normal}) {
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (const Vec3& r : nearest.r) least = std::min(least, dot(u, r) - 8 * kEpsilon * norm(r));
     result.lower = std::max(result.lower, least);
   }
@@ -132,7 +132,7 @@ class NearestSearch {
     // Mapping p and the corners of faces into the frame rounds.
     const double rounding = 1e-15 * (1 + std::abs(unit[0]) + std::abs(unit[1]) + std::abs(unit[2]));
     const auto lower_bound = [&](std::uint32_t node, const tree::FloatBox& box) {
-      if (!may_allow(node)) return std::numeric_limits<double>::infinity();
+      if (!may_allow(node)) return kInfinity;
       return (1 - 1e-12) * norm(gap(box, unit)) - rounding;
     };
     const auto enter = [&](double bound) { return bound < best_.upper * sites_.frame.scale; };
@@ -153,7 +153,7 @@ class NearestSearch {
   // All points s of a face have |s − p| ≥ u·(s − p), with u the unit vector towards the best point: most
   // faces are excluded by that alone.
   [[nodiscard]] bool is_beyond(const Corners& face) const {
-    double least = std::numeric_limits<double>::infinity(), size = 0;
+    double least = kInfinity, size = 0;
     for (const Vec3& corner : face) {
       const Vec3 r = corner - p_;
       least = std::min(least, dot(towards_, r));
@@ -165,7 +165,7 @@ class NearestSearch {
   const sites::SitesData& sites_;
   const Vec3& p_;
   NearestFace best_;
-  double lower_ = std::numeric_limits<double>::infinity();
+  double lower_ = kInfinity;
   Vec3 towards_{};
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 
@@ -110,8 +109,7 @@ bool FacePart::add(const sites::SitesData& b, std::uint32_t near_face, double to
 }
 
 void FacePart::bound() {
-  const search::MixedBound best =
-      search::mixed_bound(std::span(distances).first(count), -std::numeric_limits<double>::infinity());
+  const search::MixedBound best = search::mixed_bound(std::span(distances).first(count), -kInfinity);
   upper = (1 + kFewRoundings) * best.value;
   weights = best.weights;
   mixed = 0;

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include "geometry/triangle.h"
@@ -30,7 +29,7 @@ struct FacePart {
   std::uint16_t count = 0;                          ///< number of S_k
   std::array<std::uint32_t, kMostFaces> b_faces{};  ///< S_k
   std::array<Vec3, kMostFaces> distances{};         ///< d(a_i, S_k), rounded upwards, at [k][i]
-  double upper = std::numeric_limits<double>::infinity();
+  double upper = kInfinity;
   Vec3 weights{};
   std::uint32_t mixed = 0;  ///< a bit for each k with μ_k > 0
 

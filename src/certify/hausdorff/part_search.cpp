@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
@@ -68,7 +67,7 @@ void PartSearch::evaluate(const FacePart& part, Found& found) const {
   // Some face that is near the point.
   const Vec3 highest = part.highest_point();
   std::uint32_t start = part.b_faces[0];
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (int k = 0; k < part.count; ++k) {
     const Vec3& d = part.distances[k];
     const double about = part.weights[0] * d[0] + part.weights[1] * d[1] + part.weights[2] * d[2];

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -91,7 +90,7 @@ bool SolidSide::only_touches(const Corners& triangle, double slack) const {
                      {norm(plane[1] - plane[0]), norm(plane[2] - plane[1]), norm(plane[0] - plane[2])});
     if (!(area >= kFlattest * longest * std::min(size, longest))) return false;
     const auto height = [&](const Vec3& p) { return dot(normal, p - plane[0]) / area; };
-    double least = std::numeric_limits<double>::infinity(), most = -least, lowest = least, highest = most;
+    double least = kInfinity, most = -least, lowest = least, highest = most;
     for (const Vec3& p : triangle) {
       least = std::min(least, height(p));
       most = std::max(most, height(p));

@@ -106,16 +106,16 @@ class VertexSearch {
       measured_.push_back(group.begin);
     }
     closest::for_each_block(points_.size(), progress_, "vertices", [&](std::size_t begin, std::size_t end) {
-      closest::closest_points(
-          b_, std::span(points_).subspan(begin, end - begin), std::numeric_limits<double>::infinity(),
-          [&](std::size_t first, const sites::ClosestPacket& closest) {
-            for (std::size_t i = 0; i < closest.count; ++i) {
-              const std::uint32_t face = b_.face_of(closest.type[i], closest.site[i]);
-              const Vec3& p = points_[begin + first + i];
-              distances_[vertices_[measured_[begin + first + i]].index] = {
-                  upper_face_distance(p, corners_of(b_.mesh, face)), face, closest.site[i], closest.type[i]};
-            }
-          });
+      closest::closest_points(b_, std::span(points_).subspan(begin, end - begin), kInfinity,
+                              [&](std::size_t first, const sites::ClosestPacket& closest) {
+                                for (std::size_t i = 0; i < closest.count; ++i) {
+                                  const std::uint32_t face = b_.face_of(closest.type[i], closest.site[i]);
+                                  const Vec3& p = points_[begin + first + i];
+                                  distances_[vertices_[measured_[begin + first + i]].index] = {
+                                      upper_face_distance(p, corners_of(b_.mesh, face)), face,
+                                      closest.site[i], closest.type[i]};
+                                }
+                              });
     });
     raise_lower_bound();
   }

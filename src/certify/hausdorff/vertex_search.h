@@ -41,7 +41,7 @@ struct LowerBound {
 /// A face of B that is closest to a vertex up to the precision of the cpu engine, and the distance to it,
 /// rounded upwards.
 struct VertexDistance {
-  double upper = std::numeric_limits<double>::infinity();
+  double upper = kInfinity;
   std::uint32_t face =
       kNone;  ///< kNone: not computed, as no face of A at the vertex is above the lower bound
   std::uint32_t site = kNone;

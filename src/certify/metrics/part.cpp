@@ -337,7 +337,7 @@ void bound_thoroughly(const sites::SitesData& b, FacePart& part) {
     double squared = 0;
     for (int k = 0; k < 3; ++k) {
       const auto [lo, hi] = std::minmax({face[0][k], face[1][k], face[2][k]});
-      squared += square(std::max({0.0, lo - box.hi[k], box.lo[k] - hi}));
+      squared += square(std::max({0.0, lo - box.upper[k], box.lower[k] - hi}));
     }
     return squared > most_squared;
   };

@@ -137,7 +137,7 @@ double area_of(const Mesh& mesh) {
 
 /// The measures of surfaces of which one or both are empty.
 DirectedMetrics metrics_of_none(bool both, const MetricsOptions& options) {
-  const BoundedNumber distance = exactly(both ? 0 : metrics::kInfinity), fraction = exactly(both ? 1 : 0);
+  const BoundedNumber distance = exactly(both ? 0 : kInfinity), fraction = exactly(both ? 1 : 0);
   return {.hausdorff = distance,
           .mean = distance,
           .rms = distance,
@@ -171,7 +171,8 @@ std::array<DirectedMetrics, 2> both_directions(const Mesh& a, const Mesh& b, Met
   Box box = bounds(a);
   extend(box, bounds(b));
   double coordinate = 0;
-  for (int k = 0; k < 3; ++k) coordinate = std::max({coordinate, std::abs(box.lo[k]), std::abs(box.hi[k])});
+  for (int k = 0; k < 3; ++k)
+    coordinate = std::max({coordinate, std::abs(box.lower[k]), std::abs(box.upper[k])});
   const double size = diagonal(box);
   const metrics::Scale scale{size, kDoubleRounding * std::max(size, coordinate),
                              MetricsOptions::kRounding * size};
@@ -185,7 +186,7 @@ std::array<DirectedMetrics, 2> both_directions(const Mesh& a, const Mesh& b, Met
     return from;
   }
   const double precision =
-      std::min(HausdorffOptions::kPrecision * size, options.precision.value_or(metrics::kInfinity));
+      std::min(HausdorffOptions::kPrecision * size, options.precision.value_or(kInfinity));
   const SymmetricHausdorff hausdorff =
       symmetric_hausdorff(sites[0], sites[1], {.precision = precision, .progress = options.progress});
   std::array<DirectedMetrics, 2> from;

@@ -5,7 +5,6 @@
 #include <sdm/mesh.h>
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -13,8 +12,6 @@
 #include "geometry/vec.h"
 
 namespace sdm::metrics {
-
-inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Lengths of both meshes together.
 struct Scale {

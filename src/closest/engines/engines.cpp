@@ -29,7 +29,7 @@ constexpr Row kEngines[] = {
     {cpu::CpuEngine::kInfo, make<cpu::CpuEngine>},
     {reference::ReferenceEngine::kInfo, make<reference::ReferenceEngine>},
     {gl::kInfo, [] { return make_gl_engine({}); }},
-    {gpu::kInfo, [] { return gpu::make_gpu_engine({}); }},
+    {gpu::kInfo, [] { return make_gpu_engine({}); }},
 };
 
 constexpr auto kInfos = [] {

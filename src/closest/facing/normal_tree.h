@@ -17,7 +17,7 @@ namespace sdm::facing {
 [[nodiscard]] inline double largest_cosine(const tree::FloatBox& box, const Vec3& n) {
   constexpr double kRounding = 1e-12;
   double sum = kRounding;
-  for (int k = 0; k < 3; ++k) sum += std::max(n[k] * double{box.lo[k]}, n[k] * double{box.hi[k]});
+  for (int k = 0; k < 3; ++k) sum += std::max(n[k] * double{box.lower[k]}, n[k] * double{box.upper[k]});
   return sum;
 }
 

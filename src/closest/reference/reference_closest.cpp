@@ -1,6 +1,5 @@
 #include "closest/reference/reference_closest.h"
 
-#include <limits>
 #include <tuple>
 
 #include "geometry/vec.h"
@@ -28,7 +27,7 @@ ClosestPoint reference_closest(const sites::SitesData& sites, const Vec3& q, dou
     }
   };
   tree::visit(sites.tree, tree::NearestFirst{bound, enter, offer});
-  if (best.type == SiteType::none) best.distance = std::numeric_limits<double>::infinity();
+  if (best.type == SiteType::none) best.distance = kInfinity;
   return best;
 }
 

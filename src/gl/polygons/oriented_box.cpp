@@ -140,8 +140,8 @@ OrientedBox oriented_box(const SiteRegion& region, double reach, double slack) {
 bool may_meet(const OrientedBox& box, const tree::FloatBox& other) {
   Vec3 centre, half;
   for (int k = 0; k < 3; ++k) {
-    centre[k] = 0.5 * (double{other.lo[k]} + other.hi[k]);
-    half[k] = 0.5 * (double{other.hi[k]} - other.lo[k]);
+    centre[k] = 0.5 * (double{other.lower[k]} + other.upper[k]);
+    half[k] = 0.5 * (double{other.upper[k]} - other.lower[k]);
   }
   const Vec3 between = centre - box.centre;
   for (int k = 0; k < 3; ++k) {

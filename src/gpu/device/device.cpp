@@ -7,6 +7,9 @@
 #include <cstring>
 #include <mutex>
 #include <utility>
+#include <vector>
+
+#include "core/parse_number.h"
 
 namespace sdm::gpu {
 namespace {
@@ -36,10 +39,10 @@ WGPUInstance instance() {
 
 struct Found {
   Adapter adapter;
-  std::string name;
-  bool is_processor = false;
+  GpuDevice device{};
 };
 
+/// All adapters, those first that are no processors.
 std::vector<Found> find_adapters() {
   WGPUInstanceEnumerateAdapterOptions options{};
   options.backends = WGPUInstanceBackend_Primary;
@@ -47,13 +50,19 @@ std::vector<Found> find_adapters() {
   wgpu().InstanceEnumerateAdapters(instance(), &options, all.data());
   std::vector<Found> found;
   for (const WGPUAdapter adapter : all) {
-    Found& each = found.emplace_back(Found{Adapter(adapter), {}});
+    Found& each = found.emplace_back(Found{Adapter(adapter)});
     WGPUAdapterInfo info{};
     if (wgpu().AdapterGetInfo(adapter, &info) != WGPUStatus_Success) continue;
-    each.name = text(info.device);
-    each.is_processor = info.adapterType == WGPUAdapterType_CPU;
+    each.device = {.name = text(info.device),
+                   .driver = text(info.description),
+                   .software = info.adapterType == WGPUAdapterType_CPU};
     wgpu().AdapterInfoFreeMembers(info);
   }
+  if (found.empty())
+    throw Error(
+        "the gpu engine found no device with a driver for Vulkan, Metal or D3D12: install a driver (Debian: "
+        "mesa-vulkan-drivers, which also computes on the processor), or use another engine");
+  std::ranges::stable_partition(found, [](const Found& each) { return !each.device.software; });
   return found;
 }
 
@@ -64,17 +73,13 @@ bool contains(std::string_view name, std::string_view wanted) {
 
 Found choose(std::string_view wanted) {
   std::vector<Found> all = find_adapters();
-  if (all.empty())
-    throw Error(
-        "the gpu engine found no device with a driver for Vulkan, Metal or D3D12: install a driver (Debian: "
-        "mesa-vulkan-drivers, which also computes on the processor), or use another engine");
-  auto chosen = std::ranges::find_if(all, [&](const Found& each) {
-    return wanted.empty() ? !each.is_processor : contains(each.name, wanted);
-  });
-  if (chosen == all.end() && wanted.empty()) chosen = all.begin();
+  if (const auto number = core::parse_number<std::size_t>(wanted); number && *number < all.size())
+    return std::move(all[*number]);
+  const auto chosen =
+      std::ranges::find_if(all, [&](const Found& each) { return contains(each.device.name, wanted); });
   if (chosen != all.end()) return std::move(*chosen);
   std::string names;
-  for (const Found& each : all) names += (names.empty() ? "" : ", ") + each.name;
+  for (const Found& each : all) names += (names.empty() ? "" : ", ") + each.device.name;
   throw Error("the gpu engine found no device '" + std::string(wanted) + "'; there are: " + names);
 }
 
@@ -99,6 +104,12 @@ std::string megabytes(std::size_t bytes) {
 
 }  // namespace
 
+std::vector<GpuDevice> devices_by_preference() {
+  std::vector<GpuDevice> devices;
+  for (Found& found : find_adapters()) devices.push_back(std::move(found.device));
+  return devices;
+}
+
 // What the device has reported, from any thread.
 struct Device::Faults {
   mutable std::mutex mutex;
@@ -120,7 +131,7 @@ struct Device::Faults {
 
 Device::Device(std::string_view wanted) : faults_(std::make_unique<Faults>()) {
   Found found = choose(wanted);
-  name_ = std::move(found.name);
+  name_ = std::move(found.device.name);
   WGPULimits limits{};
   if (wgpu().AdapterGetLimits(found.adapter.get(), &limits) != WGPUStatus_Success)
     throw Error("the gpu engine: " + name_ + " does not report its limits");

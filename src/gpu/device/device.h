@@ -1,22 +1,27 @@
 // A device that computes, and what a program does with it: buffers, a program of WGSL, and runs of it.
 #pragma once
 
+#include <sdm/gpu.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gpu/device/wgpu_library.h"
 
 namespace sdm::gpu {
 
+/// All devices, those first that are no processors. Throws sdm::Error if there is none.
+[[nodiscard]] std::vector<GpuDevice> devices_by_preference();
+
 /// One device. Used by one thread at a time.
 class Device {
  public:
-  /// Opens the first adapter whose name contains `wanted`, in any case of letters; if it is empty, the first
-  /// one that is not a processor, or the first one. Throws sdm::Error if there is none.
+  /// Opens the one that GpuOptions::device means. Throws sdm::Error if there is none.
   explicit Device(std::string_view wanted);
   ~Device();
   Device(const Device&) = delete;

@@ -125,7 +125,7 @@ class ExpansionsOfTree {
   [[nodiscard]] static double radius_by_box(const Vec3& centre, const tree::FloatBox& box) {
     Vec3 farthest;
     for (int k = 0; k < 3; ++k)
-      farthest[k] = std::max(std::abs(box.lo[k] - centre[k]), std::abs(box.hi[k] - centre[k]));
+      farthest[k] = std::max(std::abs(box.lower[k] - centre[k]), std::abs(box.upper[k] - centre[k]));
     return norm(farthest);
   }
   // About a centre in single precision.

@@ -70,7 +70,7 @@ struct PacketPoints {
   PacketPoints(const UnitFrame& frame, std::span<const Vec3> points) {
     Box box;
     for (const Vec3& p : points) extend(box, frame.to_unit(p));
-    ball = {0.5 * (box.lo + box.hi), 0};
+    ball = {0.5 * (box.lower + box.upper), 0};
     double radius = 0;
     for (std::size_t i = 0; i < kPacket; ++i) {
       const Vec3 offset = frame.to_unit(points[std::min(i, points.size() - 1)]) - ball.centre;

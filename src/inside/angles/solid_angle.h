@@ -4,7 +4,6 @@
 #include <sdm/types.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "geometry/vec.h"
@@ -37,8 +36,7 @@ inline HalfSolidAngle half_solid_angle(const Vec3& a, const Vec3& b, const Vec3&
   const double error = 64 * 0x1p-53 * product;
   const double distance = std::sqrt(imaginary * imaginary + real * real);
   const bool either_side = real <= error && std::abs(imaginary) <= error;
-  if (either_side || !(distance > 8 * error))
-    return {real, imaginary, distance, std::numeric_limits<double>::infinity()};
+  if (either_side || !(distance > 8 * error)) return {real, imaginary, distance, kInfinity};
   return {real, imaginary, distance, 8 * error / distance};
 }
 

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "core/cancellation.h"
@@ -243,7 +242,7 @@ class Refinement {
     const double gap = norm(tree::gap(tree_.tree.box(leaf), unit_));
     const double area = angles_.expansions.nodes[place / kWidth].area[place % kWidth];
     nearest_leaf_ = std::min(nearest_leaf_, gap);
-    steepness_of_leaves_ += gap > 0 ? area / (gap * gap * gap) : std::numeric_limits<double>::infinity();
+    steepness_of_leaves_ += gap > 0 ? area / (gap * gap * gap) : kInfinity;
   }
   // Adds at most as many faces as there are lanes, as half_solid_angle() does.
   void add_faces(std::span<const uint32_t> items) {
@@ -281,7 +280,7 @@ class Refinement {
   float most_ = 0;
   ExpansionTerms& terms_;
   SolidAngleSum faces_;
-  double nearest_leaf_ = std::numeric_limits<double>::infinity(), steepness_of_leaves_ = 0;
+  double nearest_leaf_ = kInfinity, steepness_of_leaves_ = 0;
 };
 
 }  // namespace
@@ -321,7 +320,7 @@ SolidAngles::SolidAngles(const OrientedFaces& all, const tree::WideTree& collaps
     : number(unique_number()), faces(all), wide(collapsed), expansions(expansions_of(all, collapsed)) {}
 
 SolidAngles::Sum SolidAngles::at(const Vec3& q, double limit, double tolerance) const {
-  if (empty()) return {{}, std::numeric_limits<double>::infinity()};
+  if (empty()) return {{}, kInfinity};
   return HWY_DYNAMIC_DISPATCH(SumAt)(*this, q, limit, tolerance);
 }
 

@@ -221,8 +221,7 @@ void put_transform(Bytes& out, const Grid& grid) {
 }
 
 float background_of(const DistanceField& field) {
-  if (field.max_distance < std::numeric_limits<double>::infinity())
-    return static_cast<float>(field.max_distance);
+  if (field.max_distance < kInfinity) return static_cast<float>(field.max_distance);
   float largest = 0;
   for (const float d : field.distance)
     if (std::abs(d) > largest) largest = std::abs(d);
@@ -253,7 +252,7 @@ void write_field_vdb(std::ostream& stream, const DistanceField& field) {
 
   const std::int64_t grid_position = out.position();
   out.put(kActiveMask);
-  const bool level_set = has_far_signs(field) && field.max_distance < std::numeric_limits<double>::infinity();
+  const bool level_set = has_far_signs(field) && field.max_distance < kInfinity;
   out.put(std::uint32_t{level_set ? 2u : 1u});
   put_metadata(out, "name", "distance");
   if (level_set) put_metadata(out, "class", "level set");

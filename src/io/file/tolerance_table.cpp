@@ -7,7 +7,6 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -21,7 +20,6 @@
 namespace sdm {
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr const char* kTableNeeded =
     "a table of tolerances has the header \"group,lower,upper\" or \"group;lower;upper\", or is a JSON array "
     "of objects with these "
@@ -64,7 +62,7 @@ double limit_of(const std::string& text, char separator, double none, std::size_
 void add_row(std::vector<GroupTolerance>& table, const std::string& group, double lower, double upper,
              const std::string& place) {
   if (group.empty()) throw Error(place + ": the group has no name");
-  if (lower == -kNoLimit && upper == kNoLimit)
+  if (lower == -kInfinity && upper == kInfinity)
     throw Error(fmt::format("{}: group {} has no limit", place, group));
   if (lower > upper)
     throw Error(fmt::format("{}: the lower limit {} is above the upper one, {}", place, lower, upper));
@@ -90,8 +88,8 @@ std::vector<GroupTolerance> table_in_csv(std::string_view text) {
     if (fields.size() != 3)
       throw Error(fmt::format("line {}: has {} fields between '{}', not group, lower and upper", line,
                               fields.size(), separator));
-    add_row(table, fields[0], limit_of(fields[1], separator, -kNoLimit, line),
-            limit_of(fields[2], separator, kNoLimit, line), fmt::format("line {}", line));
+    add_row(table, fields[0], limit_of(fields[1], separator, -kInfinity, line),
+            limit_of(fields[2], separator, kInfinity, line), fmt::format("line {}", line));
   }
   return table;
 }
@@ -112,7 +110,7 @@ std::vector<GroupTolerance> table_in_json(std::string_view text) {
     const auto limit = [&](const char* key, double none) {
       return !row.contains(key) || row[key].is_null() ? none : row[key].template get<double>();
     };
-    add_row(table, row["group"].get<std::string>(), limit("lower", -kNoLimit), limit("upper", kNoLimit),
+    add_row(table, row["group"].get<std::string>(), limit("lower", -kInfinity), limit("upper", kInfinity),
             place);
   }
   return table;

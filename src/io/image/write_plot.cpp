@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <new>
 
 #include "core/memory.h"
@@ -25,28 +24,28 @@ constexpr Rgb kGrid{228, 230, 233};
 constexpr Rgb kColors[] = {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}, {86, 180, 233}};
 
 struct Range {
-  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  double lower = kInfinity, upper = -lower;
 
   void include(std::span<const double> values) {
     for (const double v : values)
       if (std::isfinite(v)) {
-        lo = std::min(lo, v);
-        hi = std::max(hi, v);
+        lower = std::min(lower, v);
+        upper = std::max(upper, v);
       }
   }
   // Makes the range nonempty, even if there are no values or only one.
   void widen() {
-    if (!(lo <= hi)) {
-      lo = 0;
-      hi = 1;
+    if (!(lower <= upper)) {
+      lower = 0;
+      upper = 1;
     }
-    const double least = std::max(1e-9 * std::max(std::abs(lo), std::abs(hi)), 1e-30);
-    if (hi - lo < least) {
-      lo -= least > 1e-30 ? 0.05 * std::abs(lo) : 0.5;
-      hi += least > 1e-30 ? 0.05 * std::abs(hi) : 0.5;
+    const double least = std::max(1e-9 * std::max(std::abs(lower), std::abs(upper)), 1e-30);
+    if (upper - lower < least) {
+      lower -= least > 1e-30 ? 0.05 * std::abs(lower) : 0.5;
+      upper += least > 1e-30 ? 0.05 * std::abs(upper) : 0.5;
     }
   }
-  [[nodiscard]] double part(double v) const { return (v - lo) / (hi - lo); }
+  [[nodiscard]] double part(double v) const { return (v - lower) / (upper - lower); }
 };
 
 // The axes of a panel, relative to its top left corner.
@@ -62,8 +61,8 @@ struct Frame {
 
 void draw_grid(Canvas& canvas, const Frame& frame) {
   cairo_set_line_width(canvas.cairo(), 1);
-  const std::vector<double> heights = ticks(frame.y.lo, frame.y.hi, 5),
-                            places = ticks(frame.x.lo, frame.x.hi, 10);
+  const std::vector<double> heights = ticks(frame.y.lower, frame.y.upper, 5),
+                            places = ticks(frame.x.lower, frame.x.upper, 10);
   const auto step = [](const std::vector<double>& t) { return t.size() > 1 ? t[1] - t[0] : 1; };
   for (const double v : heights) {
     canvas.set_color(kGrid);

@@ -45,19 +45,19 @@ TextureRange write_distance_texture(const std::filesystem::path& file, const Sur
   const std::uint32_t n = surface.resolution();
   const atlas::Gutter gutter(n, surface.texel_faces(), std::max(atlas::kGutter, surface.gutter()));
   constexpr double kWhite = 0xFFFF;
-  const double factor = kWhite / (scale.hi - scale.lo);
+  const double factor = kWhite / (scale.upper - scale.lower);
 
   AtomicFile out(file);
   write_gray_png(out.stream(), n, surface.rows(), [&](std::uint32_t y, std::span<std::uint16_t> pixels) {
     for (std::uint32_t x = 0; x < n; ++x) {
       const std::uint32_t texel = gutter.source(x, y);
-      const double d = texel == kNone ? scale.lo : map.distance[texel];
-      const double value = !std::isfinite(d) ? 0 : std::clamp((d - scale.lo) * factor, 0.0, kWhite);
+      const double d = texel == kNone ? scale.lower : map.distance[texel];
+      const double value = !std::isfinite(d) ? 0 : std::clamp((d - scale.lower) * factor, 0.0, kWhite);
       pixels[x] = static_cast<std::uint16_t>(std::lround(value));
     }
   });
   out.commit();
-  return {scale.lo, scale.hi};
+  return {scale.lower, scale.upper};
 } catch (const std::bad_alloc&) {
   throw out_of_memory("writing " + file.string());
 }

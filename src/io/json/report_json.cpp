@@ -153,19 +153,21 @@ Json largest_json(const Summary& summary) {
           {"point", value_json(d.point)}};
 }
 
-/// The options of a measure by name, as numbers, flags and words; null: absent, or no limit.
-Json settings_json(const std::vector<GivenOption>& settings) {
-  Json json = Json::object();
-  for (const auto& [name, value] : settings) {
-    const std::optional<double> number = core::parse_number(value);
-    if (value.empty() || (number && !std::isfinite(*number)))
-      json[name] = nullptr;
-    else if (value == "true" || value == "false")
-      json[name] = value == "true";
-    else
-      json[name] = number ? Json(*number) : Json(value);
+/// The value of an option in the type that it is declared with; null: absent, or no limit.
+Json setting_json(const GivenOption& option) {
+  const auto& [name, value, type] = option;
+  if (value.empty()) return {};
+  if (type == "flag") return value == "true";
+  if (type == "integer") return *core::parse_number<std::uint64_t>(value);
+  if (type == "number") return *core::parse_number(value);  // dump() writes null for infinity
+  if (type == "texts") {
+    std::vector<std::string> texts;
+    OptionForm<std::vector<std::string>>::read(value, {}, texts);
+    return texts;
   }
-  return json;
+  std::vector<double> numbers;
+  const bool several = type == "numbers" || type == "interval" || type == "point" || type == "direction";
+  return several && read_numbers(value, {}, 0, numbers) ? Json(numbers) : Json(value);
 }
 
 /// What is measured of a surface and not of points.
@@ -186,6 +188,12 @@ Json reason_json(const PointsWithoutGroup& points) {
 }
 
 }  // namespace
+
+Json settings_json(const std::vector<GivenOption>& settings) {
+  Json json = Json::object();
+  for (const GivenOption& option : settings) json[option.name] = setting_json(option);
+  return json;
+}
 
 Json to_json(const Tessellation& t) {
   Json json = fields_json(t, {{"measured_points", ""}});

@@ -13,6 +13,7 @@
 #include <sdm/metrics.h>
 #include <sdm/multi_body_query.h>
 #include <sdm/names.h>
+#include <sdm/options.h>
 #include <sdm/points.h>
 #include <sdm/proximity_query.h>
 #include <sdm/simplify.h>
@@ -94,6 +95,16 @@ inline void insert_after(nlohmann::ordered_json& json, std::string_view before, 
     if (name == before) result[key] = value;
   }
   json = std::move(result);
+}
+
+/// Options by name in the types that they are declared with; null: absent, or no limit.
+[[nodiscard]] SDM_API nlohmann::ordered_json settings_json(const std::vector<GivenOption>& settings);
+/// All declared options of structs.
+template <class... Structs>
+[[nodiscard]] nlohmann::ordered_json settings_json(const Structs&... options) {
+  auto json = nlohmann::ordered_json::object();
+  (json.update(settings_json(settings_of(options))), ...);
+  return json;
 }
 
 [[nodiscard]] SDM_API nlohmann::ordered_json to_json(const Tessellation& tessellation);

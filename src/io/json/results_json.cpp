@@ -98,11 +98,10 @@ Json to_json(std::span<const PairContacts> pairs) {
 }
 
 Json to_json(const PairSeparation& pair, const std::optional<BoundedLength>& penetration_depth) {
-  return {{"first", pair.first},
-          {"second", pair.second},
-          {"separation", fields_json(pair.separation)},
-          {"colliding", collision_json(pair.colliding)},
-          {"penetration_depth", value_json(penetration_depth)}};
+  Json json = fields_json(pair, {{"parts", ""}});
+  json["colliding"] = collision_json(pair.colliding);
+  json["penetration_depth"] = value_json(penetration_depth);
+  return json;
 }
 
 Json to_json(ProximityQuery& query) {

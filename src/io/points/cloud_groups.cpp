@@ -1,7 +1,6 @@
 #include "io/points/cloud_groups.h"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "map/statistics/tolerance_limits.h"
@@ -101,7 +100,7 @@ Evidence facing_evidence(const Evidence& like, const summary::DistanceRange& ran
   evidence.complete = !unmatched;
   evidence.unmatched = unmatched;
   evidence.estimated_signs = false;
-  evidence.thin_walls = std::numeric_limits<double>::infinity();
+  evidence.thin_walls = kInfinity;
   return evidence;
 }
 

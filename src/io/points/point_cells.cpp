@@ -38,8 +38,8 @@ Box UsualBox::box() const {
     std::vector<double> along;
     for (const Vec3& p : sample_) along.push_back(p[k]);
     std::ranges::sort(along);
-    box.lo[k] = along[outside];
-    box.hi[k] = along[along.size() - 1 - outside];
+    box.lower[k] = along[outside];
+    box.upper[k] = along[along.size() - 1 - outside];
   }
   return box;
 }
@@ -60,7 +60,7 @@ std::size_t PointCells::CellHash::operator()(const Cell& cell) const {
   return static_cast<std::size_t>(hash);
 }
 
-PointCells::PointCells(const Box& usual, std::uint64_t points) : origin_(usual.lo) {
+PointCells::PointCells(const Box& usual, std::uint64_t points) : origin_(usual.lower) {
   constexpr double kFinest = 1.0 / 512, kSpacings = 4;
   const double apart = kSpacings / std::sqrt(static_cast<double>(std::max<std::uint64_t>(points, 1)));
   const double width = diagonal(usual) * std::max(kFinest, apart);

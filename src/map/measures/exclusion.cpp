@@ -1,12 +1,11 @@
 #include <sdm/error.h>
+#include <sdm/measure.h>
 #include <sdm/mesh.h>
-#include <sdm/self_proximity_query.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <new>
 #include <numeric>
 #include <span>
@@ -86,7 +85,7 @@ Patches group_faces(const Mesh& mesh, const CompressedRows<std::uint32_t>& faces
   const std::vector<Vec3> centroid = centroids(mesh);
   std::vector<std::uint32_t> patch_of(count, kNone), seen_by(count, kNone),
       met_by(mesh.positions.size(), kNone);
-  std::vector<double> nearest(count, std::numeric_limits<double>::infinity());  // squared
+  std::vector<double> nearest(count, kInfinity);  // squared
   std::vector<std::uint32_t> flood;
   std::uint32_t patches = 0;
   for (std::uint32_t seed = 0; seed < count; ++seed) {

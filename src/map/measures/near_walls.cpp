@@ -45,13 +45,13 @@ class NearWalls {
   bool enter(const tree::OpenNode& open) const { return open.bound <= radius_; }
   uint32_t bound(const tree::OpenNode& open, const tree::WideTree::Node& node, float* least) const {
     const Block d;
-    const EightVectors &lo_turn = normals_.lo[open.child], &hi_turn = normals_.hi[open.child];
+    const EightVectors &lo_turn = normals_.lower[open.child], &hi_turn = normals_.upper[open.child];
     uint32_t near = 0;
     for (size_t i = 0; i < tree::WideTree::kWidth; i += hn::Lanes(d)) {
       BlockVec squared = hn::Zero(d), height = hn::Zero(d), turn = hn::Zero(d), from_centre = hn::Zero(d);
       for (int k = 0; k < 3; ++k) {
         const BlockVec n = hn::Set(d, normal_[k]);
-        const BlockVec lo = hn::Load(d, node.lo[k] + i), hi = hn::Load(d, node.hi[k] + i);
+        const BlockVec lo = hn::Load(d, node.lower[k] + i), hi = hn::Load(d, node.upper[k] + i);
         const auto gap = [&](float x) HWY_ATTR {
           return hn::Max(hn::Max(hn::Sub(lo, hn::Set(d, x)), hn::Sub(hn::Set(d, x), hi)), hn::Zero(d));
         };

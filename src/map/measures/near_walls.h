@@ -24,8 +24,8 @@ struct EightVectors {
 
 /// The outward normals of faces, as searches read them.
 struct WallNormals {
-  std::vector<EightVectors> lo, hi;   ///< of each wide node: bounds on those below its children
-  std::vector<EightVectors> of_leaf;  ///< of each leaf
+  std::vector<EightVectors> lower, upper;  ///< of each wide node: bounds on those below its children
+  std::vector<EightVectors> of_leaf;       ///< of each leaf
 };
 
 /// The least radius at which anything has stopped a ball, after the face: stop(data, face).

@@ -183,7 +183,7 @@ void SelfSearch::open(std::uint32_t place) {
 template <class Visit>
 void SelfSearch::visit_near(const Box& box, double& limit, const Visit& visit) const {
   const UnitFrame& frame = sites_.frame;
-  const tree::FloatBox unit = tree::FloatBox::around({frame.to_unit(box.lo), frame.to_unit(box.hi)});
+  const tree::FloatBox unit = tree::FloatBox::around({frame.to_unit(box.lower), frame.to_unit(box.upper)});
   const auto within = [&](float squared) {
     // Distances are too large by 1e-6 of themselves at most, coordinates in the unit frame by 1e-16.
     const double most = (1 + 1e-6) * frame.scale * limit + 1e-15;

@@ -1,7 +1,7 @@
 // Distances of a surface to itself: to the faces of a mesh that a given face does not exclude.
 #pragma once
 
-#include <sdm/self_proximity_query.h>
+#include <sdm/measure.h>
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@ namespace sdm::self {
 
 /// The closest points of two faces.
 struct FacePair {
-  double distance = std::numeric_limits<double>::infinity();
+  double distance = kInfinity;
   std::uint32_t face1 = kNone, face2 = kNone;  ///< the smaller index first; kNone: there is no pair
   Vec3 point1{}, point2{};
 

@@ -80,13 +80,13 @@ void Walls::arrange_normals() {
         below[node] = unite(below[left], below[right]);
       });
   const auto& nodes = sites_.wide.nodes;
-  normals_.lo.resize(nodes.size());
-  normals_.hi.resize(nodes.size());
+  normals_.lower.resize(nodes.size());
+  normals_.upper.resize(nodes.size());
   for (std::size_t node = 0; node < nodes.size(); ++node)
     for (std::uint32_t slot = 0; slot < nodes[node].count; ++slot) {
       const tree::FloatBox& box = below[nodes[node].source[slot]];
-      normals_.lo[node].set(slot, box.lo);
-      normals_.hi[node].set(slot, box.hi);
+      normals_.lower[node].set(slot, box.lower);
+      normals_.upper[node].set(slot, box.upper);
     }
   const auto& leaves = sites_.regions.leaves;
   normals_.of_leaf.resize(leaves.size() - 1);

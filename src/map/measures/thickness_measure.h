@@ -47,7 +47,7 @@ class Walls {
 
 /// The end of the ray or the ball of a sample.
 struct WallEnd {
-  double thickness = std::numeric_limits<double>::infinity();
+  double thickness = kInfinity;
   Vec3 point{};
   std::uint32_t face = kNone;
 };

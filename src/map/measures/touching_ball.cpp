@@ -10,7 +10,7 @@ constexpr double kRounding = 1e-15;  // relative, of a point that is p itself
 
 void reach_point(const Vec3& n, const Vec3& q, double size, TouchedPoint& least) {
   const double height = dot(n, q), squared = squared_norm(q);
-  double radius = std::numeric_limits<double>::infinity();
+  double radius = kInfinity;
   if (height > 0)
     radius = squared / (2 * height);
   else if (squared <= kRounding * kRounding * size)

@@ -1,8 +1,6 @@
 // The balls that touch a plane at a point, and the smallest of them that reaches a triangle.
 #pragma once
 
-#include <limits>
-
 #include "geometry/triangle.h"
 #include "geometry/vec.h"
 
@@ -17,7 +15,7 @@ struct Touching {
 };
 
 struct TouchedPoint {
-  double radius = std::numeric_limits<double>::infinity();
+  double radius = kInfinity;
   Vec3 point{};
 };
 

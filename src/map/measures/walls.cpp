@@ -53,7 +53,7 @@ std::vector<double> thickness::wall_lengths(const Sites& sites, std::size_t samp
   const thickness::Walls walls(data, ThicknessOptions().angle);
   const std::vector<double> sums = area_sums(data.mesh);
   const double step = sums.back() / static_cast<double>(samples);
-  std::vector<double> lengths(samples, std::numeric_limits<double>::infinity());
+  std::vector<double> lengths(samples, kInfinity);
   constexpr std::size_t kSampleGrain = 64;
   parallel_for(samples, kSampleGrain, [&](std::size_t begin, std::size_t end) {
     thickness::WallSearch search(walls);
@@ -72,7 +72,7 @@ std::vector<double> thickness::wall_lengths(const Sites& sites, std::size_t samp
 
 double thickness::thin_walls(std::span<const double> lengths) {
   const std::size_t fewest = lengths.size() / 100 + 1;  // 1 %
-  return lengths.empty() ? std::numeric_limits<double>::infinity() : lengths[fewest - 1];
+  return lengths.empty() ? kInfinity : lengths[fewest - 1];
 }
 
 std::optional<WallEstimate> thickness::estimate_walls(std::span<const double> lengths, double thin) {

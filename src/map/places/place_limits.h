@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -21,7 +20,6 @@ namespace sdm::map {
 
 /// No limit on either side.
 inline Tolerance any_distance() {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   return {-kInfinity, kInfinity};
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <vector>
 
 #include "map/statistics/texel_areas.h"
@@ -76,7 +75,6 @@ std::vector<DistanceBand> distance_bands(const Surface& surface, const DistanceM
                                          std::span<const double> edges, const DistanceBandOptions& options) {
   check_increasing(edges);
   // The largest number of the band below each edge.
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<double> last;
   for (const double edge : edges)
     last.push_back(edge > options.centre ? edge + options.accuracy

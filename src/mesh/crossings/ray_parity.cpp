@@ -34,11 +34,11 @@ double side_of_ray(const Vec2& from, const Vec2& to, double area) {
 
 bool ray_meets(const tree::FloatBox& box, const Vec3& origin) {
   // The part of the ray at 0 ≤ x ≤ hi: the slopes are positive, so that y and z grow with x.
-  const double end = box.hi[0] - origin[0];
+  const double end = box.upper[0] - origin[0];
   if (end < 0) return false;
-  const double begin = std::max(0.0, box.lo[0] - origin[0]);
-  return origin[1] + kSlopeY * begin <= box.hi[1] && origin[1] + kSlopeY * end >= box.lo[1] &&
-         origin[2] + kSlopeZ * begin <= box.hi[2] && origin[2] + kSlopeZ * end >= box.lo[2];
+  const double begin = std::max(0.0, box.lower[0] - origin[0]);
+  return origin[1] + kSlopeY * begin <= box.upper[1] && origin[1] + kSlopeY * end >= box.lower[1] &&
+         origin[2] + kSlopeZ * begin <= box.upper[2] && origin[2] + kSlopeZ * end >= box.lower[2];
 }
 
 bool ray_meets(const Triangle& t, std::span<const Vec3> positions, const UnitFrame& frame,

@@ -3,7 +3,6 @@
 #include <sdm/verdict.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -65,9 +64,7 @@ Judgement judge(const Judgement& of_samples, const ToleranceProof& proof) {
 
 Tolerance summary::Certifier::real_limits(const Tolerance& tolerance) const {
   const bool is_signed = map_.sign.method != SignMethod::none;
-  return is_signed || tolerance.lower > 0
-             ? tolerance
-             : Tolerance(-std::numeric_limits<double>::infinity(), tolerance.upper);
+  return is_signed || tolerance.lower > 0 ? tolerance : Tolerance(-kInfinity, tolerance.upper);
 }
 
 bool summary::Certifier::are_walls_thin(const Tolerance& tolerance) {

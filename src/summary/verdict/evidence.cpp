@@ -3,7 +3,6 @@
 #include <sdm/error.h>
 
 #include <cmath>
-#include <limits>
 
 #include "map/statistics/tolerance_limits.h"
 #include "map/statistics/weighted_texels.h"
@@ -67,7 +66,7 @@ std::vector<Evidence> evidence_of_groups(const Surface& surface, const DistanceM
                       .estimated_signs = has_estimated_signs(map.measured.kind, map.sign.method),
                       .samples_only = !is_lipschitz(map.measured.kind),
                       .accuracy = accuracy,
-                      .error_bound = std::numeric_limits<double>::infinity(),
+                      .error_bound = kInfinity,
                       .is_signed = map.sign.method != SignMethod::none});
   return result;
 }

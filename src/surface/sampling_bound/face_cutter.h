@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -69,7 +68,7 @@ class Polygon {
   /// The extent along the other axis of the points on a line of this axis, along which the polygon was
   /// clipped; lo > hi if there are none.
   [[nodiscard]] std::array<double, 2> range_on(int axis, double line) const {
-    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+    double lo = kInfinity, hi = -lo;
     for (const Corner& c : corners())
       if (c.at[axis] == line) {
         lo = std::min(lo, c.at[1 - axis]);
@@ -148,8 +147,8 @@ class NearSamples {
         tree_(surface, 16 * radius) {}
 
   struct Choice {
-    std::uint32_t texel = kNone;                                ///< the texel of the sample
-    double distance = std::numeric_limits<double>::infinity();  ///< of the outline's farthest corner
+    std::uint32_t texel = kNone;  ///< the texel of the sample
+    double distance = kInfinity;  ///< of the outline's farthest corner
   };
   /// Returns, for a piece of the face in the square of the texel at (x, y), the first sample found within
   /// `enough`, otherwise the nearest. `own`: the sample of a face without a texel, else kNone.

@@ -279,7 +279,7 @@ class Farthest {
       : samples_(samples), tree_(tree), distance_(distance) {}
 
   /// `most` is the distance to some sample, an upper bound.
-  void look_at(const Vec3& p, double most = std::numeric_limits<double>::infinity()) {
+  void look_at(const Vec3& p, double most = kInfinity) {
     if (most > distance_) distance_ = std::max(distance_, norm(p - samples_[tree_.nearest(p)]));
   }
   [[nodiscard]] double distance() const { return distance_; }

@@ -60,7 +60,7 @@ std::vector<SampleTree::Run> SampleTree::cut(std::size_t begin, std::size_t end,
 std::uint32_t SampleTree::nearest(const Vec3& query) const {
   const Vec3 unit_query = frame_.to_unit(query);
   std::uint32_t sample = 0;
-  double least = std::numeric_limits<double>::infinity();  // squared
+  double least = kInfinity;  // squared
   const auto bound = [&](const tree::FloatBox& box) {
     return squared_norm((1 / frame_.scale) * gap(box, unit_query));  // exact: the scale is a power of two
   };

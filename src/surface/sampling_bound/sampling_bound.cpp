@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <new>
 #include <numbers>
 #include <string>
@@ -67,7 +66,7 @@ const surface::PieceAssignment& internals(const SamplingBound& bound) {
 namespace {
 
 double ratio(double now, double first) {
-  return first > 0 ? now / first : std::numeric_limits<double>::infinity();
+  return first > 0 ? now / first : kInfinity;
 }
 
 void check_faces(std::size_t count, std::size_t expected) {

@@ -63,14 +63,14 @@ std::uint32_t scramble(std::uint32_t x) {
 Rgb ColorScale::operator()(double distance) const {
   if (!std::isfinite(distance)) return kNoValue;
   if (tolerance) return band(distance);
-  const double place = rules::color_place(distance, mode_of(*this), lo, hi, 0, 0, accuracy);
+  const double place = rules::color_place(distance, mode_of(*this), lower, upper, 0, 0, accuracy);
   if (place >= rules::kInOpposite) return gradient(rules::kOpposite, place - rules::kInOpposite);
   return gradient(colors_of(map), place);
 }
 
 Rgb ColorScale::band(double distance) const {
   const double place =
-      rules::color_place(distance, rules::kBands, lo, hi, tolerance->lower, tolerance->upper, accuracy);
+      rules::color_place(distance, rules::kBands, lower, upper, tolerance->lower, tolerance->upper, accuracy);
   if (place >= rules::kInUnjudged) return kUnjudged;
   if (place >= rules::kInBelow) return gradient(kBelow, place - rules::kInBelow);
   if (place >= rules::kInAbove) return gradient(kAbove, place - rules::kInAbove);
@@ -83,7 +83,7 @@ ColorScale color_scale(const PictureOptions& fixed) {
     scale.map = Colormap::viridis;
     scale.tolerance = fixed.tolerance;
   }
-  std::tie(scale.lo, scale.hi) = std::pair((*fixed.range)[0], (*fixed.range)[1]);
+  std::tie(scale.lower, scale.upper) = std::pair((*fixed.range)[0], (*fixed.range)[1]);
   return scale;
 }
 

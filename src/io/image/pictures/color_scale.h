@@ -23,7 +23,7 @@ inline constexpr Rgb kBackground{222, 224, 228};  ///< texels that no face owns
 /// if it is sequential.
 struct ColorScale {
   Colormap map = Colormap::viridis;      ///< never automatic
-  double lo = 0, hi = 1;                 ///< lo < hi; colours are constant outside
+  double lower = 0, upper = 1;           ///< lower < upper; colours are constant outside
   std::optional<Tolerance> tolerance{};  ///< if set, bands instead of the map
   double accuracy = 0;                   ///< distances that exceed the tolerance, or 0, by less are within it
 

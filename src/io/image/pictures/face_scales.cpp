@@ -9,9 +9,9 @@ namespace {
 
 /// The scale with these limits.
 ColorScale banded(ColorScale scale, const Tolerance& t) {
-  const auto [lo, hi] = std::pair(scale.lo, scale.hi);
-  scale.lo = rules::banded_lo(t.lower, t.upper, lo, hi);
-  scale.hi = rules::banded_hi(t.lower, t.upper, lo, hi);
+  const auto [lo, hi] = std::pair(scale.lower, scale.upper);
+  scale.lower = rules::banded_lo(t.lower, t.upper, lo, hi);
+  scale.upper = rules::banded_hi(t.lower, t.upper, lo, hi);
   scale.tolerance = t;
   return scale;
 }

@@ -27,7 +27,7 @@ void draw_bar(Canvas& canvas, const ColorScale& scale, const std::vector<ScaleLa
               double bottom) {
   cairo_t* cairo = canvas.cairo();
   const auto height_of = [&](double d) {
-    return bottom - (d - scale.lo) / (scale.hi - scale.lo) * (bottom - top);
+    return bottom - (d - scale.lower) / (scale.upper - scale.lower) * (bottom - top);
   };
   constexpr int kSteps = 4096;  // finer than any pixel of the bar
   // Every pixel has the colour of one step, unblended with the background, if there is no antialiasing. Each
@@ -35,7 +35,7 @@ void draw_bar(Canvas& canvas, const ColorScale& scale, const std::vector<ScaleLa
   cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE);
   for (int i = 0; i < kSteps; ++i) {
     const double foot = bottom - i * (bottom - top) / kSteps, head = std::max(top, foot - 3);
-    canvas.set_color(scale(scale.lo + (i + 0.5) / kSteps * (scale.hi - scale.lo)));
+    canvas.set_color(scale(scale.lower + (i + 0.5) / kSteps * (scale.upper - scale.lower)));
     cairo_rectangle(cairo, kMargin, head, kBarWidth, foot - head);
     cairo_fill(cairo);
   }
@@ -64,7 +64,7 @@ void draw_bar(Canvas& canvas, const ColorScale& scale, const std::vector<ScaleLa
 }  // namespace
 
 std::vector<ScaleLabel> scale_labels(const ColorScale& scale) {
-  const auto [lo, hi] = std::pair(scale.lo, scale.hi);
+  const auto [lo, hi] = std::pair(scale.lower, scale.upper);
   const std::vector<double> round = ticks(lo, hi, kScaleSteps);
   const double step = round.size() > 1 ? round[1] - round[0] : hi - lo;
   std::vector<ScaleLabel> labels;
@@ -105,7 +105,7 @@ LegendText legend_text(const DistanceMap& map, double least, double most, const 
                          : map.sign.method == SignMethod::side ? "negative: behind"
                                                                : "negative: inside");
   // An empty line otherwise: pictures of a sequence have bars of one length.
-  text.notes.emplace_back(least < scale.lo || most > scale.hi ? "beyond: as the ends" : "");
+  text.notes.emplace_back(least < scale.lower || most > scale.upper ? "beyond: as the ends" : "");
   return text;
 }
 

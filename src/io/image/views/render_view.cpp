@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 
 #include "geometry/vec.h"
@@ -74,7 +73,7 @@ class SurfaceColors {
       const int x = static_cast<int>(place[0]), y = static_cast<int>(place[1]);
       if (x >= 0 && x < columns_ && y >= 0 && y < rows_ && is_of_chart(texel_at(x, y), chart))
         return color_of_texel(texel_at(x, y));
-      double nearest = std::numeric_limits<double>::infinity();
+      double nearest = kInfinity;
       std::optional<std::size_t> found;
       for (int row = std::max(0, y - 1); row <= std::min(rows_ - 1, y + 1); ++row)
         for (int column = std::max(0, x - 1); column <= std::min(columns_ - 1, x + 1); ++column) {
@@ -135,7 +134,7 @@ class Renderer {
   [[nodiscard]] double in_front_of(const Vec3& place) const {
     const Vec3 at = projection_(place);
     if (!(at[0] >= 0 && at[0] < projection_.width && at[1] >= 0 && at[1] < projection_.height))
-      return std::numeric_limits<double>::infinity();
+      return kInfinity;
     const std::size_t sample =
         sample_at(static_cast<std::uint32_t>(at[0]), static_cast<std::uint32_t>(at[1]));
     return part_.depth(sample) - at[2];

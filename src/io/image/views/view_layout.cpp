@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "geometry/vec.h"
 
@@ -31,7 +30,7 @@ double extent(const Vec3& size, const Vec3& axis) {
 
 ViewLayout layout_views(const Box& box, UpAxis up_axis) {
   const double diagonal = std::max(core::diagonal(box), 1e-300);
-  Vec3 size = box.hi - box.lo;
+  Vec3 size = box.upper - box.lower;
   for (double& length : size) length = std::max(length, kLeast * diagonal);
   const auto [right, up, front] = front_frame(up_axis);
 
@@ -90,12 +89,11 @@ Projection view_from(std::span<const Box> boxes, const Vec3& towards, UpAxis up_
   const bool vertical = std::hypot(towards[0], towards[2]) < 1e-6 * std::abs(towards[1]);
   view.right = vertical ? right : normalized(cross(up, view.towards));
   view.up = cross(view.towards, view.right);
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::array<double, 3> least{kInfinity, kInfinity, kInfinity}, most{-kInfinity, -kInfinity, -kInfinity};
   for (const Box& box : boxes)
     for (int corner = 0; corner < 8; ++corner) {
       Vec3 p;
-      for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? box.hi[k] : box.lo[k];
+      for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? box.upper[k] : box.lower[k];
       const Vec3 seen{dot(p, view.right), dot(p, view.up), dot(p, view.towards)};
       for (int k = 0; k < 3; ++k) {
         least[k] = std::min(least[k], seen[k]);
@@ -113,8 +111,8 @@ Box shown_box(const Box& part, const Box& other) {
   const double beside = kBeside * diagonal(part);
   Box shown = part;
   for (int k = 0; k < 3; ++k) {
-    shown.lo[k] = std::min(part.lo[k], std::max(part.lo[k] - beside, other.lo[k]));
-    shown.hi[k] = std::max(part.hi[k], std::min(part.hi[k] + beside, other.hi[k]));
+    shown.lower[k] = std::min(part.lower[k], std::max(part.lower[k] - beside, other.lower[k]));
+    shown.upper[k] = std::max(part.upper[k], std::min(part.upper[k] + beside, other.upper[k]));
   }
   return shown;
 }

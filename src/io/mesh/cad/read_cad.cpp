@@ -5,7 +5,6 @@
 #include <sdm/sites.h>
 
 #include <array>
-#include <limits>
 #include <memory>
 #include <span>
 
@@ -70,7 +69,7 @@ bool has_iges_end(std::string_view bytes) {
 PolygonMesh read(std::string_view bytes, const std::filesystem::path& file, CadFormat format,
                  const TessellationOptions& options) {
   const char* const name = format == CadFormat::step ? "STEP" : "IGES";
-  constexpr double kAny = std::numeric_limits<double>::infinity();
+  constexpr double kAny = kInfinity;
   check_options(options);
   if (!(options.at_most.value_or(1) > 0)) throw Error("the largest deflection must be greater than 0");
   Client client;

@@ -15,7 +15,7 @@ namespace {
 std::vector<Vec3> to_unit_square(std::span<const Vec2> points) {
   std::vector<Vec3> result(points.size());
   for (int k = 0; k < 2; ++k) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+    double low = kInfinity, high = -low;
     for (const Vec2& p : points) {
       low = std::min(low, p[k] / 2);
       high = std::max(high, p[k] / 2);

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -28,8 +27,8 @@ class CornerTree {
 
  private:
   struct Box {
-    Vec2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-    Vec2 high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    Vec2 low{kInfinity, kInfinity};
+    Vec2 high{-kInfinity, -kInfinity};
 
     [[nodiscard]] bool operator==(const Box&) const = default;
   };

@@ -30,8 +30,8 @@ const char* mode_of(const ColorScale& scale) {
 
 Json scale_json(const ColorScale& scale) {
   return {{"mode", mode_of(scale)},
-          {"lo", scale.lo},
-          {"hi", scale.hi},
+          {"lo", scale.lower},
+          {"hi", scale.upper},
           {"lower", scale.tolerance ? scale.tolerance->lower : 0},
           {"upper", scale.tolerance ? scale.tolerance->upper : 0},
           {"accuracy", scale.accuracy}};
@@ -95,7 +95,7 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
         if (std::isfinite(d)) reach = std::max<double>(reach, std::abs(d));
     }
   double longest = 0;
-  for (int k = 0; k < 3; ++k) longest = std::max(longest, box.hi[k] - box.lo[k]);
+  for (int k = 0; k < 3; ++k) longest = std::max(longest, box.upper[k] - box.lower[k]);
   const double step = longest > 0 ? longest / kSteps : 1;
   if (!(reach > 0)) reach = 1;
 
@@ -104,7 +104,7 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
   page["units"] = options.units;
   page["names"] = options.names;
   page["xxh3"] = options.xxh3;
-  page["origin"] = box.lo;
+  page["origin"] = box.lower;
   page["step"] = step;
   page["reach"] = reach;
   page["added"] = content.added;
@@ -113,7 +113,7 @@ void write_player_page(const std::filesystem::path& file, const PlayerContent& c
   for (const PlayerFrame& frame : content.frames) shown.push_back(frame.number);
   page["shown"] = shown;
   page["bodies"] = Json::array();
-  for (int b = 0; b < 2; ++b) page["bodies"].push_back(add_body(arrays, content, b, box.lo, step, reach));
+  for (int b = 0; b < 2; ++b) page["bodies"].push_back(add_body(arrays, content, b, box.lower, step, reach));
   page["panels"] = panels_json(content.panels);
   page["scale"] = scale_json(color_scale(fixed));
   if (options.verdicts) {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <new>
 #include <vector>
 
@@ -28,7 +27,7 @@ constexpr std::size_t kMostCoordinates = 8'000'000;  // of all frames
 /// The distances of all frames together: of the vertices drawn, each with the same weight.
 DistanceStatistics pooled(const std::vector<PlayerFrame>& frames) {
   DistanceStatistics s;
-  s.min = std::numeric_limits<double>::infinity();
+  s.min = kInfinity;
   s.max = -s.min;
   std::vector<float> values, magnitudes;
   for (const PlayerFrame& frame : frames)

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "core/parallel.h"
 #include "map/statistics/texel_areas.h"
@@ -56,8 +55,8 @@ void AreaSums::add(const AreaSums& other) {
 
 AreaByValue AreaSums::fractions() const {
   AreaByValue result;
-  result.lo = lo_;
-  result.hi = hi_;
+  result.lower = lo_;
+  result.upper = hi_;
   double total = without_value_;
   for (const double area : by_bin_) total += area;
   result.area = fractions_of(by_bin_, total);
@@ -75,7 +74,7 @@ AreaByValue AreaSums::fractions() const {
 AreaByValue area_by_value(const Surface& surface, const DistanceMap& map) {
   const auto owners = surface.map_faces();
   const auto samples = surface.sample_texels();
-  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  double lo = kInfinity, hi = -lo;
   for (const std::uint32_t texel : samples)
     if (const double d = map.distance[texel]; std::isfinite(d)) {
       lo = std::min(lo, d);

@@ -16,7 +16,7 @@ namespace sdm::io {
 struct AreaByValue {
   std::vector<std::uint32_t> keys;  ///< of the bins that are not empty, ascending: see below
   std::vector<float> area_of_key;   ///< fraction of the area
-  double lo = 0, hi = 0;            ///< the least and the largest distance
+  double lower = 0, upper = 0;      ///< the least and the largest distance
   std::vector<float> area;          ///< the same of kBins bins of equal width from lo to hi
   double without_value = 0;         ///< fraction of the area
 

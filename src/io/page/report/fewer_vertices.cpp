@@ -21,7 +21,7 @@ double area(const Mesh& mesh) {
 
 // The vertex that stands for each vertex.
 std::vector<std::uint32_t> clustered(const Mesh& mesh, std::span<const float> distances, double cell) {
-  const Vec3 lo = bounds(mesh).lo;
+  const Vec3 lo = bounds(mesh).lower;
   constexpr double kMostCells = 1 << 20;  // along a side, so that three numbers fit one key
   const auto key = [&](const Vec3& p) {
     std::uint64_t result = 0;

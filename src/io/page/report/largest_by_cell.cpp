@@ -9,7 +9,7 @@
 namespace sdm::io {
 
 LargestByCell::LargestByCell(const Box& box)
-    : lo_(box.lo), width_(kWidth * diagonal(box)), places_(kSide * kSide * kSide) {}
+    : lo_(box.lower), width_(kWidth * diagonal(box)), places_(kSide * kSide * kSide) {}
 
 void LargestByCell::add(const CellPlace& place) {
   if (!std::isfinite(place.distance)) return;

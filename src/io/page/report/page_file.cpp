@@ -52,7 +52,7 @@ Json add_area(PackedArrays& arrays, const AreaByValue& area) {
   arrays.add("area_key", area.keys);
   arrays.add("area_of_key", bits_of(area.area_of_key));
   arrays.add("area_of_bin", bits_of(area.area));
-  return {{"lo", area.lo}, {"hi", area.hi}, {"without_value", area.without_value}};
+  return {{"lo", area.lower}, {"hi", area.upper}, {"without_value", area.without_value}};
 }
 
 Json common_json(UpAxis up) {

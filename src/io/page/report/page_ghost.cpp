@@ -94,7 +94,7 @@ Json add_ghost(PackedArrays& arrays, const Mesh& mesh, const CoverageMap* covera
   const Box box = bounds(mesh);
   const Steps steps(box);
   Json json = steps.json();
-  json["box"] = {{"lo", box.lo}, {"hi", box.hi}};
+  json["box"] = {{"lo", box.lower}, {"hi", box.upper}};
   const auto visible = static_cast<std::size_t>(std::ranges::count_if(mesh.triangles, is_visible));
   json["triangles_of_mesh"] = visible;
   if (visible > most) return json;

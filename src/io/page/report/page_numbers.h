@@ -25,9 +25,9 @@ struct Steps {
   Vec3 origin{};
   double length = 1;
 
-  explicit Steps(const Box& box, int bits = 21) : origin(box.lo) {
+  explicit Steps(const Box& box, int bits = 21) : origin(box.lower) {
     double longest = 0;
-    for (int k = 0; k < 3; ++k) longest = std::max(longest, box.hi[k] - box.lo[k]);
+    for (int k = 0; k < 3; ++k) longest = std::max(longest, box.upper[k] - box.lower[k]);
     if (longest > 0 && std::isfinite(longest)) length = std::ldexp(longest, -bits);
   }
   [[nodiscard]] std::uint32_t operator()(const Vec3& p, int k) const {

@@ -86,8 +86,8 @@ Box usual_box(std::span<const Shown> sample, const Box& all) {
     const std::size_t outside = along.size() / 200;
     const double least = along[outside], most = along[along.size() - 1 - outside];
     const double margin = 0.1 * (most - least);
-    box.lo[k] = std::max(all.lo[k], least - margin);
-    box.hi[k] = std::min(all.hi[k], most + margin);
+    box.lower[k] = std::max(all.lower[k], least - margin);
+    box.upper[k] = std::min(all.upper[k], most + margin);
   }
   return box;
 }

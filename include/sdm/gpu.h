@@ -1,0 +1,87 @@
+/// The gpu engine: closest points by compute shaders, on Vulkan, Metal or D3D12: options and report.
+///
+/// Threads: all functions may be called concurrently; an engine may serve several threads at once.
+#pragma once
+
+#include <sdm/engine.h>
+#include <sdm/names.h>
+#include <sdm/options.h>
+#include <sdm/types.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace sdm {
+
+/// A device that runs compute shaders.
+struct GpuDevice {
+  std::string name;    ///< as its driver has it
+  std::string driver;  ///< the driver's own words, such as its version
+  bool software = false;
+};
+
+template <>
+inline constexpr std::tuple kFields<GpuDevice>{
+    Field{"name", &GpuDevice::name, "The device's name, as its driver has it."},
+    Field{"driver", &GpuDevice::driver, "The driver's own words, such as its version."},
+    Field{"software", &GpuDevice::software, "Whether it computes on the processor."}};
+
+/// All devices that can run the gpu engine, in order of preference: hardware first. Throws sdm::Error if
+/// there is none, if the library of wgpu-native is missing, or if sdm was built without it (SDM_BUILD_GPU).
+[[nodiscard]] SDM_API std::vector<GpuDevice> gpu_devices();
+
+/// Options of make_gpu_engine().
+struct GpuOptions {
+  /// Index into gpu_devices(), or a part of a name in it (case-insensitive); empty selects the first device.
+  std::string device{};
+};
+
+template <>
+inline constexpr auto kOptions<GpuOptions> =
+    std::tuple{Option{.name = "device",
+                      .member = &GpuOptions::device,
+                      .text = "The device, by its number in `sdm devices` or part of its name.",
+                      .value = "NAME"}};
+
+/// What a gpu engine did since it was made.
+struct GpuReport {
+  std::string device;
+  std::uint64_t points = 0;      ///< that closest points were searched for
+  std::uint64_t nodes = 0;       ///< of the tree, visited on the device
+  std::uint64_t tests = 0;       ///< of a point and a face on the device
+  std::uint64_t candidates = 0;  ///< faces compared in double precision
+  /// Points with more candidates than there is room for, which are searched for in double precision.
+  std::uint64_t incomplete = 0;
+  std::uint64_t alone = 0;  ///< points that were not searched for with those beside them
+  std::uint64_t dispatches = 0;
+  double upload_ms = 0, search_ms = 0, finish_ms = 0;  ///< wall-clock; finish: of all threads
+};
+
+template <>
+inline constexpr std::tuple kFields<GpuReport>{
+    Field{"device", &GpuReport::device, "The device's name."},
+    Field{"points", &GpuReport::points, "Points that closest points were searched for."},
+    Field{"nodes", &GpuReport::nodes, "Nodes of the tree, visited on the device."},
+    Field{"tests", &GpuReport::tests, "Tests of a point and a face on the device."},
+    Field{"candidates", &GpuReport::candidates, "Faces that were compared in double precision."},
+    Field{"incomplete", &GpuReport::incomplete,
+          "Points with more candidates than there is room for, searched for in double precision."},
+    Field{"alone", &GpuReport::alone, "Points that were not searched for with those beside them."},
+    Field{"dispatches", &GpuReport::dispatches, "Runs of the shaders."},
+    Field{"upload_ms", &GpuReport::upload_ms, "Milliseconds of copies to the device."},
+    Field{"search_ms", &GpuReport::search_ms, "Milliseconds of the search, and of copies from the device."},
+    Field{"finish_ms", &GpuReport::finish_ms,
+          "Milliseconds of the comparison in double precision, of all threads."}};
+
+/// Returns a gpu engine with these options. Throws sdm::Error as gpu_devices() does, and if there is no such
+/// device.
+[[nodiscard]] SDM_API std::shared_ptr<const Engine> make_gpu_engine(const GpuOptions& options = {});
+
+/// Returns the report of a gpu engine; empty for any other engine.
+[[nodiscard]] SDM_API std::optional<GpuReport> gpu_report(const Engine& engine);
+
+}  // namespace sdm
