@@ -1,4 +1,4 @@
-/// A mesh prepared for proximity queries, shared by any number of bodies.
+/// A mesh or a primitive solid prepared for proximity queries, shared by any number of bodies.
 #pragma once
 
 #include <sdm/mesh.h>
@@ -44,6 +44,24 @@ class SDM_API Shape {
   /// linear, all cores, a small part of building.
   explicit Shape(StoredShape stored);
 
+  // Primitive solids, without triangles but for the box, which is a mesh: exact, and for all queries but
+  // maps. They throw sdm::Error for sizes that are not finite or not above 0. Cost: constant.
+
+  /// The ball of that radius about the origin.
+  [[nodiscard]] static Shape sphere(double radius);
+  /// The points within the radius of a segment of that length, about the origin, along z.
+  [[nodiscard]] static Shape capsule(double radius, double length);
+  /// The cylinder of that radius and length, about the origin, along z.
+  [[nodiscard]] static Shape cylinder(double radius, double length);
+  /// The box with sides of these lengths about the origin.
+  [[nodiscard]] static Shape box(const Vec3& sides);
+  /// The points x with n · x ≤ offset, n the normal divided by its length, as a floor. Two half-spaces are no
+  /// pair of bodies.
+  [[nodiscard]] static Shape half_space(const Vec3& normal, double offset = 0);
+  /// The points within that radius of this shape, a convex one. Throws sdm::Error for a shape that is not
+  /// convex, or was deformed. Cost: that of Shape(mesh) of a mesh.
+  [[nodiscard]] Shape with_margin(double radius) const;
+
   /// Calls write(bytes) for all bytes of the shape, part after part: some twenty times those of its mesh, for
   /// caches and files, as write_shape() makes them. They can be used by the same version of the format only,
   /// on any little-endian machine. Throws what write() throws. Cost: linear.
@@ -53,15 +71,22 @@ class SDM_API Shape {
   [[nodiscard]] bool has_surface() const;
   /// Throws sdm::Error if there is no atlas.
   [[nodiscard]] const Surface& surface() const;
-  /// The sites, in the frame of the mesh.
+  /// Whether it is a mesh, without or with a margin. A sphere, a capsule, a cylinder and a half-space are
+  /// none.
+  [[nodiscard]] bool has_mesh() const;
+  /// The radius around the mesh, or that of a sphere or a capsule; otherwise 0.
+  [[nodiscard]] double margin() const;
+  /// The sites, in the frame of the mesh, without its margin. Throws sdm::Error if there is no mesh.
   [[nodiscard]] const Sites& sites() const;
   /// Whether the mesh bounds a convex solid, exactly, with at most 16,384 faces: closed, in one piece,
   /// consistently oriented, without reflex edges and faces without area. Two such shapes are searched by
-  /// support functions, which takes less time and gives the same results. False once the shape was deformed.
+  /// support functions, which takes less time and gives the same results. False once the shape was deformed;
+  /// true of all primitives.
   [[nodiscard]] bool convex() const;
 
  private:
   friend const std::shared_ptr<shape::Body>& internals(const Shape& shape);
+  explicit Shape(std::shared_ptr<shape::Body> body);
 
   std::shared_ptr<shape::Body> body_;
 };

@@ -1,5 +1,7 @@
 #include "bodies/many/body_parts.h"
 
+#include <sdm/error.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -68,8 +70,13 @@ BodyParts::BodyParts(std::vector<std::vector<BodyPart>> bodies, std::vector<Shap
       for (BodyPart& part : parts) {
         shape::PosedBody posed(part.shape);
         posed.set_pose(part.pose);
-        if (place.compound)
-          extend_by_mesh(place.box, internals(part.shape)->sites().mesh(), posed.pose().map);
+        if (!place.compound) continue;
+        if (posed.body().half_space())
+          throw Error("a half-space as a part of a compound; make it a body of its own");
+        if (posed.body().rounded())
+          extend(place.box, posed.box());
+        else
+          extend_by_mesh(place.box, posed.body().sites().mesh(), posed.pose().map);
       }
     });
     for (BodyPart& part : parts) {
@@ -109,7 +116,7 @@ std::vector<motion::DividedMotion> BodyParts::divided(std::span<const shape::Pos
   for (std::uint32_t body = 0; body < bodies(); ++body)
     on_behalf_of(body, [&] {
       if (!compound(body)) {
-        divided.emplace_back(motions[body], parts[begin(body)].body().box());
+        divided.emplace_back(motions[body], parts[begin(body)].body().turning_box());
         return;
       }
       const Box& whole = places_[body].box;
@@ -125,7 +132,7 @@ std::vector<motion::DividedMotion> BodyParts::divided(std::span<const shape::Pos
 
 Transform BodyParts::pose_at(std::size_t body, std::span<const shape::PosedBody> parts, const Motion& motion,
                              double time) const {
-  const Box& box = compound(body) ? places_[body].box : parts[begin(body)].body().box();
+  const Box& box = compound(body) ? places_[body].box : parts[begin(body)].body().turning_box();
   return motion::DividedMotion(motion, box).at(time);
 }
 

@@ -75,7 +75,8 @@ void InternalContacts::follow(std::span<const shape::PosedBody> bodies, const Pa
   boxes_.clear();
   neighbours_.clear();
   for (std::uint32_t b = 0; b < bodies.size(); ++b)
-    if ((filter[b].fixed || filter.in_compound(b)) && bodies[b].body().solid()) {
+    if ((filter[b].fixed || filter.in_compound(b)) && bodies[b].body().solid() &&
+        !bodies[b].body().rounded()) {
       fixed_.push_back(b);
       boxes_.push_back(bodies[b].tight_box());
     }
@@ -100,6 +101,7 @@ std::span<const Sweep::Pair> InternalContacts::neighbours(std::uint32_t body) co
 std::optional<InternalContacts::Exit> InternalContacts::exit_by(const Contact& contact,
                                                                 const shape::PosedBody& body, int side,
                                                                 Around& around) const {
+  if (body.body().rounded()) return {};
   const sites::SitesData& sites = internals(body.body().sites());
   const auto& [face, weights] = contact.on[side];
   if (face == kNone || sites.sliver[face]) return {};

@@ -61,8 +61,10 @@ struct MultiBodyQuery::Impl {
       : options(asked), parts(std::move(of_bodies)), given_poses(parts.bodies()), near(parts.body_of()) {
     posed.reserve(shapes.size());
     for (Shape& shape : shapes) posed.emplace_back(std::move(shape));
-    for (std::uint32_t part = 0; part < posed.size(); ++part)
+    for (std::uint32_t part = 0; part < posed.size(); ++part) {
       if (parts.any_compound()) posed[part].set_pose(parts.pose_of(part, {}));
+      if (posed[part].body().half_space()) near.change_filter().set_half_space(part);
+    }
   }
 
   [[nodiscard]] std::size_t checked(std::size_t body) const {

@@ -30,6 +30,7 @@ bool PairFilter::operator()(std::uint32_t a, std::uint32_t b) const {
   const BodyFilter &of_a = of_[a], &of_b = of_[b];
   if ((of_a.fixed && of_b.fixed) || (of_a.groups & of_b.mask) == 0 || (of_b.groups & of_a.mask) == 0)
     return false;
+  if (half_space_[a] != 0 && half_space_[b] != 0) return false;
   const auto [first, second] = std::minmax(body_of_[a], body_of_[b]);
   return first != second &&
          (excluded_.empty() || !std::ranges::binary_search(excluded_, Sweep::Pair{first, second}));

@@ -21,13 +21,16 @@ class PairFilter {
  public:
   /// `body_of`: the body of each part.
   explicit PairFilter(std::vector<std::uint32_t> body_of)
-      : of_(body_of.size()), body_of_(std::move(body_of)) {}
+      : of_(body_of.size()), half_space_(body_of.size()), body_of_(std::move(body_of)) {}
 
   BodyFilter& operator[](std::size_t part) { return of_[part]; }
   const BodyFilter& operator[](std::size_t part) const { return of_[part]; }
   /// Pairs of bodies.
   void exclude(const Sweep::Pair& pair);
   void include(const Sweep::Pair& pair);
+
+  /// A half-space and another one are no pair.
+  void set_half_space(std::uint32_t part) { half_space_[part] = 1; }
 
   [[nodiscard]] bool operator()(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] bool same_body(std::uint32_t a, std::uint32_t b) const { return body_of_[a] == body_of_[b]; }
@@ -39,6 +42,7 @@ class PairFilter {
 
  private:
   std::vector<BodyFilter> of_;
+  std::vector<std::uint8_t> half_space_;
   std::vector<std::uint32_t> body_of_;
   std::vector<Sweep::Pair> excluded_;  ///< sorted
 };

@@ -1,5 +1,7 @@
 #include "bodies/many/nearest_body.h"
 
+#include <sdm/error.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -120,9 +122,15 @@ SignUsed signs_of_others(std::span<const shape::PosedBody> bodies, std::size_t o
 
 }  // namespace
 
+void require_meshes(std::span<const shape::PosedBody> bodies) {
+  if (std::ranges::any_of(bodies, [](const shape::PosedBody& body) { return body.body().rounded(); }))
+    throw Error("maps are to meshes, but a body is a primitive or has a margin; leave it out, or use meshes");
+}
+
 void map_nearest(std::span<const shape::PosedBody> bodies, std::size_t on, double max_distance,
                  NearestMap& nearest) {
   const Surface& surface = bodies[on].body().surface();
+  require_meshes(bodies);
   const Affine& pose = bodies[on].pose().map;
   const std::span<const std::uint32_t> texels = surface.sample_texels();
   map::clear(nearest.map, surface);

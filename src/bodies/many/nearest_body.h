@@ -9,6 +9,9 @@
 
 namespace sdm::bodies {
 
+/// Throws sdm::Error unless all bodies are meshes without a margin.
+void require_meshes(std::span<const shape::PosedBody> bodies);
+
 /// See MultiBodyQuery::nearest_map.
 void map_nearest(std::span<const shape::PosedBody> bodies, std::size_t on, double max_distance,
                  NearestMap& nearest);

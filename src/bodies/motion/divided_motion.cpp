@@ -16,7 +16,7 @@ void check_tolerance(double tolerance) {
 }
 
 DividedMotion::DividedMotion(const Motion& motion, const Shape& shape)
-    : DividedMotion(motion, internals(shape)->box()) {}
+    : DividedMotion(motion, internals(shape)->turning_box()) {}
 
 DividedMotion::DividedMotion(const Motion& motion, const Box& box)
     : from_(mesh::Similarity::of(motion.from)) {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "bodies/motion/divided_motion.h"
+#include "bodies/motion/first_contact.h"
 #include "bodies/pair/pair_answers.h"
 #include "bodies/shape/posed_body.h"
 
@@ -33,6 +34,9 @@ class MovingPair {
   [[nodiscard]] TimeOfContact at(double time);
 
  private:
+  [[nodiscard]] FreeMotion advance(double tolerance, const std::atomic<double>& until);
+  [[nodiscard]] double closing_speed(bool along_normal);
+  [[nodiscard]] double reach(int body) const;
   void set_time(double time);
   [[nodiscard]] TimeOfContact found(double time);
 

@@ -11,6 +11,7 @@ namespace sdm::motion {
 // angle, |f″| ≤ θ² ρ, so that f is within θ² ρ / 8 of the straight line from f(0) to f(1): the box around
 // both ends, extended by that, contains the body. So does the box around the ball of radius ρ at both ends.
 Box swept_box(const shape::Body& body, const DividedMotion& motion) {
+  if (body.half_space()) return body.box();
   Vec3 half;  // of the box about the centre of the motion that contains all faces
   for (int k = 0; k < 3; ++k)
     half[k] = std::max(body.box().upper[k] - motion.middle()[k], motion.middle()[k] - body.box().lower[k]);

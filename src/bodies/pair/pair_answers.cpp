@@ -34,14 +34,14 @@ void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, 
 void PairAnswers::set_bodies(const shape::PosedBody& o1, const shape::PosedBody& o2) {
   bodies_ = {&o1, &o2};
   contacts_.reset();
+  relation_.reset();
+  solid_pair_ = solids::are_solid_pair(o1, o2);
   to_other_[1] = between(o2.pose(), o1.pose());
   first_to_other_known_ = false;
 }
 
 double PairAnswers::precision() const {
-  Box box = bodies_[0]->box();
-  extend(box, bodies_[1]->box());
-  return 1e-6 * diagonal(box);
+  return 1e-6 * size();
 }
 
 const std::array<mesh::Similarity, 2>& PairAnswers::to_other() {
@@ -61,7 +61,13 @@ bool PairAnswers::colliding() {
   return *known_.colliding;
 }
 
+const solids::Relation& PairAnswers::relation() {
+  if (!relation_) relation_ = solids::SolidPair(*bodies_[0], *bodies_[1], exit_workspace_).relation();
+  return *relation_;
+}
+
 bool PairAnswers::find_collision() {
+  if (solid_pair_) return relation().colliding;
   const pairs::MeshPair pair = meshes();
   if (!known_.intersecting)
     if (std::optional<convex::ConvexPair> convex = convex_pair(pair))
@@ -82,6 +88,10 @@ std::span<const Contact> PairAnswers::contacts() {
 std::span<const Contact> PairAnswers::contacts_within(double margin) {
   contacts_.reset();
   if (!within(margin)) return {};
+  if (solid_pair_) {
+    const solids::SolidPair pair(*bodies_[0], *bodies_[1], exit_workspace_);
+    return solid_contacts_.find(*bodies_[0], *bodies_[1], pair, relation(), margin);
+  }
   return contact_finder_.find(bodies_, meshes(), to_other(), margin, precision());
 }
 
@@ -121,6 +131,7 @@ std::optional<convex::ConvexPair> PairAnswers::convex_pair(const pairs::MeshPair
 
 // Computes known_.separation if it is at most `bound`, and returns whether it is.
 bool PairAnswers::find_closest(double bound) {
+  if (solid_pair_) return take_separation(bound);
   const mesh::Similarity& pose = bodies_[0]->pose();
   const pairs::MeshPair pair = meshes();
   const double own_bound = bound / pose.scale;
@@ -148,6 +159,30 @@ bool PairAnswers::find_closest(double bound) {
   return true;
 }
 
+// The same of a solid pair.
+bool PairAnswers::take_separation(double bound) {
+  const solids::Relation& found = relation();
+  if (!(found.surface_lower <= bound)) return false;
+  known_.intersecting = found.surface_upper == 0;
+  known_.closest_faces = found.faces;
+  BoundedLength separation;
+  separation.value = separation.upper = found.surface_upper;
+  separation.lower = found.surface_lower;
+  const bool exact = separation.upper - separation.lower <= precision();
+  separation.certainty = exact ? Certainty::exact : Certainty::bounded;
+  separation.witness = found.closest;
+  known_.separation = separation;
+  return true;
+}
+
+double PairAnswers::size() const {
+  for (const int body : {0, 1})
+    if (bodies_[body]->body().half_space()) return diagonal(bodies_[1 - body]->box());
+  Box box = bodies_[0]->box();
+  extend(box, bodies_[1]->box());
+  return diagonal(box);
+}
+
 bool PairAnswers::surfaces_intersect() {
   if (!known_.intersecting) {
     // Faces that intersected in a similar pose mostly still do.
@@ -161,6 +196,7 @@ bool PairAnswers::surfaces_intersect() {
 std::optional<BoundedLength> PairAnswers::depth() {
   if (!bodies_[0]->body().solid() && !bodies_[1]->body().solid()) return {};
   if (!colliding()) return BoundedLength{{.certainty = Certainty::exact}};
+  if (solid_pair_) return solids::SolidPair(*bodies_[0], *bodies_[1], exit_workspace_).depth(relation());
   // Of their own boxes: those that contain a turned body are larger.
   const auto size = [&](int body) {
     return bodies_[body]->pose().scale * diagonal(bodies_[body]->body().box());

@@ -11,6 +11,8 @@
 #include "bodies/convex/convex_pair.h"
 #include "bodies/pairs/pair_search.h"
 #include "bodies/shape/posed_body.h"
+#include "bodies/solids/solid_contacts.h"
+#include "bodies/solids/solid_pair.h"
 #include "certify/depth/depth_search.h"
 
 namespace sdm::pair {
@@ -79,6 +81,10 @@ class PairAnswers {
 
   [[nodiscard]] const BoundedLength& separation();
   [[nodiscard]] bool colliding();
+  /// Of a solid pair (see solids::are_solid_pair()), how far apart its bodies are.
+  [[nodiscard]] const solids::Relation& relation();
+  /// The diagonal of the box of both; of a half-space and another body, that of the other one.
+  [[nodiscard]] double size() const;
   [[nodiscard]] const std::optional<BoundedLength>& penetration_depth();
   [[nodiscard]] std::span<const Contact> contacts();
   /// contacts() with another margin. The span is valid until the next call.
@@ -95,6 +101,7 @@ class PairAnswers {
   /// The error of a computed distance.
   [[nodiscard]] double precision() const;
   bool find_closest(double bound);
+  bool take_separation(double bound);
   [[nodiscard]] bool surfaces_intersect();
   [[nodiscard]] std::optional<BoundedLength> depth();
 
@@ -106,6 +113,11 @@ class PairAnswers {
   contacts::ContactFinder contact_finder_;
   pairs::PairWorkspace workspace_;
   depth::DepthSearch depth_search_;
+
+  bool solid_pair_ = false;
+  convex::ExitWorkspace exit_workspace_;
+  std::optional<solids::Relation> relation_;
+  solids::SolidContacts solid_contacts_;
 
   KnownAnswers known_;
   std::optional<std::span<const Contact>> contacts_;

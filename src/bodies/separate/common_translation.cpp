@@ -7,6 +7,7 @@
 #include "bodies/separate/free_translations.h"
 #include "bodies/separate/moved_pair.h"
 #include "bodies/separate/search_steps.h"
+#include "bodies/solids/posed_core.h"
 #include "geometry/vec.h"
 #include "mesh/similarity.h"
 
@@ -65,10 +66,10 @@ class MovedPairs final : public TranslatedBodies {
 
 // The boxes of all O1 and of all O2.
 std::array<Box, 2> boxes_of(std::span<const PosedPair> pairs) {
-  std::array boxes{pairs[0].o1->box(), pairs[0].o2->box()};
+  std::array<Box, 2> boxes;
   for (const PosedPair& pair : pairs) {
-    extend(boxes[0], pair.o1->box());
-    extend(boxes[1], pair.o2->box());
+    if (!pair.o1->body().half_space()) extend(boxes[0], pair.o1->box());
+    if (!pair.o2->body().half_space()) extend(boxes[1], pair.o2->box());
   }
   return boxes;
 }
@@ -92,18 +93,47 @@ convex::SimplexPoint farthest_of_all(std::span<const PosedPair> pairs, const Vec
   return {{kNone, kNone}, points[0] - points[1]};
 }
 
+// The normal of the half-space that bodies leave, away from it for O1; 0 if there is none.
+Vec3 normal_of_half_space(std::span<const PosedPair> pairs) {
+  for (const PosedPair& pair : pairs) {
+    if (pair.o2->body().half_space()) return solids::PosedCore(*pair.o2).normal();
+    if (pair.o1->body().half_space()) return -solids::PosedCore(*pair.o1).normal();
+  }
+  return {};
+}
+
+// How far O1 is to be moved along the normal n until a plane across it separates it from O2.
+double way_along(const PosedPair& pair, const Vec3& n) {
+  const auto height = [](const shape::PosedBody& body, const Vec3& u) {
+    const solids::PosedCore core(body);
+    std::uint32_t vertex = kNone;
+    if (body.body().half_space()) return dot(core.normal(), u) > 0 ? core.offset() : -core.offset();
+    return dot(farthest(body, body.body().convex_solid(), u, vertex), u);
+  };
+  return height(*pair.o2, n) + height(*pair.o1, -n);
+}
+
 }  // namespace
 
 CommonTranslation common_translation(std::span<const PosedPair> pairs, CommonWorkspace& workspace) {
   const auto& [first, second] = boxes_of(pairs);
-  Box box = first;
-  extend(box, second);
+  Box box;
+  for (const Box& side : {first, second})
+    if (side.lower[0] <= side.upper[0]) extend(box, side);
   const double size = diagonal(box);
   MovedPairs moved(pairs, workspace);
-  const convex::ConvexExit exit = convex::exit_of_hulls(
-      [pairs](const Vec3& u, const std::array<std::uint32_t, 2>&) { return farthest_of_all(pairs, u); },
-      normalized(centre(second) - centre(first)), size, workspace.exit);
-  const Vec3 out = beyond(moved, -std::max(0.0, exit.upper) * exit.direction, -exit.direction, size);
+  Vec3 direction = normal_of_half_space(pairs);
+  double way = 0;
+  if (direction != Vec3{}) {
+    for (const PosedPair& pair : pairs) way = std::max(way, way_along(pair, direction));
+  } else {
+    const convex::ConvexExit exit = convex::exit_of_hulls(
+        [pairs](const Vec3& u, const std::array<std::uint32_t, 2>&) { return farthest_of_all(pairs, u); },
+        normalized(centre(second) - centre(first)), size, workspace.exit);
+    direction = -exit.direction;
+    way = std::max(0.0, exit.upper);
+  }
+  const Vec3 out = beyond(moved, way * direction, direction, size);
 
   double lower = 0;
   bool solids = false;

@@ -54,30 +54,27 @@ std::uint64_t side_at(const SupportFeature& feature, const Vec2& at) {
     least = squared;
     ends = {a.vertex, b.vertex};
   }
-  const std::vector<std::uint32_t>& numbers = feature.convex().vertex;
   std::uint64_t result = 0;
-  for (const std::uint32_t vertex : {std::min(ends[0], ends[1]), std::max(ends[0], ends[1])}) {
-    const auto number = std::ranges::lower_bound(numbers, vertex) - numbers.begin();
-    result = result << kVertexBits | static_cast<std::uint64_t>(number);
-  }
+  for (const std::uint32_t vertex : {std::min(ends[0], ends[1]), std::max(ends[0], ends[1])})
+    result = result << kVertexBits | feature.number(vertex);
   return result;
 }
 
 }  // namespace
 
 std::span<const Contact> ConvexPatch::find(const shape::PosedBody& o1, const shape::PosedBody& o2,
-                                           const Vec3& t, double size, double tolerance) {
-  t_ = t;
-  normal_ = normalized(t) + Vec3{};  // no −0
+                                           const Vec3& normal, double depth, double size, double tolerance) {
+  normal_ = normal + Vec3{};  // no −0
+  depth_ = depth;
   near_ = kNear * size;
-  const ContactPlane plane = plane_across(normal_, centre(o1.box()), size);
+  const ContactPlane plane = plane_across(normal_, centre((o1.body().half_space() ? o2 : o1).box()), size);
   features_[0].find(o1, -normal_, plane);
   features_[1].find(o2, normal_, plane);
   clip();
   contacts_.clear();
   for (const Vec2& at : corners_) add_contact(at);
   std::ranges::sort(contacts_, {}, [](const Contact& c) { return std::pair(-c.depth, c.id); });
-  if (!contacts_.empty() && contacts_.front().depth < norm(t) - tolerance) contacts_.clear();
+  if (!contacts_.empty() && contacts_.front().depth < depth - tolerance) contacts_.clear();
   return contacts_;
 }
 
@@ -87,6 +84,10 @@ void ConvexPatch::clip() {
   const bool swapped = features_[0].corners().size() > features_[1].corners().size();
   const SupportFeature &cut = features_[swapped ? 1 : 0], &by = features_[swapped ? 0 : 1];
   corners_.clear();
+  if (cut.everywhere()) {
+    for (const SupportFeature::Corner& corner : by.corners()) corners_.push_back(corner.at);
+    return;
+  }
   for (const SupportFeature::Corner& corner : cut.corners()) corners_.push_back(corner.at);
   const std::span<const SupportFeature::Corner> sides = by.corners();
   if (sides.size() == 2 && cut.corners().size() == 2) return cross_segments();
@@ -151,7 +152,7 @@ void ConvexPatch::add_contact(const Vec2& at) {
     (i == 0 ? contact.point1 : contact.point2) = above.point;
     contact.on[i] = above.on;
   }
-  contact.depth = std::min(dot(normal_, contact.point2 - contact.point1), dot(normal_, t_));
+  contact.depth = std::min(dot(normal_, contact.point2 - contact.point1), depth_);
   contacts_.push_back(contact);
 }
 

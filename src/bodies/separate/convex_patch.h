@@ -1,4 +1,4 @@
-// The contacts of two convex solids that overlap, from a face, an edge or a vertex of each.
+// The contacts of two convex bodies from a face, an edge or a vertex of each.
 #pragma once
 
 #include <sdm/proximity_query.h>
@@ -18,13 +18,14 @@ namespace sdm::separate {
 /// over the other one, and where two sides cross.
 class ConvexPatch {
  public:
-  /// The contacts of convex solids that leave each other by the translation t ≠ 0 of O1, all with the normal
-  /// t / |t|: point1 and point2 are on the surfaces and above each other, to rounding, and depth is at most
-  /// |t|. Ids name the vertex or both edges. Sorted by depth, the deepest first, in the patch 0. Empty if
-  /// nothing is as deep as |t|, to `tolerance`: these are then not the features that touch after t. `size`:
-  /// of both bodies. The span is valid until the next call.
+  /// The contacts of convex bodies that leave each other by the translation depth · normal of O1, or are
+  /// −depth apart: point1 and point2 are on the surfaces and above each other, to rounding. Ids name the
+  /// vertex or both edges. Sorted by depth, the deepest first, in the patch 0, none deeper than `depth`.
+  /// Empty if nothing is as deep, to `tolerance`: these are then not the features that touch then. `size`: of
+  /// both bodies. The span is valid until the next call.
   [[nodiscard]] std::span<const Contact> find(const shape::PosedBody& o1, const shape::PosedBody& o2,
-                                              const Vec3& t, double size, double tolerance);
+                                              const Vec3& normal, double depth, double size,
+                                              double tolerance);
 
  private:
   void clip();
@@ -34,7 +35,8 @@ class ConvexPatch {
 
   std::array<SupportFeature, 2> features_;
   std::vector<Vec2> corners_, clipped_;  // of the part in common, before and after a step
-  Vec3 t_{}, normal_{};
+  Vec3 normal_{};
+  double depth_ = 0;
   double near_ = 0;  // points of the plane that are no farther apart are one
   std::vector<Contact> contacts_;
 };

@@ -4,11 +4,16 @@
 
 #include "bodies/convex/support_search.h"
 #include "bodies/shape/extreme_vertex.h"
+#include "bodies/solids/posed_core.h"
 
 namespace sdm::separate {
 
 Vec3 farthest(const shape::PosedBody& body, const convex::ConvexMesh* convex, const Vec3& u,
               std::uint32_t& vertex) {
+  if (body.body().rounded()) {
+    const solids::PosedCore core(body);
+    return core.support(u, vertex) + core.radius() * u;
+  }
   const auto& rows = body.pose().map.rows;
   const Vec3 local = u[0] * rows[0] + u[1] * rows[1] + u[2] * rows[2];
   if (convex != nullptr) {

@@ -29,6 +29,7 @@ Contact exit_contact(const std::array<shape::PosedBody, 2>& bodies, const pairs:
                .id = ProximityQuery::kExitContact};
   exit.depth = depth_along(exit, t);
   for (int body = 0; body < 2; ++body) {
+    if (faces[body] == kNone) continue;
     const Mesh& mesh = internals(bodies[body].body().sites()).mesh;
     const auto& [a, b, c] = mesh.triangles[faces[body]];
     const Vec3 p = inverse(bodies[body].pose().map)(closest[body]);
@@ -38,6 +39,8 @@ Contact exit_contact(const std::array<shape::PosedBody, 2>& bodies, const pairs:
 }
 
 double size_of(const shape::PosedBody& o1, const shape::PosedBody& o2) {
+  if (o1.body().half_space()) return diagonal(o2.box());
+  if (o2.body().half_space()) return diagonal(o1.box());
   Box box = o1.box();
   extend(box, o2.box());
   return diagonal(box);
@@ -95,9 +98,10 @@ std::optional<Contact> SeparatingContacts::exit_after(const std::array<shape::Po
 // empty for other bodies.
 std::span<const Contact> SeparatingContacts::patch_of(const shape::PosedBody& o1, const shape::PosedBody& o2,
                                                       const SeparatingTranslation& out) {
-  if (o1.body().convex_solid() == nullptr || o2.body().convex_solid() == nullptr) return {};
+  if (!o1.body().has_support() || !o2.body().has_support()) return {};
   const double size = size_of(o1, o2);
-  return patch_.find(o1, o2, out.translation, size, kGapOfSize * size);
+  const Vec3 normal = normalized(out.translation);
+  return patch_.find(o1, o2, normal, dot(normal, out.translation), size, kGapOfSize * size);
 }
 
 bool SeparatingContacts::find_of_convex(const shape::PosedBody& o1, const shape::PosedBody& o2,

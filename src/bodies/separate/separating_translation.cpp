@@ -10,7 +10,9 @@
 #include "bodies/separate/moved_pair.h"
 #include "bodies/separate/overlap_cover.h"
 #include "bodies/separate/search_steps.h"
+#include "bodies/separate/solid_translation.h"
 #include "bodies/shape/convexity.h"
+#include "bodies/solids/solid_pair.h"
 #include "geometry/vec.h"
 
 namespace sdm::separate {
@@ -134,6 +136,7 @@ class TranslationSearch {
 SeparatingTranslation separating_translation(const shape::PosedBody& o1, const shape::PosedBody& o2,
                                              pair::PairAnswers& answers, TranslationWorkspace& workspace) {
   if (!answers.colliding()) return {{.certainty = Certainty::exact}};
+  if (solids::are_solid_pair(o1, o2)) return solid_translation(o1, o2, answers, workspace);
   return TranslationSearch(o1, o2, answers, workspace).find();
 }
 

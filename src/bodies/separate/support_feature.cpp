@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 #include "bodies/convex/support_search.h"
@@ -29,10 +30,17 @@ double twice_area(const Vec2& a, const Vec2& b, const Vec2& c) {
 
 void SupportFeature::find(const shape::PosedBody& body, const Vec3& up, const ContactPlane& plane) {
   body_ = &body;
-  convex_ = body.body().convex_solid();
   plane_ = plane;
   faces_.clear();
   corners_.clear();
+  up_ = up;
+  core_.reset();
+  lift_ = body.pose().scale * body.body().core().radius * up;
+  if (!body.body().has_mesh()) {
+    core_.emplace(body);
+    return find_core(up);
+  }
+  convex_ = body.body().convex_solid();
   const auto& rows = body.pose().map.rows;
   const Vec3 local = normalized(up[0] * rows[0] + up[1] * rows[1] + up[2] * rows[2]);
   const std::uint32_t farthest = convex::farthest_vertex(*convex_, local);
@@ -47,6 +55,63 @@ void SupportFeature::find(const shape::PosedBody& body, const Vec3& up, const Co
   has_area_ = best != kNone;
   if (has_area_) return find_faces(best);
   find_edge(farthest, local);
+}
+
+void SupportFeature::add_corner(const Vec3& p, std::uint32_t number) {
+  corners_.push_back({plane_(p), number});
+  core_points_.push_back(p + lift_);
+}
+
+// Of an axis with discs: the disc at an end, a line along the side, or the farthest point of either. Numbers
+// are those of the places of a disc, of which each end has as many.
+void SupportFeature::find_core(const Vec3& up) {
+  constexpr std::uint32_t kOfDisc = 8, kSide = kOfDisc, kPlaces = kOfDisc + 1;
+  has_area_ = false;
+  core_points_.clear();
+  if (everywhere()) return;
+  const Vec3& axis = core_->axis();
+  const double along = dot(axis, up);
+  const std::uint32_t farther = along < 0 ? 1 : 0;
+  const auto end = [&](std::uint32_t i) { return core_->centre() + (i == 0 ? 1.0 : -1.0) * core_->half(); };
+  if (core_->disc() > 0 && std::abs(along) > kNearlyParallel) {
+    const Vec3 x = normalized(cross(axis, std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+    const Vec3 y = cross(axis, x);
+    for (std::uint32_t i = 0; i < kOfDisc; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kOfDisc;
+      add_corner(end(farther) + core_->disc() * (std::cos(angle) * x + std::sin(angle) * y),
+                 farther * kPlaces + i);
+    }
+    if (twice_area(corners_[0].at, corners_[1].at, corners_[2].at) < 0) {
+      std::ranges::reverse(corners_);
+      std::ranges::reverse(core_points_);
+    }
+    return;
+  }
+  const Vec3 across = up - along * axis;
+  const Vec3 rim = core_->disc() > 0 ? core_->disc() * normalized(across) : Vec3{};
+  const bool both = std::abs(along) < kTilt && core_->half() != Vec3{};
+  for (const std::uint32_t i : {0U, 1U})
+    if (both || i == farther) add_corner(end(i) + rim, i * kPlaces + kSide);
+}
+
+// The point of the plane of the corners, or of the half-space, above a point.
+SupportFeature::Above SupportFeature::above_core(const Vec2& at) const {
+  if (core_points_.size() == 1) return {core_points_[0], {}};
+  if (core_points_.size() == 2) {
+    const Vec2 side = corners_[1].at - corners_[0].at;
+    const double t = std::clamp(dot(at - corners_[0].at, side) / dot(side, side), 0.0, 1.0);
+    return {core_points_[0] + t * (core_points_[1] - core_points_[0]), {}};
+  }
+  const Vec3 of_plane = core_points_.empty() ? core_->centre() : core_points_[0];
+  const Vec3& normal = core_points_.empty() ? core_->normal() : core_->axis();
+  const Vec3 p = plane_.origin + at[0] * plane_.axes[0] + at[1] * plane_.axes[1];
+  return {p + dot(normal, of_plane - p) / dot(normal, up_) * up_, {}};
+}
+
+std::uint64_t SupportFeature::number(std::uint32_t vertex) const {
+  if (core_) return vertex;
+  return static_cast<std::uint64_t>(std::ranges::lower_bound(convex_->vertex, vertex) -
+                                    convex_->vertex.begin());
 }
 
 // The edge at the vertex that falls off least, or the vertex alone.
@@ -117,10 +182,11 @@ SupportFeature::Above SupportFeature::between(std::uint32_t face, const Vec3& we
   const Mesh& mesh = mesh_of(*body_);
   Vec3 p{};
   for (int k = 0; k < 3; ++k) p += weights[k] * mesh.positions[mesh.triangles[face][k]];
-  return {body_->pose().map(p), {face, weights}};
+  return {body_->pose().map(p) + lift_, {face, weights}};
 }
 
 SupportFeature::Above SupportFeature::at_corner(std::size_t corner) const {
+  if (core_) return {core_points_[corner], {}};
   const std::uint32_t vertex = corners_[corner].vertex;
   for (const std::uint32_t face : faces_) {
     const Triangle& triangle = mesh_of(*body_).triangles[face];
@@ -134,6 +200,7 @@ SupportFeature::Above SupportFeature::at_corner(std::size_t corner) const {
 }
 
 SupportFeature::Above SupportFeature::above(const Vec2& at) const {
+  if (core_) return above_core(at);
   if (corners_.size() > 2) return above_face(at);
   if (corners_.size() == 2 && !has_area_) return above_edge(at);
   const auto squared = [&](const Corner& corner) { return dot(corner.at - at, corner.at - at); };

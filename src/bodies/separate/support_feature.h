@@ -1,15 +1,17 @@
-// The face, edge or vertex of a convex solid that is farthest in a direction.
+// The face, edge or vertex of a convex body that is farthest in a direction.
 #pragma once
 
 #include <sdm/types.h>
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "bodies/convex/convex_mesh.h"
 #include "bodies/shape/posed_body.h"
+#include "bodies/solids/posed_core.h"
 
 namespace sdm::separate {
 
@@ -26,7 +28,8 @@ struct ContactPlane {
 
 /// What a convex solid touches a plane with, or nearly so: at its farthest vertex, the face that is most
 /// nearly parallel to the plane, with those that continue it, if it is so to 3 degrees; else the edge; else
-/// the vertex. Seen in the plane, it is a convex polygon, a segment or a point.
+/// the vertex. Seen in the plane, it is a convex polygon, a segment or a point. That of the flat end of a
+/// cylinder is a polygon in its circle; a half-space has no corners, and is everywhere.
 class SupportFeature {
  public:
   struct Corner {
@@ -39,18 +42,24 @@ class SupportFeature {
     SurfacePoint on{};
   };
 
-  /// Finds that of a body whose body().convex_solid() is not null, farthest along `up`, |up| = 1, a normal of
+  /// Finds that of a body which body().has_support() says, farthest along `up`, |up| = 1, a normal of
   /// the plane.
   void find(const shape::PosedBody& body, const Vec3& up, const ContactPlane& plane);
 
   /// Counter-clockwise in the plane; none is within rounding of the line between its neighbours.
   [[nodiscard]] std::span<const Corner> corners() const { return corners_; }
-  [[nodiscard]] const convex::ConvexMesh& convex() const { return *convex_; }
+  /// A number of a corner below 2¹⁴.
+  [[nodiscard]] std::uint64_t number(std::uint32_t vertex) const;
+  /// Whether it is the plane of a half-space.
+  [[nodiscard]] bool everywhere() const { return core_ && core_->kind() == solids::CoreKind::half_space; }
   /// The point of the feature above a point of the plane; the nearest one, to rounding, if that is beside it.
   [[nodiscard]] Above above(const Vec2& at) const;
   [[nodiscard]] Above at_corner(std::size_t corner) const;
 
  private:
+  void find_core(const Vec3& up);
+  void add_corner(const Vec3& p, std::uint32_t number);
+  [[nodiscard]] Above above_core(const Vec2& at) const;
   void find_edge(std::uint32_t vertex, const Vec3& up);
   void find_faces(std::uint32_t best);
   void find_outline();
@@ -62,6 +71,9 @@ class SupportFeature {
   const shape::PosedBody* body_ = nullptr;
   const convex::ConvexMesh* convex_ = nullptr;
   ContactPlane plane_;
+  std::optional<solids::PosedCore> core_;  // of a body without a mesh
+  std::vector<Vec3> core_points_;          // of its corners, on the surface
+  Vec3 up_{}, lift_{};                     // lift_: from the core to the surface
   bool has_area_ = false;
   std::vector<std::uint32_t> faces_;  // all of them, or one at the edge or the vertex
   std::vector<std::uint32_t> marks_;  // of the faces that were found, the number of the search

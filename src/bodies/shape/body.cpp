@@ -58,6 +58,39 @@ Body::Body(const Mesh& mesh, const AtlasOptions* atlas) : sites_(mesh) {
   find_parts();
 }
 
+Body::Body(const solids::Core& core) : core_(core), box_(solids::box_of(core)) {
+  ball_ = {0.5 * (box_.lower + box_.upper), 0.5 * diagonal(box_)};
+  if (core.thin()) ball_.radius = core.half_length + core.radius;
+}
+
+Body::Body(const Mesh& mesh, double margin) : Body(mesh, nullptr) {
+  if (!convex_)
+    throw Error(
+        "only a convex mesh can have a margin; make it convex by convex_hull(), or enlarge the contact "
+        "margin");
+  core_.radius = margin;
+  for (int k = 0; k < 3; ++k) {
+    box_.lower[k] -= margin;
+    box_.upper[k] += margin;
+  }
+  ball_.radius += margin;
+}
+
+const Sites& Body::sites() const {
+  if (!sites_)
+    throw Error(
+        "this shape has no mesh: it is a sphere, a capsule, a cylinder or a half-space; use the shape of a "
+        "mesh");
+  return *sites_;
+}
+
+void Body::require_deformable() const {
+  if (rounded())
+    throw Error(
+        "its shape is a primitive or has a margin and cannot be deformed; use the shape of a mesh, or "
+        "replace it");
+}
+
 Body::Body(StoredBytes stored, bool trusted) : Body(ArrayReader(std::move(stored), kFormat), trusted) {}
 
 Body::Body(ArrayReader stored, bool trusted)
@@ -71,7 +104,7 @@ Body::Body(ArrayReader stored, bool trusted)
   stored(atlas);
   stored.finish();
   follow_positions();
-  const sites::SitesData& sites = internals(sites_);
+  const sites::SitesData& sites = internals(*sites_);
   if (!cylinders_.set_nodes(std::move(cylinders), sites.wide)) stored.fail();
   if (!trusted && (!are_parts(contact_parts_, sites) || !cylinders_.have_valid_numbers())) stored.fail();
   if (is_convex) convex_ = convex::recognise(sites);
@@ -80,10 +113,12 @@ Body::Body(ArrayReader stored, bool trusted)
 
 void Body::store(const std::function<void(std::span<const std::byte>)>& write) const {
   require_intact();
+  if (rounded())
+    throw Error("a primitive shape and one with a margin cannot be stored; make it again from its sizes");
   const bool is_convex = convex_ != nullptr;
   const std::vector<std::uint8_t> atlas = surface_ ? surface_->stored_atlas() : std::vector<std::uint8_t>{};
   ArrayWriter list;
-  list(internals(sites_));
+  list(internals(*sites_));
   list(cylinders_.nodes);
   list(contact_parts_);
   list(is_convex);
@@ -94,7 +129,7 @@ void Body::store(const std::function<void(std::span<const std::byte>)>& write) c
 void Body::refit(std::span<const Vec3> positions) {
   intact_.change([&] {
     if (surface_) surface_->refit(positions);
-    sites_.refit(positions);
+    sites_->refit(positions);
     follow_positions();
   });
 }
@@ -102,7 +137,7 @@ void Body::refit(std::span<const Vec3> positions) {
 void Body::edit(const MeshEdit& edit) {
   // Parts of contacts are nodes of the tree: with one that has grown by edits, they would be other contacts
   // than those of the edited mesh by itself.
-  Mesh mesh = sites_.mesh();
+  Mesh mesh = sites_->mesh();
   apply(mesh, edit);
   Sites sites(std::move(mesh));
   if (surface_) surface_->edit(edit);
@@ -115,9 +150,9 @@ void Body::edit(const MeshEdit& edit) {
 }
 
 void Body::find_parts() {
-  cylinders_ = {internals(sites_).wide, internals(sites_).regions};
-  convex_ = convex::recognise(internals(sites_));
-  contact_parts_ = shape::contact_parts(internals(sites_).tree);
+  cylinders_ = {internals(*sites_).wide, internals(*sites_).regions};
+  convex_ = convex::recognise(internals(*sites_));
+  contact_parts_ = shape::contact_parts(internals(*sites_).tree);
 }
 
 const Surface& Body::surface() const {
@@ -128,13 +163,13 @@ const Surface& Body::surface() const {
 }
 
 void Body::require_boundary() const {
-  boundary_->get([this](auto& value) { value.emplace(internals(sites_), inside_->sides()); });
+  boundary_->get([this](auto& value) { value.emplace(internals(*sites_), inside_->sides()); });
 }
 
 const convex::ConvexMesh* Body::convex_solid() const {
-  if (convex_) return convex_.get();
+  if (convex_ || !sites_) return convex_.get();
   const auto& found = refitted_convex_.get([this] {
-    return std::make_shared<std::unique_ptr<const convex::ConvexMesh>>(convex::recognise(internals(sites_)));
+    return std::make_shared<std::unique_ptr<const convex::ConvexMesh>>(convex::recognise(internals(*sites_)));
   });
   return found.get();
 }
@@ -142,23 +177,23 @@ const convex::ConvexMesh* Body::convex_solid() const {
 bool Body::is_small_and_convex() const {
   // After a refit, deciding it for more faces takes as long as the bounds by planes save.
   constexpr std::size_t kMostFaces = 512;
-  if (sites_.mesh().triangles.size() > kMostFaces) return false;
+  if (sites_->mesh().triangles.size() > kMostFaces) return false;
   if (convex_) return true;
-  return is_convex_.get([this] { return std::make_shared<bool>(convex::is_convex(internals(sites_))); },
-                        [this](bool& value) { value = convex::is_convex(internals(sites_)); });
+  return is_convex_.get([this] { return std::make_shared<bool>(convex::is_convex(internals(*sites_))); },
+                        [this](bool& value) { value = convex::is_convex(internals(*sites_)); });
 }
 
 double Body::convexity_deficit() const {
   return convexity_->get(
-      [this](auto& value) { value = shape::convexity_deficit(internals(sites_), *inside_); });
+      [this](auto& value) { value = shape::convexity_deficit(internals(*sites_), *inside_); });
 }
 
 const InnerBalls& Body::inner_balls() const {
-  return inner_balls_->get([this](auto& value) { value = shape::inner_balls(internals(sites_), *inside_); });
+  return inner_balls_->get([this](auto& value) { value = shape::inner_balls(internals(*sites_), *inside_); });
 }
 
 const WallThickness& Body::wall_thickness() const {
-  return walls_->get([this](auto& value) { value.emplace(internals(sites_), *inside_); });
+  return walls_->get([this](auto& value) { value.emplace(internals(*sites_), *inside_); });
 }
 
 void Body::follow_positions() {
@@ -166,8 +201,8 @@ void Body::follow_positions() {
   convex_.reset();
   is_convex_.outdate();
   refitted_convex_.forget();
-  box_ = bounds(sites_.mesh());
-  ball_ = ball_about(0.5 * (box_.lower + box_.upper), internals(sites_));
+  box_ = bounds(sites_->mesh());
+  ball_ = ball_about(0.5 * (box_.lower + box_.upper), internals(*sites_));
   if (boundary_->value) boundary_ = std::make_unique<Lazy<inside::SolidBoundary>>();
   if (convexity_->value) convexity_ = std::make_unique<Lazy<double>>();
   if (inner_balls_->value) inner_balls_ = std::make_unique<Lazy<InnerBalls>>();
@@ -177,7 +212,7 @@ void Body::follow_positions() {
     return;
   }
   walls_ = std::make_unique<Lazy<WallThickness>>();
-  inside_.emplace(internals(sites_), solid() ? SignMethod::exact : SignMethod::none);
+  inside_.emplace(internals(*sites_), solid() ? SignMethod::exact : SignMethod::none);
 }
 
 }  // namespace sdm::shape

@@ -1,4 +1,4 @@
-// A mesh in both roles: the sites of an O2 and, for maps, the surface of an O1.
+// A mesh in both roles, the sites of an O2 and, for maps, the surface of an O1; or a solid without a mesh.
 #pragma once
 
 #include <sdm/sites.h>
@@ -16,6 +16,7 @@
 #include "bodies/shape/inner_balls.h"
 #include "bodies/shape/node_ball.h"
 #include "bodies/shape/wall_thickness.h"
+#include "bodies/solids/core.h"
 #include "core/arrays/array.h"
 #include "core/arrays/stored_arrays.h"
 #include "core/intact.h"
@@ -31,6 +32,10 @@ class Body {
  public:
   /// Throws sdm::Error as Surface and Sites do. `atlas`: none if null.
   Body(const Mesh& mesh, const AtlasOptions* atlas);
+  /// A solid without a mesh: the core is none.
+  explicit Body(const solids::Core& core);
+  /// A convex mesh with a margin. Throws sdm::Error as Sites does, and for a mesh that is not convex.
+  Body(const Mesh& mesh, double margin);
   /// The body that was stored. Throws sdm::Error if the bytes are not one, are damaged or, unless they are
   /// `trusted`, if what they contain does not belong together.
   Body(StoredBytes stored, bool trusted);
@@ -50,13 +55,26 @@ class Body {
   [[nodiscard]] bool has_surface() const { return surface_.has_value(); }
   /// Throws sdm::Error if there is no atlas.
   [[nodiscard]] const Surface& surface() const;
-  [[nodiscard]] const Sites& sites() const { return sites_; }
-  /// The bounding box of all faces.
+  /// Throws sdm::Error if there is no mesh.
+  [[nodiscard]] const Sites& sites() const;
+  [[nodiscard]] bool has_mesh() const { return sites_.has_value(); }
+  /// The core and the radius around it; of a mesh without a margin, the radius is 0.
+  [[nodiscard]] const solids::Core& core() const { return core_; }
+  /// Whether it is not a mesh, or one with a margin: such bodies are compared by their cores.
+  [[nodiscard]] bool rounded() const { return !has_mesh() || core_.radius > 0; }
+  /// Whether it is convex, and its support functions are those of its core.
+  [[nodiscard]] bool has_support() const { return !has_mesh() || convex_solid() != nullptr; }
+  [[nodiscard]] bool half_space() const { return core_.kind == solids::CoreKind::half_space; }
+  /// Throws sdm::Error unless vertices can be moved and faces edited.
+  void require_deformable() const;
+  /// The bounding box of all faces, with the margin.
   [[nodiscard]] const Box& box() const { return box_; }
+  /// The box about whose middle the body turns: box(), or the origin of a half-space.
+  [[nodiscard]] Box turning_box() const { return half_space() ? Box{Vec3{}, Vec3{}} : box_; }
   /// A ball about the middle of the box that contains all faces: of round bodies, it is smaller than the box.
   [[nodiscard]] const Ball& ball() const { return ball_; }
   /// Whether it is a solid, with an inside.
-  [[nodiscard]] bool solid() const { return internals(sites_).is_solid(); }
+  [[nodiscard]] bool solid() const { return !sites_ || internals(*sites_).is_solid(); }
   [[nodiscard]] const inside::InsideTest& inside() const { return *inside_; }
 
   /// Builds boundary() for the current shape unless already built: only solids that intersect themselves need
@@ -66,8 +84,9 @@ class Body {
   [[nodiscard]] const inside::SolidBoundary& boundary() const { return *boundary_->value; }
 
   /// The mesh, if it bounds a convex solid (see convex::recognise); none after a refit, as with cylinders().
-  [[nodiscard]] const convex::ConvexMesh* convex() const { return convex_.get(); }
-  /// The same, also after a refit. Thread-safe; found by the first call after one.
+  /// None with a margin.
+  [[nodiscard]] const convex::ConvexMesh* convex() const { return rounded() ? nullptr : convex_.get(); }
+  /// The same, also after a refit, and the core of a margin. Thread-safe; found by the first call after one.
   [[nodiscard]] const convex::ConvexMesh* convex_solid() const;
   /// Whether it bounds a convex solid (see convex::is_convex) of so few faces that bounds by their planes
   /// take less time, also after a refit. Thread-safe; decided by the first call after one.
@@ -93,7 +112,8 @@ class Body {
 
   Intact intact_{"a body"};
   std::optional<Surface> surface_;
-  Sites sites_;
+  solids::Core core_;
+  std::optional<Sites> sites_;
   Box box_;
   Ball ball_;
   std::optional<inside::InsideTest> inside_;

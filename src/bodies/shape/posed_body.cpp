@@ -15,15 +15,23 @@ Box check_posed(const mesh::Similarity& pose, const Box& box) {
   return posed;
 }
 
+Box check_posed(const mesh::Similarity& pose, const Body& body) {
+  if (!body.half_space()) return check_posed(pose, body.box());
+  const solids::Core& core = body.core();
+  check_posed(pose, Box{core.offset * core.normal, core.offset * core.normal});
+  return body.box();
+}
+
 PosedBody::Placed PosedBody::checked_pose(const Transform& pose) const {
   Placed result{.pose = mesh::Similarity::of(pose)};
-  result.box = check_posed(result.pose, body().box());
+  result.box = check_posed(result.pose, body());
   if (!(result.pose.scale * diagonal(body().box()) > mesh::kMinSize))
     throw Error("the pose makes it smaller than 1e-30, too small for the computation; scale it up");
   return result;
 }
 
 void PosedBody::require_own_shape() const {
+  body().require_deformable();
   if (internals(shape_).use_count() > 1)
     throw Error(
         "its shape is shared and cannot be deformed; give a body that deforms a Shape of its own, and keep "

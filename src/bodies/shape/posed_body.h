@@ -16,6 +16,8 @@ namespace sdm::shape {
 /// Throws sdm::Error unless a body with that box has, in that pose, coordinates that meshes can have:
 /// distances are then finite. Returns a box that contains the posed body.
 Box check_posed(const mesh::Similarity& pose, const Box& box);
+/// The same for a body; that of a half-space is the box of all coordinates.
+Box check_posed(const mesh::Similarity& pose, const Body& body);
 
 class PosedBody {
  public:
@@ -54,7 +56,7 @@ class PosedBody {
   }
   /// Throws sdm::Error, and changes nothing, if the pose moves the shape too far.
   void replace(Shape shape) {
-    check_posed(pose_, internals(shape)->box());
+    check_posed(pose_, *internals(shape));
     shape_ = std::move(shape);
     follow();
   }
@@ -78,10 +80,14 @@ class PosedBody {
 
  private:
   void check_edit(const MeshEdit& edit) const;
-  void follow() { follow(image(pose_.map, body().box())); }
+  void follow() { follow(body().half_space() ? body().box() : image(pose_.map, body().box())); }
   void follow(const Box& box) {
     box_ = box;
     const auto& [centre, radius] = body().ball();
+    if (body().half_space()) {
+      ball_ = body().ball();
+      return;
+    }
     ball_ = {pose_.map(centre), pose_.scale * radius};
     ball_.radius += kFewRoundings * (norm(pose_.map.offset) + pose_.scale * (norm(centre) + radius));
   }

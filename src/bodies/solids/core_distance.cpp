@@ -1,0 +1,185 @@
+#include "bodies/solids/core_distance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "bodies/convex/simplex_point.h"
+#include "geometry/vec.h"
+
+namespace sdm::solids {
+namespace {
+
+constexpr int kMostSteps = 256;
+constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
+constexpr double kClosest = 1e-13;  // of the coordinates: closest points are found up to that
+constexpr double kReliable =
+    1e-9;  // of the size: a distance with a larger error may be one of cores that overlap
+constexpr double kTouching = 1e-12;  // of the size: a distance whose direction is not reliable
+
+// The points of both cores that belong to the points of a simplex.
+class Pairs {
+ public:
+  [[nodiscard]] convex::SimplexPoint add(const Vec3& a, const Vec3& b, std::uint32_t number) {
+    const std::uint32_t slot = number % kSlots;
+    points_[slot] = {a, b};
+    return {{slot, number}, a - b};
+  }
+  // The weights of the points of the simplex with which they make v.
+  void place(const convex::SimplexPoints& simplex, const Vec3& v, Vec3& a, Vec3& b) const {
+    const std::array<double, 3> weights = weights_of(simplex, v);
+    a = b = {};
+    for (int i = 0; i < simplex.count; ++i) {
+      const auto& [of_a, of_b] = points_[simplex.points[i].vertices[0]];
+      a += weights[i] * of_a;
+      b += weights[i] * of_b;
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kSlots = kMostSteps + 1;
+
+  static std::array<double, 3> weights_of(const convex::SimplexPoints& simplex, const Vec3& v) {
+    const auto& p = simplex.points;
+    if (simplex.count == 1) return {1, 0, 0};
+    const Vec3 ab = p[1].w - p[0].w, at = v - p[0].w;
+    if (simplex.count == 2) {
+      const double t = std::clamp(dot(at, ab) / squared_norm(ab), 0.0, 1.0);
+      return {1 - t, t, 0};
+    }
+    const Vec3 ac = p[2].w - p[0].w, n = cross(ab, ac);
+    const double area = squared_norm(n);
+    const double s = std::clamp(dot(cross(at, ac), n) / area, 0.0, 1.0);
+    const double t = std::clamp(dot(cross(ab, at), n) / area, 0.0, 1 - s);
+    return {1 - s - t, s, t};
+  }
+
+  std::array<std::array<Vec3, 2>, kSlots> points_;
+};
+
+Vec3 across(const Vec3& axis) {
+  return normalized(cross(axis, std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+}
+
+// The normal of two segments with a point in common.
+Vec3 normal_of_crossing(const PosedCore& a, const PosedCore& b) {
+  const Vec3 between = a.centre() - b.centre();
+  Vec3 n = cross(a.half(), b.half());
+  if (const double length = norm(n); length > kTouching * norm(a.half()) * norm(b.half()))
+    n = (1 / length) * n;
+  else
+    n = across(a.half() != Vec3{} ? a.axis() : b.axis());
+  return dot(n, between) < 0 ? -n : n;
+}
+
+}  // namespace
+
+// v is the point of the simplex that is closest to the origin, and the support along −v a lower bound.
+CoreDistance core_gap(const PosedCore& a, const PosedCore& b) {
+  std::uint32_t near_a = kNone, near_b = kNone;
+  convex::SimplexPoints simplex;
+  Pairs pairs;
+  Vec3 u = b.centre() - a.centre();
+  u = u == Vec3{} ? Vec3{0, 0, 1} : normalized(u);
+  Vec3 v{};
+  double distance = kInfinity, lower = 0, scale = 0;
+  for (std::uint32_t step = 0; step < kMostSteps; ++step) {
+    const Vec3 of_a = a.support(u, near_a), of_b = b.support(-u, near_b);
+    scale = std::max({scale, std::abs(of_a[0]), std::abs(of_a[1]), std::abs(of_a[2]), std::abs(of_b[0]),
+                      std::abs(of_b[1]), std::abs(of_b[2])});
+    const convex::SimplexPoint next = pairs.add(of_a, of_b, step);
+    if (step > 0) {
+      lower = std::max(lower, -dot(u, next.w));
+      if (distance - lower <= kClosest * scale) break;
+      const auto same = [&](const convex::SimplexPoint& p) { return p.w == next.w; };
+      if (std::any_of(simplex.points.begin(), simplex.points.begin() + simplex.count, same)) break;
+    }
+    const convex::SimplexPoints before = simplex;
+    const Vec3 last = v;
+    simplex.add(next);
+    const bool enclosed = !simplex.reduce(v);
+    // Of slivers, which points of curved surfaces make, it may seem so.
+    if (enclosed && lower <= kRounding * scale && simplex.depth_of_origin() > 0) return {};
+    const double now = enclosed ? distance : norm(v);
+    if (now <= kRounding * scale) return {};
+    if (!(now < distance)) {  // by rounding, nothing closer is found
+      simplex = before;
+      v = last;
+      break;
+    }
+    distance = now;
+    u = (-1 / now) * v;
+  }
+  CoreDistance found{
+      .distance = distance, .error = std::max(0.0, distance - lower), .normal = (1 / distance) * v};
+  pairs.place(simplex, v, found.point1, found.point2);
+  return found;
+}
+
+// The axis is a rectangle in the half-plane of the point: above and beside it by `along` and `aside`.
+CoreDistance point_to_axis(const Vec3& point, const PosedCore& axis) {
+  const Vec3 from = point - axis.centre();
+  const double height = dot(from, axis.axis());
+  const Vec3 up = height < 0 ? -axis.axis() : axis.axis();
+  const Vec3 beside = from - height * axis.axis();
+  const double length = norm(beside);
+  const Vec3 outwards = length > 0 ? (1 / length) * beside : across(axis.axis());
+  const double along = std::abs(height) - norm(axis.half()), aside = length - axis.disc();
+  CoreDistance found;
+  if (along > 0 && aside > 0) {
+    found.distance = std::hypot(along, aside);
+    found.normal = (1 / found.distance) * (along * up + aside * outwards);
+  } else {
+    found.distance = std::max(along, aside);
+    found.normal = along > aside ? up : outwards;
+  }
+  found.point1 = point;
+  found.point2 = point - found.distance * found.normal;
+  return found;
+}
+
+CoreDistance core_distance(const PosedCore& a, const PosedCore& b, double size,
+                           convex::ExitWorkspace& workspace) {
+  if (a.point() && b.kind() == CoreKind::axis) return point_to_axis(a.centre(), b);
+  if (b.point() && a.kind() == CoreKind::axis) {
+    CoreDistance found = point_to_axis(b.centre(), a);
+    found.normal = -found.normal;
+    std::swap(found.point1, found.point2);
+    return found;
+  }
+  CoreDistance found = core_gap(a, b);
+  if (found.distance > kTouching * size && found.error <= kReliable * size) return found;
+  if (a.thin() && b.thin()) {
+    // They touch to rounding. The points are closest ones of both segments.
+    found.normal = normal_of_crossing(a, b);
+    if (found.distance == 0) {
+      const CoreDistance beside = core_gap(a.moved(size * found.normal), b);
+      found.point1 = found.point2 = beside.point2;
+    }
+    return found;
+  }
+  const convex::ConvexExit exit = convex::exit_of_hulls(
+      [&](const Vec3& u, const std::array<std::uint32_t, 2>& near) {
+        convex::SimplexPoint point{near, {}};
+        point.w = a.support(u, point.vertices[0]) - b.support(-u, point.vertices[1]);
+        return point;
+      },
+      a.centre() == b.centre() ? Vec3{} : normalized(b.centre() - a.centre()), size, workspace);
+  if (exit.upper < 0) {
+    found.error = std::max(0.0, std::min(found.error, found.distance + exit.upper));
+    return found;
+  }
+  found.distance = -exit.upper;
+  found.error = exit.upper - exit.lower;
+  found.normal = -exit.direction;
+  // Beyond the exit, the closest points are above each other along the normal.
+  const Vec3 out = (exit.upper + size) * found.normal;
+  const CoreDistance beside = core_gap(a.moved(out), b);
+  found.point1 = beside.point1 - out;
+  found.point2 = found.point1 - found.distance * found.normal;
+  return found;
+}
+
+}  // namespace sdm::solids
