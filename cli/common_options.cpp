@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "declared_options.h"
+#include "devices.h"
 #include "option_checks.h"
 
 CLI::Option* add_output_option(CLI::App& app, std::filesystem::path& folder) {
@@ -91,7 +92,10 @@ void add_engine_option(CLI::App& app, sdm::EngineInfo& engine) {
 
 std::shared_ptr<const sdm::Engine> make_engine(const sdm::EngineInfo& engine, const sdm::GlOptions& gl,
                                                const sdm::AtlasOptions& atlas) {
-  if (engine.name == "gpu") return sdm::make_gpu_engine({.device = gl.device});
+  if (engine.name == "gpu") {
+    quiet_vulkan();
+    return sdm::make_gpu_engine({.device = gl.device});
+  }
   if (engine.name != "gl") return sdm::make_engine(engine.name);
   (void)sdm::gl_device(std::max(atlas.resolution, atlas.rows.value_or(0)),
                        gl);  // fails before a surface is built

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -53,6 +54,7 @@ void print_table(std::ostream& out, const Json& devices) {
 }
 
 void list_devices(bool json) {
+  quiet_vulkan();
   const EngineDevices gl = devices_of("gl", sdm::gl_devices), gpu = devices_of("gpu", sdm::gpu_devices);
   if (gl.devices.empty() && gpu.devices.empty()) throw sdm::Error(gl.fault + "; " + gpu.fault);
   for (const EngineDevices* engine : {&gl, &gpu})
@@ -66,6 +68,10 @@ void list_devices(bool json) {
 }
 
 }  // namespace
+
+void quiet_vulkan() {
+  if (std::getenv("XDG_RUNTIME_DIR") == nullptr) setenv("NODEVICE_SELECT", "1", 0);
+}
 
 void add_devices_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(

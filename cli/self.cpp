@@ -52,7 +52,7 @@ Json measure(const SelfCommand& command, const LoadedPart& loaded, const std::fi
     const sdm::ExclusionRule& rule = command.self.exclusion;
     report["exclusion"] = {{"rings", rule.geodesic ? Json(nullptr) : Json(rule.rings)},
                            {"geodesic", rule.geodesic ? Json(*rule.geodesic) : Json(nullptr)}};
-    report["measured"]["settings"].update(sdm::settings_json(rule));
+    report["settings"] = sdm::settings_json(rule, command.self);
     report["separation"] = sdm::value_json(separation);
   };
   return write_part_map(

@@ -38,12 +38,29 @@ function divided(words) {
   return [ofSurface, others];
 }
 
+const isOfOptions = (error) => /^unknown option| must be | excludes /.test(error.message);
+
+/** Here a surface is made by a call of its own: where there is no room for it, options of the map are refused first, as elsewhere. */
+function surfaceOf(on, sites, options, mapOptions) {
+  try {
+    return new library.Surface(on.positions, on.indices, options);
+  } catch (error) {
+    if (isOfOptions(error)) throw error;
+    try {
+      new library.Surface(on.positions, on.indices).map(sites, mapOptions);
+    } catch (ofMap) {
+      if (isOfOptions(ofMap)) throw ofMap;
+    }
+    throw error;
+  }
+}
+
 /** The map of a surface to sites that are made of the last file. */
 function statistics(files, words, measure) {
   const [ofSurface, ofMap] = divided(words);
   const [on, to] = [mesh(files[0]), mesh(files.at(-1))];
   const sites = new library.Sites(to.positions, to.indices);
-  const surface = new library.Surface(on.positions, on.indices, ofSurface);
+  const surface = surfaceOf(on, sites, ofSurface, { ...measure, ...ofMap });
   const map = surface.map(sites, { ...measure, ...ofMap });
   const s = map.statistics();
   const numbers = [s.texels, s.min, s.max, s.mean, s.rms];

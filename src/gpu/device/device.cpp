@@ -68,7 +68,7 @@ std::vector<Found> find_adapters() {
 
 bool contains(std::string_view name, std::string_view wanted) {
   const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
-  return !std::ranges::search(name, wanted, same).empty();
+  return wanted.empty() || !std::ranges::search(name, wanted, same).empty();
 }
 
 Found choose(std::string_view wanted) {
