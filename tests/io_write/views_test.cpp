@@ -115,6 +115,20 @@ TEST(DepthBuffer, HasNoHolesBetweenFaces) {
     }
 }
 
+TEST(ShadingNormals, AreThoseOfThePresentShape) {
+  Surface surface(cube(), {.resolution = 128});
+  const auto before = shading_normals(surface).normals;
+  std::vector<Vec3> sheared = surface.mesh().positions;
+  for (Vec3& p : sheared) p[0] += p[1];
+  surface.refit(sheared);
+  const auto refitted = shading_normals(surface).normals;
+  EXPECT_NE(refitted, before);
+  EXPECT_EQ(refitted, shading_normals(surface.mesh()).normals);
+  surface.edit({.removed_faces = {0}});
+  EXPECT_EQ(shading_normals(surface).corner, shading_normals(surface.mesh()).corner);
+  EXPECT_EQ(shading_normals(surface).corner[0][0], kNone);
+}
+
 TEST(ViewLayout, PlacesTheBoxInEveryCell) {
   for (const UpAxis up : {UpAxis::y, UpAxis::z})
     for (const Vec3& size :
@@ -191,7 +205,7 @@ TEST(Views, ShowTheOtherMeshPaleAndMarkVisiblePlaces) {
   const std::vector<float> distances(cube_scene.map.texels(), 0);
   const FaceScales red({.map = Colormap::paper2006}, {});  // at 0
   ViewScene scene{.surface = &cube_scene.surface,
-                  .normals = shading_normals(cube_scene.surface.mesh()),
+                  .normals = &shading_normals(cube_scene.surface),
                   .distances = distances,
                   .vertex_distances = cube_scene.vertices,
                   .of_faces = &red,

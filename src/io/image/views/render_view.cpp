@@ -201,7 +201,7 @@ class Renderer {
                  : mix(color(kViewBackground), other_color(column, row, seen.other_face), 0.75);
     const auto [weights, is_back] = part_.point(column, row, mesh_.triangles[seen.face]);
     const Color part =
-        light_(scene_.normals, seen.face, weights, is_back) * color(colors_(seen.face, weights));
+        light_(*scene_.normals, seen.face, weights, is_back) * color(colors_(seen.face, weights));
     return seen.other_face == kNone ? part : mix(part, other_color(column, row, seen.other_face), kVeil);
   }
 

@@ -20,7 +20,7 @@ inline constexpr Rgb kViewBackground{240, 241, 243}, kGhost{203, 208, 215};
 /// What is drawn.
 struct ViewScene {
   const Surface* surface = nullptr;
-  ShadingNormals normals{};
+  const ShadingNormals* normals = nullptr;
   std::span<const float> distances{};         ///< of each texel
   std::span<const float> vertex_distances{};  ///< shown where a face has no texel
   ColorScale scale{};                         ///< of O2's distances
