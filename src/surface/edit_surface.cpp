@@ -221,6 +221,7 @@ void SurfaceData::edit(const MeshEdit& edit) {
   max_stretch = std::max(max_stretch, added.max_stretch);
   identity = std::move(new_identity);
   outward_normals.forget();
+  drawn_normals.forget();
 }
 
 }  // namespace sdm::surface

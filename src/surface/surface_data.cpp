@@ -98,6 +98,7 @@ void SurfaceData::refit(std::span<const Vec3> positions) {
     parallel_for(mesh.triangles.size(), 4096, move);
     std::ranges::copy(positions, current.begin());
     outward_normals.forget();
+    drawn_normals.forget();
   });
 }
 

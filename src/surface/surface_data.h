@@ -12,6 +12,10 @@
 #include "core/lazy/kept.h"
 #include "geometry/vec.h"
 
+namespace sdm::mesh {
+struct SheetNormals;
+}
+
 namespace sdm::surface {
 
 /// Identifies a surface until its next edit; refits and moves of the object do not change it. Caches of data
@@ -82,6 +86,7 @@ class SurfaceData {
   std::vector<std::uint32_t> face_samples;  ///< how many each face has
   std::shared_ptr<const Identity> identity = std::make_shared<Identity>();
   Kept<std::vector<Vec3>> outward_normals;  ///< of the present shape: see facing::outward_normals()
+  Kept<mesh::SheetNormals> drawn_normals;   ///< of the present shape: see io::shading_normals()
 
  private:
   class Edit;

@@ -8,9 +8,11 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/vec.h"
@@ -56,20 +58,44 @@ TEST(DepthBuffer, FindsTheNearestFaceOfEverySample) {
       double nearest = -kInfinity;
       for (const Triangle& t : mesh.triangles) nearest = std::max(nearest, depth_at(mesh, t, x, y, 1e-4));
       if (nearest == kInfinity) continue;  // at an edge
-      const std::size_t sample = std::size_t{row} * buffer.width() + column;
+      const auto [depth_seen, face] = buffer.seen(column, row);
       if (nearest == -kInfinity) {
-        ASSERT_EQ(buffer.face(sample), kNone);
+        ASSERT_EQ(face, kNone);
         continue;
       }
-      ASSERT_NEAR(buffer.depth(sample), nearest - 0.5, 1e-4) << row << ' ' << column;
-      const Vec3 weights = buffer.weights(sample, mesh.triangles[buffer.face(sample)]);
+      ASSERT_NEAR(depth_seen, nearest - 0.5, 1e-4) << row << ' ' << column;
+      const Vec3 weights = buffer.point(column, row, mesh.triangles[face]).weights;
       double depth = 0;
-      for (int k = 0; k < 3; ++k)
-        depth += weights[k] * mesh.positions[mesh.triangles[buffer.face(sample)][k]][2];
+      for (int k = 0; k < 3; ++k) depth += weights[k] * mesh.positions[mesh.triangles[face][k]][2];
       ASSERT_NEAR(depth, nearest, 1e-4);
       ++compared;
     }
   EXPECT_GT(compared, 500u);
+}
+
+// Faces that are seen from the back are drawn after the others, where these do not hide them.
+TEST(DepthBuffer, SeesTheSameFromTheBack) {
+  std::mt19937 random(4);
+  Mesh mesh = soup(300, random);
+  const std::size_t count = mesh.triangles.size();
+  for (std::size_t face = 0; face < count; ++face) mesh.triangles.push_back(mesh.triangles[face]);
+  const Projection projection = looking_down(61, 47, 40);
+  const DepthBuffer buffer(mesh, projection);
+  for (const auto& turns : {std::function([](std::size_t) { return true; }),
+                            std::function([](std::size_t face) { return face % 3 == 0; }),
+                            std::function([=](std::size_t face) { return face < count; })}) {
+    Mesh turned = mesh;
+    for (std::size_t face = 0; face < turned.triangles.size(); ++face)
+      if (turns(face)) std::swap(turned.triangles[face][1], turned.triangles[face][2]);
+    const DepthBuffer other(turned, projection);
+    for (std::uint32_t row = 0; row < buffer.height(); ++row)
+      for (std::uint32_t column = 0; column < buffer.width(); ++column) {
+        const auto [depth, face] = buffer.seen(column, row);
+        ASSERT_EQ(other.seen(column, row).face, face);  // the first of two in the same place
+        ASSERT_EQ(other.seen(column, row).depth, depth);
+        ASSERT_TRUE(face == kNone || face < count);
+      }
+  }
 }
 
 TEST(DepthBuffer, HasNoHolesBetweenFaces) {
@@ -80,10 +106,24 @@ TEST(DepthBuffer, HasNoHolesBetweenFaces) {
   for (std::uint32_t row = 0; row < buffer.height(); ++row)
     for (std::uint32_t column = 0; column < buffer.width(); ++column) {
       const double x = ((column + 0.5) / 2 - 40) / 30, y = ((row + 0.5) / 2 - 40) / 30, r = std::hypot(x, y);
-      const std::uint32_t face = buffer.face(std::size_t{row} * buffer.width() + column);
+      const std::uint32_t face = buffer.seen(column, row).face;
       ASSERT_TRUE(r > 0.99 || face != kNone);
       ASSERT_TRUE(r <= 1 || face == kNone);
     }
+}
+
+TEST(ShadingNormals, AreThoseOfThePresentShape) {
+  Surface surface(cube(), {.resolution = 128});
+  const auto before = shading_normals(surface).normals;
+  std::vector<Vec3> sheared = surface.mesh().positions;
+  for (Vec3& p : sheared) p[0] += p[1];
+  surface.refit(sheared);
+  const auto refitted = shading_normals(surface).normals;
+  EXPECT_NE(refitted, before);
+  EXPECT_EQ(refitted, shading_normals(surface.mesh()).normals);
+  surface.edit({.removed_faces = {0}});
+  EXPECT_EQ(shading_normals(surface).corner, shading_normals(surface.mesh()).corner);
+  EXPECT_EQ(shading_normals(surface).corner[0][0], kNone);
 }
 
 TEST(ViewLayout, PlacesTheBoxInEveryCell) {
@@ -162,7 +202,7 @@ TEST(Views, ShowTheOtherMeshPaleAndMarkVisiblePlaces) {
   const std::vector<float> distances(cube_scene.map.texels(), 0);
   const FaceScales red({.map = Colormap::paper2006}, {});  // at 0
   ViewScene scene{.surface = &cube_scene.surface,
-                  .normals = shading_normals(cube_scene.surface.mesh()),
+                  .normals = &shading_normals(cube_scene.surface),
                   .distances = distances,
                   .vertex_distances = cube_scene.vertices,
                   .of_faces = &red,

@@ -60,7 +60,7 @@ ViewScene scene_of(const Surface& surface, const DistanceMap& map, std::span<con
                   .scale = scale,
                   .of_faces = &of_faces,
                   .other = other};
-  run_concurrently({[&] { scene.normals = shading_normals(surface.mesh()); },
+  run_concurrently({[&] { scene.normals = &shading_normals(surface); },
                     [&] {
                       if (other != nullptr) scene.other_normals = shading_normals(*other);
                     }});

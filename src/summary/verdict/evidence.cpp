@@ -39,13 +39,15 @@ std::vector<Evidence> evidence_of_groups(const Surface& surface, const DistanceM
     throw Error("a verdict needs one distance for each vertex of the surface's mesh");
   std::vector<DistanceRange> ranges(groups.count);
   std::vector<WithoutValue> without(groups.count);
+  const std::span<const std::uint32_t> faces = surface.map_faces();
   for (const std::uint32_t texel : surface.sample_texels()) {
-    const std::uint32_t group = groups.group(surface.map_faces()[texel]);
+    const std::uint32_t group = groups.group(faces[texel]);
     if (group == kNone) continue;
-    if (std::isfinite(map.distance[texel]))
-      ranges[group].add(map.distance[texel]);
-    else
+    const float d = map.distance[texel];
+    if (!std::isfinite(d))
       without[group].add_texel(map, texel);
+    else if (DistanceRange& range = ranges[group]; !range.lowest || d <= *range.lowest || d >= *range.highest)
+      range.add(d);  // few samples are extremes
   }
   const auto& triangles = surface.mesh().triangles;
   for (std::uint32_t face = 0; face < triangles.size(); ++face) {

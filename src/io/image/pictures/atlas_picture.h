@@ -4,6 +4,7 @@
 #include <sdm/surface.h>
 
 #include <cstdint>
+#include <span>
 
 namespace sdm::io {
 
@@ -22,8 +23,9 @@ class AtlasPicture {
   [[nodiscard]] std::uint32_t texel(std::uint32_t x, std::uint32_t y) const;
 
  private:
-  const Surface& surface_;
-  std::uint32_t step_, width_, height_;
+  std::span<const std::uint32_t> owners_;  // of texels
+  std::uint32_t resolution_, rows_;        // of the atlas
+  std::uint32_t step_ = 1, width_ = 0, height_ = 0;
 };
 
 }  // namespace sdm::io

@@ -3,9 +3,10 @@
 
 #include <sdm/mesh.h>
 
+#include <array>
 #include <cstdint>
 #include <limits>
-#include <span>
+#include <optional>
 #include <vector>
 
 namespace sdm::io {
@@ -22,37 +23,70 @@ struct Projection {
   [[nodiscard]] Vec3 operator()(const Vec3& point) const;
 };
 
-/// kSamples² samples a pixel, in a regular grid.
+/// kSamples² samples a pixel, in a regular grid that is stored in tiles of kTile² samples.
 class DepthBuffer {
  public:
   static constexpr std::uint32_t kSamples = 2;
+  static constexpr std::uint32_t kTile = 8;
+
+  /// What is seen at a sample.
+  struct Seen {
+    float depth = -std::numeric_limits<float>::infinity();  ///< −∞ if there is no face
+    std::uint32_t face = kNone;                             ///< the nearest; the first of equally near ones
+  };
+  /// Where a face is seen.
+  struct Point {
+    Vec3 weights;  ///< of its corners
+    bool is_back;  ///< its corners are clockwise to the viewer
+  };
 
   /// Draws all faces, from both sides. Cost: linear in faces, the rows that they cross and the samples that
-  /// they cover.
+  /// they cover; memory for the tiles that they touch.
   DepthBuffer(const Mesh& mesh, const Projection& projection);
 
   [[nodiscard]] std::uint32_t width() const { return width_; }  ///< samples
   [[nodiscard]] std::uint32_t height() const { return height_; }
-  /// The nearest face, kNone if there is none.
-  [[nodiscard]] std::uint32_t face(std::size_t sample) const { return seen_[sample].face; }
-  /// Its depth, −∞ if there is none.
-  [[nodiscard]] float depth(std::size_t sample) const { return seen_[sample].depth; }
-  /// The weights of the corners of a face at a sample.
-  [[nodiscard]] Vec3 weights(std::size_t sample, const Triangle& triangle) const;
-  /// Whether the viewer sees the back of a face: its corners are clockwise.
-  [[nodiscard]] bool is_back(const Triangle& triangle) const;
+  [[nodiscard]] const Seen& seen(std::uint32_t column, std::uint32_t row) const {
+    return tiles_[tile_at_[tile(column, row)]][in_tile(column, row)];
+  }
+  /// Whether no face is seen in the whole tile of a sample.
+  [[nodiscard]] bool is_empty_tile(std::uint32_t column, std::uint32_t row) const {
+    return tile_at_[tile(column, row)] == kEmpty;
+  }
+  /// The point of a face at a sample.
+  [[nodiscard]] Point point(std::uint32_t column, std::uint32_t row, const Triangle& triangle) const;
 
  private:
-  struct Seen {
-    float depth = -std::numeric_limits<float>::infinity();
-    std::uint32_t face = kNone;
+  using Tile = std::array<Seen, std::size_t{kTile} * kTile>;
+  static constexpr std::uint32_t kEmpty = 0;  // the tile of which nothing is seen
+
+  /// The samples around a face, and the limits of its depth.
+  struct Extent {
+    double begin, end;  ///< columns
+    std::uint32_t first_column, end_column, first_row, end_row;
+    double farthest, nearest;
   };
 
-  void draw(std::uint32_t face, const Triangle& triangle);
+  [[nodiscard]] std::size_t tile(std::uint32_t column, std::uint32_t row) const {
+    return std::size_t{row / kTile} * tiles_across_ + column / kTile;
+  }
+  [[nodiscard]] static std::size_t in_tile(std::uint32_t column, std::uint32_t row) {
+    return std::size_t{row % kTile} * kTile + column % kTile;
+  }
+  /// In square samples; positive if the viewer sees the back, as rows count downwards.
+  [[nodiscard]] double doubled_area(const Triangle& triangle) const;
+  void draw_all(const Mesh& mesh);
+  void draw(std::uint32_t face, const Triangle& triangle, const Extent& extent);
+  [[nodiscard]] std::optional<Extent> extent_of(const Triangle& triangle) const;
+  /// The least depth in each tile.
+  [[nodiscard]] std::vector<float> farthest_in_tiles() const;
+  /// Whether nearer faces have been drawn at all samples.
+  [[nodiscard]] bool is_hidden(const Extent& extent, const std::vector<float>& farthest) const;
 
-  std::uint32_t width_, height_;
-  std::vector<Vec3> corners_;  // x and y in samples, and depth, of each vertex
-  std::vector<Seen> seen_;     // at each sample
+  std::uint32_t width_, height_, tiles_across_;
+  std::vector<Vec3> corners_;           // x and y in samples, and depth, of each vertex
+  std::vector<std::uint32_t> tile_at_;  // of each place of the grid, in tiles_
+  std::vector<Tile> tiles_;             // kEmpty and those that were drawn into
 };
 
 }  // namespace sdm::io

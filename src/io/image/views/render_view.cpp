@@ -124,9 +124,17 @@ class Renderer {
 
   [[nodiscard]] Picture picture() const {
     Picture picture{projection_.width, projection_.height, {}};
-    picture.pixels.reserve(std::size_t{picture.width} * picture.height);
-    for (std::uint32_t y = 0; y < picture.height; ++y)
-      for (std::uint32_t x = 0; x < picture.width; ++x) picture.pixels.push_back(pixel(x, y));
+    picture.pixels.resize(std::size_t{picture.width} * picture.height, kViewBackground);
+    constexpr std::uint32_t kPixels = DepthBuffer::kTile / kSamples;  // of a tile
+    for (std::uint32_t top = 0; top < picture.height; top += kPixels)
+      for (std::uint32_t left = 0; left < picture.width; left += kPixels) {
+        if (part_.is_empty_tile(kSamples * left, kSamples * top) &&
+            (!ghost_ || ghost_->is_empty_tile(kSamples * left, kSamples * top)))
+          continue;
+        for (std::uint32_t y = top; y < std::min(picture.height, top + kPixels); ++y)
+          for (std::uint32_t x = left; x < std::min(picture.width, left + kPixels); ++x)
+            picture.pixels[std::size_t{y} * picture.width + x] = pixel(x, y);
+      }
     return picture;
   }
 
@@ -135,79 +143,71 @@ class Renderer {
     const Vec3 at = projection_(place);
     if (!(at[0] >= 0 && at[0] < projection_.width && at[1] >= 0 && at[1] < projection_.height))
       return kInfinity;
-    const std::size_t sample =
-        sample_at(static_cast<std::uint32_t>(at[0]), static_cast<std::uint32_t>(at[1]));
-    return part_.depth(sample) - at[2];
+    const auto x = static_cast<std::uint32_t>(at[0]), y = static_cast<std::uint32_t>(at[1]);
+    return part_.seen(kSamples * x, kSamples * y).depth - at[2];
   }
   [[nodiscard]] bool hides(double in_front) const { return !(in_front < kHiddenBelow / projection_.scale); }
 
  private:
   static constexpr std::uint32_t kSamples = DepthBuffer::kSamples;
 
-  /// The first sample of a pixel.
-  [[nodiscard]] std::size_t sample_at(std::uint32_t x, std::uint32_t y) const {
-    return std::size_t{kSamples} * y * part_.width() + std::size_t{kSamples} * x;
-  }
+  /// What a sample shows.
+  struct Sample {
+    std::uint32_t face;        ///< of O1; kNone if there is none
+    std::uint32_t other_face;  ///< of O2, in front of O1 or beside it; kNone if there is none
 
-  [[nodiscard]] bool is_background(std::uint32_t x, std::uint32_t y) const {
-    for (std::uint32_t row = 0; row < kSamples; ++row)
-      for (std::uint32_t column = 0; column < kSamples; ++column) {
-        const std::size_t sample = sample_at(x, y) + std::size_t{row} * part_.width() + column;
-        if (part_.face(sample) != kNone || (ghost_ && ghost_->face(sample) != kNone)) return false;
-      }
-    return true;
+    friend bool operator==(const Sample&, const Sample&) = default;
+  };
+  static constexpr Sample kBackgroundSample{kNone, kNone};
+
+  [[nodiscard]] Sample sample(std::uint32_t column, std::uint32_t row) const {
+    const DepthBuffer::Seen& part = part_.seen(column, row);
+    if (!ghost_) return {part.face, kNone};
+    const DepthBuffer::Seen& other = ghost_->seen(column, row);
+    const double away = scene_.other_distances.empty() ? kVeilFrom / projection_.scale : 0;
+    const bool is_seen = part.face == kNone || other.depth > part.depth + away;
+    return {part.face, is_seen ? other.face : kNone};
   }
 
   [[nodiscard]] Rgb pixel(std::uint32_t x, std::uint32_t y) const {
-    if (is_background(x, y)) return kViewBackground;
-    struct Seen {
-      std::uint32_t face, other_face;
+    struct Shaded {
+      Sample sample;
       Color color;
     };
-    std::array<Seen, std::size_t{kSamples} * kSamples> seen;
+    std::array<Shaded, std::size_t{kSamples} * kSamples> shaded;
     std::size_t count = 0;
     Color sum{};
-    for (std::uint32_t row = 0; row < kSamples; ++row)
-      for (std::uint32_t column = 0; column < kSamples; ++column) {
-        const std::size_t sample = sample_at(x, y) + std::size_t{row} * part_.width() + column;
-        const std::uint32_t face = part_.face(sample), other_face = seen_of_other(sample);
+    for (std::uint32_t row = kSamples * y; row < kSamples * (y + 1); ++row)
+      for (std::uint32_t column = kSamples * x; column < kSamples * (x + 1); ++column) {
+        const Sample seen = sample(column, row);
         // Samples of a pixel in the same face have almost the same colour.
         std::size_t i = 0;
-        while (i < count && (seen[i].face != face || seen[i].other_face != other_face)) ++i;
-        if (i == count) seen[count++] = {face, other_face, sample_color(sample, other_face)};
-        sum = sum + seen[i].color;
+        while (i < count && shaded[i].sample != seen) ++i;
+        if (i == count) shaded[count++] = {seen, sample_color(column, row, seen)};
+        sum = sum + shaded[i].color;
       }
+    if (count == 1 && shaded[0].sample == kBackgroundSample) return kViewBackground;
     sum = (1.0 / (kSamples * kSamples)) * sum;
     return rgb(is_outline(x, y) ? mix(sum, color(kInk), kOutline) : sum);
   }
 
-  /// The face of O2 that is seen at a sample, in front of O1 or beside it; kNone if there is none.
-  [[nodiscard]] std::uint32_t seen_of_other(std::size_t sample) const {
-    if (!ghost_ || ghost_->face(sample) == kNone) return kNone;
-    const double away = scene_.other_distances.empty() ? kVeilFrom / projection_.scale : 0;
-    const bool is_seen = part_.face(sample) == kNone || ghost_->depth(sample) > part_.depth(sample) + away;
-    return is_seen ? ghost_->face(sample) : kNone;
-  }
-
-  /// `other_face`: as of seen_of_other().
-  [[nodiscard]] Color sample_color(std::size_t sample, std::uint32_t other_face) const {
-    const std::uint32_t face = part_.face(sample);
+  [[nodiscard]] Color sample_color(std::uint32_t column, std::uint32_t row, const Sample& seen) const {
     const bool is_solid = !scene_.other_distances.empty();  // O2
-    if (other_face != kNone && is_solid) return other_color(sample, other_face);
-    if (face == kNone)
-      return other_face == kNone ? color(kViewBackground)
-                                 : mix(color(kViewBackground), other_color(sample, other_face), 0.75);
-    const Triangle& corners = mesh_.triangles[face];
-    const Vec3 weights = part_.weights(sample, corners);
+    if (seen.other_face != kNone && is_solid) return other_color(column, row, seen.other_face);
+    if (seen.face == kNone)
+      return seen.other_face == kNone
+                 ? color(kViewBackground)
+                 : mix(color(kViewBackground), other_color(column, row, seen.other_face), 0.75);
+    const auto [weights, is_back] = part_.point(column, row, mesh_.triangles[seen.face]);
     const Color part =
-        light_(scene_.normals, face, weights, part_.is_back(corners)) * color(colors_(face, weights));
-    return other_face == kNone ? part : mix(part, other_color(sample, other_face), kVeil);
+        light_(*scene_.normals, seen.face, weights, is_back) * color(colors_(seen.face, weights));
+    return seen.other_face == kNone ? part : mix(part, other_color(column, row, seen.other_face), kVeil);
   }
 
-  [[nodiscard]] Color other_color(std::size_t sample, std::uint32_t face) const {
+  [[nodiscard]] Color other_color(std::uint32_t column, std::uint32_t row, std::uint32_t face) const {
     const Triangle& t = scene_.other->triangles[face];
-    const Vec3 weights = ghost_->weights(sample, t);
-    const double light = light_(scene_.other_normals, face, weights, ghost_->is_back(t));
+    const auto [weights, is_back] = ghost_->point(column, row, t);
+    const double light = light_(scene_.other_normals, face, weights, is_back);
     // Pale on every side, so that it is never darker than the part.
     if (scene_.other_distances.empty()) return (0.7 + 0.3 * light) * color(kGhost);
     double distance = 0;
@@ -219,9 +219,9 @@ class Renderer {
   [[nodiscard]] bool is_outline(std::uint32_t x, std::uint32_t y) const {
     const bool both = ghost_ && !scene_.other_distances.empty();
     const auto depth = [&](std::uint32_t column, std::uint32_t row) {
-      const std::size_t sample = sample_at(column, row);
+      const float part = part_.seen(kSamples * column, kSamples * row).depth;
       return projection_.scale *
-             (both ? std::max(part_.depth(sample), ghost_->depth(sample)) : part_.depth(sample));
+             (both ? std::max(part, ghost_->seen(kSamples * column, kSamples * row).depth) : part);
     };
     const double here = depth(x, y);
     if (!std::isfinite(here)) return false;

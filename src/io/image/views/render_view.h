@@ -20,7 +20,7 @@ inline constexpr Rgb kViewBackground{240, 241, 243}, kGhost{203, 208, 215};
 /// What is drawn.
 struct ViewScene {
   const Surface* surface = nullptr;
-  ShadingNormals normals{};
+  const ShadingNormals* normals = nullptr;
   std::span<const float> distances{};         ///< of each texel
   std::span<const float> vertex_distances{};  ///< shown where a face has no texel
   ColorScale scale{};                         ///< of O2's distances
@@ -39,7 +39,8 @@ struct View {
 
 /// Draws O1 shaded, with outlines, and O2 pale: behind O1 and beside it as a body, in front of it as a veil;
 /// or both as bodies, if O2 has distances.
-/// `places`: points of O1. Cost: linear in faces and pixels; memory for 16 bytes a sample and 24 a vertex.
+/// `places`: points of O1. Cost: linear in faces and pixels; memory for 8 bytes of each sample of the tiles
+/// that a mesh covers, and 24 of each vertex.
 [[nodiscard]] View render_view(const ViewScene& scene, const Projection& projection,
                                std::span<const Vec3> places);
 

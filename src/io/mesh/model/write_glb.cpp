@@ -22,7 +22,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <new>
 #include <sstream>
 #include <string>
@@ -146,18 +145,17 @@ GlbModel make_model(const Surface& surface, const DistanceMap& map, std::span<co
   const Mesh& mesh = surface.mesh();
   const AtlasPicture picture(surface, options.largest);
   const FaceScales scales(color_scale(surface, map, options), options);
-  ShadingNormals normals;
   std::array<ModelVertices, 2> vertices;
   std::string png;
   run_concurrently({[&] {
-                      normals = shading_normals(mesh);
                       const auto faces = faces_by_distance(mesh, vertex_distances);
-                      for (int k = 0; k < 2; ++k) vertices[k] = model_vertices(surface, normals, faces[k]);
+                      for (int k = 0; k < 2; ++k)
+                        vertices[k] = model_vertices(surface, shading_normals(surface), faces[k]);
                     },
                     [&] { png = texture_png(surface, map, scales, picture, vertex_distances); }});
   const DrawnSurface drawn{
       .mesh = mesh,
-      .normals = normals,
+      .normals = shading_normals(surface),
       .place = placement(bounds(mesh), options.units),
       .extent = {1.0 * picture.width() * picture.step(), 1.0 * picture.height() * picture.step()}};
   GlbModel glb;

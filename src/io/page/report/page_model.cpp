@@ -152,7 +152,7 @@ Json add_model(PackedArrays& arrays, const Surface& surface, std::span<const flo
     add_walk(arrays, walk, fewer.mesh, normals, normal_of, steps, fewer.distances);
     return json;
   }
-  const ShadingNormals normals = shading_normals(mesh);
+  const ShadingNormals& normals = shading_normals(surface);
   const ModelVertices vertices = model_vertices(surface, normals, faces);
   const FaceWalk walk = walk_over(vertices.triangles, vertices.normal.size());
   add_walk(arrays, walk, mesh, normals, vertices.normal, steps, vertex_distances);
