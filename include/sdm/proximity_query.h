@@ -41,8 +41,9 @@ struct Contact {
   /// pseudonormal. Moving O1 by depth along it takes p to q, or q to p. Swapping the two bodies negates it.
   Vec3 normal{};
   double depth = 0;  ///< ±|point2 − point1|, exact; positive if the point in contact is inside the other body
-  std::uint32_t patch = 0;           ///< contact patch: contacts on connected parts of the surface share one
-  std::array<SurfacePoint, 2> on{};  ///< point1 on a face of O1 and point2 on a face of O2, to rounding
+  std::uint32_t patch = 0;  ///< contact patch: contacts on connected parts of the surface share one
+  /// point1 on a face of O1 and point2 on a face of O2, to rounding; no face of a primitive shape.
+  std::array<SurfacePoint, 2> on{};
   /// Identifies the vertex, the part of a surface or the edge whose contact this is (see
   /// ProximityQuery::contacts): unique among the contacts of a pair, and the same in all frames, so that a
   /// solver can start from the forces of the frame before.
@@ -136,7 +137,8 @@ inline constexpr auto kOptions<ProximityOptions> = std::tuple{
 
 /// Proximity of two bodies that move and deform, for simulation loops.
 ///
-/// All results are computed from the triangles.
+/// All results are computed from the triangles, those of primitive shapes and of margins from their convex
+/// cores and radii: docs/proximity.md says which of these are bounded.
 ///
 /// A body is a shape in a pose: moving it rigidly costs nothing, whatever its size. All results are in space,
 /// with both bodies in their poses.
@@ -192,7 +194,7 @@ class SDM_API ProximityQuery {
   /// The smallest distance between the two surfaces, from the triangles: exact, and 0 if they intersect.
   [[nodiscard]] const BoundedLength& separation();
   /// Whether the surfaces intersect or one body is a solid that contains part of the other. Exact, from
-  /// the triangles.
+  /// the triangles; with a primitive shape or a margin, to rounding.
   [[nodiscard]] bool colliding();
   /// The largest distance from a surface point of either body that lies inside the other to the boundary of
   /// that other body. Exactly 0 if they do not collide, otherwise bounded

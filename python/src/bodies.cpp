@@ -411,7 +411,7 @@ std::size_t faces_of(const MultiBodyQuery& query) {
   std::size_t faces = 0;
   for (std::size_t body = 0; body < query.size(); ++body)
     for (std::size_t part = 0; part < query.part_count(body); ++part)
-      faces += query.sites(body, part).mesh().triangles.size();
+      faces += faces_at([&]() -> const Sites& { return query.sites(body, part); });
   return faces;
 }
 

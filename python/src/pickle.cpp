@@ -263,6 +263,9 @@ void bind_pickle() {
   bind_state<PyShape>(
       2,
       [](const PyShape& self) {
+        if (!self.shape.has_mesh() || self.shape.margin() > 0)
+          throw Error(
+              "a primitive shape and one with a margin cannot be pickled; make it again from its sizes");
         return nb::make_tuple(state_of(self.shape.sites().mesh(), 0), self.resolution);
       },
       [](PyShape* self, const nb::tuple& from) {

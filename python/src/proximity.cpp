@@ -56,7 +56,7 @@ void bind_shape_files(nb::class_<PyShape>& shape) {
           "save",
           [](const PyShape& self, nb::handle file) {
             const std::filesystem::path name = path_of(file);
-            run_sized(self.shape.sites().mesh().triangles.size(), [&] { write_shape(name, self.shape); });
+            run_sized(faces_of(self.shape), [&] { write_shape(name, self.shape); });
           },
           nb::arg("file").none(), nb::sig("def save(self, file: str | os.PathLike[str]) -> None"),
           R"(Writes the shape, some twenty times the size of its mesh, for load(). The complete file appears, or
@@ -74,6 +74,57 @@ the bit. Its arrays are those of the file, which processes share; it may be dele
 changed in place. The file may come from anyone, as all of it is checked; trusted: only for damage. Raises
 Error, naming the file and the fault, if another version of sdm wrote it, or if it is incomplete or damaged:
 make the shape again from its mesh.)");
+}
+
+Vec3 vector_of(nb::handle value, const char* name) {
+  const Lengths numbers(value, name, 3);
+  return {numbers.get()[0], numbers.get()[1], numbers.get()[2]};
+}
+
+void bind_primitives(nb::class_<PyShape>& shape) {
+  shape
+      .def_static(
+          "sphere", [](double radius) { return PyShape(Shape::sphere(radius)); }, nb::arg("radius"),
+          nb::sig("def sphere(radius: float) -> Shape"),
+          R"(The ball of that radius about the origin, exactly, without faces. Raises Error unless the radius is
+finite and above 0, as all primitives do.
+
+>>> round(float(sdm.ProximityQuery(sdm.Shape.sphere(1), sdm.Shape.box([1, 1, 1])).separating_translation()), 6)
+1.5)")
+      .def_static(
+          "capsule", [](double radius, double length) { return PyShape(Shape::capsule(radius, length)); },
+          nb::arg("radius"), nb::arg("length"), nb::sig("def capsule(radius: float, length: float) -> Shape"),
+          R"(The points within the radius of a segment of that length, about the origin, along z.)")
+      .def_static(
+          "cylinder", [](double radius, double length) { return PyShape(Shape::cylinder(radius, length)); },
+          nb::arg("radius"), nb::arg("length"),
+          nb::sig("def cylinder(radius: float, length: float) -> Shape"),
+          R"(The cylinder of that radius and length, about the origin, along z.)")
+      .def_static(
+          "box", [](nb::handle sides) { return PyShape(Shape::box(vector_of(sides, "sides"))); },
+          nb::arg("sides").none(), nb::sig("def box(sides: object) -> Shape"),
+          R"(The box with sides of these three lengths, or of one, about the origin, a mesh of 12 faces.)")
+      .def_static(
+          "half_space",
+          [](nb::handle normal, double offset) {
+            return PyShape(Shape::half_space(vector_of(normal, "normal"), offset));
+          },
+          nb::arg("normal").none(), nb::arg("offset") = 0.0,
+          nb::sig("def half_space(normal: object, offset: float = 0.0) -> Shape"),
+          R"(The points x with n · x ≤ offset, n the normal divided by its length, as a floor. Two half-spaces are
+no pair of bodies.)")
+      .def(
+          "with_margin",
+          [](const PyShape& self, double radius) { return PyShape(self.shape.with_margin(radius)); },
+          nb::arg("radius"), nb::sig("def with_margin(self, radius: float) -> Shape"),
+          R"(The points within that radius of this shape, without its atlas. Raises Error for a shape that is
+not convex.)")
+      .def_prop_ro(
+          "has_mesh", [](const PyShape& self) { return self.shape.has_mesh(); },
+          "Whether it is a mesh, without or with a margin. Others have no faces, and no maps.")
+      .def_prop_ro(
+          "margin", [](const PyShape& self) { return self.shape.margin(); },
+          "The radius around the mesh, or that of a sphere or a capsule; otherwise 0.");
 }
 
 void bind_shape(nb::module_& module) {
@@ -116,15 +167,18 @@ atlas. Raises Error for a mesh that cannot be used.
           "the "
           "same results. See convex_hull().")
       .def("__repr__", [](const PyShape& self) {
+        if (!self.shape.has_mesh()) return nb::str("sdm.Shape(without faces)");
         const Mesh& mesh = self.shape.sites().mesh();
         return nb::str("sdm.Shape({} vertices, {} faces)")
             .format(mesh.positions.size(), mesh.triangles.size());
       });
+  bind_primitives(shape);
   bind_shape_files(shape);
 }
 
 std::size_t faces_of(const ProximityQuery& query) {
-  return query.sites(0).mesh().triangles.size() + query.sites(1).mesh().triangles.size();
+  return faces_at([&]() -> const Sites& { return query.sites(0); }) +
+         faces_at([&]() -> const Sites& { return query.sites(1); });
 }
 
 }  // namespace

@@ -38,6 +38,17 @@ struct PyMultiBodyQuery {
 /// The number of faces of all bodies.
 [[nodiscard]] std::size_t faces_of(const MultiBodyQuery& query);
 
+/// The number of faces of what `sites` returns; 0 if it throws, as for a shape without a mesh.
+template <class SitesOf>
+[[nodiscard]] std::size_t faces_at(const SitesOf& sites) try {
+  return sites().mesh().triangles.size();
+} catch (const Error&) {
+  return 0;
+}
+[[nodiscard]] inline std::size_t faces_of(const Shape& shape) {
+  return shape.has_mesh() ? shape.sites().mesh().triangles.size() : 0;
+}
+
 /// A mesh prepared for proximity queries, as of sdm.Shape.
 struct PyShape {
   PyShape(const Mesh& mesh, std::optional<std::uint32_t> side, const Progress& progress);

@@ -55,9 +55,7 @@ void bind_time_of_contact(nb::module_& module) {
       [](nb::handle o1, nb::handle motion1, nb::handle o2, nb::handle motion2, double tolerance) {
         const Shape first = shape_of(o1), second = shape_of(o2);
         const Motion m1 = motion_of(motion1, "motion1"), m2 = motion_of(motion2, "motion2");
-        const std::size_t faces =
-            first.sites().mesh().triangles.size() + second.sites().mesh().triangles.size();
-        return run_sized(faces, [&] {
+        return run_sized(faces_of(first) + faces_of(second), [&] {
           PyTimeOfContact result{time_of_contact(first, m1, second, m2, tolerance), {}};
           result.poses = {m1.at(result.found.time, first), m2.at(result.found.time, second)};
           return result;

@@ -50,6 +50,7 @@ set(order
   simplify
   volume
   bodies/contacts
+  bodies/solids
   bodies/pair
   bodies/separate
   bodies/motion

@@ -524,6 +524,38 @@ TEST(Primitives, ManyPoses) {
   }
 }
 
+TEST(Primitives, TimesOfContactOfManyBodies) {
+  const std::vector<Shape> shapes{Shape::half_space({0, 0, 1}), Shape::sphere(0.5), Shape::box({1, 1, 1}),
+                                  Shape(test::torus(24, 12))};
+  Random random(10);
+  std::vector<Motion> motions(shapes.size());
+  for (std::size_t b = 1; b < shapes.size(); ++b)
+    motions[b] = {Transform::translation({6.0 * static_cast<double>(b), 0, 5}) * random.rotation(),
+                  Transform::translation(random.vector(1)) * random.rotation()};
+  const MultiBodyQuery bodies(shapes);
+  const std::vector<PairTimeOfContact> found = bodies.time_of_contact(motions, 1e-5);
+  EXPECT_GE(found.size(), 3u);
+  for (const PairTimeOfContact& pair : found) {
+    const TimeOfContact one = time_of_contact(shapes[pair.first], motions[pair.first], shapes[pair.second],
+                                              motions[pair.second], 1e-5);
+    EXPECT_EQ(pair.time_of_contact.time, one.time);
+    EXPECT_TRUE(one.contact);
+    ProximityQuery before(shapes[pair.first], shapes[pair.second]);
+    for (const double part : {0.25, 0.5, 0.75, 0.999}) {
+      before.set_pose(0, motions[pair.first].at(part * one.time, shapes[pair.first]));
+      before.set_pose(1, motions[pair.second].at(part * one.time, shapes[pair.second]));
+      EXPECT_FALSE(before.colliding()) << pair.first << " " << pair.second << " " << part;
+    }
+  }
+}
+
+TEST(Primitives, HaveNoMaps) {
+  MultiBodyQuery bodies(
+      std::vector<Shape>{Shape(test::cube(), AtlasOptions{}), Shape(test::cube(3)).with_margin(0.5)});
+  EXPECT_THROW((void)bodies.nearest_map(0), Error);
+  EXPECT_THROW((void)nearest_distances_at_vertices(bodies, 0, 10), Error);
+}
+
 TEST(Primitives, TimeOfContact) {
   const auto fall = [](const Shape& o1, const Shape& o2, const Transform& from, const Transform& to) {
     return time_of_contact(o1, {from, to}, o2, {}, 1e-6);

@@ -224,7 +224,12 @@ const Surface& MultiBodyQuery::surface(std::size_t body, std::size_t part) const
   return *surface;
 }
 const Sites& MultiBodyQuery::sites(std::size_t body, std::size_t part) const {
-  return impl_->part_of(body, part).body().sites();
+  const shape::Body& of = impl_->part_of(body, part).body();
+  // Distances to the sites are not those to the body.
+  if (of.has_mesh() && of.rounded())
+    throw Error("body " + std::to_string(body) +
+                " has a margin, which its sites have not; use Shape::sites()");
+  return of.sites();
 }
 
 }  // namespace sdm

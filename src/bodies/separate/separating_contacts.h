@@ -12,8 +12,8 @@
 
 #include "bodies/contacts/contact_order.h"
 #include "bodies/pair/pair_answers.h"
-#include "bodies/separate/convex_patch.h"
 #include "bodies/shape/posed_body.h"
+#include "bodies/solids/convex_patch.h"
 
 namespace sdm::separate {
 
@@ -56,7 +56,7 @@ class SeparatingContacts {
 
   double contact_margin_;
   pair::PairAnswers apart_{0, std::nullopt};
-  ConvexPatch patch_;
+  solids::ConvexPatch patch_;
   contacts::ContactOrder order_;
   std::vector<Contact> contacts_;
   std::vector<double> distances_;

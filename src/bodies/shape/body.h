@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "bodies/convex/convex_mesh.h"
+#include "bodies/convex/core.h"
 #include "bodies/shape/contact_parts.h"
 #include "bodies/shape/inner_balls.h"
 #include "bodies/shape/node_ball.h"
 #include "bodies/shape/wall_thickness.h"
-#include "bodies/solids/core.h"
 #include "core/arrays/array.h"
 #include "core/arrays/stored_arrays.h"
 #include "core/intact.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bodies/contacts/contact_order.h"
-#include "bodies/separate/convex_patch.h"
+#include "bodies/solids/convex_patch.h"
 #include "bodies/solids/solid_pair.h"
 
 namespace sdm::solids {
@@ -33,7 +33,7 @@ class SolidContacts {
   void add(const Vec3& on_mesh, std::uint32_t face, const shape::PosedBody& mesh, const Vec3& on_solid,
            const Vec3& normal, double depth, int mesh_side, std::uint64_t id);
 
-  separate::ConvexPatch patch_;
+  ConvexPatch patch_;
   contacts::ContactOrder order_;
   std::vector<Contact> contacts_;
   std::vector<FaceDistance> near_;

@@ -13,7 +13,7 @@
 namespace sdm::solids {
 namespace {
 
-constexpr double kNone0 = 0;
+constexpr double kInHull = 0;
 constexpr double kExactGap = 1e-7;  // of the size: bounds so close are one number
 constexpr int kRimPoints = 256;
 
@@ -22,7 +22,7 @@ constexpr int kRimPoints = 256;
 template <class Visit>
 void for_extreme_points(const PosedCore& core, const Visit& visit) {
   if (core.convex() != nullptr) {
-    for (const Vec3& p : core.convex()->points) visit(core.body().pose().map(p), kNone0);
+    for (const Vec3& p : core.convex()->points) visit(core.body().pose().map(p), kInHull);
     return;
   }
   const Vec3 x =
@@ -32,7 +32,7 @@ void for_extreme_points(const PosedCore& core, const Visit& visit) {
   for (const double side : {-1.0, 1.0}) {
     const Vec3 middle = core.centre() + side * core.half();
     if (core.disc() == 0) {
-      visit(middle, kNone0);
+      visit(middle, kInHull);
       continue;
     }
     for (int i = 0; i < kRimPoints; ++i) {

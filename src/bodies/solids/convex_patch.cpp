@@ -1,4 +1,4 @@
-#include "bodies/separate/convex_patch.h"
+#include "bodies/solids/convex_patch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "bodies/convex/convex_mesh.h"
 #include "geometry/vec.h"
 
-namespace sdm::separate {
+namespace sdm::solids {
 namespace {
 
 constexpr double kNear = 1e-6;  // of the size
@@ -156,4 +156,4 @@ void ConvexPatch::add_contact(const Vec2& at) {
   contacts_.push_back(contact);
 }
 
-}  // namespace sdm::separate
+}  // namespace sdm::solids

@@ -13,7 +13,7 @@
 #include "bodies/shape/posed_body.h"
 #include "bodies/solids/posed_core.h"
 
-namespace sdm::separate {
+namespace sdm::solids {
 
 /// A plane across a direction, with coordinates.
 struct ContactPlane {
@@ -51,7 +51,7 @@ class SupportFeature {
   /// A number of a corner below 2¹⁴.
   [[nodiscard]] std::uint64_t number(std::uint32_t vertex) const;
   /// Whether it is the plane of a half-space.
-  [[nodiscard]] bool everywhere() const { return core_ && core_->kind() == solids::CoreKind::half_space; }
+  [[nodiscard]] bool everywhere() const { return core_ && core_->kind() == CoreKind::half_space; }
   /// The point of the feature above a point of the plane; the nearest one, to rounding, if that is beside it.
   [[nodiscard]] Above above(const Vec2& at) const;
   [[nodiscard]] Above at_corner(std::size_t corner) const;
@@ -71,9 +71,9 @@ class SupportFeature {
   const shape::PosedBody* body_ = nullptr;
   const convex::ConvexMesh* convex_ = nullptr;
   ContactPlane plane_;
-  std::optional<solids::PosedCore> core_;  // of a body without a mesh
-  std::vector<Vec3> core_points_;          // of its corners, on the surface
-  Vec3 up_{}, lift_{};                     // lift_: from the core to the surface
+  std::optional<PosedCore> core_;  // of a body without a mesh
+  std::vector<Vec3> core_points_;  // of its corners, on the surface
+  Vec3 up_{}, lift_{};             // lift_: from the core to the surface
   bool has_area_ = false;
   std::vector<std::uint32_t> faces_;  // all of them, or one at the edge or the vertex
   std::vector<std::uint32_t> marks_;  // of the faces that were found, the number of the search
@@ -81,4 +81,4 @@ class SupportFeature {
   std::vector<Corner> places_, corners_;
 };
 
-}  // namespace sdm::separate
+}  // namespace sdm::solids

@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "bodies/separate/support_feature.h"
 #include "bodies/shape/posed_body.h"
+#include "bodies/solids/support_feature.h"
 
-namespace sdm::separate {
+namespace sdm::solids {
 
 /// The contact patch of two convex solids: the part that their supporting features have in common, seen along
 /// the separating translation. There is a contact at each corner of this part: at a vertex of one feature
@@ -41,4 +41,4 @@ class ConvexPatch {
   std::vector<Contact> contacts_;
 };
 
-}  // namespace sdm::separate
+}  // namespace sdm::solids

@@ -1,4 +1,4 @@
-#include "bodies/separate/support_feature.h"
+#include "bodies/solids/support_feature.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
 
-namespace sdm::separate {
+namespace sdm::solids {
 namespace {
 
 constexpr double kTilt = 0.05;               // the sine of 3 degrees
@@ -241,4 +241,4 @@ SupportFeature::Above SupportFeature::above_edge(const Vec2& at) const {
   return between(faces_[0], weights);
 }
 
-}  // namespace sdm::separate
+}  // namespace sdm::solids
