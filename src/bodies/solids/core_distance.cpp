@@ -59,6 +59,36 @@ class Pairs {
   std::array<std::array<Vec3, 2>, kSlots> points_;
 };
 
+// Whether three points are so nearly on a line that rounding decides where their plane is.
+bool is_sliver(const convex::SimplexPoints& simplex) {
+  if (simplex.count != 3) return false;
+  constexpr double kThin = 1e-9;
+  const auto& p = simplex.points;
+  const Vec3 ab = p[1].w - p[0].w, ac = p[2].w - p[0].w, bc = p[2].w - p[1].w;
+  return norm(cross(ab, ac)) <= kThin * std::max({squared_norm(ab), squared_norm(ac), squared_norm(bc)});
+}
+
+// SimplexPoints::reduce() without slivers: the closest point of any is near one of its sides, or of another
+// face.
+bool reduce_reliably(convex::SimplexPoints& simplex, Vec3& v) {
+  const convex::SimplexPoints all = simplex;
+  if (!simplex.reduce(v)) return false;
+  if (!is_sliver(simplex)) return true;
+  double least = std::numeric_limits<double>::infinity();
+  for (unsigned chosen = 1; chosen < 1U << all.count; ++chosen) {
+    convex::SimplexPoints part;
+    for (int i = 0; i < all.count; ++i)
+      if ((chosen >> i & 1) != 0 && part.count < 3) part.add(all.points[i]);
+    Vec3 nearest{};
+    part.reduce(nearest);
+    if (is_sliver(part) || !(squared_norm(nearest) < least)) continue;
+    least = squared_norm(nearest);
+    simplex = part;
+    v = nearest;
+  }
+  return true;
+}
+
 Vec3 across(const Vec3& axis) {
   return normalized(cross(axis, std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
 }
@@ -99,7 +129,7 @@ CoreDistance core_gap(const PosedCore& a, const PosedCore& b) {
     const convex::SimplexPoints before = simplex;
     const Vec3 last = v;
     simplex.add(next);
-    const bool enclosed = !simplex.reduce(v);
+    const bool enclosed = !reduce_reliably(simplex, v);
     // Of slivers, which points of curved surfaces make, it may seem so.
     if (enclosed && lower <= kRounding * scale && simplex.depth_of_origin() > 0) return {};
     const double now = enclosed ? distance : norm(v);
@@ -140,6 +170,24 @@ CoreDistance point_to_axis(const Vec3& point, const PosedCore& axis) {
   return found;
 }
 
+namespace {
+
+// The point of a segment that is closest to an axis: the distance is convex along the segment.
+CoreDistance segment_to_axis(const PosedCore& segment, const PosedCore& axis) {
+  const auto at = [&](double t) { return point_to_axis(segment.centre() + t * segment.half(), axis); };
+  double low = -1, high = 1;
+  for (int step = 0; step < 100; ++step) {
+    const double third = (high - low) / 3;
+    if (at(low + third).distance < at(high - third).distance)
+      high -= third;
+    else
+      low += third;
+  }
+  return at(0.5 * (low + high));
+}
+
+}  // namespace
+
 CoreDistance core_distance(const PosedCore& a, const PosedCore& b, double size,
                            convex::ExitWorkspace& workspace) {
   if (a.point() && b.kind() == CoreKind::axis) return point_to_axis(a.centre(), b);
@@ -149,7 +197,16 @@ CoreDistance core_distance(const PosedCore& a, const PosedCore& b, double size,
     std::swap(found.point1, found.point2);
     return found;
   }
-  CoreDistance found = core_gap(a, b);
+  CoreDistance found;
+  if (a.thin() && b.kind() == CoreKind::axis && b.disc() > 0) {
+    found = segment_to_axis(a, b);
+  } else if (b.thin() && a.kind() == CoreKind::axis && a.disc() > 0) {
+    found = segment_to_axis(b, a);
+    found.normal = -found.normal;
+    std::swap(found.point1, found.point2);
+  } else {
+    found = core_gap(a, b);
+  }
   if (found.distance > kTouching * size && found.error <= kReliable * size) return found;
   if (a.thin() && b.thin()) {
     // They touch to rounding. The points are closest ones of both segments.
