@@ -68,7 +68,8 @@ std::optional<std::string> note_on_level(const SimplifyCommand& command, std::si
   const std::string file = command.file(level).string();
   const std::string same = level == 0 ? "the mesh itself, with all its triangles" : "the level before it";
   if (command.levels.max_deviation)
-    return fmt::format("{} is {}: no collapse of edges keeps the deviation within {}", file, same,
+    return fmt::format("{} is {}: no mesh with fewer triangles was found that keeps the deviation within {}",
+                       file, same,
                        number(*command.levels.max_deviation * std::ldexp(1, static_cast<int>(level))));
   return fmt::format(
       "{} has {} triangles, more than asked for: borders, seams and non-manifold edges permit no further "

@@ -109,14 +109,15 @@ class SDM_API Simplifier {
   Simplifier& operator=(Simplifier&&) noexcept;
 
   /// Returns a mesh whose deviation is certified to be at most `max_deviation`, greater than 0, in units of
-  /// the mesh. Edges are collapsed in steps, each of which goes on from the last mesh that keeps the limit,
-  /// until these remove few triangles: about as few are left as the simplifier reaches, though not provably
-  /// the fewest. Where no collapse keeps the limit, the result is the input, or `from`, and `stopped`.
+  /// the mesh. Edges are collapsed in steps that do not depend on the limit, and the result is the last mesh
+  /// on the way that keeps it: about as few triangles are left as the simplifier reaches, though not provably
+  /// the fewest, and never more than with a smaller limit. Where no step keeps the limit, the result is the
+  /// input, or `from`, and `stopped`.
   ///
   /// Throws sdm::Error for a limit that is not a positive number, one that rounding to float or `from`
   /// exceeds, or if there is not enough memory; Cancelled. Cost: the sites of the input, once; the closest
-  /// points of its vertices for each of some 3 to 8 candidates, and of points of one or a few results, dense
-  /// enough to tell whether they keep the limit.
+  /// points of its vertices for each of some 10 to 20 candidates, and of points of one or a few results,
+  /// dense enough to tell whether they keep the limit.
   [[nodiscard]] Simplified to_deviation(double max_deviation, const SimplifyOptions& options = {});
 
   /// Returns a mesh of at most `triangles`, at least 1, with its certified deviation, whose bounds are about

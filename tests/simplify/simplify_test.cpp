@@ -6,7 +6,9 @@
 #include <sdm/simplify.h>
 #include <sdm/types.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 #include <set>
@@ -119,6 +121,33 @@ TEST(Simplifier, ReducesSmoothMeshesFar) {
   EXPECT_GT(s.deviation.upper, 0.006) << "much of the limit is used";
   EXPECT_TRUE(inspect(s.mesh).closed);
   EXPECT_TRUE(inspect(s.mesh).oriented);
+}
+
+/// The numbers of triangles for limits that grow by a factor, from shares of the diagonal.
+std::vector<std::size_t> counts(const Mesh& mesh, double first, double last, double factor) {
+  std::vector<std::size_t> result;
+  Simplifier simplifier(mesh);
+  for (double limit = first * box_diagonal(mesh); limit <= last * box_diagonal(mesh); limit *= factor) {
+    const Simplified s = simplifier.to_deviation(limit);
+    EXPECT_LE(s.deviation.upper, limit);
+    EXPECT_EQ(s.stopped, s.mesh.triangles.size() == mesh.triangles.size());
+    result.push_back(s.mesh.triangles.size());
+  }
+  return result;
+}
+
+// Once, limits of 0.5 % and 1 % of some of these left the whole mesh, where smaller ones removed most of it.
+TEST(Simplifier, ALargerLimitLeavesNoMoreTriangles) {
+  for (const Case& c :
+       {Case{"fandisk", load("fandisk.off")}, Case{"dense anchor", load("anchor_dense.off")},
+        Case{"knot", load("knot1.off")}, Case{"torus, with seams", torus(90, 60)},
+        Case{"noisy sphere", with_noise(sphere(5), 0.2)}, Case{"open height field", height_field(70)}}) {
+    SCOPED_TRACE(c.name);
+    const std::vector<std::size_t> found =
+        counts(c.mesh, 5e-4, 0.03, std::exp(0.1 * static_cast<double>(subset(6, 2))));
+    EXPECT_TRUE(std::ranges::is_sorted(found, std::greater<>{})) << ::testing::PrintToString(found);
+    EXPECT_LT(found.back(), c.mesh.triangles.size() / 10);
+  }
 }
 
 // Two steps to 1 % of this mesh end 9.7 away from it, and one step 5.8.
