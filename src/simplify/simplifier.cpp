@@ -15,6 +15,7 @@
 #include "geometry/vec.h"
 #include "simplify/certificate.h"
 #include "simplify/collapse.h"
+#include "simplify/free_placement.h"
 #include "simplify/wedges.h"
 
 namespace sdm {
@@ -87,6 +88,8 @@ class Simplifier::State {
   void measure_input(Step& step, double limit, const SimplifyOptions& options);
   void measure_result(Step& step, double limit, const SimplifyOptions& options);
   void measure(Step& step, const SimplifyOptions& options);
+  /// Nothing where vertices are to be kept, or no mesh with fewer triangles is found.
+  std::optional<Simplified> freely_placed(double limit, const SimplifyOptions& options);
   /// Steps of the ladder, each made from the one before, up to where the limit is exceeded.
   std::vector<Step> coarser(const Wedges& wedges, const Step& start, double limit,
                             const SimplifyOptions& options);
@@ -99,6 +102,7 @@ class Simplifier::State {
   Mesh mesh_;  // until there are sites
   Wedges wedges_;
   std::optional<Sites> sites_;
+  std::optional<FreePlacement> free_;
   SimplifyReport report_;
 };
 
@@ -230,7 +234,24 @@ std::vector<Simplifier::State::Step> Simplifier::State::coarser(const Wedges& we
   return steps;
 }
 
+std::optional<Simplified> Simplifier::State::freely_placed(double limit, const SimplifyOptions& options) {
+  if (options.keep_vertices || !wedges_.uvs.empty()) return {};
+  make_sites();
+  if (!free_) {
+    Stopwatch watch;
+    free_.emplace(wedges_.positions, wedges_.triangles, *sites_, wedges_.size);
+    report_.collapse_ms += watch.lap();
+  }
+  if (!free_->is_possible()) return {};
+  Simplified result = free_->to_deviation(limit, options, report_);
+  if (result.mesh.triangles.empty() || !has_area(result.mesh)) return {};
+  if (options.from != nullptr && result.mesh.triangles.size() > options.from->mesh.triangles.size())
+    return {};
+  return result;
+}
+
 Simplified Simplifier::State::to_deviation(double limit, const SimplifyOptions& options) {
+  if (std::optional<Simplified> result = freely_placed(limit, options)) return std::move(*result);
   const Wedges finer = options.from != nullptr ? wedges_of(options.from->mesh) : Wedges{};
   const Wedges& wedges = options.from != nullptr ? finer : wedges_;
   Step start{{}, wedges.triangles};
@@ -317,6 +338,7 @@ SimplifiedLevels simplify_levels(const Mesh& mesh, const LevelsOptions& options)
   for (std::uint32_t level = 0; level <= options.lods; ++level) {
     const SimplifyOptions of_level{.from = levels.empty() ? nullptr : &levels.back(),
                                    .single_precision = options.single_precision,
+                                   .keep_vertices = options.keep_vertices,
                                    .progress = options.progress};
     const double factor = std::ldexp(1, static_cast<int>(level));
     if (options.max_deviation) {
