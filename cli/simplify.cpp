@@ -68,7 +68,8 @@ std::optional<std::string> note_on_level(const SimplifyCommand& command, std::si
   const std::string file = command.file(level).string();
   const std::string same = level == 0 ? "the mesh itself, with all its triangles" : "the level before it";
   if (command.levels.max_deviation)
-    return fmt::format("{} is {}: no collapse of edges keeps the deviation within {}", file, same,
+    return fmt::format("{} is {}: no mesh with fewer triangles was found that keeps the deviation within {}",
+                       file, same,
                        number(*command.levels.max_deviation * std::ldexp(1, static_cast<int>(level))));
   return fmt::format(
       "{} has {} triangles, more than asked for: borders, seams and non-manifold edges permit no further "
@@ -147,7 +148,7 @@ std::string summary(const SimplifyCommand& command, const SimplifyOutcome& outco
         d.certainty == sdm::Certainty::exact ? std::string() : "  " + bounds_text(d.lower, d.upper);
     text +=
         fmt::format("  deviation  {}{}{} ({})\n", number(d.value), unit, between, sdm::name_of(d.certainty));
-    text += fmt::format("  estimate   {}{}, of meshoptimizer, no bound\n", number(level.estimate), unit);
+    text += fmt::format("  estimate   {}{}, of the collapses, no bound\n", number(level.estimate), unit);
   }
   return text + note_lines(outcome.notes, 13);
 }
@@ -238,7 +239,8 @@ void add_simplify_command(CLI::App& app) {
       app.add_subcommand("simplify", "Reduce a mesh to fewer triangles, with a certified deviation");
   simplify->footer(
       "The deviation is the symmetric Hausdorff distance of result and mesh, between certified bounds. "
-      "Vertices are some of those of the mesh, with their texture coordinates; seams and borders stay. "
+      "With D, vertices are placed freely, unless the mesh has texture coordinates, or --keep-vertices is "
+      "given; otherwise they are some of those of the mesh, and seams stay. "
       "Normals, colours and materials are not kept. Where no mesh with fewer triangles keeps D, the result "
       "is "
       "the mesh itself, and a note says so.\n\n"

@@ -24,14 +24,16 @@ namespace sdm {
 /// A mesh with fewer triangles than another one, the input. Vertices of the input with the same position are
 /// one, and faces that then have two equal corners are no part of its surface, as for readers of files.
 struct Simplified {
-  /// Its vertices are vertices of the input, in their order; faces wind as those of the input. Texture
-  /// coordinates are those of the vertices that are left, seams stay seams.
+  /// Faces wind as those of the input. Its vertices are vertices of the input, in their order, if a number of
+  /// triangles is asked for, if they are to be kept (SimplifyOptions::keep_vertices), if the input has
+  /// texture coordinates, or if over 5 % of its vertices are not on a manifold; otherwise they are placed
+  /// freely. Texture coordinates are those of the vertices that are left, seams stay seams.
   Mesh mesh;
   /// The symmetric Hausdorff distance of the mesh and the input: no point of either one is farther than
   /// `upper` from the other one, and a point of one is `lower` from it. `value` is `lower`.
   BoundedLength deviation{};
-  /// What meshoptimizer says of the same: its own error of the collapses, no bound. Where it simplified in
-  /// steps, their sum.
+  /// What is said of the same by the collapses, no bound: the largest distance of samples if vertices are
+  /// placed freely; otherwise meshoptimizer's own error and, where it simplified in steps, their sum.
   double estimate = 0;
   /// No more triangles could go, although more were to: the borders, seams or non-manifold edges that are
   /// left permit no collapse, or none keeps the deviation.
@@ -42,7 +44,7 @@ template <>
 inline constexpr std::tuple kFields<Simplified>{
     Field{"deviation", &Simplified::deviation,
           "The symmetric Hausdorff distance of the mesh and the input, with certified bounds."},
-    Field{"estimate", &Simplified::estimate, "What meshoptimizer says of the same: no bound."},
+    Field{"estimate", &Simplified::estimate, "What is said of the same by the collapses: no bound."},
     Field{"stopped", &Simplified::stopped, "No more triangles could go, although more were to."}};
 
 /// Options of Simplifier::to_deviation() and to_triangles().
@@ -53,6 +55,8 @@ struct SimplifyOptions {
   /// Positions of the result are rounded to float, as STL and glTF keep them; `deviation` is that of the
   /// rounded mesh.
   bool single_precision = false;
+  /// The vertices of the result are vertices of the input. More triangles are left for a deviation.
+  bool keep_vertices = false;
   Progress progress{};
 };
 
@@ -62,6 +66,7 @@ struct LevelsOptions {
   std::optional<std::uint64_t> triangles{};  ///< at least 1: of the first level
   std::uint32_t lods = 0;                    ///< levels after it, up to 32
   bool single_precision = false;             ///< as of SimplifyOptions
+  bool keep_vertices = false;                ///< as of SimplifyOptions
   Progress progress{};
 };
 
@@ -87,18 +92,25 @@ inline constexpr auto kOptions<LevelsOptions> = std::tuple{
            .text = "So many further levels of detail, each with twice the deviation or half of the triangles "
                    "of the one before, from which it is made.",
            .range = {0, 32},
-           .value = "N"}};
+           .value = "N"},
+    Option{.name = "keep_vertices",
+           .member = &LevelsOptions::keep_vertices,
+           .text =
+               "The vertices of the result are vertices of the mesh. They are so in any case with a number "
+               "of triangles, and where the mesh has texture coordinates; without this, a deviation places "
+               "them freely, which leaves fewer triangles."}};
 
 /// What the calls so far have cost. Phases that run beside each other count twice.
 struct SimplifyReport {
   double sites_ms = 0;         ///< the search structure of the input
-  double collapse_ms = 0;      ///< meshoptimizer
+  double collapse_ms = 0;      ///< collapses
   double deviation_ms = 0;     ///< certificates
   std::size_t candidates = 0;  ///< meshes that were measured
 };
 
-/// Simplifies a mesh by collapsing edges (meshoptimizer's quadric simplifier), and proves how far the results
-/// are from it. What all results need of the mesh is made once.
+/// Simplifies a mesh by collapsing edges, and proves how far the results are from it: to a number of
+/// triangles by meshoptimizer's quadric simplifier, to a deviation by collapses that are measured one by one.
+/// What all results need of the mesh is made once.
 class SDM_API Simplifier {
  public:
   /// Vertices at the same position are welded, faces that repeat a corner left out. Throws sdm::Error if the
@@ -109,14 +121,15 @@ class SDM_API Simplifier {
   Simplifier& operator=(Simplifier&&) noexcept;
 
   /// Returns a mesh whose deviation is certified to be at most `max_deviation`, greater than 0, in units of
-  /// the mesh. Edges are collapsed in steps, each of which goes on from the last mesh that keeps the limit,
-  /// until these remove few triangles: about as few are left as the simplifier reaches, though not provably
-  /// the fewest. Where no collapse keeps the limit, the result is the input, or `from`, and `stopped`.
+  /// the mesh. Edges are collapsed in steps that do not depend on the limit, and the result is the last mesh
+  /// on the way that keeps it: about as few triangles are left as the simplifier reaches, though not provably
+  /// the fewest, and never more than with a smaller limit. Where no step keeps the limit, the result is the
+  /// input, or `from`, and `stopped`.
   ///
   /// Throws sdm::Error for a limit that is not a positive number, one that rounding to float or `from`
   /// exceeds, or if there is not enough memory; Cancelled. Cost: the sites of the input, once; the closest
-  /// points of its vertices for each of some 3 to 8 candidates, and of points of one or a few results, dense
-  /// enough to tell whether they keep the limit.
+  /// points of its vertices for each of some 10 to 20 candidates, and of points of one or a few results,
+  /// dense enough to tell whether they keep the limit.
   [[nodiscard]] Simplified to_deviation(double max_deviation, const SimplifyOptions& options = {});
 
   /// Returns a mesh of at most `triangles`, at least 1, with its certified deviation, whose bounds are about

@@ -17,8 +17,9 @@ void warn(const LevelsOptions& options, std::size_t level) {
   const std::string same = level == 0 ? "the mesh itself" : "that of the level before";
   const std::string text =
       (level == 0 ? "" : "level " + std::to_string(level) + ": ") +
-      (options.max_deviation ? "no collapse of edges keeps the deviation: the result is " + same
-                             : "more triangles are left than asked for: no further collapse is possible");
+      (options.max_deviation
+           ? "no mesh with fewer triangles was found that keeps the deviation: the result is " + same
+           : "more triangles are left than asked for: no further collapse is possible");
   if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) < 0) throw nb::python_error();
 }
 

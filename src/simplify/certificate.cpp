@@ -13,6 +13,10 @@ namespace {
 
 // Bounds are this close, relative to the limit or the distance.
 constexpr double kClose = 0.01;
+// Where these contain the limit, they are made this many times closer, so often: whether a distance keeps a
+// limit must not depend on the limit otherwise.
+constexpr double kCloser = 16;
+constexpr int kMostTries = 3;
 // Bounds are no closer than this share of the diagonal, unless a limit asks for it.
 constexpr double kLast = 1e-6;
 // So many parts of the result are examined at most: flat surfaces, at the distance 0 everywhere, would take
@@ -48,7 +52,10 @@ BoundedLength deviation_of_input(const Sites& input, const Mesh& result, const E
     raise(d, found, scale.precision, true);
   };
   if (expected.limit < kNoLimit) {
-    measure(kClose * expected.limit);
+    double precision = kClose * expected.limit;
+    measure(precision);
+    for (int tries = 1; tries < kMostTries && d.lower <= expected.limit && d.upper > expected.limit; ++tries)
+      measure(precision /= kCloser);
   } else {
     const double first = std::max(kLast * size, kClose * expected.estimate);
     measure(first);
@@ -63,22 +70,29 @@ BoundedLength with_deviation_of_result(const BoundedLength& of_input, const Site
   BoundedLength d = of_input;
   const Box box = bounds(input.mesh());
   const hausdorff::Scale scale = hausdorff::scale_of(result, box);
-  hausdorff::Question question{.precision = std::max(kLast * diagonal(box), kClose * d.lower),
-                               .most_parts = kMostParts};
-  // What is below this changes nothing.
-  double settled = std::max(d.lower, question.precision);
-  if (expected.limit < kNoLimit) {
-    question.precision = kClose * expected.limit;
-    const double forgiven = std::max(0.0, expected.limit - question.precision - scale.precision);
-    settled = std::clamp(d.lower, kFarBelow * forgiven, forgiven);
-    question.decision = hausdorff::Decision{settled, forgiven};
-  }
-  const Mesh rest = parts_above(result, internals(input), settled, progress);
-  d.upper = std::max(d.upper, settled + scale.precision);
-  if (!rest.triangles.empty()) {
-    auto found = hausdorff::largest_distance(rest, internals(input), scale, question, progress);
-    found.upper += scale.precision;  // of the corners of parts
-    raise(d, found, scale.precision, false);
+  const bool limited = expected.limit < kNoLimit;
+  hausdorff::Question question{
+      .precision = limited ? kClose * expected.limit : std::max(kLast * diagonal(box), kClose * d.lower),
+      .most_parts = kMostParts};
+  for (int tries = 1;; ++tries) {
+    d.upper = of_input.upper;
+    // What is below this changes nothing.
+    double settled = std::max(d.lower, question.precision);
+    if (limited) {
+      const double forgiven = std::max(0.0, expected.limit - question.precision - scale.precision);
+      settled = std::clamp(d.lower, kFarBelow * forgiven, forgiven);
+      question.decision = hausdorff::Decision{settled, forgiven};
+    }
+    const Mesh rest = parts_above(result, internals(input), settled, progress);
+    d.upper = std::max(d.upper, settled + scale.precision);
+    if (!rest.triangles.empty()) {
+      auto found = hausdorff::largest_distance(rest, internals(input), scale, question, progress);
+      found.upper += scale.precision;  // of the corners of parts
+      raise(d, found, scale.precision, false);
+    }
+    const bool decided = d.lower > expected.limit || d.upper <= expected.limit;
+    if (!limited || decided || of_input.upper > expected.limit || tries == kMostTries) break;
+    question.precision /= kCloser;
   }
   d.value = d.lower;
   return d;

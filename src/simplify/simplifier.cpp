@@ -15,6 +15,7 @@
 #include "geometry/vec.h"
 #include "simplify/certificate.h"
 #include "simplify/collapse.h"
+#include "simplify/free_placement.h"
 #include "simplify/wedges.h"
 
 namespace sdm {
@@ -25,13 +26,20 @@ using namespace simplify;
 // Collapses in several steps mostly deviate less than in one, as each has the errors of a mesh that is
 // smoother than that before: on a scan of a bunny reduced to 1 %, by a quarter. With a count, there are two,
 // the first of which ends at this multiple of the count; not so on an armadillo reduced to 1 %, so that up to
-// this many triangles, where it takes little time, one step is measured, too. With a limit, these are the
-// errors of the first ones relative to it, and steps go on from the last mesh that keeps the limit while they
-// remove at least this share of its triangles.
+// this many triangles, where it takes little time, one step is measured, too.
 constexpr std::size_t kFirstTriangles = 4, kMostForBoth = 250'000;
-constexpr double kFirstError = 0.42, kSecondError = 0.5, kLarger = 1.15, kSmaller = 0.8, kWorthwhile = 0.04;
-constexpr double kMostError = 8;
-constexpr int kMostSteps = 12, kMostFailures = 2, kMostHalvings = 10;
+
+// With a limit, the errors of the steps are those of a ladder that does not depend on the limit: relative to
+// the size of the mesh, the first one and the factors between them after a step that removed much, and after
+// one that removed less than the share that is worth a step. A first step that removes more than a share is
+// made smaller.
+constexpr double kFirstError = 1e-7, kLarger = 1.15, kMuchLarger = 2, kSmaller = 0.7;
+constexpr double kWorthwhile = 0.04, kTooMuch = 0.25;
+// Steps whose error is below this share of the limit are not measured before they are to be the result; the
+// ladder ends where so many in succession exceed the limit.
+constexpr double kSafeError = 0.1;
+constexpr int kMostFailures = 4;
+constexpr double kMostError = 100;  // relative to the size: nothing else is left to collapse
 
 bool has_area(const Mesh& mesh) {
   return std::ranges::any_of(mesh.triangles, [&](const Triangle& t) {
@@ -80,9 +88,13 @@ class Simplifier::State {
   void measure_input(Step& step, double limit, const SimplifyOptions& options);
   void measure_result(Step& step, double limit, const SimplifyOptions& options);
   void measure(Step& step, const SimplifyOptions& options);
-  /// Ever coarser meshes to which no point of the input is farther than the limit.
+  /// Nothing where vertices are to be kept, or no mesh with fewer triangles is found.
+  std::optional<Simplified> freely_placed(double limit, const SimplifyOptions& options);
+  /// Steps of the ladder, each made from the one before, up to where the limit is exceeded.
   std::vector<Step> coarser(const Wedges& wedges, const Step& start, double limit,
                             const SimplifyOptions& options);
+  /// The next step that removes enough, and the error of the one after it. No triangles: there is none.
+  Step next_step(const Wedges& wedges, const Step& from, double& error, const SimplifyOptions& options);
   /// The input, or what is to be simplified further, as it is.
   Simplified unchanged(double limit, const SimplifyOptions& options);
   void make_sites();
@@ -90,6 +102,7 @@ class Simplifier::State {
   Mesh mesh_;  // until there are sites
   Wedges wedges_;
   std::optional<Sites> sites_;
+  std::optional<FreePlacement> free_;
   SimplifyReport report_;
 };
 
@@ -172,44 +185,73 @@ Simplified Simplifier::State::unchanged(double limit, const SimplifyOptions& opt
   return step;
 }
 
+Simplifier::State::Step Simplifier::State::next_step(const Wedges& wedges, const Step& from, double& error,
+                                                     const SimplifyOptions& options) {
+  const auto before = static_cast<double>(from.triangles.size());
+  const auto left = [&](const Step& step) { return static_cast<double>(step.triangles.size()) / before; };
+  bool is_larger = false;  // than the error of a step that removed too few
+  for (; error < kMostError * wedges_.size; error *= kMuchLarger) {
+    Step step = collapsed(wedges, from, {0, error}, options);
+    if (left(step) > 1 - kWorthwhile) {
+      is_larger = true;
+      continue;
+    }
+    if (is_larger && left(step) < 1 - kTooMuch) {
+      Step smaller = collapsed(wedges, from, {0, kSmaller * error}, options);
+      if (left(smaller) <= 1 - kWorthwhile) {
+        error *= kSmaller;
+        step = std::move(smaller);
+      }
+    }
+    error *= kLarger;
+    return step;
+  }
+  return {};
+}
+
+// The mesh that is the result for a limit is the last one on the way that keeps it. The way is the same for
+// all limits, and the part of it that is looked at grows with the limit, as does the set of meshes that keep
+// it: a larger limit never leaves more triangles.
 std::vector<Simplifier::State::Step> Simplifier::State::coarser(const Wedges& wedges, const Step& start,
                                                                 double limit,
                                                                 const SimplifyOptions& options) {
   std::vector<Step> steps;
-  // Collapses from the last mesh that keeps the limit: those up to `low` remove too few triangles, those up
-  // to `high` exceed the limit.
-  double error = kFirstError * limit, low = 0, high = kNoLimit;
-  int failures = 0;
-  for (int n = 0; n < kMostSteps && failures <= (steps.empty() ? kMostHalvings : kMostFailures); ++n) {
-    const Step& last = steps.empty() ? start : steps.back();
-    Step step = collapsed(wedges, last, {0, error}, options);
-    const auto before = static_cast<double>(last.triangles.size());
-    if (static_cast<double>(step.triangles.size()) > (1 - kWorthwhile) * before) {
-      low = error;
-      if (high < kLarger * low || low > kMostError * limit) break;
-      error = high < kNoLimit ? std::sqrt(low * high) : 2 * error;
-      continue;
-    }
-    bool passes = !step.triangles.empty();
-    if (passes) {
+  double error = kFirstError * wedges_.size;
+  std::size_t kept = 0;  // steps up to the last one that may keep the limit
+  for (int failures = 0; failures < kMostFailures;) {
+    Step step = next_step(wedges, steps.empty() ? start : steps.back(), error, options);
+    if (step.triangles.empty()) break;
+    bool passes = true;
+    if (error / kLarger >= kSafeError * limit) {
       measure_input(step, limit, options);
       passes = step.deviation.upper <= limit;
     }
-    if (passes) {
-      error = steps.empty() ? std::max(kSecondError * limit, error) : kLarger * error;
-      low = 0;
-      high = kNoLimit;
-      steps.push_back(std::move(step));
-    } else {
-      high = error;
-      ++failures;
-      error = low > 0 ? std::sqrt(low * high) : (steps.empty() ? 0.5 : kSmaller) * error;
-    }
+    failures = passes ? 0 : failures + 1;
+    steps.push_back(std::move(step));
+    if (passes) kept = steps.size();
   }
+  steps.resize(kept);
   return steps;
 }
 
+std::optional<Simplified> Simplifier::State::freely_placed(double limit, const SimplifyOptions& options) {
+  if (options.keep_vertices || !wedges_.uvs.empty()) return {};
+  make_sites();
+  if (!free_) {
+    Stopwatch watch;
+    free_.emplace(wedges_.positions, wedges_.triangles, *sites_, wedges_.size);
+    report_.collapse_ms += watch.lap();
+  }
+  if (!free_->is_possible()) return {};
+  Simplified result = free_->to_deviation(limit, options, report_);
+  if (result.mesh.triangles.empty() || !has_area(result.mesh)) return {};
+  if (options.from != nullptr && result.mesh.triangles.size() > options.from->mesh.triangles.size())
+    return {};
+  return result;
+}
+
 Simplified Simplifier::State::to_deviation(double limit, const SimplifyOptions& options) {
+  if (std::optional<Simplified> result = freely_placed(limit, options)) return std::move(*result);
   const Wedges finer = options.from != nullptr ? wedges_of(options.from->mesh) : Wedges{};
   const Wedges& wedges = options.from != nullptr ? finer : wedges_;
   Step start{{}, wedges.triangles};
@@ -217,6 +259,8 @@ Simplified Simplifier::State::to_deviation(double limit, const SimplifyOptions& 
   std::vector<Step> steps = coarser(wedges, start, limit, options);
   for (; !steps.empty(); steps.pop_back()) {
     Step& step = steps.back();
+    if (!(step.deviation.upper > 0)) measure_input(step, limit, options);
+    if (step.deviation.upper > limit) continue;
     measure_result(step, limit, options);
     if (step.deviation.upper <= limit) return std::move(step);
   }
@@ -294,6 +338,7 @@ SimplifiedLevels simplify_levels(const Mesh& mesh, const LevelsOptions& options)
   for (std::uint32_t level = 0; level <= options.lods; ++level) {
     const SimplifyOptions of_level{.from = levels.empty() ? nullptr : &levels.back(),
                                    .single_precision = options.single_precision,
+                                   .keep_vertices = options.keep_vertices,
                                    .progress = options.progress};
     const double factor = std::ldexp(1, static_cast<int>(level));
     if (options.max_deviation) {

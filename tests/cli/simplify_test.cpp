@@ -84,7 +84,7 @@ TEST_F(SimplifyRun, WritesLevelsOfDetailAndTheReport) {
     EXPECT_GE(level["deviation"]["upper"], json["levels"][i - 1]["deviation"]["lower"]);
   }
   EXPECT_THAT(done.out, HasSubstr("deviation  "));
-  EXPECT_THAT(done.out, HasSubstr(" mm, of meshoptimizer, no bound"));
+  EXPECT_THAT(done.out, HasSubstr(" mm, of the collapses, no bound"));
 }
 
 TEST_F(SimplifyRun, SaysThatNothingKeepsTheLimit) {

@@ -1,0 +1,110 @@
+#include "simplify/free_placement.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/stopwatch.h"
+#include "simplify/certificate.h"
+#include "simplify/far_places.h"
+
+namespace sdm::simplify {
+namespace {
+
+// So many rungs below the limit are looked at.
+constexpr int kMostRungs = 8;
+// How often a mesh is mended, and how many collapses are undone at a vertex, one above the other: so many
+// times more each time.
+constexpr int kMostMendings = 2;
+constexpr int kMoreLevels = 4;
+
+// With positions that are rounded to float, without the faces whose corners then are at the same place.
+Mesh rounded(const Mesh& mesh) {
+  Mesh result;
+  for (const Vec3& p : mesh.positions)
+    result.positions.push_back(
+        {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+  const auto same = [&](std::uint32_t a, std::uint32_t b) {
+    const Vec3 &p = result.positions[a], &q = result.positions[b];
+    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+  };
+  for (const Triangle& t : mesh.triangles)
+    if (!same(t[0], t[1]) && !same(t[1], t[2]) && !same(t[2], t[0])) result.triangles.push_back(t);
+  return result;
+}
+
+}  // namespace
+
+FreePlacement::FreePlacement(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                             const Sites& sites, double size)
+    : positions_(positions),
+      triangles_(triangles),
+      sites_(sites),
+      ladder_(size),
+      sequence_(positions, triangles, internals(sites), size) {}
+
+Simplified FreePlacement::to_deviation(double limit, const SimplifyOptions& options, SimplifyReport& report) {
+  Stopwatch watch;
+  const int highest = ladder_.below(limit);
+  sequence_.advance(highest);
+  report.collapse_ms += watch.lap();
+  const int lowest = std::max(Ladder::kLowest, highest - kMostRungs);
+  Simplified best;
+  std::size_t fewest = triangles_.size();
+  for (int rung = highest; rung >= lowest && sequence_.faces_after(rung) < fewest; --rung) {
+    Simplified found = first_within(limit, rung, fewest, options, report);
+    if (found.mesh.triangles.empty()) continue;
+    fewest = found.mesh.triangles.size();
+    best = std::move(found);
+  }
+  return best;
+}
+
+// The meshes of a rung: what its collapses leave, then what is left if they are undone where it is farther
+// from the input than the rung after it, and so on. None of them depends on the limit.
+Simplified FreePlacement::first_within(double limit, int rung, std::size_t fewer_than,
+                                       const SimplifyOptions& options, SimplifyReport& report) {
+  const std::span<const CollapseOfEdge> collapses = sequence_.up_to(rung);
+  const Expected expected{limit, ladder_.length(rung)};
+  std::vector<bool> held;
+  for (int mendings = 0, levels = 1;; ++mendings, levels *= kMoreLevels) {
+    Stopwatch watch;
+    CollapsedMesh collapsed = after_collapses(positions_, triangles_, collapses, held);
+    Simplified result{.mesh = options.single_precision ? rounded(collapsed.mesh) : collapsed.mesh,
+                      .estimate = expected.estimate};
+    report.collapse_ms += watch.lap();
+    if (result.mesh.triangles.empty() || result.mesh.triangles.size() >= fewer_than) return {};
+    result.deviation = deviation_of_input(sites_, result.mesh, expected, options.progress);
+    if (result.deviation.upper <= limit)
+      result.deviation =
+          with_deviation_of_result(result.deviation, sites_, result.mesh, expected, options.progress);
+    ++report.candidates;
+    report.deviation_ms += watch.lap();
+    if (result.deviation.upper <= limit) return result;
+    if (mendings == kMostMendings) return {};
+    const std::vector<std::uint32_t> far =
+        far_places(sites_, result.mesh, ladder_.length(rung + 1), options.progress);
+    report.deviation_ms += watch.lap();
+    held.resize(collapses.size());
+    hold_back(collapsed, far, levels, collapses, held);
+  }
+}
+
+// Undoes the last collapses of these vertices: `levels` of the tree of collapses that made each of them.
+void FreePlacement::hold_back(const CollapsedMesh& mesh, const std::vector<std::uint32_t>& vertices,
+                              int levels, std::span<const CollapseOfEdge> collapses,
+                              std::vector<bool>& held) const {
+  std::vector<std::uint32_t> level, below;
+  for (const std::uint32_t v : vertices) level.push_back(mesh.last[v]);
+  for (int i = 0; i < levels && !level.empty(); ++i) {
+    below.clear();
+    for (const std::uint32_t c : level) {
+      if (c == kNone) continue;
+      held[c] = true;
+      below.push_back(collapses[c].before_u);
+      below.push_back(collapses[c].before_v);
+    }
+    std::swap(level, below);
+  }
+}
+
+}  // namespace sdm::simplify
