@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "geometry/point_triangle.h"
 #include "geometry/vec.h"
@@ -84,7 +83,7 @@ double CarriedPoints::measure(const CollapsingMesh& mesh, std::uint32_t u, std::
   const double abort = enough * enough;
   const auto measure_face = [&](std::uint32_t face) {
     for (std::uint32_t i = first_[face]; i != kNone; i = next_[i]) {
-      double least = std::numeric_limits<double>::infinity();
+      double least = kInfinity;
       std::uint32_t nearest = 0;
       for (std::uint32_t n = 0; n < near.size(); ++n)
         if (const double d = near[n].squared_distance(points_[i], least); d < least) {

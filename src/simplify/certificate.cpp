@@ -51,7 +51,7 @@ BoundedLength deviation_of_input(const Sites& input, const Mesh& result, const E
                                                    {.precision = precision}, progress);
     raise(d, found, scale.precision, true);
   };
-  if (expected.limit < kNoLimit) {
+  if (expected.limit < kInfinity) {
     double precision = kClose * expected.limit;
     measure(precision);
     for (int tries = 1; tries < kMostTries && d.lower <= expected.limit && d.upper > expected.limit; ++tries)
@@ -70,7 +70,7 @@ BoundedLength with_deviation_of_result(const BoundedLength& of_input, const Site
   BoundedLength d = of_input;
   const Box box = bounds(input.mesh());
   const hausdorff::Scale scale = hausdorff::scale_of(result, box);
-  const bool limited = expected.limit < kNoLimit;
+  const bool limited = expected.limit < kInfinity;
   hausdorff::Question question{
       .precision = limited ? kClose * expected.limit : std::max(kLast * diagonal(box), kClose * d.lower),
       .most_parts = kMostParts};

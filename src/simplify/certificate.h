@@ -5,16 +5,12 @@
 #include <sdm/execution.h>
 #include <sdm/sites.h>
 
-#include <limits>
-
 namespace sdm::simplify {
-
-inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 /// What is known before.
 struct Expected {
-  double limit = kNoLimit;  ///< what is asked is whether the distance exceeds this
-  double estimate = 0;      ///< of the distance
+  double limit = kInfinity;  ///< what is asked is whether the distance exceeds this
+  double estimate = 0;       ///< of the distance
 };
 
 /// Bounds on the symmetric Hausdorff distance of a mesh and the input that it was made from, in two steps:

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -94,7 +93,7 @@ class Division {
     std::vector<std::uint32_t> near(pieces.size(), kNone);  // kNone: within the limit
     closest::for_each_block(middles.size(), progress, "parts", [&](std::size_t begin, std::size_t end) {
       closest::closest_points(
-          b_, std::span(middles).subspan(begin, end - begin), std::numeric_limits<double>::infinity(),
+          b_, std::span(middles).subspan(begin, end - begin), kInfinity,
           [&](std::size_t first, const sites::ClosestPacket& closest) {
             for (std::size_t i = 0; i < closest.count; ++i) {
               const std::size_t at = begin + first + i;

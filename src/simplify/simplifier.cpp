@@ -143,14 +143,14 @@ Simplifier::State::Step Simplifier::State::reduced(const Wedges& wedges, const S
     step = start;
     for (const std::size_t multiple : multiples)
       if (step.triangles.size() > multiple * most)
-        step = collapsed(wedges, step, {multiple * most, kNoLimit}, options);
+        step = collapsed(wedges, step, {multiple * most, kInfinity}, options);
   }
   return step;
 }
 
 void Simplifier::State::measure(Step& step, const SimplifyOptions& options) {
-  measure_input(step, kNoLimit, options);
-  measure_result(step, kNoLimit, options);
+  measure_input(step, kInfinity, options);
+  measure_result(step, kInfinity, options);
 }
 
 void Simplifier::State::measure_input(Step& step, double limit, const SimplifyOptions& options) {
@@ -276,14 +276,14 @@ Simplified Simplifier::State::to_deviation(double limit, const SimplifyOptions& 
 Simplified Simplifier::State::to_triangles(std::size_t count, const SimplifyOptions& options) {
   const Wedges finer = options.from != nullptr ? wedges_of(options.from->mesh) : Wedges{};
   const Wedges& wedges = options.from != nullptr ? finer : wedges_;
-  if (wedges.triangles.size() <= count) return unchanged(kNoLimit, options);
+  if (wedges.triangles.size() <= count) return unchanged(kInfinity, options);
   Step start{{}, wedges.triangles};
   if (options.from != nullptr) start.estimate = options.from->estimate;
   Step step = reduced(wedges, start, count, {kFirstTriangles, 1}, options);
   const bool none = step.triangles.empty() || step.triangles.size() == start.triangles.size();
   Simplified result;
   if (none) {
-    result = unchanged(kNoLimit, options);
+    result = unchanged(kInfinity, options);
   } else {
     measure(step, options);
     const std::size_t before = start.triangles.size();
