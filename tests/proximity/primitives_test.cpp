@@ -321,6 +321,48 @@ TEST(Primitives, AreThoseOfFineMeshes) {
   EXPECT_GT(colliding, 50);
 }
 
+// Along a cylinder's axis, rounding alone decides which point of its rim is farthest: a point that was not on
+// the rim made bodies collide that are apart, and shortened the way out.
+TEST(Primitives, SwappedAndScaledAgree) {
+  const auto make = [](int kind, double s) {
+    const Shape box = Shape::box({s, 0.6 * s, 0.8 * s});
+    return kind == 0   ? Shape::sphere(0.5 * s)
+           : kind == 1 ? Shape::capsule(0.3 * s, s)
+           : kind == 2 ? Shape::cylinder(0.4 * s, s)
+           : kind == 3 ? box
+                       : box.with_margin(0.2 * s);
+  };
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> offset(-1, 1);
+  const auto turned = [&] {
+    return Transform::quaternion({normal(random), normal(random), normal(random), normal(random)});
+  };
+  struct Answers {
+    bool colliding;
+    double separation, way_out;
+  };
+  for (int first = 0; first < 5; ++first)
+    for (int second = 0; second < 5; ++second)
+      for (int pose = 0; pose < 200; ++pose) {
+        const Transform turn1 = turned(), turn2 = turned();
+        const Vec3 at{offset(random), offset(random), offset(random)};
+        const auto ask = [&](double size, bool swapped) {
+          ProximityQuery query(make(swapped ? second : first, size), make(swapped ? first : second, size));
+          query.set_pose(swapped ? 1 : 0, Transform::translation(size * at) * turn1);
+          query.set_pose(swapped ? 0 : 1, turn2);
+          return Answers{query.colliding(), query.separation().value / size,
+                         query.separating_translation().value / size};
+        };
+        const Answers expected = ask(1, false);
+        for (const Answers& found : {ask(1, true), ask(1e20, false)}) {
+          ASSERT_EQ(found.colliding, expected.colliding) << first << " and " << second << ", pose " << pose;
+          EXPECT_NEAR(found.separation, expected.separation, 1e-8) << first << " and " << second;
+          EXPECT_NEAR(found.way_out, expected.way_out, 1e-8) << first << " and " << second;
+        }
+      }
+}
+
 TEST(Primitives, NestedInEachOther) {
   const auto separation = [](const Shape& o1, const Shape& o2, const Vec3& at) {
     ProximityQuery q = query(o1, Transform::translation(at), o2, {});

@@ -59,36 +59,6 @@ class Pairs {
   std::array<std::array<Vec3, 2>, kSlots> points_;
 };
 
-// Whether three points are so nearly on a line that rounding decides where their plane is.
-bool is_sliver(const convex::SimplexPoints& simplex) {
-  if (simplex.count != 3) return false;
-  constexpr double kThin = 1e-9;
-  const auto& p = simplex.points;
-  const Vec3 ab = p[1].w - p[0].w, ac = p[2].w - p[0].w, bc = p[2].w - p[1].w;
-  return norm(cross(ab, ac)) <= kThin * std::max({squared_norm(ab), squared_norm(ac), squared_norm(bc)});
-}
-
-// SimplexPoints::reduce() without slivers: the closest point of any is near one of its sides, or of another
-// face.
-bool reduce_reliably(convex::SimplexPoints& simplex, Vec3& v) {
-  const convex::SimplexPoints all = simplex;
-  if (!simplex.reduce(v)) return false;
-  if (!is_sliver(simplex)) return true;
-  double least = std::numeric_limits<double>::infinity();
-  for (unsigned chosen = 1; chosen < 1U << all.count; ++chosen) {
-    convex::SimplexPoints part;
-    for (int i = 0; i < all.count; ++i)
-      if ((chosen >> i & 1) != 0 && part.count < 3) part.add(all.points[i]);
-    Vec3 nearest{};
-    part.reduce(nearest);
-    if (is_sliver(part) || !(squared_norm(nearest) < least)) continue;
-    least = squared_norm(nearest);
-    simplex = part;
-    v = nearest;
-  }
-  return true;
-}
-
 Vec3 across(const Vec3& axis) {
   return normalized(cross(axis, std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
 }
@@ -129,10 +99,9 @@ CoreDistance core_gap(const PosedCore& a, const PosedCore& b) {
     const convex::SimplexPoints before = simplex;
     const Vec3 last = v;
     simplex.add(next);
-    const bool enclosed = !reduce_reliably(simplex, v);
-    // Of slivers, which points of curved surfaces make, it may seem so.
-    if (enclosed && lower <= kRounding * scale && simplex.depth_of_origin() > 0) return {};
-    const double now = enclosed ? distance : norm(v);
+    const bool encloses = !simplex.reduce(v);
+    if (encloses && lower <= kRounding * scale && simplex.depth_of_origin() > 0) return {};
+    const double now = encloses ? distance : norm(v);
     if (now <= kRounding * scale) return {};
     if (!(now < distance)) {  // by rounding, nothing closer is found
       simplex = before;
@@ -155,7 +124,9 @@ CoreDistance point_to_axis(const Vec3& point, const PosedCore& axis) {
   const Vec3 up = height < 0 ? -axis.axis() : axis.axis();
   const Vec3 beside = from - height * axis.axis();
   const double length = norm(beside);
-  const Vec3 outwards = length > 0 ? (1 / length) * beside : across(axis.axis());
+  Vec3 outwards = length > 0 ? (1 / length) * beside : across(axis.axis());
+  outwards =
+      normalized(outwards - dot(outwards, axis.axis()) * axis.axis());  // beside may be of rounding alone
   const double along = std::abs(height) - norm(axis.half()), aside = length - axis.disc();
   CoreDistance found;
   if (along > 0 && aside > 0) {

@@ -7,6 +7,12 @@
 #include "geometry/vec.h"
 
 namespace sdm::solids {
+namespace {
+
+// Of unit vectors: the middle of a disc is as far along them as its rim, to rounding.
+constexpr double kParallel = 1e-15;
+
+}  // namespace
 
 PosedCore::PosedCore(const shape::PosedBody& body) : body_(&body) {
   const Core& core = body.body().core();
@@ -43,8 +49,10 @@ Vec3 PosedCore::support(const Vec3& u, std::uint32_t& near) const {
     Vec3 p = along < 0 ? centre_ - half_ : centre_ + half_;
     if (disc_ == 0) return p;
     const Vec3 across = u - along * axis_;
-    const double length = norm(across);
-    return length > 0 ? p + (disc_ / length) * across : p;
+    if (!(norm(across) > kParallel)) return p;
+    // Where u is nearly parallel to the axis, rounding leaves some of it.
+    const Vec3 aside = normalized(across);
+    return p + disc_ * normalized(aside - dot(aside, axis_) * axis_);
   }
   const Affine& pose = body_->pose().map;
   const auto& rows = pose.rows;
