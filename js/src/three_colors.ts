@@ -1,6 +1,7 @@
 // The colours of distances in three.js, by the rule of all pictures.
 import { DataTexture, LinearFilter, SRGBColorSpace } from 'three';
 import {
+  automaticColormap,
   automaticHi,
   automaticLo,
   colormapOfRange,
