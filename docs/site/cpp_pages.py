@@ -13,7 +13,7 @@ PLAIN = re.compile(r"\(variable\)|\w+\((\w+ ?&&|const \w+ ?&)\)|operator=|operat
 SUBJECTS = {
     "Meshes": ["mesh", "mesh_attributes", "mesh_edit", "simplify"],
     "Files": ["mesh_files", "map_files", "points", "bake_files"],
-    "The two shapes": ["surface", "sampling_bound", "sites", "engine", "gl"],
+    "The two shapes": ["surface", "sampling_bound", "sites", "engine", "gl", "gpu"],
     "Distances": ["map", "closest_points", "measure", "self_proximity_query"],
     "Results and verdicts": ["statistics", "tolerance", "verdict", "doubts", "places", "summary"],
     "Bodies": ["shape", "proximity_query", "multi_body_query"],

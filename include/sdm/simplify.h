@@ -26,8 +26,9 @@ namespace sdm {
 struct Simplified {
   /// Faces wind as those of the input. Its vertices are vertices of the input, in their order, if a number of
   /// triangles is asked for, if they are to be kept (SimplifyOptions::keep_vertices), if the input has
-  /// texture coordinates, or if over 5 % of its vertices are not on a manifold; otherwise they are placed
-  /// freely. Texture coordinates are those of the vertices that are left, seams stay seams.
+  /// texture coordinates or over 400,000 triangles, or if over 5 % of its vertices are not on a manifold;
+  /// otherwise they are placed freely. Texture coordinates are those of the vertices that are left, seams
+  /// stay seams.
   Mesh mesh;
   /// The symmetric Hausdorff distance of the mesh and the input: no point of either one is farther than
   /// `upper` from the other one, and a point of one is `lower` from it. `value` is `lower`.
@@ -97,8 +98,8 @@ inline constexpr auto kOptions<LevelsOptions> = std::tuple{
            .member = &LevelsOptions::keep_vertices,
            .text =
                "The vertices of the result are vertices of the mesh. They are so in any case with a number "
-               "of triangles, and where the mesh has texture coordinates; without this, a deviation places "
-               "them freely, which leaves fewer triangles."}};
+               "of triangles, and where the mesh has texture coordinates or over 400,000 triangles; without "
+               "this, a deviation places them freely, which leaves fewer triangles."}};
 
 /// What the calls so far have cost. Phases that run beside each other count twice.
 struct SimplifyReport {

@@ -14,8 +14,10 @@ def test_limits_are_kept():
     assert deviation.certainty == "bounded" and 0 < deviation.lower <= deviation.upper
     truth = sdm.hausdorff(given, coarse)
     assert truth.lower <= deviation.upper and deviation.lower <= truth.upper
-    finer, kept = sdm.simplify(given, max_deviation=deviation.lower / 2)
+    finer, kept = sdm.simplify(given, max_deviation=deviation.lower / 2, keep_vertices=True)
     assert kept.upper <= deviation.lower / 2 and len(finer.faces) > len(coarse.faces)
+    free, free_deviation = sdm.simplify(given, max_deviation=deviation.lower / 2)
+    assert free_deviation.upper <= deviation.lower / 2 and len(free.faces) < len(finer.faces)
     known = {tuple(p) for p in given.vertices}
     assert all(tuple(p) in known for p in finer.vertices)
 

@@ -76,7 +76,7 @@ class PointSearch {
   uint32_t bound(const tree::OpenNode& open, const tree::WideTree::Node& node, float* squared) const {
     return near_children(node, point_, squared_limit_, squared) & faces_.open_children(open.child);
   }
-  void leaf(const tree::OpenNode& open) {
+  bool leaf(const tree::OpenNode& open) {
     const sites::FaceFrames& faces = frames_[open.leaf_number()];
     compare_faces(
         faces, point_, error_, squared_limit_,
@@ -84,7 +84,10 @@ class PointSearch {
         [&](float squared, size_t lane) {
           m_.candidates.push_back({squared, faces.face[lane], open.leaf_number(), 0});
         });
+    return squared_limit_ > squared_enough_;
   }
+  // The search ends with a point that is as close as this.
+  void end_within(double distance) { enough_ = distance; }
 
  private:
   ClosestPoint search(const Vec3& query, std::span<const float[3]> known) {
@@ -95,6 +98,9 @@ class PointSearch {
                             sites_.regions.largest_radius);
     const float limit = unit_limit(max_distance_, sites_.frame.scale) + error_;
     squared_limit_ = limit * limit;
+    // The limit of a face at this distance or less, in spite of rounding.
+    const float enough = static_cast<float>((1 - 1e-5) * enough_ * sites_.frame.scale) - error_;
+    squared_enough_ = enough > 0 ? enough * enough : -1;
     m_.candidates.clear();
     tree::visit(sites_.wide, m_.stack, *this);
     settled_.compare({&query, 1}, &squared_limit_, m_.candidates, Settled::Equal::in_order);
@@ -128,6 +134,8 @@ class PointSearch {
   float point_[3] = {};      // the query in the unit frame
   float error_ = 0;          // see distance_error()
   float squared_limit_ = 0;  // nothing beyond this in the unit frame is closest
+  double enough_ = 0;        // see end_within()
+  float squared_enough_ = -1;
 };
 
 // Searches for a packet of points that are near each other; the policy of its search of the tree. The node
@@ -313,9 +321,11 @@ class PacketSearch {
 
 }  // namespace
 
-ClosestPoint SearchOne(const sites::SitesData& sites, const Vec3& query, double max_distance,
+ClosestPoint SearchOne(const sites::SitesData& sites, const Vec3& query, double max_distance, double enough,
                        SinglePointMemory& memory) {
-  return PointSearch(sites, AllFaces(), max_distance, memory)(query, 0);
+  PointSearch search(sites, AllFaces(), max_distance, memory);
+  search.end_within(enough);
+  return search(query, 0);
 }
 
 PacketWork SearchEach(const sites::SitesData& sites, std::span<const Vec3> queries,
@@ -349,7 +359,13 @@ HWY_EXPORT(SearchPacket);
 
 ClosestPoint closest_point(const sites::SitesData& sites, const Vec3& query, double max_distance) {
   thread_local SinglePointMemory memory;
-  return HWY_DYNAMIC_DISPATCH(SearchOne)(sites, query, max_distance, memory);
+  return HWY_DYNAMIC_DISPATCH(SearchOne)(sites, query, max_distance, 0, memory);
+}
+
+ClosestPoint close_point(const sites::SitesData& sites, const Vec3& query, double max_distance,
+                         double enough) {
+  thread_local SinglePointMemory memory;
+  return HWY_DYNAMIC_DISPATCH(SearchOne)(sites, query, max_distance, enough, memory);
 }
 
 PacketWork closest_of_each(const sites::SitesData& sites, std::span<const Vec3> queries,

@@ -47,6 +47,11 @@ struct SinglePointMemory {
 [[nodiscard]] ClosestPoint closest_point(const sites::SitesData& sites, const Vec3& query,
                                          double max_distance);
 
+/// A point of O2 within `enough`, not necessarily the closest one, if there is any; otherwise,
+/// closest_point().
+[[nodiscard]] ClosestPoint close_point(const sites::SitesData& sites, const Vec3& query, double max_distance,
+                                       double enough);
+
 /// Which faces each point of a packet excludes: groups of faces, as bits.
 struct ExcludedFaces {
   std::span<const std::uint32_t> group_of;  ///< of each face

@@ -3,28 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/point_triangle.h"
 #include "geometry/vec.h"
 
 namespace sdm::simplify {
 namespace {
 
-/// The distance to a triangle, for many points.
-struct Near : TriangleSides {
-  using TriangleSides::TriangleSides;
-
-  /// The squared distance, or any number ≥ `best` if it is not less.
-  [[nodiscard]] double squared_distance(const Vec3& p, double best) const {
-    const double height = dot(normal, p - corner[0]);
-    const double above = height * height * inverse_normal;
-    if (above >= best) return above;
-    Vec3 foot;
-    if (over(p, foot)) return above;
-    double least = squared_norm(on_side(0, p) - p);
-    least = std::min(least, squared_norm(on_side(1, p) - p));
-    return std::min(least, squared_norm(on_side(2, p) - p));
-  }
-};
+// A point that is over a face at this share of the allowed distance at most is not compared with others.
+constexpr double kSettled = 0.5;
+// Of more points, only each second one goes on being carried, and those at this share of the largest
+// distance.
+constexpr std::uint32_t kMostPoints = 64;
+constexpr double kFar = 0.7;
 
 double parallelogram(const Corners& t) {
   return norm(cross(t[1] - t[0], t[2] - t[0]));
@@ -54,6 +43,7 @@ void CarriedPoints::add(const Vec3& p, std::uint32_t face) {
   next_.push_back(first_[face]);
   first_[face] = static_cast<std::uint32_t>(points_.size());
   points_.push_back(p);
+  source_.push_back(face);
 }
 
 void CarriedPoints::add_between(const Corners& corners, const Triangle& t, std::uint32_t face,
@@ -74,48 +64,81 @@ void CarriedPoints::add_between(const Corners& corners, const Triangle& t, std::
 }
 
 double CarriedPoints::measure(const CollapsingMesh& mesh, std::uint32_t u, std::uint32_t v,
-                              std::span<const MovedFace> moved, double enough) {
+                              std::span<const MovedFace> moved, double allowed, double enough) {
   found_.clear();
-  std::vector<Near> near;
-  near.reserve(moved.size());
-  for (const MovedFace& m : moved) near.emplace_back(m.corners);
-  double largest = 0;
-  const double abort = enough * enough;
-  const auto measure_face = [&](std::uint32_t face) {
-    for (std::uint32_t i = first_[face]; i != kNone; i = next_[i]) {
-      double least = kInfinity;
-      std::uint32_t nearest = 0;
-      for (std::uint32_t n = 0; n < near.size(); ++n)
-        if (const double d = near[n].squared_distance(points_[i], least); d < least) {
+  near_.clear();
+  for (const MovedFace& m : moved) near_.emplace_back(m.corners);
+  faces_.clear();
+  for (const std::uint32_t w : {u, v})
+    for (const std::uint32_t f : mesh.faces_of(w))
+      if (first_[f] != kNone && (w == u || std::ranges::find(mesh.triangle(f), u) == mesh.triangle(f).end()))
+        faces_.push_back(f);
+  Farthest farthest;
+  const double abort = enough * enough, settled = kSettled * kSettled * allowed * allowed;
+  std::uint32_t nearest = 0;
+  const auto measure_point = [&](std::uint32_t face, std::uint32_t before, std::uint32_t i) {
+    const Vec3& p = points_[i];
+    const std::uint32_t first = nearest;
+    double least = near_[first].squared_distance(p, kInfinity);
+    if (!(least <= settled && near_[first].is_over(p)))
+      for (std::uint32_t n = 0; n < near_.size(); ++n) {
+        if (n == first) continue;
+        if (const double d = near_[n].squared_distance(p, least); d < least) {
           least = d;
           nearest = n;
         }
-      found_.emplace_back(i, nearest);
-      largest = std::max(largest, least);
-      if (largest > abort) return;
-    }
+      }
+    found_.push_back({i, nearest, least});
+    if (least > farthest.squared) farthest = {least, face, before, i};
+    return least <= abort;
   };
-  for (const std::uint32_t f : mesh.faces_of(u)) {
-    measure_face(f);
-    if (largest > abort) return std::sqrt(largest);
+  // The first point of each face is the one that was too far before.
+  const auto measure_points = [&] {
+    for (const std::uint32_t f : faces_)
+      if (!measure_point(f, kNone, first_[f])) return;
+    for (const std::uint32_t f : faces_)
+      for (std::uint32_t before = first_[f], i = next_[before]; i != kNone; before = i, i = next_[i])
+        if (!measure_point(f, before, i)) return;
+  };
+  measure_points();
+  farthest_ = farthest.squared;
+  const double distance = std::sqrt(farthest_);
+  if (distance > allowed && farthest.before != kNone) {
+    next_[farthest.before] = next_[farthest.point];
+    next_[farthest.point] = first_[farthest.face];
+    first_[farthest.face] = farthest.point;
   }
-  for (const std::uint32_t f : mesh.faces_of(v)) {
-    if (std::ranges::find(mesh.triangle(f), u) != mesh.triangle(f).end()) continue;
-    measure_face(f);
-    if (largest > abort) break;
-  }
-  return std::sqrt(largest);
+  return distance;
 }
 
 void CarriedPoints::carry(const CollapsingMesh& mesh, std::uint32_t u, std::uint32_t v,
                           std::span<const MovedFace> moved) {
   for (const std::uint32_t w : {u, v})
     for (const std::uint32_t f : mesh.faces_of(w)) first_[f] = kNone;
-  for (const auto& [point, nearest] : found_) {
-    std::uint32_t& first = first_[moved[nearest].face];
-    next_[point] = first;
-    first = point;
+  carried_.assign(moved.size(), 0);
+  for (const Found& f : found_) ++carried_[f.moved];
+  const double far = kFar * kFar * farthest_;
+  for (std::uint32_t i = 0; i < found_.size(); ++i) {
+    const Found& f = found_[i];
+    if (carried_[f.moved] > kMostPoints && f.squared <= far && (i & 1) != 0) continue;
+    std::uint32_t& first = first_[moved[f.moved].face];
+    next_[f.point] = first;
+    first = f.point;
   }
+}
+
+void CarriedPoints::find_near(std::span<Sample> samples) {
+  first_sample_.assign(near_.size() + 1, static_cast<std::uint32_t>(samples.size()));
+  for (std::size_t i = samples.size(); i-- > 0;)
+    first_sample_[samples[i].moved] = static_cast<std::uint32_t>(i);
+  for (const Found& f : found_)
+    for (std::uint32_t i = first_sample_[f.moved]; i < first_sample_[f.moved + 1]; ++i) {
+      Sample& sample = samples[i];
+      const double squared = squared_norm(points_[f.point] - sample.at);
+      if (squared >= sample.squared) continue;
+      sample.squared = squared;
+      sample.near = source_[f.point];
+    }
 }
 
 }  // namespace sdm::simplify

@@ -3,14 +3,38 @@
 
 #include <sdm/mesh.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "geometry/point_triangle.h"
+#include "geometry/vec.h"
 #include "simplify/collapsing_mesh.h"
 
 namespace sdm::simplify {
+
+/// The distance to a triangle, for many points.
+struct NearTriangle : TriangleSides {
+  using TriangleSides::TriangleSides;
+
+  [[nodiscard]] bool is_over(const Vec3& p) const {
+    Vec3 foot;
+    return over(p, foot);
+  }
+  /// The squared distance, or any number ≥ `best` if it is not less.
+  [[nodiscard]] double squared_distance(const Vec3& p, double best) const {
+    const double height = dot(normal, p - corner[0]);
+    const double above = height * height * inverse_normal;
+    if (above >= best) return above;
+    Vec3 foot;
+    if (over(p, foot)) return above;
+    double least = squared_norm(on_side(0, p) - p);
+    least = std::min(least, squared_norm(on_side(1, p) - p));
+    return std::min(least, squared_norm(on_side(2, p) - p));
+  }
+};
 
 /// The vertices of the input, and points between them where faces are large, each with the face that carries
 /// it: one of the mesh on the way that is near it.
@@ -20,20 +44,48 @@ class CarriedPoints {
   CarriedPoints(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
   /// The largest distance of the points of faces around an edge to the nearest of the faces that are to
-  /// replace these; larger ones than `enough` may be met by one of them only. Remembers what was found.
+  /// replace these; where one is larger than `enough`, others are left out. If it is larger than `allowed`,
+  /// its point is the first one of its face from now on. Remembers what was found.
   [[nodiscard]] double measure(const CollapsingMesh& mesh, std::uint32_t u, std::uint32_t v,
-                               std::span<const MovedFace> moved, double enough);
-  /// Gives the points of all these faces to what was found: no distance was larger than `enough`.
+                               std::span<const MovedFace> moved, double allowed, double enough);
+  /// Gives the points of all these faces to what was found: no distance was larger than `enough`. Of faces
+  /// with many points, every second one is dropped, unless it is among the farthest.
   void carry(const CollapsingMesh& mesh, std::uint32_t u, std::uint32_t v, std::span<const MovedFace> moved);
 
+  /// A point of a moved face, and a face of the input that may be near it.
+  struct Sample {
+    Vec3 at;
+    std::uint32_t moved;
+    std::uint32_t near = kNone;
+    double squared = kInfinity;
+  };
+  /// Sets the face near each sample to that of the point nearest to it, of those found with its moved face.
+  /// The first sample of a moved face follows those of the one before.
+  void find_near(std::span<Sample> samples);
+
  private:
+  struct Farthest {
+    double squared = 0;
+    std::uint32_t face = kNone, before = kNone, point = kNone;  // before: in the list of the face
+  };
+
+  struct Found {
+    std::uint32_t point, moved;
+    double squared;  // the distance to the moved face that is nearest
+  };
+
   void add(const Vec3& p, std::uint32_t face);
   void add_between(const Corners& corners, const Triangle& t, std::uint32_t face, double spacing);
 
   std::vector<Vec3> points_;
-  std::vector<std::uint32_t> next_;                             // of the same face
-  std::vector<std::uint32_t> first_;                            // of each face
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> found_;  // points, and the moved face nearest to each
+  std::vector<std::uint32_t> source_;  // the face of the input
+  std::vector<std::uint32_t> next_;    // of the same face
+  std::vector<std::uint32_t> first_;   // of each face
+  std::vector<NearTriangle> near_;
+  std::vector<std::uint32_t> faces_;
+  std::vector<Found> found_;
+  double farthest_ = 0;                                // of these, squared
+  std::vector<std::uint32_t> first_sample_, carried_;  // of each moved face
 };
 
 }  // namespace sdm::simplify

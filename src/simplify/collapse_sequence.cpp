@@ -5,8 +5,9 @@
 #include <iterator>
 #include <tuple>
 
-#include "certify/hausdorff/nearest_face.h"
+#include "closest/single_point.h"
 #include "core/cancellation.h"
+#include "geometry/point_triangle.h"
 #include "geometry/vec.h"
 
 namespace sdm::simplify {
@@ -14,7 +15,8 @@ namespace {
 
 // Planes through borders count so much more than those of faces.
 constexpr double kBorderWeight = 3;
-// An edge is first tried at this share of the mean distance from the planes.
+// An edge is first tried at this share of the mean distance from the planes: if it is smaller, more edges are
+// measured in vain, and if it is larger, edges with a larger error are collapsed before.
 constexpr double kExpected = 0.5;
 // What the length of an edge adds to its error, relative to that of planes at this distance: on a flat
 // surface, where errors are equal, it keeps faces from becoming needles around one vertex.
@@ -59,12 +61,10 @@ CollapseSequence::CollapseSequence(std::span<const Vec3> positions, std::span<co
       middle_(centre(bounds(sites.mesh))),
       quadrics_(positions.size()),
       moves_(positions.size()),
-      last_(positions.size(), kNone),
-      near_(positions.size(), kNone) {
+      last_(positions.size(), kNone) {
   add_planes();
   for (std::uint32_t f = 0; f < triangles.size(); ++f)
     for (int k = 0; k < 3; ++k) {
-      near_[triangles[f][k]] = f;
       const std::uint32_t u = triangles[f][k], v = triangles[f][(k + 1) % 3];
       // An edge has a face in which it ascends unless it is a border, or faces are turned.
       if (u < v) push(u, v);
@@ -177,29 +177,37 @@ void CollapseSequence::try_collapse(Edge edge) {
 }
 
 double CollapseSequence::deviation(const Edge& edge, const Vec3& to, double enough) {
-  const double of_points = points_.measure(mesh_, edge.u, edge.v, moved_, enough);
-  if (of_points > enough) return of_points;
+  const double allowed = ladder_.length(rung_);
+  const double of_points = points_.measure(mesh_, edge.u, edge.v, moved_, allowed, enough);
+  if (of_points > allowed) return of_points;
   return std::max(of_points, deviation_of_faces(edge, to, enough));
 }
 
 double CollapseSequence::deviation_of_faces(const Edge& edge, const Vec3& to, double enough) {
   const double allowed = ladder_.length(rung_);
-  // How much less than is allowed a distance is does not matter.
-  const auto measured = [&](const Vec3& p, std::uint32_t near) {
-    const double distance = hausdorff::upper_face_distance(p, corners_of(sites_.mesh, near));
-    return distance <= allowed ? distance : hausdorff::nearest_face(sites_, p, near).upper;
-  };
-  const hausdorff::NearestFace at = hausdorff::nearest_face(sites_, to, near_[edge.u]);
-  near_target_ = at.face;
-  double largest = at.upper;
-  for (const MovedFace& m : moved_) {
-    if (largest > enough) break;
-    largest = std::max(largest, measured((1.0 / 3) * (m.corners[0] + m.corners[1] + m.corners[2]), at.face));
-    for (int k = 0; k < 3; ++k) {
-      if (m.triangle[k] != edge.u) continue;
-      const int next = (k + 1) % 3;  // of the two faces at a side, one has it in this direction
-      largest = std::max(largest, measured(0.5 * (to + m.corners[next]), near_[m.triangle[next]]));
+  samples_.clear();
+  samples_.push_back({to, 0});
+  for (std::uint32_t i = 0; i < moved_.size(); ++i) {
+    const MovedFace& m = moved_[i];
+    samples_.push_back({(1.0 / 3) * (m.corners[0] + m.corners[1] + m.corners[2]), i});
+    for (int k = 0; k < 3; ++k)  // of the two faces at a side, one has it in this direction
+      if (m.triangle[k] == edge.u) samples_.push_back({0.5 * (to + m.corners[(k + 1) % 3]), i});
+  }
+  points_.find_near(samples_);
+  double largest = 0;
+  for (const CarriedPoints::Sample& sample : samples_) {
+    // How much less than is allowed a distance is does not matter. That to a face nearby bounds the search;
+    // 0.1 % more is left for rounding.
+    double distance = kInfinity;
+    if (sample.near != kNone) {
+      const double squared =
+          squared_norm(closest_on_triangle(sample.at, corners_of(sites_.mesh, sample.near)) - sample.at);
+      if (squared <= allowed * allowed) continue;
+      distance = std::min(distance, 1.001 * std::sqrt(squared));
     }
+    const ClosestPoint found = closest::close_point(sites_, sample.at, distance, allowed);
+    largest = std::max(largest, std::min(distance, found.distance));
+    if (largest > enough) break;
   }
   return largest;
 }
@@ -208,7 +216,6 @@ void CollapseSequence::commit(const Edge& edge, const Vec3& to) {
   points_.carry(mesh_, edge.u, edge.v, moved_);
   mesh_.collapse(edge.u, edge.v, to);
   quadrics_[edge.u] += quadrics_[edge.v];
-  near_[edge.u] = near_target_;
   ++moves_[edge.u];
   ++moves_[edge.v];
   collapses_.push_back({edge.u, edge.v, to, last_[edge.u], last_[edge.v]});

@@ -83,7 +83,8 @@ class CollapseSequence {
   void push(const Edge& edge);
   [[nodiscard]] Target target(std::uint32_t u, std::uint32_t v) const;
   void try_collapse(Edge edge);
-  /// The deviation of the faces that replace those around an edge; not larger than needed to exceed `enough`.
+  /// The deviation of the faces that replace those around an edge, if the rung allows it; otherwise, a part
+  /// of it that it does not allow. Not larger than needed to exceed `enough`.
   [[nodiscard]] double deviation(const Edge& edge, const Vec3& to, double enough);
   [[nodiscard]] double deviation_of_faces(const Edge& edge, const Vec3& to, double enough);
   void commit(const Edge& edge, const Vec3& to);
@@ -94,11 +95,11 @@ class CollapseSequence {
   Ladder ladder_;
   Vec3 middle_;  // quadrics are relative to it
   std::vector<Quadric> quadrics_;
-  std::vector<std::uint32_t> moves_, last_, near_;  // of vertices; near_: a face of the input
+  std::vector<std::uint32_t> moves_, last_;  // of vertices
   std::priority_queue<Edge, std::vector<Edge>, Costlier> ready_;
   std::priority_queue<Edge, std::vector<Edge>, Later> later_;
   std::vector<MovedFace> moved_;
-  std::uint32_t near_target_ = kNone;
+  std::vector<CarriedPoints::Sample> samples_;
 
   struct End {
     int rung;

@@ -235,7 +235,9 @@ std::vector<Simplifier::State::Step> Simplifier::State::coarser(const Wedges& we
 }
 
 std::optional<Simplified> Simplifier::State::freely_placed(double limit, const SimplifyOptions& options) {
-  if (options.keep_vertices || !wedges_.uvs.empty()) return {};
+  // A larger mesh takes minutes, where meshoptimizer's collapses take seconds.
+  constexpr std::size_t kMostTriangles = 400'000;
+  if (options.keep_vertices || !wedges_.uvs.empty() || wedges_.triangles.size() > kMostTriangles) return {};
   make_sites();
   if (!free_) {
     Stopwatch watch;

@@ -66,7 +66,7 @@ CALLS = {
     ),
     "align": Call({"free": ["xyz", "x,y,rz", "xyz,rxyz"], "about": ["0,0,0", "1,-2.5,1e3"]}, {"free": ["xyw", "xyz,r", "z,,x"], "about": ["0,nan,0", "0,0,1e38"]}),
     "simplify": Call(
-        {"triangles": ["10", "60", "1000"], "lods": ["0", "1", "3"], "keep_vertices": ["true", "false"]},
+        {"triangles": ["10", "60", "1000"], "lods": ["0", "1", "3"], "keep_vertices": ["true"]},
         {"triangles": ["0", "-5", "2.5"], "lods": ["33", "-1", "0.5"], "max_deviation": ["0", "-0.5", "nan"]},
         [{"max_deviation": "0.1", "triangles": "10"}],
         {"triangles": "20"},

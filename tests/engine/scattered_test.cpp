@@ -151,6 +151,31 @@ TEST_P(ScatteredPoints, MaxDistance) {
   EXPECT_LT(beyond, queries.size());
 }
 
+TEST_P(ScatteredPoints, WithinWhatIsEnough) {
+  std::mt19937 random(13);
+  for (const double scale : {1.0, 1e-12, 1e12}) {
+    const Mesh mesh = moved(test::soup(300, random), scale, 0);
+    const Sites sites(mesh);
+    std::size_t closest = 0, other = 0;
+    for (const Vec3& q : queries_for(mesh, 300, random))
+      for (const double enough : {0.0, 0.03 * scale, 0.3 * scale}) {
+        const double least = of_all_faces(internals(sites), q).distance;
+        const ClosestPoint found = close_point(internals(sites), q, kAnywhere, enough);
+        if (least > enough) {
+          ASSERT_EQ(found.distance, least);
+          ++closest;
+        } else {
+          ASSERT_LE(found.distance, enough);
+          ASSERT_GE(found.distance, least);
+          ASSERT_EQ(sites::closest_on_face(internals(sites), found.face, q).distance, found.distance);
+          other += found.distance > least ? 1 : 0;
+        }
+      }
+    EXPECT_GT(closest, 0U);
+    EXPECT_GT(other, 0U);  // the search did end before
+  }
+}
+
 // Of faces at the same distance, the first one by type, site and face.
 ClosestPoint first_of_all_faces(const sites::SitesData& sites, const Vec3& q) {
   const auto order = [](const ClosestPoint& c) { return std::tuple(c.distance, c.type, c.site, c.face); };

@@ -66,7 +66,7 @@ test('distances along lines are those of the lines', () => {
     ++compared;
   });
   assert.ok(compared > 500);
-  assert.equal(map.summary().measured.settings.along, '0,0,2');
+  assert.deepEqual(map.summary().measured.settings.along, [0, 0, 2]);
 });
 
 test('ranges of samples are the map', () => {
