@@ -246,14 +246,14 @@ def number(x: "float | None") -> float:
     return math.nan if x is None else float(x)
 
 
-# Another compiler rounds the atlases of balls in another way: the centre of a texel on an edge has another face, or none.
+# Another compiler rounds the atlases of balls, of radius 1, in another way: the centre of a texel on an edge has another face, or none.
 ROUNDED_ATLAS = 1e-2
 
 
-def same(call: str, a: Result, b: Result, relative: float = 0) -> bool:
+def same(call: str, a: Result, b: Result, tolerance: float = 1e-6) -> bool:
     if isinstance(a, str) or isinstance(b, str):
         return isinstance(a, str) and isinstance(b, str) and plain(a, call) == plain(b, call)
-    near = lambda x, y: abs(x - y) <= 1e-6 + relative * abs(y)  # noqa: E731
+    near = lambda x, y: abs(x - y) <= tolerance * max(1, abs(y))  # noqa: E731
     return len(a) == len(b) and all(x == y or (x != x and y != y) or near(x, y) for x, y in zip(map(number, a), map(number, b)))
 
 
@@ -282,8 +282,8 @@ def main() -> None:
         for door, results in doors.items():
             if door == "JavaScript" and call not in OF_JAVASCRIPT:
                 continue
-            relative = ROUNDED_ATLAS if door == "JavaScript" and call in ("self", "thickness") else 0
-            if not same(call, results[k], commands[k], relative):
+            tolerance = ROUNDED_ATLAS if door == "JavaScript" and call in ("self", "thickness") else 1e-6
+            if not same(call, results[k], commands[k], tolerance):
                 differences += 1
                 print(f"{call} {options}\n  the command: {commands[k]}\n  {door}: {results[k]}")
     refused = Counter(call for (call, _), result in zip(sets, commands) if isinstance(result, str))
