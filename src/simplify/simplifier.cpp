@@ -189,6 +189,9 @@ Simplifier::State::Step Simplifier::State::next_step(const Wedges& wedges, const
                                                      const SimplifyOptions& options) {
   const auto before = static_cast<double>(from.triangles.size());
   const auto left = [&](const Step& step) { return static_cast<double>(step.triangles.size()) / before; };
+  // Steps of a large mesh cost most, and those from it to a smaller one are seldom the result.
+  constexpr double kMany = 200'000;
+  const bool has_many = before > kMany;
   bool is_larger = false;  // than the error of a step that removed too few
   for (; error < kMostError * wedges_.size; error *= kMuchLarger) {
     Step step = collapsed(wedges, from, {0, error}, options);
@@ -196,14 +199,14 @@ Simplifier::State::Step Simplifier::State::next_step(const Wedges& wedges, const
       is_larger = true;
       continue;
     }
-    if (is_larger && left(step) < 1 - kTooMuch) {
+    if (is_larger && !has_many && left(step) < 1 - kTooMuch) {
       Step smaller = collapsed(wedges, from, {0, kSmaller * error}, options);
       if (left(smaller) <= 1 - kWorthwhile) {
         error *= kSmaller;
         step = std::move(smaller);
       }
     }
-    error *= kLarger;
+    error *= has_many ? kMuchLarger : kLarger;
     return step;
   }
   return {};
