@@ -45,8 +45,8 @@ endfunction()
 # sdm_add_library(<name> SOURCES <file>... [LINK <target>...] [LINK_PRIVATE <target>...])
 # Adds the exported library sdm::<name without sdm_>, static or shared as set by BUILD_SHARED_LIBS, from the object
 # library <name>_objects. Internal headers are on no user's include path: tests and benchmarks of internals link
-# <name>_internals, which adds it. A shared library exports its internals, too, as the other libraries of the project use them;
-# programs that contain a static one (SDM_API) do not.
+# <name>_internals, which adds it. A shared library exports its internals, too, as the other libraries of the project use them; a
+# program that contains a static one exports what is SDM_API only.
 function(sdm_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LINK_PRIVATE" ${ARGN})
   set(internal_folders ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/src)

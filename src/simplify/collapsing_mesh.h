@@ -30,8 +30,7 @@ class CollapsingMesh {
   [[nodiscard]] const Triangle& triangle(std::uint32_t face) const { return triangles_[face]; }
   [[nodiscard]] Corners corners(std::uint32_t face) const { return corners_of(positions_, triangles_[face]); }
   [[nodiscard]] bool is_left(std::uint32_t face) const { return triangles_[face][0] != kNone; }
-  /// Whether its faces were no fan at first: such a vertex is never moved.
-  [[nodiscard]] bool is_fixed(std::uint32_t v) const { return fixed_[v]; }
+  /// How many vertices had faces that were no fan at first: these are never moved.
   [[nodiscard]] std::size_t fixed_vertices() const;
   /// How many faces are left.
   [[nodiscard]] std::size_t size() const { return left_; }

@@ -10,8 +10,6 @@
 namespace sdm::simplify {
 namespace {
 
-// So many rungs below the limit are looked at.
-constexpr int kMostRungs = 8;
 // How often a mesh is mended, and how many collapses are undone at a vertex, one above the other: so many
 // times more each time.
 constexpr int kMostMendings = 2;
@@ -24,8 +22,7 @@ Mesh rounded(const Mesh& mesh) {
     result.positions.push_back(
         {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
   const auto same = [&](std::uint32_t a, std::uint32_t b) {
-    const Vec3 &p = result.positions[a], &q = result.positions[b];
-    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+    return result.positions[a] == result.positions[b];
   };
   for (const Triangle& t : mesh.triangles)
     if (!same(t[0], t[1]) && !same(t[1], t[2]) && !same(t[2], t[0])) result.triangles.push_back(t);
@@ -47,10 +44,9 @@ Simplified FreePlacement::to_deviation(double limit, const SimplifyOptions& opti
   const int highest = ladder_.below(limit);
   sequence_.advance(highest);
   report.collapse_ms += watch.lap();
-  const int lowest = std::max(Ladder::kLowest, highest - kMostRungs);
   Simplified best;
   std::size_t fewest = triangles_.size();
-  for (int rung = highest; rung >= lowest && sequence_.faces_after(rung) < fewest; --rung) {
+  for (int rung = highest; rung >= Ladder::kLowest && sequence_.faces_after(rung) < fewest; --rung) {
     Simplified found = first_within(limit, rung, fewest, options, report);
     if (found.mesh.triangles.empty()) continue;
     fewest = found.mesh.triangles.size();

@@ -8,6 +8,7 @@
 
 #include "geometry/barycentric.h"
 #include "geometry/rounding.h"
+#include "geometry/unit_across.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
 
@@ -119,7 +120,7 @@ void FeatureContacts::find_corners(Regions part, const DeepestVertex::Found& dee
   const SitesData& sites = internals(on().sites());
   const OneSidedVertices& vertices = candidates_->vertices();
   const Vec3 up = normalized(from_other().map.linear(outwards_at(deepest.point)));
-  const Vec3 x = normalized(cross(up, std::abs(up[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+  const Vec3 x = unit_across(up);
   const std::array<Vec3, 3> across{up, x, cross(up, x)};
   const auto at = [&](std::uint32_t vertex) {
     const auto& point = sites.regions.points[vertex].point;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/point_triangle.h"
+#include "geometry/unit_across.h"
 
 namespace sdm::convex {
 namespace {
@@ -204,12 +205,6 @@ class DifferenceHull {
   ExitWorkspace& w_;
 };
 
-// Some unit vector across u.
-Vec3 across(const Vec3& u) {
-  const Vec3 axis = std::abs(u[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  return normalized(cross(u, axis));
-}
-
 // Finds the exit, and its first directions.
 class ExitSearch {
  public:
@@ -266,11 +261,11 @@ class ExitSearch {
     const double flat = kFlat * size_;
     const auto from_first = [&](const Vec3& p) { return norm(p - corner[0].w); };
     corner[0] = farthest(first_);
-    const Vec3 beside = across(first_);
+    const Vec3 beside = unit_across(first_);
     if (!find_far(-first_, from_first, flat, corner[1]) && !find_far(beside, from_first, flat, corner[1]) &&
         !find_far(cross(first_, beside), from_first, flat, corner[1]))
       return false;
-    const Vec3 line = normalized(corner[1].w - corner[0].w), side = across(line);
+    const Vec3 line = normalized(corner[1].w - corner[0].w), side = unit_across(line);
     const auto from_line = [&](const Vec3& p) { return norm(cross(line, p - corner[0].w)); };
     if (!find_far(side, from_line, flat, corner[2]) &&
         !find_far(cross(line, side), from_line, flat, corner[2]))

@@ -12,6 +12,7 @@
 #include "closest/closest_points.h"
 #include "geometry/clip.h"
 #include "geometry/rounding.h"
+#include "geometry/unit_across.h"
 #include "geometry/vec.h"
 
 namespace sdm::shape {
@@ -86,8 +87,7 @@ WallColumn WallColumn::around(const Corners& triangle, const Vec3& origin, const
   }
   Vec3 v = normalized(longest);
   v = normalized(v - dot(u, v) * u);
-  const Vec3 any = std::abs(u[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  if (v == Vec3{}) v = normalized(cross(u, any));
+  if (v == Vec3{}) v = unit_across(u);
   column.axes = {u, v, cross(u, v)};
   std::array<Vec3, 3> corners;
   for (int k = 0; k < 3; ++k)
@@ -123,8 +123,7 @@ void WallColumn::enlarge(double by) {
 }
 
 WallColumn WallColumn::around(const Ball& ball, const Vec3& u) {
-  const Vec3 any = std::abs(u[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 v = normalized(cross(u, any));
+  const Vec3 v = unit_across(u);
   WallColumn column{.origin = ball.centre, .axes = {u, v, cross(u, v)}};
   column.lower.fill(-ball.radius);
   column.upper.fill(ball.radius);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bodies/convex/convex_mesh.h"
+#include "geometry/unit_across.h"
 #include "geometry/vec.h"
 
 namespace sdm::solids {
@@ -29,8 +30,7 @@ double squared_distance(const Vec2& p, const Vec2& a, const Vec2& b) {
 }
 
 ContactPlane plane_across(const Vec3& normal, const Vec3& origin, double size) {
-  const Vec3 axis = std::abs(normal[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 first = normalized(cross(normal, axis));
+  const Vec3 first = unit_across(normal);
   return {origin, {first, cross(normal, first)}, size};
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bodies/convex/simplex_point.h"
+#include "geometry/unit_across.h"
 #include "geometry/vec.h"
 
 namespace sdm::solids {
@@ -59,10 +60,6 @@ class Pairs {
   std::array<std::array<Vec3, 2>, kSlots> points_;
 };
 
-Vec3 across(const Vec3& axis) {
-  return normalized(cross(axis, std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
-}
-
 // The normal of two segments with a point in common.
 Vec3 normal_of_crossing(const PosedCore& a, const PosedCore& b) {
   const Vec3 between = a.centre() - b.centre();
@@ -70,7 +67,7 @@ Vec3 normal_of_crossing(const PosedCore& a, const PosedCore& b) {
   if (const double length = norm(n); length > kTouching * norm(a.half()) * norm(b.half()))
     n = (1 / length) * n;
   else
-    n = across(a.half() != Vec3{} ? a.axis() : b.axis());
+    n = unit_across(a.half() != Vec3{} ? a.axis() : b.axis());
   return dot(n, between) < 0 ? -n : n;
 }
 
@@ -124,7 +121,7 @@ CoreDistance point_to_axis(const Vec3& point, const PosedCore& axis) {
   const Vec3 up = height < 0 ? -axis.axis() : axis.axis();
   const Vec3 beside = from - height * axis.axis();
   const double length = norm(beside);
-  Vec3 outwards = length > 0 ? (1 / length) * beside : across(axis.axis());
+  Vec3 outwards = length > 0 ? (1 / length) * beside : unit_across(axis.axis());
   outwards =
       normalized(outwards - dot(outwards, axis.axis()) * axis.axis());  // beside may be of rounding alone
   const double along = std::abs(height) - norm(axis.half()), aside = length - axis.disc();

@@ -6,6 +6,7 @@
 
 #include "geometry/barycentric.h"
 #include "geometry/triangle_pair.h"
+#include "geometry/unit_across.h"
 #include "geometry/vec.h"
 
 namespace sdm::solids {
@@ -75,7 +76,7 @@ void SolidContacts::add_hull_of_vertices(const shape::PosedBody& mesh, const Pos
   };
   const sites::SitesData& sites = internals(mesh.body().sites());
   const Vec3& n = space.normal();
-  const Vec3 x = normalized(cross(n, std::abs(n[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})), y = cross(n, x);
+  const Vec3 x = unit_across(n), y = cross(n, x);
   std::vector<Corner> places, hull;
   for (std::uint32_t v = 0; v < sites.mesh.positions.size(); ++v) {
     if (sites.vertex_faces.of(v).empty()) continue;

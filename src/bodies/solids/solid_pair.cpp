@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "closest/single_point.h"
+#include "geometry/unit_across.h"
 #include "geometry/vec.h"
 #include "inside/inside.h"
 
@@ -25,8 +26,7 @@ void for_extreme_points(const PosedCore& core, const Visit& visit) {
     for (const Vec3& p : core.convex()->points) visit(core.body().pose().map(p), kInHull);
     return;
   }
-  const Vec3 x =
-      normalized(cross(core.axis(), std::abs(core.axis()[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+  const Vec3 x = unit_across(core.axis());
   const Vec3 y = cross(core.axis(), x);
   const double beyond = core.disc() * (1 / std::cos(std::numbers::pi / kRimPoints) - 1);
   for (const double side : {-1.0, 1.0}) {

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "bodies/convex/support_search.h"
+#include "geometry/unit_across.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
 
@@ -74,7 +75,7 @@ void SupportFeature::find_core(const Vec3& up) {
   const std::uint32_t farther = along < 0 ? 1 : 0;
   const auto end = [&](std::uint32_t i) { return core_->centre() + (i == 0 ? 1.0 : -1.0) * core_->half(); };
   if (core_->disc() > 0 && std::abs(along) > kNearlyParallel) {
-    const Vec3 x = normalized(cross(axis, std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+    const Vec3 x = unit_across(axis);
     const Vec3 y = cross(axis, x);
     for (std::uint32_t i = 0; i < kOfDisc; ++i) {
       const double angle = 2 * std::numbers::pi * i / kOfDisc;

@@ -73,10 +73,11 @@ bool contains(std::string_view name, std::string_view wanted) {
 
 Found choose(std::string_view wanted) {
   std::vector<Found> all = find_adapters();
-  if (const auto number = core::parse_number<std::size_t>(wanted); number && *number < all.size())
-    return std::move(all[*number]);
+  const auto number = core::parse_number<std::size_t>(wanted);
   const auto chosen =
-      std::ranges::find_if(all, [&](const Found& each) { return contains(each.device.name, wanted); });
+      number
+          ? all.begin() + static_cast<std::ptrdiff_t>(std::min(*number, all.size()))
+          : std::ranges::find_if(all, [&](const Found& each) { return contains(each.device.name, wanted); });
   if (chosen != all.end()) return std::move(*chosen);
   std::string names;
   for (const Found& each : all) names += (names.empty() ? "" : ", ") + each.device.name;
