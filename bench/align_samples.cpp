@@ -5,21 +5,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <random>
 #include <vector>
 
 #include "arrays.h"
 #include "geometry/vec.h"
 #include "refine_mesh.h"
+#include "samples.h"
 #include "scenes.h"
 #include "timing.h"
 
+namespace sdm::bench {
 namespace {
-
-using namespace sdm;
 
 /// O1 as a scanner delivers it: with noise, without the faces that lie farthest along a direction, with
 /// points in space.
@@ -57,29 +57,17 @@ std::vector<Vec3> used_vertices(const Mesh& mesh) {
   return result;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) try {
-  CLI::App app(
-      "Aligns a mesh, turned by 2 degrees and moved by 2 % of its size, to itself on all cores. Prints the "
-      "triangles of both, the milliseconds, and the largest error of a corner of the bounds relative to the "
-      "size. "
-      "Writes arrays without headers into OUT: vertices1, vertices2, motion (4 × 4, row by row; all float64) "
-      "and "
-      "triangles2 (uint32).");
+struct AlignSamples {
   std::string name;
   std::filesystem::path out;
   std::uint32_t parts = 1;
   double noise = 0, missing = 0, outliers = 0;
-  app.add_option("MESH", name, "A mesh of the benchmarks")->required();
-  app.add_option("PARTS", parts, "Triangles are divided into PARTS² triangles")->required();
-  app.add_option("NOISE", noise, "Standard deviation of O1, relative to its size")->required();
-  app.add_option("MISSING", missing, "Share of the triangles that O1 lacks")->required();
-  app.add_option("OUTLIERS", outliers, "Share of triangles in space that O1 has besides")->required();
-  app.add_option("OUT", out)->required();
-  CLI11_PARSE(app, argc, argv);
+};
 
-  const Mesh mesh = bench::refine_mesh(bench::load(name, "fit"), parts, parts > 1 ? 0.1 : 0);
+void write_align_samples(const AlignSamples& options) {
+  const auto& [name, out, parts, noise, missing, outliers] = options;
+
+  const Mesh mesh = refine_mesh(load(name, "fit"), parts, parts > 1 ? 0.1 : 0);
   const Sites sites(mesh);
   const double size = diagonal(bounds(mesh)), shift = 0.02 * size / std::sqrt(3);
   const Transform motion =
@@ -88,8 +76,8 @@ int main(int argc, char** argv) try {
   transform(o1, motion);
 
   Alignment found;
-  const bench::Contender ours{[&] { found = align(o1, sites); }, 1};
-  const double ms = bench::median(bench::take_turns(std::array{ours}, 5)[0]);
+  const Contender ours{[&] { found = align(o1, sites); }, 1};
+  const double ms = median(take_turns(std::array{ours}, 5)[0]);
   double error = 0;
   const Box box = bounds(mesh);
   for (int corner = 0; corner < 8; ++corner) {
@@ -97,14 +85,33 @@ int main(int argc, char** argv) try {
     for (int k = 0; k < 3; ++k) p[k] = corner >> k & 1 ? box.upper[k] : box.lower[k];
     error = std::max(error, norm((found.transform * motion)(p)-p) / size);
   }
-  bench::write_array<Vec3>(out / "vertices1", used_vertices(o1));
-  bench::write_array<Vec3>(out / "vertices2", mesh.positions);
-  bench::write_array<Triangle>(out / "triangles2", mesh.triangles);
+  write_array<Vec3>(out / "vertices1", used_vertices(o1));
+  write_array<Vec3>(out / "vertices2", mesh.positions);
+  write_array<Triangle>(out / "triangles2", mesh.triangles);
   std::vector<double> matrix;
   for (const auto& row : motion.rows) matrix.insert(matrix.end(), row.begin(), row.end());
-  bench::write_array<double>(out / "motion", matrix);
+  write_array<double>(out / "motion", matrix);
   std::cout << o1.triangles.size() << ' ' << mesh.triangles.size() << ' ' << ms << ' ' << error << '\n';
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "align_samples: %s\n", error.what());
-  return 1;
 }
+
+}  // namespace
+
+void add_align(CLI::App& program) {
+  CLI::App& app = *program.add_subcommand(
+      "align",
+      "Aligns a mesh, turned by 2 degrees and moved by 2 % of its size, to itself on all cores. Prints the "
+      "triangles of both, the milliseconds, and the largest error of a corner of the bounds relative to the "
+      "size. Writes arrays without headers into OUT: vertices1, vertices2, motion (4 × 4, row by row; all "
+      "float64) and triangles2 (uint32).");
+  const auto options = std::make_shared<AlignSamples>();
+  app.add_option("MESH", options->name, "A mesh of the benchmarks")->required();
+  app.add_option("PARTS", options->parts, "Triangles are divided into PARTS² triangles")->required();
+  app.add_option("NOISE", options->noise, "Standard deviation of O1, relative to its size")->required();
+  app.add_option("MISSING", options->missing, "Share of the triangles that O1 lacks")->required();
+  app.add_option("OUTLIERS", options->outliers, "Share of triangles in space that O1 has besides")
+      ->required();
+  app.add_option("OUT", options->out)->required();
+  app.callback([options] { write_align_samples(*options); });
+}
+
+}  // namespace sdm::bench

@@ -4,50 +4,63 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <vector>
 
 #include "arrays.h"
+#include "samples.h"
 #include "scenes.h"
 #include "timing.h"
 
-int main(int argc, char** argv) try {
-  CLI::App app(
-      "Computes the unsigned map of O1 to O2 with one thread, and prints the number of its samples and the "
-      "milliseconds it takes. Writes arrays without headers into OUT: points (float64), distances (float32), "
-      "vertices (float64) and triangles (uint32) of O2.");
+namespace sdm::bench {
+namespace {
+
+struct MapSamples {
   std::string o1, o1_steps, o2, o2_steps;
   std::filesystem::path out;
   std::uint32_t resolution = 0;
-  app.add_option("O1", o1, "A mesh of the benchmarks")->required();
-  app.add_option("O1_STEPS", o1_steps, "Its transform")->required();
-  app.add_option("O2", o2, "A mesh of the benchmarks, or box for a box around O1")->required();
-  app.add_option("O2_STEPS", o2_steps, "Its transform")->required();
-  app.add_option("RESOLUTION", resolution)->required();
-  app.add_option("OUT", out)->required();
-  CLI11_PARSE(app, argc, argv);
-  const sdm::Surface surface(sdm::bench::load(o1, o1_steps), {.resolution = resolution});
-  const sdm::Sites sites(o2 == "box" ? sdm::bench::paper_box(surface.mesh())
-                                     : sdm::bench::load(o2, o2_steps));
-  sdm::DistanceMap map;
-  const sdm::MapOptions options{.sign = sdm::SignMethod::none};
-  const sdm::bench::Contender ours{[&] { sdm::compute_map(surface, sites, options, map); }, 1};
-  const double ms = sdm::bench::median(sdm::bench::take_turns(std::array{ours}, 3)[0]);
+};
 
-  std::vector<sdm::Vec3> points;
+void write_map_samples(const MapSamples& options) {
+  const auto& [o1, o1_steps, o2, o2_steps, out, resolution] = options;
+  const Surface surface(load(o1, o1_steps), {.resolution = resolution});
+  const Sites sites(o2 == "box" ? paper_box(surface.mesh()) : load(o2, o2_steps));
+  DistanceMap map;
+  const MapOptions options{.sign = SignMethod::none};
+  const Contender ours{[&] { compute_map(surface, sites, options, map); }, 1};
+  const double ms = median(take_turns(std::array{ours}, 3)[0]);
+
+  std::vector<Vec3> points;
   std::vector<float> distances;
   for (const std::uint32_t texel : surface.sample_texels()) {
     points.push_back(surface.texel_point(texel));
     distances.push_back(map.distance[texel]);
   }
-  sdm::bench::write_array<sdm::Vec3>(out / "points", points);
-  sdm::bench::write_array<float>(out / "distances", distances);
-  sdm::bench::write_array<sdm::Vec3>(out / "vertices", sites.mesh().positions);
-  sdm::bench::write_array<sdm::Triangle>(out / "triangles", sites.mesh().triangles);
+  write_array<Vec3>(out / "points", points);
+  write_array<float>(out / "distances", distances);
+  write_array<Vec3>(out / "vertices", sites.mesh().positions);
+  write_array<Triangle>(out / "triangles", sites.mesh().triangles);
   std::cout << points.size() << ' ' << ms << '\n';
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "map_samples: %s\n", error.what());
-  return 1;
 }
+
+}  // namespace
+
+void add_map(CLI::App& program) {
+  CLI::App& app = *program.add_subcommand(
+      "map",
+      "Computes the unsigned map of O1 to O2 with one thread, and prints the number of its samples and the "
+      "milliseconds it takes. Writes arrays without headers into OUT: points (float64), distances (float32), "
+      "vertices (float64) and triangles (uint32) of O2.");
+  const auto options = std::make_shared<MapSamples>();
+  app.add_option("O1", options->o1, "A mesh of the benchmarks")->required();
+  app.add_option("O1_STEPS", options->o1_steps, "Its transform")->required();
+  app.add_option("O2", options->o2, "A mesh of the benchmarks, or box for a box around O1")->required();
+  app.add_option("O2_STEPS", options->o2_steps, "Its transform")->required();
+  app.add_option("RESOLUTION", options->resolution)->required();
+  app.add_option("OUT", options->out)->required();
+  app.callback([options] { write_map_samples(*options); });
+}
+
+}  // namespace sdm::bench

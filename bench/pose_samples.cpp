@@ -4,8 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
+#include <memory>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -16,6 +16,7 @@
 #include "mesh/similarity.h"
 #include "poses.h"
 #include "refine_mesh.h"
+#include "samples.h"
 #include "scenes.h"
 #include "scenes/ball.h"
 #include "scenes/box_mesh.h"
@@ -68,34 +69,19 @@ double time_batch(PoseQuery& query, const std::vector<Transform>& poses,
 }
 
 }  // namespace
-}  // namespace sdm::bench
 
-int main(int argc, char** argv) try {
-  using namespace sdm;
-  CLI::App app(
-      "Computes separation, collision and contacts of O1 and O2 in random poses of O2. Writes arrays without "
-      "headers into OUT: vertices1, vertices2 (float64), triangles1, triangles2 (uint32), poses (3 × 4, by "
-      "rows), separation (float64), colliding (uint8), contacts (their number, uint32), translation (of O1, "
-      "float64, 3) and separating_contacts (their number, uint32); the microseconds on one core, "
-      "separation_us, colliding_us, contacts_us and separating_contacts_us, and on all cores, "
-      "contacts_all_us. batch_us: those "
-      "for each pose of a call of PoseQuery::colliding for all poses, on one core and on all. Of convex "
-      "bodies, "
-      "random_poses (3 × 4), random_colliding (uint8) and random_us, the same for other random poses, few of "
-      "which touch. clock_us: the time that the clock takes.");
+struct PoseSamples {
   std::string o1, o2;
   std::filesystem::path out;
   std::uint32_t parts = 1, count = 200;
-  app.add_option("O1", o1, "A mesh of the benchmarks, box, or hull:N, with 8 · 4^N triangles")->required();
-  app.add_option("O2", o2, "The same")->required();
-  app.add_option("PARTS", parts, "Triangles are divided into PARTS² triangles")->required();
-  app.add_option("COUNT", count, "Number of poses")->required();
-  app.add_option("OUT", out)->required();
-  CLI11_PARSE(app, argc, argv);
+};
 
-  const Mesh m1 = bench::mesh_of(o1, parts, {1, 0.7, 0.5}), m2 = bench::mesh_of(o2, parts, {0.6, 0.9, 0.8});
+void write_pose_samples(const PoseSamples& options) {
+  const auto& [o1, o2, out, parts, count] = options;
+
+  const Mesh m1 = mesh_of(o1, parts, {1, 0.7, 0.5}), m2 = mesh_of(o2, parts, {0.6, 0.9, 0.8});
   std::mt19937 random(1);
-  const std::vector<Affine> placements = bench::random_poses(Sites(m1), Sites(m2), count, random);
+  const std::vector<Affine> placements = random_poses(Sites(m1), Sites(m2), count, random);
   ProximityQuery query(m1, m2);
   std::vector<double> separation(count), separation_us(count, kInfinity), colliding_us(count, kInfinity),
       contacts_us(count, kInfinity), contacts_all_us(count, kInfinity),
@@ -137,7 +123,7 @@ int main(int argc, char** argv) try {
   Stopwatch clock;
   std::vector<double> clock_us(1, kInfinity);  // what the times contain of the clock
   for (std::uint32_t i = 0; i < count; ++i) clock_us[0] = std::min(clock_us[0], 1000 * clock.lap());
-  bench::write_array<double>(out / "clock_us", clock_us);
+  write_array<double>(out / "clock_us", clock_us);
   PoseQuery many{Shape(m2), Shape(m1)};
   std::vector<Transform> transforms;
   for (const Affine& placement : placements)
@@ -154,16 +140,16 @@ int main(int argc, char** argv) try {
                                 const std::vector<std::uint8_t>& hits) {
     std::vector<double> batch_us(2, kInfinity);
     for (int turn = 0; turn < kTurns; ++turn) {
-      batch_us[1] = std::min(batch_us[1], bench::time_batch(many, batch, hits));
+      batch_us[1] = std::min(batch_us[1], time_batch(many, batch, hits));
       const ThreadLimit alone(1);
-      batch_us[0] = std::min(batch_us[0], bench::time_batch(many, batch, hits));
+      batch_us[0] = std::min(batch_us[0], time_batch(many, batch, hits));
     }
-    bench::write_array<double>(out / file, batch_us);
+    write_array<double>(out / file, batch_us);
   };
   time_batches("batch_us", transforms, expected);
   if (convex) {
     const double reach = 0.3 * (diagonal(bounds(m1)) + diagonal(bounds(m2)));
-    const std::vector<Affine> places = bench::poses_within(reach, bench::kRandomPoses, random);
+    const std::vector<Affine> places = poses_within(reach, kRandomPoses, random);
     std::vector<Transform> batch;
     std::vector<std::uint8_t> hits;
     for (const Affine& place : places) {
@@ -172,25 +158,47 @@ int main(int argc, char** argv) try {
       hits.push_back(exchanged.colliding());
     }
     time_batches("random_us", batch, hits);
-    bench::write_array<double>(out / "random_poses", bench::entries_of(places));
-    bench::write_array<std::uint8_t>(out / "random_colliding", hits);
+    write_array<double>(out / "random_poses", entries_of(places));
+    write_array<std::uint8_t>(out / "random_colliding", hits);
   }
-  bench::write_array<Vec3>(out / "vertices1", m1.positions);
-  bench::write_array<Vec3>(out / "vertices2", m2.positions);
-  bench::write_array<Triangle>(out / "triangles1", m1.triangles);
-  bench::write_array<Triangle>(out / "triangles2", m2.triangles);
-  bench::write_array<double>(out / "poses", bench::entries_of(placements));
-  bench::write_array<double>(out / "separation", separation);
-  bench::write_array<double>(out / "separation_us", separation_us);
-  bench::write_array<std::uint8_t>(out / "colliding", colliding);
-  bench::write_array<double>(out / "colliding_us", colliding_us);
-  bench::write_array<std::uint32_t>(out / "contacts", contacts);
-  bench::write_array<double>(out / "contacts_us", contacts_us);
-  bench::write_array<double>(out / "contacts_all_us", contacts_all_us);
-  bench::write_array<Vec3>(out / "translation", translation);
-  bench::write_array<std::uint32_t>(out / "separating_contacts", separating_contacts);
-  bench::write_array<double>(out / "separating_contacts_us", separating_contacts_us);
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "pose_samples: %s\n", error.what());
-  return 1;
+  write_array<Vec3>(out / "vertices1", m1.positions);
+  write_array<Vec3>(out / "vertices2", m2.positions);
+  write_array<Triangle>(out / "triangles1", m1.triangles);
+  write_array<Triangle>(out / "triangles2", m2.triangles);
+  write_array<double>(out / "poses", entries_of(placements));
+  write_array<double>(out / "separation", separation);
+  write_array<double>(out / "separation_us", separation_us);
+  write_array<std::uint8_t>(out / "colliding", colliding);
+  write_array<double>(out / "colliding_us", colliding_us);
+  write_array<std::uint32_t>(out / "contacts", contacts);
+  write_array<double>(out / "contacts_us", contacts_us);
+  write_array<double>(out / "contacts_all_us", contacts_all_us);
+  write_array<Vec3>(out / "translation", translation);
+  write_array<std::uint32_t>(out / "separating_contacts", separating_contacts);
+  write_array<double>(out / "separating_contacts_us", separating_contacts_us);
 }
+
+}  // namespace
+
+void add_poses(CLI::App& program) {
+  CLI::App& app = *program.add_subcommand(
+      "poses",
+      "Computes separation, collision and contacts of O1 and O2 in random poses of O2. Writes arrays without "
+      "headers into OUT: vertices1, vertices2 (float64), triangles1, triangles2 (uint32), poses (3 × 4, by "
+      "rows), separation (float64), colliding (uint8), contacts (their number, uint32), translation (of O1, "
+      "float64, 3) and separating_contacts (their number, uint32); the microseconds on one core, "
+      "separation_us, colliding_us, contacts_us and separating_contacts_us, and on all cores, "
+      "contacts_all_us. batch_us: those for each pose of a call of PoseQuery::colliding for all poses, on "
+      "one core and on all. Of convex bodies, random_poses (3 × 4), random_colliding (uint8) and random_us, "
+      "the same for other random poses, few of which touch. clock_us: the time that the clock takes.");
+  const auto options = std::make_shared<PoseSamples>();
+  app.add_option("O1", options->o1, "A mesh of the benchmarks, box, or hull:N, with 8 · 4^N triangles")
+      ->required();
+  app.add_option("O2", options->o2, "The same")->required();
+  app.add_option("PARTS", options->parts, "Triangles are divided into PARTS² triangles")->required();
+  app.add_option("COUNT", options->count, "Number of poses")->required();
+  app.add_option("OUT", options->out)->required();
+  app.callback([options] { write_pose_samples(*options); });
+}
+
+}  // namespace sdm::bench

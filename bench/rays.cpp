@@ -21,7 +21,7 @@
 #include "geometry/line_triangle.h"
 #include "geometry/vec.h"
 #include "harness.h"
-#include "rays/hemisphere.h"
+#include "rays/hemisphere_rays.h"
 #include "timing.h"
 
 namespace sdm::bench {

@@ -3,21 +3,35 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
+#include <memory>
 
 #include "refine_mesh.h"
+#include "samples.h"
 
-int main(int argc, char** argv) try {
-  CLI::App app("Writes the mesh as PLY with each triangle divided into PARTS² triangles");
+namespace sdm::bench {
+namespace {
+
+struct Refinement {
   std::filesystem::path in, out;
   std::uint32_t parts = 1;
-  app.add_option("IN", in)->required();
-  app.add_option("OUT", out)->required();
-  app.add_option("PARTS", parts)->required()->check(CLI::Range(1u, 64u));
-  CLI11_PARSE(app, argc, argv);
-  sdm::write_ply(out, sdm::bench::refine_mesh(sdm::read_mesh(in), parts, 0.1));
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "refined_mesh: %s\n", error.what());
-  return 1;
+};
+
+void write_refined(const Refinement& options) {
+  const auto& [in, out, parts] = options;
+  write_ply(out, refine_mesh(read_mesh(in), parts, 0.1));
 }
+
+}  // namespace
+
+void add_refine(CLI::App& program) {
+  CLI::App& app = *program.add_subcommand(
+      "refine", "Writes the mesh as PLY with each triangle divided into PARTS² triangles");
+  const auto options = std::make_shared<Refinement>();
+  app.add_option("IN", options->in)->required();
+  app.add_option("OUT", options->out)->required();
+  app.add_option("PARTS", options->parts)->required()->check(CLI::Range(1u, 64u));
+  app.callback([options] { write_refined(*options); });
+}
+
+}  // namespace sdm::bench

@@ -78,7 +78,7 @@ export function ticks(lo: number, hi: number, steps: number): number[] {
 }
 
 /// The label of a tick: short, but distinct from those of its neighbours, `step` away. That of pictures, by tick_label()
-/// of src/io/image/pictures/ticks.h.
+/// of src/io/image/pictures/legend.h.
 export function tickText(value: number, step: number): string {
   const size = Math.max(Math.abs(value), step);
   const short =

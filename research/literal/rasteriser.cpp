@@ -7,7 +7,7 @@
 #include <array>
 #include <string>
 
-#include "atlas/size_text.h"
+#include "atlas/layout.h"
 #include "core/memory.h"
 #include "gl/device/gl_objects.h"
 #include "gl/device/program.h"

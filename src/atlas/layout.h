@@ -3,6 +3,8 @@
 
 #include <sdm/surface.h>
 
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "atlas/packing/room.h"
@@ -37,5 +39,10 @@ struct Layout {
 [[nodiscard]] Layout added_layout(const Mesh& added, const AtlasOptions& options, double scale, Room& room);
 /// AtlasKind::uv. A chart is a set of faces connected by edges at which their coordinates agree.
 [[nodiscard]] Layout uv_layout(const Mesh& mesh, const AtlasOptions& options);
+
+/// "1024²", or "2048 × 1024" if the sides differ.
+[[nodiscard]] inline std::string size_text(std::uint64_t columns, std::uint64_t rows) {
+  return std::to_string(columns) + (rows == columns ? "²" : " × " + std::to_string(rows));
+}
 
 }  // namespace sdm::atlas

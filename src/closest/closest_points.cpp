@@ -13,10 +13,8 @@ namespace {
 // So few points are searched one at a time: a packet would consist mostly of padding.
 constexpr std::size_t kFew = 8;
 
-// A bound in the unit frame, enlarged so that rounding never excludes a site within max_distance.
-float unit_limit(const UnitFrame& frame, double max_distance) {
-  return static_cast<float>(std::min((1 + 1e-5) * frame.scale * max_distance + 1e-6, 1e18));
-}
+// The distances of a descent are those of boxes and spheres in the unit frame, in single precision.
+constexpr float kBoundError = 1e-6f;
 
 }  // namespace
 
@@ -24,7 +22,7 @@ void closest_points(const sites::SitesData& sites, std::span<const Vec3> points,
                     const sites::ClosestSink& sink) {
   static_assert(PointGroup::kMostPoints >= kLargestBlock, "each block is one group");
   thread_local const auto descent = std::make_unique<Descent>();
-  const float limit = unit_limit(sites.frame, max_distance);
+  const float limit = sites.frame.unit_limit(max_distance) + kBoundError;
   for (std::size_t begin = 0; begin < points.size(); begin += PointGroup::kMostPoints) {
     const std::span<const Vec3> queries =
         points.subspan(begin, std::min(PointGroup::kMostPoints, points.size() - begin));

@@ -19,7 +19,8 @@ namespace sdm::closest {
 namespace {
 
 // A shared candidate list pays off where the group has at least this many points for each leaf of O2's tree
-// within reach, or at most kFewPoints points. Otherwise its subgroups are traversed separately. (Measured.)
+// within the bound, or at most kFewPoints points. Otherwise its subgroups are traversed separately.
+// (Measured.)
 constexpr std::size_t kPointsPerLeaf = 14, kFewPoints = 64;
 // Scattered points have no use for a list: with more leaves than this for each, the points of a packet are
 // searched one at a time. (Measured.)
@@ -98,10 +99,10 @@ class Search {
     }
     improve_in_tree(nearest, ball.centre);
     if (nearest.found) last_ = nearest;
-    const CandidateBound reach(ball, nearest.squared, nearest.point, limit_);
+    const CandidateBound bound(ball, nearest.squared, nearest.point, limit_);
     const size_t points = PointGroup::points_at(level);
     const size_t most_leaves = points > kFewPoints ? points / kPointsPerLeaf : points * kLeavesPerPoint;
-    if (!find_leaves(reach, most_leaves)) {
+    if (!find_leaves(bound, most_leaves)) {
       if (level == 0) {
         std::fill_n(s_.winners + PointGroup::kPacket * index, PointGroup::kPacket, SiteId::kUnsettled);
         return;
@@ -109,7 +110,7 @@ class Search {
       for_children(level, index, [&](size_t child) { start(level - 1, child); });
       return;
     }
-    collect(reach, lists);
+    collect(bound, lists);
     descend(level, index);
   }
 
@@ -169,10 +170,10 @@ class Search {
 
   uint32_t faces_in(uint32_t leaf) const { return regions_.leaves[leaf + 1] - regions_.leaves[leaf]; }
 
-  // Finds the leaves of the tree within reach, as children of nodes. Returns false if there are more than
+  // Finds the leaves of the tree within the bound, as children of nodes. Returns false if there are more than
   // `most`. Not by tree::visit(): without an order, the children of a node are appended to both lists eight
   // at a time by vector instructions, which costs less than a branch for each.
-  bool find_leaves(const CandidateBound& reach, size_t most) {
+  bool find_leaves(const CandidateBound& bound, size_t most) {
     auto& open = s_.open;
     open.assign(1, 0);
     s_.leaves.clear();
@@ -182,8 +183,8 @@ class Search {
       count_work(&WorkCounts::nodes);
       const uint32_t near = select(node.count, [&](size_t i) HWY_ATTR {
         const Block d;
-        const FromBoxes from(d, node, i, reach.centre);
-        return reach.holds(d, from.squared, from.x, from.y, from.z);
+        const FromBoxes from(d, node, i, bound.centre);
+        return bound.holds(d, from.squared, from.x, from.y, from.z);
       });
       append(s_.leaves, node.child, near & node.leaves);
       append(open, node.child, near & ~node.leaves);
@@ -194,7 +195,7 @@ class Search {
 
   // Collects the candidates from the leaves found: first by bounds on all sites that a face owns, then one by
   // one.
-  void collect(const CandidateBound& reach, SiteLists& lists) {
+  void collect(const CandidateBound& bound, SiteLists& lists) {
     count_work(&WorkCounts::leaves, s_.leaves.size());
     s_.owners.clear();
     for (const uint32_t child : s_.leaves) {
@@ -202,7 +203,7 @@ class Search {
       uint32_t places[SiteBlock::kWidth];
       for (uint32_t lane = 0; lane < SiteBlock::kWidth; ++lane) places[lane] = first + lane;
       append(s_.owners, places, select(faces_in(leaf), [&](size_t lane) HWY_ATTR {
-               return may_be_closest(Block(), regions_.bounds[leaf], lane, reach);
+               return may_be_closest(Block(), regions_.bounds[leaf], lane, bound);
              }));
     }
     // A face owns at most three edges and three vertices, so none of these stores needs a branch.
@@ -233,13 +234,13 @@ class Search {
         s_.vertices, r.vertices,
         [&](uint32_t i) { return SiteId::of(SiteType::vertex, r.vertices[i].vertex); }, all.vertices);
     count_work(&WorkCounts::gathered, all.size());
-    keep(all, reach, lists);
+    keep(all, bound, lists);
   }
 
-  static void keep(const SiteLists& from, const CandidateBound& reach, SiteLists& to) {
-    HWY_NAMESPACE::keep(from.faces, reach, to.faces);
-    HWY_NAMESPACE::keep(from.edges, reach, to.edges);
-    HWY_NAMESPACE::keep(from.vertices, reach, to.vertices);
+  static void keep(const SiteLists& from, const CandidateBound& bound, SiteLists& to) {
+    HWY_NAMESPACE::keep(from.faces, bound, to.faces);
+    HWY_NAMESPACE::keep(from.edges, bound, to.edges);
+    HWY_NAMESPACE::keep(from.vertices, bound, to.vertices);
   }
 
   // Finds the winners of a ball's points in the candidate lists of its level.
@@ -263,8 +264,8 @@ class Search {
     improve(nearest, from.edges, ball.centre);
     improve(nearest, from.vertices, ball.centre);
     count_work(&WorkCounts::list_blocks, from.faces.used + from.edges.used + from.vertices.used);
-    const CandidateBound reach(ball, nearest.squared, nearest.point, limit_);
-    keep(from, reach, to);
+    const CandidateBound bound(ball, nearest.squared, nearest.point, limit_);
+    keep(from, bound, to);
   }
 
   void evaluate(const SiteLists& lists, size_t packet) {

@@ -44,10 +44,6 @@ constexpr float kFarther = 1 + 3e-6f;
 inline float distance_error(float m, float largest_radius) {
   return 5e-7f * std::max(1.0f, m) + 5e-6f * largest_radius;
 }
-// Beyond this in the unit frame, nothing is within max_distance.
-inline float unit_limit(double max_distance, double scale) {
-  return static_cast<float>(std::min(1.00001 * max_distance * scale, 1e18));
-}
 
 }  // namespace
 }  // namespace sdm::closest

@@ -101,14 +101,14 @@ HWY_INLINE PointVec height(Points d, const SiteBlock::Row* plane, uint32_t lane,
 //   closest         the point of one site that is closest to p.
 
 HWY_INLINE BlockMask may_be_closest(Block d, const sites::FaceBounds& bounds, size_t i,
-                                    const CandidateBound& reach) {
+                                    const CandidateBound& bound) {
   BlockVec r[3], h = hn::Zero(d);
   for (int k = 0; k < 3; ++k) {
-    r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, bounds.centre[k] + i));
+    r[k] = hn::Sub(hn::Set(d, bound.centre[k]), hn::Load(d, bounds.centre[k] + i));
     h = hn::MulAdd(r[k], hn::Load(d, bounds.normal[k] + i), h);
   }
   const BlockVec squared = square_norm(d, r[0], r[1], r[2]), h2 = hn::Mul(h, h);
-  const BlockVec radius = hn::Load(d, bounds.radius + i), reach_radius = hn::Set(d, reach.radius);
+  const BlockVec radius = hn::Load(d, bounds.radius + i), reach_radius = hn::Set(d, bound.radius);
   // The distance from the disc's axis, reduced by the cancellation error in the difference of squares.
   const BlockVec beside =
       hn::Sqrt(hn::Max(hn::NegMulAdd(squared, hn::Set(d, 1e-6f), hn::Sub(squared, h2)), hn::Zero(d)));
@@ -122,19 +122,19 @@ HWY_INLINE BlockMask may_be_closest(Block d, const sites::FaceBounds& bounds, si
     return hn::MulAdd(s, r[k], hn::Mul(along, hn::Load(d, bounds.normal[k] + i)));
   };
   return hn::And(hn::Le(beside, most),
-                 reach.holds(d, hn::MulAdd(beyond, beyond, h2), from(0), from(1), from(2)));
+                 bound.holds(d, hn::MulAdd(beyond, beyond, h2), from(0), from(1), from(2)));
 }
 
-HWY_INLINE BlockMask may_be_closest(Block d, const FaceBlock& block, size_t i, const CandidateBound& reach) {
-  const BlockVec inner = hn::Set(d, -reach.radius);
+HWY_INLINE BlockMask may_be_closest(Block d, const FaceBlock& block, size_t i, const CandidateBound& bound) {
+  const BlockVec inner = hn::Set(d, -bound.radius);
   const SiteBlock::Row* plane = block.row + FaceBlock::kPlane;
-  BlockMask pass = hn::Ge(height(d, block.row + FaceBlock::wall(0), i, reach.centre), inner);
-  pass = hn::And(pass, hn::Ge(height(d, block.row + FaceBlock::wall(1), i, reach.centre), inner));
-  pass = hn::And(pass, hn::Ge(height(d, block.row + FaceBlock::wall(2), i, reach.centre), inner));
+  BlockMask pass = hn::Ge(height(d, block.row + FaceBlock::wall(0), i, bound.centre), inner);
+  pass = hn::And(pass, hn::Ge(height(d, block.row + FaceBlock::wall(1), i, bound.centre), inner));
+  pass = hn::And(pass, hn::Ge(height(d, block.row + FaceBlock::wall(2), i, bound.centre), inner));
   // The convex piece B is the whole plane of the face.
-  const BlockVec h = height(d, plane, i, reach.centre);
+  const BlockVec h = height(d, plane, i, bound.centre);
   const auto from = [&](int k) HWY_ATTR { return hn::Mul(h, hn::Load(d, plane[k] + i)); };
-  return hn::And(pass, reach.holds(d, hn::Mul(h, h), from(0), from(1), from(2)));
+  return hn::And(pass, bound.holds(d, hn::Mul(h, h), from(0), from(1), from(2)));
 }
 
 HWY_INLINE BlockVec squared(Block d, const FaceBlock& block, size_t i, const float* p) {
@@ -160,20 +160,20 @@ inline void closest(const FaceBlock& block, size_t lane, const float* p, float (
   for (int k = 0; k < 3; ++k) out[k] = p[k] - h * block.row[FaceBlock::kPlane + k][lane];
 }
 
-HWY_INLINE BlockMask may_be_closest(Block d, const EdgeBlock& block, size_t i, const CandidateBound& reach) {
+HWY_INLINE BlockMask may_be_closest(Block d, const EdgeBlock& block, size_t i, const CandidateBound& bound) {
   BlockVec r[3], t = hn::Zero(d);
   for (int k = 0; k < 3; ++k) {
-    r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, block.row[EdgeBlock::kStart + k] + i));
+    r[k] = hn::Sub(hn::Set(d, bound.centre[k]), hn::Load(d, block.row[EdgeBlock::kStart + k] + i));
     t = hn::MulAdd(r[k], hn::Load(d, block.row[EdgeBlock::kDirection + k] + i), t);
   }
-  const BlockVec radius = hn::Set(d, reach.radius), length = hn::Load(d, block.row[EdgeBlock::kLength] + i);
+  const BlockVec radius = hn::Set(d, bound.radius), length = hn::Load(d, block.row[EdgeBlock::kLength] + i);
   BlockMask pass = hn::And(hn::Ge(t, hn::Neg(radius)), hn::Le(t, hn::Add(length, radius)));
   for (size_t k = 0; k < 2; ++k)
-    pass = hn::And(pass, hn::Le(height(d, block.row + EdgeBlock::wall(k), i, reach.centre), radius));
+    pass = hn::And(pass, hn::Le(height(d, block.row + EdgeBlock::wall(k), i, bound.centre), radius));
   const BlockVec s = hn::Min(hn::Max(t, hn::Zero(d)), length);
   for (int k = 0; k < 3; ++k)
     r[k] = hn::NegMulAdd(s, hn::Load(d, block.row[EdgeBlock::kDirection + k] + i), r[k]);
-  return hn::And(pass, reach.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]));
+  return hn::And(pass, bound.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]));
 }
 
 HWY_INLINE BlockVec squared(Block d, const EdgeBlock& block, size_t i, const float* p) {
@@ -215,17 +215,17 @@ inline void closest(const EdgeBlock& block, size_t lane, const float* p, float (
 }
 
 HWY_INLINE BlockMask may_be_closest(Block d, const VertexBlock& block, size_t i,
-                                    const CandidateBound& reach) {
+                                    const CandidateBound& bound) {
   BlockVec r[3];
   for (int k = 0; k < 3; ++k)
-    r[k] = hn::Sub(hn::Set(d, reach.centre[k]), hn::Load(d, block.row[VertexBlock::kPoint + k] + i));
-  BlockMask pass = reach.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]);
+    r[k] = hn::Sub(hn::Set(d, bound.centre[k]), hn::Load(d, block.row[VertexBlock::kPoint + k] + i));
+  BlockMask pass = bound.holds(d, square_norm(d, r[0], r[1], r[2]), r[0], r[1], r[2]);
   for (size_t ray = 0; ray < sites::VertexRegion::kRays; ++ray) {
     const SiteBlock::Row* direction = block.row + VertexBlock::ray(ray);
     BlockVec along = hn::Mul(r[0], hn::Load(d, direction[0] + i));
     along = hn::MulAdd(r[1], hn::Load(d, direction[1] + i), along);
     along = hn::MulAdd(r[2], hn::Load(d, direction[2] + i), along);
-    pass = hn::And(pass, hn::Le(along, hn::Set(d, reach.radius)));
+    pass = hn::And(pass, hn::Le(along, hn::Set(d, bound.radius)));
   }
   return pass;
 }

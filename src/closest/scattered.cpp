@@ -23,8 +23,8 @@ constexpr std::size_t kSamples = 8;
 // one cell.
 Box around(const UnitFrame& frame) {
   constexpr double kSizes = 8;
-  const double reach = kSizes / frame.scale;
-  const Vec3 size{reach, reach, reach};
+  const double half = kSizes / frame.scale;
+  const Vec3 size{half, half, half};
   return {frame.origin - size, frame.origin + size};
 }
 

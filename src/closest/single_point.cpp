@@ -96,7 +96,7 @@ class PointSearch {
     for (int k = 0; k < 3; ++k) point_[k] = static_cast<float>(unit[k]);
     error_ = distance_error(std::max({std::abs(point_[0]), std::abs(point_[1]), std::abs(point_[2])}),
                             sites_.regions.largest_radius);
-    const float limit = unit_limit(max_distance_, sites_.frame.scale) + error_;
+    const float limit = sites_.frame.unit_limit(max_distance_) + error_;
     squared_limit_ = limit * limit;
     // The limit of a face at this distance or less, in spite of rounding.
     const float enough = static_cast<float>((1 - 1e-5) * enough_ * sites_.frame.scale) - error_;
@@ -188,7 +188,7 @@ class PacketSearch {
   static bool before(float first, float second) { return first < second; }
   bool enter(const Open& open) {
     if (open.above == nullptr) return true;
-    if (!(open.bound <= squared_reach_)) return false;
+    if (!(open.bound <= squared_max_distance_)) return false;
     const Points d;
     const tree::WideTree::Node& node = *open.above;
     const auto side = [&](const float(&rows)[3][tree::WideTree::kWidth]) HWY_ATTR {
@@ -203,7 +203,7 @@ class PacketSearch {
     return near_ != 0;
   }
   uint32_t bound(const Open& open, const tree::WideTree::Node& node, float* squared) const {
-    return near_children(node, centre_, squared_reach_, squared) & faces_.open_children(open.child);
+    return near_children(node, centre_, squared_max_distance_, squared) & faces_.open_children(open.child);
   }
   void leaf(const Open& open) {
     const sites::FaceFrames& faces = frames_[open.leaf_number()];
@@ -220,7 +220,7 @@ class PacketSearch {
             m_.candidates.push_back({squared, faces.face[lane], open.leaf_number(), i});
           });
     }
-    if (reduced) find_reach();
+    if (reduced) find_max_distance();
   }
 
  private:
@@ -258,7 +258,7 @@ class PacketSearch {
   // Sets the limits by the maximum distance and by the closest points of the packet before.
   void limit() {
     const Points d;
-    const float within = unit_limit(max_distance_, sites_.frame.scale) + error_;
+    const float within = sites_.frame.unit_limit(max_distance_) + error_;
     for (size_t i = 0; i < kSize; i += hn::Lanes(d)) {
       hn::Store(hn::Sqrt(squared_from(centre_, i)), d, from_centre_ + i);
       PointVec least = hn::Inf(d);
@@ -278,20 +278,21 @@ class PacketSearch {
     }
     for (size_t i = 0; i < kSize; ++i)
       if ((used_ >> i & 1) == 0) squared_limit_[i] = -1;
-    find_reach();
+    find_max_distance();
   }
 
   // No box farther than this from the centre is within the limit of any point.
-  void find_reach() {
+  void find_max_distance() {
     const Points d;
     PointVec most = hn::Zero(d);
     for (size_t i = 0; i < kSize; i += hn::Lanes(d)) {
       const PointVec squared = hn::Load(d, squared_limit_ + i);
-      const PointVec reach = hn::Add(hn::Sqrt(hn::Max(squared, hn::Zero(d))), hn::Load(d, from_centre_ + i));
-      most = hn::Max(most, hn::IfThenElseZero(hn::Ge(squared, hn::Zero(d)), reach));
+      const PointVec max_distance =
+          hn::Add(hn::Sqrt(hn::Max(squared, hn::Zero(d))), hn::Load(d, from_centre_ + i));
+      most = hn::Max(most, hn::IfThenElseZero(hn::Ge(squared, hn::Zero(d)), max_distance));
     }
-    const float reach = hn::GetLane(hn::MaxOfLanes(d, most)) * kFarther;
-    squared_reach_ = reach * reach;
+    const float max_distance = hn::GetLane(hn::MaxOfLanes(d, most)) * kFarther;
+    squared_max_distance_ = max_distance * max_distance;
   }
 
   void remember(size_t i, const ClosestPoint& closest) {
@@ -311,7 +312,7 @@ class PacketSearch {
   alignas(64) float point_[3][kSize];       // in the unit frame
   alignas(64) float squared_limit_[kSize];  // nothing beyond this is closest
   alignas(64) float from_centre_[kSize];
-  float centre_[3], squared_reach_, error_;
+  float centre_[3], squared_max_distance_, error_;
   uint32_t used_, far_, near_;  // points, as bits
   float last_[kSize][3];        // closest points found before
   uint32_t last_face_[kSize];

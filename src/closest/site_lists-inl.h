@@ -169,16 +169,16 @@ void append(SiteList<TypedBlock>& list, const TypedBlock& block, uint32_t bits) 
 
 // Appends the candidates of a block.
 template <class TypedBlock>
-HWY_INLINE void keep(const TypedBlock& block, const CandidateBound& reach, SiteList<TypedBlock>& list) {
+HWY_INLINE void keep(const TypedBlock& block, const CandidateBound& bound, SiteList<TypedBlock>& list) {
   const uint32_t bits =
-      select(block.count, [&](size_t i) HWY_ATTR { return may_be_closest(Block(), block, i, reach); });
+      select(block.count, [&](size_t i) HWY_ATTR { return may_be_closest(Block(), block, i, bound); });
   if (bits != 0) append(list, block, bits);
 }
 
 template <class TypedBlock>
-void keep(const SiteList<TypedBlock>& from, const CandidateBound& reach, SiteList<TypedBlock>& to) {
+void keep(const SiteList<TypedBlock>& from, const CandidateBound& bound, SiteList<TypedBlock>& to) {
   to.used = 0;
-  for (size_t i = 0; i < from.used; ++i) keep(from.blocks[i], reach, to);
+  for (size_t i = 0; i < from.used; ++i) keep(from.blocks[i], bound, to);
 }
 
 }  // namespace sdm::closest::HWY_NAMESPACE

@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "atlas/size_text.h"
+#include "atlas/layout.h"
 
 namespace sdm::gl {
 

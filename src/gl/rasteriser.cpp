@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "atlas/size_text.h"
+#include "atlas/layout.h"
 #include "core/memory.h"
 #include "gl/device/gl_objects.h"
 #include "gl/device/program.h"

@@ -32,7 +32,7 @@ ClosestPoint closest_of(const sites::SitesData& sites, const Vec3& point, const 
 
 void place_points(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
                   std::span<QueryPoint> placed) {
-  const auto within = static_cast<float>(std::min(1.00001 * max_distance * sites.frame.scale, 1e18));
+  const float within = sites.frame.unit_limit(max_distance);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 unit = sites.frame.to_unit(points[i]);
     bool near = true;

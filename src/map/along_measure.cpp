@@ -9,7 +9,7 @@
 #include <new>
 #include <string>
 
-#include "closest/facing/outward_normals.h"
+#include "closest/facing/facing_normals.h"
 #include "core/memory.h"
 #include "geometry/vec.h"
 #include "rays/trace.h"

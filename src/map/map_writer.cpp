@@ -4,7 +4,7 @@
 #include <bit>
 #include <string>
 
-#include "atlas/size_text.h"
+#include "atlas/layout.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 

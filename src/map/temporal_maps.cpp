@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "atlas/size_text.h"
+#include "atlas/layout.h"
 #include "core/cancellation.h"
 #include "core/memory.h"
 #include "core/parallel.h"

@@ -1,11 +1,14 @@
 #include <sdm/summary.h>
+#include <sdm/tolerance.h>
+#include <sdm/verdict.h>
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "map/statistics/texel_areas.h"
-#include "summary/combined_verdict.h"
 #include "summary/largest_distance.h"
+#include "summary/verdict/group_rows.h"
 
 namespace sdm {
 namespace {
@@ -63,10 +66,8 @@ const CertifiedVerdict& decisive(std::span<const CertifiedVerdict> verdicts) {
   return *std::ranges::min_element(verdicts, {}, rank);
 }
 
-}  // namespace
-
-CertifiedVerdict summary::combined_verdict(std::span<const CertifiedVerdict> verdicts,
-                                           std::span<const double> areas) {
+// That of one of the maps, which have these areas, with the shares and the margin of all. There is one.
+CertifiedVerdict combined_verdict(std::span<const CertifiedVerdict> verdicts, std::span<const double> areas) {
   CertifiedVerdict total = decisive(verdicts);
   total.shares = {};
   total.largest.reset();
@@ -93,6 +94,47 @@ CertifiedVerdict summary::combined_verdict(std::span<const CertifiedVerdict> ver
       *share /= area;
   total.exceeded_area_fraction = total.shares.below + total.shares.above + total.shares.without_value;
   return total;
+}
+
+/// The parts of one group.
+GroupVerdict joined(std::span<const GroupVerdict> parts) {
+  GroupVerdict all = parts.front();
+  std::vector<CertifiedVerdict> verdicts;
+  std::vector<double> areas;
+  all.faces = 0;
+  all.points = 0;
+  all.area = 0;
+  for (const GroupVerdict& part : parts) {
+    all.faces += part.faces;
+    all.points += part.points;
+    all.area += part.area;
+    if (part.lowest) {
+      all.lowest = std::min(all.lowest.value_or(*part.lowest), *part.lowest);
+      all.highest = std::max(all.highest.value_or(*part.highest), *part.highest);
+    }
+    verdicts.push_back(part.verdict);
+    areas.push_back(part.area);
+  }
+  all.verdict = combined_verdict(verdicts, areas);
+  return all;
+}
+
+}  // namespace
+
+GroupVerdicts combined_groups(std::span<const GroupVerdicts> parts, std::span<const GroupTolerance> table,
+                              bool doubted) {
+  GroupVerdicts result;
+  for (const GroupTolerance& row : table) {
+    std::vector<GroupVerdict> of_row;
+    for (const GroupVerdicts& part : parts)
+      std::ranges::copy_if(part.groups, std::back_inserter(of_row), [&](const GroupVerdict& g) {
+        return g.group == row.group && g.verdict.tolerance == row.tolerance &&
+               (row.kind.empty() || g.kind == row.kind);
+      });
+    if (!of_row.empty()) result.groups.push_back(joined(of_row));
+  }
+  result.verdict = summary::worst_of(result.groups, doubted);
+  return result;
 }
 
 void CombinedSummary::add(const Surface& surface, const DistanceMap& map, const Summary& summary) {
@@ -132,7 +174,7 @@ Summary CombinedSummary::summary() const {
   total.places.reset();
   if (places_.size() == areas_.size()) total.places = combined_places(places_, areas_);
   if (!verdicts_.empty()) {
-    total.tolerance = summary::combined_verdict(verdicts_, areas_);
+    total.tolerance = combined_verdict(verdicts_, areas_);
     if (!total.tolerance->proof)
       total.tolerance->nearest_is_lower = judge(total.evidence, total.tolerance->tolerance).nearest_is_lower;
   }

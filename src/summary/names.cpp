@@ -1,3 +1,4 @@
+#include <sdm/mesh.h>
 #include <sdm/summary.h>
 
 #include <algorithm>
@@ -25,4 +26,11 @@ constexpr bool has_words(const auto& rule) {
 static_assert(has_words<Verdict>(rules::kVerdictNames) && has_words<VerdictReason>(rules::kReasonNames));
 
 }  // namespace
+
+std::optional<double> metres_per(std::string_view unit) {
+  for (const auto& [name, metres] : rules::kUnits)
+    if (name == unit) return metres;
+  return std::nullopt;
+}
+
 }  // namespace sdm

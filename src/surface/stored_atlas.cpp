@@ -9,8 +9,8 @@
 #include <cstring>
 #include <string>
 
+#include "atlas/layout.h"
 #include "atlas/packing/fit.h"
-#include "atlas/size_text.h"
 #include "core/checksum.h"
 #include "geometry/vec.h"
 #include "surface/surface_data.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "atlas/packing/too_small.h"
-#include "atlas/size_text.h"
+#include "atlas/layout.h"
+#include "atlas/packing/pack.h"
 #include "atlas/texel_owners.h"
 #include "core/memory.h"
 #include "core/parallel.h"

@@ -4,6 +4,7 @@
 #include <sdm/volume.h>
 
 #include "closest/engine.h"
+#include "volume/field_writer.h"
 
 namespace sdm::volume {
 

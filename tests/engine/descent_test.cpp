@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "closest/finish.h"
-#include "closest/reference/reference_closest.h"
+#include "closest/reference/reference_engine.h"
 #include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 #include "sites/sites_data.h"

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "closest/reference/reference_closest.h"
+#include "closest/reference/reference_engine.h"
 #include "gl/pair_culling.h"
 #include "gl/polygons/oriented_box.h"
 #include "support/meshes.h"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "closest/reference/reference_closest.h"
+#include "closest/reference/reference_engine.h"
 #include "gl/raster_report.h"
 #include "gl/rasteriser.h"
 #include "sites/closest_on_face.h"

@@ -1,7 +1,5 @@
 #include "io/image/pictures/legend.h"
 
-#include "io/image/pictures/ticks.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>

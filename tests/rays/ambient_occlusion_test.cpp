@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
-#include "rays/hemisphere.h"
+#include "rays/hemisphere_rays.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
 #include "support/owned_texels.h"

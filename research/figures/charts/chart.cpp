@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "io/image/pictures/ticks.h"
+#include "io/image/pictures/legend.h"
 #include "research/figures/charts/svg.h"
 
 namespace sdm::figures {

@@ -1,6 +1,8 @@
 // Whether triangles in the plane overlap: exactly, on integer coordinates.
 #pragma once
 
+#include <sdm/mesh.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +10,8 @@
 #include <span>
 #include <utility>
 #include <vector>
+
+#include "atlas/charts/chart.h"
 
 namespace sdm::atlas {
 
@@ -41,5 +45,9 @@ constexpr std::uint64_t pair_budget(std::size_t faces) {
 /// above.
 [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> find_overlaps(
     std::span<const GridTriangle> triangles, std::size_t most, std::uint64_t budget = UINT64_MAX);
+
+/// The faces in the chart's projection on a grid across it, right and up seen from outside:
+/// counter-clockwise, except where snapping flips them.
+[[nodiscard]] std::vector<GridTriangle> snap(const Mesh& mesh, const Chart& chart);
 
 }  // namespace sdm::atlas

@@ -7,7 +7,6 @@
 
 #include "atlas/charts/cluster.h"
 #include "atlas/charts/overlap.h"
-#include "atlas/charts/snap.h"
 #include "core/arrays/rows.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
@@ -125,9 +124,9 @@ class RoughCharts {
   }
 
   [[nodiscard]] bool are_close(std::uint32_t a, std::uint32_t b) const {
-    constexpr double kReach = 4;
-    const double reach = kReach * (std::sqrt(faces_.area[a]) + std::sqrt(faces_.area[b]));
-    return norm(faces_.centroid[a] - faces_.centroid[b]) < reach;
+    constexpr double kMaxDistance = 4;
+    const double max_distance = kMaxDistance * (std::sqrt(faces_.area[a]) + std::sqrt(faces_.area[b]));
+    return norm(faces_.centroid[a] - faces_.centroid[b]) < max_distance;
   }
 
   // The connected parts of many faces. The faces of the others leave: an island in a hole of the chart,

@@ -5,7 +5,6 @@
 #include <queue>
 
 #include "atlas/charts/overlap.h"
-#include "atlas/charts/snap.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
 

@@ -48,8 +48,8 @@ Vec2 centring_shift(const Shape& shape, double scale) {
   return shift;
 }
 
-// Fills the cells that the closed segment touches, and `reach` more to the left and right.
-void fill_touched(Bitmap& bitmap, const Vec2& a, const Vec2& b, std::uint32_t reach) {
+// Fills the cells that the closed segment touches, and `spread` more to the left and right.
+void fill_touched(Bitmap& bitmap, const Vec2& a, const Vec2& b, std::uint32_t spread) {
   const auto [lo, hi] = std::minmax({a[1], b[1]});
   const double rows = bitmap.height - 1.0, columns = bitmap.width - 1.0;
   const auto first = static_cast<std::size_t>(std::clamp(std::floor(lo), 0.0, rows));
@@ -62,8 +62,8 @@ void fill_touched(Bitmap& bitmap, const Vec2& a, const Vec2& b, std::uint32_t re
     const double top = y == first ? lo : static_cast<double>(y);
     const double bottom = y == last ? hi : static_cast<double>(y) + 1;
     const auto [left, right] = std::minmax({x_at(a, top, bottom), x_at(b, top, bottom)});
-    const auto begin = static_cast<std::size_t>(std::clamp(std::floor(left) - reach, 0.0, columns));
-    const auto end = static_cast<std::size_t>(std::clamp(std::floor(right) + reach, 0.0, columns));
+    const auto begin = static_cast<std::size_t>(std::clamp(std::floor(left) - spread, 0.0, columns));
+    const auto end = static_cast<std::size_t>(std::clamp(std::floor(right) + spread, 0.0, columns));
     std::fill(bitmap.row(y) + begin, bitmap.row(y) + end + 1, 1);
   }
 }
@@ -101,22 +101,22 @@ class Windings {
   std::vector<int> turns_;  ///< the change of the winding number from the cell to the left
 };
 
-// Fills the cells that the shape touches, and `reach` more to the left and right of its outline. A cell that
+// Fills the cells that the shape touches, and `spread` more to the left and right of its outline. A cell that
 // the outline does not touch is inside or outside as a whole.
-void fill_shape(Bitmap& bitmap, const Shape& shape, double scale, const Vec2& shift, std::uint32_t reach) {
+void fill_shape(Bitmap& bitmap, const Shape& shape, double scale, const Vec2& shift, std::uint32_t spread) {
   Windings windings(bitmap);
   for (const auto& [from, to] : shape.outline) {
     const Vec2 a = scale * from + shift, b = scale * to + shift;
-    fill_touched(bitmap, a, b, reach);
+    fill_touched(bitmap, a, b, spread);
     windings.add(a, b);
   }
   windings.fill(bitmap);
 }
 
-Bitmap spread_rows(const Bitmap& bitmap, std::uint32_t reach) {
+Bitmap spread_rows(const Bitmap& bitmap, std::uint32_t spread) {
   Bitmap result(bitmap.width, bitmap.height);
   for (std::uint32_t y = 0; y < bitmap.height; ++y)
-    for (std::uint32_t from = y > reach ? y - reach : 0; from <= std::min(y + reach, bitmap.height - 1);
+    for (std::uint32_t from = y > spread ? y - spread : 0; from <= std::min(y + spread, bitmap.height - 1);
          ++from)
       std::transform(bitmap.row(from), bitmap.row(from) + bitmap.width, result.row(y), result.row(y),
                      [](std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>(a | b); });
@@ -163,21 +163,21 @@ Stamp half_turned(Stamp stamp) {
 Footprint make_footprint(const Shape& shape, const FootprintOptions& options) {
   const double scale = options.scale;
   const std::uint32_t gutter = options.gutter, cell = options.cell;
-  const std::uint32_t reach = (gutter + cell - 1) / cell;  // of the gutter, in cells
+  const std::uint32_t spread = (gutter + cell - 1) / cell;  // of the gutter, in cells
   Footprint result;
   if (!owns_texel(shape, scale, {0, 0})) result.shift = centring_shift(shape, scale);
   const auto cells = [&](int k) {
     // A point on the line between two cells touches both.
     const double extent = (scale * shape.size[k] + result.shift[k]) / cell;
-    return static_cast<std::uint32_t>(extent) + 1 + 2 * reach;
+    return static_cast<std::uint32_t>(extent) + 1 + 2 * spread;
   };
   Bitmap bitmap(cells(0), cells(1));
   result.width = bitmap.width * cell;
   result.height = bitmap.height * cell;
-  result.shift = result.shift + Vec2{1.0 * reach * cell, 1.0 * reach * cell};
+  result.shift = result.shift + Vec2{1.0 * spread * cell, 1.0 * spread * cell};
 
-  fill_shape(bitmap, shape, scale / cell, (1.0 / cell) * result.shift, reach);
-  if (reach > 0) bitmap = spread_rows(bitmap, reach);
+  fill_shape(bitmap, shape, scale / cell, (1.0 / cell) * result.shift, spread);
+  if (spread > 0) bitmap = spread_rows(bitmap, spread);
   result.stamps[0] = make_stamp(bitmap);
   result.stamps[1] = make_stamp(turn(bitmap));
   for (int k = 0; k < 2; ++k) result.stamps[k + 2] = half_turned(result.stamps[k]);

@@ -9,7 +9,6 @@
 
 #include "atlas/packing/bitmap_bin.h"
 #include "atlas/packing/footprint.h"
-#include "atlas/packing/too_small.h"
 #include "core/cancellation.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -81,7 +80,7 @@ class Packer {
   // r times its perimeter and a few texels for its corners. Empty if corners alone take more.
   [[nodiscard]] std::optional<double> scale_for(double share) const {
     const double gutter = std::ceil(1.0 * gutter_ / cell_) * cell_;
-    const double reach = gutter + 0.5 * cell_, corner = 2 * gutter + cell_;
+    const double margin = gutter + 0.5 * cell_, corner = 2 * gutter + cell_;
     double area = 0, perimeter = 0;
     for (const Shape& s : shapes_) {
       area += s.area;
@@ -90,9 +89,9 @@ class Packer {
     const double room =
         share * resolution_ * resolution_ - corner * corner * static_cast<double>(shapes_.size());
     if (room <= 0) return std::nullopt;
-    // area s² + reach perimeter s = room, without cancellation; a long thin shape may reach across before
+    // area s² + margin perimeter s = room, without cancellation; a long thin shape may reach across before
     // that
-    const double b = reach * perimeter;
+    const double b = margin * perimeter;
     return std::min(2 * room / (b + std::sqrt(b * b + 4 * area * room)), largest_scale());
   }
 

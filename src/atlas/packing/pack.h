@@ -1,16 +1,30 @@
 // Placing the shapes of charts in the atlas.
 #pragma once
 
+#include <sdm/error.h>
 #include <sdm/execution.h>
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "atlas/charts/shape.h"
 #include "atlas/packing/footprint.h"
 
 namespace sdm::atlas {
+
+/// The atlas cannot be laid out at this resolution; a larger one may suffice.
+class TooSmall : public Error {
+ public:
+  TooSmall(const std::string& message, std::uint64_t enough)
+      : Error(message, Remedy::resolution), enough_(enough) {}
+  /// About the smallest resolution that would suffice.
+  [[nodiscard]] std::uint64_t enough() const { return enough_; }
+
+ private:
+  std::uint64_t enough_;
+};
 
 /// Atlas coordinates of a shape point q: matrix · q + offset, the matrix a scale times quarter turns.
 struct Placement {

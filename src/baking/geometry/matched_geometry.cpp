@@ -8,11 +8,13 @@
 
 #include "atlas/gutter.h"
 #include "baking/geometry/texel_walk.h"
-#include "closest/facing/outward_normals.h"
+#include "closest/facing/facing_normals.h"
 #include "core/memory.h"
 #include "geometry/vec.h"
+#include "map/measures/thickness_measure.h"
 #include "map/transfer/corner_normals.h"
 #include "map/transfer/fill_texels.h"
+#include "rays/hemisphere_rays.h"
 #include "sites/sites_data.h"
 
 namespace sdm {
@@ -34,6 +36,50 @@ bool points_inwards(const sites::SitesData& data, const map::CornerNormals& norm
 }
 
 }  // namespace
+
+std::vector<float> matched_occlusion(const Surface& surface, const Sites& sites, const TexelMatches& matches,
+                                     const AmbientOcclusionOptions& options) try {
+  require_matches(surface, sites, matches);
+  check_options(options);
+  constexpr double kAbove = 1e-6;  // of the diagonal: more than the rounding of points
+  const sites::SitesData& data = internals(sites);
+  const double above = kAbove * diagonal(bounds(data.mesh));
+  std::vector<float> values = baking::no_values(matches, 1, "the ambient occlusion of matches");
+  baking::for_each_texel(
+      surface, options.progress, "ambient occlusion", [&] { return rays::HemisphereRays(options.rays); },
+      [&](std::uint32_t texel, rays::HemisphereRays& rays) {
+        const SurfacePoint point = matches.point(texel);
+        if (point.face == kNone) return;
+        const Vec3 normal = facing::outward_normal(data, point.face);
+        if (normal == Vec3{}) return;
+        const Ray first{baking::position_of(data.mesh, point) + above * normal, {}, 0, options.max_distance};
+        values[texel] = rays.visibility(data, first, normal, options.seed, texel);
+      });
+  return values;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the ambient occlusion of matches");
+}
+
+std::vector<float> matched_thickness(const Surface& surface, const Sites& sites, const TexelMatches& matches,
+                                     ThicknessMethod method, const ThicknessOptions& options) try {
+  require_matches(surface, sites, matches);
+  const sites::SitesData& data = internals(sites);
+  const thickness::Walls walls(data, options.angle);
+  std::vector<float> values = baking::no_values(matches, 1, "the thickness of matches");
+  baking::for_each_texel(
+      surface, options.progress, "thickness", [&] { return thickness::WallSearch(walls); },
+      [&](std::uint32_t texel, thickness::WallSearch& search) {
+        const SurfacePoint point = matches.point(texel);
+        if (point.face == kNone || !walls.measures(point.face)) return;
+        const Vec3 from = baking::position_of(data.mesh, point);
+        const auto end =
+            method == ThicknessMethod::ray ? search.ray(point.face, from) : search.ball(point.face, from);
+        if (end.face != kNone) values[texel] = static_cast<float>(end.thickness);
+      });
+  return values;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the thickness of matches");
+}
 
 std::vector<float> matched_normals(const Surface& surface, const Sites& sites, const TexelMatches& matches,
                                    const MeshAttribute& normals, const Progress& progress) try {

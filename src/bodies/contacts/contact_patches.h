@@ -7,11 +7,24 @@
 #include <span>
 #include <vector>
 
-#include "bodies/contacts/contact_order.h"
 #include "core/disjoint_sets.h"
 #include "geometry/boxes.h"
 
 namespace sdm::contacts {
+
+/// Sorts contacts; reuses its memory between calls.
+class ContactOrder {
+ public:
+  /// Sorts contacts by patch, that with the deepest contact first, and by depth, the deepest first, and
+  /// numbers the patches so. Depths that differ by no more than `same` are one: their order is that of the
+  /// ids, so that rounding and the last motions of a body at rest do not change it.
+  void sort(std::vector<Contact>& contacts, double same);
+
+ private:
+  std::vector<std::uint32_t> order_, number_;
+  std::vector<std::uint32_t> place_;  // of the next contact of each patch
+  std::vector<Contact> sorted_;
+};
 
 /// Sorts contacts; reuses its memory between calls.
 class ContactPatches {

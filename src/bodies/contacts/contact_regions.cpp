@@ -81,8 +81,8 @@ ContactRegions::Position ContactRegions::find_position(Node& node, const shape::
       node.face == kNone ? kInfinity : sites::closest_on_face(sites, node.face, centre).distance;
   if (known <= std::min(free, inside)) return Position::undecided;
   // Sets node.known, or returns false if the surface is farther away.
-  const auto is_within = [&](double reach) {
-    const ClosestPoint closest = closest::closest_point(sites, centre, reach);
+  const auto is_within = [&](double max_distance) {
+    const ClosestPoint closest = closest::closest_point(sites, centre, max_distance);
     if (closest.type == SiteType::none) return false;
     node.face = sites.face_of(closest.type, closest.site);
     node.known = {centre, closest.distance, other_->inside()(centre, closest)};

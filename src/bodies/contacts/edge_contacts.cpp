@@ -219,11 +219,11 @@ void EdgeContacts::add_touching(Part part) {
   touching_.push_back(part);
 }
 
-void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, double margin, double reach,
+void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, double margin, double max_depth,
                                  double tolerance) {
   supported_.clear();
   parts_.clear();
-  if (intervals_.empty() || reach == 0) return;
+  if (intervals_.empty() || max_depth == 0) return;
   const sites::SitesData& sites = internals(other.sites());
   // Only the parts in contact, which are between these, may be supported.
   double from = 1, to = 0;
@@ -233,7 +233,7 @@ void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, dou
   }
   const Vec3 along = edge.b - edge.a;
   const FacesNearEdge::Segment in_contact{edge.a + from * along, edge.a + to * along};
-  const double below = other.solid() ? reach : 0;  // a surface has no inside
+  const double below = other.solid() ? max_depth : 0;  // a surface has no inside
   for (const std::uint32_t face : faces_.find_supporting(sites, in_contact, edge.sides, margin, below)) {
     poll();
     add_support(edge, other, face, margin, below);
@@ -257,13 +257,13 @@ void EdgeContacts::find_supports(const Edge& edge, const shape::Body& other, dou
 }
 
 void EdgeContacts::add_support(const Edge& edge, const shape::Body& other, std::uint32_t face, double margin,
-                               double reach) {
+                               double max_depth) {
   const sites::SitesData& sites = internals(other.sites());
   const Vec3 along = edge.b - edge.a;
   const std::array<Vec3, 2> both{along, -along};
   const Vec3& normal = sites.normals.face[face];
   if (!can_push(normal, both) || !can_push(normal, edge.sides) || !is_support(other, face)) return;
-  const Clip clip = clip_to_prism(sites, face, edge.a, along, margin, reach);
+  const Clip clip = clip_to_prism(sites, face, edge.a, along, margin, max_depth);
   const Vec3& corner = sites.mesh.positions[sites.mesh.triangles[face][0]];
   if (clip.from < clip.to)
     supported_.push_back({clip.from, clip.to, face, dot(normal, edge.a - corner), dot(normal, along)});
@@ -293,13 +293,13 @@ bool EdgeContacts::add_end(const Edge& edge, const shape::Body& other, double t,
 }
 
 std::span<const EdgeContacts::Found> EdgeContacts::find(const Edge& edge, const shape::Body& other,
-                                                        double margin, double reach, double tolerance) {
+                                                        double margin, double max_depth, double tolerance) {
   const sites::SitesData& sites = internals(other.sites());
   const Vec3 along = edge.b - edge.a;
   found_.clear();
   in_contact_.clear();
   find_intervals(edge, other, margin);
-  find_supports(edge, other, margin, reach, tolerance);
+  find_supports(edge, other, margin, max_depth, tolerance);
   const double rounding = kUnitDistanceRounding / sites.frame.scale;
   std::uint32_t number = 0;  // of a supported end, whether it is found or not
   for (auto first = intervals_.begin(); first != intervals_.end();) {

@@ -14,9 +14,9 @@ namespace sdm::contacts {
 
 /// Finds the contacts of one edge after another. Memory is reused.
 ///
-/// A face supports the part of an edge above it or, up to the reach, below it that is parallel to it, but for
-/// a small angle, as a box lies on another one: the ends of these parts carry the body. Below it, only if it
-/// is the nearest way out for the surface beside the edge (WayOutFinder). Elsewhere, the parts of the edge
+/// A face supports the part of an edge above it or, up to that depth, below it that is parallel to it, but
+/// for a small angle, as a box lies on another one: the ends of these parts carry the body. Below it, only if
+/// it is the nearest way out for the surface beside the edge (WayOutFinder). Elsewhere, the parts of the edge
 /// that are within the margin of the surface, or inside it, are found exactly, to rounding: the distance to a
 /// face is convex along the edge, so what is within the margin of a face is an interval, and between two of
 /// them the edge is inside or outside as a whole.
@@ -38,10 +38,10 @@ class EdgeContacts {
   };
   /// The ends of the supported parts, but for ends of the edge in contact. For each part of the edge in
   /// contact that is not supported and reaches no end in contact, the middle between the first and the last
-  /// point that are closest to the surface. `reach`: how deep a support may be; 0: none is
+  /// point that are closest to the surface. `max_depth`: how deep a support may be; 0: none is
   /// looked for. `tolerance`: of depths. Valid until the next call.
   [[nodiscard]] std::span<const Found> find(const Edge& edge, const shape::Body& other, double margin,
-                                            double reach, double tolerance);
+                                            double max_depth, double tolerance);
 
   /// A part of the edge, by the parameter t at its ends.
   struct Part {
@@ -86,10 +86,10 @@ class EdgeContacts {
                                        double limit);
   [[nodiscard]] bool touches(const Part& part) const;  ///< known faces on all of it
   void add_touching(Part part);
-  void find_supports(const Edge& edge, const shape::Body& other, double margin, double reach,
+  void find_supports(const Edge& edge, const shape::Body& other, double margin, double max_depth,
                      double tolerance);
   void add_support(const Edge& edge, const shape::Body& other, std::uint32_t face, double margin,
-                   double reach);
+                   double max_depth);
   [[nodiscard]] bool add_end(const Edge& edge, const shape::Body& other, double t, std::uint32_t number,
                              double tolerance);
 

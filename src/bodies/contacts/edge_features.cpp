@@ -1,10 +1,12 @@
-// The contacts at edges.
+#include "bodies/contacts/edge_features.h"
+
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <span>
 
-#include "bodies/contacts/deepest_on_edge.h"
 #include "bodies/contacts/feature_contacts.h"
 #include "geometry/vec.h"
 #include "sites/closest_on_face.h"
@@ -12,6 +14,12 @@
 
 namespace sdm::contacts {
 namespace {
+
+constexpr std::size_t kMostMeasured = 8;
+// A point is deep enough if no other is deeper by more than this factor.
+constexpr double kNearlyDeepest = 1.25;
+// What is greater by less does not count: rounding, which depends on the pose, would choose between equals.
+constexpr double kGreater = 1 + 1e-6;
 
 // Edges with an end in contact have contacts between their ends only if they are longer than this part of the
 // smaller body: of shorter ones, the end is near enough.
@@ -52,6 +60,33 @@ bool is_sharp(const sites::SitesData& sites, std::uint32_t edge) {
 
 }  // namespace
 
+double most_between(const EdgeInside& line) {
+  return 0.5 * (line.from_depth + line.to_depth + norm(line.to - line.from));
+}
+
+SurfacePoint deep_point(const shape::Body& solid, const EdgeInside& line, double enough,
+                        std::uint32_t near_face) {
+  std::array<EdgeInside, kMostMeasured + 1> parts{line};
+  SurfacePoint deepest{.distance = -enough};
+  for (std::size_t count = 1; count <= kMostMeasured; ++count) {
+    std::size_t highest = 0;
+    for (std::size_t i = 1; i < count; ++i)
+      if (most_between(parts[i]) > kGreater * most_between(parts[highest])) highest = i;
+    EdgeInside& part = parts[highest];
+    if (most_between(part) <= std::max(enough, kNearlyDeepest * -deepest.distance)) break;
+    const Vec3 along = part.to - part.from;
+    const double length = norm(along);
+    const double t = std::clamp(0.5 + 0.5 * (part.to_depth - part.from_depth) / length, 0.0, 1.0);
+    const SurfacePoint point = measure_near(solid, part.from + t * along, near_face);
+    near_face = point.face;
+    if (point.distance < kGreater * deepest.distance) deepest = point;
+    parts[count] = {point.at, part.to, -point.distance, part.to_depth};
+    part.to = point.at;
+    part.to_depth = -point.distance;
+  }
+  return deepest;
+}
+
 // Only edges of near faces pass through the surface or are within the margin of it, and those that have an
 // end in contact have others only if they are long.
 void FeatureContacts::find_at_edges(ContactCandidates& candidates, std::span<const std::uint32_t> leaves) {
@@ -84,7 +119,7 @@ void FeatureContacts::find_at_edges(ContactCandidates& candidates, std::span<con
   add_contacts();
 }
 
-void FeatureContacts::find_on_edge(std::uint32_t edge, bool a_touches, bool b_touches, double reach) {
+void FeatureContacts::find_on_edge(std::uint32_t edge, bool a_touches, bool b_touches, double max_depth) {
   const sites::SitesData& sites = internals(on().sites());
   const auto [a, b] = sites.topology.edges[edge];
   const Vec3 start = to_other().map(sites.mesh.positions[a]), end = to_other().map(sites.mesh.positions[b]);
@@ -99,7 +134,7 @@ void FeatureContacts::find_on_edge(std::uint32_t edge, bool a_touches, bool b_to
   const SurfaceAround around{&sites, &to_other(), &from_other(), sites.topology.edge_faces(edge), {a, b}};
   const EdgeContacts::Edge in_other{start, end, a_touches, b_touches, spokes_, around};
   const std::span<const EdgeContacts::Found> found =
-      edge_contacts_.find(in_other, other(), query().limit, reach, tolerance());
+      edge_contacts_.find(in_other, other(), query().limit, max_depth, tolerance());
   const bool may_be_deep = other().solid() && norm(end - start) > kLongEdge * query().size;
   Feature on_part{.key = kEdge | edge, .site = edge, .edge = true, .faces = faces};
   for (const EdgeContacts::InContact& part : edge_contacts_.in_contact()) {

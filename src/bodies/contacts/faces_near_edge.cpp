@@ -44,12 +44,12 @@ HWY_INLINE uint32_t bits(hn::Mask<Lanes> mask, size_t i) {
   return uint32_t{bytes[0]} << i;
 }
 
-// Boxes that a segment passes, enlarged by `reach`, and that are partly in all half-spaces added.
+// Boxes that a segment passes, enlarged by `max_distance`, and that are partly in all half-spaces added.
 class Boxes {
  public:
-  Boxes(const UnitSegment& segment, float reach) : segment_(segment) {
+  Boxes(const UnitSegment& segment, float max_distance) : segment_(segment) {
     const Lanes d;
-    reach_ = hn::Set(d, reach + segment.rounding);
+    max_distance_ = hn::Set(d, max_distance + segment.rounding);
     for (int k = 0; k < 3; ++k) {
       constexpr float kLeast = 1e-12f;  // parallel to the sides of boxes
       const float along = segment.end[k] - segment.start[k];
@@ -57,10 +57,10 @@ class Boxes {
       inverse_[k] = hn::Set(d, 1 / (std::abs(along) < kLeast ? kLeast : along));
     }
   }
-  // A point of a face is above or below a point p of the segment, at p + h n, −margin ≤ h ≤ reach, and the
-  // normal n of the face has a cosine of at least −s with `side`, and −s to s with the direction a of the
-  // segment, s = kSupportSine. So it is in the half-space (x − p)·w ≥ −max(reach (1 + |side·a|) s, margin),
-  // for w = side − (side·a) a, which is the same for all p.
+  // A point of a face is above or below a point p of the segment, at p + h n, −margin ≤ h ≤ max_depth, and
+  // the normal n of the face has a cosine of at least −s with `side`, and −s to s with the direction a of the
+  // segment, s = kSupportSine. So it is in the half-space (x − p)·w ≥ −max(max_depth (1 + |side·a|) s,
+  // margin), for w = side − (side·a) a, which is the same for all p.
   void add_half_space(const std::array<float, 3>& side, const Supporting& supporting) {
     const Lanes d;
     float cosine = 0, rest = 0, w[3];
@@ -70,7 +70,7 @@ class Boxes {
       rest -= w[k] * segment_.start[k];
     }
     const float behind =
-        std::max(supporting.reach * (1 + std::abs(cosine)) * kSupportSine, supporting.margin) +
+        std::max(supporting.max_depth * (1 + std::abs(cosine)) * kSupportSine, supporting.margin) +
         2 * segment_.rounding;
     HalfSpace& added = half_spaces_[count_++];
     for (int k = 0; k < 3; ++k) added.w[k] = hn::Set(d, w[k]);
@@ -84,9 +84,9 @@ class Boxes {
       Vec from = hn::Zero(d), to = hn::Set(d, 1.0f);
       for (int k = 0; k < 3; ++k) {
         const Vec lo =
-            hn::Mul(hn::Sub(hn::Sub(hn::Load(d, node.lower[k] + i), reach_), start_[k]), inverse_[k]);
+            hn::Mul(hn::Sub(hn::Sub(hn::Load(d, node.lower[k] + i), max_distance_), start_[k]), inverse_[k]);
         const Vec hi =
-            hn::Mul(hn::Sub(hn::Add(hn::Load(d, node.upper[k] + i), reach_), start_[k]), inverse_[k]);
+            hn::Mul(hn::Sub(hn::Add(hn::Load(d, node.upper[k] + i), max_distance_), start_[k]), inverse_[k]);
         from = hn::Max(from, hn::Min(lo, hi));
         to = hn::Min(to, hn::Max(lo, hi));
       }
@@ -110,7 +110,7 @@ class Boxes {
   };
 
   const UnitSegment& segment_;
-  Vec reach_, start_[3], inverse_[3];
+  Vec max_distance_, start_[3], inverse_[3];
   HalfSpace half_spaces_[2];
   int count_ = 0;
 };
@@ -135,29 +135,30 @@ struct Discs {
   }
 };
 
-// Faces whose discs are within `reach` of a segment.
+// Faces whose discs are within `max_distance` of a segment.
 class NearFaces {
  public:
-  NearFaces(const UnitSegment& segment, float reach) : segment_(segment), reach_(reach + segment.rounding) {}
+  NearFaces(const UnitSegment& segment, float max_distance)
+      : segment_(segment), max_distance_(max_distance + segment.rounding) {}
   // Both the plane and the ball of the disc are.
   HWY_INLINE uint32_t operator()(const sites::FaceBounds& bounds, size_t i) const {
     const Lanes d;
     const Discs discs(bounds, i, segment_);
-    const Vec length = hn::Set(d, segment_.length), reach = hn::Set(d, reach_);
+    const Vec length = hn::Set(d, segment_.length), max_distance = hn::Set(d, max_distance_);
     const Vec end = hn::MulAdd(length, discs.sine, discs.height);
-    const auto by_plane = hn::And(hn::Le(hn::Min(discs.height, end), reach),
-                                  hn::Ge(hn::Max(discs.height, end), hn::Neg(reach)));
+    const auto by_plane = hn::And(hn::Le(hn::Min(discs.height, end), max_distance),
+                                  hn::Ge(hn::Max(discs.height, end), hn::Neg(max_distance)));
     const Vec squared = dot(discs.to_centre, discs.to_centre);
     const Vec aside =
         hn::NegMulAdd(discs.along, discs.along, hn::Mul(squared, hn::Set(d, 1 - kSegmentRounding)));
     const Vec beyond = hn::Sub(hn::Min(hn::Max(discs.along, hn::Zero(d)), length), discs.along);
-    const Vec radius = hn::Add(discs.radius, reach);
+    const Vec radius = hn::Add(discs.radius, max_distance);
     return bits(hn::And(by_plane, hn::Le(hn::MulAdd(beyond, beyond, aside), hn::Mul(radius, radius))), i);
   }
 
  private:
   const UnitSegment& segment_;
-  float reach_;
+  float max_distance_;
 };
 
 // Faces that may support a segment.
@@ -186,7 +187,7 @@ class SupportingFaces {
     const Vec height = hn::MulAdd(discs.along, discs.sine, discs.height);
     const Vec rise = hn::MulAdd(parallel, discs.radius, hn::Set(d, segment_.rounding));
     open = hn::And(open, hn::And(hn::Lt(height, hn::Add(rise, hn::Set(d, supporting_.margin))),
-                                 hn::Gt(hn::Add(height, rise), hn::Set(d, -supporting_.reach))));
+                                 hn::Gt(hn::Add(height, rise), hn::Set(d, -supporting_.max_depth))));
     // How far the line is from the middle of the disc, across it in the plane of the disc.
     Vec direction[3], across[3];
     splat(segment_.direction, direction);
@@ -227,17 +228,17 @@ Collect(const sites::Regions&, const Boxes&, const Faces&, std::vector<uint32_t>
 
 }  // namespace
 
-void CollectNear(const sites::SitesData& sites, const UnitSegment& segment, float reach,
+void CollectNear(const sites::SitesData& sites, const UnitSegment& segment, float max_distance,
                  std::vector<tree::OpenNode>& stack, std::vector<uint32_t>& found) {
-  const Boxes boxes(segment, reach);
-  const NearFaces faces(segment, reach);
+  const Boxes boxes(segment, max_distance);
+  const NearFaces faces(segment, max_distance);
   tree::visit(sites.wide, stack, Collect{sites.regions, boxes, faces, found});
 }
 
 void CollectSupporting(const sites::SitesData& sites, const UnitSegment& segment,
                        const Supporting& supporting, std::vector<tree::OpenNode>& stack,
                        std::vector<uint32_t>& found) {
-  Boxes boxes(segment, std::max(supporting.margin, supporting.reach));
+  Boxes boxes(segment, std::max(supporting.margin, supporting.max_depth));
   for (const std::array<float, 3>& side : supporting.sides) boxes.add_half_space(side, supporting);
   const SupportingFaces faces(segment, supporting);
   tree::visit(sites.wide, stack, Collect{sites.regions, boxes, faces, found});
@@ -257,15 +258,16 @@ std::array<float, 3> to_float(const Vec3& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
-// The part of a segment within `reach` of the box of the mesh, along its axes; nothing if there is none. Of a
-// segment that is much longer than the mesh, single precision would say nothing about this part.
+// The part of a segment within `max_distance` of the box of the mesh, along its axes; nothing if there is
+// none. Of a segment that is much longer than the mesh, single precision would say nothing about this part.
 std::optional<FacesNearEdge::UnitSegment> to_unit(const sites::SitesData& sites,
-                                                  const FacesNearEdge::Segment& segment, double reach) {
+                                                  const FacesNearEdge::Segment& segment,
+                                                  double max_distance) {
   const UnitFrame& frame = sites.frame;
   const Vec3 a = frame.to_unit(segment.a), along = frame.to_unit(segment.b) - a;
   const tree::FloatBox& box = sites.tree.box(0);
   constexpr double kSegmentRounding = FacesNearEdge::kSegmentRounding;
-  const double around = (1 + kSegmentRounding) * frame.scale * reach + kSegmentRounding;
+  const double around = (1 + kSegmentRounding) * frame.scale * max_distance + kSegmentRounding;
   double from = 0, to = 1, most = 0;
   for (int k = 0; k < 3; ++k) {
     const double lo = box.lower[k] - around - a[k], hi = box.upper[k] + around - a[k];
@@ -289,23 +291,23 @@ std::optional<FacesNearEdge::UnitSegment> to_unit(const sites::SitesData& sites,
 }  // namespace
 
 std::span<const std::uint32_t> FacesNearEdge::find(const sites::SitesData& sites, const Segment& segment,
-                                                   double reach) {
+                                                   double max_distance) {
   faces_.clear();
-  if (const std::optional<UnitSegment> unit = to_unit(sites, segment, reach))
+  if (const std::optional<UnitSegment> unit = to_unit(sites, segment, max_distance))
     HWY_DYNAMIC_DISPATCH(CollectNear)
-  (sites, *unit, static_cast<float>(sites.frame.scale * reach), stack_, faces_);
+  (sites, *unit, static_cast<float>(sites.frame.scale * max_distance), stack_, faces_);
   return faces_;
 }
 
 std::span<const std::uint32_t> FacesNearEdge::find_supporting(const sites::SitesData& sites,
                                                               const Segment& segment,
                                                               std::span<const Vec3> sides, double margin,
-                                                              double reach) {
+                                                              double max_distance) {
   faces_.clear();
-  const std::optional<UnitSegment> unit = to_unit(sites, segment, std::max(margin, reach));
+  const std::optional<UnitSegment> unit = to_unit(sites, segment, std::max(margin, max_distance));
   if (!unit) return faces_;
   Supporting supporting{.margin = static_cast<float>(sites.frame.scale * margin),
-                        .reach = static_cast<float>(sites.frame.scale * reach)};
+                        .max_depth = static_cast<float>(sites.frame.scale * max_distance)};
   // An edge of more faces has further sides, which could only exclude more.
   const std::size_t count = std::min(sides.size(), supporting.sides.size());
   for (std::size_t i = 0; i < count; ++i) supporting.sides[i] = to_float(normalized(sides[i]));

@@ -20,17 +20,17 @@ class FacesNearEdge {
   struct Segment {
     Vec3 a{}, b{};
   };
-  /// The faces within `reach` of the segment. Cost: of the leaves whose boxes are.
+  /// The faces within `max_distance` of the segment. Cost: of the leaves whose boxes are.
   [[nodiscard]] std::span<const std::uint32_t> find(const sites::SitesData& sites, const Segment& segment,
-                                                    double reach);
+                                                    double max_distance);
 
-  /// The faces that have part of the segment above them within `margin` or below them within `reach`, are
+  /// The faces that have part of the segment above them within `margin` or below them within `max_depth`, are
   /// nearly parallel to it and do not face `sides`, directions from the edge along the faces beside it. Cost:
   /// of the leaves within both.
   [[nodiscard]] std::span<const std::uint32_t> find_supporting(const sites::SitesData& sites,
                                                                const Segment& segment,
                                                                std::span<const Vec3> sides, double margin,
-                                                               double reach);
+                                                               double max_distance);
 
   /// Rounding in single precision of distances, relative to coordinates, and of squares, relative to their
   /// sum.
@@ -46,7 +46,7 @@ class FacesNearEdge {
   /// What find_supporting() requires, in the unit frame.
   struct Supporting {
     std::array<std::array<float, 3>, 2> sides{};  ///< of length 1, or 0
-    float margin = 0, reach = 0;
+    float margin = 0, max_depth = 0;
   };
 
  private:

@@ -57,7 +57,7 @@ class FeatureContacts {
   static void keep_hull(std::vector<Corner>& corners, const Vec3& up);
   [[nodiscard]] Vec3 outwards_at(const SurfacePoint& point) const;
   void find_each(const ContactRegion& region);
-  void find_on_edge(std::uint32_t edge, bool a_touches, bool b_touches, double reach);
+  void find_on_edge(std::uint32_t edge, bool a_touches, bool b_touches, double max_depth);
   void find_support(Feature& feature);
   [[nodiscard]] EdgeContacts::InContact whole_edge() const;
   void find_inside_edges(const ContactRegion& region);

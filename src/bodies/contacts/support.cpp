@@ -23,7 +23,7 @@ void restrict_to(Clip& clip, double value, double slope) {
 }  // namespace
 
 Clip clip_to_prism(const sites::SitesData& sites, std::uint32_t face, const Vec3& a, const Vec3& along,
-                   double margin, double reach) {
+                   double margin, double max_depth) {
   const Triangle& corners = sites.mesh.triangles[face];
   const Vec3& normal = sites.normals.face[face];
   const double rounding = kUnitDistanceRounding / sites.frame.scale;
@@ -31,7 +31,7 @@ Clip clip_to_prism(const sites::SitesData& sites, std::uint32_t face, const Vec3
   const double height = dot(normal, a - corner(0)), rise = dot(normal, along);
   Clip clip;
   restrict_to(clip, margin + rounding - height, -rise);
-  restrict_to(clip, reach + rounding + height, rise);
+  restrict_to(clip, max_depth + rounding + height, rise);
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 &start = corner(k), &third = corner((k + 2) % 3);
     Vec3 wall = normalized(cross(normal, corner((k + 1) % 3) - start));
@@ -48,11 +48,11 @@ bool is_support(const shape::Body& body, std::uint32_t face) {
 }
 
 Support support_of_vertex(const shape::Body& body, const Vec3& vertex, std::span<const Vec3> spokes,
-                          double margin, double reach) {
+                          double margin, double max_depth) {
   poll();
   const sites::SitesData& sites = internals(body.sites());
   Box box;
-  const double most = std::max(margin, reach);
+  const double most = std::max(margin, max_depth);
   const Vec3 around{most, most, most};
   extend(box, sites.frame.to_unit(vertex - around));
   extend(box, sites.frame.to_unit(vertex + around));
@@ -65,7 +65,7 @@ Support support_of_vertex(const shape::Body& body, const Vec3& vertex, std::span
     for (const std::uint32_t face : sites.tree.items_of(leaf)) {
       const Vec3& normal = sites.normals.face[face];
       if (!can_push(normal, spokes) || !is_support(body, face)) continue;
-      const Clip clip = clip_to_prism(sites, face, vertex, {}, margin, reach);
+      const Clip clip = clip_to_prism(sites, face, vertex, {}, margin, max_depth);
       if (clip.to < clip.from) continue;
       const double height = dot(normal, vertex - sites.mesh.positions[sites.mesh.triangles[face][0]]);
       if (best.face == kNone || std::abs(height) < std::abs(best.height) ||

@@ -33,16 +33,16 @@ inline constexpr double kPushSine = 0.05;
 /// Whether a face can support anything: it is part of the boundary of a solid everywhere, and has a normal.
 [[nodiscard]] bool is_support(const shape::Body& body, std::uint32_t face);
 
-/// The face closest along its normal to a vertex above or below it, at most `reach` below and `margin` above,
-/// that can push it. Cost: of the faces within both.
+/// The face closest along its normal to a vertex above or below it, at most `max_depth` below and `margin`
+/// above, that can push it. Cost: of the faces within both.
 [[nodiscard]] Support support_of_vertex(const shape::Body& body, const Vec3& vertex,
-                                        std::span<const Vec3> spokes, double margin, double reach);
+                                        std::span<const Vec3> spokes, double margin, double max_depth);
 
 /// The part of the line a + t·along, 0 ≤ t ≤ 1, that is above or below a face; `to` < `from` if none is.
 struct Clip {
   double from = 0, to = 1;
 };
 [[nodiscard]] Clip clip_to_prism(const sites::SitesData& sites, std::uint32_t face, const Vec3& a,
-                                 const Vec3& along, double margin, double reach);
+                                 const Vec3& along, double margin, double max_depth);
 
 }  // namespace sdm::contacts

@@ -7,9 +7,10 @@
 
 namespace sdm::contacts {
 
-SurfacePoint measure(const shape::Body& body, const Vec3& at, double reach) {
+SurfacePoint measure(const shape::Body& body, const Vec3& at, double likely_distance) {
   const sites::SitesData& sites = internals(body.sites());
-  const double limit = (1 + kUnitDistanceRounding) * reach + kUnitDistanceRounding / sites.frame.scale;
+  const double limit =
+      (1 + kUnitDistanceRounding) * likely_distance + kUnitDistanceRounding / sites.frame.scale;
   ClosestPoint closest = closest::closest_point(sites, at, limit);
   if (closest.type == SiteType::none) closest = closest::closest_point(sites, at, kInfinity);
   return {.at = at,

@@ -13,9 +13,9 @@ struct SurfacePoint {
   std::uint32_t face = kNone;  ///< a face of the closest site
 };
 
-/// Finds the closest point of the body. `reach`: the surface is probably no farther away, which makes the
-/// search shorter.
-[[nodiscard]] SurfacePoint measure(const shape::Body& body, const Vec3& at, double reach);
+/// Finds the closest point of the body. `likely_distance`: the surface is probably no farther away, which
+/// makes the search shorter.
+[[nodiscard]] SurfacePoint measure(const shape::Body& body, const Vec3& at, double likely_distance);
 
 /// The same, near a face of the body that is probably close, or kNone.
 [[nodiscard]] SurfacePoint measure_near(const shape::Body& body, const Vec3& at, std::uint32_t face);

@@ -80,10 +80,10 @@ void InternalContacts::follow(std::span<const shape::PosedBody> bodies, const Pa
       fixed_.push_back(b);
       boxes_.push_back(bodies[b].tight_box());
     }
-  double reach = 0;
+  double max_gap = 0;
   for (const std::uint32_t b : fixed_)
-    reach = std::max(reach, kBeyond * bodies[b].pose().scale * diagonal_of(bodies[b]));
-  for (const auto& [i, j] : sweep_.near_pairs(boxes_, reach)) {
+    max_gap = std::max(max_gap, kBeyond * bodies[b].pose().scale * diagonal_of(bodies[b]));
+  for (const auto& [i, j] : sweep_.near_pairs(boxes_, max_gap)) {
     const std::uint32_t a = fixed_[i], b = fixed_[j];
     if (!filter.same_body(a, b) && !(filter[a].fixed && filter[b].fixed)) continue;
     neighbours_.push_back({a, b});

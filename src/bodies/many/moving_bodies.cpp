@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "bodies/many/pool.h"
+#include "bodies/motion/divided_motion.h"
 #include "bodies/motion/moving_pair.h"
-#include "bodies/motion/swept_box.h"
 #include "bodies/pair/pair_answers.h"
 #include "core/parallel.h"
 

@@ -8,15 +8,15 @@
 
 namespace sdm {
 
-// Calls compute(answers, i) for the pairs within `reach` that is_unknown(pair), on all cores, where i
+// Calls compute(answers, i) for the pairs within `max_gap` that is_unknown(pair), on all cores, where i
 // counts them; and keeps what is then known.
 template <class IsUnknown, class Compute>
-void MultiBodyQuery::Impl::complete(double reach, const IsUnknown& is_unknown, const Compute& compute) {
-  near.follow(posed, reach);
+void MultiBodyQuery::Impl::complete(double max_gap, const IsUnknown& is_unknown, const Compute& compute) {
+  near.follow(posed, max_gap);
   unknown.clear();
   const std::span<bodies::NearPair> pairs = near.list();
   for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (pairs[i].gap <= reach && is_unknown(pairs[i])) unknown.push_back(i);
+    if (pairs[i].gap <= max_gap && is_unknown(pairs[i])) unknown.push_back(i);
   const auto compute_some = [&](std::size_t begin, std::size_t end) {
     std::unique_ptr<pair::PairAnswers> answers = pool.take(
         [&] { return std::make_unique<pair::PairAnswers>(options.contact_margin, options.depth_precision); });
@@ -73,12 +73,12 @@ void MultiBodyQuery::Impl::find_separations(double max_distance) {
   if (!parts.any_compound()) return;
 
   // A part inside another one may be farther from its surface than other parts of the same bodies are.
-  double reach = 0;
+  double max_gap = 0;
   colliding.clear();
   for (const PairSeparation& pair : separations)
     if (pair.colliding && pair.separation.value > max_distance) {
       colliding.push_back({pair.first, pair.second});
-      reach = std::max(reach, pair.separation.value);
+      max_gap = std::max(max_gap, pair.separation.value);
     }
   if (colliding.empty()) return;
   const auto is_contained = [&](const bodies::NearPair& pair) {
@@ -88,7 +88,7 @@ void MultiBodyQuery::Impl::find_separations(double max_distance) {
     });
   };
   complete(
-      reach, [&](const bodies::NearPair& pair) { return is_contained(pair) && !pair.separation_known; },
+      max_gap, [&](const bodies::NearPair& pair) { return is_contained(pair) && !pair.separation_known; },
       [](pair::PairAnswers& answers, std::size_t) {
         (void)answers.separation();
         (void)answers.colliding();

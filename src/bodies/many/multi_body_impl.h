@@ -129,13 +129,13 @@ struct MultiBodyQuery::Impl {
   }
 
  private:
-  void group_by_bodies(double reach);
+  void group_by_bodies(double max_gap);
   void find_translation(bodies::PairSeparator& separator, const BodyGroup& group);
   void keep_per_patch(std::size_t most);
   void list_contacts(bodies::ContactList list, const bodies::ContactStore& store,
                      std::vector<PairContacts>& listed);
   template <class IsUnknown, class Compute>
-  void complete(double reach, const IsUnknown& is_unknown, const Compute& compute);
+  void complete(double max_gap, const IsUnknown& is_unknown, const Compute& compute);
   template <class IsListed>
   void list_separations_if(const IsListed& is_listed);
 };

@@ -47,24 +47,24 @@ void MovedBodies::clear() noexcept {
 }
 
 void NearPairs::moved(std::size_t body) noexcept {
-  if (moved_.list().empty()) reach_.before = std::exchange(reach_.since_motion, 0);
+  if (moved_.list().empty()) max_gap_.before = std::exchange(max_gap_.since_motion, 0);
   moved_.add(body);
   surroundings_ += filter_[body].fixed;
 }
 
-void NearPairs::follow(std::span<const shape::PosedBody> bodies, double reach) try {
-  reach_.since_motion = std::max(reach_.since_motion, reach);
-  const double needed = std::max(reach_.since_motion, reach_.before);
-  if (complete_ && moved_.list().empty() && needed <= reach_.listed) return;
+void NearPairs::follow(std::span<const shape::PosedBody> bodies, double max_gap) try {
+  max_gap_.since_motion = std::max(max_gap_.since_motion, max_gap);
+  const double needed = std::max(max_gap_.since_motion, max_gap_.before);
+  if (complete_ && moved_.list().empty() && needed <= max_gap_.listed) return;
   for (const std::uint32_t body : moved_.list()) boxes_[body] = bodies[body].tight_box();
-  if (!complete_ || needed > reach_.listed || moved_.list().size() > kFewMoved)
+  if (!complete_ || needed > max_gap_.listed || moved_.list().size() > kFewMoved)
     adopt(sweep_.near_pairs(boxes_, needed, std::cref(filter_)));
   else {
     find_near_moved(needed);
     adopt(found_);
   }
   moved_.clear();
-  reach_.listed = needed;
+  max_gap_.listed = needed;
   complete_ = true;
 } catch (...) {
   forget();
@@ -72,19 +72,19 @@ void NearPairs::follow(std::span<const shape::PosedBody> bodies, double reach) t
 }
 
 // The pairs of the list without a body that has moved, and those of the bodies that have.
-void NearPairs::find_near_moved(double reach) {
+void NearPairs::find_near_moved(double max_gap) {
   near_moved_.clear();
   for (const std::uint32_t a : moved_.list())
     for (std::uint32_t b = 0; b < boxes_.size(); ++b) {
       if (a == b || (b < a && moved_.contains(b))) continue;
-      if (box_distance(boxes_[a], boxes_[b]) <= reach && filter_(a, b))
+      if (box_distance(boxes_[a], boxes_[b]) <= max_gap && filter_(a, b))
         near_moved_.push_back({std::min(a, b), std::max(a, b)});
     }
   std::ranges::sort(near_moved_);
   found_.clear();
   auto next = near_moved_.begin();
   for (const NearPair& listed : list_) {
-    if (listed.gap > reach || moved_.any_of(listed.pair)) continue;
+    if (listed.gap > max_gap || moved_.any_of(listed.pair)) continue;
     for (; next != near_moved_.end() && *next < listed.pair; ++next) found_.push_back(*next);
     found_.push_back(listed.pair);
   }

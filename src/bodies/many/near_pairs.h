@@ -127,9 +127,9 @@ class NearPairs {
   /// A number that changes when a fixed body moves or a filter changes.
   [[nodiscard]] std::size_t surroundings() const { return surroundings_; }
 
-  /// Brings the list up to date: then it has all pairs whose boxes are at most `reach` apart, and perhaps
+  /// Brings the list up to date: then it has all pairs whose boxes are at most `max_gap` apart, and perhaps
   /// some that are farther. If there is not enough memory, it throws, and all is unknown.
-  void follow(std::span<const shape::PosedBody> bodies, double reach);
+  void follow(std::span<const shape::PosedBody> bodies, double max_gap);
 
   /// The pairs, in lexicographic order.
   [[nodiscard]] std::span<NearPair> list() { return list_; }
@@ -138,12 +138,12 @@ class NearPairs {
  private:
   /// How far apart pairs are asked for. Several calls follow each motion, in any order: the list has what the
   /// farthest of them needs.
-  struct Reach {
+  struct MaxGap {
     double since_motion = 0, before = 0;  ///< the largest ones asked for since the last motion, and before it
     double listed = -1;                   ///< of the list
   };
 
-  void find_near_moved(double reach);
+  void find_near_moved(double max_gap);
   void adopt(std::span<const Sweep::Pair> found);
   [[nodiscard]] std::uint32_t new_state();
   void forget() noexcept;
@@ -151,7 +151,7 @@ class NearPairs {
   std::vector<Box> boxes_;
   PairFilter filter_;
   MovedBodies moved_;
-  Reach reach_;
+  MaxGap max_gap_;
   std::size_t surroundings_ = 0;
   bool complete_ = false;  ///< the list has all pairs that were near before the bodies moved
   Sweep sweep_;

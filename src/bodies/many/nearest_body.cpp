@@ -72,10 +72,10 @@ class BlockSearch {
     const mesh::Similarity& pose = bodies_[body].pose();
     const Affine to_body = inverse(pose.map);
     std::size_t count = 0;
-    double reach = 0;
+    double max_distance = 0;
     for (std::uint32_t i = 0; i < points.size(); ++i) {
       if (box_distance({points[i], points[i]}, bodies_[body].box()) > limit(i)) continue;
-      reach = std::max(reach, limit(i));
+      max_distance = std::max(max_distance, limit(i));
       asked_[count] = i;
       at_[count++] = to_body(points[i]);
     }
@@ -94,7 +94,7 @@ class BlockSearch {
       }
     };
     closest::closest_points(internals(bodies_[body].body().sites()), std::span(at_).first(count),
-                            reach / pose.scale, std::ref(keep_nearer));
+                            max_distance / pose.scale, std::ref(keep_nearer));
   }
 
   std::span<const shape::PosedBody> bodies_;

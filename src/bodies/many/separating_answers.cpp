@@ -10,8 +10,8 @@
 
 namespace sdm {
 
-// The pairs within `reach`, those of two bodies one after another.
-void MultiBodyQuery::Impl::group_by_bodies(double reach) {
+// The pairs within `max_gap`, those of two bodies one after another.
+void MultiBodyQuery::Impl::group_by_bodies(double max_gap) {
   const std::span<const bodies::NearPair> pairs = near.list();
   const auto bodies_of = [&](std::size_t i) {
     return Sweep::Pair{parts.body_of()[pairs[i].pair[0]], parts.body_of()[pairs[i].pair[1]]};
@@ -19,7 +19,7 @@ void MultiBodyQuery::Impl::group_by_bodies(double reach) {
   grouped.clear();
   groups.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (pairs[i].gap <= reach) grouped.push_back(i);
+    if (pairs[i].gap <= max_gap) grouped.push_back(i);
   if (parts.any_compound())
     std::ranges::sort(grouped, {}, [&](std::size_t i) { return std::pair(bodies_of(i), i); });
   for (std::size_t g = 0; g < grouped.size(); ++g) {

@@ -3,6 +3,7 @@
 
 #include <sdm/proximity_query.h>
 
+#include "bodies/shape/body.h"
 #include "mesh/similarity.h"
 
 namespace sdm::motion {
@@ -56,5 +57,8 @@ class DividedMotion {
   Vec3 middle_{}, start_{}, shift_{}, axis_{}, mesh_axis_{}, rounding_{};
   double angle_ = 0;
 };
+
+/// A box that contains the body at all times of the motion. Cost: constant.
+[[nodiscard]] Box swept_box(const shape::Body& body, const DividedMotion& motion);
 
 }  // namespace sdm::motion

@@ -51,7 +51,7 @@ Part Parts::face(std::uint32_t index) const {
   for (int i = 0; i < 3; ++i) {
     part.point[i] = corner(index, i);
     part.radius[i] = from_axis(part.point[i]);
-    part.reach = std::max(part.reach, motion_.scale() * norm(part.point[i]));
+    part.from_middle = std::max(part.from_middle, motion_.scale() * norm(part.point[i]));
   }
   part.axis[0] = normalized(cross(part.point[1] - part.point[0], part.point[2] - part.point[0]));
   return part;
@@ -66,7 +66,7 @@ Part Parts::box_of_tree(std::uint32_t node) const {
     part.axis[k][k] = 1;
   }
   part.radius[0] = from_axis(part.point[0]) + motion_.scale() * norm(part.half);
-  part.reach = motion_.scale() * (norm(part.point[0]) + norm(part.half));
+  part.from_middle = motion_.scale() * (norm(part.point[0]) + norm(part.half));
   return part;
 }
 
@@ -94,13 +94,13 @@ Part Parts::fitted(std::span<const std::uint32_t> faces, const Part& box) const 
   part.axis[2] = normalized(cross(part.axis[0], registration::vec3(principal.vectors.col(1))));
   part.axis[1] = cross(part.axis[2], part.axis[0]);
   Box extent;
-  double radius = 0, reach = 0;  // squared
+  double radius = 0, from_middle = 0;  // squared
   for (const std::uint32_t face : faces)
     for (int i = 0; i < 3; ++i) {
       const Vec3 p = corner(face, i), r = p - from;
       extend(extent, Vec3{dot(r, part.axis[0]), dot(r, part.axis[1]), dot(r, part.axis[2])});
       radius = std::max(radius, squared_norm(cross(p, motion_.mesh_axis())));
-      reach = std::max(reach, squared_norm(p));
+      from_middle = std::max(from_middle, squared_norm(p));
     }
   part.half = 0.5 * (extent.upper - extent.lower);
   if (principal.found && area(part.half) < area(box.half)) {
@@ -110,7 +110,7 @@ Part Parts::fitted(std::span<const std::uint32_t> faces, const Part& box) const 
     part = box;
   }
   part.radius[0] = motion_.scale() * std::sqrt(radius);
-  part.reach = motion_.scale() * std::sqrt(reach);
+  part.from_middle = motion_.scale() * std::sqrt(from_middle);
   return part;
 }
 

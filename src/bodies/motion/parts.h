@@ -16,7 +16,7 @@ namespace sdm::motion {
 struct Part {
   std::array<Vec3, 3> point{};     ///< the middle of the box, or the corners of the face
   std::array<double, 3> radius{};  ///< how far the box, or each corner, is from the axis at most, in space
-  double reach = 0;                ///< how far the part is from the middle at most, in space
+  double from_middle = 0;          ///< how far the part is from the middle at most, in space
   std::size_t points = 1;
   std::array<Vec3, 3> axis{};  ///< of length 1: of the box, or the normal of the face and 0; 0 without area
   Vec3 half{};                 ///< of the sides of the box; 0 for a face

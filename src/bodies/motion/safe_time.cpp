@@ -52,7 +52,7 @@ class Rises {
       const double swing = across_ * part_.radius[i];
       if (bound == speed) rise[i] = {.at = at_[i], .speed = angle * swing};
       if (bound == taylor) rise[i] = {.at = at_[i], .speed = extent[i], .bend = angle * angle * swing};
-      if (bound == circle) rise[i] = {.at = std::min(extent[i] + swing, part_.reach)};
+      if (bound == circle) rise[i] = {.at = std::min(extent[i] + swing, part_.from_middle)};
     }
   }
 

@@ -80,8 +80,8 @@ class BoxDistances {
     const FrameMap& map = maps_.to[1 - side_];
     for (int k = 0; k < 3; ++k) {
       const Vec between = hn::Add(dot(d, centre, map.row[k]), hn::Set(d, map.offset[k] - other_.centre[k]));
-      const Vec reach = hn::Add(dot_absolute(half, map.row[k]), hn::Set(d, other_.half[k] + map.error));
-      gap[k] = hn::Sub(hn::Abs(between), reach);
+      const Vec halves = hn::Add(dot_absolute(half, map.row[k]), hn::Set(d, other_.half[k] + map.error));
+      gap[k] = hn::Sub(hn::Abs(between), halves);
     }
     least = hn::Max(least, hn::Mul(hn::Set(d, maps_.unit[1 - side_]), distance_of_gaps(d, gap)));
     if (!direction_.known) return least;

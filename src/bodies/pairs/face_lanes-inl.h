@@ -161,9 +161,9 @@ struct PlacedBox {
   HWY_INLINE Extent along(const Vec (&axis)[3]) const {
     const Lanes d;
     const Vec middle = dot(d, axis, centre);
-    Vec reach = hn::Abs(dot(d, axis, side[0]));
-    for (int k = 1; k < 3; ++k) reach = hn::Add(reach, hn::Abs(dot(d, axis, side[k])));
-    return {hn::Sub(middle, reach), hn::Add(middle, reach)};
+    Vec half = hn::Abs(dot(d, axis, side[0]));
+    for (int k = 1; k < 3; ++k) half = hn::Add(half, hn::Abs(dot(d, axis, side[k])));
+    return {hn::Sub(middle, half), hn::Add(middle, half)};
   }
 };
 

@@ -23,10 +23,15 @@ class NearFacesSearch {
   using Pair = PairWorkspace::Entry;
   using Half = NearFacesWorkspace::Half;
 
-  NearFacesSearch(const MeshPair& pair, double reach, Half& half, NearFaces& near)
-      : pair_(pair), sites_{&pair.o1, &pair.o2}, maps_(pair), half_(half), near_(near), exact_(reach == 0) {
-    limit_ = maps_.round_up(reach + maps_.rounding());
-    reach_ = static_cast<float>(reach * pair.o1.frame.scale);
+  NearFacesSearch(const MeshPair& pair, double max_distance, Half& half, NearFaces& near)
+      : pair_(pair),
+        sites_{&pair.o1, &pair.o2},
+        maps_(pair),
+        half_(half),
+        near_(near),
+        exact_(max_distance == 0) {
+    limit_ = maps_.round_up(max_distance + maps_.rounding());
+    max_distance_ = static_cast<float>(max_distance * pair.o1.frame.scale);
     for (int side = 0; side < 2; ++side) {
       std::vector<uint8_t>& marks = near_.of_leaf[side];
       for (const uint32_t leaf : near_.leaves[side]) marks[leaf] = 0;
@@ -74,7 +79,7 @@ class NearFacesSearch {
   void open(const Pair& pair, int /*side*/, float /*least*/) { half_.open.push_back(pair); }
 
  private:
-  // Whether no two points of the boxes are farther apart than the reach, in the frame of O1.
+  // Whether no two points of the boxes are farther apart than the largest distance, in the frame of O1.
   bool all_near(const CentredBox& box1, const CentredBox& box2) const {
     const FrameMap& map = maps_.to[0];
     float squared = 0, half1 = 0, half2 = 0;
@@ -85,7 +90,7 @@ class NearFacesSearch {
       half1 += box1.half[k] * box1.half[k];
       half2 += box2.half[k] * box2.half[k];
     }
-    return std::sqrt(squared) + std::sqrt(half1) + map.stretch * std::sqrt(half2) + map.error < reach_;
+    return std::sqrt(squared) + std::sqrt(half1) + map.stretch * std::sqrt(half2) + map.error < max_distance_;
   }
 
   // Whether all faces are known to be near.
@@ -180,8 +185,8 @@ class NearFacesSearch {
   Half& half_;
   NearFaces& near_;
   const bool exact_;
-  float limit_;  // pairs farther than this are not near
-  float reach_;  // in the unit frame of O1
+  float limit_;         // pairs farther than this are not near
+  float max_distance_;  // in the unit frame of O1
   const Direction none_;
   LeafFaces faces_[2];
 };
@@ -200,10 +205,11 @@ void Merge(const NearFaces& second, NearFaces& near) {
     }
 }
 
-void FindNearFaces(const MeshPair& pair, double reach, NearFacesWorkspace& workspace, NearFaces& near) {
+void FindNearFaces(const MeshPair& pair, double max_distance, NearFacesWorkspace& workspace,
+                   NearFaces& near) {
   constexpr size_t kEnough = 64;  // pairs that make halves about equal
   std::vector<PairWorkspace::Entry>& all = workspace.halves[0].open;
-  NearFacesSearch first(pair, reach, workspace.halves[0], near);
+  NearFacesSearch first(pair, max_distance, workspace.halves[0], near);
   all.assign(1, {});
   // One core goes through the pairs in the same order as two, so that opposite faces are the same.
   while (!all.empty() && all.size() < kEnough) first.open_first();
@@ -226,7 +232,7 @@ void FindNearFaces(const MeshPair& pair, double reach, NearFacesWorkspace& works
     first.open_all();
     return;
   }
-  NearFacesSearch second(pair, reach, workspace.halves[1], workspace.second);
+  NearFacesSearch second(pair, max_distance, workspace.halves[1], workspace.second);
   parallel_invoke([&] { first.open_all(); }, [&] { second.open_all(); });
   Merge(workspace.second, near);
 }
@@ -239,8 +245,9 @@ namespace sdm::pairs {
 
 HWY_EXPORT(FindNearFaces);
 
-void find_near_faces(const MeshPair& pair, double reach, NearFacesWorkspace& workspace, NearFaces& near) {
-  HWY_DYNAMIC_DISPATCH(FindNearFaces)(pair, reach, workspace, near);
+void find_near_faces(const MeshPair& pair, double max_distance, NearFacesWorkspace& workspace,
+                     NearFaces& near) {
+  HWY_DYNAMIC_DISPATCH(FindNearFaces)(pair, max_distance, workspace, near);
 }
 
 }  // namespace sdm::pairs

@@ -27,10 +27,11 @@ struct NearFacesWorkspace {
   NearFaces second;  ///< found by the second half
 };
 
-/// Finds all faces within `reach` of the other surface. If it is 0, exactly those that have a point in common
-/// with it; otherwise, some that are farther away may be among them. Cost: of the pairs of nodes that are so
-/// close, but for those whose faces are all known; on two cores if there are many, without allocation once
-/// the memory has grown.
-void find_near_faces(const MeshPair& pair, double reach, NearFacesWorkspace& workspace, NearFaces& near);
+/// Finds all faces within `max_distance` of the other surface. If it is 0, exactly those that have a point in
+/// common with it; otherwise, some that are farther away may be among them. Cost: of the pairs of nodes that
+/// are so close, but for those whose faces are all known; on two cores if there are many, without allocation
+/// once the memory has grown.
+void find_near_faces(const MeshPair& pair, double max_distance, NearFacesWorkspace& workspace,
+                     NearFaces& near);
 
 }  // namespace sdm::pairs

@@ -56,10 +56,10 @@ class SeparatingAxis {
  private:
   // Whether this axis does, by the boxes around the surfaces.
   bool separates(const Vec3& axis) {
-    double reach = 0;
-    for (int k = 0; k < 3; ++k) reach += std::abs(axis[k]) * (half1_[k] + rounding_[k]);
-    for (int j = 0; j < 3; ++j) reach += std::abs(dot(axis, edge_[j]));
-    const double overlap = reach - std::abs(dot(axis, between_));
+    double halves = 0;
+    for (int k = 0; k < 3; ++k) halves += std::abs(axis[k]) * (half1_[k] + rounding_[k]);
+    for (int j = 0; j < 3; ++j) halves += std::abs(dot(axis, edge_[j]));
+    const double overlap = halves - std::abs(dot(axis, between_));
     if (overlap < 0) return true;
     // Compared without roots: overlap / |axis|.
     const double squared = overlap * overlap, size = squared_norm(axis);

@@ -25,10 +25,10 @@ FrameMap in_floats(const Affine& map, double stretch) {
   double largest = 1;
   bool usable = true;
   for (int i = 0; i < 3; ++i) {
-    double reach = std::abs(map.offset[i]);
-    for (const double x : map.rows[i]) reach += std::abs(x);
-    usable = usable && reach < kLargest;  // nor NaN
-    largest = std::max(largest, reach);
+    double row_sum = std::abs(map.offset[i]);
+    for (const double x : map.rows[i]) row_sum += std::abs(x);
+    usable = usable && row_sum < kLargest;  // nor NaN
+    largest = std::max(largest, row_sum);
   }
   if (!usable) return {{}, {}, 0, std::numeric_limits<float>::infinity()};
   for (int i = 0; i < 3; ++i) {

@@ -27,7 +27,7 @@ constexpr auto kFarther = [](const auto& a, const auto& b) { return a.least > b.
 
 }  // namespace
 
-double OverlapCover::Cube::reach() const {
+double OverlapCover::Cube::half_diagonal() const {
   return std::sqrt(3.0) * half;
 }
 
@@ -105,18 +105,18 @@ void OverlapCover::release(std::uint32_t list) {
 }
 
 // Whether a pair of balls covers the cube. If not, leaves those that may be the best somewhere in the cube,
-// and cover a part of it: v changes by at most the reach.
+// and cover a part of it: v changes by at most half the diagonal.
 bool OverlapCover::covered_by_pairs(Cube& cube) {
-  const double reach = cube.reach();
+  const double half_diagonal = cube.half_diagonal();
   double best = -kInfinity;
   values_.clear();
   for (const std::uint32_t i : lists_[cube.list].pairs) {
     const double v = pairs_[i].radius - norm(cube.centre - pairs_[i].centre);
-    if (v > reach) return true;
+    if (v > half_diagonal) return true;
     best = std::max(best, v);
-    if (v > -reach) values_.push_back({v, i});
+    if (v > -half_diagonal) values_.push_back({v, i});
   }
-  std::erase_if(values_, [&](const Value& value) { return value.v < best - 2 * reach; });
+  std::erase_if(values_, [&](const Value& value) { return value.v < best - 2 * half_diagonal; });
   release(cube.list);
   cube.list = take_list();
   for (const Value& value : values_) lists_[cube.list].pairs.push_back(value.pair);
@@ -126,12 +126,12 @@ bool OverlapCover::covered_by_pairs(Cube& cube) {
 // Whether one of the best pairs covers it with the distances to the surfaces, or a deep point does.
 bool OverlapCover::covered_by_measuring(const Cube& cube) {
   for (const DeepPoint& p : deep_)
-    if (measure(p.body, p.ball, cube.centre) > cube.reach()) return true;
+    if (measure(p.body, p.ball, cube.centre) > cube.half_diagonal()) return true;
   const auto tried = values_.begin() + std::min(values_.size(), kTried);
   std::ranges::partial_sort(values_, tried, std::ranges::greater{}, &Value::v);
   for (auto value = values_.begin(); value != tried; ++value)
     for (int body = 0; body < 2; ++body)
-      if (measure(body, balls_[body][pairs_[value->pair].ball[body]], cube.centre) > cube.reach())
+      if (measure(body, balls_[body][pairs_[value->pair].ball[body]], cube.centre) > cube.half_diagonal())
         return true;
   return false;
 }

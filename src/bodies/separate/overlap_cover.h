@@ -52,7 +52,7 @@ class OverlapCover {
     Vec3 centre{};
     double half = 0, least = 0;  ///< least: the distance from 0
     std::uint32_t list = 0;      ///< of the pairs that may matter in it
-    [[nodiscard]] double reach() const;
+    [[nodiscard]] double half_diagonal() const;
   };
   /// Pairs, by their numbers, which the parts of a cube share.
   struct PairList {

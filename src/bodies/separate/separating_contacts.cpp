@@ -55,7 +55,7 @@ std::array<shape::PosedBody, 2> moved(const shape::PosedBody& o1, const shape::P
 }
 
 // Of a touch after the translation, whose nearest points are `apart`: how far apart other points of it are.
-double reach_of_touch(double apart, const SeparatingTranslation& out, double size) {
+double distance_of_touch(double apart, const SeparatingTranslation& out, double size) {
   return apart + kGapOfTranslation * out.value + kGapOfSize * size;
 }
 
@@ -69,9 +69,9 @@ void SeparatingContacts::find(const shape::PosedBody& o1, const shape::PosedBody
   const double size = size_of(o1, o2);
   const std::array bodies = moved(o1, o2, out);
   apart_.begin(bodies[0], bodies[1]);
-  const double reach = reach_of_touch(apart ? *apart : apart_.separation().value, out, size);
-  const std::optional<Contact> exit = exit_after(bodies, out, reach);
-  const std::span<const Contact> all = apart_.contacts_within(contact_margin_ + reach);
+  const double max_distance = distance_of_touch(apart ? *apart : apart_.separation().value, out, size);
+  const std::optional<Contact> exit = exit_after(bodies, out, max_distance);
+  const std::span<const Contact> all = apart_.contacts_within(contact_margin_ + max_distance);
   add_after(filter ? filter(bodies, all) : all, out.translation);
   sort_after(exit, size);
 }
@@ -83,13 +83,13 @@ std::optional<Contact> SeparatingContacts::exit_of(const shape::PosedBody& o1, c
   const std::array bodies = moved(o1, o2, out);
   apart_.begin(bodies[0], bodies[1]);
   const double nearest = apart ? *apart : apart_.separation().value;
-  return exit_after(bodies, out, reach_of_touch(nearest, out, size_of(o1, o2)));
+  return exit_after(bodies, out, distance_of_touch(nearest, out, size_of(o1, o2)));
 }
 
 // The contact of the closest points after the translation; none if they are farther apart than that.
 std::optional<Contact> SeparatingContacts::exit_after(const std::array<shape::PosedBody, 2>& bodies,
-                                                      const SeparatingTranslation& out, double reach) {
-  if (!apart_.surfaces_within(reach)) return {};
+                                                      const SeparatingTranslation& out, double max_distance) {
+  if (!apart_.surfaces_within(max_distance)) return {};
   const std::array<Vec3, 2>& closest = *apart_.separation().witness;
   return exit_contact(bodies, apart_.known().closest_faces, closest, out.translation);
 }

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "bodies/contacts/contact_order.h"
+#include "bodies/contacts/contact_patches.h"
 #include "bodies/pair/pair_answers.h"
 #include "bodies/shape/posed_body.h"
 #include "bodies/solids/convex_patch.h"
@@ -49,7 +49,7 @@ class SeparatingContacts {
   [[nodiscard]] std::span<const Contact> patch_of(const shape::PosedBody& o1, const shape::PosedBody& o2,
                                                   const SeparatingTranslation& out);
   [[nodiscard]] std::optional<Contact> exit_after(const std::array<shape::PosedBody, 2>& bodies,
-                                                  const SeparatingTranslation& out, double reach);
+                                                  const SeparatingTranslation& out, double max_distance);
   void add_after(std::span<const Contact> contacts, const Vec3& t);
   void sort_after(const std::optional<Contact>& exit, double size);
   void choose(std::span<const Contact> patch, std::size_t most);

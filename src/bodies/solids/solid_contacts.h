@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "bodies/contacts/contact_order.h"
+#include "bodies/contacts/contact_patches.h"
 #include "bodies/solids/convex_patch.h"
 #include "bodies/solids/solid_pair.h"
 

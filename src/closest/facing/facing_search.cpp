@@ -1,16 +1,25 @@
 #include "closest/facing/facing_search.h"
 
+#include <sdm/error.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "closest/exact.h"
-#include "closest/facing/normal_tree.h"
+#include "closest/facing/normal_cones.h"
+#include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "tree/visit.h"
 
 namespace sdm::facing {
 namespace {
+
+double cosine_of(double angle) {
+  check_angle(angle);
+  return std::cos(angle * std::numbers::pi / 180) - kDoubleRounding;
+}
 
 /// The angle of a face at one of its vertices.
 double angle_at(const Mesh& mesh, std::uint32_t face, std::uint32_t vertex) {
@@ -22,6 +31,13 @@ double angle_at(const Mesh& mesh, std::uint32_t face, std::uint32_t vertex) {
 }
 
 }  // namespace
+
+void check_angle(double angle) {
+  if (!(angle > 0 && angle <= 180))
+    throw Error("the angle within which faces face the samples must be above 0 and at most 180 degrees");
+}
+
+FacingAngle::FacingAngle(double degrees) : right_angle_(degrees == 90), least_cosine_(cosine_of(degrees)) {}
 
 FacingSearch::FacingSearch(const sites::SitesData& sites, double angle)
     : sites_(sites), bounds_(normal_bounds_of(sites)), angle_(angle) {}

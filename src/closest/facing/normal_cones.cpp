@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <numbers>
+#include <utility>
+#include <vector>
 
-#include "closest/facing/normal_bounds.h"
 #include "geometry/vec.h"
+#include "sites/regions.h"
 #include "tree/fold.h"
 
 namespace sdm::facing {
@@ -78,6 +81,19 @@ const NormalBounds& normal_bounds_of(const sites::SitesData& sites) {
     bounds->cones = normal_cones(sites);
     return bounds;
   });
+}
+
+tree::AabbTree normal_tree(const sites::SitesData& sites) {
+  std::vector<tree::FloatBox> boxes(sites.mesh.triangles.size());
+  std::vector<std::uint32_t> faces;
+  for (const std::uint32_t face : sites.tree.items) {
+    if (!has_normal(sites, face)) continue;
+    Box box;
+    extend(box, sites.normals.face[face]);
+    boxes[face] = tree::FloatBox::around(box);
+    faces.push_back(face);
+  }
+  return tree::build_aabb_tree(boxes, std::move(faces), sites::FaceBounds::kWidth);
 }
 
 }  // namespace sdm::facing

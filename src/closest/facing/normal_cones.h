@@ -1,9 +1,13 @@
 // Cones that contain the normals of the faces below the nodes of a tree.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
+#include "core/lazy/kept.h"
+#include "geometry/vec.h"
 #include "sites/sites_data.h"
+#include "tree/aabb_tree.h"
 
 namespace sdm::facing {
 
@@ -32,5 +36,28 @@ struct Cone {
   const double s = std::sqrt(std::max(0.0, 1 - c * c));
   return c * cone.cosine + s * cone.sine + kRounding;
 }
+
+/// The unit normals, as points, of the faces that have_normal(). Its items are faces. Cost: O(n log n), all
+/// cores.
+[[nodiscard]] tree::AabbTree normal_tree(const sites::SitesData& sites);
+
+/// An upper bound on n·m of the vectors m in a box, which are no longer than 1, for a unit vector n.
+[[nodiscard]] inline double largest_cosine(const tree::FloatBox& box, const Vec3& n) {
+  constexpr double kRounding = 1e-12;
+  double sum = kRounding;
+  for (int k = 0; k < 3; ++k) sum += std::max(n[k] * double{box.lower[k]}, n[k] * double{box.upper[k]});
+  return sum;
+}
+
+// What bounds the normals of many faces at once, kept with the sites.
+
+struct NormalBounds {
+  std::vector<Cone> cones;         ///< normal_cones()
+  Kept<tree::AabbTree> by_normal;  ///< normal_tree(), which most searches do without
+};
+
+/// Those of the present shape, valid until it changes. Cost: linear in the faces for the first call, then
+/// O(1).
+[[nodiscard]] const NormalBounds& normal_bounds_of(const sites::SitesData& sites);
 
 }  // namespace sdm::facing

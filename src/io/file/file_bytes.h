@@ -6,6 +6,8 @@
 #include <memory>
 #include <string_view>
 
+#include "core/checksum.h"
+
 namespace sdm::io {
 
 struct FileBytes {
@@ -22,5 +24,8 @@ void require_regular_file(const std::filesystem::path& file, std::string_view ki
 /// Reads a regular file, after checking that there is enough memory for it and for the mesh built from it.
 /// Throws sdm::Error; the message does not name the file.
 [[nodiscard]] FileBytes read_bytes(const std::filesystem::path& file);
+
+/// Adds the bytes of a file. Throws sdm::Error if it cannot be read.
+void add_file(core::Checksum& checksum, const std::filesystem::path& file);
 
 }  // namespace sdm::io

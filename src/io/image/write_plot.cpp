@@ -8,8 +8,8 @@
 
 #include "core/memory.h"
 #include "io/image/pictures/canvas.h"
+#include "io/image/pictures/legend.h"
 #include "io/image/pictures/picture.h"
-#include "io/image/pictures/ticks.h"
 
 namespace sdm {
 

@@ -5,7 +5,6 @@
 #include "io/image/pictures/face_scales.h"
 #include "io/image/pictures/legend.h"
 #include "io/image/pictures/png.h"
-#include "io/image/pictures/site_legend.h"
 
 #include <sdm/map_files.h>
 

@@ -19,7 +19,6 @@
 #include "io/image/pictures/face_scales.h"
 #include "io/image/pictures/legend.h"
 #include "io/image/pictures/picture.h"
-#include "io/image/pictures/ticks.h"
 #include "io/image/views/render_view.h"
 #include "io/image/views/view_layout.h"
 

@@ -14,7 +14,7 @@
 #include "io/file/encodings.h"
 #include "io/file/error_prefix.h"
 #include "io/file/file_bytes.h"
-#include "io/file/npy_header.h"
+#include "io/file/npy.h"
 #include "io/mesh/read_polygons.h"
 
 namespace sdm {

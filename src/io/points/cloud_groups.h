@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "summary/verdict/evidence.h"
 #include "summary/verdict/group_rows.h"
-#include "summary/verdict/sample_evidence.h"
 
 namespace sdm::io {
 

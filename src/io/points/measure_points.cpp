@@ -29,7 +29,7 @@
 #include "map/measures/walls.h"
 #include "map/statistics/tolerance_limits.h"
 #include "map/statistics/weighted_statistics.h"
-#include "summary/verdict/sample_evidence.h"
+#include "summary/verdict/evidence.h"
 #include "summary/wall_note.h"
 
 namespace sdm {

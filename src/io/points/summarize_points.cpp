@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "summary/verdict/certify.h"
-#include "summary/verdict/sample_evidence.h"
+#include "summary/verdict/evidence.h"
 
 namespace sdm {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "closest/facing/outward_normals.h"
+#include "closest/facing/facing_normals.h"
 #include "core/parallel.h"
 #include "geometry/line_triangle.h"
 #include "geometry/vec.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "closest/facing/outward_normals.h"
+#include "closest/facing/facing_normals.h"
 #include "geometry/triangle.h"
 #include "sites/closest_on_face.h"
 

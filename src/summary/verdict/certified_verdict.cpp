@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "certify/prove_tolerance.h"
-#include "closest/facing/outward_normals.h"
+#include "closest/facing/facing_normals.h"
 #include "summary/verdict/certify.h"
 #include "summary/verdict/evidence.h"
-#include "summary/verdict/missing_signs.h"
 
 namespace sdm {
 namespace {

@@ -7,8 +7,6 @@
 #include "summary/verdict/certify.h"
 #include "summary/verdict/evidence.h"
 #include "summary/verdict/group_rows.h"
-#include "summary/verdict/missing_signs.h"
-#include "summary/verdict/sample_evidence.h"
 
 namespace sdm {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "atlas/packing/too_small.h"
+#include "atlas/packing/pack.h"
 #include "core/cancellation.h"
 #include "core/intact.h"
 #include "core/memory.h"

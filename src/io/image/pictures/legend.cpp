@@ -1,16 +1,29 @@
 #include "io/image/pictures/legend.h"
 
-#include "io/image/pictures/canvas.h"
-#include "io/image/pictures/ticks.h"
-#include "summary/round_step.h"
-#include "summary/verdict/limits_words.h"
+#include <fmt/format.h>
+#include <sdm/map.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include "io/image/pictures/canvas.h"
+#include "io/image/pictures/color_scale.h"
+#include "summary/round_step.h"
+#include "summary/verdict/limits_words.h"
 
 namespace sdm::io {
 namespace {
+
+// Replaces a leading hyphen with a minus sign.
+std::string with_minus_sign(std::string number) {
+  if (number.starts_with('-')) number.replace(0, 1, "\u2212");
+  return number;
+}
 
 // Lengths for a resolution of 1024; the drawing is scaled as a whole.
 constexpr double kWidth = 232, kMargin = 24, kBarWidth = 30, kBarTop = 84, kMaxHeight = 1024;
@@ -61,7 +74,53 @@ void draw_bar(Canvas& canvas, const ColorScale& scale, const std::vector<ScaleLa
   }
 }
 
+// Lengths for 1024 rows; the drawing is scaled as a whole.
+constexpr double kLegendWidth = 232, kLegendHeight = 300, kEdge = 24, kSwatch = 22, kRow = 60;
+constexpr std::size_t kSwatches = 6;
+constexpr int kLeastDifference = 90;  // of the sum of differences of red, green and blue
+
+/// Colours of sites of a type, the first one and others that differ from each other.
+std::vector<Rgb> examples(SiteType type) {
+  std::vector<Rgb> colors;
+  for (std::uint32_t site = 0; colors.size() < kSwatches && site < 1000; ++site) {
+    const Rgb c = site_color(type, site);
+    if (std::ranges::all_of(colors, [&](const Rgb& other) {
+          return std::abs(c.r - other.r) + std::abs(c.g - other.g) + std::abs(c.b - other.b) >=
+                 kLeastDifference;
+        }))
+      colors.push_back(c);
+  }
+  return colors;
+}
+
 }  // namespace
+
+std::vector<double> ticks(double lo, double hi, int count) {
+  const RoundStep step((hi - lo) / count);
+  std::vector<double> result;
+  // Multiplied rather than accumulated: far from zero, adding a step may not change a value.
+  const double first = std::ceil(lo / step.size() - 1e-9);
+  for (int i = 0; i <= 2 * count; ++i) {
+    const double value = step.multiple(first + i);
+    if (value > hi + 1e-9 * step.size()) break;
+    result.push_back(value == 0 ? 0 : value);
+  }
+  return result;
+}
+
+std::string tick_label(double value, double step) {
+  const double size = std::max(std::abs(value), step);
+  if (size >= 1e6 || size < 1e-4)
+    return with_minus_sign(fmt::format(
+        "{:.{}e}", value,
+        std::clamp(static_cast<int>(std::floor(std::log10(size)) - std::floor(std::log10(step))), 0, 15)));
+  return with_minus_sign(fmt::format(
+      "{:.{}f}", value, std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 15)));
+}
+
+std::string value_label(double value) {
+  return with_minus_sign(fmt::format("{:.4g}", value));
+}
 
 std::vector<ScaleLabel> scale_labels(const ColorScale& scale) {
   const auto [lo, hi] = std::pair(scale.lower, scale.upper);
@@ -139,6 +198,39 @@ Picture draw_legend(const ColorScale& scale, const LegendText& text, std::uint32
     cairo_fill(cairo);
     canvas.set_color(kInk);
     write_text(canvas, kMargin + kTextSize + 8, baseline, "nothing in range", kTextSize);
+  }
+  return canvas.picture("the legend");
+}
+
+Picture draw_site_legend(std::uint32_t rows, bool has_missing) {
+  Canvas canvas(kLegendWidth, kLegendHeight, std::clamp(rows / 1024.0, 0.6, 4.0));
+  cairo_t* cairo = canvas.cairo();
+  double y = 40;
+  const auto text = [&](const std::string& line, double size, bool bold) {
+    canvas.set_color(kInk);
+    canvas.text(kEdge, y, line, size, kLegendWidth - 1.5 * kEdge, bold);
+  };
+  text("Closest site", 19, true);
+  const auto swatch = [&](double x, Rgb color) {
+    canvas.set_color(color);
+    cairo_rectangle(cairo, x, y + 8, kSwatch, kSwatch);
+    cairo_fill(cairo);
+  };
+  for (const auto& [type, name] :
+       {std::pair(SiteType::face, "faces: pale"), std::pair(SiteType::edge, "edges: saturated"),
+        std::pair(SiteType::vertex, "vertices: dark")}) {
+    y += type == SiteType::face ? 34 : kRow;
+    text(name, 15, false);
+    double x = kEdge;
+    for (const Rgb color : examples(type)) {
+      swatch(x, color);
+      x += kSwatch + 4;
+    }
+  }
+  if (has_missing) {
+    y += kRow;
+    text("nothing in range", 15, false);
+    swatch(kEdge, kNoValue);
   }
   return canvas.picture("the legend");
 }

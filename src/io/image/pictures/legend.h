@@ -3,14 +3,21 @@
 
 #include <sdm/map.h>
 
-#include "io/image/pictures/color_scale.h"
-#include "io/image/pictures/picture.h"
-
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "io/image/pictures/color_scale.h"
+#include "io/image/pictures/picture.h"
+
 namespace sdm::io {
+
+/// The multiples in [lo, hi] of a round step, 1, 2 or 5 times a power of ten, close to (hi − lo) / count.
+[[nodiscard]] std::vector<double> ticks(double lo, double hi, int count);
+/// The label of a tick: short, but distinct from those of its neighbours, `step` away.
+[[nodiscard]] std::string tick_label(double value, double step);
+/// A number with four significant digits.
+[[nodiscard]] std::string value_label(double value);
 
 /// A number beside the bar of a legend.
 struct ScaleLabel {
@@ -38,5 +45,9 @@ struct LegendText {
 /// Draws a legend for a map of `resolution` rows. The legend may be lower than that or, for small maps,
 /// higher.
 [[nodiscard]] Picture draw_legend(const ColorScale& scale, const LegendText& text, std::uint32_t resolution);
+
+/// Draws colours of faces, edges and vertices of O2, as of site_color(), with their names, for a picture of
+/// `rows` rows; `has_missing`: also the colour of texels without a value.
+[[nodiscard]] Picture draw_site_legend(std::uint32_t rows, bool has_missing);
 
 }  // namespace sdm::io

@@ -11,7 +11,6 @@
 #include "core/memory.h"
 #include "io/file/error_prefix.h"
 #include "io/file/file_bytes.h"
-#include "io/file/file_xxh3.h"
 #include "io/mesh/frames/changing_mesh.h"
 #include "io/mesh/frames/frame_source.h"
 #include "io/mesh/frames/welded_frames.h"

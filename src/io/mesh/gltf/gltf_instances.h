@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/mesh/gltf/document/gltf_document.h"
-#include "io/mesh/gltf/gltf_transform.h"
+#include "io/mesh/gltf/gltf_nodes.h"
 
 namespace sdm::io {
 

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "io/file/file_below.h"
+#include "io/mesh/gltf/document/gltf_buffers.h"
 #include "io/mesh/gltf/document/gltf_extensions.h"
-#include "io/mesh/gltf/document/gltf_uri.h"
 
 namespace sdm::io {
 namespace {

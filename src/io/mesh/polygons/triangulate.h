@@ -3,15 +3,91 @@
 
 #include <sdm/types.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "io/mesh/polygons/corner_tree.h"
-#include "io/mesh/polygons/tournament.h"
-
 namespace sdm::io {
+
+/// A tournament tree. Keys are ordered by <; positions without a key have the key `worst`.
+template <typename Key>
+class Tournament {
+ public:
+  /// Sets all keys. Cost: O(n).
+  void reset(std::span<const Key> keys, const Key& worst) {
+    leaves_ = std::bit_ceil(keys.size());
+    best_.assign(2 * leaves_, worst);
+    std::ranges::copy(keys, best_.begin() + static_cast<std::ptrdiff_t>(leaves_));
+    for (std::size_t node = leaves_; node-- > 1;) update(node);
+  }
+  /// Sets one key. Cost: O(log n).
+  void set(std::size_t place, const Key& key) {
+    std::size_t node = leaves_ + place;
+    best_[node] = key;
+    while ((node /= 2) > 0) update(node);
+  }
+  /// Returns the position of a smallest key: of several, the first one from `start` on, cyclically. Cost:
+  /// O(log n).
+  [[nodiscard]] std::size_t least_from(std::size_t start) const {
+    const auto holds_least = [&](std::size_t node) { return !(best_[1] < best_[node]); };
+    std::size_t node = leaves_ + start;
+    if (!holds_least(node)) {
+      // Go up until a smallest key lies to the right, or to the root; then down to the first such key.
+      while (node > 1 && (node % 2 != 0 || !holds_least(node + 1))) node /= 2;
+      if (node > 1) ++node;
+    }
+    while (node < leaves_) node = 2 * node + !holds_least(2 * node);
+    return node - leaves_;
+  }
+
+ private:
+  void update(std::size_t node) { best_[node] = std::min(best_[2 * node], best_[2 * node + 1]); }
+
+  std::size_t leaves_ = 0;  // a power of two; the children of node i are 2i and 2i + 1
+  std::vector<Key> best_;   // the smallest key below each node
+};
+
+/// A set of corners of a planar polygon, in a balanced tree of boxes.
+class CornerTree {
+ public:
+  /// Starts with an empty set. `points` must outlive the set. Cost: O(n log n).
+  void reset(std::span<const Vec2> points);
+  /// Adds a corner to the set or removes it. Cost: O(log n).
+  void set(std::uint32_t corner, bool present);
+
+  /// Returns whether `test` holds for any corner of the set that may lie in the counter-clockwise triangle or
+  /// on its boundary. Corners that are vertices of the triangle are not tested.
+  template <typename Test>
+  [[nodiscard]] bool any_in(const std::array<Vec2, 3>& triangle, const Test& test) const {
+    return any_in(1, triangle, test);
+  }
+
+ private:
+  struct Box {
+    Vec2 low{kInfinity, kInfinity};
+    Vec2 high{-kInfinity, -kInfinity};
+
+    [[nodiscard]] bool operator==(const Box&) const = default;
+  };
+  [[nodiscard]] static bool may_overlap(const Box& box, const std::array<Vec2, 3>& triangle);
+
+  // The recursion is as deep as the tree: at most 32.
+  template <typename Test>
+  bool any_in(std::size_t node, const std::array<Vec2, 3>& triangle, const Test& test) const {
+    if (!may_overlap(boxes_[node], triangle)) return false;
+    if (node >= leaves_) return test(corner_of_leaf_[node - leaves_]);
+    return any_in(2 * node, triangle, test) || any_in(2 * node + 1, triangle, test);
+  }
+
+  std::span<const Vec2> points_;
+  std::size_t leaves_ = 0;  // a power of two; the children of node i are 2i and 2i + 1
+  std::vector<Box> boxes_;  // of the corners present below each node
+  std::vector<std::uint32_t> corner_of_leaf_, leaf_of_corner_;
+};
 
 /// Triangulates polygons by clipping ears, shortest diagonal first. Reuses its memory between polygons.
 class Triangulator {

@@ -13,9 +13,9 @@
 #include "io/file/atomic_file.h"
 #include "io/mesh/model/model_vertices.h"
 #include "io/page/baked/detailed_model.h"
-#include "io/page/report/compress_arrays.h"
 #include "io/page/report/embedded_page.h"
 #include "io/page/report/face_walk.h"
+#include "io/page/report/packed_arrays.h"
 #include "io/page/report/page_file.h"
 #include "io/page/report/page_numbers.h"
 

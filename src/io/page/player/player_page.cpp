@@ -10,7 +10,6 @@
 #include "geometry/vec.h"
 #include "io/file/atomic_file.h"
 #include "io/image/pictures/color_scale.h"
-#include "io/page/report/compress_arrays.h"
 #include "io/page/report/embedded_page.h"
 #include "io/page/report/packed_arrays.h"
 #include "io/page/report/page_file.h"

@@ -60,4 +60,7 @@ class PackedArrays {
 /// with zeros.
 [[nodiscard]] std::string base85(std::span<const std::uint8_t> bytes);
 
+/// Compresses the planes. Cost: linear, all cores.
+void compress(PackedArrays& arrays);
+
 }  // namespace sdm::io

@@ -6,9 +6,9 @@
 
 #include "core/memory.h"
 #include "io/file/atomic_file.h"
-#include "io/page/report/compress_arrays.h"
 #include "io/page/report/embedded_page.h"
 #include "io/page/report/html_page.h"
+#include "io/page/report/packed_arrays.h"
 #include "io/page/report/page_file.h"
 
 namespace sdm {

@@ -5,12 +5,22 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/file/file_bytes.h"
 
 namespace sdm::io {
+
+/// Decodes escape sequences such as %20, once: what they stand for is not decoded again.
+[[nodiscard]] std::string decode_uri(std::string_view uri);
+
+/// Returns whether the URI contains its data.
+[[nodiscard]] bool is_data_uri(std::string_view uri);
+
+/// Returns the data of such a URI. Throws sdm::Error unless they are base64.
+[[nodiscard]] FileBytes decode_data_uri(std::string_view uri);
 
 /// The bytes of all buffers. A file that several buffers refer to is read once.
 class GltfBuffers {
