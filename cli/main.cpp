@@ -89,8 +89,8 @@ void print_failure() {
 }  // namespace
 
 #ifdef __GLIBC__
-/// In place of that of the system, so that nothing is left: the JSON of Debian's TinyGLTF asserts that it got
-/// memory.
+/// Replaces the C library's, so that unfinished files are removed: the JSON of Debian's TinyGLTF asserts that
+/// it got memory.
 // NOLINTNEXTLINE(bugprone-reserved-identifier)
 extern "C" void __assert_fail(const char* assertion, const char*, unsigned, const char*) noexcept {
   end_at_once(

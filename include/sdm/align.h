@@ -25,8 +25,8 @@ namespace sdm {
 
 /// Where an alignment starts.
 enum class AlignStart {
-  /// At AlignOptions::pose and, if O1 fits poorly there and no freedom is locked, also where the principal
-  /// axes agree: that which fits clearly better.
+  /// The better of two starts: AlignOptions::pose and, if O1 fits poorly there and no freedom is locked, the
+  /// pose in which the principal axes agree, which has to fit clearly better.
   automatic,
   pose,  ///< at AlignOptions::pose
   /// Where the centres and principal axes of both surfaces agree: the best of the 4 rotations that match

@@ -86,8 +86,8 @@ struct TessellationOptions {
   /// The distance from the triangles to the exact surface that is aimed at, in millimetres. Nothing: 1/2000
   /// of the diagonal of the part's box.
   std::optional<double> deflection{};
-  /// Without a deflection: it is at most this, in millimetres, unless the part would have more than
-  /// `most_triangles`.
+  /// The largest deflection, in millimetres, where none is given; a part that would have more than
+  /// `most_triangles` has a larger one.
   std::optional<double> at_most{};
   std::size_t most_triangles = 2'000'000;
   double angle =

@@ -136,7 +136,7 @@ struct GroupPoints {
   std::uint64_t below = 0, above = 0;  ///< out of the tolerance by more than the accuracy
   bool out_with_either_sign = true;    ///< a point is out whatever its sign, if it has none
   Evidence evidence{};                 ///< with error bound 0
-  /// Of the distances to faces that face the same way, if walls are thin.
+  /// The evidence by the faces that face the same way, if walls are thin.
   std::optional<Evidence> by_facing{};
 };
 

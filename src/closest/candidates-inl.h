@@ -25,8 +25,8 @@ class Settled {
 
   explicit Settled(const sites::SitesData& sites) : sites_(sites) {}
 
-  // Of several candidates at the same distance: the first one counts, and tied() is set; or the first one by
-  // type, site and face, which does not depend on the search.
+  // Which of several candidates at the same distance is taken: the first that is offered, and tied() is set;
+  // or the first by type, site and face, which does not depend on the order of the search.
   enum class Equal { in_order, by_name };
 
   // Compares the candidates that are within the limits of their points.

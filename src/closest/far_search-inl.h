@@ -32,7 +32,7 @@ namespace {
 // The policy of a search of the wide tree, the child with the least bound first.
 class FarSearch {
  public:
-  // From here on, double precision does not resolve distances to faces either.
+  // Beyond this, double precision does not resolve distances to faces either.
   static constexpr double kFarthest = 1e6;
 
   FarSearch(sites::LeafFrames::View& frames, const Vec3& unit_point,
@@ -103,9 +103,10 @@ class FarSearch {
   }
 
  private:
-  // With u = 2⁻²⁴, a corner from the frame of its face is off by 32 u at most, n by u, and the sum by 8 u;
-  // both faces that are compared are, as a side may be 2 √3 long. Distances in double precision are off by
-  // 4e-7 at most, where a face has a normal that is accurate to 1e-7. Together less than 6e-6.
+  // The error of n·x. With u = 2⁻²⁴, a corner from the frame of its face is off by 32 u at most, n by u, and
+  // the sum by 8 u; both faces that are compared are, as a side may be 2 √3 long. Distances in double
+  // precision are off by 4e-7 at most, where a face has a normal that is accurate to 1e-7. Together less than
+  // 6e-6.
   static constexpr float kError = 1e-5F;
 
   [[nodiscard]] HWY_INLINE BlockVec relative_distance(const Vec3Of<BlockVec>& x) const {

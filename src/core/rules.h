@@ -190,7 +190,7 @@ inline double rounded_hi(double lo, double hi) {
 inline constexpr double kVanishing = 0.1;    ///< part of a range in which a diverging scale is nearly white
 inline constexpr double kShorterSide = 0.5;  ///< of a sequential scale, of the longer one
 
-/// Of Colormap, in its order.
+/// The values of Colormap, in its order.
 inline constexpr double kViridisMap = 1.0;
 inline constexpr double kSequentialMap = 2.0;
 inline constexpr double kDivergingMap = 3.0;
@@ -225,7 +225,8 @@ inline double colormap_of_range(double automatic, double lo, double hi) {
   return automatic == kSequentialMap && both ? kDivergingMap : automatic;
 }
 
-/// From the end of the longer side to that of the shorter one.
+/// Whether the longer side of a range of colours is above 0: bands are counted from its end to that of the
+/// shorter one.
 inline bool is_longer_above(double least, double most, bool below_few, bool above_few) {
   return below_few == above_few ? most >= -least : below_few && most > 0.0;
 }
@@ -307,7 +308,7 @@ inline double limits_form(double lower, double upper, bool is_signed) {
   return lower != -upper ? kBetween : is_signed ? kPlusMinus : kUpTo;
 }
 
-/// Of Verdict and VerdictReason, in their order.
+/// The words of Verdict and VerdictReason, in their order.
 inline constexpr std::array<const char*, 4> kVerdictNames{"PASS", "FAIL", "NOT DECIDED", "DOUBTFUL"};
 inline constexpr std::array<const char*, 12> kReasonNames{
     "all within",       "exceeded",         "beyond max distance", "without match",

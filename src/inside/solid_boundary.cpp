@@ -249,7 +249,7 @@ Sides SolidBoundary::sides_beside(const Vec3& point, std::uint32_t face, bool co
   const Vec3& outwards = solid_.normals.face[face];
   if (!covered && beside_ > 0)
     return sides_by_winding(windings.of(solid_, from_unit(point) + beside_ * outwards));
-  // At kBeside > kFlat, coincident faces are all crossed at once.
+  // Points at kBeside > kFlat on either side have all faces between them that coincide.
   const bool outer = windings.of(solid_, from_unit(point + kBeside * outwards)) != 0,
              inner = windings.of(solid_, from_unit(point - kBeside * outwards)) != 0;
   return outer == inner ? Sides::buried : inner ? Sides::boundary : Sides::reversed;

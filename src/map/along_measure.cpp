@@ -32,7 +32,7 @@ class LineSearch final : public FaceSearch {
   LineSearch(const sites::SitesData& sites, const std::optional<Vec3>& direction, double max_distance)
       : sites_(sites), direction_(direction), max_distance_(max_distance) {}
 
-  // Of points along a direction without a normal, among all faces.
+  // Traces the packet, whose points have no normal if the direction is given: among all faces.
   void start(std::span<const Sample> samples) override {
     samples_ = samples;
     hits_.resize(2 * samples.size());

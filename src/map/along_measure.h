@@ -10,9 +10,9 @@ namespace sdm::map {
 
 class AlongMeasure final : public FaceMeasure {
  public:
-  /// Of points. Throws sdm::Error for options out of range.
+  /// Measures points. Throws sdm::Error for options out of range.
   AlongMeasure(const Sites& sites, const AlongOptions& options);
-  /// Of the faces of a mesh.
+  /// Measures samples of the faces of a mesh.
   AlongMeasure(const Mesh& mesh, const Sites& sites, const AlongOptions& options);
 
   [[nodiscard]] std::unique_ptr<FaceSearch> search() const override;

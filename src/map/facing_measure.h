@@ -10,10 +10,10 @@ namespace sdm::map {
 
 class FacingMeasure final : public FaceMeasure {
  public:
-  /// Of points with normals: they may be behind what they match, whatever options.sign is. Throws sdm::Error
-  /// for options that do not apply.
+  /// Measures points with normals: they may be behind what they match, whatever options.sign is. Throws
+  /// sdm::Error for options that do not apply.
   FacingMeasure(const Sites& sites, const MapOptions& options);
-  /// Of the faces of a mesh.
+  /// Measures samples of the faces of a mesh.
   FacingMeasure(const Mesh& mesh, const Sites& sites, const MapOptions& options);
   /// The same, which keeps the normals of the surface for further maps.
   FacingMeasure(const Surface& surface, const Sites& sites, const MapOptions& options);

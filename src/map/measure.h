@@ -102,7 +102,7 @@ class FaceMeasure {
   Description description;
   Progress progress;
   std::vector<Vec3> normals;  ///< of the faces, if they decide
-  /// Of O2 to each of the vertices or points, if the measure begins with them.
+  /// The closest point of O2 of each of the vertices or points, if the measure begins with them.
   std::vector<ClosestPoint> closest;
   /// The group of each face. Faces of a group measure alike from a point that they share; groups are measured
   /// in their order. Empty: each face is a group.

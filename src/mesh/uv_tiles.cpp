@@ -200,7 +200,8 @@ UvTiles uv_tiles(const Mesh& mesh) try {
     else
       tiles[{v[0], u[0]}].push_back(f);
   }
-  // With the faces of either tile; without any there, as in the unit square or nearest to it.
+  // A face on a border belongs to a tile that has other faces; if neither has, to the one in the unit square
+  // or nearest to it.
   std::set<std::array<std::int32_t, 2>> used;
   for (const auto& [place, faces] : tiles) used.insert(place);
   for (const std::uint32_t f : on_borders) {

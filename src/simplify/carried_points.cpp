@@ -10,7 +10,7 @@ namespace {
 
 // A point that is over a face at this share of the allowed distance at most is not compared with others.
 constexpr double kSettled = 0.5;
-// Of more points, only each second one goes on being carried, and those at this share of the largest
+// A face carries about so many points: of more, every second one, and those at this share of the largest
 // distance.
 constexpr std::uint32_t kMostPoints = 64;
 constexpr double kFar = 0.7;
@@ -52,7 +52,7 @@ void CarriedPoints::add_between(const Corners& corners, const Triangle& t, std::
   for (int k = 0; k < 3; ++k) {
     if (t[k] > t[(k + 1) % 3]) continue;  // the other face at this side has its points
     const Vec3 side = corners[(k + 1) % 3] - corners[k];
-    // At least the middle: edges of the input cross those of a mesh that is as fine.
+    // The middle is always a sample, as edges of the input cross those of a mesh that is as fine.
     const double steps = std::clamp(std::floor(norm(side) / spacing), 2.0, kMost);
     for (double i = 1; i < steps; ++i) add(corners[k] + (i / steps) * side, face);
   }

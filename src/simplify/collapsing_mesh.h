@@ -57,7 +57,7 @@ class CollapsingMesh {
   std::vector<std::vector<std::uint32_t>> faces_of_;
   std::vector<bool> fixed_;
   std::size_t left_;
-  // Of count_neighbours(): the neighbours, and how many faces each of them shares; 0 for all others.
+  // Memory of count_neighbours(): the neighbours, and how many faces each of them shares; 0 for all others.
   std::vector<std::uint32_t> neighbours_;
   std::vector<std::uint8_t> shared_;
 };

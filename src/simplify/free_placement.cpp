@@ -44,7 +44,7 @@ void add_places(const Mesh& parts, const sites::SitesData& to, const sites::Site
 constexpr int kMostMendings = 2;
 constexpr int kMoreLevels = 4;
 
-// With positions that are rounded to float, without the faces whose corners then are at the same place.
+// The mesh with positions rounded to float, without the faces whose corners then coincide.
 Mesh rounded(const Mesh& mesh) {
   Mesh result;
   for (const Vec3& p : mesh.positions)

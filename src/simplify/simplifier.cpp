@@ -29,10 +29,10 @@ using namespace simplify;
 // this many triangles, where it takes little time, one step is measured, too.
 constexpr std::size_t kFirstTriangles = 4, kMostForBoth = 250'000;
 
-// With a limit, the errors of the steps are those of a ladder that does not depend on the limit: relative to
-// the size of the mesh, the first one and the factors between them after a step that removed much, and after
-// one that removed less than the share that is worth a step. A first step that removes more than a share is
-// made smaller.
+// The errors of the steps towards a limit are those of a ladder that does not depend on the limit: relative
+// to the size of the mesh, the first one and the factors between them after a step that removed much, and
+// after one that removed less than the share that is worth a step. A first step that removes more than a
+// share is made smaller.
 constexpr double kFirstError = 1e-7, kLarger = 1.15, kMuchLarger = 2, kSmaller = 0.7;
 constexpr double kWorthwhile = 0.04, kTooMuch = 0.25;
 // Steps whose error is below this share of the limit are not measured before they are to be the result; the

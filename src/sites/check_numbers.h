@@ -22,7 +22,7 @@ inline constexpr float kUnitReach = 8;
 [[nodiscard]] bool have_limits(std::span<const FaceRegion> faces);
 [[nodiscard]] bool have_limits(std::span<const EdgeRegion> edges);
 [[nodiscard]] bool have_limits(std::span<const VertexRegion> vertices);
-/// Of the faces of leaves, which are nodes: the other lanes hold what the vertices at 0 give.
+/// The same of the faces of leaves, which are nodes: the other lanes hold what the vertices at 0 give.
 [[nodiscard]] bool have_limits(std::span<const tree::AabbTree::Node> nodes,
                                std::span<const std::uint32_t> leaves, std::span<const FaceBounds> bounds,
                                float largest_radius);

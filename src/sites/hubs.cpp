@@ -105,7 +105,7 @@ std::uint64_t count_of(const AabbTree& tree, const NodePair& leaves) {
   return leaves[0] == leaves[1] ? first * (first - 1) / 2 : first * second;
 }
 
-// Of each pair of nodes, how many pairs of faces may be looked at: all, or the first `left` ones together.
+// How many pairs of faces may be looked at for each pair of nodes: all, or the first `left` ones together.
 std::vector<std::uint64_t> allowances(const AabbTree& tree, const std::vector<NodePair>& pairs,
                                       std::uint64_t left) {
   std::vector<std::uint64_t> allowed(pairs.size(), left);

@@ -12,7 +12,8 @@ namespace sdm::surface {
 struct Tiles {
   static constexpr std::uint32_t kSide = 16;
 
-  /// Of all samples. Cost: linear in texels, plus sorting those of faces with more than one tile; all cores.
+  /// The tiles of all samples. Cost: linear in texels, plus sorting those of faces with more than one tile;
+  /// all cores.
   explicit Tiles(const Surface& surface) : Tiles(surface, surface.map_faces(), kSide) {}
   /// `owners`: texel_faces() of the surface, for tiles of texels only, or map_faces().
   Tiles(const Surface& surface, std::span<const std::uint32_t> owners, std::uint32_t side);

@@ -94,7 +94,8 @@ void FeatureContacts::find_deepest(Regions part) {
 void FeatureContacts::add_deepest(Regions part, const DeepestVertex::Found& deepest, const Box& box) {
   find_corners(part, deepest);
   const auto is_deepest = [&](const Corner& corner) { return corner.vertex == deepest.vertex; };
-  // By itself it is named by the part, whose deepest vertex is another one at times; a corner by its number.
+  // The key of a vertex that is the only one of its part is the part's, as which vertex is deepest changes
+  // from frame to frame; that of a corner is the number of the corner.
   if (corners_.size() < 2 || std::ranges::none_of(corners_, is_deepest))
     features_.push_back({.key = kPart | part[0].node,
                          .site = internals(on().sites()).regions.points[deepest.vertex].vertex,
@@ -173,8 +174,8 @@ bool FeatureContacts::is_corner(std::uint32_t vertex, const std::array<Vec3, 3>&
   return cosine >= 0 || sine > -kStraight * cosine;
 }
 
-// Of more points than kMostCorners, keeps those that are farthest in as many directions, which are spread by
-// the length and the width of the hull.
+// Reduces the corners to kMostCorners: the points that are farthest in as many directions, which are spread
+// by the length and the width of the hull.
 void FeatureContacts::keep_hull(std::vector<Corner>& corners, const Vec3& up) {
   if (corners.size() <= kMostCorners) return;
   const auto farthest = [&](const auto& along) { return *std::ranges::max_element(corners, {}, along); };

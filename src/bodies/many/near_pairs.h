@@ -74,7 +74,7 @@ enum class ContactList : std::uint8_t { closest, separating };
 
 /// What is known of a pair of bodies as long as neither moves.
 struct PairState {
-  /// Of a ContactStore.
+  /// A range of contacts in a ContactStore.
   struct Range {
     std::size_t first = 0, count = 0;
   };

@@ -197,7 +197,7 @@ std::optional<BoundedLength> PairAnswers::depth() {
   if (!bodies_[0]->body().solid() && !bodies_[1]->body().solid()) return {};
   if (!colliding()) return BoundedLength{{.certainty = Certainty::exact}};
   if (solid_pair_) return solids::SolidPair(*bodies_[0], *bodies_[1], exit_workspace_).depth(relation());
-  // Of their own boxes: those that contain a turned body are larger.
+  // The diagonals of the bodies' own boxes: a box in space around a turned body is larger.
   const auto size = [&](int body) {
     return bodies_[body]->pose().scale * diagonal(bodies_[body]->body().box());
   };

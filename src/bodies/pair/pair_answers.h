@@ -81,7 +81,7 @@ class PairAnswers {
 
   [[nodiscard]] const BoundedLength& separation();
   [[nodiscard]] bool colliding();
-  /// Of a solid pair (see solids::are_solid_pair()), how far apart its bodies are.
+  /// How far apart the bodies of a solid pair are; see solids::are_solid_pair().
   [[nodiscard]] const solids::Relation& relation();
   /// The diagonal of the box of both; of a half-space and another body, that of the other one.
   [[nodiscard]] double size() const;

@@ -54,7 +54,7 @@ std::array<shape::PosedBody, 2> moved(const shape::PosedBody& o1, const shape::P
   return bodies;
 }
 
-// Of a touch after the translation, whose nearest points are `apart`: how far apart other points of it are.
+// How far apart points may be that belong to a touch after the translation, whose nearest points are `apart`.
 double distance_of_touch(double apart, const SeparatingTranslation& out, double size) {
   return apart + kGapOfTranslation * out.value + kGapOfSize * size;
 }

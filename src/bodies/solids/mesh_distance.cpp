@@ -22,7 +22,7 @@ class Around {
     unit_ = mesh.pose().scale / frame_.scale;
     const double reach = axis ? core.disc() : core.body().ball().radius;
     radius_ = reach / unit_;
-    // Of the points in the unit frame: those of the mesh are within it, and the core may be far away.
+    // The rounding of points in the unit frame, which contains the mesh; the core may be far away.
     rounding_ = 1e-12 * (1 + norm(from_) + norm(to_) + radius_ + norm(core.centre()) / unit_);
   }
 

@@ -9,7 +9,8 @@
 namespace sdm::solids {
 namespace {
 
-// Of unit vectors: the middle of a disc is as far along them as its rim, to rounding.
+// Two unit vectors whose sine is below this are parallel: the middle of a disc is then as far along the one
+// as its rim, to rounding.
 constexpr double kParallel = 1e-15;
 
 }  // namespace

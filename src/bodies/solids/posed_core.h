@@ -31,12 +31,12 @@ class PosedCore {
   [[nodiscard]] bool thin() const { return triangle_ || (kind_ == CoreKind::axis && disc_ == 0); }
   [[nodiscard]] bool point() const { return thin() && !triangle_ && half_ == Vec3{}; }
   [[nodiscard]] const Vec3& centre() const { return centre_; }
-  /// Of an axis: from its middle to an end.
+  /// The vector from the middle of the axis to an end.
   [[nodiscard]] const Vec3& half() const { return half_; }
   [[nodiscard]] const Vec3& axis() const { return axis_; }  ///< of length 1; also where half() is 0
   [[nodiscard]] double disc() const { return disc_; }
   [[nodiscard]] double radius() const { return radius_; }
-  /// Of a half-space: normal · x ≤ offset.
+  /// A half-space is the set of all x with normal · x ≤ offset.
   [[nodiscard]] const Vec3& normal() const { return axis_; }
   [[nodiscard]] double offset() const { return offset_; }
   /// The convex mesh; null for others.

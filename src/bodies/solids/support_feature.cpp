@@ -63,8 +63,8 @@ void SupportFeature::add_corner(const Vec3& p, std::uint32_t number) {
   core_points_.push_back(p + lift_);
 }
 
-// Of an axis with discs: the disc at an end, a line along the side, or the farthest point of either. Numbers
-// are those of the places of a disc, of which each end has as many.
+// The feature of an axis with discs (a cylinder): the disc at an end, a line along the side, or the farthest
+// point of either. Numbers are those of the places of a disc, of which each end has as many.
 void SupportFeature::find_core(const Vec3& up) {
   constexpr std::uint32_t kOfDisc = 8, kSide = kOfDisc, kPlaces = kOfDisc + 1;
   has_area_ = false;

@@ -84,7 +84,7 @@ class SheetSide final : public Side {
   /// `touching`.
   [[nodiscard]] bool is_beyond(const Corners& triangle, const Vec3& normal, const Vec3& at,
                                bool touching) const;
-  /// From the k-th side of a face into it, of length 1.
+  /// The unit vector in the plane of a face that is normal to its k-th side and points into the face.
   [[nodiscard]] Vec3 inward(std::uint32_t face, int k) const;
 
   const sites::SitesData& sheet_;

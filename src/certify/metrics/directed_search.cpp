@@ -22,9 +22,9 @@ constexpr std::size_t kGrain = 256;
 constexpr double kLeastSize = 1e-9;  // of the diagonal: smaller parts are not divided
 // Parts that are smaller beside their distance, squared, have a close bound by their size.
 constexpr double kNear = 1e-4;
-// At least kAtOnce parts or twice as many as faces, and up to kOfFace for each face of the finer mesh or
-// kMany, are in memory at once. Where more are needed, parts are bounded in runs of kRun, one after another,
-// which takes some three times as long, and only sums of them are kept.
+// How many parts are in memory at once: at least kAtOnce or twice as many as there are faces, and up to
+// kOfFace for each face of the finer mesh or kMany. Where more are needed, parts are bounded in runs of kRun,
+// one after another, which takes some three times as long, and only sums of them are kept.
 constexpr std::size_t kAtOnce = std::size_t{1} << 16, kOfFace = 32, kMany = std::size_t{1} << 20, kRun = 1024;
 
 /// The vertices of A that have a face, measured.

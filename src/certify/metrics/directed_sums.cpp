@@ -92,8 +92,8 @@ void DirectedSearch::add_means(const std::vector<FacePart>& parts, Means& means)
       });
 }
 
-// With areas that are off by a fraction of the whole, a mean is off by that fraction of the largest distance,
-// at most.
+// Areas that are off by a fraction of the whole change a mean by at most that fraction of the largest
+// distance.
 void DirectedSearch::sum_up() {
   poll();
   Means means = settled_.means;

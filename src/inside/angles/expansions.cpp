@@ -41,7 +41,7 @@ struct Moments {
   }
 };
 
-// At least the value, and above all that underflows.
+// A float that is at least the value, and larger than any number that underflows.
 float rounded_up(double value) {
   constexpr float kLeast = 1e-30F;
   return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity()) + kLeast;

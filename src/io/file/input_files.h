@@ -13,7 +13,8 @@ using InputObserver = std::function<void(const std::filesystem::path&)>;
 /// Sets the observer of this process. Not while another thread reads.
 void observe_inputs(InputObserver observer);
 
-/// To be called wherever a file that users have named, or that such a file refers to, is opened.
+/// Remembers a file as an input. Called wherever a file that users have named, or to which such a file
+/// refers, is opened.
 void note_input(const std::filesystem::path& file);
 
 /// Throws sdm::Error if both are one file, by whatever names: writing `output` would destroy `input`.

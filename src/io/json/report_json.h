@@ -147,7 +147,7 @@ template <class... Structs>
 /// The number of patches of the contacts of two bodies.
 [[nodiscard]] SDM_API std::size_t patch_count(std::span<const Contact> contacts);
 
-/// With the sizes of the motion; what was asked for is not in it.
+/// The pose, what it was found from, and the sizes of the motion; without the options of the call.
 [[nodiscard]] SDM_API nlohmann::ordered_json to_json(const Alignment& alignment);
 /// A mesh with fewer triangles, by its numbers.
 [[nodiscard]] SDM_API nlohmann::ordered_json to_json(const Simplified& simplified);

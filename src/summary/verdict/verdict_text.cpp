@@ -14,7 +14,7 @@ std::string with_unit(double length, const std::string& units, int digits = 5) {
   return short_text(length, digits) + (units.empty() ? "" : " " + units);
 }
 
-/// Of a proof that thin walls need.
+/// What a proof adds to its sentence where walls are thin.
 constexpr const char* kByFacing =
     " by the faces of the reference that face the same way, as its walls are thin";
 

@@ -58,7 +58,7 @@ DepthBuffer::DepthBuffer(const Mesh& mesh, const Projection& projection)
 }
 
 void DepthBuffer::draw_all(const Mesh& mesh) {
-  // Of a closed mesh, most faces that are seen from the back are hidden by the others.
+  // Faces that are seen from the back are drawn last: in a closed mesh, others hide most of them.
   std::vector<std::uint32_t> backs;
   for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face) {
     const Triangle& triangle = mesh.triangles[face];
@@ -151,7 +151,7 @@ void DepthBuffer::draw(std::uint32_t face, const Triangle& triangle, const Exten
       for (; column < end_in_tile; ++column, ++seen) {
         const auto depth = static_cast<float>(
             std::clamp(depth_of_row + by_x * (column + 0.5), extent.farthest, extent.nearest));
-        // Of equal depths the first face, in whatever order they are drawn.
+        // Faces at equal depths: the first one is seen, in whatever order they are drawn.
         if (depth > seen->depth || (depth == seen->depth && face < seen->face)) *seen = {depth, face};
       }
     }

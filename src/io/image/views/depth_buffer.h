@@ -73,7 +73,7 @@ class DepthBuffer {
   [[nodiscard]] static std::size_t in_tile(std::uint32_t column, std::uint32_t row) {
     return std::size_t{row % kTile} * kTile + column % kTile;
   }
-  /// In square samples; positive if the viewer sees the back, as rows count downwards.
+  /// Twice the area in square samples; positive if the viewer sees the back, as rows count downwards.
   [[nodiscard]] double doubled_area(const Triangle& triangle) const;
   void draw_all(const Mesh& mesh);
   void draw(std::uint32_t face, const Triangle& triangle, const Extent& extent);

@@ -34,7 +34,7 @@ class FrameSource {
   [[nodiscard]] virtual bool has_polygons() const { return false; }
   /// Reads the polygons of a frame. Only if has_polygons().
   [[nodiscard]] virtual PolygonMesh polygons_of(std::size_t) { return {}; }
-  /// Of the CAD file that was read last; nothing for other files.
+  /// The tessellation of the CAD file that was read last; nothing for other files.
   [[nodiscard]] const std::optional<Tessellation>& tessellation() const { return tessellation_; }
 
  protected:

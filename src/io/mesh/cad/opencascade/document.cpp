@@ -197,7 +197,7 @@ class StepReader : public STEPCAFControl_Reader {
       refuse(name, ", which is no regular file");
   }
 
-  /// With those that parts refer to.
+  /// Visits the parts of the file and of the files that these refer to.
   template <class Visit>
   void for_each_part(const Visit& visit) const {
     for (Files at(ExternFiles()); at.More(); at.Next())

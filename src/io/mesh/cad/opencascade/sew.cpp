@@ -16,7 +16,8 @@
 namespace sdm::io::cad {
 namespace {
 
-// Of the diagonal: edges that are closer may be one. The deflection is some fifty times as large.
+// Edges that are closer than this share of the diagonal may be one. The deflection is some fifty times as
+// large.
 constexpr double kGap = 1e-5;
 
 bool has_free_edges(const TopoDS_Shape& whole) {
