@@ -13,6 +13,15 @@ void add_accept_doubts(CLI::App& app, bool& accept, const char* text) {
                       {"accept_doubts", text});
 }
 
+void add_uncertainty_option(CLI::App& app, double& uncertainty) {
+  add_declared_option(app, sdm::option_of(&sdm::SummaryOptions::uncertainty), uncertainty);
+}
+
+void check_uncertainty(double uncertainty, bool judged) {
+  if (uncertainty > 0 && !judged)
+    throw CLI::ValidationError("--uncertainty", "needs limits, which it keeps away from");
+}
+
 void add_doubt_options(CLI::App& app, DoubtCommand& command) {
   add_accept_doubts(app, command.accept);
   CLI::Option* least = app.add_option("--min-coverage", command.min_coverage,

@@ -19,6 +19,11 @@ struct DoubtCommand {
 /// Adds --accept-doubts; `text`: its help, if other doubts are left than the declared ones.
 void add_accept_doubts(CLI::App& app, bool& accept, const char* text = nullptr);
 
+/// Adds --uncertainty.
+void add_uncertainty_option(CLI::App& app, double& uncertainty);
+/// Throws CLI::ValidationError for an uncertainty where nothing is `judged`.
+void check_uncertainty(double uncertainty, bool judged);
+
 /// Adds --accept-doubts, --min-coverage and --reach.
 void add_doubt_options(CLI::App& app, DoubtCommand& command);
 

@@ -34,6 +34,7 @@ struct HausdorffCommand : PairFiles, RunOptions {
   sdm::HausdorffOptions options;
   bool both = false;
   std::optional<double> tolerance;
+  double uncertainty = 0;
   bool accept_doubts = false;
 };
 
@@ -45,7 +46,7 @@ struct HausdorffAnswer {
   double size = 0;  ///< of the smaller mesh, for the digits of places
   Notes notes{};
   std::vector<sdm::Doubt> doubts{};
-  double guard = 0;  ///< how far the meshes may be from the surfaces that are meant
+  double guard = 0;  ///< how far the meshes may be from the surfaces that are meant, and the uncertainty
 };
 
 HausdorffAnswer measure(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o1,
@@ -108,6 +109,10 @@ HausdorffAnswer decide(const std::vector<sdm::Sites>& sites, const sdm::Mesh& o1
   return answer;
 }
 
+sdm::DecisionRule rule_of(const HausdorffCommand& command) {
+  return command.uncertainty > 0 ? sdm::DecisionRule::iso_14253_1 : sdm::DecisionRule::simple_acceptance;
+}
+
 std::string distance_line(const std::string& what, const sdm::HausdorffDistance& h, const std::string& unit) {
   const sdm::BoundedLength& d = h.distance;
   constexpr int kDigits = 9;
@@ -130,17 +135,21 @@ std::string unmatched_lines(const HausdorffAnswer& answer) {
   return text;
 }
 
-std::string tolerance_line(const HausdorffVerdict& v, double tolerance, double guard,
+std::string tolerance_line(const HausdorffVerdict& v, const HausdorffCommand& command, double guard,
                            const std::string& unit) {
-  const std::string limit = number(tolerance) + unit;
-  return fmt::format("  tolerance  {}: {}\n", sdm::name_of(v.word()),
-                     v.unmatched ? "faces without a match have no distance"
-                     : !v.certified && guard > 0
-                         ? fmt::format("the distance is closer to {} than the guard band, {}{}", limit,
-                                       number(guard, 2), unit)
-                     : !v.certified ? fmt::format("the distance is {}, to the precision", limit)
-                     : v.within     ? fmt::format("no point is farther than {}", limit)
-                                    : fmt::format("a point is farther than {}", limit));
+  const std::string limit = number(*command.tolerance) + unit;
+  const std::string by = command.uncertainty > 0
+                             ? fmt::format(" by more than the uncertainty, {}{} ({})",
+                                           number(command.uncertainty, 2), unit, name_of(rule_of(command)))
+                             : std::string();
+  return fmt::format(
+      "  tolerance  {}: {}\n", sdm::name_of(v.word()),
+      v.unmatched                 ? "faces without a match have no distance"
+      : !v.certified && guard > 0 ? fmt::format("the distance is closer to {} than the guard band, {}{}",
+                                                limit, number(guard, 2), unit)
+      : !v.certified              ? fmt::format("the distance is {}, to the precision", limit)
+      : v.within ? fmt::format("no point is farther than {}{}{}", limit, by.empty() ? "" : ",", by)
+                 : fmt::format("a point is farther than {}{}", limit, by));
 }
 
 std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAnswer& answer) {
@@ -160,8 +169,7 @@ std::string hausdorff_summary(const HausdorffCommand& command, const HausdorffAn
     text += distance_line("O2 -> O1", answer.directions[1], unit);
   }
   text += unmatched_lines(answer);
-  if (command.tolerance)
-    text += tolerance_line(verdict(answer, command), *command.tolerance, answer.guard, unit);
+  if (command.tolerance) text += tolerance_line(verdict(answer, command), command, answer.guard, unit);
   return text + doubt_lines(answer.doubts, 13);
 }
 
@@ -179,7 +187,9 @@ Json report_of(const HausdorffCommand& command, const InputPair& pair, const Hau
                          {"verdict", sdm::name_of(v.word())},
                          {"within", v.within},
                          {"certified", v.certified},
-                         {"guard", answer.guard}};
+                         {"guard", answer.guard},
+                         {"uncertainty", command.uncertainty},
+                         {"decision_rule", name_of(rule_of(command))}};
   }
   json["settings"] = sdm::settings_json(command.options);
   json["doubts"] = sdm::to_json(answer.doubts);
@@ -201,7 +211,8 @@ int run(const HausdorffCommand& command) {
   sites.emplace_back(pair.o2.mesh);
   const double build_ms = watch.lap();
   HausdorffAnswer answer =
-      decide(sites, pair.o1.mesh, command, pair.o1.deviation + pair.o2.deviation, progress.callback());
+      decide(sites, pair.o1.mesh, command, pair.o1.deviation + pair.o2.deviation + command.uncertainty,
+             progress.callback());
   answer.size = smaller_size(pair);
   answer.notes = notes_on(pair.o1, pair.o2);
   if (auto note = note_on_unit(command.units)) answer.notes.push_back(std::move(*note));
@@ -255,6 +266,7 @@ void add_hausdorff_command(CLI::App& app) {
           "between them")
       ->check(no_negative_number())
       ->type_name("T");
+  add_uncertainty_option(*hausdorff, c.uncertainty);
   add_accept_doubts(*hausdorff, c.accept_doubts,
                     "PASS stays PASS where O1 seems to be in another unit, instead of DOUBTFUL.");
   add_units_option(*hausdorff, c.units);
@@ -262,6 +274,7 @@ void add_hausdorff_command(CLI::App& app) {
   hausdorff->callback([command] {
     check_units(command->units, command->o1, command->transform_o1);
     check_units(command->units, command->o2, command->transform_o2);
+    check_uncertainty(command->uncertainty, command->tolerance.has_value());
     if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);
   });
 }

@@ -58,6 +58,7 @@ void add_options(CLI::App& app, MapCommand& c) {
        {"bound_culling", "gl: do not cull sites by upper bounds on the distance; the map is unchanged."}});
   add_tolerance_option(app, c.picture.tolerance);
   add_tolerance_table_option(app, c.groups);
+  add_uncertainty_option(app, c.uncertainty);
   add_doubt_options(app, c.doubts);
   add_declared_option(app, sdm::option_of(&sdm::SummaryOptions::bands), c.bands);
 
@@ -71,6 +72,7 @@ void add_options(CLI::App& app, MapCommand& c) {
 void check_combination(const CLI::App& app, const MapCommand& c) {
   check_layout(c.layout.atlas);
   check_doubts(c.doubts, c.picture.tolerance);
+  check_uncertainty(c.uncertainty, c.picture.tolerance.has_value() || !c.groups.file.empty());
   if (!std::ranges::is_sorted(c.bands, std::less_equal<>()))
     throw CLI::ValidationError("--bands", "the edges must increase");
   if (const auto& t = c.picture.tolerance;

@@ -46,6 +46,7 @@ struct MapCommand : PairFiles, RunOptions {
   sdm::GlOptions gl;
   sdm::PictureOptions picture;
   GroupTolerances groups;
+  double uncertainty = 0;
   std::vector<double> bands;
   ReportFields fields;
   MapOutput output;

@@ -59,6 +59,7 @@ sdm::SummaryOptions summary_options(const MapTask& task, const AtlasPart& part, 
           .max_distance = command.map.max_distance,
           .accuracy = accuracy,
           .guard = guard_of(task),
+          .uncertainty = command.uncertainty,
           .tolerance = command.picture.tolerance,
           .table = command.groups.rows,
           .bands = command.bands,
@@ -117,7 +118,8 @@ void write_files(const MapTask& task, const AtlasPart& part, const ComputedMap& 
                             {.accuracy = computed.accuracy,
                              .doubted = !task.doubts.empty() && !command.doubts.accept,
                              .accept_doubts = command.doubts.accept,
-                             .guard = guard_of(task)});
+                             .guard = guard_of(task),
+                             .uncertainty = command.uncertainty});
     if (!outcome.summary.tolerance) add_group_doubts(groups, outcome.summary.doubts);
     if (!groups.groups.empty()) outcome.groups = std::move(groups);  // none is of this mesh or tile
   }

@@ -121,6 +121,7 @@ sdm::PointDistancesOptions measuring_options(const PointsCommand& command, const
           .names = o2.names,
           .table = command.groups.rows,
           .guard = o2.deviation,
+          .uncertainty = command.uncertainty,
           .accept_doubts = command.doubts.accept};
 }
 
@@ -244,6 +245,8 @@ void check_points_options(const PointsCommand& command) {
     throw CLI::ValidationError("--tolerance",
                                "must not be greater than --max-distance, beyond which points have no value");
   check_doubts(command.doubts, command.picture.tolerance);
+  check_uncertainty(command.uncertainty,
+                    command.picture.tolerance.has_value() || !command.groups.file.empty());
 }
 
 }  // namespace
@@ -284,6 +287,7 @@ void add_points_command(CLI::App& app) {
       *points, c.groups,
       "Judge the points by groups of O2, those of their closest faces, by the exit code "
       "too");
+  add_uncertainty_option(*points, c.uncertainty);
   add_doubt_options(*points, c.doubts);
   add_color_options(*points, c.picture);
   add_units_option(*points, c.picture.units);

@@ -29,6 +29,7 @@ struct PointsCommand : RunOptions {
   AlignCommand align;
   DoubtCommand doubts;
   GroupTolerances groups;
+  double uncertainty = 0;
   std::uint64_t island_points = 0;  ///< clusters of less are islands; 0: there are none
   std::optional<sdm::IslandLimits> islands_o2{};
   sdm::MapOptions map;

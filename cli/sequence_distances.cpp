@@ -15,9 +15,8 @@ void FrameDistances::withhold_pass() {
 }
 
 FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& sites,
-                               const sdm::DistanceMap& map, double error_bound,
-                               const std::optional<sdm::Tolerance>& tolerance, double guard,
-                               bool accept_doubts) {
+                               const sdm::DistanceMap& map, const std::optional<sdm::Tolerance>& tolerance,
+                               sdm::CertifyOptions options) {
   const std::vector<float> at_vertices = sdm::distances_at_vertices(surface.mesh(), sites);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const std::optional<sdm::Extremes> found = sdm::extremes(surface, map, at_vertices);
@@ -25,14 +24,13 @@ FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& si
                         .mean = sdm::statistics(surface, map).mean,
                         .max = found ? found->max.distance : kNan};
   if (!tolerance) return result;
-  const double accuracy = sdm::engine_accuracy(sdm::engines().front(), surface.mesh(), sites.mesh());
-  const sdm::CertifiedVerdict verdict = sdm::certify_tolerance(
-      surface, sites, map, at_vertices, *tolerance,
-      {.error_bound = error_bound, .accuracy = accuracy, .guard = guard, .accept_doubts = accept_doubts});
+  options.accuracy = sdm::engine_accuracy(sdm::engines().front(), surface.mesh(), sites.mesh());
+  const sdm::CertifiedVerdict verdict =
+      sdm::certify_tolerance(surface, sites, map, at_vertices, *tolerance, options);
   result.doubt = sdm::doubt_of(verdict);
   result.verdict = verdict.verdict;
   result.certified = verdict.certified;
-  result.guard = guard;
+  result.guard = options.guard + options.uncertainty;
   result.exceeded_area_fraction = verdict.exceeded_area_fraction;
   return result;
 }

@@ -21,13 +21,13 @@ struct FrameDistances {
   void withhold_pass();
 };
 
-/// Summarises the map on `surface` to `sites`, which has this error bound. Throws sdm::Error if the tolerance
-/// needs signs and there are none. Cost: closest points of the vertices, linear, and that of a proof where
-/// the map does not decide. `guard`: how far both meshes may be from the surfaces that are meant.
+/// Summarises the map on `surface` to `sites`; the accuracy of the options is that of the engine. Throws
+/// sdm::Error if the tolerance needs signs and there are none. Cost: closest points of the vertices, linear,
+/// and that of a proof where the map does not decide.
 [[nodiscard]] FrameDistances frame_distances(const sdm::Surface& surface, const sdm::Sites& sites,
-                                             const sdm::DistanceMap& map, double error_bound,
-                                             const std::optional<sdm::Tolerance>& tolerance, double guard,
-                                             bool accept_doubts);
+                                             const sdm::DistanceMap& map,
+                                             const std::optional<sdm::Tolerance>& tolerance,
+                                             sdm::CertifyOptions options);
 
 [[nodiscard]] nlohmann::ordered_json to_json(const FrameDistances& distances);
 /// The inverse.

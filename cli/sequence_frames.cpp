@@ -147,8 +147,11 @@ void FrameLoop::compute_maps(Frame& frame) {
     if (b == 1) maps_.compute(pair_, 1);
     naming_frame(frame.index, [&] {
       frame.distances[b] =
-          frame_distances(pair_.surface(b), pair_.sites(1 - b), maps_.of[b], frame.error_bound[b],
-                          command_.picture.tolerance, pair_.guard(), command_.accept_doubts);
+          frame_distances(pair_.surface(b), pair_.sites(1 - b), maps_.of[b], command_.picture.tolerance,
+                          {.error_bound = frame.error_bound[b],
+                           .guard = pair_.guard(),
+                           .uncertainty = command_.uncertainty,
+                           .accept_doubts = command_.accept_doubts});
     });
   }
   if (!command_.picture.tolerance) return;

@@ -23,6 +23,7 @@ void add_output_options(CLI::App& app, SequenceCommand& c) {
   app.add_flag("--both", c.both,
                "Also measure O2: its distances to O1, maps NNNN_o2 with --maps, colours in the player");
   add_tolerance_option(app, c.picture.tolerance);
+  add_uncertainty_option(app, c.uncertainty);
   add_accept_doubts(app, c.accept_doubts,
                     "PASS stays PASS where the unit of O1 or thin walls leave a doubt, instead of DOUBTFUL.");
   add_color_options(app, c.picture);
@@ -106,5 +107,6 @@ Json options_json(const SequenceCommand& c) {
           {"--colormap", c.picture.colormap},
           {"--range", range ? Json(*range) : Json::array()},
           {"--tolerance", tolerance ? Json{tolerance->lower, tolerance->upper} : Json(nullptr)},
+          {"--uncertainty", c.uncertainty},
           {"--accept-doubts", c.accept_doubts}};
 }

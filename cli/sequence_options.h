@@ -35,6 +35,7 @@ struct SequenceCommand {
   SequenceOutputs outputs;
   sdm::PictureOptions picture;
   bool both = false, keep_going = false, resume = false;
+  double uncertainty = 0;
   bool accept_doubts = false;
 
   /// The number of bodies with distances to the other one, O1 first.

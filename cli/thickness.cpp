@@ -8,6 +8,7 @@
 #include "cad_options.h"
 #include "common_options.h"
 #include "declared_options.h"
+#include "doubts.h"
 #include "exit_codes.h"
 #include "format.h"
 #include "notes.h"
@@ -31,6 +32,7 @@ using sdm::ThicknessMethod;
 struct ThicknessCommand : PartMapCommand {
   sdm::ThicknessOptions thickness;  ///< by the method that is drawn and judged
   std::optional<double> least{}, most{};
+  double uncertainty = 0;
 };
 
 struct ThicknessResult {
@@ -128,6 +130,7 @@ ThicknessResult measure(const ThicknessCommand& command, const LoadedPart& loade
                                                   {.units = command.picture.units,
                                                    .accuracy = command.picture.accuracy,
                                                    .guard = 2 * part.input.deviation,  // of both ends
+                                                   .uncertainty = command.uncertainty,
                                                    .tolerance = command.picture.tolerance,
                                                    .colormap = command.picture.colormap,
                                                    .range = command.picture.range,
@@ -226,6 +229,7 @@ void add_limits(CLI::App& app, ThicknessCommand& c) {
   app.add_option("--max", c.most, "Check that no texel is thicker than this")
       ->check(positive_number())
       ->type_name("T");
+  add_uncertainty_option(app, c.uncertainty);
 }
 
 }  // namespace
@@ -257,6 +261,7 @@ void add_thickness_command(CLI::App& app) {
     check_part_map(*command);
     if (command->least && command->most && *command->least > *command->most)
       throw CLI::ValidationError("--min", "must not exceed --max");
+    check_uncertainty(command->uncertainty, command->least || command->most);
     if (const int code = run(*command); code != 0) throw CLI::RuntimeError(code);
   });
 }

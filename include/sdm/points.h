@@ -205,11 +205,21 @@ struct PointDistancesOptions {
   TextDialect text{};                  ///< of a cloud in text, as of PointReader
   std::span<const FaceNames> names{};  ///< of the faces of O2
   std::span<const GroupTolerance> table{};  ///< tolerances of these names
-  double guard = 0;                         ///< Evidence::guard
+  double guard = 0;                         ///< how far O2 may be from the surface that is meant
+  double uncertainty = 0;                   ///< Evidence::uncertainty
   bool accept_doubts = false;               ///< those of thin walls leave a pass one
   /// Islands of this cloud, whose points have no value and only add to a count.
   const CloudIslands* islands = nullptr;
 };
+
+template <>
+inline constexpr std::tuple kOptions<PointDistancesOptions>{
+    Option{.name = "uncertainty",
+           .member = &PointDistancesOptions::uncertainty,
+           .text = kUncertaintyText,
+           .range = {.least = 0},
+           .unit = "length",
+           .value = "U"}};
 
 /// The distance of a point and the place of that point in the file, from 0.
 struct PointExtreme {

@@ -171,7 +171,8 @@ struct SummaryOptions {
   std::string units{};
   double max_distance = kInfinity;  ///< that of the map
   double accuracy = 0;              ///< of the engine: engine_accuracy(); infinite if unknown
-  double guard = 0;                 ///< Evidence::guard
+  double guard = 0;                 ///< how far the meshes may be from the surfaces that are meant
+  double uncertainty = 0;           ///< Evidence::uncertainty
   std::optional<Tolerance> tolerance{};
   std::span<const GroupTolerance> table{};  ///< of groups of `names`, for the places
   Colormap colormap = Colormap::automatic;
@@ -194,6 +195,10 @@ inline constexpr const char* kAcceptDoubtsText =
     "PASS stays PASS where units, the alignment, the coverage or thin walls leave a doubt, instead of "
     "DOUBTFUL.";
 
+inline constexpr const char* kUncertaintyText =
+    "The expanded uncertainty (k = 2) of the measurement: PASS and FAIL are given where a limit is kept, or "
+    "exceeded, by more than that, as by ISO 14253-1, and NOT DECIDED in between.";
+
 template <>
 inline constexpr auto kOptions<SummaryOptions> = std::tuple_cat(
     kColorOptions<SummaryOptions>,
@@ -205,8 +210,13 @@ inline constexpr auto kOptions<SummaryOptions> = std::tuple_cat(
                        "of the area in each; by default multiples of the tolerance.",
                .unit = "length",
                .value = "LIST"},
-        Option{
-            .name = "accept_doubts", .member = &SummaryOptions::accept_doubts, .text = kAcceptDoubtsText}});
+        Option{.name = "accept_doubts", .member = &SummaryOptions::accept_doubts, .text = kAcceptDoubtsText},
+        Option{.name = "uncertainty",
+               .member = &SummaryOptions::uncertainty,
+               .text = kUncertaintyText,
+               .range = {.least = 0},
+               .unit = "length",
+               .value = "U"}});
 
 /// Sums up a map on `surface` of the distances to `sites`. `vertex_distances`: the distance at each vertex of
 /// surface.mesh(), NaN if it has no value. Throws sdm::Error if the map or the distances belong to another

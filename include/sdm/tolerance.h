@@ -109,6 +109,17 @@ inline constexpr std::array kWords<VerdictReason>{
     "between samples",  "within rounding",  "guard band",          "estimated signs",
     "unknown accuracy", "nothing measured", "thin walls",          "in doubt"};
 
+/// How the uncertainty of a measurement enters the verdict on it.
+enum class DecisionRule {
+  simple_acceptance,  ///< not at all: the measured distances are compared with the limits
+  /// ISO 14253-1: conformity is proven within the limits reduced by the expanded uncertainty, non-conformity
+  /// beyond the limits extended by it, and in between neither is.
+  iso_14253_1,
+};
+
+template <>
+inline constexpr std::array kWords<DecisionRule>{"simple acceptance", "ISO 14253-1"};
+
 /// All that a verdict depends on besides the tolerance. Samples are the texels of a map and the vertices of
 /// its faces, or the points of a cloud.
 struct Evidence {
@@ -120,9 +131,11 @@ struct Evidence {
   /// maps whose DistanceKind is not `closest`. The error bound is infinite.
   bool samples_only = false;
   double accuracy = 0;  ///< the error of a distance, as of engine_accuracy(); infinite if it has no bound
-  /// How far the meshes may be from the surfaces that are meant, as triangles are from those of CAD: a
-  /// verdict keeps so far from the limits, on both sides of them, besides the accuracy.
+  /// The guard band: how far the meshes may be from the surfaces that are meant, as triangles are from those
+  /// of CAD, and the uncertainty. A verdict keeps so far from the limits, on both sides of them, besides the
+  /// accuracy.
   double guard = 0;
+  double uncertainty = 0;  ///< the expanded uncertainty (k = 2) of the measurement, a part of `guard`
   /// Upper bound on how much a distance at any point can differ from those of the samples, without that
   /// error, as of SamplingBound::value(); 0 where there is nothing between samples.
   double error_bound = 0;
@@ -146,7 +159,9 @@ inline constexpr std::tuple kFields<Evidence>{
     Field{"signed", &Evidence::is_signed, "Distances can be negative."},
     Field{"unmatched", &Evidence::unmatched, "Some sample has no face of O2 that faces the same way."},
     Field{"samples_only", &Evidence::samples_only, "Nothing bounds the distances between samples."},
-    Field{"guard", &Evidence::guard, "How far the meshes may be from the surfaces that are meant."},
+    Field{"guard", &Evidence::guard,
+          "How far the meshes may be from the surfaces that are meant, and the uncertainty."},
+    Field{"uncertainty", &Evidence::uncertainty, "The expanded uncertainty (k = 2) of the measurement."},
     Field{"thin_walls", &Evidence::thin_walls,
           "The thickness that walls of O2 are below on more than a small part of it; infinite if none are."}};
 
@@ -157,6 +172,7 @@ inline constexpr std::tuple kFields<Evidence>{
 struct Judgement {
   Verdict verdict = Verdict::pass;
   VerdictReason reason = VerdictReason::all_within;
+  DecisionRule decision_rule = DecisionRule::simple_acceptance;  ///< ISO 14253-1 with an uncertainty
   /// All samples have a value, and none is out of the tolerance by more than the accuracy: verdict is not
   /// Verdict::fail.
   bool within = true;
@@ -201,6 +217,8 @@ inline constexpr std::tuple kFields<ToleranceVerdict>{
         "signs are estimates; 'doubtful': a 'pass', but walls are thinner than twice the tolerance, and the "
         "faces that face the same way do not decide."},
     Field{"reason", &ToleranceVerdict::reason, "Why, in words."},
+    Field{"decision_rule", &ToleranceVerdict::decision_rule,
+          "'ISO 14253-1' with an uncertainty, otherwise 'simple acceptance'."},
     Field{"exceeded_area_fraction", &ToleranceVerdict::exceeded_area_fraction,
           "An estimate: the fraction of the area that is out of the tolerance, in [0, 1]."},
     Field{"within", &ToleranceVerdict::within, "No point is known to be out of the tolerance."},

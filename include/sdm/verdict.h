@@ -45,7 +45,8 @@ inline constexpr auto kFields<CertifiedVerdict> = kFields<ToleranceVerdict>;
 struct CertifyOptions {
   double error_bound = 0;              ///< of the map: covering_radius() of its surface
   double accuracy = 0;                 ///< of the distances: engine_accuracy(); infinite if unknown
-  double guard = 0;                    ///< Evidence::guard
+  double guard = 0;                    ///< how far the meshes may be from the surfaces that are meant
+  double uncertainty = 0;              ///< Evidence::uncertainty
   std::optional<double> thin_walls{};  ///< those of O2, if they are known
   bool accept_doubts = false;          ///< doubt_of() the verdict leaves a pass one
   Progress progress{};
@@ -145,7 +146,8 @@ struct CertifyGroupsOptions {
   double accuracy = 0;         ///< of the distances: engine_accuracy(); infinite if unknown
   bool doubted = false;        ///< there are doubts that withhold a pass
   bool accept_doubts = false;  ///< doubt_of() a verdict leaves a pass one
-  double guard = 0;            ///< Evidence::guard
+  double guard = 0;            ///< how far the meshes may be from the surfaces that are meant
+  double uncertainty = 0;      ///< Evidence::uncertainty
   Progress progress{};
 };
 

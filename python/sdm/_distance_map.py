@@ -121,36 +121,44 @@ class DistanceMap(MapChannels, Texels):
         """
         return self._core.hausdorff(precision, progress)
 
-    def check(self, tolerance: "float | tuple[float, float]", *, progress: "Progress | None" = None) -> ToleranceVerdict:
+    def check(
+        self,
+        tolerance: "float | tuple[float, float]",
+        *,
+        uncertainty: float = 0,
+        progress: "Progress | None" = None,
+    ) -> ToleranceVerdict:
         """Returns whether the distances of all points of the surface are within a tolerance.
 
-        tolerance: ±tolerance, in units of the meshes, or the least and the most distance. Raises Error as ``bounds`` does,
+        tolerance: ±tolerance, in units of the meshes, or the least and the most distance. uncertainty: the expanded
+        uncertainty (k = 2) of the measurement, which the verdict keeps away from the limits as by ISO 14253-1. Raises Error as ``bounds`` does,
         and for a tolerance that differs by the sign if the map is unsigned; Cancelled. Cost: one search per vertex.
 
         >>> sdm.map(sphere, box, resolution=64).check(2).verdict
         'pass'
         """
-        return self._core.check(tolerance, progress)
+        return self._core.check(tolerance, uncertainty, progress)
 
     def check_groups(
         self,
         tolerance_table: "str | os.PathLike[str] | dict[str, float | tuple[float | None, float | None]]",
         names: "FaceNames | list[FaceNames]",
         *,
+        uncertainty: float = 0,
         progress: "Progress | None" = None,
     ) -> GroupVerdicts:
         """Returns whether the distances of all points of named groups of the surface are within tolerances of their own.
 
         tolerance_table: a dict of tolerances, as of check(), by name, where None in place of one of two numbers is no limit
         on that side; or a file with a row group,lower,upper for each, as of ``sdm map --tolerance-table``. names: of the
-        faces of the surface, as of read_face_names(). Raises Error as check() does, and for a name that no face has;
+        faces of the surface, as of read_face_names(). uncertainty: as of check(). Raises Error as check() does, and for a name that no face has;
         Cancelled. Cost: linear in texels for all groups together, and a proof for each.
 
         >>> halves = sdm.FaceNames('group', ['all'], np.zeros(len(sphere.faces), np.uint32))
         >>> sdm.map(sphere, box, resolution=64).check_groups({'all': 2}, halves).verdict
         'pass'
         """
-        return self._core.check_groups(tolerance_table, names, progress)
+        return self._core.check_groups(tolerance_table, names, uncertainty, progress)
 
     def places(
         self,

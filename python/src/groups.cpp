@@ -133,7 +133,9 @@ void bind_verdicts(nb::module_& module) {
   });
 }
 
-GroupVerdicts check_groups(const PyMap& self, nb::handle table, nb::handle names, nb::handle progress) {
+GroupVerdicts check_groups(const PyMap& self, nb::handle table, nb::handle names, double uncertainty,
+                           nb::handle progress) {
+  require_uncertainty(uncertainty);
   if (self.of_itself()) self.require_other_mesh();
   const std::vector<GroupTolerance> rows = table_of(table, self.map.sign.method);
   const auto lock = self.use_surface();
@@ -143,8 +145,9 @@ GroupVerdicts check_groups(const PyMap& self, nb::handle table, nb::handle names
   check_table(rows, kinds);
   GroupVerdicts result;
   run(progress, [&](const Progress& report) {
-    result = certify_groups(surface, self.to->sites, self.map, self.vertex_distances(report), kinds, rows,
-                            {.accuracy = self.accuracy(), .guard = self.guard(), .progress = report});
+    result = certify_groups(
+        surface, self.to->sites, self.map, self.vertex_distances(report), kinds, rows,
+        {.accuracy = self.accuracy(), .guard = self.guard(), .uncertainty = uncertainty, .progress = report});
   });
   return result;
 }
@@ -222,7 +225,7 @@ void bind_groups(nb::module_& module) {
 
 void bind_map_groups(nb::class_<PyMap>& map) {
   map.def("check_groups", &check_groups, nb::arg("table").none(), nb::arg("names").none(),
-          nb::arg("progress").none())
+          nb::arg("uncertainty"), nb::arg("progress").none())
       .def("places", &places, nb::arg("tolerance").none(), nb::arg("names").none(), nb::arg("table").none(),
            nb::arg("progress").none());
 }

@@ -102,6 +102,8 @@ struct PyMap {
 [[nodiscard]] Tolerance tolerance_of(nb::handle value, SignMethod sign);
 /// Throws sdm::Error for a tolerance that needs signs if distances have none.
 void require_sign(const Tolerance& tolerance, SignMethod sign);
+/// Throws sdm::Error unless it is a finite number of at least 0.
+void require_uncertainty(double uncertainty);
 
 /// Rows of values to transfer.
 using TransferRows = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;

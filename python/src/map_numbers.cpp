@@ -110,7 +110,9 @@ BoundedLength hausdorff(const PyMap& self, std::optional<double> precision, nb::
   return result;
 }
 
-CertifiedVerdict check_tolerance(const PyMap& self, nb::handle tolerance, nb::handle progress) {
+CertifiedVerdict check_tolerance(const PyMap& self, nb::handle tolerance, double uncertainty,
+                                 nb::handle progress) {
+  require_uncertainty(uncertainty);
   if (!self.thickness && !self.along) self.require_other_mesh();
   const Tolerance accepted = tolerance_of(tolerance, self.map.sign.method);
   const auto lock = self.use_surface();
@@ -119,16 +121,19 @@ CertifiedVerdict check_tolerance(const PyMap& self, nb::handle tolerance, nb::ha
   run(progress, [&](const Progress& report) {
     const Surface& surface = self.on->surface;
     if (self.thickness) {
-      result =
-          *summarize_thickness(surface, self.map,
-                               {.accuracy = self.accuracy(), .guard = self.guard(), .tolerance = accepted})
-               .tolerance;
+      result = *summarize_thickness(surface, self.map,
+                                    {.accuracy = self.accuracy(),
+                                     .guard = self.guard(),
+                                     .uncertainty = uncertainty,
+                                     .tolerance = accepted})
+                    .tolerance;
       return;
     }
     result = certify_tolerance(surface, self.to->sites, self.map, self.vertex_distances(report), accepted,
                                {.error_bound = covering_radius(surface),
                                 .accuracy = self.accuracy(),
                                 .guard = self.guard(),
+                                .uncertainty = uncertainty,
                                 .progress = report});
   });
   return result;
@@ -198,6 +203,11 @@ void require_sign(const Tolerance& tolerance, SignMethod sign) {
     throw Error("a tolerance that differs by the sign needs signed distances, but these are unsigned");
 }
 
+void require_uncertainty(double uncertainty) {
+  if (!(uncertainty >= 0 && std::isfinite(uncertainty)))
+    throw Error("the uncertainty must be a number of at least 0");
+}
+
 void bind_map_numbers(nb::module_& module, nb::class_<PyMap>& map) {
   bind_statistics(module);
   bind_verdict(module);
@@ -208,7 +218,8 @@ void bind_map_numbers(nb::module_& module, nb::class_<PyMap>& map) {
           })
       .def("bounds", &bounds, nb::sig("def bounds(self) -> tuple[float, float, float, float]"))
       .def("hausdorff", &hausdorff, nb::arg("precision").none(), nb::arg("progress").none())
-      .def("check", &check_tolerance, nb::arg("tolerance").none(), nb::arg("progress").none());
+      .def("check", &check_tolerance, nb::arg("tolerance").none(), nb::arg("uncertainty"),
+           nb::arg("progress").none());
 }
 
 }  // namespace sdm::python

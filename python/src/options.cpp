@@ -149,7 +149,7 @@ const std::map<std::string, CallOptions>& all_calls() {
       {"thickness", call_of<AtlasOptions, ThicknessOptions>({"progress"})},
       {"match", call_of<AtlasOptions, MatchOptions>({"normals", "engine", "progress"})},
       {"measure_points",
-       call_of<MapOptions, AlongOptions, ColorChoice, TextDialect>(
+       call_of<MapOptions, AlongOptions, ColorChoice, PointDistancesOptions, TextDialect>(
            {"transform", "engine", "progress", "tolerance_table", "names", "island_points"})},
       {"read_points", call_of<TextDialect>({})},
       {"save", call_of<PictureOptions>({"progress"})},

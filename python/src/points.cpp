@@ -145,6 +145,7 @@ PointDistances measure(nb::handle cloud, nb::handle o2, nb::handle output, nb::h
   set_options(given, options.picture);
   PointDistances result;
   options.guard = to.deviation();
+  set_options(given, options);
   run(nb::none(), [&](const Progress&) { (void)to.get(); });
   const SignMethod signs = options.along ? SignMethod::side : choose_sign(to.get(), options.map).method;
   if (options.picture.tolerance) require_sign(*options.picture.tolerance, signs);

@@ -145,3 +145,41 @@ def test_clouds(tmp_path):
     assert found.places.largest[0].group == "left"
     with pytest.raises(sdm.Error, match="has the name 'lid'"):
         sdm.measure_points(tmp_path / "cloud.xyz", o2, tmp_path / "out.ply", tolerance_table={"lid": 1}, names=names)
+
+
+@pytest.mark.parametrize("distance", [0.3, 0.8, 0.95, 1.05, 1.2, 3])
+@pytest.mark.parametrize("uncertainty", [0, 0.02, 0.1, 0.25])
+def test_verdicts_keep_the_uncertainty_from_the_limits(tmp_path, distance, uncertainty):
+    # Two parallel squares: the distance is known.
+    corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], float)
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    o1, o2 = (0.5 * corners, faces), (corners + [0, 0, distance], faces)
+    expected = "pass" if distance < 1 - uncertainty else "fail" if distance > 1 + uncertainty else "not decided"
+    rule = "ISO 14253-1" if uncertainty else "simple acceptance"
+    m = sdm.map(o1, o2, resolution=16)
+    verdict = m.check(1, uncertainty=uncertainty)
+    assert (verdict.verdict, verdict.decision_rule) == (expected, rule)
+    groups = m.check_groups({"all": 1}, sdm.FaceNames("group", ["all"], [0, 0]), uncertainty=uncertainty)
+    assert groups.verdict == expected
+    report = m.report(tolerance=1, uncertainty=uncertainty)
+    assert (report["tolerance"]["verdict"].lower(), report["tolerance"]["decision_rule"]) == (expected, rule)
+    assert report["evidence"]["uncertainty"] == report["evidence"]["guard"] == uncertainty
+    np.savetxt(tmp_path / "cloud.xyz", o1[0])
+    cloud = sdm.measure_points(
+        tmp_path / "cloud.xyz",
+        o2,
+        tmp_path / "out.ply",
+        tolerance_table={"all": 1},
+        names=sdm.FaceNames("group", ["all"], [0, 0]),
+        uncertainty=uncertainty,
+    )
+    assert cloud.groups.verdict == expected
+
+
+@pytest.mark.parametrize("uncertainty", [-0.1, float("nan"), float("inf")])
+def test_an_uncertainty_is_a_number_of_at_least_0(uncertainty):
+    m = sdm.map(meshes.sphere(), meshes.box(), resolution=16)
+    with pytest.raises(sdm.Error, match="uncertainty"):
+        m.check(1, uncertainty=uncertainty)
+    with pytest.raises(sdm.Error, match="uncertainty"):
+        m.report(tolerance=1, uncertainty=uncertainty)

@@ -42,6 +42,7 @@ void extend(Evidence& all, const Evidence& more) {
   all.accuracy = std::max(all.accuracy, more.accuracy);
   all.error_bound = std::max(all.error_bound, more.error_bound);
   all.guard = std::max(all.guard, more.guard);
+  all.uncertainty = std::max(all.uncertainty, more.uncertainty);
   all.thin_walls = std::min(all.thin_walls, more.thin_walls);
 }
 

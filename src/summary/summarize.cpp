@@ -77,13 +77,18 @@ double beyond_fraction(const Surface& surface, const DistanceMap& map) {
   return area_fraction_beyond(surface, matched, kInfinity);
 }
 
+/// The guard band of verdicts.
+double guard_of(const SummaryOptions& options) {
+  return options.guard + options.uncertainty;
+}
+
 Places places_of(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
                  const DistanceStatistics& distance, const SummaryOptions& options) {
   const std::vector<FaceNames> names = names_of_part(options.names, options.whole_face);
   return find_places(surface, map, vertex_distances,
                      {.tolerance = options.tolerance,
                       .table = options.table,
-                      .accuracy = std::isfinite(options.accuracy) ? options.accuracy + options.guard : 0,
+                      .accuracy = std::isfinite(options.accuracy) ? options.accuracy + guard_of(options) : 0,
                       .p99_abs = distance.p99_abs,
                       .names = names});
 }
@@ -143,7 +148,8 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
        [&] { result.distribution = summary::distribution_of(surface, map, result.distance, options); }});
   const double walls = thickness::thin_walls(wall_lengths);
   result.evidence = evidence_of(surface, map, vertex_distances, error_bound, options.accuracy);
-  result.evidence.guard = options.guard;
+  result.evidence.guard = guard_of(options);
+  result.evidence.uncertainty = options.uncertainty;
   result.evidence.thin_walls = walls;
   result.hausdorff = summary::largest_distance(result);
   if (options.tolerance)
@@ -151,6 +157,7 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
                                          {.error_bound = error_bound,
                                           .accuracy = options.accuracy,
                                           .guard = options.guard,
+                                          .uncertainty = options.uncertainty,
                                           .thin_walls = walls,
                                           .accept_doubts = options.accept_doubts,
                                           .progress = options.progress});
@@ -175,7 +182,8 @@ Summary summarize_thickness(const Surface& surface, const DistanceMap& map, cons
   evidence = {.complete = map.beyond_max_distance == 0,
               .samples_only = true,
               .accuracy = options.accuracy,
-              .guard = options.guard,
+              .guard = guard_of(options),
+              .uncertainty = options.uncertainty,
               .error_bound = kInfinity,
               .is_signed = false};
   if (result.extremes) {
@@ -186,7 +194,7 @@ Summary summarize_thickness(const Surface& surface, const DistanceMap& map, cons
   CertifiedVerdict& verdict = result.tolerance.emplace();
   static_cast<Judgement&>(verdict) = judge(evidence, *options.tolerance);
   verdict.tolerance = *options.tolerance;
-  verdict.shares = tolerance_shares(surface, map, *options.tolerance, options.accuracy + options.guard);
+  verdict.shares = tolerance_shares(surface, map, *options.tolerance, options.accuracy + guard_of(options));
   verdict.exceeded_area_fraction = verdict.shares.below + verdict.shares.above + verdict.shares.without_value;
   if (evidence.complete) verdict.largest = evidence.highest;
   return result;

@@ -296,5 +296,72 @@ TEST_F(Verdicts, NotDecidedSaysByHowMuch) {
   EXPECT_EQ(map(o2, o2, {"--tolerance", "0:0.2"}).code, 0) << "unsigned distances are not negative";
 }
 
+// Two parallel squares: the distance is known, and with it the verdict by each rule.
+TEST_F(Verdicts, KeepTheUncertaintyAwayFromTheLimits) {
+  const std::string o1 = write_obj(folder / "o1.obj", square(1, 0));
+  write_ply(folder / "cloud.ply", square(1, 0));
+  for (const double d : {0.3, 0.8, 0.95, 1.05, 1.2, 3.0}) {
+    const std::string o2 = write_obj(folder / "o2.obj", square(2, d));
+    for (const double uncertainty : {0.0, 0.02, 0.1, 0.25}) {
+      SCOPED_TRACE(fmt::format("{} ± {}", d, uncertainty));
+      const std::string verdict = d < 1 - uncertainty ? "PASS" : d > 1 + uncertainty ? "FAIL" : "NOT DECIDED";
+      const std::vector<std::string> judged{
+          "--tolerance", "1", "--uncertainty", fmt::format("{}", uncertainty), "--accept-doubts", "--json"};
+      for (const std::vector<std::string>& measured :
+           {std::vector<std::string>{"map", o1, o2, "-o", out, "--write", "none", "--resolution", "16"},
+            {"points", folder / "cloud.ply", o2, "-o", out},
+            {"hausdorff", o1, o2}}) {
+        SCOPED_TRACE(measured[0]);
+        std::vector<std::string> arguments = measured;
+        arguments.insert(arguments.end(), judged.begin(), judged.end());
+        const Outcome run = run_sdm(arguments);
+        const Json report = Json::parse(run.out, nullptr, false), &tolerance = report["tolerance"];
+        ASSERT_TRUE(tolerance.is_object()) << run.err;
+        EXPECT_EQ(tolerance["verdict"], verdict);
+        EXPECT_EQ(run.code, verdict == "PASS" ? 0 : verdict == "FAIL" ? 3 : 4);
+        EXPECT_EQ(tolerance["decision_rule"], uncertainty > 0 ? "ISO 14253-1" : "simple acceptance");
+        const Json& evidence = measured[0] == "hausdorff" ? tolerance : report["evidence"];
+        EXPECT_EQ(evidence["uncertainty"], uncertainty);
+        EXPECT_EQ(evidence["guard"], uncertainty);
+      }
+    }
+  }
+}
+
+TEST_F(Verdicts, OfWallsKeepTheUncertaintyAwayToo) {
+  const std::string part = write_obj(folder / "part.obj", cube(1));  // walls of 2
+  for (const auto& [least, uncertainty, code] : {std::tuple("1.95", "0", 0),
+                                                 {"1.95", "0.04", 0},
+                                                 {"1.95", "0.06", 4},
+                                                 {"2.05", "0.06", 4},
+                                                 {"2.05", "0.04", 3}})
+    EXPECT_EQ(run_sdm({"thickness", part, "-o", out, "--write", "none", "--resolution", "16", "--min", least,
+                       "--uncertainty", uncertainty})
+                  .code,
+              code)
+        << least << " ± " << uncertainty;
+}
+
+TEST_F(Verdicts, StateTheUncertainty) {
+  const std::string o1 = write_obj(folder / "o1.obj", square(1, 0)),
+                    o2 = write_obj(folder / "o2.obj", square(2, 0.5));
+  const auto text = [&](const char* tolerance) {
+    return map(o1, o2, {"--tolerance", tolerance, "--uncertainty", "0.02", "--units", "mm"}).out;
+  };
+  EXPECT_THAT(text("1"), HasSubstr("PASS: every point of the surface is within up to 1 mm, by more than the "
+                                   "uncertainty, 0.02 mm (ISO 14253-1)"));
+  EXPECT_THAT(text("0.4"),
+              HasSubstr("FAIL: a point is out of up to 0.4 mm by more than the uncertainty, 0.02 mm "
+                        "(ISO 14253-1)"));
+  EXPECT_THAT(text("0.51"),
+              HasSubstr("NOT DECIDED: all points are within up to 0.51 mm or out of it by less than "
+                        "the guard band, 0.02 mm, which is the uncertainty (ISO 14253-1); one is "
+                        "closer to a limit than that"));
+  const Outcome nothing = map(o1, o2, {"--uncertainty", "0.02"});
+  EXPECT_EQ(nothing.code, 2);
+  EXPECT_THAT(nothing.err, HasSubstr("--uncertainty: needs limits"));
+  EXPECT_EQ(map(o1, o2, {"--tolerance", "1", "--uncertainty", "-0.1"}).code, 2);
+}
+
 }  // namespace
 }  // namespace sdm::test

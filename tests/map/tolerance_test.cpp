@@ -126,6 +126,29 @@ TEST_F(ToleranceTest, RejectsDistancesOfOtherVertices) {
   EXPECT_THROW(static_cast<void>(check_tolerance(surface, map, at_vertices, 0, 0, 2)), Error);
 }
 
+// The guard band is on both sides of both limits.
+TEST(Judge, ByISO14253) {
+  for (const double u : {0.0, 0.1, 0.3})
+    for (const auto& [lowest, highest] : {std::pair(-0.5, 0.5),
+                                          {-0.95, 0.2},
+                                          {-0.2, 0.95},
+                                          {-1.05, 0.0},
+                                          {0.0, 1.05},
+                                          {-0.65, 0.65},
+                                          {-1.5, 0.0},
+                                          {0.0, 1.25},
+                                          {-2.0, 2.0}}) {
+      const Judgement j =
+          judge({.lowest = lowest, .highest = highest, .guard = u, .uncertainty = u}, Tolerance(-1, 1));
+      const Verdict expected = lowest >= -1 + u && highest <= 1 - u ? Verdict::pass
+                               : lowest < -1 - u || highest > 1 + u ? Verdict::fail
+                                                                    : Verdict::not_decided;
+      EXPECT_EQ(j.verdict, expected) << lowest << ' ' << highest << " ± " << u;
+      EXPECT_EQ(j.decision_rule, u > 0 ? DecisionRule::iso_14253_1 : DecisionRule::simple_acceptance);
+      EXPECT_EQ(j.reason == VerdictReason::guard_band, expected == Verdict::not_decided);
+    }
+}
+
 TEST(EngineAccuracy, IsRelativeToTheDiagonalOfBothMeshes) {
   for (const EngineInfo& engine : engines())
     EXPECT_DOUBLE_EQ(engine_accuracy(engine, square(1, 0), square(2, 1)),

@@ -15,3 +15,7 @@ namespace sdm::core {
 }
 
 }  // namespace sdm::core
+
+namespace sdm {
+using namespace core;  // used unqualified in every folder
+}

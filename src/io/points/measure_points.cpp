@@ -132,7 +132,8 @@ class Measurement {
   // The accuracy, the guard band, the walls and the sign of all samples.
   [[nodiscard]] Evidence common_evidence() const {
     return {.accuracy = result_.accuracy,
-            .guard = options_.guard,
+            .guard = options_.guard + options_.uncertainty,
+            .uncertainty = options_.uncertainty,
             .is_signed = result_.sign.method != SignMethod::none,
             .thin_walls = result_.thin_walls};
   }
@@ -355,7 +356,7 @@ class Measurement {
     PictureOptions picture = options_.picture;
     picture.accuracy = result_.accuracy;
     const ColorScale scale = color_scale(fixed_colors(picture, result_.distance));
-    const double accuracy = result_.accuracy + options_.guard;
+    const double accuracy = result_.accuracy + options_.guard + options_.uncertainty;
     const map::ToleranceLimits limits(picture.tolerance.value_or(Tolerance()), accuracy);
     if (picture.tolerance) result_.beyond_tolerance = result_.beyond_max_distance + result_.without_match;
     CloudPlaces places(result_, options_, groups_ && groups_->any_out(accuracy), usual_.box());

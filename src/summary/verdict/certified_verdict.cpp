@@ -91,7 +91,7 @@ std::optional<ToleranceProof> summary::Certifier::prove(const Tolerance& toleran
                                                         const hausdorff::Matching* matching,
                                                         const Faces& faces) {
   const Tolerance limits = real_limits(tolerance);
-  const double guard = options_.guard;
+  const double guard = options_.guard + options_.uncertainty;
   const Tolerance inner(limits.lower + guard, limits.upper - guard);
   if (!(inner.lower <= inner.upper)) return std::nullopt;
   if (!box_) box_ = bounds(sites_.mesh());
@@ -152,7 +152,7 @@ CertifiedVerdict summary::Certifier::operator()(const ToleranceVerdict& verdict,
         prove(verdict.tolerance, measured.facing, is_facing ? &matching(*measured.facing) : nullptr, faces);
     if (result.proof && !(is_facing && result.proof->depends_on_signs)) {
       static_cast<Judgement&>(result) = judge(result, *result.proof);
-      if (result.reason == VerdictReason::within_rounding && options_.guard > 0)
+      if (result.reason == VerdictReason::within_rounding && options_.guard + options_.uncertainty > 0)
         result.reason = VerdictReason::guard_band;
     }
   }
@@ -165,10 +165,11 @@ CertifiedVerdict certify_tolerance(const Surface& surface, const Sites& sites, c
                                    std::span<const float> vertex_distances, const Tolerance& tolerance,
                                    const CertifyOptions& options) {
   Evidence evidence = evidence_of(surface, map, vertex_distances, options.error_bound, options.accuracy);
-  evidence.guard = options.guard;
+  evidence.guard = options.guard + options.uncertainty;
+  evidence.uncertainty = options.uncertainty;
   ToleranceVerdict sampled = summary::check_evidence(surface, map, evidence, tolerance);
   summary::withhold_failures_by_missing_signs({&sampled, 1}, {}, surface, sites, map, vertex_distances,
-                                              options.accuracy + options.guard);
+                                              options.accuracy + evidence.guard);
   return summary::Certifier(surface.mesh(), sites, map, options)(sampled);
 }
 

@@ -26,12 +26,15 @@ struct SampledGroup {
 std::vector<SampledGroup> judge_samples(const Surface& surface, const Sites& sites, const DistanceMap& map,
                                         std::span<const float> vertex_distances,
                                         const GroupRows::Layer& layer, std::span<const Tolerance> tolerances,
-                                        double accuracy, double guard) {
+                                        const CertifyGroupsOptions& options) {
   const summary::FaceGroups groups{layer.of_face, layer.count};
   std::vector<Evidence> evidence =
-      summary::evidence_of_groups(surface, map, vertex_distances, groups, accuracy);
-  for (Evidence& e : evidence) e.guard = guard;
-  accuracy += guard;
+      summary::evidence_of_groups(surface, map, vertex_distances, groups, options.accuracy);
+  const double guard = options.guard + options.uncertainty, accuracy = options.accuracy + guard;
+  for (Evidence& e : evidence) {
+    e.guard = guard;
+    e.uncertainty = options.uncertainty;
+  }
   const std::vector<summary::GroupArea> areas =
       summary::areas_of_groups(surface, map, groups, tolerances, std::isfinite(accuracy) ? accuracy : 0);
   std::vector<ToleranceVerdict> verdicts;
@@ -61,13 +64,14 @@ GroupVerdicts certify_groups(const Surface& surface, const Sites& sites, const D
     std::vector<Tolerance> tolerances;
     for (const GroupRows::Row& row : groups.rows)
       if (row.layer == l) tolerances.push_back(row.group.tolerance);
-    sampled.push_back(judge_samples(surface, sites, map, vertex_distances, groups.layers[l], tolerances,
-                                    options.accuracy, options.guard));
+    sampled.push_back(
+        judge_samples(surface, sites, map, vertex_distances, groups.layers[l], tolerances, options));
   }
   GroupVerdicts result;
   summary::Certifier certify(surface.mesh(), sites, map,
                              {.accuracy = options.accuracy,
                               .guard = options.guard,
+                              .uncertainty = options.uncertainty,
                               .accept_doubts = options.accept_doubts,
                               .progress = options.progress});
   for (const GroupRows::Row& row : groups.rows) {

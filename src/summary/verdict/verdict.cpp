@@ -21,9 +21,11 @@ Judgement judge(const Evidence& evidence, const Tolerance& tolerance) {
   const double reason = rules::reason_of(lowest, highest, lower, upper, evidence.accuracy, evidence.guard,
                                          evidence.error_bound, evidence.thin_walls, evidence.complete,
                                          evidence.unmatched, evidence.estimated_signs, evidence.samples_only);
-  Judgement result{.verdict = static_cast<Verdict>(static_cast<int>(rules::verdict_of(reason))),
-                   .reason = static_cast<VerdictReason>(static_cast<int>(reason)),
-                   .nearest_is_lower = lower - lowest > highest - upper};
+  Judgement result{
+      .verdict = static_cast<Verdict>(static_cast<int>(rules::verdict_of(reason))),
+      .reason = static_cast<VerdictReason>(static_cast<int>(reason)),
+      .decision_rule = evidence.uncertainty > 0 ? DecisionRule::iso_14253_1 : DecisionRule::simple_acceptance,
+      .nearest_is_lower = lower - lowest > highest - upper};
   result.within = result.verdict != Verdict::fail;
   if (evidence.complete && std::isfinite(margin)) result.margin = margin;
   if (!result.within)

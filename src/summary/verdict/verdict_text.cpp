@@ -18,6 +18,22 @@ std::string with_unit(double length, const std::string& units, int digits = 5) {
 constexpr const char* kByFacing =
     " by the faces of the reference that face the same way, as its walls are thin";
 
+/// What a guard band consists of, as a clause.
+std::string guard_text(const Evidence& evidence) {
+  const char* const deviation = "how far the triangles of CAD were found to be from its surface";
+  if (evidence.uncertainty == 0) return std::string(", which is ") + deviation;
+  const std::string rule = std::string(" (") + name_of(DecisionRule::iso_14253_1) + ")";
+  if (evidence.guard == evidence.uncertainty) return ", which is the uncertainty" + rule;
+  return std::string(", which is the uncertainty and ") + deviation + rule;
+}
+
+/// What the uncertainty adds to a verdict that it leaves decided.
+std::string rule_text(const Summary& summary, const char* by) {
+  if (summary.evidence.uncertainty == 0) return {};
+  return std::string(by) + with_unit(summary.evidence.uncertainty, summary.units, 2) + " (" +
+         name_of(DecisionRule::iso_14253_1) + ")";
+}
+
 /// Why a verdict is open: no point is proven to be out of the limits.
 std::string open_text(const Summary& summary, const std::string& limits) {
   const CertifiedVerdict& verdict = *summary.tolerance;
@@ -32,9 +48,8 @@ std::string open_text(const Summary& summary, const std::string& limits) {
     case VerdictReason::guard_band:
       return "all " + std::string(summary.evidence.samples_only ? "measured " : "") + "points are within " +
              limits + " or out of it by less than the guard band, " +
-             with_unit(summary.evidence.guard, summary.units, 2) +
-             ", which is how far the triangles of CAD were found to be from its surface; one is closer to a "
-             "limit than that";
+             with_unit(summary.evidence.guard, summary.units, 2) + guard_text(summary.evidence) +
+             "; one is closer to a limit than that";
     case VerdictReason::between_samples:
       if (verdict.proof) break;
       return "all measured points are within " + limits + ", but points between them may not be";
@@ -72,7 +87,7 @@ std::string verdict_text(const Summary& summary) {
                           (samples_only ? ", an estimate for those between them" : "");
   switch (verdict.verdict) {
     case Verdict::pass:
-      return all;
+      return all + rule_text(summary, ", by more than the uncertainty, ");
     case Verdict::doubtful:
       return all + ", but " + summary.doubts.front().text + "; " + summary.doubts.front().remedy +
              ", or --accept-doubts";
@@ -83,7 +98,8 @@ std::string verdict_text(const Summary& summary) {
                    : "no face of the reference faces as a point does";
       if (verdict.reason == VerdictReason::beyond_max_distance)
         return "a point is farther than the maximum distance";
-      return "a point is out of " + limits + (verdict.by_facing.value_or(false) ? kByFacing : "");
+      return "a point is out of " + limits + rule_text(summary, " by more than the uncertainty, ") +
+             (verdict.by_facing.value_or(false) ? kByFacing : "");
     case Verdict::not_decided:
       break;
   }
