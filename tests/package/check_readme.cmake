@@ -1,12 +1,13 @@
-# The program that the README shows is examples/first_map.cpp, which the package test compiles and runs.
-file(READ ${SOURCE_DIR}/README.md readme)
+# The program that the guide shows is examples/first_map.cpp, which the package test compiles and runs.
+file(READ ${SOURCE_DIR}/docs/library.md library)
 file(READ ${SOURCE_DIR}/examples/first_map.cpp program)
-string(FIND "${readme}" "```cpp\n${program}```" place)
+string(FIND "${library}" "```cpp\n${program}```" place)
 if(place EQUAL -1)
-  message(FATAL_ERROR "README.md does not contain examples/first_map.cpp word for word.")
+  message(FATAL_ERROR "docs/library.md does not contain examples/first_map.cpp word for word.")
 endif()
 
-# Its table has every command, but the one that prints completions.
+# The table of commands has every one, but the one that prints completions.
+file(READ ${SOURCE_DIR}/docs/command.md commands)
 file(GLOB sources ${SOURCE_DIR}/cli/*.cpp)
 set(names "")
 foreach(source ${sources})
@@ -23,8 +24,8 @@ if(count LESS 15)
   message(SEND_ERROR "Only ${count} commands were found in cli/.")
 endif()
 foreach(name ${names})
-  if(NOT readme MATCHES "\n\\| `sdm ${name}[ `]")
-    message(SEND_ERROR "README.md does not list sdm ${name}.")
+  if(NOT commands MATCHES "\n\\| `sdm ${name}[ `]")
+    message(SEND_ERROR "docs/command.md does not list sdm ${name}.")
   endif()
 endforeach()
 
