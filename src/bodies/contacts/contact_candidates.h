@@ -1,4 +1,4 @@
-// What of a body may be in contact with another one.
+// The regions, vertices and faces of a body that may be in contact with another one.
 #pragma once
 
 #include <array>

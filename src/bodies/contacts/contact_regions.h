@@ -48,7 +48,7 @@ class ContactRegions {
     double radius = -kInfinity;  ///< unknown
     bool inside = false;
   };
-  /// What is known of a node of the wide tree, or a leaf.
+  /// A node of the wide tree, or a leaf, and the side of the other body that it is on.
   struct Node : tree::Place {
     std::uint32_t face = kNone;  ///< of the other body, close to this node or to one above it
     OneSided known{};            ///< about the centre of this node or of one above it

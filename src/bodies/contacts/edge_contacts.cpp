@@ -91,7 +91,7 @@ BesidePrism beside_prism(const EdgeContacts::Edge& edge, const Corners& face, co
   return result;
 }
 
-// What is within `limit` of a face, around the point closest to it.
+// The part of an edge within `limit` of a face, around the point closest to it, by bisection.
 EdgeContacts::Part bisected(const EdgeContacts::Edge& edge, const sites::SitesData& sites, std::uint32_t face,
                             double limit, double closest) {
   const auto distance_at = [&](double t) {
@@ -102,7 +102,7 @@ EdgeContacts::Part bisected(const EdgeContacts::Edge& edge, const sites::SitesDa
 
 }  // namespace
 
-// The same, in closed form where there is one.
+// The part of an edge within `limit` of a face, in closed form where there is one.
 EdgeContacts::Part EdgeContacts::within(const Edge& edge, const sites::SitesData& sites, std::uint32_t face,
                                         double limit, double closest) {
   if (sites.sliver[face] == 0) {

@@ -53,11 +53,11 @@ class EdgeContacts {
     std::uint32_t first_found = 0, end_found = 0;  ///< of what find() found, these are on it
     std::uint32_t near_face = kNone;               ///< one that is close to it
   };
-  /// What find() has divided the edge into. Valid until its next call.
+  /// The parts that find() has divided the edge into. Valid until its next call.
   [[nodiscard]] std::span<const InContact> in_contact() const { return in_contact_; }
 
  private:
-  /// What is within the margin of a face.
+  /// The part of the edge within the margin of a face.
   struct Interval {
     double from, to;
     double distance;  ///< the smallest

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kMostMeasured = 8;
 // A point is deep enough if no other is deeper by more than this factor.
 constexpr double kNearlyDeepest = 1.25;
-// What is greater by less does not count: rounding, which depends on the pose, would choose between equals.
+// Values whose ratio is less are equal: rounding, which depends on the pose, would choose between them.
 constexpr double kGreater = 1 + 1e-6;
 
 // Edges with an end in contact have contacts between their ends only if they are longer than this part of the
@@ -33,7 +33,7 @@ constexpr double kLongEdge = 2 * kShortEdge, kMuchDeeper = 2, kDeeper = 1.0 / 8;
 // than those of the faces.
 constexpr double kFlat = 1e-4;
 
-// What a contact is of, in the upper bits of its number; kPart is another one.
+// The kind of feature that a contact belongs to, in the upper bits of its number; kPart is another one.
 constexpr std::uint64_t kEdge = std::uint64_t{2} << 60;
 // Between the numbers of contacts on one edge.
 constexpr std::uint64_t kNextOnEdge = std::uint64_t{1} << 32;

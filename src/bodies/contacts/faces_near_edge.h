@@ -43,7 +43,7 @@ class FacesNearEdge {
     float length = 0;
     float rounding = 0;  ///< of distances from it
   };
-  /// What find_supporting() requires, in the unit frame.
+  /// The conditions of find_supporting(), in the unit frame.
   struct Supporting {
     std::array<std::array<float, 3>, 2> sides{};  ///< of length 1, or 0
     float margin = 0, max_depth = 0;

@@ -23,7 +23,7 @@ constexpr double kFlush = 1.0 / 16;
 constexpr double kCorner = 0.25;
 constexpr double kDirection = 1e-9;  // relative to the smaller body: the shortest vector with a direction
 constexpr double kStraight = 1e-4;   // an angle: what an outline turns by at a corner, at least
-// What a contact is of, in the upper bits of its number.
+// The kind of feature that a contact belongs to, in the upper bits of its number.
 constexpr std::uint64_t kPart = std::uint64_t{1} << 60;
 constexpr int kBodyBit = 63;
 

@@ -17,7 +17,7 @@ struct SurfacePoint {
 /// makes the search shorter.
 [[nodiscard]] SurfacePoint measure(const shape::Body& body, const Vec3& at, double likely_distance);
 
-/// The same, near a face of the body that is probably close, or kNone.
+/// measure(), beginning with a face of the body that is probably close, or kNone.
 [[nodiscard]] SurfacePoint measure_near(const shape::Body& body, const Vec3& at, std::uint32_t face);
 
 /// Whether the closest point is on the boundary of the body, as it always is unless a solid intersects

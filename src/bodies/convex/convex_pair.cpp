@@ -9,7 +9,7 @@
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 
-// What proves a result. Let u be the unit vector from the closest point of O1 to that of O2, d their
+// The proof of a result. Let u be the unit vector from the closest point of O1 to that of O2, d their
 // distance, and r a bound on rounding errors. Heights are along u for O1, along −u for O2.
 //
 // 1. If a vertex is higher than all of its neighbours by h, it is higher than all vertices by h, as the
@@ -167,8 +167,8 @@ class Proof {
     }
     return {};
   }
-  // What features are that have this height above each other, to rounding, and are closest if it is positive.
-  // `exact_sign` computes the sign of the height where rounding may change it.
+  // The relation of two features that have this height above each other, to rounding, and are closest if it
+  // is positive. `exact_sign` computes the sign of the height where rounding may change it.
   template <class ExactSign>
   [[nodiscard]] Proven by_height(double height, const ExactSign& exact_sign) const {
     if (height > kMany * rounding_) return Proven::apart;

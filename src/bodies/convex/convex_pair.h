@@ -8,9 +8,9 @@
 
 namespace sdm::convex {
 
-/// What pairs::find_closest() and pairs::colliding() find for two convex solids, to the bit, in less time
-/// where it can be proven: the results are empty elsewhere, as where faces are parallel or the solids nearly
-/// touch.
+/// Returns what pairs::find_closest() and pairs::colliding() find for two convex solids, to the bit, in less
+/// time where it can be proven: the results are empty elsewhere, as where faces are parallel or the solids
+/// nearly touch.
 class ConvexPair {
  public:
   /// `scale`: of the pose.

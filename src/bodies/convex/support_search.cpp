@@ -47,7 +47,7 @@ HWY_INLINE std::uint32_t nearly_farthest_vertex(const ConvexMesh& mesh, const Ve
   return std::min(lane, static_cast<std::uint32_t>(mesh.points.size() - 1));
 }
 
-// The same, by neighbours of a vertex that are higher by more than `least`.
+// Hill climbing: from a vertex to a neighbour that is higher by more than `least`, until there is none.
 HWY_INLINE std::uint32_t climb(const ConvexMesh& mesh, const Vec3& u, std::uint32_t vertex, double least) {
   for (;;) {
     const Vec3& from = mesh.points[vertex];

@@ -84,7 +84,7 @@ class Touching {
     return {side == 0 ? pair_.face1(face) : pair_.face2(face), normal_of(side, face), size_};
   }
 
-  // Those at the vertices of the simplex that face the other body most.
+  // Finds the faces at the vertices of the simplex that face the other body most.
   void find_faces(int side) {
     const Vec3 u = side == 0 ? -simplex_.away : simplex_.away;
     Faces& faces = faces_[side];

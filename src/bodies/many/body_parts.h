@@ -74,7 +74,7 @@ class BodyParts {
   void merge(std::vector<PairDepth>& pairs) const;
   void merge(std::vector<PairContacts>& pairs) const;
   void merge(std::vector<PairTimeOfContact>& pairs) const;
-  /// The same for numbers of parts at texels.
+  /// Replaces the numbers of parts at texels by those of bodies.
   void merge(NearestMap& nearest) const;
 
  private:

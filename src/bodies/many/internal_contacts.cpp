@@ -38,7 +38,7 @@ bool may_be_convex(const sites::SitesData& sites, std::uint32_t edge) {
   return true;
 }
 
-// Those around the vertex or at the edge that the point is on, or its face.
+// Finds the faces around the vertex or at the edge that the point is on, or its face.
 void find_faces(const sites::SitesData& sites, const SurfacePoint& point, InternalContacts::Around& around) {
   const Triangle& corners = sites.mesh.triangles[point.face];
   int count = 0, largest = 0, least = 0;

@@ -114,7 +114,7 @@ void MultiBodyQuery::Impl::find_depths() {
   parts.merge(depths);
 }
 
-// Those of all pairs of parts that have some.
+// Lists the contacts of all pairs of parts that have some.
 void MultiBodyQuery::Impl::list_contacts(bodies::ContactList list, const bodies::ContactStore& store,
                                          std::vector<PairContacts>& listed) {
   listed.clear();

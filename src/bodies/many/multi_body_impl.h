@@ -1,4 +1,4 @@
-// What a query of many bodies consists of.
+// The members of a query of many bodies.
 #pragma once
 
 #include <sdm/error.h>
@@ -40,7 +40,7 @@ struct MultiBodyQuery::Impl {
     std::size_t first = 0, count = 0;
   };
 
-  // What the calls have returned.
+  // The results of the last calls.
   std::vector<BodyPair> colliding;
   std::vector<PairSeparation> separations;
   std::size_t candidates = 0;

@@ -72,7 +72,7 @@ class MovedBodies {
 /// The lists of contacts of a pair: contacts() and separating_contacts().
 enum class ContactList : std::uint8_t { closest, separating };
 
-/// What is known of a pair of bodies as long as neither moves.
+/// The answers on a pair of bodies, which hold as long as neither moves.
 struct PairState {
   /// A range of contacts in a ContactStore.
   struct Range {
@@ -80,7 +80,7 @@ struct PairState {
   };
   pair::KnownAnswers known{};
   std::array<Range, 2> contacts{};  ///< by ContactList
-  /// That of the bodies, not of these parts alone; 0 if the bodies do not collide.
+  /// The translation that separates the bodies, not these parts alone; 0 if the bodies do not collide.
   SeparatingTranslation translation{};
   /// How far apart the nearest of all pairs that leave each other together are then; nothing for a pair
   /// alone.

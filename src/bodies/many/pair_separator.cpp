@@ -30,7 +30,7 @@ void PairSeparator::add(const World& world, const Sweep::Pair& pair, const Separ
                     .alone = alone});
 }
 
-// Those that are not near each other do not collide.
+// Adds the pairs of parts that are near each other: others do not collide.
 void PairSeparator::add_parts(const World& world, const Sweep::Pair& bodies) {
   for (std::uint32_t a = world.parts.begin(bodies[0]); a < world.parts.end(bodies[0]); ++a)
     for (std::uint32_t b = world.parts.begin(bodies[1]); b < world.parts.end(bodies[1]); ++b)

@@ -17,7 +17,7 @@
 
 namespace sdm::bodies {
 
-/// What a search reads of the world.
+/// The poses, parts and filters of a world, which a search reads.
 struct World {
   const BodyParts& parts;
   std::span<const Transform> given_poses;   ///< of bodies

@@ -134,7 +134,7 @@ struct PoseQuery::Impl {
     for (Shape& other : others) obstacles.emplace_back(std::move(other));
   }
 
-  // Those that decide collisions with the obstacles; none of bodies that are not convex.
+  // The packets that decide collisions with the obstacles; none of bodies that are not convex.
   const std::vector<std::optional<convex::PosePacket>>& make_packets() {
     packets.resize(obstacles.size());
     const convex::ConvexMesh* const moving = internals(shape)->convex();

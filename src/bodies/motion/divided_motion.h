@@ -18,10 +18,10 @@ class DividedMotion {
  public:
   /// Throws sdm::Error as Motion::at does.
   DividedMotion(const Motion& motion, const Shape& shape);
-  /// The same for a mesh with that box.
+  /// The motion of a mesh with this box.
   DividedMotion(const Motion& motion, const Box& box);
-  /// That of a part of this body, whose pose in the frame of the body is `local`: it turns about the same
-  /// axis by the same angle, which it would not do for sure if that were found again from its own poses.
+  /// The motion of a part of this body, whose pose in the frame of the body is `local`: it turns about the
+  /// same axis by the same angle, which it would not do for sure if that were found again from its own poses.
   /// `box`: of the part, around the middle of the body. Throws sdm::Error as Motion::at does.
   [[nodiscard]] DividedMotion of_part(const Transform& local, const Box& box) const;
 

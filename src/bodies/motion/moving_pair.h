@@ -49,7 +49,7 @@ class MovingPair {
   /// meanwhile. As time_of_contact() finds it.
   [[nodiscard]] std::optional<TimeOfContact> first_contact(double tolerance,
                                                            const std::atomic<double>& until);
-  /// What there is to know at a time, as of bodies without contact.
+  /// The distance and the closest points at a time, as of bodies without contact.
   [[nodiscard]] TimeOfContact at(double time);
 
  private:

@@ -159,7 +159,7 @@ bool PairAnswers::find_closest(double bound) {
   return true;
 }
 
-// The same of a solid pair.
+// Takes the separation of a solid pair, if it is at most `bound`.
 bool PairAnswers::take_separation(double bound) {
   const solids::Relation& found = relation();
   if (!(found.surface_lower <= bound)) return false;

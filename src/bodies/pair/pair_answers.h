@@ -25,7 +25,7 @@ inline const ProximityOptions& checked(const ProximityOptions& options) {
 
 using pairs::FacePair, pairs::kNoFaces;
 
-/// What helps in a similar pose.
+/// Results that make the search in a similar pose shorter.
 struct Hints {
   /// The closest faces, or faces that intersect, if the separation is known.
   FacePair closest_faces = kNoFaces;
@@ -33,7 +33,7 @@ struct Hints {
   convex::Simplex closest_vertices{};  ///< of two convex solids
 };
 
-/// What is known of two bodies in their poses.
+/// The answers on two bodies in their poses that have been found so far.
 struct KnownAnswers : Hints {
   double beyond = -1;                  ///< the surfaces are farther apart than this
   std::optional<bool> intersecting{};  ///< the surfaces
@@ -76,7 +76,7 @@ class PairAnswers {
   [[nodiscard]] bool surfaces_within(double distance);
   /// Whether the bodies collide or their surfaces are at most this far apart.
   [[nodiscard]] bool within(double distance);
-  /// What has been computed so far, but for the contacts.
+  /// The answers computed so far, but for the contacts.
   [[nodiscard]] const KnownAnswers& known() const { return known_; }
 
   [[nodiscard]] const BoundedLength& separation();

@@ -39,7 +39,7 @@ struct Surfaces {
   HWY_INLINE float extent(const Direction& direction, float along1, float along2) const {
     return maps.unit[0] * (along1 + along2 + direction.offset - maps.to[0].error);
   }
-  // That on distances in O1's frame.
+  // A lower bound on distances in O1's unit frame, in the units of the meshes.
   HWY_INLINE Vec in_units(Vec distance) const {
     const Lanes d;
     return hn::Mul(hn::Set(d, maps.unit[0]), hn::Sub(distance, hn::Set(d, maps.to[0].error)));

@@ -226,7 +226,7 @@ void FindNearFaces(const MeshPair& pair, double max_distance, NearFacesWorkspace
   }
   all.resize(kept);
   if (thread_count() == 1) {
-    // What the first half has found shortens the second.
+    // The first half is searched before the second, which the faces found so far make shorter.
     first.open_all();
     all.swap(others);
     first.open_all();

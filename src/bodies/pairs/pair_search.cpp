@@ -104,7 +104,7 @@ class PairSearch {
     return {s_.pair.cylinders[side]->nodes[place.slot / kWidth], place.slot % kWidth};
   }
 
-  // What comparing this place will read.
+  // Fetches the memory that comparing this place will read.
   void prefetch(const Place& place, int side) const {
     if (place.leaf()) {
       prefetch(s_.sites[side]->regions.bounds[place.leaf_number()]);

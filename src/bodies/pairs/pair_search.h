@@ -88,8 +88,8 @@ struct PairWorkspace {
 /// exactly. `hint`: faces that may be such ones, which are then the result.
 [[nodiscard]] FacePair find_common_faces(const MeshPair& pair, PairWorkspace& workspace,
                                          const FacePair& hint = kNoFaces);
-/// The same without a hint, with a point that the faces have in common; for surfaces that probably intersect:
-/// no separating axis is tried.
+/// Finds faces that intersect, without a hint, with a point that they have in common; for surfaces that
+/// probably intersect: no separating axis is tried.
 [[nodiscard]] Separation find_intersection(const MeshPair& pair, PairWorkspace& workspace);
 
 }  // namespace sdm::pairs

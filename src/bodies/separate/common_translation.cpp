@@ -24,7 +24,7 @@ class MovedPairs final : public TranslatedBodies {
 
   [[nodiscard]] bool collide(const Vec3& translation) override {
     ++tries_;
-    // Those that collided last mostly do again.
+    // The pair that collided last is tried first, as it mostly does again.
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       const std::size_t k = (last_ + i) % pairs_.size();
       begin(k, translation);

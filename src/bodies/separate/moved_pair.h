@@ -32,7 +32,7 @@ class MovedPair final : public TranslatedBodies {
     answers_.begin(moved_, o2_);
   }
 
-  /// What helps after the next translation.
+  /// Sets the hints for the next translation.
   void set_hints(const pair::Hints& hints) { answers_.begin(moved_, o2_, hints); }
   [[nodiscard]] bool collide(const Vec3& translation) override {
     move(translation);

@@ -10,7 +10,7 @@
 namespace sdm::separate {
 namespace {
 
-// What the search may take: cubes, searches for a closest point, collision tests and searches for a depth.
+// Limits of the search: cubes, searches for a closest point, collision tests and searches for a depth.
 constexpr std::size_t kMostCubes = 5000, kMostMeasured = 4000, kMostTests = 100, kMostDepths = 3;
 // Pairs of a cube whose balls are measured.
 constexpr std::size_t kTried = 3;

@@ -21,7 +21,7 @@ constexpr double kEnough = 0.85;  // ratio of bounds at which the search for a c
 // Bodies that only touch: how far they are moved at most, of the size, and steps to the direction.
 constexpr double kMostGap = 1e-3;
 constexpr int kTurns = 64;
-// What rounding of two points in space, and of their difference, may amount to, over the largest coordinate.
+// The rounding error of two points in space and of their difference, relative to the largest coordinate.
 constexpr double kSpaceRounding = 16 * std::numeric_limits<double>::epsilon();
 
 class TranslationSearch {
@@ -64,7 +64,7 @@ class TranslationSearch {
   }
 
  private:
-  // Those between which convex solids are closest after the exit.
+  // The vertices between which convex solids are closest after the exit.
   [[nodiscard]] convex::Simplex closest_vertices(const convex::ConvexExit& exit) const {
     if (!convex_[0] || !convex_[1]) return {};
     convex::Simplex simplex = exit.touching;

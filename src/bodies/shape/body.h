@@ -86,7 +86,8 @@ class Body {
   /// The mesh, if it bounds a convex solid (see convex::recognise); none after a refit, as with cylinders().
   /// None with a margin.
   [[nodiscard]] const convex::ConvexMesh* convex() const { return rounded() ? nullptr : convex_.get(); }
-  /// The same, also after a refit, and the core of a margin. Thread-safe; found by the first call after one.
+  /// convex(), also after a refit, and of the core of a margin. Thread-safe; found by the first call after
+  /// one.
   [[nodiscard]] const convex::ConvexMesh* convex_solid() const;
   /// Whether it bounds a convex solid (see convex::is_convex) of so few faces that bounds by their planes
   /// take less time, also after a refit. Thread-safe; decided by the first call after one.

@@ -16,7 +16,7 @@ namespace sdm::shape {
 /// Throws sdm::Error unless a body with that box has, in that pose, coordinates that meshes can have:
 /// distances are then finite. Returns a box that contains the posed body.
 Box check_posed(const mesh::Similarity& pose, const Box& box);
-/// The same for a body; that of a half-space is the box of all coordinates.
+/// check_posed() of the box of a body; that of a half-space is the box of all coordinates.
 Box check_posed(const mesh::Similarity& pose, const Body& body);
 
 class PosedBody {
@@ -36,7 +36,7 @@ class PosedBody {
     pose_ = placed.pose;
     follow(placed.box);
   }
-  /// What set_pose() would set. Throws as it does.
+  /// Returns the members that set_pose() would set. Throws as it does.
   [[nodiscard]] Placed checked_pose(const Transform& pose) const;
   /// Throws sdm::Error if another Shape shares the mesh.
   void require_own_shape() const;
@@ -67,7 +67,8 @@ class PosedBody {
   [[nodiscard]] const Box& box() const { return box_; }
   /// A ball that contains it.
   [[nodiscard]] const Ball& ball() const { return ball_; }
-  /// What the box has in common with that of the ball, which is smaller for bodies that are round and turned.
+  /// The intersection of the box with that of the ball, which is smaller for bodies that are round and
+  /// turned.
   [[nodiscard]] Box tight_box() const {
     const Vec3 reach{ball_.radius, ball_.radius, ball_.radius};
     Box box{ball_.centre - reach, ball_.centre + reach};

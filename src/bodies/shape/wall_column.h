@@ -27,8 +27,8 @@ struct Polygon {
   void clip(double x, double y, double most);
 };
 
-/// What is above and below a part along a direction u, |u| = 1: a prism without ends. The level of a point x
-/// is u·(x − origin).
+/// A prism without ends, of all points above and below a part along a direction u, |u| = 1. The level of a
+/// point x is u·(x − origin).
 struct WallColumn {
   Vec3 origin{};                           ///< a point of the part
   std::array<Vec3, 3> axes{};              ///< u, and two directions across

@@ -60,7 +60,7 @@ double angle_at_edge(const sites::SitesData& solid, std::uint32_t face, int side
   return height < -kAngleRounding * reach ? 0 : 0.5 * angle(n, m);
 }
 
-// The same for a vertex. With e the directions of its edges, points p = v − b m inside can be closest to the
+// The bound at a vertex. With e the directions of its edges, points p = v − b m inside can be closest to the
 // vertex v for m in the cone m·e ≥ 0 only, which is spanned by cross products of two of them. Every m in it
 // is in the cone of these, and so no farther from one of them than they are from the middle of a cap that
 // contains all of them: if it were, with c the middle, (m − c)·g < 0 for all of them, so also (m − c)·m < 0.

@@ -177,7 +177,7 @@ CoreDistance core_distance(const PosedCore& a, const PosedCore& b, double size,
   }
   if (found.distance > kTouching * size && found.error <= kReliable * size) return found;
   if (a.thin() && b.thin()) {
-    // They touch to rounding. The points are closest ones of both segments.
+    // Both segments touch, to rounding. The points are closest ones of both segments.
     found.normal = normal_of_crossing(a, b);
     if (found.distance == 0) {
       const CoreDistance beside = core_gap(a.moved(size * found.normal), b);

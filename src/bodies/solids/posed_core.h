@@ -24,7 +24,7 @@ class PosedCore {
     std::uint32_t near = kNone;
     return support(u, near);
   }
-  /// The same core, moved.
+  /// Returns the core translated.
   [[nodiscard]] PosedCore moved(const Vec3& by) const;
 
   [[nodiscard]] CoreKind kind() const { return kind_; }

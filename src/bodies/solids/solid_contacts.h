@@ -18,7 +18,7 @@ namespace sdm::solids {
 /// to an end of it, among all points nearby. Reuses its memory.
 class SolidContacts {
  public:
-  /// Those of at least minus the margin; the span is valid until the next call.
+  /// Returns the contacts whose depth is at least minus the margin; the span is valid until the next call.
   [[nodiscard]] std::span<const Contact> find(const shape::PosedBody& o1, const shape::PosedBody& o2,
                                               const SolidPair& pair, const Relation& relation, double margin);
 

@@ -26,10 +26,10 @@ struct ContactPlane {
   }
 };
 
-/// What a convex solid touches a plane with, or nearly so: at its farthest vertex, the face that is most
-/// nearly parallel to the plane, with those that continue it, if it is so to 3 degrees; else the edge; else
-/// the vertex. Seen in the plane, it is a convex polygon, a segment or a point. That of the flat end of a
-/// cylinder is a polygon in its circle; a half-space has no corners, and is everywhere.
+/// The feature with which a convex solid touches a plane, or nearly so: at its farthest vertex, the face that
+/// is most nearly parallel to the plane, with those that continue it, if it is so to 3 degrees; else the
+/// edge; else the vertex. Seen in the plane, it is a convex polygon, a segment or a point. That of the flat
+/// end of a cylinder is a polygon in its circle; a half-space has no corners, and is everywhere.
 class SupportFeature {
  public:
   struct Corner {

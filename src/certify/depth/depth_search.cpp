@@ -19,7 +19,7 @@ constexpr double kCoarse = 1.0 / 16;
 // The cosine between directions that are nearly the same.
 constexpr double kSameDirection = 0.9999;
 constexpr int kFirstDirections = 3;
-// So many parts of the boundary are found for a triangle before it is divided.
+// How many parts of the boundary are found for a triangle before it is divided.
 constexpr std::uint32_t kMostCuts = 4;
 // If more parts have to be measured, walls may be thin. While fewer than so many parts are open for each that
 // has been measured, the search is likely to end before a new one would, and goes on up to kMostEasy, or

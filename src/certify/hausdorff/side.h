@@ -10,7 +10,7 @@ namespace sdm::hausdorff {
 /// A side, for the largest distance of the points of A that are on it. Thread-safe.
 class Side {
  public:
-  /// What is known of a triangle with a point that is not on the side.
+  /// Bounds on a triangle that has a point which is not on the side.
   struct Known {
     double upper = 0;      ///< no point of the triangle is farther from B
     double distance = 0;   ///< > 0; the point is at least so far

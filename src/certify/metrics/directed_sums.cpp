@@ -1,4 +1,5 @@
-// What the parts of a directed search say of the whole surface: means, fractions and percentiles.
+// Bounds on means, fractions and percentiles of the whole surface, summed over the parts of a directed
+// search.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -27,12 +27,12 @@ constexpr double kOfMean = 0.8 * kMiss, kOfShare = kMiss - kOfMean;
 // The number of points is chosen by other points before: with those the intervals would be too narrow by
 // choice. There are at least kFewPoints of either.
 constexpr std::size_t kFewPoints = 256, kTrials = std::size_t{1} << 16, kOfTrials = 8;
-// So much farther than all trials is usual.
+// The largest distance is usually less than this many times that of all trials.
 constexpr double kUsual = 1.25;
 // Where no distance is so many times as large as their root mean square, those that are not found hardly
 // matter.
 constexpr double kOfLargest = 10;
-// So many more points than were asked for by trials, whose own numbers are uncertain.
+// Allowance for the uncertainty of the trials, by which the number of points is chosen.
 constexpr double kMorePoints = 1.1;
 
 std::size_t trials(std::size_t most_points) {

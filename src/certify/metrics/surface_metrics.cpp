@@ -83,7 +83,7 @@ BoundedNumber combined(const BoundedNumber& a, const BoundedNumber& b, const Fun
   return result;
 }
 
-/// The same of a function whose value lies between those of its arguments, also after rounding.
+/// combined() by a function whose value lies between those of its arguments, also after rounding.
 template <class Function>
 BoundedNumber averaged(const BoundedNumber& a, const BoundedNumber& b, const Function& f) {
   BoundedNumber result = combined(a, b, f);

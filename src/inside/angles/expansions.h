@@ -84,7 +84,7 @@ struct FaceExpansions {
   std::array<std::vector<float>, 3> centre, moment;
   std::vector<float> second, radius, noise;  ///< with what the rounding of the centre adds
 
-  /// What vectors read beyond the last face is set.
+  /// Resizes all arrays, padded to whole vectors of lanes; the padding is set.
   void resize(std::size_t faces);
 };
 
