@@ -232,6 +232,11 @@ void bind_closest_points_state() {
       });
 }
 
+PyShape with_margins(PyShape shape, const std::vector<double>& margins) {
+  for (const double margin : margins) shape = shape.with_margin(margin);
+  return shape;
+}
+
 }  // namespace
 
 void bind_pickle() {
@@ -261,18 +266,26 @@ void bind_pickle() {
   bind_map_state();
   bind_nearest_map_state();
   bind_state<PyShape>(
-      2,
+      4,
       [](const PyShape& self) {
-        if (!self.shape.has_mesh() || self.shape.margin() > 0)
-          throw Error(
-              "a primitive shape and one with a margin cannot be pickled; make it again from its sizes");
-        return nb::make_tuple(state_of(self.shape.sites().mesh(), 0), self.resolution);
+        std::vector<Primitive> primitive;
+        if (self.primitive) primitive.push_back(*self.primitive);
+        const nb::object mesh =
+            self.primitive ? nb::none() : nb::object(state_of(self.shape.sites().mesh(), 0));
+        return nb::make_tuple(mesh, self.resolution, packed(primitive), packed(self.margins));
       },
       [](PyShape* self, const nb::tuple& from) {
-        const Mesh mesh = mesh_from(from[0]).mesh;
-        const auto resolution = nb::cast<std::optional<std::uint32_t>>(from[1]);
+        const auto primitive = unpacked<Primitive>(from[2]);
+        const auto margins = unpacked<double>(from[3]);
         InPlace<PyShape> made(self);
-        run_sized(mesh.triangles.size(), [&] { made.make([&] { return PyShape(mesh, resolution, {}); }); });
+        if (!primitive.empty()) {
+          made.make([&] { return with_margins(PyShape(primitive[0]), margins); });
+        } else {
+          const Mesh mesh = mesh_from(from[0]).mesh;
+          const auto resolution = nb::cast<std::optional<std::uint32_t>>(from[1]);
+          run_sized(mesh.triangles.size(),
+                    [&] { made.make([&] { return with_margins(PyShape(mesh, resolution, {}), margins); }); });
+        }
         made.release();
       });
   bind_closest_points_state();

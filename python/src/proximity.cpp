@@ -82,21 +82,31 @@ Vec3 vector_of(nb::handle value, const char* name) {
 }
 
 void bind_primitives(nb::class_<PyShape>& shape) {
+  using Kind = Primitive::Kind;
   shape
       .def_static(
-          "sphere", [](double radius) { return PyShape(Shape::sphere(radius)); }, nb::arg("radius"),
-          nb::sig("def sphere(radius: float) -> Shape"),
+          "sphere",
+          [](double radius) {
+            return PyShape(Primitive{Kind::sphere, {radius}});
+          },
+          nb::arg("radius"), nb::sig("def sphere(radius: float) -> Shape"),
           R"(The ball of that radius about the origin, exactly, without faces. Raises Error unless the radius is
 finite and above 0, as all primitives do.
 
 >>> round(float(sdm.ProximityQuery(sdm.Shape.sphere(1), sdm.Shape.box([1, 1, 1])).separating_translation()), 6)
 1.5)")
       .def_static(
-          "capsule", [](double radius, double length) { return PyShape(Shape::capsule(radius, length)); },
+          "capsule",
+          [](double radius, double length) {
+            return PyShape(Primitive{Kind::capsule, {radius, length}});
+          },
           nb::arg("radius"), nb::arg("length"), nb::sig("def capsule(radius: float, length: float) -> Shape"),
           R"(The points within the radius of a segment of that length, about the origin, along z.)")
       .def_static(
-          "cylinder", [](double radius, double length) { return PyShape(Shape::cylinder(radius, length)); },
+          "cylinder",
+          [](double radius, double length) {
+            return PyShape(Primitive{Kind::cylinder, {radius, length}});
+          },
           nb::arg("radius"), nb::arg("length"),
           nb::sig("def cylinder(radius: float, length: float) -> Shape"),
           R"(The cylinder of that radius and length, about the origin, along z.)")
@@ -107,17 +117,16 @@ finite and above 0, as all primitives do.
       .def_static(
           "half_space",
           [](nb::handle normal, double offset) {
-            return PyShape(Shape::half_space(vector_of(normal, "normal"), offset));
+            const Vec3 n = vector_of(normal, "normal");
+            return PyShape(Primitive{Kind::half_space, {n[0], n[1], n[2], offset}});
           },
           nb::arg("normal").none(), nb::arg("offset") = 0.0,
           nb::sig("def half_space(normal: object, offset: float = 0.0) -> Shape"),
           R"(The points x with n · x ≤ offset, n the normal divided by its length, as a floor. Two half-spaces are
 no pair of bodies.)")
-      .def(
-          "with_margin",
-          [](const PyShape& self, double radius) { return PyShape(self.shape.with_margin(radius)); },
-          nb::arg("radius"), nb::sig("def with_margin(self, radius: float) -> Shape"),
-          R"(The points within that radius of this shape, without its atlas. Raises Error for a shape that is
+      .def("with_margin", &PyShape::with_margin, nb::arg("radius"),
+           nb::sig("def with_margin(self, radius: float) -> Shape"),
+           R"(The points within that radius of this shape, without its atlas. Raises Error for a shape that is
 not convex.)")
       .def_prop_ro(
           "has_mesh", [](const PyShape& self) { return self.shape.has_mesh(); },
@@ -195,6 +204,28 @@ std::optional<std::uint32_t> resolution_of(const Shape& shape) {
 }
 
 }  // namespace
+
+Shape Primitive::shape() const {
+  switch (kind) {
+    case Kind::sphere:
+      return Shape::sphere(sizes[0]);
+    case Kind::capsule:
+      return Shape::capsule(sizes[0], sizes[1]);
+    case Kind::cylinder:
+      return Shape::cylinder(sizes[0], sizes[1]);
+    case Kind::half_space:
+      return Shape::half_space({sizes[0], sizes[1], sizes[2]}, sizes[3]);
+  }
+  throw Error("no such primitive");
+}
+
+PyShape PyShape::with_margin(double radius) const {
+  PyShape result(shape.with_margin(radius));
+  result.primitive = primitive;
+  result.margins = margins;
+  result.margins.push_back(radius);
+  return result;
+}
 
 PyShape::PyShape(Shape made) : resolution(resolution_of(made)), shape(std::move(made)) {}
 

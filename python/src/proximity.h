@@ -50,12 +50,27 @@ template <class SitesOf>
 }
 
 /// A mesh prepared for proximity queries, as of sdm.Shape.
+/// A solid without a mesh, as its function of Shape takes it. It is stored by its bytes: there is no padding.
+struct Primitive {
+  enum class Kind : std::uint64_t { sphere, capsule, cylinder, half_space };
+  Kind kind = Kind::sphere;
+  std::array<double, 4> sizes{};
+
+  /// Throws sdm::Error as that function does, and for another kind.
+  [[nodiscard]] Shape shape() const;
+};
+
 struct PyShape {
   PyShape(const Mesh& mesh, std::optional<std::uint32_t> side, const Progress& progress);
   explicit PyShape(Shape shape);
+  explicit PyShape(const Primitive& made) : PyShape(made.shape()) { primitive = made; }
+  /// Throws sdm::Error as Shape::with_margin() does.
+  [[nodiscard]] PyShape with_margin(double radius) const;
 
   std::optional<std::uint32_t> resolution;  ///< of the atlas, if it has one
   Shape shape;
+  std::optional<Primitive> primitive{};  ///< if it is none of a mesh
+  std::vector<double> margins{};         ///< one after another
 };
 
 /// Several shapes that are one body, as of sdm.Compound.

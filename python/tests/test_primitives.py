@@ -45,8 +45,31 @@ def test_have_no_faces() -> None:
     assert "without faces" in repr(sphere)
     with pytest.raises(sdm.Error, match="no mesh"):
         _ = sphere.faces
-    with pytest.raises(sdm.Error, match="pickled"):
-        pickle.dumps(sphere)
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        sdm.Shape.sphere(0.7),
+        sdm.Shape.capsule(0.3, 1.1),
+        sdm.Shape.cylinder(0.4, 0.9).with_margin(0.1).with_margin(0.03),
+        sdm.Shape.half_space([0.3, -0.2, 1], 0.25).with_margin(0.1),
+        sdm.Shape.box([1, 2, 3]).with_margin(0.2),
+    ],
+    ids=["sphere", "capsule", "cylinder", "half-space", "box"],
+)
+def test_are_pickled(shape: sdm.Shape) -> None:
+    again = pickle.loads(pickle.dumps(shape))
+    assert (again.has_mesh, again.margin, repr(again)) == (shape.has_mesh, shape.margin, repr(shape))
+    assert pickle.dumps(again) == pickle.dumps(shape)
+    for x in (0.2, 1.5, 4):
+        first, second = (query(s, sdm.Shape.box([1, 1, 1]), x, 0.1, 0.2) for s in (shape, again))
+        assert float(first.separation()) == float(second.separation())
+        assert first.colliding() == second.colliding()
+    damaged = list(shape.__getstate__())
+    damaged[2] = damaged[2][:-1] + b"\x07" if damaged[2] else b"\x07"
+    with pytest.raises(sdm.Error):
+        sdm.Shape.__new__(sdm.Shape).__setstate__(tuple(damaged[:3]))
 
 
 @pytest.mark.parametrize("size", [0, -1, math.nan, math.inf])
