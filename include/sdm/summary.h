@@ -293,4 +293,19 @@ SDM_API void withhold_pass(Summary& summary, bool accept_doubts);
 /// not decided or doubtful. Empty without a tolerance.
 [[nodiscard]] SDM_API std::string verdict_text(const Summary& summary);
 
+/// What follows from a verdict, in sentences; empty where nothing does.
+struct NextSteps {
+  std::string part{};         ///< what it means for the part, for whoever gets the report
+  std::string measurement{};  ///< what would change it, for whoever measures, by options of the command
+};
+
+template <>
+inline constexpr std::tuple kFields<NextSteps>{
+    Field{"part", &NextSteps::part, "What the verdict means for the part; empty without a verdict."},
+    Field{"measurement", &NextSteps::measurement,
+          "Which options of the command would measure more; empty if none would."}};
+
+/// What follows from the verdict on the tolerance of a summary. Empty without one.
+[[nodiscard]] SDM_API NextSteps next_steps(const Summary& summary);
+
 }  // namespace sdm

@@ -26,8 +26,22 @@ export function showVerdict(report: Report): void {
     named(sentence + doubts, report) + tile,
     ...(link ? [' ', link, notes === 1 ? ' qualifies this.' : ' qualify this.'] : []),
   );
+  showNext(report);
   document.title = `${verdict}: ${titleOf(report)}`;
   byId('title').textContent = titleOf(report);
+}
+
+/// What follows for the part and, on pages that a command has made, for the measurement.
+function showNext(report: Report): void {
+  const next = report.tolerance?.next;
+  const rows = [
+    ['For the part', next?.part],
+    ['For the measurement', report.live ? '' : next?.measurement],
+  ].filter(([, step]) => step);
+  byId('next').hidden = rows.length === 0;
+  byId('next').replaceChildren(
+    ...rows.flatMap(([name, step]) => [make('dt', {}, name!), make('dd', {}, named(step!, report))]),
+  );
 }
 
 function worstTitle(report: Report): string {
@@ -39,7 +53,7 @@ function worstTitle(report: Report): string {
 /// While something moves: the verdict of the report is not of what is seen.
 export function showMoving(report: Report): void {
   showBadge('MOVING');
-  byId('sure').hidden = true;
+  byId('sure').hidden = byId('next').hidden = true;
   byId('sentence').textContent = 'The verdict and the numbers follow at rest.';
   document.title = `MOVING: ${titleOf(report)}`;
 }

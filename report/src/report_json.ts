@@ -81,6 +81,7 @@ export interface Report {
     reason?: string;
     nearest_limit?: 'lower' | 'upper';
     text?: string; ///< the verdict as a clause
+    next?: { part: string; measurement: string }; ///< what follows from it; empty where nothing does
     by_facing?: boolean | null; ///< where walls are thin: faces that face the same way decide
     proof?: { witness: { distance: number; point: Vec } | null; faces_without_match?: number } | null;
     exceeded_area_fraction?: number;

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/map.h>
+#include <sdm/summary.h>
 #include <sdm/tolerance.h>
 
 #include <cmath>
 #include <limits>
+#include <set>
+#include <string>
 
 #include "support/shapes.h"
 
@@ -147,6 +150,33 @@ TEST(Judge, ByISO14253) {
       EXPECT_EQ(j.decision_rule, u > 0 ? DecisionRule::iso_14253_1 : DecisionRule::simple_acceptance);
       EXPECT_EQ(j.reason == VerdictReason::guard_band, expected == Verdict::not_decided);
     }
+}
+
+// Each verdict says what follows from it; one that another measurement may decide, which options that takes.
+TEST(NextSteps, FollowFromEachReason) {
+  Summary summary{.evidence = {.guard = 0.3, .uncertainty = 0.1}};
+  EXPECT_EQ(next_steps(summary).part, "");
+  std::set<std::string> parts;
+  for (std::size_t r = 0; r < kWords<VerdictReason>.size(); ++r) {
+    CertifiedVerdict& verdict = summary.tolerance.emplace();
+    verdict.reason = static_cast<VerdictReason>(r);
+    verdict.verdict = verdict.reason == VerdictReason::all_within      ? Verdict::pass
+                      : verdict.reason <= VerdictReason::without_match ? Verdict::fail
+                      : verdict.reason == VerdictReason::in_doubt      ? Verdict::doubtful
+                                                                       : Verdict::not_decided;
+    // Thin walls end as one of the others, and an accuracy that is unknown says nothing of the part.
+    if (verdict.reason == VerdictReason::thin_walls || verdict.reason == VerdictReason::unknown_accuracy)
+      continue;
+    const NextSteps next = next_steps(summary);
+    EXPECT_TRUE(next.part.ends_with(".")) << name_of(verdict.reason);
+    EXPECT_TRUE(parts.insert(next.part).second) << next.part;
+  }
+  summary.tolerance->verdict = Verdict::not_decided;
+  summary.tolerance->reason = VerdictReason::guard_band;
+  EXPECT_THAT(next_steps(summary).measurement,
+              ::testing::AllOf(::testing::HasSubstr("--uncertainty"), ::testing::HasSubstr("--deflection")));
+  summary.evidence.guard = 0.1;
+  EXPECT_THAT(next_steps(summary).measurement, ::testing::Not(::testing::HasSubstr("--deflection")));
 }
 
 TEST(EngineAccuracy, IsRelativeToTheDiagonalOfBothMeshes) {

@@ -107,6 +107,7 @@ Json tolerance_json(const Summary& summary) {
   Json json{{"value", lo == -hi ? Json(hi) : Json()}};
   json.update(to_json(verdict, summary.of_points ? "" : "exceeded_area_fraction"));
   insert_after(json, "reason", "text", verdict_text(summary));
+  insert_after(json, "text", "next", fields_json(next_steps(summary)));
   if (summary.of_points) {
     insert_after(json, "text", "exceeded_points", summary.exceeding_points);
     insert_after(json, "exceeded_points", "exceeded_point_fraction", summary.exceeding_point_fraction);

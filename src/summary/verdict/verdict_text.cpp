@@ -68,6 +68,58 @@ std::string open_text(const Summary& summary, const std::string& limits) {
          accuracy;
 }
 
+NextSteps after_failure(VerdictReason reason, bool of_thickness) {
+  switch (reason) {
+    case VerdictReason::beyond_max_distance:
+      return {"Something may be missing where there is no value.",
+              "A larger --max-distance measures how far these places are."};
+    case VerdictReason::without_match:
+      return {"A face may be missing, or turned over, where there is no value.",
+              "Without --facing and --along, each point is measured to the closest face."};
+    default:
+      return {
+          "It is out of tolerance: look at the places, the largest first, and settle with its maker whether "
+          "they matter.",
+          of_thickness
+              ? ""
+              : "A scan that lies beside the part can be aligned (--align), and what is no part of it "
+                "left out (--ignore-islands)."};
+  }
+}
+
+NextSteps while_open(const Summary& summary) {
+  const Evidence& evidence = summary.evidence;
+  switch (summary.tolerance->reason) {
+    case VerdictReason::nothing_measured:
+      return {"Nothing is known about it.", "The inputs may be empty, or all of O1 left out."};
+    case VerdictReason::unknown_accuracy:
+      return {"", "The engines reference and cpu have a known accuracy."};
+    case VerdictReason::estimated_signs:
+      return {"It is within the limits unless a sign is wrong.",
+              "Signs are exact with a closed reference (--weld auto), and do not matter with the same limit "
+              "on both "
+              "sides."};
+    case VerdictReason::guard_band: {
+      std::string less;
+      if (evidence.uncertainty > 0) less = "a measurement with a smaller uncertainty (--uncertainty)";
+      if (evidence.guard > evidence.uncertainty)
+        less += std::string(less.empty() ? "" : ", or ") + "finer triangles of CAD (--deflection)";
+      return {
+          "Neither conformity nor non-conformity is proven: agree with its maker on who bears that, or have "
+          "it "
+          "measured better.",
+          "What may decide: " + less + "."};
+    }
+    case VerdictReason::within_rounding:
+      return {"It is at its limit, to the accuracy of a distance.", ""};
+    case VerdictReason::between_samples:
+      return {"Points between those that were measured may be out of the limits.",
+              "A finer map (--resolution) may decide."};
+    default:
+      return {};
+  }
+}
+
 }  // namespace
 
 std::string limits_text(const Tolerance& tolerance, const std::string& units, bool is_signed) {
@@ -104,6 +156,26 @@ std::string verdict_text(const Summary& summary) {
       break;
   }
   return open_text(summary, limits);
+}
+
+NextSteps next_steps(const Summary& summary) {
+  if (!summary.tolerance) return {};
+  const CertifiedVerdict& verdict = *summary.tolerance;
+  switch (verdict.verdict) {
+    case Verdict::pass:
+      if (summary.of_points) return {"It may be accepted where the cloud has points.", ""};
+      if (verdict.certified) return {"It may be accepted: every point is within the limits.", ""};
+      return {
+          "It may be accepted as far as it was measured; between the measured points this is an estimate.",
+          "A finer map (--resolution) makes the estimate closer."};
+    case Verdict::doubtful:
+      return {"The doubt has to be settled before it is accepted.", ""};
+    case Verdict::fail:
+      return after_failure(verdict.reason, summary.of_thickness);
+    case Verdict::not_decided:
+      break;
+  }
+  return while_open(summary);
 }
 
 }  // namespace sdm
