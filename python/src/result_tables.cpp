@@ -92,6 +92,7 @@ void bind_result_tables(nb::module_& module) {
                            table_of<HausdorffDistance>("HausdorffDistance"),
                            table_of<ToleranceVerdict>("ToleranceVerdict"),
                            table_of<ToleranceShares>("ToleranceShares"),
+                           table_of<NextSteps>("NextSteps"),
                            table_of<ToleranceProof>("ToleranceProof"),
                            table_of<ToleranceWitness>("ToleranceWitness"),
                            table_of<Evidence>("Evidence"),

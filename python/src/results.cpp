@@ -29,14 +29,20 @@ inline constexpr auto kMembers<ToleranceProof> = std::tuple{
     &ToleranceProof::proof,        &ToleranceProof::witness,          &ToleranceProof::at_lower,
     &ToleranceProof::undecided_by, &ToleranceProof::depends_on_signs, &ToleranceProof::faces_without_match};
 template <>
-inline constexpr auto kMembers<CertifiedVerdict> =
-    std::tuple{&CertifiedVerdict::verdict,        &CertifiedVerdict::reason,
-               &CertifiedVerdict::within,         &CertifiedVerdict::certified,
-               &CertifiedVerdict::margin,         &CertifiedVerdict::nearest_is_lower,
-               &CertifiedVerdict::deciding_bound, &CertifiedVerdict::tolerance,
-               &CertifiedVerdict::largest,        &CertifiedVerdict::exceeded_area_fraction,
-               &CertifiedVerdict::shares,         &CertifiedVerdict::proof,
-               &CertifiedVerdict::by_facing};
+inline constexpr auto kMembers<CertifiedVerdict> = std::tuple{&CertifiedVerdict::verdict,
+                                                              &CertifiedVerdict::reason,
+                                                              &CertifiedVerdict::decision_rule,
+                                                              &CertifiedVerdict::within,
+                                                              &CertifiedVerdict::certified,
+                                                              &CertifiedVerdict::margin,
+                                                              &CertifiedVerdict::nearest_is_lower,
+                                                              &CertifiedVerdict::deciding_bound,
+                                                              &CertifiedVerdict::tolerance,
+                                                              &CertifiedVerdict::largest,
+                                                              &CertifiedVerdict::exceeded_area_fraction,
+                                                              &CertifiedVerdict::shares,
+                                                              &CertifiedVerdict::proof,
+                                                              &CertifiedVerdict::by_facing};
 template <>
 inline constexpr auto kMembers<GroupVerdicts> =
     std::tuple{&GroupVerdicts::groups, &GroupVerdicts::without_group, &GroupVerdicts::verdict};

@@ -1,5 +1,7 @@
 """Places, and verdicts on named groups."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -159,6 +161,7 @@ def test_verdicts_keep_the_uncertainty_from_the_limits(tmp_path, distance, uncer
     m = sdm.map(o1, o2, resolution=16)
     verdict = m.check(1, uncertainty=uncertainty)
     assert (verdict.verdict, verdict.decision_rule) == (expected, rule)
+    assert pickle.loads(pickle.dumps(verdict)).decision_rule == rule
     groups = m.check_groups({"all": 1}, sdm.FaceNames("group", ["all"], [0, 0]), uncertainty=uncertainty)
     assert groups.verdict == expected
     report = m.report(tolerance=1, uncertainty=uncertainty)
