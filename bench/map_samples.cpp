@@ -28,8 +28,8 @@ void write_map_samples(const MapSamples& options) {
   const Surface surface(load(o1, o1_steps), {.resolution = resolution});
   const Sites sites(o2 == "box" ? paper_box(surface.mesh()) : load(o2, o2_steps));
   DistanceMap map;
-  const MapOptions options{.sign = SignMethod::none};
-  const Contender ours{[&] { compute_map(surface, sites, options, map); }, 1};
+  const MapOptions unsigned_map{.sign = SignMethod::none};
+  const Contender ours{[&] { compute_map(surface, sites, unsigned_map, map); }, 1};
   const double ms = median(take_turns(std::array{ours}, 3)[0]);
 
   std::vector<Vec3> points;

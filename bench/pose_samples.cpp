@@ -68,8 +68,6 @@ double time_batch(PoseQuery& query, const std::vector<Transform>& poses,
   return us;
 }
 
-}  // namespace
-
 struct PoseSamples {
   std::string o1, o2;
   std::filesystem::path out;

@@ -15,6 +15,7 @@
 #include "core/memory.h"
 #include "io/file/byte_scanner.h"
 #include "io/file/error_prefix.h"
+#include "io/file/file_bytes.h"
 #include "io/file/npy.h"
 #include "io/mesh/frames/frame_source.h"
 

@@ -11,7 +11,7 @@
 
 #include "io/mesh/frames/frame_source.h"
 #include "io/mesh/gltf/gltf_morph.h"
-#include "io/mesh/gltf/gltf_pose.h"
+#include "io/mesh/gltf/gltf_moving_part.h"
 #include "io/mesh/gltf/gltf_scene.h"
 
 namespace sdm::io {
