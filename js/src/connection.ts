@@ -75,7 +75,7 @@ export class Connection {
   }
 
   static async open(start: WorkerStart): Promise<Connection> {
-    const worker = await newWorker(start.script);
+    const worker = newWorker(start.script);
     return new Connection(worker, await started<Started>(worker, { worker: start }), start);
   }
 
@@ -104,7 +104,7 @@ export class Connection {
 
   private async replace(): Promise<void> {
     try {
-      const worker = await newWorker(this.start.script);
+      const worker = newWorker(this.start.script);
       this.answer = await started<Started>(worker, { worker: this.start }, this.terminated.signal);
       if (this.end) return worker.terminate();
       this.worker = worker;

@@ -53,7 +53,7 @@ export async function reportOf(module: Module, map: () => Computed, options: Rep
   if (!html.includes(kDataPlace))
     throw new SdmError(
       'input',
-      `the reportPage has no ${kDataPlace}: it must be the text of report_page.html`,
+      `the reportPage has no ${kDataPlace}: it must be the text of report_page.txt`,
     );
   const { address, lengths, planes } = module.call<{ address: number; lengths: Uint32Array; planes: Bytes }>(
     'sdm_new_report',

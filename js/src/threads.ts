@@ -33,7 +33,7 @@ export async function startThreads(
   const failure = new Failure();
   const workers: AnyWorker[] = [];
   const startOne = async (slot: number) => {
-    const worker = await newWorker(script);
+    const worker = newWorker(script);
     workers.push(worker);
     const stackTop = (allocate(kStackBytes) + kStackBytes) & ~15;
     const threadLocal = allocate(kThreadLocalBytes);

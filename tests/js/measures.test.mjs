@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { ball } from './shapes.mjs';
 
-const { start } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'index.js')));
+const { start } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'node.js')));
 const sdm = await start({ threads: 1, full: true });
 
 /** A box of these sizes, closed. */
