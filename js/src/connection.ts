@@ -1,3 +1,4 @@
+/// <reference lib="esnext.disposable" preserve="true" />
 // Calls to a worker, and objects in it; ended workers are replaced.
 import { type AnyWorker, newWorker, started } from './any_worker.js';
 import { type Reference, type Reply, type Request, type Started, type WorkerStart } from './protocol.js';
@@ -6,11 +7,11 @@ import { SdmError } from './types.js';
 
 export interface CallOptions {
   /** Rejects the call with its reason. */
-  signal?: AbortSignal;
+  signal?: AbortSignal | undefined;
   /** Called now and then with the current step and the fraction of it that is done. What it throws aborts the call. */
-  progress?: (step: string, fraction: number) => void;
+  progress?: ((step: string, fraction: number) => void) | undefined;
   /** Moves the buffers of typed arrays that are all of their buffer, instead of copying them: these are empty afterwards. */
-  transfer?: boolean;
+  transfer?: boolean | undefined;
 }
 
 /** The options of a synchronous call, with those of calls to a worker. */

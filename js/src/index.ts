@@ -26,7 +26,23 @@ export type {
 } from './matches.js';
 export type { FaceNames, MeshFile, ReadMeshOptions } from './mesh_file.js';
 export type { PoolMap, PoolMapOptions, PoolSites, PoolSurface, SdmPool } from './pool.js';
-export type { MapSummary, ReportOptions, SummaryOptions } from './report.js';
+export type { JudgedOptions, ReportOptions, SummaryOptions } from './report.js';
+export type {
+  AreaFractions,
+  JudgedSummary,
+  MapSummary,
+  SummaryEvidence,
+  SummaryExtreme,
+  SummaryMesh,
+  SummaryPart,
+  SummaryParts,
+  SummaryPlace,
+  SummaryPlaces,
+  SummaryProof,
+  SummaryShare,
+  SummaryStatistics,
+  SummaryTolerance,
+} from './summary.js';
 export type { Contacts, Pair } from './pair.js';
 export type {
   ClosestPointOptions,
@@ -52,15 +68,15 @@ export interface StartOptions {
    * The number of threads, where memory can be shared: in Node, and in workers of pages that are isolated from other origins. By
    * default as many as there are cores, at most 8.
    */
-  threads?: number;
+  threads?: number | undefined;
   /** The module that also has bodies that move (Pair), mesh files and reports (readMesh, summary, report). */
-  full?: boolean;
+  full?: boolean | undefined;
   /** The modules, where they are not found beside this file. Those that are compiled already have one thread. */
-  modules?: ModuleFiles;
+  modules?: ModuleFiles | undefined;
   /** The address of worker.js, the program of workers and threads. To be one of a Blob, it must not be revoked. */
-  script?: string | URL;
+  script?: string | URL | undefined;
   /** The text of report_page.txt, for reports. */
-  reportPage?: string;
+  reportPage?: string | undefined;
 }
 
 /** Bundlers copy what these name. The page is none of theirs, which they would minify, but a text. */
@@ -118,7 +134,9 @@ export async function createWorker(options: StartOptions = {}): Promise<SdmWorke
 }
 
 /** Starts the library in several workers of one thread each, by default as many as there are cores, at most 8. */
-export async function createPool(options: StartOptions & { workers?: number } = {}): Promise<SdmPool> {
+export async function createPool(
+  options: StartOptions & { workers?: number | undefined } = {},
+): Promise<SdmPool> {
   checkStart('createPool', options);
   const count = options.workers ?? coreCount();
   const { module } = await compiled(options, 1);

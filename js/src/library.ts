@@ -11,7 +11,7 @@ import { Sites } from './sites.js';
 import { Surface, type SurfaceOptions } from './surface.js';
 import { type Indices, type Points } from './types.js';
 
-type Body = { positions: Points; indices?: Indices };
+type Body = { positions: Points; indices?: Indices | undefined };
 
 /** The library, with a memory of its own. Its calls are synchronous: in a page, call them in a worker (createWorker()). */
 export class Sdm {

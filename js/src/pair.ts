@@ -21,8 +21,8 @@ export interface Contacts {
 export class Pair extends Owned {
   constructor(
     module: Module,
-    first: { positions: Points; indices?: Indices },
-    second: { positions: Points; indices?: Indices },
+    first: { positions: Points; indices?: Indices | undefined },
+    second: { positions: Points; indices?: Indices | undefined },
     options: declared.ProximityOptions = {},
   ) {
     if (!module.has('sdm_new_pair'))

@@ -10,7 +10,7 @@ import { WorkerAnimation, WorkerLook, WorkerMatches } from './remote_looks.js';
 import { type SurfaceOptions } from './surface.js';
 import { type Indices, type Points } from './types.js';
 
-type Body = { positions: Points; indices?: Indices };
+type Body = { positions: Points; indices?: Indices | undefined };
 
 /**
  * The library in a worker, with a memory of its own. Calls are answered in their order. An aborted call rejects at once; where memory

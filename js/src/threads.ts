@@ -14,7 +14,7 @@ const kStackBytes = 1 << 20;
 export interface ThreadStart {
   module: WebAssembly.Module;
   memory: WebAssembly.Memory;
-  slots: Int32Array<SharedArrayBuffer>;
+  slots: Int32Array;
   failure: SharedArrayBuffer;
   slot: number;
   count: number;

@@ -58,16 +58,16 @@ export function withAtlas(geometry: BufferGeometry, atlas: Atlas): BufferGeometr
 
 export interface DistanceMaterialOptions extends MeshStandardMaterialParameters {
   /** The distances at the ends of the colours; by default as in all pictures: round numbers around 99 % of the texels, and the tolerance. */
-  range?: [number, number];
+  range?: [number, number] | undefined;
   /** Distances allowed: green within, warm above, blue below. One of them may be infinite: no limit. */
-  tolerance?: [least: number, largest: number];
+  tolerance?: [least: number, largest: number] | undefined;
   /** The error of the distances: those that exceed the tolerance, or 0, by less are within it. */
-  accuracy?: number;
+  accuracy?: number | undefined;
   /**
    * By default as in all pictures: `viridis` if no distance is negative, `sequential` (viridis from 0 to the longer side, reds for the other one)
    * if few are on one side of 0, or else `diverging`.
    */
-  colormap?: Exclude<Colormap, 'automatic'>;
+  colormap?: Exclude<Colormap, 'automatic'> | undefined;
 }
 
 const kNone = 1e38; // stands for NaN and for no limit: drivers treat NaN and infinity in different ways

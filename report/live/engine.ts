@@ -230,7 +230,7 @@ export class Engine {
   /// Sums up the fine map, as report.json does.
   async report(tolerance: [number, number] | null, units: string): Promise<Report> {
     const { map } = this.fine ?? this.coarse!;
-    const report = (await map.summary({ units, ...(tolerance ? { tolerance } : {}) })) as Report;
+    const report = { ...(await map.summary({ units, tolerance: tolerance ?? undefined })) } as Report;
     for (const [key, { name }] of [
       ['o1', this.bodies![0]],
       ['o2', this.bodies![1]],
