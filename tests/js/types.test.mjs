@@ -59,14 +59,19 @@ export async function closest(points: number[]): Promise<ClosestPoints> {
 export const both = Promise.all([createWorker({ script: undefined }), createPool({ workers: undefined })]);
 `;
 const kThree = `
-import { DistanceMaterial, fromBufferGeometry, withAtlas } from 'sdm/three';
-import type { SdmWorker } from 'sdm';
-import { type BufferGeometry, Mesh } from 'three';
+import { type ClosestPointTarget, DistanceMaterial, GeometrySites, fromBufferGeometry, withAtlas } from 'sdm/three';
+import type { Sdm, SdmWorker } from 'sdm';
+import { type BufferGeometry, Mesh, type Vector3 } from 'three';
 export async function shown(worker: SdmWorker, geometry: BufferGeometry, range: [number, number] | undefined): Promise<Mesh> {
   const surface = await worker.surface(...fromBufferGeometry(geometry));
   const map = await surface.map(await worker.sites(...fromBufferGeometry(geometry)));
   const atlas = await surface.atlas();
   return new Mesh(withAtlas(geometry, atlas), new DistanceMaterial(await map.arrays('distances'), atlas, { range, roughness: 1 }));
+}
+export function closest(sdm: Sdm, mesh: Mesh, point: Vector3): ClosestPointTarget | null {
+  const sites = new GeometrySites(sdm, mesh.geometry);
+  mesh.raycast = (raycaster, hits) => sites.raycast(mesh, raycaster, hits);
+  return sites.closestPointToPoint(point);
 }
 `;
 
