@@ -62,6 +62,7 @@ export type { WorkerMap, WorkerPair, WorkerSites, WorkerSurface } from './remote
 export type { WorkerAnimation, WorkerLook, WorkerMatches } from './remote_looks.js';
 export type { SdmWorker } from './sdm_worker.js';
 export type { TransferOptions } from './transfer.js';
+export type { OtherUnit } from './units.js';
 
 export interface StartOptions {
   /**

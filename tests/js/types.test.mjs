@@ -49,6 +49,8 @@ export async function judged(worker: SdmWorker, signal: AbortSignal | undefined,
   // @ts-expect-error: the name is wrong.
   await surface.map(sites, { maxdistance: 5 });
   new Blob([await surface.storedAtlas()]);
+  const factor: number | undefined = (await worker.unitCheck({ positions: [], indices: undefined }, sites))?.factor;
+  if (factor) return 'DOUBTFUL';
   return p95 === null ? 'NOT DECIDED' : summary.tolerance.verdict;
 }
 export async function closest(points: number[]): Promise<ClosestPoints> {
