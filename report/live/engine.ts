@@ -96,6 +96,12 @@ export class Engine {
     return coarse.atlas;
   }
 
+  /// The factor by which the part fits the reference, where both are as loaded; null: as it is.
+  async otherUnit(): Promise<number | null> {
+    const unit = await this.worker.unitCheck(shapeOf(this.bodies![0]), this.sites!, { signal: this.signal });
+    return unit?.factor ?? null;
+  }
+
   private sitesOf(body: Body, step: string, say: Say): Promise<WorkerSites> {
     return this.worker
       .sites(body.positions, body.indices, { signal: this.signal, progress: (_, f) => say(step, f) })
