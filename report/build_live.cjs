@@ -29,10 +29,9 @@ const program = bundle('../live/main.ts', {
   alias: { ...alias, sdm: join(library, 'index.js') },
   loader: { '.ply': 'binary' },
   define: { SDM_VERSION: JSON.stringify(version) },
-  external: ['node:*'],
   logOverride: { 'empty-import-meta': 'silent' }, // of files that the page has in it
 });
-const files = { 'sdm-module': 'sdm_full.wasm', 'sdm-worker': 'worker.js', 'sdm-report': 'report_page.html' };
+const files = { 'sdm-module': 'sdm_full.wasm', 'sdm-worker': 'worker.js', 'sdm-report': 'report_page.txt' };
 writeFileSync(
   file,
   pageOf('live', 'sdm live', bundle('page.css') + bundle('../live/live.css'), program, {

@@ -16,7 +16,7 @@ const repetitions = Number(options.repetitions), resolution = Number(options.res
 if (files.length % 2 !== 0) throw new Error('an O1 has no O2');
 const root = join(dirname(fileURLToPath(import.meta.url)), '../..'), pkg = join(root, 'build/wasm/package');
 if (!existsSync(join(pkg, 'index.js'))) throw new Error(`${pkg} has no package: run ./build-wasm`);
-const { start } = await import(pathToFileURL(join(pkg, 'index.js')).href);
+const { start } = await import(pathToFileURL(join(pkg, 'node.js')).href);
 const { ball } = await import(pathToFileURL(join(root, 'tests/js/shapes.mjs')).href);
 
 const build = join(root, 'build/sse4'), quiet = { stdio: ['ignore', 'ignore', 'inherit'] };

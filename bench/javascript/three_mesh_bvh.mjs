@@ -69,7 +69,7 @@ try {
     { cwd: folder, stdio: 'inherit' });
   const require = createRequire(folder + '/');
   const { outputFiles } = require('esbuild').buildSync({
-    stdin: { contents: page, resolveDir: folder }, bundle: true, format: 'iife', write: false, target: 'es2022', external: ['node:*'],
+    stdin: { contents: page, resolveDir: folder }, bundle: true, format: 'iife', write: false, target: 'es2022',
     nodePaths: [join(folder, 'node_modules')], logLevel: 'error', logOverride: { 'empty-import-meta': 'silent' },
   });
   const executablePath = process.env.PATH.split(delimiter).map((path) => join(path, 'chromium-headless-shell')).find(existsSync);

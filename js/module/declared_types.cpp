@@ -1,7 +1,9 @@
 // The types of what is declared, in TypeScript: js/declared_types.mjs writes them into the package.
 #include <sdm/bounds.h>
 #include <sdm/closest_points.h>
+#include <sdm/doubts.h>
 #include <sdm/hausdorff.h>
+#include <sdm/map.h>
 #include <sdm/match.h>
 #include <sdm/proximity_query.h>
 #include <sdm/rays.h>
@@ -9,6 +11,7 @@
 #include <sdm/statistics.h>
 #include <sdm/summary.h>
 #include <sdm/surface.h>
+#include <sdm/tolerance.h>
 
 #include <map>
 #include <string>
@@ -42,7 +45,11 @@ const std::vector<std::pair<std::string, Words>>& enumerations() {
       {"AttributeDomain", words_of<AttributeDomain>()},
       {"Certainty", words_of<Certainty>()},
       {"Colormap", words_of<Colormap>()},
-      {"UpAxis", words_of<UpAxis>()}};
+      {"UpAxis", words_of<UpAxis>()},
+      {"DistanceKind", words_of<DistanceKind>()},
+      {"Verdict", words_of<Verdict>()},
+      {"VerdictReason", words_of<VerdictReason>()},
+      {"DoubtReason", words_of<DoubtReason>()}};
   return all;
 }
 
@@ -98,7 +105,7 @@ std::string options_interface(const char* name) {
   std::string text = std::string("export interface ") + name + " {\n";
   for (const OptionInfo& option : options_of<Structs...>())
     text += "  /** " + comment_of(option) + " */\n  " + spelled(option.name, Spelling::camel_case) +
-            "?: " + type_of(option) + ";\n";
+            "?: " + type_of(option) + " | undefined;\n";
   return text + "}\n";
 }
 

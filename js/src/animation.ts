@@ -5,7 +5,7 @@ import { Owned } from './owned.js';
 
 export interface ReadAnimationOptions extends ReadMeshOptions {
   /** Frames per second, from the first key to the last; by default one frame for each key. */
-  rate?: number;
+  rate?: number | undefined;
 }
 
 type FirstFrame = { frames: number; positions: Float64Array; indices: Uint32Array };

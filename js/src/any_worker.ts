@@ -1,76 +1,27 @@
-// Workers of browsers and of Node, which have different interfaces.
+// Workers of browsers and of Node.
+import { type PlatformWorker, platform } from './platform.js';
 import { SdmError } from './types.js';
 
-export interface AnyWorker {
-  postMessage(message: unknown, transfer?: Transferable[]): void;
-  /** Ends it, and tells nobody. */
-  terminate(): void;
-  /** One function at a time gets messages, and one what ended the worker. */
+export interface AnyWorker extends Omit<PlatformWorker, 'listen'> {
   listen(message: (message: any) => void, ended: (error: SdmError) => void): void;
-  /** In Node: whether the process waits for the worker. */
-  hold(wait: boolean): void;
 }
 
 const kStartMilliseconds = 60000;
 
-function ofBrowser(worker: Worker): AnyWorker {
-  return {
-    postMessage: (message, transfer = []) => worker.postMessage(message, transfer),
-    terminate: () => {
-      worker.onmessage = worker.onmessageerror = worker.onerror = null;
-      worker.terminate();
-    },
-    listen: (message, ended) => {
-      worker.onmessage = (event) => message(event.data);
-      worker.onmessageerror = () => ended(new SdmError('ended', 'the worker sent what cannot be read'));
-      worker.onerror = (event) => {
-        event.preventDefault?.();
-        ended(new SdmError('ended', `the worker failed: ${event.message || 'its program cannot be loaded'}`));
-      };
-    },
-    hold: () => {},
-  };
-}
-
-/** Starts a program in a worker. It need not be a module, so that it can come from a Blob. Throws SdmError if there is none. */
-export async function newWorker(script: string): Promise<AnyWorker> {
+/** Starts a program in a worker. Throws SdmError if there is none. */
+export function newWorker(script: string): AnyWorker {
   try {
-    return await begun(script);
+    const worker = platform().start(script);
+    return {
+      ...worker,
+      listen: (message, ended) => worker.listen(message, (why) => ended(new SdmError('ended', why))),
+    };
   } catch (error) {
     throw new SdmError(
       'ended',
       `the worker ${script} cannot be started: ${error instanceof Error ? error.message : error}`,
     );
   }
-}
-
-async function begun(script: string): Promise<AnyWorker> {
-  if (typeof Worker === 'function') {
-    const module = new URL(script, globalThis.location?.href).protocol !== 'blob:';
-    return ofBrowser(new Worker(script, module ? { type: 'module' } : {}));
-  }
-  const { Worker: NodeWorker } = await import('node:worker_threads');
-  const worker = new NodeWorker(new URL(script));
-  worker.unref();
-  let ended = (_: SdmError) => {};
-  let message = (_: unknown) => {};
-  worker.on('message', (sent) => message(sent));
-  worker.on('error', (error) =>
-    ended(new SdmError('ended', `the worker failed: ${error instanceof Error ? error.message : error}`)),
-  );
-  worker.on('exit', () => ended(new SdmError('ended', 'the worker has ended')));
-  return {
-    postMessage: (sent, transfer = []) => worker.postMessage(sent, transfer as never),
-    terminate: () => {
-      ended = message = () => {};
-      void worker.terminate();
-    },
-    listen: (onMessage, onEnd) => {
-      message = onMessage;
-      ended = onEnd;
-    },
-    hold: (wait) => (wait ? worker.ref() : worker.unref()),
-  };
 }
 
 /**

@@ -1,7 +1,8 @@
 // Bytes of the module as text, and words as numbers.
 import { SdmError } from './types.js';
 
-export type Bytes = Uint8Array<ArrayBuffer>;
+/** Uint8Array<ArrayBuffer>, where TypeScript has it: from 5.7 on. */
+export type Bytes = ReturnType<typeof Uint8Array.of>;
 export const text = (bytes: Bytes) => new TextDecoder().decode(bytes);
 
 /** The number of a word among those that an option may have. */

@@ -152,6 +152,7 @@ export const kLibraryCalls: Record<string, Call> = {
   readLook: take(file, { files }),
   readAnimation: take(file, { files, rate: number }),
   match: takeDeclared({ surface: aSurface, sites }),
+  unitCheck: take({ mesh: body, sites }),
 };
 const kCalls: [Kind: { prototype: object }, calls: Record<string, Call>][] = [
   [

@@ -1,3 +1,4 @@
+/// <reference lib="esnext.disposable" preserve="true" />
 // Calls to a worker, and objects in it; ended workers are replaced.
 import { type AnyWorker, newWorker, started } from './any_worker.js';
 import { type Reference, type Reply, type Request, type Started, type WorkerStart } from './protocol.js';
@@ -6,11 +7,11 @@ import { SdmError } from './types.js';
 
 export interface CallOptions {
   /** Rejects the call with its reason. */
-  signal?: AbortSignal;
+  signal?: AbortSignal | undefined;
   /** Called now and then with the current step and the fraction of it that is done. What it throws aborts the call. */
-  progress?: (step: string, fraction: number) => void;
+  progress?: ((step: string, fraction: number) => void) | undefined;
   /** Moves the buffers of typed arrays that are all of their buffer, instead of copying them: these are empty afterwards. */
-  transfer?: boolean;
+  transfer?: boolean | undefined;
 }
 
 /** The options of a synchronous call, with those of calls to a worker. */
@@ -75,7 +76,7 @@ export class Connection {
   }
 
   static async open(start: WorkerStart): Promise<Connection> {
-    const worker = await newWorker(start.script);
+    const worker = newWorker(start.script);
     return new Connection(worker, await started<Started>(worker, { worker: start }), start);
   }
 
@@ -104,7 +105,7 @@ export class Connection {
 
   private async replace(): Promise<void> {
     try {
-      const worker = await newWorker(this.start.script);
+      const worker = newWorker(this.start.script);
       this.answer = await started<Started>(worker, { worker: this.start }, this.terminated.signal);
       if (this.end) return worker.terminate();
       this.worker = worker;

@@ -1,5 +1,5 @@
 // Points and triangles, as the module takes them.
-import { type Indices, type Points, SdmError } from './types.js';
+import { type Indices, type NumberArray, type Points, SdmError } from './types.js';
 
 /** Coordinates as doubles, three for each point. */
 export function coordinates(points: Points, name: string): Float64Array {
@@ -22,4 +22,13 @@ export function corners(indices: Indices, vertices: number): Uint32Array {
       throw new SdmError('input', `indices[${i}] is ${index}, but there are ${vertices} vertices`);
   }
   return indices instanceof Uint32Array ? indices : Uint32Array.from(indices);
+}
+
+export type Body = { positions: Points; indices?: Indices | undefined };
+
+/** Positions, their count, triangles and theirs. `name`: of the positions. */
+export function meshArguments({ positions, indices = null }: Body, name: string): (number | NumberArray)[] {
+  const at = coordinates(positions, name);
+  const triangles = corners(indices, at.length / 3);
+  return [at, at.length / 3, triangles, triangles.length / 3];
 }

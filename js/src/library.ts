@@ -2,6 +2,7 @@
 import { Animation, type ReadAnimationOptions } from './animation.js';
 import { checkMethods, constructorIn, kLibraryCalls } from './calls.js';
 import { type ProximityOptions } from './declared.js';
+import { type Body } from './geometry.js';
 import { Look } from './look.js';
 import { type MatchOptions, Matches } from './matches.js';
 import { type MeshFile, type ReadMeshOptions, readMesh } from './mesh_file.js';
@@ -10,8 +11,7 @@ import { Pair } from './pair.js';
 import { Sites } from './sites.js';
 import { Surface, type SurfaceOptions } from './surface.js';
 import { type Indices, type Points } from './types.js';
-
-type Body = { positions: Points; indices?: Indices };
+import { type OtherUnit, unitCheck } from './units.js';
 
 /** The library, with a memory of its own. Its calls are synchronous: in a page, call them in a worker (createWorker()). */
 export class Sdm {
@@ -71,6 +71,13 @@ export class Sdm {
   /** Finds, for each texel of a surface, the point of the sites that belongs to it. Of the module `full` only. */
   match(surface: Surface, sites: Sites, options: MatchOptions = {}): Matches {
     return new Matches(this.module, surface, sites, options);
+  }
+  /**
+   * Whether a mesh, where it is, fits sites far better in another unit of length: its factor; null if it does not. Of the module `full`
+   * only.
+   */
+  unitCheck(body: Body, sites: Sites): OtherUnit | null {
+    return unitCheck(this.module, body, sites);
   }
   /** Ends its threads. Its objects cannot be used any more. */
   stop(): void {

@@ -1,14 +1,15 @@
 // Files of the package, from a disk in Node and by fetch() in pages.
+import { platform } from './platform.js';
 import { SdmError } from './types.js';
 
 export async function load(url: URL): Promise<Response> {
-  if (url.protocol === 'file:' && typeof process === 'object') {
-    const { readFile } = await import('node:fs/promises');
-    return new Response(await readFile(url));
-  }
-  const response = await fetch(url);
-  if (!response.ok)
-    throw new SdmError('internal', `${url} cannot be loaded: ${response.status} ${response.statusText}`);
+  const refuse = (why: string) => new SdmError('internal', `${url} cannot be loaded: ${why}`);
+  const response = await platform()
+    .load(url)
+    .catch((error: Error) => {
+      throw refuse(error.message);
+    });
+  if (!response.ok) throw refuse(`${response.status} ${response.statusText}`);
   return response;
 }
 
@@ -21,6 +22,6 @@ export interface ReportPage {
 export async function textOf({ text, url }: ReportPage): Promise<string> {
   if (text !== undefined) return text;
   if (url === undefined)
-    throw new SdmError('input', 'a report needs the option reportPage, the text of report_page.html');
+    throw new SdmError('input', 'a report needs the option reportPage, the text of report_page.txt');
   return (await load(new URL(url))).text();
 }

@@ -1,4 +1,5 @@
 // How meshes look: materials, textures, colours and normals of their files.
+import { type Bytes } from './bytes.js';
 import { type ReadMeshOptions, fileArguments } from './mesh_file.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
@@ -38,10 +39,10 @@ export class Look extends Owned {
   }
 
   /** The names of the textures, and their files, in PNG, JPEG or WebP. */
-  textures(): { name: string; bytes: Uint8Array<ArrayBuffer> }[] {
+  textures(): { name: string; bytes: Bytes }[] {
     return this.facts.textures.map((name, i) => ({
       name,
-      bytes: this.module.call<{ bytes: Uint8Array<ArrayBuffer> }>('sdm_texture_file', [this.handle, i]).bytes,
+      bytes: this.module.call<{ bytes: Bytes }>('sdm_texture_file', [this.handle, i]).bytes,
     }));
   }
   /** What was left out or may be wrong, a sentence each. */

@@ -10,7 +10,7 @@ import { type TransferOptions, transferred } from './transfer.js';
 import { type MatchCounts, type Progress, SdmError } from './types.js';
 
 export interface MatchOptions extends declared.MatchOptions {
-  progress?: Progress;
+  progress?: Progress | undefined;
 }
 
 /** The kinds of texels in MatchArrays. */
@@ -51,12 +51,12 @@ export interface BakedLook {
 
 export interface NormalOptions {
   /** As glTF has it, for the model with tangents; otherwise (1 + x) / 2 and so on of the coordinates of the meshes. */
-  tangentSpace?: boolean;
+  tangentSpace?: boolean | undefined;
   /** Whose normals are taken, if its file has some; without it, smooth ones of O2's mesh, up to a crease of 40°. */
-  look?: Look;
+  look?: Look | undefined;
   /** The pose of O2 by which the normals of `look` are turned: 16 numbers, column after column. */
-  pose?: ArrayLike<number>;
-  progress?: Progress;
+  pose?: ArrayLike<number> | undefined;
+  progress?: Progress | undefined;
 }
 
 /** The vertices that O1 is drawn with: one for each normal and each place in the atlas of each vertex of the mesh. */
@@ -112,7 +112,7 @@ export class Matches extends Owned {
   }
 
   /** The textures of a look at the points: base colours, and what else differs between them. Texels without a point are filled. */
-  bake(look: Look, options: { progress?: Progress } = {}): BakedLook {
+  bake(look: Look, options: { progress?: Progress | undefined } = {}): BakedLook {
     const values = [...this.addresses(), look.handleIn(this.module)];
     const baked = this.module.call<Partial<BakedLook>>('sdm_bake', values, options.progress);
     return { textures: baked.textures ?? [], material: baked.material! };
@@ -140,7 +140,7 @@ export class Matches extends Owned {
   }
 
   /** What the textures are drawn on. */
-  model(options: { tangents?: boolean } = {}): DrawnModel {
+  model(options: { tangents?: boolean | undefined } = {}): DrawnModel {
     const values = [this.surface.handleIn(this.module), options.tangents ? 1 : 0];
     return this.module.call<DrawnModel>('sdm_drawn_model', values);
   }

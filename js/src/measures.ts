@@ -5,13 +5,13 @@ import { declaredOptions } from './given.js';
 import { type Points, type Progress } from './types.js';
 
 interface SitesOptions extends declared.MapOptions, declared.MeasureChoice {
-  measure?: 'sites';
+  measure?: 'sites' | undefined;
 }
 
 interface SelfOptions extends declared.SelfOptions, declared.MeasureChoice {
   measure: 'self';
   /** The positions of the mesh before it was deformed, which decide what is near along the surface; by default the present ones. */
-  rest?: Points;
+  rest?: Points | undefined;
 }
 
 interface ThicknessOptions extends declared.ThicknessOptions, declared.MeasureChoice {
@@ -19,7 +19,11 @@ interface ThicknessOptions extends declared.ThicknessOptions, declared.MeasureCh
 }
 
 /** The options of what is measured. */
-export type MapOptions = { progress?: Progress } & (SitesOptions | SelfOptions | ThicknessOptions);
+export type MapOptions = { progress?: Progress | undefined } & (
+  | SitesOptions
+  | SelfOptions
+  | ThicknessOptions
+);
 
 /** Options as the module takes them (GivenMeasure of module/measures.h). */
 export type MeasureArguments = [

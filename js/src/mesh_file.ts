@@ -28,8 +28,8 @@ export interface MeshFile {
 
 export interface ReadMeshOptions {
   /** Contents of files that the file refers to, such as the .bin of glTF, by their paths relative to it. */
-  files?: Record<string, Uint8Array | ArrayBuffer>;
-  progress?: Progress;
+  files?: Record<string, Uint8Array | ArrayBuffer> | undefined;
+  progress?: Progress | undefined;
 }
 
 const bytesOf = (data: Uint8Array | ArrayBuffer) =>

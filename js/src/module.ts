@@ -1,5 +1,5 @@
 // A WebAssembly module of the library: its memory, its calls and their results.
-import { text } from './bytes.js';
+import { type Bytes, text } from './bytes.js';
 import { type Threads, hostImports } from './host.js';
 import { readResult } from './results.js';
 import { startThreads } from './threads.js';
@@ -14,8 +14,8 @@ const kErrors = ['', 'input', 'cancelled', 'memory'] as const;
 export type ModuleFile = BufferSource | WebAssembly.Module;
 /** `full` has bodies that move, files and reports, too. */
 export interface ModuleFiles {
-  core?: ModuleFile;
-  full?: ModuleFile;
+  core?: ModuleFile | undefined;
+  full?: ModuleFile | undefined;
 }
 
 /** What a module is started with. */
@@ -79,7 +79,7 @@ export class Module {
   }
 
   /** The flags of sdm_cancel_flags(), if other threads can set them. */
-  sharedFlags(): Uint8Array<SharedArrayBuffer> | undefined {
+  sharedFlags(): Uint8Array | undefined {
     const { buffer } = this.memory;
     if (typeof SharedArrayBuffer !== 'function' || !(buffer instanceof SharedArrayBuffer)) return undefined;
     return new Uint8Array(buffer, this.functions['sdm_cancel_flags']!() >>> 0, 256);
@@ -174,10 +174,10 @@ export class Module {
   }
 
   /** A copy of bytes of the module. */
-  bytes(address: Address, count: number): Uint8Array<ArrayBuffer> {
+  bytes(address: Address, count: number): Bytes {
     const shown = new Uint8Array(this.memory.buffer, address, count);
     try {
-      return shown.slice() as Uint8Array<ArrayBuffer>;
+      return shown.slice() as Bytes;
     } catch {
       throw new SdmError('memory', `sdm: there is no memory for a result of ${count} bytes`);
     }

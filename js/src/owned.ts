@@ -1,3 +1,4 @@
+/// <reference lib="esnext.disposable" preserve="true" />
 // Objects in the memory of a module.
 import { type Module } from './module.js';
 import { SdmError } from './types.js';

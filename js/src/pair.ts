@@ -1,10 +1,10 @@
 // Two bodies that move.
 import type * as declared from './declared.js';
-import { coordinates, corners } from './geometry.js';
+import { type Body, coordinates, meshArguments } from './geometry.js';
 import { declaredOptions } from './given.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
-import { type BoundedLength, type Indices, type Points, SdmError } from './types.js';
+import { type BoundedLength, type Points, SdmError } from './types.js';
 
 export interface Contacts {
   /** Points on the first and on the second body, three numbers each. */
@@ -19,19 +19,10 @@ export interface Contacts {
 
 /** Two bodies that move and deform. Of the module `full` only. */
 export class Pair extends Owned {
-  constructor(
-    module: Module,
-    first: { positions: Points; indices?: Indices },
-    second: { positions: Points; indices?: Indices },
-    options: declared.ProximityOptions = {},
-  ) {
+  constructor(module: Module, first: Body, second: Body, options: declared.ProximityOptions = {}) {
     if (!module.has('sdm_new_pair'))
       throw new SdmError('input', 'Pair needs the module of start({ full: true })');
-    const bodies = [first, second].flatMap(({ positions, indices }, body) => {
-      const at = coordinates(positions, `positions of body ${body}`);
-      const triangles = corners(indices ?? null, at.length / 3);
-      return [at, at.length / 3, triangles, triangles.length / 3];
-    });
+    const bodies = [first, second].flatMap((body, i) => meshArguments(body, `positions of body ${i}`));
     const values = [...bodies, ...declaredOptions(options)];
     super(module, module.call<{ address: number }>('sdm_new_pair', values).address, 'sdm_free_pair');
   }

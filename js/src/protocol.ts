@@ -15,7 +15,7 @@ export interface WorkerStart extends ModuleStart {
 export interface Started {
   threads: number;
   /** A flag for each call, by its number modulo their count, that cancels it; where memory can be shared. */
-  flags: Uint8Array<SharedArrayBuffer> | undefined;
+  flags: Uint8Array | undefined;
 }
 
 /** Stands for an object of the worker, by its number. */

@@ -1,6 +1,8 @@
 // Objects in a worker: sites, surfaces, maps and pairs.
+import { type Bytes } from './bytes.js';
 import { type CallOptions, type Connection, type Made, type Options, Remote } from './connection.js';
-import { type MapSummary, type ReportOptions, type SummaryOptions } from './report.js';
+import { type JudgedOptions, type ReportOptions, type SummaryOptions } from './report.js';
+import { type JudgedSummary, type MapSummary } from './summary.js';
 import { type Contacts } from './pair.js';
 import {
   type ClosestPointOptions,
@@ -60,7 +62,7 @@ export class WorkerSurface extends Remote {
   atlas(): Promise<Atlas> {
     return this.call('atlas', []);
   }
-  storedAtlas(): Promise<Uint8Array<ArrayBuffer>> {
+  storedAtlas(): Promise<Bytes> {
     return this.call('storedAtlas', []);
   }
   samples(): Promise<{ texels: Uint32Array; points: Float64Array }> {
@@ -137,6 +139,8 @@ export class WorkerMap extends Remote {
     return this.call('transfer', [values], options);
   }
   /** The keys of report.json. Of the module `full` only. */
+  summary(options: Options<JudgedOptions>): Promise<JudgedSummary>;
+  summary(options?: Options<SummaryOptions>): Promise<MapSummary>;
   summary(options?: Options<SummaryOptions>): Promise<MapSummary> {
     return this.call('summary', [], options);
   }

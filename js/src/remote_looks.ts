@@ -1,4 +1,5 @@
 // What is baked in a worker: looks, matches and animations.
+import { type Bytes } from './bytes.js';
 import { type CallOptions, type Connection, type Made, type Options, Remote } from './connection.js';
 import { type Picture } from './look.js';
 import { type BakedLook, type DrawnModel, type MatchArrays, type NormalOptions } from './matches.js';
@@ -20,7 +21,7 @@ export class WorkerLook extends Remote {
       (name) => fields[name],
     ) as [boolean, boolean, boolean];
   }
-  textures(): Promise<{ name: string; bytes: Uint8Array<ArrayBuffer> }[]> {
+  textures(): Promise<{ name: string; bytes: Bytes }[]> {
     return this.call('textures', []);
   }
   notes(): Promise<string[]> {
@@ -65,7 +66,7 @@ export class WorkerMatches extends Remote {
     const { look, ...others } = options;
     return this.call('normalsOf', [look ?? null], others);
   }
-  model(options?: { tangents?: boolean } & CallOptions): Promise<DrawnModel> {
+  model(options?: { tangents?: boolean | undefined } & CallOptions): Promise<DrawnModel> {
     return this.call('model', [], options);
   }
 }

@@ -4,20 +4,22 @@ import type * as declared from './declared.js';
 import { declaredOptions } from './given.js';
 import { type MeasureArguments } from './measures.js';
 import { type Module } from './module.js';
+import { type MapSummary } from './summary.js';
 import { type Progress, SdmError } from './types.js';
 
 export interface SummaryOptions extends declared.SummaryOptions {
   /** The names of O1's and O2's files. */
-  names?: [string, string];
+  names?: [string, string] | undefined;
   /** XXH3 of these files, as of MeshFile. */
-  xxh3?: [string, string];
-  progress?: Progress;
+  xxh3?: [string, string] | undefined;
+  progress?: Progress | undefined;
+}
+
+export interface JudgedOptions extends SummaryOptions {
+  tolerance: NonNullable<SummaryOptions['tolerance']>;
 }
 
 export interface ReportOptions extends SummaryOptions, declared.PageOptions {}
-
-/** The keys of report.json, which docs/report.md of the project lists. */
-export type MapSummary = { distance: Record<string, number>; [key: string]: unknown };
 
 /** The addresses of a map, its surface and its sites, and the options by which it was computed. */
 export type Computed = [map: number, surface: number, sites: number, ...MeasureArguments];
@@ -53,7 +55,7 @@ export async function reportOf(module: Module, map: () => Computed, options: Rep
   if (!html.includes(kDataPlace))
     throw new SdmError(
       'input',
-      `the reportPage has no ${kDataPlace}: it must be the text of report_page.html`,
+      `the reportPage has no ${kDataPlace}: it must be the text of report_page.txt`,
     );
   const { address, lengths, planes } = module.call<{ address: number; lengths: Uint32Array; planes: Bytes }>(
     'sdm_new_report',

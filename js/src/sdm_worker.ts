@@ -2,6 +2,7 @@
 import { type ReadAnimationOptions } from './animation.js';
 import { type CallOptions, Connection, type Options } from './connection.js';
 import { type ProximityOptions } from './declared.js';
+import { type Body } from './geometry.js';
 import { type MatchOptions } from './matches.js';
 import { type MeshFile, type ReadMeshOptions } from './mesh_file.js';
 import { type WorkerStart } from './protocol.js';
@@ -9,8 +10,7 @@ import { WorkerPair, WorkerSites, WorkerSurface } from './remote.js';
 import { WorkerAnimation, WorkerLook, WorkerMatches } from './remote_looks.js';
 import { type SurfaceOptions } from './surface.js';
 import { type Indices, type Points } from './types.js';
-
-type Body = { positions: Points; indices?: Indices };
+import { type OtherUnit } from './units.js';
 
 /**
  * The library in a worker, with a memory of its own. Calls are answered in their order. An aborted call rejects at once; where memory
@@ -98,6 +98,10 @@ export class SdmWorker {
   ): Promise<WorkerMatches> {
     const made = await this.connection.call(null, 'match', [surface, sites], { ...options });
     return new WorkerMatches(this.connection, made, surface, sites);
+  }
+  /** As of Sdm: null if the mesh fits in no other unit. */
+  unitCheck(body: Body, sites: WorkerSites, options: CallOptions = {}): Promise<OtherUnit | null> {
+    return this.connection.call(null, 'unitCheck', [body, sites], { ...options });
   }
   /** What the module has taken from the system. */
   memoryBytes(): Promise<number> {

@@ -47,19 +47,19 @@ export interface Hausdorff {
 }
 
 export interface ClosestPointOptions extends declared.ClosestPointOptions {
-  progress?: Progress;
+  progress?: Progress | undefined;
 }
 
 export interface SignedDistanceOptions extends declared.SignedDistanceOptions {
-  progress?: Progress;
+  progress?: Progress | undefined;
 }
 
 export interface HausdorffOptions extends declared.HausdorffOptions {
-  progress?: Progress;
+  progress?: Progress | undefined;
 }
 
 export interface RayOptions extends declared.RayOptions {
-  progress?: Progress;
+  progress?: Progress | undefined;
 }
 
 /** What distances are measured to (O2): the vertices, edges and faces of a mesh, in a tree. */

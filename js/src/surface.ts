@@ -1,4 +1,5 @@
 // Surfaces (O1) and their distance maps.
+import { type Bytes } from './bytes.js';
 import { coordinates, corners } from './geometry.js';
 import type * as declared from './declared.js';
 import { declaredOptions } from './given.js';
@@ -7,13 +8,14 @@ import { type Module } from './module.js';
 import { Owned } from './owned.js';
 import {
   type Computed,
-  type MapSummary,
+  type JudgedOptions,
   type ReportOptions,
   type SummaryOptions,
   reportOf,
   summaryOf,
 } from './report.js';
 import { type Sites } from './sites.js';
+import { type JudgedSummary, type MapSummary } from './summary.js';
 import { type TransferOptions, transferred } from './transfer.js';
 import {
   type Indices,
@@ -27,10 +29,10 @@ import {
 
 export interface SurfaceOptions extends declared.AtlasOptions {
   /** Texture coordinates of the vertices, two each, for `uv`; (0, 0) is the lower left of the texture. */
-  uvs?: ArrayLike<number>;
+  uvs?: ArrayLike<number> | undefined;
   /** What storedAtlas() of a surface of the same mesh and options returned, perhaps in another worker: nothing is laid out again. */
-  storedAtlas?: Uint8Array;
-  progress?: Progress;
+  storedAtlas?: Uint8Array | undefined;
+  progress?: Progress | undefined;
 }
 
 export interface Atlas {
@@ -88,8 +90,8 @@ export class Surface extends Owned {
   }
 
   /** The atlas as bytes, for SurfaceOptions.storedAtlas. Of the mesh in its present shape, and for this version of sdm only. */
-  storedAtlas(): Uint8Array<ArrayBuffer> {
-    return this.module.call<{ atlas: Uint8Array<ArrayBuffer> }>('sdm_stored_atlas', [this.handle]).atlas;
+  storedAtlas(): Bytes {
+    return this.module.call<{ atlas: Bytes }>('sdm_stored_atlas', [this.handle]).atlas;
   }
 
   /**
@@ -209,6 +211,8 @@ export class DistanceMap extends Owned {
   }
 
   /** The keys of report.json: numbers, verdict, places, colours, histogram. Of the module `full` only. */
+  summary(options: JudgedOptions): JudgedSummary;
+  summary(options?: SummaryOptions): MapSummary;
   summary(options: SummaryOptions = {}): MapSummary {
     return summaryOf(this.module, this.computed(), options);
   }

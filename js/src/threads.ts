@@ -14,7 +14,7 @@ const kStackBytes = 1 << 20;
 export interface ThreadStart {
   module: WebAssembly.Module;
   memory: WebAssembly.Memory;
-  slots: Int32Array<SharedArrayBuffer>;
+  slots: Int32Array;
   failure: SharedArrayBuffer;
   slot: number;
   count: number;
@@ -33,7 +33,7 @@ export async function startThreads(
   const failure = new Failure();
   const workers: AnyWorker[] = [];
   const startOne = async (slot: number) => {
-    const worker = await newWorker(script);
+    const worker = newWorker(script);
     workers.push(worker);
     const stackTop = (allocate(kStackBytes) + kStackBytes) & ~15;
     const threadLocal = allocate(kThreadLocalBytes);

@@ -84,10 +84,10 @@ function gradient(colors: Rgb[], t: number): Rgb {
 
 /** What a material is given of its colours. */
 interface GivenColors {
-  range?: [number, number];
-  tolerance?: [number, number];
-  accuracy?: number;
-  colormap?: Exclude<Colormap, 'automatic'>;
+  range?: [number, number] | undefined;
+  tolerance?: [number, number] | undefined;
+  accuracy?: number | undefined;
+  colormap?: Exclude<Colormap, 'automatic'> | undefined;
 }
 
 /** The colormap and the range that are not given, by the rule of all pictures. */

@@ -5,7 +5,7 @@ import { type Module } from './module.js';
 import { type Progress } from './types.js';
 
 export interface TransferOptions extends declared.TransferOptions {
-  progress?: Progress;
+  progress?: Progress | undefined;
 }
 
 /** @internal `objects`: surface, sites, and the map or matches, in the module. */

@@ -7,11 +7,15 @@ export type {
   BoundedLength,
   Certainty,
   Colormap,
+  DistanceKind,
+  DoubtReason,
   MapMeasure,
   MatchCounts,
   MatchMethod,
   SignMethod,
   ThicknessMethod,
+  Verdict,
+  VerdictReason,
 } from './declared.js';
 
 export type NumberArray = Float64Array | Float32Array | Uint32Array | Int32Array | Uint16Array | Uint8Array;

@@ -4,6 +4,7 @@ import { Sdm } from './library.js';
 import { textOf } from './load.js';
 import { type MapOptions, preparesMuch } from './measures.js';
 import { Module, canShareMemory } from './module.js';
+import { type Port, platform } from './platform.js';
 import {
   type Call,
   type FirstMessage,
@@ -18,28 +19,8 @@ import { DistanceMap } from './surface.js';
 import { runThread } from './threads.js';
 import { type Progress, SdmError } from './types.js';
 
-interface Port {
-  post(message: unknown, transfer?: Transferable[]): void;
-  receive(receive: (message: any) => void): void;
-}
-
 const kProgressMilliseconds = 30;
 const kPartMilliseconds = 40;
-
-async function openPort(): Promise<Port> {
-  if (typeof self === 'object' && typeof postMessage === 'function')
-    return {
-      post: (message, transfer = []) => self.postMessage(message, { transfer }),
-      receive: (receive) => {
-        self.onmessage = (event) => receive(event.data);
-      },
-    };
-  const { parentPort } = await import('node:worker_threads');
-  return {
-    post: (message, transfer = []) => parentPort!.postMessage(message, transfer as never),
-    receive: (receive) => void parentPort!.removeAllListeners('message').on('message', receive),
-  };
-}
 
 /** Lets messages that have arrived be received. */
 const tick = (() => {
@@ -245,15 +226,11 @@ async function serve(port: Port, { reportPage, ...start }: WorkerStart): Promise
   port.post({ threads: started.threadCount, flags } satisfies Started);
 }
 
-const port = openPort();
-void port.then((open) =>
-  open.receive((first: FirstMessage) => {
-    const run =
-      'thread' in first
-        ? runThread(first.thread, () => open.post({ ready: true }))
-        : serve(open, first.worker);
-    run.catch((error: unknown) =>
-      open.post({ failed: error instanceof Error ? error.message : String(error) }),
-    );
-  }),
-);
+const port = platform().port();
+port.receive((first: FirstMessage) => {
+  const run =
+    'thread' in first ? runThread(first.thread, () => port.post({ ready: true })) : serve(port, first.worker);
+  run.catch((error: unknown) =>
+    port.post({ failed: error instanceof Error ? error.message : String(error) }),
+  );
+});

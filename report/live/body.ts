@@ -64,6 +64,12 @@ async function read(worker: SdmWorker, file: File): Promise<WorkerAnimation | nu
   });
 }
 
+/// The same body elsewhere.
+export function movedBody({ film, positions, ...others }: Body, motion: Matrix4): Body {
+  const moves = film ? { film: film.movedBy(motion) } : {};
+  return { ...others, positions: moved(positions, motion), ...moves };
+}
+
 /// How two bodies move whose files are animated; null: neither is.
 export function movesOf(bodies: [Body, Body]): Moves | null {
   if (!bodies.some(({ film }) => film)) return null;

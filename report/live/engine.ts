@@ -96,6 +96,12 @@ export class Engine {
     return coarse.atlas;
   }
 
+  /// The factor by which the part fits the reference, where both are as loaded; null: as it is.
+  async otherUnit(): Promise<number | null> {
+    const unit = await this.worker.unitCheck(shapeOf(this.bodies![0]), this.sites!, { signal: this.signal });
+    return unit?.factor ?? null;
+  }
+
   private sitesOf(body: Body, step: string, say: Say): Promise<WorkerSites> {
     return this.worker
       .sites(body.positions, body.indices, { signal: this.signal, progress: (_, f) => say(step, f) })
@@ -230,7 +236,7 @@ export class Engine {
   /// Sums up the fine map, as report.json does.
   async report(tolerance: [number, number] | null, units: string): Promise<Report> {
     const { map } = this.fine ?? this.coarse!;
-    const report = (await map.summary({ units, ...(tolerance ? { tolerance } : {}) })) as Report;
+    const report = { ...(await map.summary({ units, tolerance: tolerance ?? undefined })) } as Report;
     for (const [key, { name }] of [
       ['o1', this.bodies![0]],
       ['o2', this.bodies![1]],

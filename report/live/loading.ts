@@ -5,14 +5,14 @@ import { explore } from '../src/explore';
 import type { Baking } from './baking';
 import type { Display } from './display';
 import { kCoarse } from './engine';
-import { inFile, moved } from './placing';
+import { inFile } from './placing';
 import { readBody } from './files';
-import { Body, movesOf } from './body';
+import { Body, movedBody, movesOf } from './body';
 import { listenToKeys } from './keys';
 import { frameOf, Layout, layoutOf } from './layout';
 import type { Motion } from './motion';
 import { Pair } from './pair';
-import { showBusy, showChoices } from './panel';
+import { showBusy, showChoices, showFactor, timesText } from './panel';
 import { say, sayFault } from './status';
 import { kScenes } from './scenes';
 import type { Choice, Session } from './session';
@@ -20,6 +20,7 @@ import type { Choice, Session } from './session';
 export class Loading {
   private current: AbortController | null = null; // of what is being loaded
   private running: Promise<unknown> = Promise.resolve();
+  private factor: number | null = null; // by which the part fits, if that is in another unit
   private intact = false; // the worker has what is shown
   private restarts = 0; // of the worker then
   private wanted: number; // resolution
@@ -57,24 +58,46 @@ export class Loading {
         if (note) notes.push(note);
       }
       const [part, reference] = this.session.bodies ?? [];
-      const bodies = read.length === 2 ? read : which === 0 ? [read[0], reference] : [part, read[0]];
-      await this.put(filesOf(bodies as [Body, Body], ''), load);
-      return notes.map((note) => `${note}. Its first frame is measured.`).join(' ');
+      const bodies = (read.length === 2 ? read : which === 0 ? [read[0], reference] : [part, read[0]]) as [
+        Body,
+        Body,
+      ];
+      await this.put(filesOf(bodies, ''), load);
+      const unit = await this.checkUnit(load, bodies);
+      const said = notes.map((note) => `${note}. Its first frame is measured. `);
+      return (said.join('') + unit).trim();
     });
+  }
+
+  /// Says by which factor the part would fit, if it is in another unit.
+  private async checkUnit(load: AbortController, [part, reference]: [Body, Body]): Promise<string> {
+    const factor = await this.session.inOrder(() => this.session.engine.otherUnit());
+    load.signal.throwIfAborted();
+    this.factor = factor;
+    if (factor === null) return '';
+    return `${part.name} ${timesText(factor)} has the size of ${reference.name}: is it in another unit?`;
   }
 
   /// What was the reference, where it is now, becomes the part.
   async swap(): Promise<void> {
-    const { bodies, pair, units } = this.session;
+    const { bodies, pair } = this.session;
     if (!bodies || !pair) return;
-    const motion = inFile(pair.view.motion, pair.subject);
-    const { film, positions, ...others } = bodies[1];
-    const part = {
-      ...others,
-      positions: moved(positions, motion),
-      ...(film ? { film: film.movedBy(motion) } : {}),
-    };
-    await this.run((load) => this.put(filesOf([part, bodies[0]], units), load));
+    await this.replace([movedBody(bodies[1], inFile(pair.view.motion, pair.subject)), bodies[0]]);
+  }
+
+  /// Converts the part to the unit of the reference.
+  async convert(): Promise<void> {
+    const [part, reference] = this.session.bodies!;
+    const factor = this.factor!;
+    await this.replace([movedBody(part, new Matrix4().makeScale(factor, factor, factor)), reference]);
+  }
+
+  private replace(bodies: [Body, Body]): Promise<void> {
+    const { units } = this.session;
+    return this.run(async (load) => {
+      await this.put(filesOf(bodies, units), load);
+      return this.checkUnit(load, bodies);
+    });
   }
 
   /// Sets the size of the map at rest, after a pair that is being loaded.
@@ -111,6 +134,7 @@ export class Loading {
     this.motion.stop();
     ++this.session.version;
     this.session.loading = true;
+    this.factor = null;
     showBusy(this.session);
     return this.current;
   }
@@ -134,6 +158,7 @@ export class Loading {
     this.end();
     if (fault) sayFault(fault);
     else say(cancelled ? 'Cancelled.' : note);
+    showFactor(this.factor);
   }
 
   private end(): void {

@@ -41,6 +41,7 @@ async function open(worker: SdmWorker, wanted: string, map: string | null): Prom
     openFiles: (files, which) => void loading.openFiles(files, which),
     cancel: () => loading.cancel(),
     swap: () => void loading.swap(),
+    convert: () => void loading.convert(),
     setResolution: (resolution) => void loading.setResolution(resolution),
     setFacing: (degrees) => {
       session.engine.setFacing(degrees);

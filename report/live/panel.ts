@@ -10,6 +10,7 @@ export interface Actions {
   openScene: (name: string) => void;
   openFiles: (files: File[], which: 0 | 1 | null) => void;
   swap: () => void;
+  convert: () => void; ///< the part, to the unit of the reference
   cancel: () => void; ///< what is being loaded
   setResolution: (resolution: number) => void;
   setFacing: (degrees: number | null) => void; ///< distances are to faces that face the same way
@@ -39,7 +40,8 @@ export function addPanel(scene: string, resolution: number, actions: Actions): v
     change: () => actions.setUnits(units.value.trim()),
   });
   const cancel = button('cancel', 'Cancel', actions.cancel);
-  cancel.hidden = true;
+  const convert = button('convert', '', actions.convert);
+  cancel.hidden = convert.hidden = true;
   const section = make(
     'section',
     { id: 'compare', 'aria-labelledby': 'compare-title' },
@@ -81,6 +83,7 @@ export function addPanel(scene: string, resolution: number, actions: Actions): v
         { class: 'row' },
         make('p', { id: 'status', role: 'status', 'aria-live': 'polite' }),
         cancel,
+        convert,
       ),
     ),
   );
@@ -147,6 +150,18 @@ export function showChoices({ choice, units, resolution }: Session, wanted = res
   }
   set('units', units);
   set('resolution', String(wanted));
+}
+
+/// Of a factor between two units.
+export function timesText(factor: number): string {
+  const [sign, times] = factor > 1 ? ['×', factor] : ['÷', 1 / factor];
+  return `${sign} ${Number(times.toPrecision(6))}`;
+}
+
+/// Offers to convert the part by a factor; null: it has the unit of the reference.
+export function showFactor(factor: number | null): void {
+  byId('convert').hidden = factor === null;
+  if (factor !== null) byId('convert').textContent = `Scale the part ${timesText(factor)}`;
 }
 
 /// What is not of what is in the worker now is dimmed, and cannot be saved.

@@ -6,7 +6,8 @@ import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { calls } from './javascript_cases.mjs';
 
-const sdm = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'index.js')));
+const entry = JSON.parse(readFileSync(join(process.env.SDM_PACKAGE, 'package.json'))).exports['.'];
+const sdm = await import(pathToFileURL(join(process.env.SDM_PACKAGE, entry.node ?? entry.default)));  // of older packages
 const [folder, only] = process.argv.slice(2);
 
 // What objects hold that is no result.

@@ -4,7 +4,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-const sdm = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'index.js')));
+const sdm = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'node.js')));
 const library = await sdm.start({ full: true });
 const kOfSurface = ['resolution', 'atlas', 'gutter', 'strict_uv', 'max_stretch'];
 const camel = (name) => name.replace(/_(.)/g, (_, letter) => letter.toUpperCase());

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 
-const { start } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'index.js')));
+const { start } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'node.js')));
 const read = (name) => readFileSync(join(process.env.SDM_REFERENCE, name));
 const numbers = (Kind, name) => {
   const bytes = read(name);

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 
-const { createWorker, kMatchKinds, start } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'index.js')));
+const { createWorker, kMatchKinds, start } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'node.js')));
 const { ball, glbOf, objOf, skeletonOf } = createRequire(import.meta.url)('../live/meshes.cjs');
 const sdm = await start({ full: true });
 const part = ball(10, 1), other = ball(16, 1.05);

@@ -2,27 +2,25 @@
 // (without it, memory cannot be shared). SDM_PACKAGE: the folder of the package; SDM_REFERENCE: that of js_reference's files;
 // SDM_NODE_PACKAGES: that with playwright-core, esbuild and three.
 import assert from 'node:assert/strict';
-import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
-import { delimiter, dirname, extname, join, normalize } from 'node:path';
+import { dirname, extname, join, normalize } from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
+import { launched } from './chromium.mjs';
 import { ball } from './shapes.mjs';
 
-const { SDM_PACKAGE, SDM_REFERENCE, SDM_NODE_PACKAGES, PATH } = process.env;
+const { SDM_PACKAGE, SDM_REFERENCE, SDM_NODE_PACKAGES } = process.env;
 const require = createRequire(SDM_NODE_PACKAGES + '/');
-const { chromium } = require('playwright-core');
 const { build } = require('esbuild');
 const here = dirname(fileURLToPath(import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), 'sdm-js-'));
 let browser;
 
 before(async () => {
-  const executablePath = PATH.split(delimiter).map((path) => join(path, 'chromium-headless-shell')).find(existsSync);
-  assert(executablePath, 'chromium-headless-shell is needed for this test (Debian package of that name)');
-  browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
+  browser = await launched();
 });
 after(async () => {
   await browser?.close();
@@ -47,7 +45,7 @@ function serve(headers) {
 async function filePage() {
   const { outputFiles } = await build({
     stdin: { contents: readFileSync(join(here, 'page.mjs'), 'utf8').replace('/package/index.js', join(SDM_PACKAGE, 'index.js')), resolveDir: here },
-    bundle: true, format: 'iife', write: false, target: 'es2022', external: ['node:*'], logLevel: 'error', logOverride: { 'empty-import-meta': 'silent' },
+    bundle: true, format: 'iife', write: false, target: 'es2022', logLevel: 'error', logOverride: { 'empty-import-meta': 'silent' },
   });
   const text = (value) => JSON.stringify(value).replaceAll('<', '\\u003c');
   const files = {
@@ -92,7 +90,7 @@ for (const isolated of [false, true])
   });
 
 test('a report opens', { timeout: 120000 }, async () => {
-  const { start } = await import(pathToFileURL(join(SDM_PACKAGE, 'index.js')));
+  const { start } = await import(pathToFileURL(join(SDM_PACKAGE, 'node.js')));
   const sdm = await start({ full: true });
   const part = ball(40), other = ball(40, 0.9);
   const surface = new sdm.Surface(part.positions, part.indices, { resolution: 256 });
@@ -112,7 +110,7 @@ test('a report opens', { timeout: 120000 }, async () => {
 
 test('a map on a mesh of three.js', { timeout: 120000 }, async () => {
   const { outputFiles } = await build({
-    entryPoints: [join(here, 'three_page.mjs')], bundle: true, format: 'iife', write: false, target: 'es2022', external: ['node:*'],
+    entryPoints: [join(here, 'three_page.mjs')], bundle: true, format: 'iife', write: false, target: 'es2022',
     nodePaths: [join(SDM_NODE_PACKAGES, 'node_modules')], alias: { sdm: join(SDM_PACKAGE, 'index.js'), 'sdm/three': join(SDM_PACKAGE, 'three.js') },
     logLevel: 'error', logOverride: { 'empty-import-meta': 'silent' },
   });

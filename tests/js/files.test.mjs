@@ -6,7 +6,7 @@ import { pathToFileURL } from 'node:url';
 import { ball } from './shapes.mjs';
 
 const package_ = (file) => import(pathToFileURL(join(process.env.SDM_PACKAGE, file)));
-const { createWorker, start } = await package_('index.js');
+const { createWorker, start } = await package_('node.js');
 const sdm = await start({ full: true });
 const text = (lines) => new TextEncoder().encode(lines);
 

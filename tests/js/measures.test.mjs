@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { ball } from './shapes.mjs';
 
-const { start } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'index.js')));
+const { createWorker, start } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'node.js')));
 const sdm = await start({ threads: 1, full: true });
 
 /** A box of these sizes, closed. */
@@ -101,4 +101,23 @@ test('wrong options are refused as in all doors', async () => {
   const small = await start({ threads: 1 }), on = new small.Surface(...plate, { resolution: 64 }), to = new small.Sites(...plate);
   assert.throws(() => on.map(to, { measure: 'self' }), { kind: 'input', message: 'measure needs the module of start({ full: true })' });
   assert.throws(() => on.map(to, { along: 'normal' }), { kind: 'input', message: 'along needs the module of start({ full: true })' });
+});
+
+test('a mesh in another unit is found', async () => {
+  const { positions, indices } = ball(20), sites = new sdm.Sites(positions, indices), worker = await createWorker({ threads: 1, full: true });
+  const remote = await worker.sites(positions, indices);
+  for (const factor of [1000, 25.4, 0.1]) {
+    const body = { positions: positions.map((x) => x / factor), indices };
+    const unit = sdm.unitCheck(body, sites);
+    assert.ok(Math.abs(unit.factor / factor - 1) < 1e-12 && unit.sameBox && unit.misfit < 1e-3 && unit.misfitAsGiven > 0.5, JSON.stringify(unit));
+    assert.match(unit.text, /^O1 has the size and the place of O2 if it is [\d.]+ times as (large|small), as if it were in /);
+    assert.deepEqual(await worker.unitCheck(body, remote), unit);
+  }
+  for (const factor of [1, 1.5, 7]) assert.equal(sdm.unitCheck({ positions: positions.map((x) => x / factor), indices }, sites), null);
+  assert.throws(() => sdm.unitCheck({ positions: [] }, sites), { kind: 'input' });
+  assert.throws(() => sdm.unitCheck(positions, sites), { kind: 'input', message: /^positions of the mesh body is undefined/ });
+  assert.throws(() => sdm.unitCheck({ positions }, positions), { kind: 'input', message: /^unitCheck needs Sites, but was given / });
+  const core = await start({ threads: 1 });
+  assert.throws(() => core.unitCheck({ positions }, new core.Sites(positions, indices)), { kind: 'input', message: 'unitCheck needs the module of start({ full: true })' });
+  worker.terminate();
 });

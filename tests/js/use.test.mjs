@@ -6,7 +6,7 @@ import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { ball } from './shapes.mjs';
 
-const { createPool, createWorker, start, SdmError } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'index.js')));
+const { createPool, createWorker, start, SdmError } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'node.js')));
 const sdm = await start({ threads: 1 });
 const full = await start({ threads: 1, full: true });
 
@@ -114,6 +114,9 @@ test('arguments of another kind are errors that name them, and leave the module 
       await assert.rejects(begin({ threads }), { kind: 'input', message: /^threads is .*: it must be an integer from 1 to 256$/ });
   await assert.rejects(createPool({ workers: 1e6 }), { kind: 'input', message: /^workers is 1000000: / });
   await assert.rejects(createWorker({ thread: 2 }), { kind: 'input', message: /^createWorker has no option thread; it has threads, / });
+  for (const begin of [start, createWorker, createPool])
+    await assert.rejects(begin({ modules: { core: new TextEncoder().encode('<!doctype html>') } }),
+      { kind: 'input', message: 'modules.core is no WebAssembly: it must be the file sdm_core.wasm of this package' });
   assert.equal(sites.closestPoints([0, 0, 1]).distances[0], 1);
   assert.ok(surface instanceof full.Surface && !(sites instanceof full.Surface));
 });

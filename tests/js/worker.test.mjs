@@ -10,7 +10,7 @@ import { runInNewContext } from 'node:vm';
 import { ball } from './shapes.mjs';
 import * as checks from './worker_checks.mjs';
 
-const { createPool, createWorker } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'index.js')));
+const { createPool, createWorker } = await import(pathToFileURL(join(process.env.SDM_PACKAGE, 'node.js')));
 const bytes = (name) => readFileSync(join(process.env.SDM_REFERENCE, name));
 const read = (Kind, name) => new Kind(Uint8Array.from(bytes(name)).buffer);
 

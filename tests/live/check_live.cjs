@@ -323,6 +323,32 @@ const checks = {
     await agreesWithPicture(page);
   },
 
+  // A part in another unit is found, and converted by a button.
+  async converts(page) {
+    const out = folder();
+    const files = { 'metres.obj': ball(20, 0.05), 'nominal.obj': ball(24, 49), 'fits.obj': ball(20, 50) };
+    for (const [name, mesh] of Object.entries(files)) writeFileSync(join(out, name), objOf(mesh));
+    const [metres, nominal, fits] = Object.keys(files).map((name) => join(out, name));
+    await open(page, [metres, nominal]);
+    await isIdle(page);
+    assert.strictEqual(await page.textContent('#status'), 'metres.obj × 1000 has the size of nominal.obj: is it in another unit?');
+    assert.strictEqual(await page.textContent('#convert'), 'Scale the part × 1000');
+    await atRest(page, () => page.click('#convert'));
+    await isIdle(page);
+    const converted = await agreesWithCommand(page);
+    assert(await page.isHidden('#convert'));
+    await open(page, [fits, nominal]);
+    await isIdle(page);
+    const { distance } = await numbers(page);
+    assert(await page.isHidden('#convert'));
+    for (const key of ['min', 'max', 'mean']) assert(Math.abs(distance[key] - converted.distance[key]) < 1e-4, key);
+    await open(page, [metres, nominal]);
+    await isIdle(page);
+    await atRest(page, () => page.click('#swap'));
+    await isIdle(page);
+    assert.strictEqual(await page.textContent('#convert'), 'Scale the part ÷ 1000');
+  },
+
   // Without memory for a fine map there is the coarse one, of what is shown.
   async lacks(page) {
     await atRest(page, () => choose(page, ['resolution', '512']));
