@@ -14,16 +14,23 @@ constexpr std::size_t kSmallest = 1024, kLargest = 1 << 20;  // points of a disp
 constexpr std::size_t kTile = FaceSearch::kTile;
 static_assert(sizeof(FaceList) == 64 && sizeof(QueryPoint) == 16);
 
-Pipeline pipeline(Device& device, const EmbeddedFile& program) {
-  return device.pipeline(std::string(kFacesWgsl.bytes) + std::string(program.bytes));
+Pipeline pipeline(Device& device, std::initializer_list<EmbeddedFile> parts) {
+  std::string program;
+  for (const EmbeddedFile& part : parts) program += part.bytes;
+  return device.pipeline(program);
 }
+
+// As in shaders/faces.wgsl.
+constexpr std::size_t kTileBytes = 96;
 
 }  // namespace
 
 FaceSearch::FaceSearch(std::string_view wanted)
     : device_(wanted),
-      tiles_together_(pipeline(device_, kClosestTilesWgsl)),
-      points_alone_(pipeline(device_, kClosestFacesWgsl)) {}
+      tile_balls_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kTileBallsWgsl})),
+      tiles_together_(pipeline(device_, {kFacesWgsl, kClosestTilesWgsl})),
+      points_alone_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kClosestFacesWgsl})),
+      tile_count_(device_.buffer(4 * sizeof(std::uint32_t), Device::Use::uniform, "constants")) {}
 
 const SitesOnDevice& FaceSearch::place(const sites::SitesData& sites) {
   auto present =
@@ -48,7 +55,7 @@ void FaceSearch::reserve(std::size_t points) {
   points_ = device_.buffer(points * sizeof(QueryPoint), Device::Use::read, "points");
   results_ = device_.buffer(points * sizeof(FaceList), Device::Use::write, "results");
   read_back_ = device_.buffer(points * sizeof(FaceList), Device::Use::read_back, "results");
-  tiles_ = device_.buffer(points / kTile * sizeof(std::uint32_t), Device::Use::read, "tiles");
+  tiles_ = device_.buffer(points / kTile * kTileBytes, Device::Use::write, "tiles");
   room_ = points;
 }
 
@@ -56,21 +63,24 @@ void FaceSearch::reserve(std::size_t points) {
 void FaceSearch::search(const SitesOnDevice& sites, std::span<const QueryPoint> points,
                         std::span<FaceList> found, SearchTimes& times) {
   reserve(points.size());
+  const auto tiles = static_cast<std::uint32_t>(points.size() / kTile);
+  const std::uint32_t count[4] = {tiles};
+  device_.write(tile_count_, std::as_bytes(std::span(count)));
   device_.write(points_, std::as_bytes(points));
-  const Buffer* const buffers[] = {&sites.errors, &sites.boxes, &sites.leaves, &sites.faces,
-                                   &points_,      &results_,    &tiles_};
-  device_.run(tiles_together_, device_.bind(tiles_together_, std::span(buffers).first(6)),
-              static_cast<std::uint32_t>(points.size() / kTile), results_, read_back_,
-              std::as_writable_bytes(found));
-  times.dispatches += 1;
-  std::vector<std::uint32_t> alone;
-  for (std::size_t i = 0; i < found.size(); i += kTile)
-    if (found[i].alone()) alone.push_back(static_cast<std::uint32_t>(i / kTile));
-  if (alone.empty()) return;
-  times.alone += kTile * alone.size();
-  device_.write(tiles_, std::as_bytes(std::span(alone)));
-  device_.run(points_alone_, device_.bind(points_alone_, buffers), static_cast<std::uint32_t>(alone.size()),
-              results_, read_back_, std::as_writable_bytes(found));
+  using Binding = Device::Binding;
+  const Binding of_sites[] = {{0, &sites.errors}, {1, &sites.boxes}, {2, &sites.leaves}, {3, &sites.faces}};
+  const auto bind = [&](const Pipeline& pipeline, std::initializer_list<Binding> others) {
+    std::vector<Binding> all(std::begin(of_sites), std::end(of_sites));
+    all.insert(all.end(), others);
+    return device_.bind(pipeline, all);
+  };
+  const BindGroup balls = bind(tile_balls_, {{4, &points_}, {6, &tiles_}, {7, &tile_count_}}),
+                  together = bind(tiles_together_, {{4, &points_}, {5, &results_}, {6, &tiles_}}),
+                  alone = bind(points_alone_, {{4, &points_}, {5, &results_}, {6, &tiles_}});
+  const Device::Step steps[] = {{&tile_balls_, &balls, (tiles + 63) / 64},
+                                {&tiles_together_, &together, tiles},
+                                {&points_alone_, &alone, tiles}};
+  device_.run(steps, results_, read_back_, std::as_writable_bytes(found));
   times.dispatches += 1;
 }
 

@@ -23,7 +23,7 @@ struct FaceList {
   [[nodiscard]] std::uint32_t count() const { return head & 15u; }
   /// Whether there may be others: there was no room for them.
   [[nodiscard]] bool incomplete() const { return (head & 16u) != 0; }
-  /// Whether the points beside it are too far from each other to be searched for together.
+  /// Whether it was searched for alone, as the points beside it are too far from each other.
   [[nodiscard]] bool alone() const { return (head & 32u) != 0; }
   [[nodiscard]] std::uint32_t nodes() const { return head >> 6 & 0xfffu; }  ///< visited, at most 4095
   [[nodiscard]] std::uint32_t tests() const { return head >> 18; }          ///< faces compared, at most 16383
@@ -39,9 +39,8 @@ struct QueryPoint {
 /// What searches on a device took.
 struct SearchTimes {
   std::size_t dispatches = 0;
-  std::size_t alone = 0;  ///< points that were searched for one by one
-  double upload_ms = 0;   ///< of sites
-  double search_ms = 0;   ///< of points, with their transfers
+  double upload_ms = 0;  ///< of sites
+  double search_ms = 0;  ///< of points, with their transfers
 };
 
 class FaceSearch {
@@ -69,9 +68,9 @@ class FaceSearch {
   static constexpr std::size_t kKept = 4;  // shapes
 
   Device device_;
-  Pipeline tiles_together_, points_alone_;
+  Pipeline tile_balls_, tiles_together_, points_alone_;
   std::vector<std::unique_ptr<SitesOnDevice>> kept_;  // the last ones that were searched, the latest first
-  Buffer points_, results_, read_back_, tiles_;
+  Buffer tile_count_, points_, results_, read_back_, tiles_;
   std::size_t room_ = 0;         // points of the buffers
   std::size_t dispatch_ = 4096;  // points
 };

@@ -18,6 +18,7 @@ ClosestPoint closest_of(const sites::SitesData& sites, const Vec3& point, const 
   if (placed.within < 0) return closest::closest_point(sites, point, max_distance);
   counts.nodes += found.nodes();
   counts.tests += found.tests();
+  counts.alone += found.alone() ? 1 : 0;
   if (found.incomplete()) {
     counts.incomplete += 1;
     return closest::exact_closest(sites, point, max_distance);

@@ -10,7 +10,7 @@ namespace sdm::gpu {
 
 /// Where the results of points came from.
 struct FinishCounts {
-  std::size_t nodes = 0, tests = 0, candidates = 0, incomplete = 0;
+  std::size_t nodes = 0, tests = 0, candidates = 0, incomplete = 0, alone = 0;
 };
 
 /// The points in the unit frame, for the device. Those that are too far away for single precision are

@@ -58,7 +58,7 @@ class GpuEngine final : public Engine {
     report_.candidates += counts.candidates;
     report_.incomplete += counts.incomplete;
     report_.dispatches += times.dispatches;
-    report_.alone += times.alone;
+    report_.alone += counts.alone;
     report_.upload_ms += times.upload_ms;
     report_.search_ms += times.search_ms;
     report_.finish_ms += finish_ms;

@@ -203,12 +203,12 @@ Pipeline Device::pipeline(std::string_view wgsl) {
   return pipeline;
 }
 
-BindGroup Device::bind(const Pipeline& pipeline, std::span<const Buffer* const> buffers) {
+BindGroup Device::bind(const Pipeline& pipeline, std::span<const Binding> bindings) {
   const BindGroupLayout layout(wgpu().ComputePipelineGetBindGroupLayout(pipeline.get(), 0));
-  std::vector<WGPUBindGroupEntry> entries(buffers.size());
-  for (std::size_t i = 0; i < buffers.size(); ++i) {
-    entries[i].binding = static_cast<std::uint32_t>(i);
-    entries[i].buffer = buffers[i]->get();
+  std::vector<WGPUBindGroupEntry> entries(bindings.size());
+  for (std::size_t i = 0; i < bindings.size(); ++i) {
+    entries[i].binding = bindings[i].number;
+    entries[i].buffer = bindings[i].buffer->get();
     entries[i].size = WGPU_WHOLE_SIZE;
   }
   WGPUBindGroupDescriptor descriptor{};
@@ -220,13 +220,15 @@ BindGroup Device::bind(const Pipeline& pipeline, std::span<const Buffer* const> 
   return group;
 }
 
-void Device::run(const Pipeline& pipeline, const BindGroup& group, std::uint32_t workgroups,
-                 const Buffer& result, const Buffer& read_back, std::span<std::byte> to) {
+void Device::run(std::span<const Step> steps, const Buffer& result, const Buffer& read_back,
+                 std::span<std::byte> to) {
   const CommandEncoder encoder(wgpu().DeviceCreateCommandEncoder(device_.get(), nullptr));
   const ComputePass pass(wgpu().CommandEncoderBeginComputePass(encoder.get(), nullptr));
-  wgpu().ComputePassEncoderSetPipeline(pass.get(), pipeline.get());
-  wgpu().ComputePassEncoderSetBindGroup(pass.get(), 0, group.get(), 0, nullptr);
-  wgpu().ComputePassEncoderDispatchWorkgroups(pass.get(), workgroups, 1, 1);
+  for (const Step& step : steps) {
+    wgpu().ComputePassEncoderSetPipeline(pass.get(), step.pipeline->get());
+    wgpu().ComputePassEncoderSetBindGroup(pass.get(), 0, step.group->get(), 0, nullptr);
+    wgpu().ComputePassEncoderDispatchWorkgroups(pass.get(), step.workgroups, 1, 1);
+  }
   wgpu().ComputePassEncoderEnd(pass.get());
   wgpu().CommandEncoderCopyBufferToBuffer(encoder.get(), result.get(), 0, read_back.get(), 0, to.size());
   const CommandBuffer commands(wgpu().CommandEncoderFinish(encoder.get(), nullptr));

@@ -40,12 +40,22 @@ class Device {
 
   /// The entry point "main" of a source in WGSL.
   [[nodiscard]] Pipeline pipeline(std::string_view wgsl);
-  /// Binds buffers to 0, 1, … of group 0.
-  [[nodiscard]] BindGroup bind(const Pipeline& pipeline, std::span<const Buffer* const> buffers);
+  struct Binding {
+    std::uint32_t number;
+    const Buffer* buffer;
+  };
+  /// Binds buffers in group 0: those that the pipeline uses.
+  [[nodiscard]] BindGroup bind(const Pipeline& pipeline, std::span<const Binding> bindings);
 
-  /// Runs so many workgroups, and waits for the first bytes of `result`, which pass through `read_back`.
-  void run(const Pipeline& pipeline, const BindGroup& group, std::uint32_t workgroups, const Buffer& result,
-           const Buffer& read_back, std::span<std::byte> to);
+  struct Step {
+    const Pipeline* pipeline;
+    const BindGroup* group;
+    std::uint32_t workgroups;
+  };
+  /// Runs the steps, each of which sees what those before it have written, and waits for the first bytes of
+  /// `result`, which pass through `read_back`.
+  void run(std::span<const Step> steps, const Buffer& result, const Buffer& read_back,
+           std::span<std::byte> to);
 
   /// What a driver does that takes a device away, for tests.
   void lose();
