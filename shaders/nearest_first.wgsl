@@ -8,6 +8,7 @@ var<private> squared: array<f32, kMost>;
 var<private> count: u32;
 var<private> limit: f32;     // squared
 var<private> left_out: f32;  // the least squared distance of the faces that had no room in the list
+var<private> nearest: f32;   // the least of all
 var<private> overflow: bool;
 var<private> visited: u32;
 var<private> tested: u32;
@@ -17,6 +18,7 @@ fn compare(face: u32, p: vec3f, error: f32) {
   if (distance > limit) {
     return;
   }
+  nearest = min(nearest, distance);
   let reach = farther(sqrt(distance), error);
   if (reach * reach < limit) {
     limit = reach * reach;
@@ -44,6 +46,7 @@ fn search_tree(p: vec3f, first: f32, error: f32) {
   limit = first;
   count = 0u;
   left_out = kHuge;
+  nearest = kHuge;
   overflow = false;
   visited = 0u;
   tested = 0u;

@@ -2,12 +2,12 @@
 // invocation for each tile. Behind shaders/nearest_first.wgsl.
 
 @group(0) @binding(6) var<storage, read_write> tiles: array<Tile>;
-@group(0) @binding(7) var<uniform> tile_count: vec4u;
+@group(0) @binding(7) var<uniform> part: vec4u;  // how many tiles there are
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
   let t = id.x;
-  if (t >= tile_count.x) {
+  if (t >= part.x) {
     return;
   }
   // The middles of boxes; points that are skipped count nowhere.

@@ -20,8 +20,11 @@ Pipeline pipeline(Device& device, std::initializer_list<EmbeddedFile> parts) {
   return device.pipeline(program);
 }
 
-// As in shaders/faces.wgsl.
+// As in the shaders.
 constexpr std::size_t kTileBytes = 96;
+struct Part {
+  std::uint32_t tiles = 0, first = 0, count = 0, padding = 0;
+};
 
 }  // namespace
 
@@ -30,7 +33,8 @@ FaceSearch::FaceSearch(std::string_view wanted)
       tile_balls_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kTileBallsWgsl})),
       tiles_together_(pipeline(device_, {kFacesWgsl, kClosestTilesWgsl})),
       points_alone_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kClosestFacesWgsl})),
-      tile_count_(device_.buffer(4 * sizeof(std::uint32_t), Device::Use::uniform, "constants")) {}
+      distances_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kMapDistancesWgsl})),
+      part_(device_.buffer(sizeof(Part), Device::Use::uniform, "constants")) {}
 
 const SitesOnDevice& FaceSearch::place(const sites::SitesData& sites) {
   auto present =
@@ -59,29 +63,45 @@ void FaceSearch::reserve(std::size_t points) {
   room_ = points;
 }
 
-// Points that fill tiles.
-void FaceSearch::search(const SitesOnDevice& sites, std::span<const QueryPoint> points,
-                        std::span<FaceList> found, SearchTimes& times) {
-  reserve(points.size());
-  const auto tiles = static_cast<std::uint32_t>(points.size() / kTile);
-  const std::uint32_t count[4] = {tiles};
-  device_.write(tile_count_, std::as_bytes(std::span(count)));
+BindGroup FaceSearch::bind(const Pipeline& pipeline, const SitesOnDevice& sites,
+                           std::initializer_list<Device::Binding> others) {
+  std::vector<Device::Binding> all{{1, &sites.boxes}, {2, &sites.leaves}, {3, &sites.faces}};
+  all.insert(all.end(), others);
+  return device_.bind(pipeline, all);
+}
+
+template <class Run>
+void FaceSearch::search(const SitesOnDevice& sites, std::span<const QueryPoint> points, const Run& run) {
   device_.write(points_, std::as_bytes(points));
-  using Binding = Device::Binding;
-  const Binding of_sites[] = {{0, &sites.errors}, {1, &sites.boxes}, {2, &sites.leaves}, {3, &sites.faces}};
-  const auto bind = [&](const Pipeline& pipeline, std::initializer_list<Binding> others) {
-    std::vector<Binding> all(std::begin(of_sites), std::end(of_sites));
-    all.insert(all.end(), others);
-    return device_.bind(pipeline, all);
-  };
-  const BindGroup balls = bind(tile_balls_, {{4, &points_}, {6, &tiles_}, {7, &tile_count_}}),
-                  together = bind(tiles_together_, {{4, &points_}, {5, &results_}, {6, &tiles_}}),
-                  alone = bind(points_alone_, {{4, &points_}, {5, &results_}, {6, &tiles_}});
-  const Device::Step steps[] = {{&tile_balls_, &balls, (tiles + 63) / 64},
+  const auto tiles = static_cast<std::uint32_t>(points.size() / kTile);
+  const BindGroup balls = bind(tile_balls_, sites,
+                               {{0, &sites.errors}, {4, &points_}, {6, &tiles_}, {7, &part_}}),
+                  together = bind(tiles_together_, sites,
+                                  {{0, &sites.errors}, {4, &points_}, {5, &results_}, {6, &tiles_}}),
+                  alone = bind(points_alone_, sites,
+                               {{0, &sites.errors}, {4, &points_}, {5, &results_}, {6, &tiles_}});
+  run(std::vector<Device::Step>{{&tile_balls_, &balls, (tiles + 63) / 64},
                                 {&tiles_together_, &together, tiles},
-                                {&points_alone_, &alone, tiles}};
-  device_.run(steps, results_, read_back_, std::as_writable_bytes(found));
-  times.dispatches += 1;
+                                {&points_alone_, &alone, tiles}});
+}
+
+template <class Search>
+void FaceSearch::in_dispatches(std::size_t points, SearchTimes& times, const Search& search) {
+  Stopwatch watch;
+  const std::size_t permitted =
+      std::clamp<std::size_t>(device_.most_bytes() / sizeof(FaceList) / kTile * kTile, kTile, kLargest);
+  for (std::size_t done = 0; done < points;) {
+    poll();
+    const std::size_t count = std::min({points - done, dispatch_, permitted});
+    reserve(count);
+    search(done, count);
+    times.dispatches += 1;
+    const double ms = watch.lap();
+    times.search_ms += ms;
+    if (ms > 30 && dispatch_ > kSmallest) dispatch_ /= 2;
+    if (ms < 10 && count == dispatch_ && dispatch_ < kLargest) dispatch_ *= 2;
+    done += count;
+  }
 }
 
 void FaceSearch::find(const sites::SitesData& sites, std::span<const QueryPoint> points,
@@ -89,18 +109,31 @@ void FaceSearch::find(const sites::SitesData& sites, std::span<const QueryPoint>
   Stopwatch watch;
   const SitesOnDevice& on_device = place(sites);
   times.upload_ms += watch.lap();
-  const std::size_t permitted =
-      std::clamp<std::size_t>(device_.most_bytes() / sizeof(FaceList) / kTile * kTile, kTile, kLargest);
-  for (std::size_t done = 0; done < points.size();) {
-    poll();
-    const std::size_t count = std::min({points.size() - done, dispatch_, permitted});
-    search(on_device, points.subspan(done, count), found.subspan(done, count), times);
-    const double ms = watch.lap();
-    times.search_ms += ms;
-    if (ms > 30 && dispatch_ > kSmallest) dispatch_ /= 2;
-    if (ms < 10 && count == dispatch_ && dispatch_ < kLargest) dispatch_ *= 2;
-    done += count;
-  }
+  in_dispatches(points.size(), times, [&](std::size_t first, std::size_t count) {
+    const Part part{.tiles = static_cast<std::uint32_t>(count / kTile)};
+    device_.write(part_, std::as_bytes(std::span(&part, 1)));
+    search(on_device, points.subspan(first, count), [&](std::span<const Device::Step> steps) {
+      device_.run(steps, results_, read_back_, std::as_writable_bytes(found.subspan(first, count)));
+    });
+  });
+}
+
+void FaceSearch::measure(const sites::SitesData& sites, std::span<const QueryPoint> points, std::size_t count,
+                         const Buffer& distances, std::size_t first) {
+  const SitesOnDevice& on_device = place(sites);
+  SearchTimes times;
+  in_dispatches(points.size(), times, [&](std::size_t from, std::size_t size) {
+    const Part part{.tiles = static_cast<std::uint32_t>(size / kTile),
+                    .first = static_cast<std::uint32_t>(first + from),
+                    .count = static_cast<std::uint32_t>(std::min(size, count - from))};
+    device_.write(part_, std::as_bytes(std::span(&part, 1)));
+    search(on_device, points.subspan(from, size), [&](std::vector<Device::Step> steps) {
+      const BindGroup group =
+          bind(distances_, on_device, {{4, &points_}, {5, &results_}, {6, &distances}, {7, &part_}});
+      steps.push_back({&distances_, &group, part.tiles});
+      device_.run(steps);
+    });
+  });
 }
 
 }  // namespace sdm::gpu

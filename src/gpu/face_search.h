@@ -4,6 +4,7 @@
 #include <sdm/types.h>
 
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -45,8 +46,8 @@ struct SearchTimes {
 
 class FaceSearch {
  public:
-  static constexpr std::size_t kTile =
-      64;  ///< points that are searched for together, if they are near each other
+  /// Points that are searched for together, if they are near each other.
+  static constexpr std::size_t kTile = 64;
 
   /// Opens a device as Device() does.
   explicit FaceSearch(std::string_view wanted);
@@ -58,19 +59,29 @@ class FaceSearch {
   /// kTile. In dispatches that are expected to take 10 to 30 ms, between which the call can be cancelled.
   void find(const sites::SitesData& sites, std::span<const QueryPoint> points, std::span<FaceList> found,
             SearchTimes& times);
+  /// Writes the distances of the first `count` of the points in the unit frame to a buffer on the device, of
+  /// 4 bytes each, from `first` on. The rest fills the last tile.
+  void measure(const sites::SitesData& sites, std::span<const QueryPoint> points, std::size_t count,
+               const Buffer& distances, std::size_t first);
 
  private:
   const SitesOnDevice& place(const sites::SitesData& sites);
   void reserve(std::size_t points);
-  void search(const SitesOnDevice& sites, std::span<const QueryPoint> points, std::span<FaceList> found,
-              SearchTimes& times);
+  /// Calls search(first, count) for parts of so many points.
+  template <class Search>
+  void in_dispatches(std::size_t points, SearchTimes& times, const Search& search);
+  [[nodiscard]] BindGroup bind(const Pipeline& pipeline, const SitesOnDevice& sites,
+                               std::initializer_list<Device::Binding> others);
+  /// Uploads points that fill tiles, calls run(steps) for the steps of their search.
+  template <class Run>
+  void search(const SitesOnDevice& sites, std::span<const QueryPoint> points, const Run& run);
 
   static constexpr std::size_t kKept = 4;  // shapes
 
   Device device_;
-  Pipeline tile_balls_, tiles_together_, points_alone_;
+  Pipeline tile_balls_, tiles_together_, points_alone_, distances_;
   std::vector<std::unique_ptr<SitesOnDevice>> kept_;  // the last ones that were searched, the latest first
-  Buffer tile_count_, points_, results_, read_back_, tiles_;
+  Buffer part_, points_, results_, read_back_, tiles_;
   std::size_t room_ = 0;         // points of the buffers
   std::size_t dispatch_ = 4096;  // points
 };

@@ -92,4 +92,10 @@ SitesOnDevice::SitesOnDevice(Device& device, const sites::SitesData& sites)
   faces = upload(device, Device::Use::read, std::span<const Face>(face_frames(sites)), "the faces of O2");
 }
 
+DistanceError distance_error(const sites::SitesData& sites, double largest_coordinate) {
+  return {.each = 3e-6,
+          .constant = 0.5 * (kByCoordinate * std::max(largest_coordinate, 1.0) +
+                             kByRadius * static_cast<double>(sites.regions.largest_radius))};
+}
+
 }  // namespace sdm::gpu

@@ -220,9 +220,9 @@ BindGroup Device::bind(const Pipeline& pipeline, std::span<const Binding> bindin
   return group;
 }
 
-void Device::run(std::span<const Step> steps, const Buffer& result, const Buffer& read_back,
-                 std::span<std::byte> to) {
-  const CommandEncoder encoder(wgpu().DeviceCreateCommandEncoder(device_.get(), nullptr));
+CommandEncoder Device::record(std::span<const Step> steps) {
+  CommandEncoder encoder(wgpu().DeviceCreateCommandEncoder(device_.get(), nullptr));
+  if (steps.empty()) return encoder;
   const ComputePass pass(wgpu().CommandEncoderBeginComputePass(encoder.get(), nullptr));
   for (const Step& step : steps) {
     wgpu().ComputePassEncoderSetPipeline(pass.get(), step.pipeline->get());
@@ -230,12 +230,28 @@ void Device::run(std::span<const Step> steps, const Buffer& result, const Buffer
     wgpu().ComputePassEncoderDispatchWorkgroups(pass.get(), step.workgroups, 1, 1);
   }
   wgpu().ComputePassEncoderEnd(pass.get());
-  wgpu().CommandEncoderCopyBufferToBuffer(encoder.get(), result.get(), 0, read_back.get(), 0, to.size());
+  return encoder;
+}
+
+void Device::submit(const CommandEncoder& encoder) {
   const CommandBuffer commands(wgpu().CommandEncoderFinish(encoder.get(), nullptr));
   check("it was given work");
   const WGPUCommandBuffer list[] = {commands.get()};
   wgpu().QueueSubmit(queue_.get(), 1, list);
   check("it was given work");
+}
+
+void Device::run(std::span<const Step> steps) {
+  submit(record(steps));
+  wgpu().DevicePoll(device_.get(), true, nullptr);
+  check("it computed");
+}
+
+void Device::run(std::span<const Step> steps, const Buffer& result, const Buffer& read_back,
+                 std::span<std::byte> to) {
+  const CommandEncoder encoder = record(steps);
+  wgpu().CommandEncoderCopyBufferToBuffer(encoder.get(), result.get(), 0, read_back.get(), 0, to.size());
+  submit(encoder);
 
   struct Answer {
     bool done = false;

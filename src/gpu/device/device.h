@@ -52,8 +52,9 @@ class Device {
     const BindGroup* group;
     std::uint32_t workgroups;
   };
-  /// Runs the steps, each of which sees what those before it have written, and waits for the first bytes of
-  /// `result`, which pass through `read_back`.
+  /// Runs the steps, each of which sees what those before it have written, and waits for them.
+  void run(std::span<const Step> steps);
+  /// The same, and waits for the first bytes of `result`, which pass through `read_back`.
   void run(std::span<const Step> steps, const Buffer& result, const Buffer& read_back,
            std::span<std::byte> to);
 
@@ -63,6 +64,8 @@ class Device {
  private:
   struct Faults;
 
+  [[nodiscard]] CommandEncoder record(std::span<const Step> steps);
+  void submit(const CommandEncoder& encoder);
   /// Throws sdm::Error if the device is lost or has reported an error.
   void check(std::string_view step) const;
 

@@ -1,0 +1,25 @@
+// The distances of a map, which stay on the device: of each point the least one of the faces in its list, or of all where the
+// list is incomplete. Behind shaders/nearest_first.wgsl, after shaders/closest_faces.wgsl.
+
+@group(0) @binding(6) var<storage, read_write> distances: array<f32>;
+@group(0) @binding(7) var<uniform> part: vec4u;  // tiles; the place of the first point in `distances`, and how many there are
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+  let i = id.x;
+  if (i >= part.z) {
+    return;
+  }
+  let p = points[i].xyz;
+  let head = results[i * kResult];
+  let listed = head & 15u;
+  var least = kHuge;
+  for (var k = 1u; k <= listed; k += 1u) {
+    least = min(least, squared_to_face(faces[results[i * kResult + k]], p));
+  }
+  if ((head & kIncomplete) != 0u) {
+    search_tree(p, least, 0.0);
+    least = min(least, nearest);
+  }
+  distances[part.y + i] = sqrt(least);
+}
