@@ -2,12 +2,19 @@
 // list is incomplete. Behind shaders/nearest_first.wgsl, after shaders/closest_faces.wgsl.
 
 @group(0) @binding(6) var<storage, read_write> distances: array<f32>;
-@group(0) @binding(7) var<uniform> part: vec4u;  // tiles; the place of the first point in `distances`, and how many there are
+@group(0) @binding(7) var<uniform> part: Part;
+
+struct Part {
+  tiles: u32,
+  first: u32,          // the place of the first point in `distances`
+  count: u32,          // of the points
+  has_distances: u32,  // from other faces, if not 0
+}
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
   let i = id.x;
-  if (i >= part.z) {
+  if (i >= part.count) {
     return;
   }
   let p = points[i].xyz;
@@ -21,5 +28,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     search_tree(p, least, 0.0);
     least = min(least, nearest);
   }
-  distances[part.y + i] = sqrt(least);
+  let distance = sqrt(least);
+  let place = part.first + i;
+  distances[place] = min(distance, select(kHuge, distances[place], part.has_distances != 0u));
 }

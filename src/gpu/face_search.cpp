@@ -22,8 +22,8 @@ Pipeline pipeline(Device& device, std::initializer_list<EmbeddedFile> parts) {
 
 // As in the shaders.
 constexpr std::size_t kTileBytes = 96;
-struct Part {
-  std::uint32_t tiles = 0, first = 0, count = 0, padding = 0;
+struct PartOfMap {
+  std::uint32_t tiles = 0, first = 0, count = 0, has_distances = 0;
 };
 
 }  // namespace
@@ -34,7 +34,7 @@ FaceSearch::FaceSearch(std::string_view wanted)
       tiles_together_(pipeline(device_, {kFacesWgsl, kClosestTilesWgsl})),
       points_alone_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kClosestFacesWgsl})),
       distances_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kMapDistancesWgsl})),
-      part_(device_.buffer(sizeof(Part), Device::Use::uniform, "constants")) {}
+      part_(device_.buffer(sizeof(PartOfMap), Device::Use::uniform, "constants")) {}
 
 const SitesOnDevice& FaceSearch::place(const sites::SitesData& sites) {
   auto present =
@@ -63,24 +63,22 @@ void FaceSearch::reserve(std::size_t points) {
   room_ = points;
 }
 
-BindGroup FaceSearch::bind(const Pipeline& pipeline, const SitesOnDevice& sites,
+BindGroup FaceSearch::bind(const Pipeline& pipeline, const SitesOnDevice::Part& part,
                            std::initializer_list<Device::Binding> others) {
-  std::vector<Device::Binding> all{{1, &sites.boxes}, {2, &sites.leaves}, {3, &sites.faces}};
+  std::vector<Device::Binding> all{{1, &part.boxes}, {2, &part.leaves}, {3, &part.faces}};
   all.insert(all.end(), others);
   return device_.bind(pipeline, all);
 }
 
 template <class Run>
-void FaceSearch::search(const SitesOnDevice& sites, std::span<const QueryPoint> points, const Run& run) {
-  device_.write(points_, std::as_bytes(points));
-  const auto tiles = static_cast<std::uint32_t>(points.size() / kTile);
-  const BindGroup balls = bind(tile_balls_, sites,
-                               {{0, &sites.errors}, {4, &points_}, {6, &tiles_}, {7, &part_}}),
-                  together = bind(tiles_together_, sites,
-                                  {{0, &sites.errors}, {4, &points_}, {5, &results_}, {6, &tiles_}}),
-                  alone = bind(points_alone_, sites,
-                               {{0, &sites.errors}, {4, &points_}, {5, &results_}, {6, &tiles_}});
-  run(std::vector<Device::Step>{{&tile_balls_, &balls, (tiles + 63) / 64},
+void FaceSearch::search(const SitesOnDevice& sites, const SitesOnDevice::Part& part, std::size_t points,
+                        const Run& run) {
+  const auto tiles = static_cast<std::uint32_t>(points / kTile);
+  const Device::Binding errors{0, &sites.errors}, at{4, &points_}, results{5, &results_}, balls{6, &tiles_};
+  const BindGroup of_balls = bind(tile_balls_, part, {errors, at, balls, {7, &part_}}),
+                  together = bind(tiles_together_, part, {errors, at, results, balls}),
+                  alone = bind(points_alone_, part, {errors, at, results, balls});
+  run(std::vector<Device::Step>{{&tile_balls_, &of_balls, (tiles + 63) / 64},
                                 {&tiles_together_, &together, tiles},
                                 {&points_alone_, &alone, tiles}});
 }
@@ -104,17 +102,24 @@ void FaceSearch::in_dispatches(std::size_t points, SearchTimes& times, const Sea
   }
 }
 
-void FaceSearch::find(const sites::SitesData& sites, std::span<const QueryPoint> points,
-                      std::span<FaceList> found, SearchTimes& times) {
+void FaceSearch::find(const sites::SitesData& sites, std::span<const QueryPoint> points, FaceLists& found,
+                      SearchTimes& times) {
   Stopwatch watch;
   const SitesOnDevice& on_device = place(sites);
   times.upload_ms += watch.lap();
+  found.points = points.size();
+  found.lists.resize(on_device.parts.size() * points.size());
+  found.first.clear();
+  for (const SitesOnDevice::Part& part : on_device.parts) found.first.push_back(part.first);
   in_dispatches(points.size(), times, [&](std::size_t first, std::size_t count) {
-    const Part part{.tiles = static_cast<std::uint32_t>(count / kTile)};
-    device_.write(part_, std::as_bytes(std::span(&part, 1)));
-    search(on_device, points.subspan(first, count), [&](std::span<const Device::Step> steps) {
-      device_.run(steps, results_, read_back_, std::as_writable_bytes(found.subspan(first, count)));
-    });
+    const PartOfMap constants{.tiles = static_cast<std::uint32_t>(count / kTile)};
+    device_.write(part_, std::as_bytes(std::span(&constants, 1)));
+    device_.write(points_, std::as_bytes(points.subspan(first, count)));
+    for (std::size_t p = 0; p < on_device.parts.size(); ++p)
+      search(on_device, on_device.parts[p], count, [&](std::span<const Device::Step> steps) {
+        const std::span to = std::span(found.lists).subspan(p * points.size() + first, count);
+        device_.run(steps, results_, read_back_, std::as_writable_bytes(to));
+      });
   });
 }
 
@@ -123,16 +128,20 @@ void FaceSearch::measure(const sites::SitesData& sites, std::span<const QueryPoi
   const SitesOnDevice& on_device = place(sites);
   SearchTimes times;
   in_dispatches(points.size(), times, [&](std::size_t from, std::size_t size) {
-    const Part part{.tiles = static_cast<std::uint32_t>(size / kTile),
-                    .first = static_cast<std::uint32_t>(first + from),
-                    .count = static_cast<std::uint32_t>(std::min(size, count - from))};
-    device_.write(part_, std::as_bytes(std::span(&part, 1)));
-    search(on_device, points.subspan(from, size), [&](std::vector<Device::Step> steps) {
-      const BindGroup group =
-          bind(distances_, on_device, {{4, &points_}, {5, &results_}, {6, &distances}, {7, &part_}});
-      steps.push_back({&distances_, &group, part.tiles});
-      device_.run(steps);
-    });
+    PartOfMap constants{.tiles = static_cast<std::uint32_t>(size / kTile),
+                        .first = static_cast<std::uint32_t>(first + from),
+                        .count = static_cast<std::uint32_t>(std::min(size, count - from))};
+    device_.write(points_, std::as_bytes(points.subspan(from, size)));
+    for (const SitesOnDevice::Part& part : on_device.parts) {
+      device_.write(part_, std::as_bytes(std::span(&constants, 1)));
+      search(on_device, part, size, [&](std::vector<Device::Step> steps) {
+        const BindGroup group =
+            bind(distances_, part, {{4, &points_}, {5, &results_}, {6, &distances}, {7, &part_}});
+        steps.push_back({&distances_, &group, constants.tiles});
+        device_.run(steps);
+      });
+      constants.has_distances = 1;
+    }
   });
 }
 

@@ -30,6 +30,17 @@ struct FaceList {
   [[nodiscard]] std::uint32_t tests() const { return head >> 18; }          ///< faces compared, at most 16383
 };
 
+/// The lists of some points for each part of the sites (SitesOnDevice).
+struct FaceLists {
+  std::size_t points = 0;
+  std::vector<std::uint32_t> first;  ///< of the faces of each part
+  std::vector<FaceList> lists;       ///< those of all points for the first part, then for the next
+
+  [[nodiscard]] const FaceList& of(std::size_t part, std::size_t point) const {
+    return lists[points * part + point];
+  }
+};
+
 /// A point in the unit frame, and nothing farther than `within` is closest; negative if there is nothing to
 /// be found.
 struct QueryPoint {
@@ -55,9 +66,10 @@ class FaceSearch {
   [[nodiscard]] const Device& device() const { return device_; }
   Device& device() { return device_; }
 
-  /// Sets found[i] to the faces of the sites that may be closest to points[i]; their number is a multiple of
-  /// kTile. In dispatches that are expected to take 10 to 30 ms, between which the call can be cancelled.
-  void find(const sites::SitesData& sites, std::span<const QueryPoint> points, std::span<FaceList> found,
+  /// Finds the faces of each part of the sites that may be closest to each of the points, whose number is a
+  /// multiple of kTile. In dispatches that are expected to take 10 to 30 ms, between which the call can be
+  /// cancelled.
+  void find(const sites::SitesData& sites, std::span<const QueryPoint> points, FaceLists& found,
             SearchTimes& times);
   /// Writes the distances of the first `count` of the points in the unit frame to a buffer on the device, of
   /// 4 bytes each, from `first` on. The rest fills the last tile.
@@ -70,11 +82,12 @@ class FaceSearch {
   /// Calls search(first, count) for parts of so many points.
   template <class Search>
   void in_dispatches(std::size_t points, SearchTimes& times, const Search& search);
-  [[nodiscard]] BindGroup bind(const Pipeline& pipeline, const SitesOnDevice& sites,
+  [[nodiscard]] BindGroup bind(const Pipeline& pipeline, const SitesOnDevice::Part& part,
                                std::initializer_list<Device::Binding> others);
-  /// Uploads points that fill tiles, calls run(steps) for the steps of their search.
+  /// Calls run(steps) for the steps of the search of points that were uploaded.
   template <class Run>
-  void search(const SitesOnDevice& sites, std::span<const QueryPoint> points, const Run& run);
+  void search(const SitesOnDevice& sites, const SitesOnDevice::Part& part, std::size_t points,
+              const Run& run);
 
   static constexpr std::size_t kKept = 4;  // shapes
 

@@ -18,9 +18,10 @@ struct FinishCounts {
 void place_points(const sites::SitesData& sites, std::span<const Vec3> points, double max_distance,
                   std::span<QueryPoint> placed);
 
-/// Passes to the sink what exact_closest() has for each point, whichever device has found the lists.
+/// Passes to the sink what exact_closest() has for each point, whichever device has found the lists. Those of
+/// the points begin with `first`.
 FinishCounts finish(const sites::SitesData& sites, std::span<const Vec3> points,
-                    std::span<const QueryPoint> placed, std::span<const FaceList> found, double max_distance,
-                    const sites::ClosestSink& sink);
+                    std::span<const QueryPoint> placed, const FaceLists& found, std::size_t first,
+                    double max_distance, const sites::ClosestSink& sink);
 
 }  // namespace sdm::gpu

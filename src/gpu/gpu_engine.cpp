@@ -75,7 +75,7 @@ class GpuEngine final : public Engine {
  private:
   struct Batch {
     std::vector<QueryPoint> placed;
-    std::vector<FaceList> found;
+    FaceLists found;
   };
   struct Range {
     std::size_t first, count;
@@ -86,7 +86,6 @@ class GpuEngine final : public Engine {
     // Whole tiles: what fills the last one is skipped.
     batch.placed.assign((points.size() + FaceSearch::kTile - 1) / FaceSearch::kTile * FaceSearch::kTile,
                         {{}, -1});
-    batch.found.resize(batch.placed.size());
     place_points(data, points, max_distance, batch.placed);
     SearchTimes times;
     devices().with(options_.device,
@@ -103,7 +102,7 @@ class GpuEngine final : public Engine {
     const auto part = [&](const auto& all) { return std::span(all).subspan(range.first, range.count); };
     Stopwatch watch;
     const FinishCounts counts = gpu::finish(
-        internals(sites), part(points), part(batch.placed), part(batch.found), max_distance,
+        internals(sites), part(points), part(batch.placed), batch.found, range.first, max_distance,
         [&](std::size_t first, const sites::ClosestPacket& closest) { sink(range.first + first, closest); });
     const double ms = watch.lap();
     const std::lock_guard lock(mutex_);

@@ -60,6 +60,8 @@ class Device {
 
   /// What a driver does that takes a device away, for tests.
   void lose();
+  /// What a driver does that permits smaller buffers, for tests.
+  void permit(std::size_t bytes) { most_bytes_ = bytes; }
 
  private:
   struct Faults;
