@@ -1,38 +1,29 @@
 // The faces that may be closest to each of 64 points that are neighbours: one search of the tree for all of them, by levels,
-// gathers the faces that may be closest to any point of a ball around them, which each invocation then compares with its
-// point. docs/design/gpu.md derives the bounds. Behind shaders/faces.wgsl.
+// gathers the faces that may be closest to any point of the ball around them; each invocation compares some of these with all
+// points. docs/design/gpu.md derives the bounds. Behind shaders/faces.wgsl.
 
-const kTile = 64u;
 const kOpen = 512u;  // nodes of a level, and leaves
-const kList = 256u;  // faces
+const kList = 512u;  // faces, of a tile
+const kShort = 256u;  // faces, of a quarter
+const kWidth = 8u;  // faces that are compared with the same point at a time
 
-var<workgroup> low: array<atomic<u32>, 3>;   // of the points, by key()
-var<workgroup> high: array<atomic<u32>, 3>;
-var<workgroup> squared_radius: atomic<u32>;  // around the middle of the points; as bits, as all squares here
-var<workgroup> squared_bound: atomic<u32>;   // no face beyond this is closest to the middle
-var<workgroup> best: atomic<u32>;            // the leaf, then the face, that is nearest to the middle
+@group(0) @binding(6) var<storage, read> tiles: array<Tile>;
+
 var<workgroup> nodes_of_level: array<array<u32, kOpen>, 2>;
+var<workgroup> short_list: array<u32, 4u * kShort>;
 var<workgroup> leaf_list: array<u32, kOpen>;
-var<workgroup> leaf_square: array<f32, kOpen>;
 var<workgroup> list: array<u32, kList>;
-var<workgroup> list_square: array<f32, kList>;
-var<workgroup> short_list: array<u32, kList>;
 var<workgroup> level_count: array<atomic<u32>, 2>;
 var<workgroup> leaf_count: atomic<u32>;
 var<workgroup> list_count: atomic<u32>;
-var<workgroup> short_count: atomic<u32>;
-var<workgroup> visited: atomic<u32>;
+var<workgroup> short_count: array<atomic<u32>, 4>;  // of the faces of a quarter
+var<workgroup> best: array<atomic<u32>, 4>;         // the square, truncated, and the place in the list
 var<workgroup> tested: atomic<u32>;
+var<workgroup> positions: array<vec3f, kTile>;
+var<workgroup> limits: array<atomic<u32>, kTile>;     // squared, as bits, as all squares here
+var<workgroup> counts: array<atomic<u32>, kTile>;     // of the lists of points
+var<workgroup> left_out: array<atomic<u32>, kTile>;   // the least square of the faces that had no room in a list
 var<workgroup> uniform_value: u32;
-
-// Orders numbers of any sign as unsigned integers.
-fn key(x: f32) -> u32 {
-  let bits = bitcast<u32>(x);
-  return select(bits | 0x80000000u, ~bits, (bits & 0x80000000u) != 0u);
-}
-fn number_of(key: u32) -> f32 {
-  return bitcast<f32>(select(~key, key & 0x7fffffffu, (key & 0x80000000u) != 0u));
-}
 
 // A value of the first invocation, which is alike for all after a barrier, so that loops and returns can depend on it.
 fn same_for_all(lane: u32, value: u32) -> u32 {
@@ -43,85 +34,52 @@ fn same_for_all(lane: u32, value: u32) -> u32 {
   return workgroupUniformLoad(&uniform_value);
 }
 
-fn squared_to_far_corner(lo: vec3f, hi: vec3f, p: vec3f) -> f32 {
-  let far = max(abs(p - lo), abs(p - hi));
-  return dot(far, far);
-}
-
 // A face of O2 whose point `a` is near the middle c of a ball: no face is closest to a point of the ball unless it is within
 // these distances.
 struct Near {
-  face: u32,
   a: vec3f,
   shell: f32,   // from the middle, for all faces
-  square: f32,  // to this, 2 radius |b − a| of the farthest point b of the face is added
+  square: f32,  // to this, 2 radius |b − a| of the farthest point b of a face, or of its box, is added
 }
-fn near_by(face: u32, c: vec3f, radius: f32, error: f32) -> Near {
+fn near_by(face: Face, c: vec3f, radius: f32, tile: Points) -> Near {
   let a = closest_of_face(face, c);
   let distance = length(c - a);
-  let slack = error + 2e-6 * distance;
-  return Near(face, a, distance + 2.0 * radius, distance * distance + 2.0 * slack * (distance + radius) + slack * slack);
+  let slack = tile.error + 2e-6 * distance;
+  return Near(a, min(distance + 2.0 * radius, tile.within + radius),
+              distance * distance + 2.0 * slack * (distance + radius) + slack * slack);
 }
 fn squared_reach(near: Near, radius: f32, farthest: f32, error: f32) -> f32 {
   let reach = farther(min(near.shell, sqrt(near.square + 2.0 * radius * farthest)), error);
   return reach * reach;
 }
 
-// The points beside each other are searched for one by one, from a face of O2 that may be near.
-fn leave_alone(point: u32, face: u32) {
-  results[point * kResult] = kIncomplete | kAlone;
-  results[point * kResult + 1u] = face;
-}
-
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
   let i = group.x * kTile + lane;
   let point = points[i];
-  let p = point.xyz;
   let used = point.w >= 0.0;
-
-  // The ball around the points.
-  if (lane < 3u) {
-    atomicStore(&low[lane], 0xffffffffu);
-    atomicStore(&high[lane], 0u);
-    atomicStore(&squared_radius, 0u);
-    atomicStore(&squared_bound, kInfinity);
-    atomicStore(&best, 0xffffffffu);
+  let tile = tiles[group.x].all;
+  if (tile.face == kUnused) {
+    results[i * kResult] = select(kIncomplete, 0u, used);
+    return;
+  }
+  let near = near_by(faces[tile.face], tile.centre, tile.radius, tile);
+  if (lane == 0u) {
     atomicStore(&level_count[0], 1u);
     atomicStore(&level_count[1], 0u);
     atomicStore(&leaf_count, 0u);
     atomicStore(&list_count, 0u);
-    atomicStore(&short_count, 0u);
-    atomicStore(&visited, 0u);
-    atomicStore(&tested, 0u);
+    atomicStore(&tested, tile.counts & 0xffffu);
+    for (var q = 0u; q < 4u; q += 1u) {
+      atomicStore(&short_count[q], 0u);
+      atomicStore(&best[q], 0xffffffffu);
+    }
     nodes_of_level[0][0] = 0u;
   }
-  workgroupBarrier();
-  if (used) {
-    for (var k = 0u; k < 3u; k += 1u) {
-      atomicMin(&low[k], key(p[k]));
-      atomicMax(&high[k], key(p[k]));
-    }
-  }
-  workgroupBarrier();
-  let lo = vec3f(number_of(atomicLoad(&low[0])), number_of(atomicLoad(&low[1])), number_of(atomicLoad(&low[2])));
-  let hi = vec3f(number_of(atomicLoad(&high[0])), number_of(atomicLoad(&high[1])), number_of(atomicLoad(&high[2])));
-  if (same_for_all(lane, select(0u, 1u, atomicLoad(&high[0]) == 0u)) == 1u) {
-    results[i * kResult] = kIncomplete;
-    return;
-  }
-  let c = 0.5 * (lo + hi);
-  if (used) {
-    let from_middle = p - c;
-    atomicMax(&squared_radius, bitcast<u32>(dot(from_middle, from_middle)));
-  }
-  workgroupBarrier();
-  let radius = sqrt(bitcast<f32>(atomicLoad(&squared_radius))) * kFarther;
-  let outermost = max(abs(lo), abs(hi));
-  let error = 3.0 * error_at(max(max(outermost.x, outermost.y), outermost.z));
 
   // Leaves, level by level.
   var level = 0u;
+  var visited = tile.counts >> 16u;
   loop {
     let count = same_for_all(lane, atomicLoad(&level_count[level]));
     if (count == 0u || count > kOpen) {
@@ -129,13 +87,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
     }
     for (var item = lane; item < 8u * count; item += kTile) {
       let child = boxes[8u * nodes_of_level[level][item / 8u] + item % 8u];
-      if (child.number == kUnused) {
-        continue;
-      }
-      atomicMin(&squared_bound, bitcast<u32>(squared_to_far_corner(child.lo, child.hi, c)));
-      let square = squared_to_box(child, c);
-      let reach = farther(sqrt(bitcast<f32>(atomicLoad(&squared_bound))) + 2.0 * radius, error);
-      if (square > reach * reach) {
+      let far = max(abs(near.a - child.lo), abs(near.a - child.hi));
+      if (child.number == kUnused || squared_to_box(child, tile.centre) > squared_reach(near, tile.radius, length(far), tile.error)) {
         continue;
       }
       if ((child.number & kLeaf) == 0u) {
@@ -147,14 +100,12 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
         let place = atomicAdd(&leaf_count, 1u);
         if (place < kOpen) {
           leaf_list[place] = child.number & ~kLeaf;
-          leaf_square[place] = square;
-          atomicMin(&best, bitcast<u32>(square));
         }
       }
     }
     workgroupBarrier();
+    visited += count;
     if (lane == 0u) {
-      atomicAdd(&visited, count);
       atomicStore(&level_count[level], 0u);
     }
     level = 1u - level;
@@ -162,114 +113,114 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) la
   let leaves_found = same_for_all(lane, atomicLoad(&leaf_count));
   let left = same_for_all(lane, atomicLoad(&level_count[level]));
   if (left > kOpen || leaves_found > kOpen) {
-    leave_alone(i, 0u);
+    results[i * kResult] = kAlone;
     return;
   }
 
-  // A point of O2 that is near the middle: that of the faces of the nearest leaf.
-  let least = same_for_all(lane, atomicLoad(&best));
-  if (lane == 0u) {
-    atomicStore(&best, 0xffffffffu);
-    atomicStore(&squared_bound, kInfinity);
-  }
-  workgroupBarrier();
-  for (var item = lane; item < leaves_found; item += kTile) {
-    if (bitcast<u32>(leaf_square[item]) == least) {
-      atomicMin(&best, item);
-    }
-  }
-  workgroupBarrier();
-  let nearest = leaf_list[atomicLoad(&best)];
-  let face_of_lane = leaves[nearest] + lane;
-  var own = kInfinity;
-  if (face_of_lane < leaves[nearest + 1u]) {
-    own = bitcast<u32>(squared_to_face(face_of_lane, c));
-    atomicMin(&squared_bound, own);
-  }
-  workgroupBarrier();
-  if (lane == 0u) {
-    atomicStore(&best, 0xffffffffu);
-  }
-  workgroupBarrier();
-  if (own != kInfinity && own == atomicLoad(&squared_bound)) {
-    atomicMin(&best, face_of_lane);
-  }
-  workgroupBarrier();
-  let at_first = near_by(atomicLoad(&best), c, radius, error);
-  workgroupBarrier();
-  if (lane == 0u) {
-    atomicStore(&best, 0xffffffffu);
-    atomicStore(&squared_bound, kInfinity);
-  }
-  workgroupBarrier();
-
-  // The faces that may be closest to a point of the ball; then those that may be beside the nearest one.
+  // The faces that may be closest to a point of the ball.
   for (var item = lane; item < 8u * leaves_found; item += kTile) {
     let leaf = leaf_list[item / 8u];
-    let shell = farther(at_first.shell, error);
-    if (leaf_square[item / 8u] > shell * shell) {
-      continue;
-    }
-    let face = leaves[leaf] + item % 8u;
-    if (face >= leaves[leaf + 1u]) {
+    let number = leaves[leaf] + item % 8u;
+    if (number >= leaves[leaf + 1u]) {
       continue;
     }
     atomicAdd(&tested, 1u);
-    let square = squared_to_face(face, c);
-    if (square <= squared_reach(at_first, radius, farthest_of_face(face, at_first.a), error)) {
-      atomicMin(&squared_bound, bitcast<u32>(square));
+    let face = faces[number];
+    if (squared_to_face(face, tile.centre) <= squared_reach(near, tile.radius, farthest_of_face(face, near.a), tile.error)) {
       let place = atomicAdd(&list_count, 1u);
       if (place < kList) {
-        list[place] = face;
-        list_square[place] = square;
+        list[place] = number;
       }
     }
   }
   workgroupBarrier();
   let listed = same_for_all(lane, atomicLoad(&list_count));
-  if (listed == 0u || listed > kList) {
-    leave_alone(i, at_first.face);
-    return;
-  }
-  for (var k = lane; k < listed; k += kTile) {
-    if (bitcast<u32>(list_square[k]) == atomicLoad(&squared_bound)) {
-      atomicMin(&best, list[k]);
-    }
-  }
-  workgroupBarrier();
-  let at_nearest = near_by(atomicLoad(&best), c, radius, error);
-  for (var k = lane; k < listed; k += kTile) {
-    if (list_square[k] <= squared_reach(at_nearest, radius, farthest_of_face(list[k], at_nearest.a), error)) {
-      short_list[atomicAdd(&short_count, 1u)] = list[k];
-    }
-  }
-  workgroupBarrier();
-  let count = same_for_all(lane, atomicLoad(&short_count));
-  if (!used) {
-    results[i * kResult] = kIncomplete;
+  if (listed > kList) {
+    results[i * kResult] = kAlone;
     return;
   }
 
-  // Each point by itself. A list that was full before the limit was least is made again.
-  var found = start(p, point.w);
-  take_limit(&found, squared_to_face(at_nearest.face, p));
-  var compared = 1u;
-  for (var again = 0u; again < 2u; again += 1u) {
-    for (var k = 0u; k < count; k += 1u) {
-      let face = short_list[k];
-      let square = squared_to_face(face, p);
-      if (square <= found.limit) {
-        take(&found, i, face, square);
+  // Of these, the ones that may be closest to a point of the ball around a quarter of the points; and the one that is nearest to
+  // its middle, or nearly so.
+  let quarter = lane / kQuarter;
+  let in_quarter = lane % kQuarter;
+  let ball = tiles[group.x].quarters[quarter];
+  for (var k = in_quarter; k < listed; k += kQuarter) {
+    let square = squared_to_face(faces[list[k]], ball.xyz);
+    atomicMin(&best[quarter], (bitcast<u32>(square) & ~(kList - 1u)) | k);
+  }
+  workgroupBarrier();
+  let nearest = list[atomicLoad(&best[quarter]) % kList];
+  let near_quarter = near_by(faces[nearest], ball.xyz, ball.w, tile);
+  for (var k = in_quarter; k < listed; k += kQuarter) {
+    let face = faces[list[k]];
+    if (squared_to_face(face, ball.xyz) <=
+        squared_reach(near_quarter, ball.w, farthest_of_face(face, near_quarter.a), tile.error)) {
+      let place = atomicAdd(&short_count[quarter], 1u);
+      if (place < kShort) {
+        short_list[quarter * kShort + place] = list[k];
       }
     }
-    compared += count;
-    if (found.count < kMost || found.left_out > found.limit) {
-      break;
-    }
-    if (again == 0u) {
-      found.count = 0u;
-      found.left_out = bitcast<f32>(kInfinity);
+  }
+
+  // The limits of the points begin with that face.
+  let p = point.xyz;
+  let own_error = error_at(max(max(abs(p.x), abs(p.y)), abs(p.z)));
+  let within = point.w + own_error;
+  let from_nearest = farther(sqrt(squared_to_face(faces[nearest], p)), own_error);
+  positions[lane] = p;
+  atomicStore(&limits[lane], select(0u, bitcast<u32>(min(within * within, from_nearest * from_nearest)), used));
+  atomicStore(&counts[lane], 0u);
+  atomicStore(&left_out[lane], bitcast<u32>(kHuge));
+  workgroupBarrier();
+
+  // Each invocation compares a face with some of the points, as a face takes more loads than a point.
+  let shortened = atomicLoad(&short_count[quarter]);
+  let first_point = quarter * kQuarter + in_quarter / kWidth;
+  if (shortened <= kShort) {
+    for (var item = in_quarter % kWidth; item < shortened; item += kWidth) {
+      let number = short_list[quarter * kShort + item];
+      let face = faces[number];
+      for (var k = first_point; k < (quarter + 1u) * kQuarter; k += kQuarter / kWidth) {
+        let at = positions[k];
+        let square = squared_to_face(face, at);
+        if (square > bitcast<f32>(atomicLoad(&limits[k]))) {
+          continue;
+        }
+        let reach = farther(sqrt(square), error_at(max(max(abs(at.x), abs(at.y)), abs(at.z))));
+        atomicMin(&limits[k], bitcast<u32>(reach * reach));
+        let place = atomicAdd(&counts[k], 1u);
+        if (place < kMost) {
+          results[(group.x * kTile + k) * kResult + 1u + place] = number;
+        } else {
+          atomicMin(&left_out[k], bitcast<u32>(square));
+        }
+      }
     }
   }
-  finish(&found, i, (atomicLoad(&visited) + lane) / kTile, compared + (atomicLoad(&tested) + lane) / kTile);
+  storageBarrier();
+  workgroupBarrier();
+  if (!used || shortened > kShort) {
+    results[i * kResult] = select(kIncomplete, kAlone, used);
+    return;
+  }
+  var count = atomicLoad(&counts[lane]);
+  var compared = 1u + shortened + (atomicLoad(&tested) + lane) / kTile + 2u * listed / kQuarter;
+  let limit = bitcast<f32>(atomicLoad(&limits[lane]));
+  var incomplete = false;
+  if (count > kMost && bitcast<f32>(atomicLoad(&left_out[lane])) <= limit) {
+    // A list that was full before the limit was least is made again.
+    compared += shortened;
+    count = 0u;
+    for (var k = quarter * kShort; k < quarter * kShort + shortened; k += 1u) {
+      if (squared_to_face(faces[short_list[k]], p) <= limit) {
+        count += 1u;
+        if (count <= kMost) {
+          results[i * kResult + count] = short_list[k];
+        }
+      }
+    }
+    incomplete = count > kMost;
+  }
+  results[i * kResult] = head_of(min(count, kMost), incomplete, (visited + lane) / kTile, compared);
 }

@@ -23,6 +23,20 @@ struct Errors {
   padding: vec2f,
 }
 
+// 64 points that are neighbours.
+struct Tile {
+  all: Points,
+  quarters: array<vec4f, 4>,  // the middle and the radius of a ball around each quarter of them
+}
+struct Points {
+  centre: vec3f,  // of a ball around them
+  radius: f32,
+  face: u32,      // that is near the middle; kUnused if no point has a face
+  error: f32,     // three times error_at() of the points
+  within: f32,    // no face farther from a point is closest
+  counts: u32,    // of nodes and of faces, that the search for the middle visited
+}
+
 @group(0) @binding(0) var<uniform> errors: Errors;
 @group(0) @binding(1) var<storage, read> boxes: array<ChildBox>;
 @group(0) @binding(2) var<storage, read> leaves: array<u32>;  // the first face of each leaf, and an end
@@ -32,12 +46,14 @@ struct Errors {
 
 const kLeaf = 0x80000000u;
 const kUnused = 0xffffffffu;
+const kTile = 64u;
+const kQuarter = 16u;
 const kMost = 15u;     // faces in a list
 const kResult = 16u;   // numbers of a point: the head, then its list
 const kIncomplete = 16u;
-const kAlone = 32u;    // the tile of a point has too long a list
+const kAlone = 32u;    // the points of the tile are searched for one by one
 const kFarther = 1.000006;
-const kInfinity = 0x7f800000u;
+const kHuge = 3e38;  // more than any square
 
 // Twice the error of a distance, but for a part in proportion to it.
 fn error_at(largest_coordinate: f32) -> f32 {
@@ -57,8 +73,7 @@ fn minus_clamped(t: f32, end: f32) -> f32 {
 }
 
 // As squared_to_faces() of closest/face_distances-inl.h.
-fn squared_to_face(number: u32, p: vec3f) -> f32 {
-  let face = faces[number];
+fn squared_to_face(face: Face, p: vec3f) -> f32 {
   let r = p - face.origin_length.xyz;
   let u = dot(r, face.along_ac.xyz);
   let v = dot(r, face.beside_ac.xyz);
@@ -77,8 +92,7 @@ fn squared_to_face(number: u32, p: vec3f) -> f32 {
 }
 
 // The closest point of a face, or one that is nearly as close.
-fn closest_of_face(number: u32, p: vec3f) -> vec3f {
-  let face = faces[number];
+fn closest_of_face(face: Face, p: vec3f) -> vec3f {
   let r = p - face.origin_length.xyz;
   let length = face.origin_length.w;
   let q = vec2f(dot(r, face.along_ac.xyz), dot(r, face.beside_ac.xyz));
@@ -101,45 +115,14 @@ fn closest_of_face(number: u32, p: vec3f) -> vec3f {
 }
 
 // The distance from a point to the farthest corner of a face.
-fn farthest_of_face(number: u32, p: vec3f) -> f32 {
-  let face = faces[number];
+fn farthest_of_face(face: Face, p: vec3f) -> f32 {
   let a = face.origin_length.xyz - p;
   let b = a + face.origin_length.w * face.along_ac.xyz;
   let c = a + face.normal_ac.w * (face.along_ac.w * face.along_ac.xyz + face.beside_ac.w * face.beside_ac.xyz);
   return sqrt(max(dot(a, a), max(dot(b, b), dot(c, c))));
 }
 
-// The search for one point: the limit beyond which no face is closest, and how many faces its list has.
-struct Found {
-  error: f32,
-  limit: f32,     // squared
-  count: u32,
-  left_out: f32,  // the least squared distance of the faces that had no room in the list
-}
-
-fn start(p: vec3f, within: f32) -> Found {
-  let error = error_at(max(max(abs(p.x), abs(p.y)), abs(p.z)));
-  let reach = within + error;
-  return Found(error, reach * reach, 0u, bitcast<f32>(kInfinity));
-}
-
-fn take_limit(found: ptr<function, Found>, square: f32) {
-  let reach = farther(sqrt(square), (*found).error);
-  (*found).limit = min((*found).limit, reach * reach);
-}
-
-fn take(found: ptr<function, Found>, point: u32, face: u32, square: f32) {
-  take_limit(found, square);
-  if ((*found).count < kMost) {
-    (*found).count += 1u;
-    results[point * kResult + (*found).count] = face;
-  } else {
-    (*found).left_out = min((*found).left_out, square);
-  }
-}
-
-fn finish(found: ptr<function, Found>, point: u32, visited: u32, tested: u32) {
-  let incomplete = (*found).left_out <= (*found).limit;
-  let counts = (min(visited, 0xfffu) << 6u) | (min(tested, 0x3fffu) << 18u);
-  results[point * kResult] = (*found).count | select(0u, kIncomplete, incomplete) | counts;
+// The first number of a result.
+fn head_of(count: u32, incomplete: bool, visited: u32, tested: u32) -> u32 {
+  return count | select(0u, kIncomplete, incomplete) | (min(visited, 0xfffu) << 6u) | (min(tested, 0x3fffu) << 18u);
 }

@@ -1,16 +1,21 @@
-/// The gpu engine: closest points by compute shaders, on Vulkan, Metal or D3D12: options and report.
+/// The gpu engine: closest points by compute shaders, on Vulkan, Metal or D3D12: options and report; and maps
+/// that stay on a device.
 ///
-/// Threads: all functions may be called concurrently; an engine may serve several threads at once.
+/// Threads: all functions may be called concurrently; an engine may serve several threads at once, and a
+/// GpuMap is used by one at a time.
 #pragma once
 
 #include <sdm/engine.h>
 #include <sdm/names.h>
 #include <sdm/options.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
 #include <sdm/types.h>
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -83,5 +88,65 @@ inline constexpr std::tuple kFields<GpuReport>{
 
 /// Returns the report of a gpu engine; empty for any other engine.
 [[nodiscard]] SDM_API std::optional<GpuReport> gpu_report(const Engine& engine);
+
+/// What the distances of a GpuMap are summed up to.
+struct GpuMapStatistics {
+  std::uint64_t samples = 0;
+  double smallest = 0, largest = 0, mean = 0, rms = 0;
+  std::uint64_t largest_at = 0;  ///< the first sample with the largest distance on the device
+  double error = 0;              ///< that smallest, largest, mean and rms have at most
+  std::uint64_t within = 0, beyond = 0;
+};
+
+template <>
+inline constexpr std::tuple kFields<GpuMapStatistics>{
+    Field{"samples", &GpuMapStatistics::samples, "The samples of the surface."},
+    Field{"smallest", &GpuMapStatistics::smallest, "The smallest distance."},
+    Field{"largest", &GpuMapStatistics::largest, "The largest distance."},
+    Field{"mean", &GpuMapStatistics::mean, "The mean of the distances."},
+    Field{"rms", &GpuMapStatistics::rms, "The root of the mean of their squares."},
+    Field{"largest_at", &GpuMapStatistics::largest_at,
+          "The first sample with the largest distance on the device."},
+    Field{"error", &GpuMapStatistics::error,
+          "The error that the smallest, the largest, the mean and the rms distance have at most."},
+    Field{"within", &GpuMapStatistics::within, "Samples that are certainly within the tolerance."},
+    Field{"beyond", &GpuMapStatistics::beyond,
+          "Samples that are certainly beyond it. All others are nearer to it than their error."}};
+
+/// The distances of a map in single precision, which stay on a device: unsigned, of each sample of a surface.
+/// Only what is asked for is read back. Each has a proven error (docs/design/gpu.md); for results to the last
+/// bit, compute a map by the gpu engine.
+class SDM_API GpuMap {
+ public:
+  /// Opens a device of its own, and computes the map. Throws sdm::Error as make_gpu_engine() does, and as
+  /// compute() does.
+  GpuMap(const Surface& surface, const Sites& sites, const GpuOptions& options = {});
+  ~GpuMap();
+  GpuMap(GpuMap&&) noexcept;
+  GpuMap& operator=(GpuMap&&) noexcept;
+
+  /// Computes the map anew, of any surface. Throws sdm::Error if the device fails, has no memory left, or if
+  /// the surface reaches too far from O2 for single precision, by more than 7 times its size; Cancelled.
+  /// There is no map afterwards then.
+  void compute(const Surface& surface, const Sites& sites);
+  /// The next frame: the same for the last surface with its vertices at these positions, of which
+  /// Surface::refit() does not know. Only vertices are uploaded, and O2 if it has changed. Throws also if
+  /// their number is not that of its mesh.
+  void compute(std::span<const Vec3> positions, const Sites& sites);
+
+  /// The number of samples: those of Surface::sample_texels().
+  [[nodiscard]] std::size_t samples() const;
+  /// The error that a distance has at most which is this one on the device.
+  [[nodiscard]] double error(double distance) const;
+  /// Sums the distances up on the device, and counts those within `tolerance` and beyond it. Throws
+  /// sdm::Error if there is no map or the device fails.
+  [[nodiscard]] GpuMapStatistics statistics(double tolerance = 0) const;
+  /// Reads the distances back, in the order of Surface::sample_texels(). Throws as statistics() does.
+  [[nodiscard]] std::vector<float> distances() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace sdm

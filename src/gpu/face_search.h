@@ -4,6 +4,7 @@
 #include <sdm/types.h>
 
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -23,10 +24,21 @@ struct FaceList {
   [[nodiscard]] std::uint32_t count() const { return head & 15u; }
   /// Whether there may be others: there was no room for them.
   [[nodiscard]] bool incomplete() const { return (head & 16u) != 0; }
-  /// Whether the points beside it are too far from each other to be searched for together.
+  /// Whether it was searched for alone, as the points beside it are too far from each other.
   [[nodiscard]] bool alone() const { return (head & 32u) != 0; }
   [[nodiscard]] std::uint32_t nodes() const { return head >> 6 & 0xfffu; }  ///< visited, at most 4095
   [[nodiscard]] std::uint32_t tests() const { return head >> 18; }          ///< faces compared, at most 16383
+};
+
+/// The lists of some points for each part of the sites (SitesOnDevice).
+struct FaceLists {
+  std::size_t points = 0;
+  std::vector<std::uint32_t> first;  ///< of the faces of each part
+  std::vector<FaceList> lists;       ///< those of all points for the first part, then for the next
+
+  [[nodiscard]] const FaceList& of(std::size_t part, std::size_t point) const {
+    return lists[points * part + point];
+  }
 };
 
 /// A point in the unit frame, and nothing farther than `within` is closest; negative if there is nothing to
@@ -36,18 +48,29 @@ struct QueryPoint {
   float within;
 };
 
+/// A sample, as in shaders/place_samples.wgsl.
+struct Sample {
+  std::uint32_t vertices[3];
+  float weights[2];  ///< of vertices 1 and 2; that of vertex 0 is what is left of 1
+};
+
+/// Samples on a device, and the vertices in the unit frame, of three numbers each.
+struct SamplesOnDevice {
+  const Buffer& samples;
+  const Buffer& positions;
+};
+
 /// What searches on a device took.
 struct SearchTimes {
   std::size_t dispatches = 0;
-  std::size_t alone = 0;  ///< points that were searched for one by one
-  double upload_ms = 0;   ///< of sites
-  double search_ms = 0;   ///< of points, with their transfers
+  double upload_ms = 0;  ///< of sites
+  double search_ms = 0;  ///< of points, with their transfers
 };
 
 class FaceSearch {
  public:
-  static constexpr std::size_t kTile =
-      64;  ///< points that are searched for together, if they are near each other
+  /// Points that are searched for together, if they are near each other.
+  static constexpr std::size_t kTile = 64;
 
   /// Opens a device as Device() does.
   explicit FaceSearch(std::string_view wanted);
@@ -55,23 +78,34 @@ class FaceSearch {
   [[nodiscard]] const Device& device() const { return device_; }
   Device& device() { return device_; }
 
-  /// Sets found[i] to the faces of the sites that may be closest to points[i]; their number is a multiple of
-  /// kTile. In dispatches that are expected to take 10 to 30 ms, between which the call can be cancelled.
-  void find(const sites::SitesData& sites, std::span<const QueryPoint> points, std::span<FaceList> found,
+  /// Finds the faces of each part of the sites that may be closest to each of the points, whose number is a
+  /// multiple of kTile. In dispatches that are expected to take 10 to 30 ms, between which the call can be
+  /// cancelled.
+  void find(const sites::SitesData& sites, std::span<const QueryPoint> points, FaceLists& found,
             SearchTimes& times);
+  /// Writes the distances of `count` samples in the unit frame to a buffer on the device, of 4 bytes each.
+  void measure(const sites::SitesData& sites, const SamplesOnDevice& samples, std::size_t count,
+               const Buffer& distances);
 
  private:
   const SitesOnDevice& place(const sites::SitesData& sites);
   void reserve(std::size_t points);
-  void search(const SitesOnDevice& sites, std::span<const QueryPoint> points, std::span<FaceList> found,
-              SearchTimes& times);
+  /// Calls search(first, count) for parts of so many points.
+  template <class Search>
+  void in_dispatches(std::size_t points, SearchTimes& times, const Search& search);
+  [[nodiscard]] BindGroup bind(const Pipeline& pipeline, const SitesOnDevice::Part& part,
+                               std::initializer_list<Device::Binding> others);
+  /// Calls run(steps) for the steps of the search of points that were uploaded.
+  template <class Run>
+  void search(const SitesOnDevice& sites, const SitesOnDevice::Part& part, std::size_t points,
+              const Run& run);
 
   static constexpr std::size_t kKept = 4;  // shapes
 
   Device device_;
-  Pipeline tiles_together_, points_alone_;
+  Pipeline samples_, tile_balls_, tiles_together_, points_alone_, distances_;
   std::vector<std::unique_ptr<SitesOnDevice>> kept_;  // the last ones that were searched, the latest first
-  Buffer points_, results_, read_back_, tiles_;
+  Buffer part_, points_, results_, read_back_, tiles_;
   std::size_t room_ = 0;         // points of the buffers
   std::size_t dispatch_ = 4096;  // points
 };

@@ -10,21 +10,28 @@
 namespace sdm::gpu {
 namespace {
 
-// Farther than this in the unit frame, single precision does not select faces well.
-constexpr double kFar = 16;
-
-ClosestPoint closest_of(const sites::SitesData& sites, const Vec3& point, const QueryPoint& placed,
-                        const FaceList& found, double max_distance, FinishCounts& counts) {
-  if (placed.within < 0) return closest::closest_point(sites, point, max_distance);
-  counts.nodes += found.nodes();
-  counts.tests += found.tests();
-  if (found.incomplete()) {
+ClosestPoint closest_of(const sites::SitesData& sites, const Vec3& point, const FaceLists& found,
+                        std::size_t place, double max_distance, FinishCounts& counts) {
+  bool incomplete = false, alone = false;
+  for (std::size_t part = 0; part < found.first.size(); ++part) {
+    const FaceList& list = found.of(part, place);
+    counts.nodes += list.nodes();
+    counts.tests += list.tests();
+    incomplete |= list.incomplete();
+    alone |= list.alone();
+  }
+  counts.alone += alone ? 1 : 0;
+  if (incomplete) {
     counts.incomplete += 1;
     return closest::exact_closest(sites, point, max_distance);
   }
-  counts.candidates += found.count();
   closest::FirstClosest best(sites, point, max_distance);
-  for (std::uint32_t i = 0; i < found.count(); ++i) best.offer(sites.tree.items[found.number[i]]);
+  for (std::size_t part = 0; part < found.first.size(); ++part) {
+    const FaceList& list = found.of(part, place);
+    counts.candidates += list.count();
+    for (std::uint32_t i = 0; i < list.count(); ++i)
+      best.offer(sites.tree.items[found.first[part] + list.number[i]]);
+  }
   return best.result();
 }
 
@@ -43,8 +50,8 @@ void place_points(const sites::SitesData& sites, std::span<const Vec3> points, d
 }
 
 FinishCounts finish(const sites::SitesData& sites, std::span<const Vec3> points,
-                    std::span<const QueryPoint> placed, std::span<const FaceList> found, double max_distance,
-                    const sites::ClosestSink& sink) {
+                    std::span<const QueryPoint> placed, const FaceLists& found, std::size_t first_list,
+                    double max_distance, const sites::ClosestSink& sink) {
   FinishCounts counts;
   sites::ClosestPacket packet;
   for (std::size_t first = 0; first < points.size(); first += packet.count) {
@@ -52,7 +59,9 @@ FinishCounts finish(const sites::SitesData& sites, std::span<const Vec3> points,
     for (std::size_t i = 0; i < packet.count; ++i) {
       const Vec3& point = points[first + i];
       const ClosestPoint closest =
-          closest_of(sites, point, placed[first + i], found[first + i], max_distance, counts);
+          placed[first + i].within < 0
+              ? closest::closest_point(sites, point, max_distance)
+              : closest_of(sites, point, found, first_list + first + i, max_distance, counts);
       if (closest.type == SiteType::none && max_distance == kInfinity) throw_nothing_found();
       packet.set(i, point, closest);
     }

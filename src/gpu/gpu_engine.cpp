@@ -1,13 +1,19 @@
 #include "gpu/gpu_engine.h"
 
+#include <algorithm>
 #include <mutex>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "closest/blocks.h"
 #include "core/lazy/device_pool.h"
+#include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "gpu/face_search.h"
 #include "gpu/finish.h"
+#include "sites/sites_data.h"
+#include "surface/surface_data.h"
 
 namespace sdm::gpu {
 namespace {
@@ -27,21 +33,38 @@ class GpuEngine final : public Engine {
 
   [[nodiscard]] const EngineInfo& info() const override { return kInfo; }
 
+  // In the largest blocks, which occupy a device, and all cores place and finish the points of each. While
+  // one is searched for, others are finished.
+  void map(const Surface& surface, const Sites& sites, const engine::EngineOptions& options,
+           const engine::SampleSink& sink) const override {
+    constexpr std::size_t kBlock = closest::kLargestBlock, kRange = 64 * sites::ClosestPacket::kSize;
+    const std::size_t count = surface.sample_texels().size();
+    const auto search = [&](std::size_t begin) {
+      std::vector<Vec3> points(std::min(kBlock, count - begin));
+      parallel_for(points.size(), kRange, [&](std::size_t first, std::size_t last) {
+        internals(surface).place_samples(begin + first, std::span(points).subspan(first, last - first));
+      });
+      Batch batch;
+      find(sites, points, options.max_distance, batch);
+      parallel_for((points.size() + kRange - 1) / kRange, 1, [&](std::size_t first, std::size_t last) {
+        const std::size_t from = kRange * first, to = std::min(kRange * last, points.size());
+        finish(sites, points, {from, to - from}, options.max_distance, batch,
+               [&](std::size_t at, const sites::ClosestPacket& closest) {
+                 sink(begin + at, std::span(points).subspan(at, closest.count), closest);
+               });
+      });
+    };
+    parallel_for((count + kBlock - 1) / kBlock, 1, options.progress, "map",
+                 [&](std::size_t first, std::size_t last) {
+                   for (std::size_t i = first; i < last; ++i) search(kBlock * i);
+                 });
+  }
+
   void closest_points(const Sites& sites, std::span<const Vec3> points, double max_distance,
                       const sites::ClosestSink& sink) const override {
-    const sites::SitesData& data = internals(sites);
-    thread_local std::vector<QueryPoint> placed;
-    thread_local std::vector<FaceList> found;
-    // Whole tiles: what fills the last one is skipped.
-    placed.assign((points.size() + FaceSearch::kTile - 1) / FaceSearch::kTile * FaceSearch::kTile, {{}, -1});
-    found.resize(placed.size());
-    place_points(data, points, max_distance, placed);
-    SearchTimes times;
-    devices().with(options_.device,
-                   [&](FaceSearch& search, double) { search.find(data, placed, found, times); });
-    Stopwatch watch;
-    const FinishCounts counts = finish(data, points, placed, found, max_distance, sink);
-    add(points.size(), times, counts, watch.lap());
+    thread_local Batch batch;
+    find(sites, points, max_distance, batch);
+    finish(sites, points, {0, points.size()}, max_distance, batch, sink);
   }
 
   [[nodiscard]] GpuReport report() const {
@@ -50,18 +73,45 @@ class GpuEngine final : public Engine {
   }
 
  private:
-  void add(std::size_t points, const SearchTimes& times, const FinishCounts& counts, double finish_ms) const {
+  struct Batch {
+    std::vector<QueryPoint> placed;
+    FaceLists found;
+  };
+  struct Range {
+    std::size_t first, count;
+  };
+
+  void find(const Sites& sites, std::span<const Vec3> points, double max_distance, Batch& batch) const {
+    const sites::SitesData& data = internals(sites);
+    // Whole tiles: what fills the last one is skipped.
+    batch.placed.assign((points.size() + FaceSearch::kTile - 1) / FaceSearch::kTile * FaceSearch::kTile,
+                        {{}, -1});
+    place_points(data, points, max_distance, batch.placed);
+    SearchTimes times;
+    devices().with(options_.device,
+                   [&](FaceSearch& search, double) { search.find(data, batch.placed, batch.found, times); });
     const std::lock_guard lock(mutex_);
-    report_.points += points;
+    report_.points += points.size();
+    report_.dispatches += times.dispatches;
+    report_.upload_ms += times.upload_ms;
+    report_.search_ms += times.search_ms;
+  }
+
+  void finish(const Sites& sites, std::span<const Vec3> points, Range range, double max_distance,
+              const Batch& batch, const sites::ClosestSink& sink) const {
+    const auto part = [&](const auto& all) { return std::span(all).subspan(range.first, range.count); };
+    Stopwatch watch;
+    const FinishCounts counts = gpu::finish(
+        internals(sites), part(points), part(batch.placed), batch.found, range.first, max_distance,
+        [&](std::size_t first, const sites::ClosestPacket& closest) { sink(range.first + first, closest); });
+    const double ms = watch.lap();
+    const std::lock_guard lock(mutex_);
     report_.nodes += counts.nodes;
     report_.tests += counts.tests;
     report_.candidates += counts.candidates;
     report_.incomplete += counts.incomplete;
-    report_.dispatches += times.dispatches;
-    report_.alone += times.alone;
-    report_.upload_ms += times.upload_ms;
-    report_.search_ms += times.search_ms;
-    report_.finish_ms += finish_ms;
+    report_.alone += counts.alone;
+    report_.finish_ms += ms;
   }
 
   const GpuOptions options_;

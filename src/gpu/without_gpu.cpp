@@ -25,4 +25,37 @@ std::optional<GpuReport> gpu_report(const Engine&) {
   return std::nullopt;
 }
 
+struct GpuMap::Impl {};
+
+GpuMap::GpuMap(const Surface&, const Sites&, const GpuOptions&) {
+  refuse();
+}
+GpuMap::~GpuMap() = default;
+GpuMap::GpuMap(GpuMap&&) noexcept = default;
+GpuMap& GpuMap::operator=(GpuMap&&) noexcept = default;
+
+void GpuMap::compute(const Surface&, const Sites&) {
+  refuse();
+}
+
+void GpuMap::compute(std::span<const Vec3>, const Sites&) {
+  refuse();
+}
+
+std::size_t GpuMap::samples() const {
+  refuse();
+}
+
+double GpuMap::error(double) const {
+  refuse();
+}
+
+GpuMapStatistics GpuMap::statistics(double) const {
+  refuse();
+}
+
+std::vector<float> GpuMap::distances() const {
+  refuse();
+}
+
 }  // namespace sdm

@@ -1,14 +1,19 @@
 // Every texel of every map, with every set of vector instructions of the machine, against CGAL's AABB
 // tree.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+#include <sdm/gpu.h>
 #include <sdm/sdm.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "geometry/vec.h"
 #include "support/engines.h"
+#include "support/error_of.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
@@ -18,6 +23,8 @@
 
 namespace sdm {
 namespace {
+
+using ::testing::HasSubstr;
 
 struct Scene {
   const char *o1, *steps1, *o2, *steps2;
@@ -54,6 +61,36 @@ const Scene kScenes[] = {
     {"corner_tris_with_hole.off", "fit", "cross.off", "fit,scale:0.001", 128},
 };
 
+// The map on the device: within its error, or refused where a sample is too far away.
+void expect_map_on_device(const Surface& surface, const Sites& sites, std::span<const double> expected) {
+  const Box o2 = bounds(sites.mesh());
+  const double size = norm(o2.upper - o2.lower);
+  if (*std::ranges::max_element(expected) > 20 * size) {
+    EXPECT_THAT(test::error_of([&] { return GpuMap(surface, sites); }), HasSubstr("too far"));
+    return;
+  }
+  const GpuMap map(surface, sites);
+  const std::vector<float> found = map.distances();
+  ASSERT_EQ(found.size(), expected.size());
+  std::size_t wrong = 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    wrong += std::abs(found[i] - expected[i]) <= map.error(found[i]) ? 0 : 1;
+    sum += expected[i];
+  }
+  EXPECT_EQ(wrong, 0u);
+  const double tolerance = expected[expected.size() / 2];
+  const auto within = static_cast<std::uint64_t>(
+      std::ranges::count_if(expected, [&](double distance) { return distance <= tolerance; }));
+  const GpuMapStatistics all = map.statistics(tolerance);
+  EXPECT_EQ(all.samples, expected.size());
+  EXPECT_NEAR(all.mean, sum / static_cast<double>(expected.size()), all.error);
+  EXPECT_NEAR(all.largest, *std::ranges::max_element(expected), all.error);
+  EXPECT_NEAR(all.smallest, *std::ranges::min_element(expected), all.error);
+  EXPECT_LE(all.within, within);
+  EXPECT_LE(all.beyond, expected.size() - within);
+}
+
 void expect_agreement(const Mesh& o1, const Mesh& o2, const AtlasOptions& atlas) {
   const Surface surface(o1, atlas);
   const Sites sites(o2);
@@ -78,6 +115,7 @@ void expect_agreement(const Mesh& o1, const Mesh& o2, const AtlasOptions& atlas)
     SCOPED_TRACE(engine);
     test::expect_closest_points(sites, points, closest_points(sites, points, {.engine = make_engine(engine)}),
                                 expected, tolerance);
+    if (engine == "gpu") expect_map_on_device(surface, sites, expected);
   }
 }
 

@@ -8,12 +8,14 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <span>
 #include <thread>
 #include <vector>
 
 #include <sdm/gpu.h>
 #include "geometry/vec.h"
 #include "gpu/face_search.h"
+#include "gpu/finish.h"
 #include "support/degenerate.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
@@ -153,14 +155,74 @@ TEST(GpuEngine, UnknownDevice) {
               HasSubstr("no device 'no such device'"));
 }
 
+// A device that permits less memory than O2 takes has it in parts.
+TEST(GpuEngine, BuffersBeyondTheLimitAreDivided) {
+  const Sites sites(test::load("armadillo.off", "fit"));
+  const sites::SitesData& o2 = internals(sites);
+  std::mt19937 random(1);
+  std::vector<Vec3> points = queries_for(sites.mesh(), 64 * gpu::FaceSearch::kTile, random);
+  const std::vector<ClosestPoint> expected =
+      closest_points(sites, points, {.engine = make_engine("reference")});
+  std::vector<gpu::QueryPoint> placed(points.size());
+  gpu::place_points(o2, points, kInfinity, placed);
+  for (const std::size_t bytes : {200'000u, 1'500'000u, 100'000'000u}) {
+    gpu::FaceSearch search("");
+    search.device().permit(bytes);
+    gpu::FaceLists found;
+    gpu::SearchTimes times;
+    search.find(o2, placed, found, times);
+    const auto least = sites.mesh().triangles.size() * 80 / bytes + 1;
+    EXPECT_GE(found.first.size(), least);
+    EXPECT_EQ(found.first.size() == 1, least == 1);
+    std::size_t wrong = 0;
+    gpu::finish(
+        o2, points, placed, found, 0, kInfinity, [&](std::size_t first, const sites::ClosestPacket& closest) {
+          for (std::size_t i = 0; i < closest.count; ++i) {
+            const ClosestPoint& c = expected[first + i];
+            wrong +=
+                closest.distance[i] != c.distance || closest.type[i] != c.type || closest.site[i] != c.site;
+          }
+        });
+    EXPECT_EQ(wrong, 0u) << bytes;
+
+    // Samples at vertices, of which each is one of the points.
+    gpu::Device& device = search.device();
+    std::vector<gpu::Sample> samples;
+    std::vector<float> positions;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      samples.push_back({{i, i, i}, {}});
+      for (const float x : placed[i].position) positions.push_back(x);
+    }
+    using Use = gpu::Device::Use;
+    const std::size_t size = points.size() * sizeof(float);
+    const gpu::Buffer distances = device.buffer(size, Use::write, ""),
+                      read_back = device.buffer(size, Use::read_back, ""),
+                      samples_there = device.buffer(samples.size() * sizeof(gpu::Sample), Use::read, ""),
+                      positions_there = device.buffer(3 * size, Use::read, "");
+    device.write(samples_there, std::as_bytes(std::span(samples)));
+    device.write(positions_there, std::as_bytes(std::span(positions)));
+    search.measure(o2, {samples_there, positions_there}, points.size(), distances);
+    std::vector<float> on_device(points.size());
+    device.run({}, distances, read_back, std::as_writable_bytes(std::span(on_device)));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (placed[i].within < 0) continue;
+      const auto& [x, y, z] = placed[i].position;
+      const gpu::DistanceError error =
+          gpu::distance_error(o2, std::max({std::abs(x), std::abs(y), std::abs(z)}));
+      const double distance = expected[i].distance * o2.frame.scale;
+      ASSERT_NEAR(on_device[i], distance, error.each * distance + error.constant) << i;
+    }
+  }
+}
+
 TEST(GpuEngine, LostDevice) {
   const Sites sites(test::load("cow.off", "fit"));
   gpu::FaceSearch search("");
   const std::vector<gpu::QueryPoint> points(gpu::FaceSearch::kTile, {{0, 0, 0}, 1e18f});
-  std::vector<gpu::FaceList> found(points.size());
+  gpu::FaceLists found;
   gpu::SearchTimes times;
   search.find(internals(sites), points, found, times);
-  EXPECT_GT(found[0].count(), 0u);
+  EXPECT_GT(found.of(0, 0).count(), 0u);
   search.device().lose();
   EXPECT_THAT(test::error_of([&] { search.find(internals(sites), points, found, times); }),
               HasSubstr("lost"));

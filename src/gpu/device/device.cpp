@@ -203,12 +203,12 @@ Pipeline Device::pipeline(std::string_view wgsl) {
   return pipeline;
 }
 
-BindGroup Device::bind(const Pipeline& pipeline, std::span<const Buffer* const> buffers) {
+BindGroup Device::bind(const Pipeline& pipeline, std::span<const Binding> bindings) {
   const BindGroupLayout layout(wgpu().ComputePipelineGetBindGroupLayout(pipeline.get(), 0));
-  std::vector<WGPUBindGroupEntry> entries(buffers.size());
-  for (std::size_t i = 0; i < buffers.size(); ++i) {
-    entries[i].binding = static_cast<std::uint32_t>(i);
-    entries[i].buffer = buffers[i]->get();
+  std::vector<WGPUBindGroupEntry> entries(bindings.size());
+  for (std::size_t i = 0; i < bindings.size(); ++i) {
+    entries[i].binding = bindings[i].number;
+    entries[i].buffer = bindings[i].buffer->get();
     entries[i].size = WGPU_WHOLE_SIZE;
   }
   WGPUBindGroupDescriptor descriptor{};
@@ -220,20 +220,38 @@ BindGroup Device::bind(const Pipeline& pipeline, std::span<const Buffer* const> 
   return group;
 }
 
-void Device::run(const Pipeline& pipeline, const BindGroup& group, std::uint32_t workgroups,
-                 const Buffer& result, const Buffer& read_back, std::span<std::byte> to) {
-  const CommandEncoder encoder(wgpu().DeviceCreateCommandEncoder(device_.get(), nullptr));
+CommandEncoder Device::record(std::span<const Step> steps) {
+  CommandEncoder encoder(wgpu().DeviceCreateCommandEncoder(device_.get(), nullptr));
+  if (steps.empty()) return encoder;
   const ComputePass pass(wgpu().CommandEncoderBeginComputePass(encoder.get(), nullptr));
-  wgpu().ComputePassEncoderSetPipeline(pass.get(), pipeline.get());
-  wgpu().ComputePassEncoderSetBindGroup(pass.get(), 0, group.get(), 0, nullptr);
-  wgpu().ComputePassEncoderDispatchWorkgroups(pass.get(), workgroups, 1, 1);
+  for (const Step& step : steps) {
+    wgpu().ComputePassEncoderSetPipeline(pass.get(), step.pipeline->get());
+    wgpu().ComputePassEncoderSetBindGroup(pass.get(), 0, step.group->get(), 0, nullptr);
+    wgpu().ComputePassEncoderDispatchWorkgroups(pass.get(), step.workgroups, 1, 1);
+  }
   wgpu().ComputePassEncoderEnd(pass.get());
-  wgpu().CommandEncoderCopyBufferToBuffer(encoder.get(), result.get(), 0, read_back.get(), 0, to.size());
+  return encoder;
+}
+
+void Device::submit(const CommandEncoder& encoder) {
   const CommandBuffer commands(wgpu().CommandEncoderFinish(encoder.get(), nullptr));
   check("it was given work");
   const WGPUCommandBuffer list[] = {commands.get()};
   wgpu().QueueSubmit(queue_.get(), 1, list);
   check("it was given work");
+}
+
+void Device::run(std::span<const Step> steps) {
+  submit(record(steps));
+  wgpu().DevicePoll(device_.get(), true, nullptr);
+  check("it computed");
+}
+
+void Device::run(std::span<const Step> steps, const Buffer& result, const Buffer& read_back,
+                 std::span<std::byte> to) {
+  const CommandEncoder encoder = record(steps);
+  wgpu().CommandEncoderCopyBufferToBuffer(encoder.get(), result.get(), 0, read_back.get(), 0, to.size());
+  submit(encoder);
 
   struct Answer {
     bool done = false;

@@ -40,19 +40,34 @@ class Device {
 
   /// The entry point "main" of a source in WGSL.
   [[nodiscard]] Pipeline pipeline(std::string_view wgsl);
-  /// Binds buffers to 0, 1, … of group 0.
-  [[nodiscard]] BindGroup bind(const Pipeline& pipeline, std::span<const Buffer* const> buffers);
+  struct Binding {
+    std::uint32_t number;
+    const Buffer* buffer;
+  };
+  /// Binds buffers in group 0: those that the pipeline uses.
+  [[nodiscard]] BindGroup bind(const Pipeline& pipeline, std::span<const Binding> bindings);
 
-  /// Runs so many workgroups, and waits for the first bytes of `result`, which pass through `read_back`.
-  void run(const Pipeline& pipeline, const BindGroup& group, std::uint32_t workgroups, const Buffer& result,
-           const Buffer& read_back, std::span<std::byte> to);
+  struct Step {
+    const Pipeline* pipeline;
+    const BindGroup* group;
+    std::uint32_t workgroups;
+  };
+  /// Runs the steps, each of which sees what those before it have written, and waits for them.
+  void run(std::span<const Step> steps);
+  /// The same, and waits for the first bytes of `result`, which pass through `read_back`.
+  void run(std::span<const Step> steps, const Buffer& result, const Buffer& read_back,
+           std::span<std::byte> to);
 
   /// What a driver does that takes a device away, for tests.
   void lose();
+  /// What a driver does that permits smaller buffers, for tests.
+  void permit(std::size_t bytes) { most_bytes_ = bytes; }
 
  private:
   struct Faults;
 
+  [[nodiscard]] CommandEncoder record(std::span<const Step> steps);
+  void submit(const CommandEncoder& encoder);
   /// Throws sdm::Error if the device is lost or has reported an error.
   void check(std::string_view step) const;
 
