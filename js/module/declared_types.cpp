@@ -49,6 +49,7 @@ const std::vector<std::pair<std::string, Words>>& enumerations() {
       {"DistanceKind", words_of<DistanceKind>()},
       {"Verdict", words_of<Verdict>()},
       {"VerdictReason", words_of<VerdictReason>()},
+      {"DecisionRule", words_of<DecisionRule>()},
       {"DoubtReason", words_of<DoubtReason>()}};
   return all;
 }

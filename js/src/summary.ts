@@ -90,8 +90,11 @@ export interface SummaryTolerance {
   upper: number | null;
   verdict: declared.Verdict;
   reason: declared.VerdictReason;
+  decision_rule: declared.DecisionRule;
   /** The verdict as a clause. */
   text: string;
+  /** What follows from it for the part, and which options would measure more; empty where nothing does. */
+  next: { part: string; measurement: string };
   exceeded_area_fraction: number;
   area_fractions: AreaFractions;
   within: boolean;
@@ -133,6 +136,7 @@ export interface SummaryEvidence {
   unmatched: boolean;
   samples_only: boolean;
   guard: number;
+  uncertainty: number;
   thin_walls: number | null;
 }
 

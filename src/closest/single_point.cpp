@@ -27,25 +27,45 @@ struct AllFaces {
   static constexpr bool kAll = true;
   // Whether a face does not count for a point.
   bool excludes(size_t, uint32_t) const { return false; }
-  // The lanes that count for a point.
-  BlockMask kept(size_t, const sites::FaceFrames&, size_t, BlockMask mask) const { return mask; }
   // The children of a node below which there are faces that count.
   uint32_t open_children(uint32_t) const { return ~0u; }
+
+  // What counts of a leaf.
+  struct Leaf {
+    Leaf(const AllFaces&, const sites::FaceFrames&) {}
+    // The points for which any face counts, as bits.
+    uint32_t points() const { return ~0u; }
+    // The lanes from this one on that count for a point.
+    BlockMask kept(size_t, size_t, BlockMask mask) const { return mask; }
+  };
 };
 struct NotExcluded {
   static constexpr bool kAll = false;
   const ExcludedFaces& excluded;
 
   bool excludes(size_t point, uint32_t face) const { return excluded.excludes(point, face); }
-  HWY_INLINE BlockMask kept(size_t point, const sites::FaceFrames& faces, size_t i, BlockMask mask) const {
-    const Block d;
-    uint32_t bits = bits_of(d, mask);
-    for (uint32_t left = bits; left != 0; left &= left - 1)
-      if (excludes(point, faces.face[i + static_cast<size_t>(std::countr_zero(left))])) bits ^= left & -left;
-    const uint8_t bytes[8] = {static_cast<uint8_t>(bits)};
-    return hn::LoadMaskBits(d, bytes);
-  }
   uint32_t open_children(uint32_t node) const { return ~uint32_t{excluded.closed[node]}; }
+
+  class Leaf {
+   public:
+    Leaf(const NotExcluded& faces, const sites::FaceFrames& frames) {
+      for (size_t lane = 0; lane < sites::FaceFrames::kWidth; ++lane) {
+        const uint32_t face = frames.face[lane];
+        by_[lane] = face == kNone ? ~0u : faces.excluded.by[faces.excluded.group_of[face]];
+        all_ &= by_[lane];
+      }
+    }
+    uint32_t points() const { return ~all_; }
+    HWY_INLINE BlockMask kept(size_t point, size_t i, BlockMask mask) const {
+      const hn::RebindToUnsigned<Block> d;
+      const auto excluded = hn::TestBit(hn::Load(d, by_ + i), hn::Set(d, 1u << point));
+      return hn::AndNot(hn::RebindMask(Block(), excluded), mask);
+    }
+
+   private:
+    alignas(32) uint32_t by_[sites::FaceFrames::kWidth];  // of each lane: the points that exclude it
+    uint32_t all_ = ~0u;                                  // those that exclude all
+  };
 };
 
 // Searches for one point at a time; the policy of its search of the tree, nearest box first.
@@ -78,9 +98,10 @@ class PointSearch {
   }
   bool leaf(const tree::OpenNode& open) {
     const sites::FaceFrames& faces = frames_[open.leaf_number()];
+    const typename Faces::Leaf counted(faces_, faces);
     compare_faces(
         faces, point_, error_, squared_limit_,
-        [&](size_t i, BlockMask mask) HWY_ATTR { return faces_.kept(number_, faces, i, mask); },
+        [&](size_t i, BlockMask mask) HWY_ATTR { return counted.kept(number_, i, mask); },
         [&](float squared, size_t lane) {
           m_.candidates.push_back({squared, faces.face[lane], open.leaf_number(), 0});
         });
@@ -207,15 +228,17 @@ class PacketSearch {
   }
   void leaf(const Open& open) {
     const sites::FaceFrames& faces = frames_[open.leaf_number()];
+    const typename Faces::Leaf counted(faces_, faces);
+    const uint32_t compared = near_ & counted.points();
     work_.leaves += 1;
-    work_.pairs += static_cast<size_t>(std::popcount(near_));
+    work_.pairs += static_cast<size_t>(std::popcount(compared));
     bool reduced = false;
-    for (uint32_t near = near_; near != 0; near &= near - 1) {
+    for (uint32_t near = compared; near != 0; near &= near - 1) {
       const auto i = static_cast<uint32_t>(std::countr_zero(near));
       const float point[3] = {point_[0][i], point_[1][i], point_[2][i]};
       reduced |= compare_faces(
           faces, point, error_, squared_limit_[i],
-          [&](size_t first, BlockMask mask) HWY_ATTR { return faces_.kept(i, faces, first, mask); },
+          [&](size_t first, BlockMask mask) HWY_ATTR { return counted.kept(i, first, mask); },
           [&](float squared, size_t lane) {
             m_.candidates.push_back({squared, faces.face[lane], open.leaf_number(), i});
           });

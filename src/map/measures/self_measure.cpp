@@ -20,7 +20,8 @@ struct SelfSearch::Scratch {
   std::vector<tree::OpenNode> stack;
   // All 0 between searches.
   std::vector<std::uint16_t> excluded;  ///< of each patch: a bit for each face of the packet that excludes it
-  std::vector<std::uint8_t> taken;      ///< of each leaf: the number of its faces that all of these exclude
+  std::vector<std::uint8_t> shut;       ///< of each patch: 1 if all of these exclude it, and the tree is told
+  std::vector<std::uint8_t> taken;      ///< of each leaf: the number of its faces in such patches
   std::vector<std::uint8_t> closed;  ///< of each wide node: a bit for each child with nothing but such faces
 
   static Scratch& of_this_thread() {
@@ -109,12 +110,13 @@ SelfSearch::SelfSearch(const sites::SitesData& sites, const Exclusion& exclusion
     if (marks.size() < size) marks.resize(size);
   };
   at_least(scratch_.excluded, exclusion.patches());
+  at_least(scratch_.shut, exclusion.patches());
   at_least(scratch_.taken, patches.place_of_leaf.size());
   at_least(scratch_.closed, patches.place_of_node.size());
 }
 
 SelfSearch::~SelfSearch() {
-  admit_patches();
+  exclude({});
 }
 
 void SelfSearch::start_from(std::span<const std::uint32_t> faces) {
@@ -125,37 +127,38 @@ void SelfSearch::start_from(std::span<const std::uint32_t> faces) {
     rows[i] = exclusion_.excluded_by(exclusion_.patch_of(faces[std::min(i, faces.size() - 1)]));
     same = same && rows[i].data() == rows_[i].data();
   }
-  if (same) return;
-  admit_patches();
-  rows_ = rows;
-  exclude_patches();
+  if (!same) exclude(rows);
 }
 
-void SelfSearch::exclude_patches() {
-  for_each_row(rows_, [&](std::span<const std::uint32_t> row, std::uint16_t bits) {
-    for (const std::uint32_t patch : row) scratch_.excluded[patch] |= bits;
-  });
-  for (const std::uint32_t patch : rows_[0]) {
-    if (scratch_.excluded[patch] != kAllOfPacket) continue;
-    for (const std::uint32_t place : patches_.whole.of(patch)) close(place);
-    for (const std::uint32_t leaf : patches_.part.of(patch))
-      if (++scratch_.taken[leaf] == sites_.regions.leaves[leaf + 1] - sites_.regions.leaves[leaf])
-        close(patches_.place_of_leaf[leaf]);
-  }
-}
-
-void SelfSearch::admit_patches() {
-  for (const std::uint32_t patch : rows_[0]) {
-    if (scratch_.excluded[patch] != kAllOfPacket) continue;
-    for (const std::uint32_t place : patches_.whole.of(patch)) open(place);
-    for (const std::uint32_t leaf : patches_.part.of(patch)) {
-      scratch_.taken[leaf] = 0;
-      open(patches_.place_of_leaf[leaf]);
-    }
-  }
+// Faces that are near each other exclude nearly the same patches: only the others change the tree.
+void SelfSearch::exclude(const Rows& rows) {
   for_each_row(rows_, [&](std::span<const std::uint32_t> row, std::uint16_t) {
     for (const std::uint32_t patch : row) scratch_.excluded[patch] = 0;
   });
+  for_each_row(rows, [&](std::span<const std::uint32_t> row, std::uint16_t bits) {
+    for (const std::uint32_t patch : row) scratch_.excluded[patch] |= bits;
+  });
+  for (const std::uint32_t patch : rows_[0])
+    if (scratch_.shut[patch] != 0 && scratch_.excluded[patch] != kAllOfPacket) admit_patch(patch);
+  for (const std::uint32_t patch : rows[0])
+    if (scratch_.shut[patch] == 0 && scratch_.excluded[patch] == kAllOfPacket) exclude_patch(patch);
+  rows_ = rows;
+}
+
+void SelfSearch::exclude_patch(std::uint32_t patch) {
+  scratch_.shut[patch] = 1;
+  for (const std::uint32_t place : patches_.whole.of(patch)) close(place);
+  for (const std::uint32_t leaf : patches_.part.of(patch))
+    if (++scratch_.taken[leaf] == sites_.regions.leaves[leaf + 1] - sites_.regions.leaves[leaf])
+      close(patches_.place_of_leaf[leaf]);
+}
+
+void SelfSearch::admit_patch(std::uint32_t patch) {
+  scratch_.shut[patch] = 0;
+  for (const std::uint32_t place : patches_.whole.of(patch)) open(place);
+  for (const std::uint32_t leaf : patches_.part.of(patch))
+    if (scratch_.taken[leaf]-- == sites_.regions.leaves[leaf + 1] - sites_.regions.leaves[leaf])
+      open(patches_.place_of_leaf[leaf]);
 }
 
 // Closes a child, and the nodes above it that have no other open child.
@@ -163,19 +166,24 @@ void SelfSearch::close(std::uint32_t place) {
   while (place != kNone) {
     const std::uint32_t node = place / WideTree::kWidth;
     scratch_.closed[node] |= static_cast<std::uint8_t>(1u << place % WideTree::kWidth);
-    if (scratch_.closed[node] != (1u << sites_.wide.nodes[node].count) - 1) return;
+    if (!all_closed(node)) return;
     place = patches_.place_of_node[node];
   }
 }
 
-// Opens all children of the node and of those above it, up to one without a closed child: it has none above
-// it on its account.
+// Opens a child, and the nodes above it that had no open child.
 void SelfSearch::open(std::uint32_t place) {
   while (place != kNone) {
     const std::uint32_t node = place / WideTree::kWidth;
-    if (std::exchange(scratch_.closed[node], 0) == 0) return;
+    const bool closed = all_closed(node);
+    scratch_.closed[node] &= static_cast<std::uint8_t>(~(1u << place % WideTree::kWidth));
+    if (!closed) return;
     place = patches_.place_of_node[node];
   }
+}
+
+bool SelfSearch::all_closed(std::uint32_t node) const {
+  return scratch_.closed[node] == (1u << sites_.wide.nodes[node].count) - 1;
 }
 
 // Calls visit(face) for the faces in leaves whose boxes are within `limit` of `box`; `limit` may shrink

@@ -58,8 +58,9 @@ class SelfSearch {
   SelfSearch(const SelfSearch&) = delete;
   SelfSearch& operator=(const SelfSearch&) = delete;
 
-  /// Sets the faces whose neighbourhoods are excluded, 1 to kPacket. Cost: those of these neighbourhoods, and
-  /// of the tree above what all of them exclude, or nothing if the faces before excluded the same.
+  /// Sets the faces whose neighbourhoods are excluded, 1 to kPacket. Cost: O(the patches of these and of the
+  /// neighbourhoods before), and that of the tree above the patches that only either all of these faces or
+  /// all of those before exclude; nothing if the faces before excluded the same.
   void start_from(std::span<const std::uint32_t> faces);
 
   /// The closest points to points on these faces, within max_distance; type none where there is none. Costs
@@ -76,10 +77,12 @@ class SelfSearch {
   /// packet.
   using Rows = std::array<std::span<const std::uint32_t>, kPacket>;
 
-  void exclude_patches();
-  void admit_patches();
+  void exclude(const Rows& rows);
+  void exclude_patch(std::uint32_t patch);
+  void admit_patch(std::uint32_t patch);
   void close(std::uint32_t place);
   void open(std::uint32_t place);
+  [[nodiscard]] bool all_closed(std::uint32_t node) const;
   template <class Visit>
   void visit_near(const Box& box, double& limit, const Visit& visit) const;
 
