@@ -28,7 +28,9 @@ struct Simplified {
   /// triangles is asked for, if they are to be kept (SimplifyOptions::keep_vertices), if the input has
   /// texture coordinates or over 400,000 triangles, or if over 5 % of its vertices are not on a manifold;
   /// otherwise they are placed freely. Texture coordinates are those of the vertices that are left, seams
-  /// stay seams.
+  /// stay seams. At a pole, a vertex at which three faces or more have texture coordinates of their own, as
+  /// on spheres by latitude and longitude, a face has those of one of them. A face that the input does not
+  /// have has an area in the texture, also rounded to float, and winds there as the others of its chart.
   Mesh mesh;
   /// The symmetric Hausdorff distance of the mesh and the input: no point of either one is farther than
   /// `upper` from the other one, and a point of one is `lower` from it. `value` is `lower`.
@@ -37,7 +39,7 @@ struct Simplified {
   /// placed freely; otherwise meshoptimizer's own error and, where it simplified in steps, their sum.
   double estimate = 0;
   /// No more triangles could go, although more were to: the borders, seams or non-manifold edges that are
-  /// left permit no collapse, or none keeps the deviation.
+  /// left permit no collapse, faces would have no area in the texture, or none keeps the deviation.
   bool stopped = false;
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/vec.h"
+#include "simplify/uv_faces.h"
 
 namespace sdm::simplify {
 namespace {
@@ -91,6 +92,8 @@ Wedges wedges_of(const Mesh& mesh) {
     for (std::uint32_t v = 0; v < wedges.vertex.size(); ++v) wedges.vertex[v] = v;
   } else {
     divide_by_uvs(mesh, wedges, faces);
+    wedges.poles = merge_poles(wedges.triangles, wedges.vertex, wedges.uvs);
+    find_turns(wedges);
   }
   const Box box = bounds(mesh);
   const Vec3 middle = centre(box);
@@ -101,6 +104,17 @@ Wedges wedges_of(const Mesh& mesh) {
     wedges.points.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
   }
   return wedges;
+}
+
+std::array<Vec2, 3> uvs_of(const Wedges& wedges, const Triangle& t) {
+  std::array<Vec2, 3> uvs{wedges.uvs[t[0]], wedges.uvs[t[1]], wedges.uvs[t[2]]};
+  if (wedges.poles.empty()) return uvs;
+  for (int k = 0; k < 3; ++k)
+    if (const auto pole = wedges.poles.find(t[k]); pole != wedges.poles.end()) {
+      const int a = (k + 1) % 3, b = (k + 2) % 3;
+      uvs[k] = uv_at_pole(pole->second, {t[a], t[b]}, {uvs[a], uvs[b]});
+    }
+  return uvs;
 }
 
 Mesh mesh_of(const Wedges& wedges, std::span<const Triangle> triangles, bool single_precision) {
@@ -126,8 +140,7 @@ Mesh mesh_of(const Wedges& wedges, std::span<const Triangle> triangles, bool sin
         (same(of_mesh[0], of_mesh[1]) || same(of_mesh[1], of_mesh[2]) || same(of_mesh[2], of_mesh[0])))
       continue;
     mesh.triangles.push_back(of_mesh);
-    if (!wedges.uvs.empty())
-      mesh.corner_uvs.push_back({wedges.uvs[t[0]], wedges.uvs[t[1]], wedges.uvs[t[2]]});
+    if (!wedges.uvs.empty()) mesh.corner_uvs.push_back(uvs_of(wedges, t));
   }
   return mesh;
 }

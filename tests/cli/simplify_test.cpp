@@ -87,6 +87,24 @@ TEST_F(SimplifyRun, WritesLevelsOfDetailAndTheReport) {
   EXPECT_THAT(done.out, HasSubstr(" mm, of the collapses, no bound"));
 }
 
+// What simplify makes, bake takes: with the texture coordinates of the file, and without a note on them.
+TEST_F(SimplifyRun, BakeUsesTheTextureCoordinatesOfTheResult) {
+  const Mesh round = with_own_uvs(sphere(5), 1024);
+  input = folder / "round.ply";
+  write_ply(input, round);
+  for (const char* name : {"low.glb", "low.obj", "low.ply"})
+    for (const char* share : {"20%", "5%"}) {
+      out = folder / name;
+      ASSERT_EQ(run({"--triangles", share}).code, 0);
+      const Outcome baked = run_sdm({"bake", input, out, "-o", folder / "baked", "--channels", "position",
+                                     "--resolution", "256", "--no-page", "--json"});
+      ASSERT_EQ(baked.code, 0) << baked.err;
+      const Json json = Json::parse(baked.out);
+      EXPECT_EQ(json["atlas"]["kind"], "uv") << name << ' ' << share << json["notes"];
+      EXPECT_EQ(json["notes"], Json::array()) << name << ' ' << share;
+    }
+}
+
 TEST_F(SimplifyRun, SaysThatNothingKeepsTheLimit) {
   const Outcome done = run({"--max-deviation", "1e-9"});
   EXPECT_EQ(done.code, 0) << done.err;
