@@ -25,7 +25,9 @@ CollapsedMesh after_collapses(std::span<const Vec3> positions, std::span<const T
   for (std::uint32_t f = 0; f < triangles.size(); ++f)
     if (mesh.is_left(f))
       for (const std::uint32_t v : mesh.triangle(f)) used[v] = true;
-  CollapsedMesh result{mesh.mesh(), {}};
+  CollapsedMesh result{mesh.mesh(), {}, {}};
+  for (std::uint32_t f = 0; f < triangles.size(); ++f)
+    if (mesh.is_left(f)) result.faces.push_back(f);
   for (std::size_t v = 0; v < used.size(); ++v)
     if (used[v]) result.last.push_back(last[v]);
   return result;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "geometry/vec.h"
+#include "simplify/wedges.h"
 
 namespace sdm::simplify {
 namespace {
@@ -62,53 +63,56 @@ Classes fans(const std::vector<Triangle>& triangles, const std::vector<std::uint
 }
 
 // Removes wedges that no triangle has; their order stays. Returns the new number of each.
-std::vector<std::uint32_t> remove_unused(std::vector<Triangle>& triangles, std::vector<std::uint32_t>& vertex,
-                                         std::vector<Vec2>& uvs) {
-  std::vector<std::uint32_t> number(vertex.size(), kNone);
-  for (const Triangle& t : triangles)
+std::vector<std::uint32_t> remove_unused(Wedges& wedges) {
+  std::vector<std::uint32_t> number(wedges.vertex.size(), kNone);
+  for (const Triangle& t : wedges.triangles)
     for (const std::uint32_t w : t) number[w] = 0;
   std::uint32_t next = 0;
+  const auto move = [&](auto& array, std::size_t from) {
+    if (!array.empty()) array[next] = array[from];
+  };
   for (std::size_t w = 0; w < number.size(); ++w) {
     if (number[w] == kNone) continue;
-    vertex[next] = vertex[w];
-    uvs[next] = uvs[w];
+    move(wedges.vertex, w);
+    move(wedges.uvs, w);
+    move(wedges.regions, w);
     number[w] = next++;
   }
-  vertex.resize(next);
-  uvs.resize(next);
-  for (Triangle& t : triangles)
+  wedges.vertex.resize(next);
+  wedges.uvs.resize(next);
+  if (!wedges.regions.empty()) wedges.regions.resize(next);
+  for (Triangle& t : wedges.triangles)
     for (std::uint32_t& w : t) w = number[w];
   return number;
 }
 
 }  // namespace
 
-Poles merge_poles(std::vector<Triangle>& triangles, std::vector<std::uint32_t>& vertex,
-                  std::vector<Vec2>& uvs) {
-  std::vector<std::uint32_t> wedges(vertex.empty() ? 0 : 1 + *std::ranges::max_element(vertex));
-  for (const std::uint32_t v : vertex) ++wedges[v];
-  std::vector<bool> is_tip(wedges.size());
-  for (std::size_t v = 0; v < wedges.size(); ++v) is_tip[v] = wedges[v] >= kFewest;
-  if (std::ranges::count(is_tip, true) == 0) return {};
-  Classes classes = fans(triangles, vertex, is_tip);
-  Poles found;
-  std::vector<std::uint32_t> pole(vertex.size(), kNone);
+void merge_poles(Wedges& wedges) {
+  std::vector<std::uint32_t> count(wedges.positions.size());
+  for (const std::uint32_t v : wedges.vertex) ++count[v];
+  std::vector<bool> is_tip(count.size());
+  for (std::size_t v = 0; v < count.size(); ++v) is_tip[v] = count[v] >= kFewest;
+  if (std::ranges::count(is_tip, true) == 0) return;
+  Classes classes = fans(wedges.triangles, wedges.vertex, is_tip);
+  std::vector<std::uint32_t> pole(wedges.vertex.size(), kNone);
   for (std::uint32_t w = 0; w < pole.size(); ++w)
     if (classes.size(w) >= kFewest) pole[w] = classes.find(w);
-  for (const Triangle& t : triangles)
+  Poles found;
+  for (const Triangle& t : wedges.triangles)
     for (int k = 0; k < 3; ++k)
-      if (pole[t[k]] != kNone) found[pole[t[k]]].push_back({{t[(k + 1) % 3], t[(k + 2) % 3]}, uvs[t[k]]});
+      if (pole[t[k]] != kNone)
+        found[pole[t[k]]].push_back({{t[(k + 1) % 3], t[(k + 2) % 3]}, wedges.uvs[t[k]]});
+  if (found.empty()) return;
   const auto merged = [&](std::uint32_t w) { return pole[w] == kNone ? w : pole[w]; };
-  for (Triangle& t : triangles)
+  for (Triangle& t : wedges.triangles)
     for (std::uint32_t& w : t) w = merged(w);
-  const std::vector<std::uint32_t> number = remove_unused(triangles, vertex, uvs);
-  Poles poles;
+  const std::vector<std::uint32_t> number = remove_unused(wedges);
   for (auto& [wedge, corners] : found) {
     for (PoleCorner& corner : corners)
       for (std::uint32_t& w : corner.next) w = number[merged(w)];
-    poles[number[wedge]] = std::move(corners);
+    wedges.poles[number[wedge]] = std::move(corners);
   }
-  return poles;
 }
 
 Vec2 uv_at_pole(const std::vector<PoleCorner>& corners, const std::array<std::uint32_t, 2>& next,

@@ -6,10 +6,11 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <span>
 #include <vector>
 
 namespace sdm::simplify {
+
+struct Wedges;
 
 /// What the corners of a face at a pole have: its texture coordinates, and the wedges of the other two
 /// corners, in the order in which they follow.
@@ -23,10 +24,9 @@ using Poles = std::map<std::uint32_t, std::vector<PoleCorner>>;
 
 /// Makes one wedge of those of each pole: the tip of a fan of faces that share their edges there, with the
 /// same texture coordinates at the other ends, but not at the tip, as on spheres by latitude and longitude.
-/// Of three faces at least: with two, it is the last edge of a cut. Removes wedges that are no longer used
-/// from `triangles`, `vertex` and `uvs`. Cost: linear.
-[[nodiscard]] Poles merge_poles(std::vector<Triangle>& triangles, std::vector<std::uint32_t>& vertex,
-                                std::vector<Vec2>& uvs);
+/// Of three faces at least: with two, it is the last edge of a cut. Removes wedges that are no longer used.
+/// Cost: linear.
+void merge_poles(Wedges& wedges);
 
 /// The texture coordinates of a face at a pole, whose other corners are these: those that it had, or those of
 /// the corner nearest to the middle of its other side, which is between `sides`.

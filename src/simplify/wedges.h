@@ -19,6 +19,7 @@ struct Wedges {
   std::vector<std::uint32_t> vertex;  ///< the position of each wedge
   std::vector<Vec2> uvs;              ///< of each wedge but poles; empty: none
   Poles poles;
+  std::vector<std::uint32_t> regions;        ///< of each wedge, a face of the input in its region; or empty
   std::vector<std::array<float, 3>> points;  ///< of each wedge
   std::vector<Triangle> triangles;           ///< of wedges; none repeats a position
   /// Of each wedge that has texture coordinates, how the faces of its chart, which are those that wedges
@@ -28,13 +29,20 @@ struct Wedges {
   double size = 1;             ///< the diagonal of the box
 };
 
-/// `mesh` is valid. Cost: linear.
-[[nodiscard]] Wedges wedges_of(const Mesh& mesh);
+/// `mesh` is valid. `regions`: of each of its faces, a face of the input in the same region; or empty. Cost:
+/// linear.
+[[nodiscard]] Wedges wedges_of(const Mesh& mesh, std::span<const std::uint32_t> regions);
 
 /// The texture coordinates of a triangle of wedges that have some.
 [[nodiscard]] std::array<Vec2, 3> uvs_of(const Wedges& wedges, const Triangle& triangle);
 
-/// The mesh of some triangles of wedges. `single_precision`: positions are rounded to float.
-[[nodiscard]] Mesh mesh_of(const Wedges& wedges, std::span<const Triangle> triangles, bool single_precision);
+/// The mesh of some triangles of wedges, and what Simplified::source_faces is of it.
+struct MeshOfWedges {
+  Mesh mesh;
+  std::vector<std::uint32_t> source_faces;
+};
+/// `single_precision`: positions are rounded to float.
+[[nodiscard]] MeshOfWedges mesh_of(const Wedges& wedges, std::span<const Triangle> triangles,
+                                   bool single_precision);
 
 }  // namespace sdm::simplify
