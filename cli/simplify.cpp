@@ -7,6 +7,7 @@
 #include <sdm/version.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -53,8 +54,16 @@ struct SimplifyCommand : RunOptions {
   }
 };
 
+/// What a level has besides its geometry.
+struct LevelExtras {
+  std::vector<sdm::MeshAttribute> attributes;
+  std::vector<std::uint32_t> face_materials;
+  std::vector<sdm::FaceNames> names;
+};
+
 struct SimplifyOutcome : sdm::SimplifiedLevels {
   Input input;
+  std::vector<LevelExtras> extras;             ///< of the levels
   std::size_t triangles = 0;                   ///< of the input
   std::optional<std::uint64_t> max_triangles;  ///< that are asked for
   Notes notes;
@@ -72,20 +81,74 @@ std::optional<std::string> note_on_level(const SimplifyCommand& command, std::si
                        file, same,
                        number(*command.levels.max_deviation * std::ldexp(1, static_cast<int>(level))));
   return fmt::format(
-      "{} has {} triangles, more than asked for: borders, seams and non-manifold edges permit no further "
+      "{} has {} triangles, more than asked for: borders, seams, UVs and non-manifold edges permit no "
+      "further "
       "collapse, or nothing with an area would be left",
       file, simplified.mesh.triangles.size());
+}
+
+/// What files of a format keep of faces.
+struct Kept {
+  bool attributes = false, materials = false;
+  std::vector<std::string> names{};  ///< kinds
+};
+
+Kept kept_in(const fs::path& file) {
+  const std::string extension = file.extension().string();
+  if (extension.size() != 4) return {};
+  switch (std::tolower(static_cast<unsigned char>(extension[1]))) {
+    case 'o':
+      return {true, true, {"object", "group", "material"}};
+    case 'g':
+      return {true, true, {"object"}};
+    case 'p':
+      return {.attributes = true};
+    default:
+      return {};
+  }
+}
+
+/// Leaves out of the input what the format does not keep, and notes it.
+void leave_out(Input& input, const Kept& kept, const fs::path& file, Notes& notes) {
+  if (!kept.materials && !input.look.materials.empty()) {
+    notes.push_back(
+        fmt::format("{} has no materials, which {} has: .glb and .obj keep them", file.string(), input.file));
+    input.look.materials.clear();
+    input.look.face_materials.clear();
+  }
+  if (!kept.attributes) input.look.attributes.clear();
+  std::erase_if(input.names,
+                [&](const sdm::FaceNames& names) { return std::ranges::count(kept.names, names.kind) == 0; });
+}
+
+/// What the levels have of the normals, colours, materials and names of the input.
+void carry(SimplifyOutcome& outcome, const sdm::Progress& progress) {
+  const Input& input = outcome.input;
+  std::optional<sdm::Sites> sites;
+  if (!input.look.attributes.empty()) sites.emplace(input.mesh);
+  for (const sdm::Simplified& level : outcome.levels) {
+    LevelExtras& extras = outcome.extras.emplace_back();
+    if (sites)
+      extras.attributes = sdm::carried_attributes(*sites, input.look.attributes, level.mesh, progress);
+    if (level.source_faces.empty()) continue;
+    extras.names = sdm::names_of_part(input.names, level.source_faces);
+    if (!input.look.face_materials.empty())
+      for (const std::uint32_t face : level.source_faces)
+        extras.face_materials.push_back(input.look.face_materials[face]);
+  }
 }
 
 SimplifyOutcome simplify_mesh(const SimplifyCommand& command, const sdm::Progress& progress) {
   Stopwatch watch;
   SimplifyOutcome outcome;
-  outcome.input = load_input("mesh", command.mesh, "", {.tessellation = command.tessellation});
+  outcome.input =
+      load_input("mesh", command.mesh, "", {.tessellation = command.tessellation, .attributes = true});
   check_deflection(command.tessellation, {&outcome.input});
   if (command.weld) weld(outcome.input, *command.weld);
   if (command.json || !command.report.empty()) inspect(outcome.input);
   outcome.triangles = outcome.input.mesh.triangles.size();
   outcome.notes = outcome.input.notes;
+  leave_out(outcome.input, kept_in(command.out), command.out, outcome.notes);
   if (auto note = note_on_unit(command.units)) outcome.notes.push_back(std::move(*note));
   outcome.import_ms = watch.lap();
   sdm::LevelsOptions options = command.levels;
@@ -95,8 +158,13 @@ SimplifyOutcome simplify_mesh(const SimplifyCommand& command, const sdm::Progres
   outcome.max_triangles = options.triangles;
   options.single_precision = sdm::is_written_in_single_precision(command.out);
   options.progress = progress;
+  std::vector<std::uint32_t> regions;
+  if (!outcome.input.look.face_materials.empty() || !outcome.input.names.empty())
+    regions = sdm::face_regions(outcome.triangles, outcome.input.look.face_materials, outcome.input.names);
+  options.regions = regions;
   try {
     static_cast<sdm::SimplifiedLevels&>(outcome) = sdm::simplify_levels(outcome.input.mesh, options);
+    carry(outcome, progress);
   } catch (const sdm::Cancelled&) {
     throw;
   } catch (const sdm::Error& error) {
@@ -173,6 +241,22 @@ void write_report(const SimplifyCommand& command, const SimplifyOutcome& outcome
     write_whole(command.report, text);
 }
 
+/// Writes the levels. All have the materials of the first one.
+void write_levels(const SimplifyCommand& command, const SimplifyOutcome& outcome, const fs::path& folder) {
+  const InputLook& look = outcome.input.look;
+  for (std::size_t i = 0; i < outcome.levels.size(); ++i) {
+    const LevelExtras& extras = outcome.extras[i];
+    const bool has_library = i > 0 && !look.materials.empty();
+    sdm::write_mesh(folder / command.file(i).filename(), outcome.levels[i].mesh,
+                    {.attributes = extras.attributes,
+                     .materials = look.materials,
+                     .textures = look.textures,
+                     .face_materials = extras.face_materials,
+                     .names = extras.names,
+                     .library = has_library ? command.out.stem().string() + ".mtl" : std::string()});
+  }
+}
+
 void run(const SimplifyCommand& command) {
   limit_threads(command.threads);
   std::vector<fs::path> planned;
@@ -188,8 +272,7 @@ void run(const SimplifyCommand& command) {
     outcome = simplify_mesh(command, progress.callback());
     progress.step("output");
     Stopwatch watch;
-    for (std::size_t i = 0; i < outcome.levels.size(); ++i)
-      sdm::write_mesh(out.staging() / command.file(i).filename(), outcome.levels[i].mesh);
+    write_levels(command, outcome, out.staging());
     outcome.output_ms = watch.lap();
     if (!command.report.empty()) write_report(command, outcome, out);
   });
@@ -240,10 +323,11 @@ void add_simplify_command(CLI::App& app) {
   simplify->footer(
       "The deviation is the symmetric Hausdorff distance of result and mesh, between certified bounds. "
       "With D, vertices are placed freely, unless the mesh has texture coordinates, or --keep-vertices is "
-      "given; otherwise they are some of those of the mesh, and seams stay. "
-      "Normals, colours and materials are not kept. Where no mesh with fewer triangles keeps D, the result "
-      "is "
-      "the mesh itself, and a note says so.\n\n"
+      "given, or faces of several materials or names meet; otherwise they are some of those of the mesh, and "
+      "seams stay. "
+      "Normals, colours, materials and names of faces are kept as far as the format has them; borders "
+      "between materials stay. Where no mesh with fewer triangles keeps D, the result is the mesh itself, "
+      "and a note says so.\n\n"
       "Example, a chain of three levels of detail:\n"
       "  sdm simplify scan.glb --max-deviation 0.1 --lods 2 -o low.glb");
   const auto command = std::make_shared<SimplifyCommand>();

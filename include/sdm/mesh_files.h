@@ -88,10 +88,27 @@ struct MeshFileOptions {
 /// coordinates of corners as binary PLY; read_mesh returns them bit-identical.
 SDM_API void write_ply(const std::filesystem::path& file, const Mesh& mesh);
 
-/// Writes a mesh in the format that the extension names: .ply as write_ply() does; .obj with all digits;
-/// .stl, binary, without texture coordinates; .glb. The latter two keep positions, and GLB texture
-/// coordinates, in single precision. Also throws sdm::Error for another extension.
-SDM_API void write_mesh(const std::filesystem::path& file, const Mesh& mesh);
+/// What write_mesh() writes besides positions and texture coordinates: of a MeshFile its arrays.
+struct MeshExtras {
+  std::span<const MeshAttribute> attributes{};
+  std::span<const Material> materials{};
+  std::span<const TextureFile> textures{};
+  std::span<const std::uint32_t> face_materials{};  ///< empty: no face has a material
+  std::span<const FaceNames> names{};
+  /// Of OBJ: the MTL file in the same folder that has the materials. Empty: it is written, beside the file.
+  std::string library{};
+};
+
+/// Writes a mesh in the format that the extension names. Files keep:
+///  - .ply: what write_ply() writes; normals, and colours in 8 bits
+///  - .obj: all digits; normals, colours, names of objects and groups; materials as NAME.mtl, with pictures
+///  as
+///    NAME_0.png and so on: colours, opacity, metal and roughness, normal maps
+///  - .stl: positions, in single precision
+///  - .glb: positions, texture coordinates of all sets, normals and colours in single precision, names of
+///    objects, materials with their pictures
+/// Also throws sdm::Error for another extension, and if the extras do not belong to the faces of the mesh.
+SDM_API void write_mesh(const std::filesystem::path& file, const Mesh& mesh, const MeshExtras& extras = {});
 /// Whether write_mesh() rounds positions to float. Throws sdm::Error as it does for another extension.
 [[nodiscard]] SDM_API bool is_written_in_single_precision(const std::filesystem::path& file);
 

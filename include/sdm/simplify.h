@@ -7,8 +7,10 @@
 #include <sdm/bounds.h>
 #include <sdm/execution.h>
 #include <sdm/mesh.h>
+#include <sdm/mesh_attributes.h>
 #include <sdm/names.h>
 #include <sdm/options.h>
+#include <sdm/sites.h>
 #include <sdm/types.h>
 
 #include <array>
@@ -16,6 +18,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -28,8 +31,13 @@ struct Simplified {
   /// triangles is asked for, if they are to be kept (SimplifyOptions::keep_vertices), if the input has
   /// texture coordinates or over 400,000 triangles, or if over 5 % of its vertices are not on a manifold;
   /// otherwise they are placed freely. Texture coordinates are those of the vertices that are left, seams
-  /// stay seams.
+  /// stay seams. At a pole, a vertex at which three faces or more have texture coordinates of their own, as
+  /// on spheres by latitude and longitude, a face has those of one of them. A face that the input does not
+  /// have has an area in the texture, also rounded to float, and winds there as the others of its chart.
   Mesh mesh;
+  /// Of each face, the first face of the input of its region; empty if the input has none. Borders between
+  /// regions stay, as seams do.
+  std::vector<std::uint32_t> source_faces{};
   /// The symmetric Hausdorff distance of the mesh and the input: no point of either one is farther than
   /// `upper` from the other one, and a point of one is `lower` from it. `value` is `lower`.
   BoundedLength deviation{};
@@ -37,7 +45,7 @@ struct Simplified {
   /// placed freely; otherwise meshoptimizer's own error and, where it simplified in steps, their sum.
   double estimate = 0;
   /// No more triangles could go, although more were to: the borders, seams or non-manifold edges that are
-  /// left permit no collapse, or none keeps the deviation.
+  /// left permit no collapse, faces would have no area in the texture, or none keeps the deviation.
   bool stopped = false;
 };
 
@@ -68,6 +76,7 @@ struct LevelsOptions {
   std::uint32_t lods = 0;                    ///< levels after it, up to 32
   bool single_precision = false;             ///< as of SimplifyOptions
   bool keep_vertices = false;                ///< as of SimplifyOptions
+  std::span<const std::uint32_t> regions{};  ///< as of Simplifier
   Progress progress{};
 };
 
@@ -114,9 +123,12 @@ struct SimplifyReport {
 /// What all results need of the mesh is made once.
 class SDM_API Simplifier {
  public:
-  /// Vertices at the same position are welded, faces that repeat a corner left out. Throws sdm::Error if the
-  /// mesh is unusable (see validate) or there is not enough memory. Cost: linear.
-  explicit Simplifier(const Mesh& mesh);
+  /// Vertices at the same position are welded, faces that repeat a corner left out. `regions`: a number for
+  /// each face, such as that of its material (see face_regions()), or none; where faces of several regions
+  /// meet, vertices of all results are vertices of the input, and collapses of these borders are along them.
+  /// Throws sdm::Error if the mesh is unusable (see validate), for another number of regions, or if there is
+  /// not enough memory. Cost: linear.
+  explicit Simplifier(const Mesh& mesh, std::span<const std::uint32_t> regions = {});
   ~Simplifier();
   Simplifier(Simplifier&&) noexcept;
   Simplifier& operator=(Simplifier&&) noexcept;
@@ -158,5 +170,24 @@ struct SimplifiedLevels {
 /// the given mesh. The k-th has 2^k times the deviation, or at most triangles / 2^k of them, but one. Throws
 /// sdm::Error for options out of range, and as Simplifier does; Cancelled. Cost: that of its calls.
 [[nodiscard]] SDM_API SimplifiedLevels simplify_levels(const Mesh& mesh, const LevelsOptions& options);
+
+/// Returns regions of faces for a Simplifier: those with the same material and the same names are one, whose
+/// number is that of its first face. Throws sdm::Error for arrays of other numbers of faces. Cost: linear in
+/// faces and kinds of names.
+[[nodiscard]] SDM_API std::vector<std::uint32_t> face_regions(std::size_t faces,
+                                                              std::span<const std::uint32_t> face_materials,
+                                                              std::span<const FaceNames> names);
+
+/// Returns the attributes of a mesh, that of the sites, at the corners of the faces of another one near it,
+/// such as a simplified one. A corner has the value at its closest point on the face that is closest to a
+/// point just inside its own face: where values jump, as normals do at hard edges, each face has those of its
+/// side. Of corners off the surface, only faces count that face as its face does. Normals have length 1.
+/// Corners of a vertex whose values are almost equal share a row. Throws sdm::Error if an attribute does not
+/// belong to the mesh, or if there is not enough memory; Cancelled. Cost: a search for each corner, all
+/// cores.
+[[nodiscard]] SDM_API std::vector<MeshAttribute> carried_attributes(const Sites& from,
+                                                                    std::span<const MeshAttribute> attributes,
+                                                                    const Mesh& to,
+                                                                    const Progress& progress = {});
 
 }  // namespace sdm

@@ -108,9 +108,10 @@ class SDM_API Surface {
   /// Lays out the atlas. Throws sdm::Error when the mesh is unusable (see validate), when the resolution is
   /// out of range or too small for the charts, if there is not enough memory, and for AtlasKind::uv when
   /// coordinates are missing, lie outside [0, 1] (see wrap_uvs and uv_tile_mesh) or, with strict_uv, overlap
-  /// (the message names two faces), or cover the texture more than 64 times over and more than 2^30 texels
-  /// (the message names the largest face). Faces without area belong to no chart. Cost: O(n log n) for
-  /// charts, then packing.
+  /// (the message names two faces) or give a face with an area none in the texture, or cover the texture more
+  /// than 64 times over and more than 2^30 texels (the message names the largest face). Faces without area
+  /// belong to no chart; those without one in the texture only are a chart each, without a texel. Cost: O(n
+  /// log n) for charts, then packing.
   explicit Surface(Mesh mesh, const AtlasOptions& options = {});
   /// Takes the atlas that stored_atlas() returned for a surface of the same mesh and options; nothing is laid
   /// out. Throws sdm::Error if the bytes belong to another mesh, to other options or to another version, or
@@ -187,6 +188,9 @@ class SDM_API Surface {
   /// uv: the texels whose centre lies in a face that does not own it, by more than rounding; each as often as
   /// it does. 0 for other atlases.
   [[nodiscard]] std::size_t overlapping_texels() const;
+  /// uv: the faces that have an area on the surface but none in the texture, and so no texel. 0 for other
+  /// atlases. Cost: linear in faces.
+  [[nodiscard]] std::size_t faces_without_uv_area() const;
 
   /// The number of texels that a face owns.
   [[nodiscard]] std::size_t owned_texels() const;

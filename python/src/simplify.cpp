@@ -62,7 +62,7 @@ progress: called as progress(step, fraction), on this thread; False cancels.
 
 The vertices of the result are vertices of the mesh, with their texture coordinates; seams and borders stay. The
 witness of the bounds is a point of the given mesh and one of the result. A RuntimeWarning says where the result is
-the mesh itself, or has more triangles, as borders, seams and non-manifold edges permit no collapse. Raises Error for
+the mesh itself, or has more triangles, as borders, seams, UVs and non-manifold edges permit no collapse. Raises Error for
 an unusable mesh, or a limit that is not positive.
 
 >>> coarse, deviation = sdm.simplify(sphere, triangles=100)

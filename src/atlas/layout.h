@@ -37,8 +37,13 @@ struct Layout {
 /// `uv` are made as for `charts`. Takes the room, and adds rows where necessary. Throws sdm::Error as fit()
 /// does.
 [[nodiscard]] Layout added_layout(const Mesh& added, const AtlasOptions& options, double scale, Room& room);
-/// AtlasKind::uv. A chart is a set of faces connected by edges at which their coordinates agree.
+/// AtlasKind::uv. A chart is a set of faces connected by edges at which their coordinates agree. A face with
+/// an area on the surface but none in the texture is a chart of its own: a sliver, which owns no texel unless
+/// it is the only one at its centre; with strict_uv, it is an error.
 [[nodiscard]] Layout uv_layout(const Mesh& mesh, const AtlasOptions& options);
+/// Whether the corners of a face in a layout of kind `uv` are such a sliver. `uvs`: its texture coordinates.
+[[nodiscard]] bool is_sliver(const std::array<Vec2, 3>& corners, const std::array<Vec2, 3>& uvs,
+                             std::uint32_t columns, std::uint32_t rows);
 
 /// "1024²", or "2048 × 1024" if the sides differ.
 [[nodiscard]] inline std::string size_text(std::uint64_t columns, std::uint64_t rows) {

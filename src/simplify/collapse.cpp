@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "core/cancellation.h"
-#include "simplify/collapse_sequence.h"
+#include "simplify/uv_faces.h"
 
 namespace sdm::simplify {
 namespace {
@@ -58,51 +57,77 @@ void remove_new_pairs(const Wedges& wedges, std::vector<Triangle>& triangles) {
   if (!left.empty()) triangles = std::move(left);
 }
 
-}  // namespace
+/// Vertices that meshoptimizer does not move: it takes those that have more than two wedges for corners of
+/// seams, so two more that no face uses are added to each.
+class HeldVertices {
+ public:
+  explicit HeldVertices(const Wedges& wedges) : wedges_(wedges) {}
 
-Collapsed collapse(const Wedges& wedges, std::span<const Triangle> triangles, const CollapseLimit& limit) {
+  /// Holds the vertices of the faces around these ones.
+  void add_around(const std::vector<Triangle>& faces, std::span<const Triangle> triangles) {
+    std::vector<bool> near(wedges_.positions.size());
+    held_.resize(near.size());
+    for (const Triangle& t : faces)
+      for (const std::uint32_t w : t) near[wedges_.vertex[w]] = true;
+    const auto is_near = [&](std::uint32_t w) { return near[wedges_.vertex[w]]; };
+    for (const Triangle& t : triangles)
+      if (std::ranges::any_of(t, is_near))
+        for (const std::uint32_t w : t) held_[wedges_.vertex[w]] = true;
+    points_ = wedges_.points;
+    std::vector<bool> added(held_.size());
+    for (std::size_t w = 0; w < wedges_.vertex.size(); ++w) {
+      if (const std::uint32_t v = wedges_.vertex[w]; !held_[v] || added[v]) continue;
+      added[wedges_.vertex[w]] = true;
+      points_.insert(points_.end(), 2, wedges_.points[w]);
+    }
+  }
+  [[nodiscard]] std::span<const std::array<float, 3>> points() const {
+    return points_.empty() ? wedges_.points : points_;
+  }
+
+ private:
+  const Wedges& wedges_;
+  std::vector<bool> held_;
+  std::vector<std::array<float, 3>> points_;  ///< of wedges, and the added ones; empty: none are held
+};
+
+Collapsed collapse_once(const Wedges& wedges, std::span<const std::array<float, 3>> points,
+                        std::span<const Triangle> triangles, const CollapseLimit& limit) {
   poll();
   Collapsed result{std::vector<Triangle>(triangles.size())};
-  const auto* const points = wedges.points.data()->data();
-  constexpr std::size_t kStride = sizeof(wedges.points[0]);
-  const double scale = wedges.size * meshopt_simplifyScale(points, wedges.points.size(), kStride);
+  constexpr std::size_t kStride = sizeof(points[0]);
+  const double scale = wedges.size * meshopt_simplifyScale(points.data()->data(), points.size(), kStride);
   constexpr double kMostError = 1e6;  // its square is a float
   float error = 0;
-  const std::size_t corners =
-      meshopt_simplify(result.triangles.data()->data(), triangles.data()->data(), 3 * triangles.size(),
-                       points, wedges.points.size(), kStride, 3 * std::min(limit.triangles, triangles.size()),
-                       static_cast<float>(std::min(limit.error / scale, kMostError)), 0, &error);
+  const std::size_t corners = meshopt_simplify(
+      result.triangles.data()->data(), triangles.data()->data(), 3 * triangles.size(), points.data()->data(),
+      points.size(), kStride, 3 * std::min(limit.triangles, triangles.size()),
+      static_cast<float>(std::min(limit.error / scale, kMostError)), 0, &error);
   result.triangles.resize(corners / 3);
   result.estimate = scale * error;
   remove_new_pairs(wedges, result.triangles);
   return result;
 }
 
-CollapsedMesh after_collapses(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                              std::span<const CollapseOfEdge> collapses, const std::vector<bool>& held) {
-  CollapsingMesh mesh(positions, triangles);
-  std::vector<std::uint32_t> last(positions.size(), kNone);
-  std::vector<bool> gone(positions.size());
-  std::vector<MovedFace> moved;
-  for (std::uint32_t i = 0; i < collapses.size(); ++i) {
-    const CollapseOfEdge& c = collapses[i];
-    if (!held.empty()) {
-      if (held[i] || last[c.u] != c.before_u || last[c.v] != c.before_v) continue;
-      if (gone[c.u] || gone[c.v]) continue;
-      if (!mesh.keeps_topology(c.u, c.v) || !mesh.move(c.u, c.v, c.to, moved)) continue;
+}  // namespace
+
+Collapsed collapse(const Wedges& wedges, std::span<const Triangle> triangles, const CollapseLimit& limit) {
+  constexpr int kMostHoldings = 4, kMostLimits = 4;
+  CollapseLimit smaller = limit;
+  for (int limits = 0; limits < kMostLimits; ++limits) {
+    HeldVertices held(wedges);
+    for (int holdings = 0; holdings <= kMostHoldings; ++holdings) {
+      Collapsed result = collapse_once(wedges, held.points(), triangles, smaller);
+      const std::vector<std::uint32_t> wrong = mend_in_texture(wedges, result.triangles);
+      if (wrong.empty()) return result;
+      std::vector<Triangle> faces;
+      for (const std::uint32_t f : wrong) faces.push_back(result.triangles[f]);
+      held.add_around(faces, triangles);
     }
-    mesh.collapse(c.u, c.v, c.to);
-    last[c.u] = i;
-    gone[c.v] = true;
+    smaller.triangles *= 2;
+    smaller.error /= 2;
   }
-  std::vector<bool> used(positions.size());
-  for (std::uint32_t f = 0; f < triangles.size(); ++f)
-    if (mesh.is_left(f))
-      for (const std::uint32_t v : mesh.triangle(f)) used[v] = true;
-  CollapsedMesh result{mesh.mesh(), {}};
-  for (std::size_t v = 0; v < used.size(); ++v)
-    if (used[v]) result.last.push_back(last[v]);
-  return result;
+  return {{triangles.begin(), triangles.end()}};
 }
 
 }  // namespace sdm::simplify

@@ -23,7 +23,9 @@ struct CollapseLimit {
 
 /// Collapses edges of some triangles of the wedges. Two faces with the same corners that turn their backs on
 /// each other, which collapses leave where a part is thin, go with them unless the wedges have them: their
-/// neighbours share the edges then.
+/// neighbours share the edges then. Of faces that get wrong in the texture, edges are flipped; where that
+/// does not help, the vertices around them stay, or less is collapsed. The result may be the triangles as
+/// they are.
 [[nodiscard]] Collapsed collapse(const Wedges& wedges, std::span<const Triangle> triangles,
                                  const CollapseLimit& limit);
 

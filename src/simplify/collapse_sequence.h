@@ -115,6 +115,7 @@ class CollapseSequence {
 struct CollapsedMesh {
   Mesh mesh;
   std::vector<std::uint32_t> last;
+  std::vector<std::uint32_t> faces;  ///< of each face, its number before
 };
 [[nodiscard]] CollapsedMesh after_collapses(std::span<const Vec3> positions,
                                             std::span<const Triangle> triangles,

@@ -44,18 +44,21 @@ void add_places(const Mesh& parts, const sites::SitesData& to, const sites::Site
 constexpr int kMostMendings = 2;
 constexpr int kMoreLevels = 4;
 
-// The mesh with positions rounded to float, without the faces whose corners then coincide.
-Mesh rounded(const Mesh& mesh) {
-  Mesh result;
-  for (const Vec3& p : mesh.positions)
-    result.positions.push_back(
-        {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
-  const auto same = [&](std::uint32_t a, std::uint32_t b) {
-    return result.positions[a] == result.positions[b];
-  };
-  for (const Triangle& t : mesh.triangles)
-    if (!same(t[0], t[1]) && !same(t[1], t[2]) && !same(t[2], t[0])) result.triangles.push_back(t);
-  return result;
+// Rounds positions to float, and removes the faces whose corners then are at the same place.
+void round_positions(Simplified& simplified) {
+  Mesh& mesh = simplified.mesh;
+  for (Vec3& p : mesh.positions)
+    for (double& x : p) x = static_cast<float>(x);
+  const auto same = [&](std::uint32_t a, std::uint32_t b) { return mesh.positions[a] == mesh.positions[b]; };
+  std::size_t left = 0;
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const Triangle t = mesh.triangles[f];
+    if (same(t[0], t[1]) || same(t[1], t[2]) || same(t[2], t[0])) continue;
+    mesh.triangles[left] = t;
+    simplified.source_faces[left++] = simplified.source_faces[f];
+  }
+  mesh.triangles.resize(left);
+  simplified.source_faces.resize(left);
 }
 
 // Vertices of the result near which a point of either surface is farther than the limit from the other one,
@@ -114,8 +117,8 @@ Simplified FreePlacement::first_within(double limit, int rung, std::size_t fewer
   for (int mendings = 0, levels = 1;; ++mendings, levels *= kMoreLevels) {
     Stopwatch watch;
     CollapsedMesh collapsed = after_collapses(positions_, triangles_, collapses, held);
-    Simplified result{.mesh = options.single_precision ? rounded(collapsed.mesh) : collapsed.mesh,
-                      .estimate = expected.estimate};
+    Simplified result{.mesh = collapsed.mesh, .source_faces = collapsed.faces, .estimate = expected.estimate};
+    if (options.single_precision) round_positions(result);
     report.collapse_ms += watch.lap();
     if (result.mesh.triangles.empty() || result.mesh.triangles.size() >= fewer_than) return {};
     result.deviation = deviation_of_input(sites_, result.mesh, expected, options.progress);

@@ -25,7 +25,8 @@ class FreePlacement {
 
   /// Whether the surface is a manifold, up to few vertices: it is not simplified otherwise.
   [[nodiscard]] bool is_possible() const { return sequence_.is_possible(); }
-  /// Returns the mesh and its deviation; no faces: none with fewer of them is found.
+  /// Returns the mesh, which of the given faces each of its faces was, and its deviation; no faces: none with
+  /// fewer of them is found.
   [[nodiscard]] Simplified to_deviation(double limit, const SimplifyOptions& options, SimplifyReport& report);
 
  private:

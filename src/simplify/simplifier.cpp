@@ -7,7 +7,10 @@
 #include <initializer_list>
 #include <new>
 #include <optional>
+#include <span>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -54,15 +57,35 @@ bool changes_by_rounding(const Mesh& mesh) {
   });
 }
 
+// The first face of the region of each face.
+std::vector<std::uint32_t> first_faces(const Mesh& mesh, std::span<const std::uint32_t> regions) {
+  if (regions.empty()) return {};
+  if (regions.size() != mesh.triangles.size()) throw Error("regions need a number for each face of the mesh");
+  std::unordered_map<std::uint32_t, std::uint32_t> first;
+  std::vector<std::uint32_t> result;
+  result.reserve(regions.size());
+  for (std::uint32_t f = 0; f < regions.size(); ++f)
+    result.push_back(first.try_emplace(regions[f], f).first->second);
+  return result;
+}
+
+/// Sets the mesh that is left of some wedges.
+void set_mesh(Simplified& simplified, const Wedges& wedges, std::span<const Triangle> triangles,
+              bool single_precision) {
+  auto [mesh, source_faces] = mesh_of(wedges, triangles, single_precision);
+  simplified.mesh = std::move(mesh);
+  simplified.source_faces = std::move(source_faces);
+}
+
 }  // namespace
 
 /// The input, what is made of it once, and the steps of a simplification.
 class Simplifier::State {
  public:
-  explicit State(const Mesh& mesh) {
+  State(const Mesh& mesh, std::span<const std::uint32_t> regions) {
     validate(mesh);
-    wedges_ = wedges_of(mesh);
-    mesh_ = mesh_of(wedges_, wedges_.triangles, false);
+    wedges_ = wedges_of(mesh, first_faces(mesh, regions));
+    mesh_ = mesh_of(wedges_, wedges_.triangles, false).mesh;
     mesh_.corner_uvs = {};
   }
 
@@ -124,9 +147,10 @@ Simplifier::State::Step Simplifier::State::collapsed(const Wedges& wedges, const
         Collapsed result = collapse(wedges, from.triangles, limit);
         step.triangles = std::move(result.triangles);
         step.estimate = from.estimate + result.estimate;
-        step.mesh = mesh_of(wedges, step.triangles, options.single_precision);
+        set_mesh(step, wedges, step.triangles, options.single_precision);
         if (!has_area(step.mesh)) {
           step.mesh = {};
+          step.source_faces = {};
           step.triangles.clear();
         }
         report_.collapse_ms += watch.lap();
@@ -171,12 +195,14 @@ Simplified Simplifier::State::unchanged(double limit, const SimplifyOptions& opt
   if (options.from != nullptr && !(options.single_precision && changes_by_rounding(options.from->mesh)))
     return *options.from;
   make_sites();
-  const Wedges finer = options.from != nullptr ? wedges_of(options.from->mesh) : Wedges{};
+  const Wedges finer =
+      options.from != nullptr ? wedges_of(options.from->mesh, options.from->source_faces) : Wedges{};
   const Wedges& wedges = options.from != nullptr ? finer : wedges_;
-  Step step{{.mesh = mesh_of(wedges, wedges.triangles, false)}, {}};
+  Step step;
+  set_mesh(step, wedges, wedges.triangles, false);
   step.deviation.certainty = Certainty::exact;
   if (options.single_precision && changes_by_rounding(step.mesh)) {
-    step.mesh = mesh_of(wedges, wedges.triangles, true);
+    set_mesh(step, wedges, wedges.triangles, true);
     if (!has_area(step.mesh))
       throw Error("nothing is left of the mesh when its positions are rounded to float");
     measure_input(step, limit, options);
@@ -240,7 +266,8 @@ std::vector<Simplifier::State::Step> Simplifier::State::coarser(const Wedges& we
 std::optional<Simplified> Simplifier::State::freely_placed(double limit, const SimplifyOptions& options) {
   // A larger mesh takes minutes, where meshoptimizer's collapses take seconds.
   constexpr std::size_t kMostTriangles = 400'000;
-  if (options.keep_vertices || !wedges_.uvs.empty() || wedges_.triangles.size() > kMostTriangles) return {};
+  const bool has_seams = !wedges_.uvs.empty() || wedges_.vertex.size() > wedges_.positions.size();
+  if (options.keep_vertices || has_seams || wedges_.triangles.size() > kMostTriangles) return {};
   make_sites();
   if (!free_) {
     Stopwatch watch;
@@ -252,14 +279,19 @@ std::optional<Simplified> Simplifier::State::freely_placed(double limit, const S
   if (result.mesh.triangles.empty() || !has_area(result.mesh)) return {};
   if (options.from != nullptr && result.mesh.triangles.size() > options.from->mesh.triangles.size())
     return {};
+  for (std::uint32_t& face : result.source_faces)
+    if (!wedges_.regions.empty()) face = wedges_.regions[wedges_.triangles[face][0]];
+  if (wedges_.regions.empty()) result.source_faces.clear();
   return result;
 }
 
 Simplified Simplifier::State::to_deviation(double limit, const SimplifyOptions& options) {
   if (std::optional<Simplified> result = freely_placed(limit, options)) return std::move(*result);
-  const Wedges finer = options.from != nullptr ? wedges_of(options.from->mesh) : Wedges{};
+  const Wedges finer =
+      options.from != nullptr ? wedges_of(options.from->mesh, options.from->source_faces) : Wedges{};
   const Wedges& wedges = options.from != nullptr ? finer : wedges_;
-  Step start{{}, wedges.triangles};
+  Step start;
+  start.triangles = wedges.triangles;
   if (options.from != nullptr) start.estimate = options.from->estimate;
   std::vector<Step> steps = coarser(wedges, start, limit, options);
   for (; !steps.empty(); steps.pop_back()) {
@@ -279,10 +311,12 @@ Simplified Simplifier::State::to_deviation(double limit, const SimplifyOptions& 
 }
 
 Simplified Simplifier::State::to_triangles(std::size_t count, const SimplifyOptions& options) {
-  const Wedges finer = options.from != nullptr ? wedges_of(options.from->mesh) : Wedges{};
+  const Wedges finer =
+      options.from != nullptr ? wedges_of(options.from->mesh, options.from->source_faces) : Wedges{};
   const Wedges& wedges = options.from != nullptr ? finer : wedges_;
   if (wedges.triangles.size() <= count) return unchanged(kInfinity, options);
-  Step start{{}, wedges.triangles};
+  Step start;
+  start.triangles = wedges.triangles;
   if (options.from != nullptr) start.estimate = options.from->estimate;
   Step step = reduced(wedges, start, count, {kFirstTriangles, 1}, options);
   const bool none = step.triangles.empty() || step.triangles.size() == start.triangles.size();
@@ -305,7 +339,8 @@ Simplified Simplifier::State::to_triangles(std::size_t count, const SimplifyOpti
   return result;
 }
 
-Simplifier::Simplifier(const Mesh& mesh) try : state_(std::make_unique<State>(mesh)) {
+Simplifier::Simplifier(const Mesh& mesh, std::span<const std::uint32_t> regions) try
+    : state_(std::make_unique<State>(mesh, regions)) {
 } catch (const std::bad_alloc&) {
   throw out_of_memory("simplification");
 }
@@ -336,7 +371,7 @@ SimplifiedLevels simplify_levels(const Mesh& mesh, const LevelsOptions& options)
   check_options(options);
   if (!options.max_deviation && !options.triangles)
     throw Error("a simplification needs max_deviation or triangles");
-  Simplifier simplifier(mesh);
+  Simplifier simplifier(mesh, options.regions);
   SimplifiedLevels result;
   std::vector<Simplified>& levels = result.levels;
   levels.reserve(options.lods + std::size_t{1});

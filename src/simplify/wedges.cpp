@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/vec.h"
+#include "simplify/uv_faces.h"
 
 namespace sdm::simplify {
 namespace {
@@ -50,32 +51,48 @@ std::vector<std::uint32_t> weld_positions(const Mesh& mesh, std::vector<Vec3>& p
   return vertex;
 }
 
-// One wedge for each position and texture coordinate.
-void divide_by_uvs(const Mesh& mesh, Wedges& wedges, const std::vector<std::size_t>& faces) {
+// Whether a vertex has faces of several regions.
+bool meet(const Wedges& wedges, const std::vector<std::uint32_t>& region_of_face) {
+  std::vector<std::uint32_t> region(wedges.positions.size(), kNone);
+  for (std::size_t f = 0; f < region_of_face.size(); ++f)
+    for (const std::uint32_t v : wedges.triangles[f]) {
+      if (region[v] != kNone && region[v] != region_of_face[f]) return true;
+      region[v] = region_of_face[f];
+    }
+  return false;
+}
+
+// One wedge for each position, texture coordinate and region.
+void divide(const Mesh& mesh, Wedges& wedges, const std::vector<std::size_t>& faces,
+            const std::vector<std::uint32_t>& region_of_face) {
   struct Corner {
-    std::uint64_t vertex;  // as large as a double: no bytes are left unset
+    std::uint64_t vertex, region;  // as large as a double: no bytes are left unset
     std::array<double, 2> uv;
   };
   std::vector<Corner> corners;
   corners.reserve(3 * faces.size());
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (int k = 0; k < 3; ++k) {
-      const Vec2& uv = mesh.corner_uvs[faces[f]][k];
-      corners.push_back({wedges.triangles[f][k], plain(std::array{uv[0], uv[1]})});
+      const Vec2 uv = mesh.corner_uvs.empty() ? Vec2{} : mesh.corner_uvs[faces[f]][k];
+      corners.push_back({wedges.triangles[f][k], region_of_face.empty() ? 0 : region_of_face[f],
+                         plain(std::array{uv[0], uv[1]})});
     }
   const Distinct wedge = distinct(corners, {});
   wedges.vertex.resize(wedge.count);
-  wedges.uvs.resize(wedge.count);
+  if (!mesh.corner_uvs.empty()) wedges.uvs.resize(wedge.count);
+  if (!region_of_face.empty()) wedges.regions.resize(wedge.count);
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    wedges.triangles[i / 3][i % 3] = wedge.number[i];
-    wedges.vertex[wedge.number[i]] = static_cast<std::uint32_t>(corners[i].vertex);
-    wedges.uvs[wedge.number[i]] = {corners[i].uv[0], corners[i].uv[1]};
+    const std::uint32_t number = wedge.number[i];
+    wedges.triangles[i / 3][i % 3] = number;
+    wedges.vertex[number] = static_cast<std::uint32_t>(corners[i].vertex);
+    if (!wedges.uvs.empty()) wedges.uvs[number] = {corners[i].uv[0], corners[i].uv[1]};
+    if (!wedges.regions.empty()) wedges.regions[number] = static_cast<std::uint32_t>(corners[i].region);
   }
 }
 
 }  // namespace
 
-Wedges wedges_of(const Mesh& mesh) {
+Wedges wedges_of(const Mesh& mesh, std::span<const std::uint32_t> regions) {
   Wedges wedges;
   const std::vector<std::uint32_t> vertex = weld_positions(mesh, wedges.positions);
   std::vector<std::size_t> faces;
@@ -86,11 +103,21 @@ Wedges wedges_of(const Mesh& mesh) {
     wedges.triangles.push_back(welded);
     faces.push_back(f);
   }
-  if (mesh.corner_uvs.empty()) {
+  std::vector<std::uint32_t> region_of_face;
+  for (std::size_t i = 0; i < faces.size() && !regions.empty(); ++i)
+    region_of_face.push_back(regions[faces[i]]);
+  if (mesh.corner_uvs.empty() && !meet(wedges, region_of_face)) {
     wedges.vertex.resize(wedges.positions.size());
     for (std::uint32_t v = 0; v < wedges.vertex.size(); ++v) wedges.vertex[v] = v;
+    if (!regions.empty()) wedges.regions.resize(wedges.vertex.size());
+    for (std::size_t f = 0; f < region_of_face.size(); ++f)
+      for (const std::uint32_t v : wedges.triangles[f]) wedges.regions[v] = region_of_face[f];
   } else {
-    divide_by_uvs(mesh, wedges, faces);
+    divide(mesh, wedges, faces, region_of_face);
+  }
+  if (!mesh.corner_uvs.empty()) {
+    merge_poles(wedges);
+    find_turns(wedges);
   }
   const Box box = bounds(mesh);
   const Vec3 middle = centre(box);
@@ -103,11 +130,23 @@ Wedges wedges_of(const Mesh& mesh) {
   return wedges;
 }
 
-Mesh mesh_of(const Wedges& wedges, std::span<const Triangle> triangles, bool single_precision) {
+std::array<Vec2, 3> uvs_of(const Wedges& wedges, const Triangle& t) {
+  std::array<Vec2, 3> uvs{wedges.uvs[t[0]], wedges.uvs[t[1]], wedges.uvs[t[2]]};
+  if (wedges.poles.empty()) return uvs;
+  for (int k = 0; k < 3; ++k)
+    if (const auto pole = wedges.poles.find(t[k]); pole != wedges.poles.end()) {
+      const int a = (k + 1) % 3, b = (k + 2) % 3;
+      uvs[k] = uv_at_pole(pole->second, {t[a], t[b]}, {uvs[a], uvs[b]});
+    }
+  return uvs;
+}
+
+MeshOfWedges mesh_of(const Wedges& wedges, std::span<const Triangle> triangles, bool single_precision) {
   std::vector<std::uint32_t> place(wedges.positions.size(), kNone);
   for (const Triangle& t : triangles)
     for (const std::uint32_t wedge : t) place[wedges.vertex[wedge]] = 0;
-  Mesh mesh;
+  MeshOfWedges result;
+  Mesh& mesh = result.mesh;
   for (std::size_t v = 0; v < place.size(); ++v) {
     if (place[v] == kNone) continue;
     place[v] = static_cast<std::uint32_t>(mesh.positions.size());
@@ -126,10 +165,10 @@ Mesh mesh_of(const Wedges& wedges, std::span<const Triangle> triangles, bool sin
         (same(of_mesh[0], of_mesh[1]) || same(of_mesh[1], of_mesh[2]) || same(of_mesh[2], of_mesh[0])))
       continue;
     mesh.triangles.push_back(of_mesh);
-    if (!wedges.uvs.empty())
-      mesh.corner_uvs.push_back({wedges.uvs[t[0]], wedges.uvs[t[1]], wedges.uvs[t[2]]});
+    if (!wedges.regions.empty()) result.source_faces.push_back(wedges.regions[t[0]]);
+    if (!wedges.uvs.empty()) mesh.corner_uvs.push_back(uvs_of(wedges, t));
   }
-  return mesh;
+  return result;
 }
 
 }  // namespace sdm::simplify

@@ -8,23 +8,41 @@
 #include <span>
 #include <vector>
 
+#include "simplify/poles.h"
+
 namespace sdm::simplify {
 
 /// The vertices of a mesh, welded: one for each position and, on seams, for each of its texture coordinates.
 /// The simplifier knows the positions as float, in units of `size` from the centre of the box.
 struct Wedges {
-  std::vector<Vec3> positions;               ///< of distinct vertices, in the order of the mesh
-  std::vector<std::uint32_t> vertex;         ///< the position of each wedge
-  std::vector<Vec2> uvs;                     ///< of each wedge; empty: none
+  std::vector<Vec3> positions;        ///< of distinct vertices, in the order of the mesh
+  std::vector<std::uint32_t> vertex;  ///< the position of each wedge
+  std::vector<Vec2> uvs;              ///< of each wedge but poles; empty: none
+  Poles poles;
+  std::vector<std::uint32_t> regions;        ///< of each wedge, a face of the input in its region; or empty
   std::vector<std::array<float, 3>> points;  ///< of each wedge
   std::vector<Triangle> triangles;           ///< of wedges; none repeats a position
-  double size = 1;                           ///< the diagonal of the box
+  /// Of each wedge that has texture coordinates, how the faces of its chart, which are those that wedges
+  /// connect, wind in the texture: 1 or −1; 0: both ways, or none has an area there.
+  std::vector<std::int8_t> turns;
+  std::vector<Triangle> flat;  ///< those without an area in the texture; ascending
+  double size = 1;             ///< the diagonal of the box
 };
 
-/// `mesh` is valid. Cost: linear.
-[[nodiscard]] Wedges wedges_of(const Mesh& mesh);
+/// `mesh` is valid. `regions`: of each of its faces, a face of the input in the same region; or empty. Cost:
+/// linear.
+[[nodiscard]] Wedges wedges_of(const Mesh& mesh, std::span<const std::uint32_t> regions);
 
-/// The mesh of some triangles of wedges. `single_precision`: positions are rounded to float.
-[[nodiscard]] Mesh mesh_of(const Wedges& wedges, std::span<const Triangle> triangles, bool single_precision);
+/// The texture coordinates of a triangle of wedges that have some.
+[[nodiscard]] std::array<Vec2, 3> uvs_of(const Wedges& wedges, const Triangle& triangle);
+
+/// The mesh of some triangles of wedges, and what Simplified::source_faces is of it.
+struct MeshOfWedges {
+  Mesh mesh;
+  std::vector<std::uint32_t> source_faces;
+};
+/// `single_precision`: positions are rounded to float.
+[[nodiscard]] MeshOfWedges mesh_of(const Wedges& wedges, std::span<const Triangle> triangles,
+                                   bool single_precision);
 
 }  // namespace sdm::simplify

@@ -57,6 +57,9 @@ std::vector<std::string> notes_of(const Surface& surface, const Sites& sites, co
   if (const std::size_t texels = surface.overlapping_texels(); texels > 0)
     notes.push_back(std::to_string(texels) +
                     " texels are covered by several faces, and have the value of one of them");
+  if (const std::size_t faces = surface.faces_without_uv_area(); faces > 0)
+    notes.push_back(std::to_string(faces) + (faces == 1 ? " face has" : " faces have") +
+                    " an area on the surface but none in its UVs: one sample each, and no texel");
   if (may_cross_walls(summary.measured.kind))
     if (auto note =
             summary::note_on_walls(walls, options.tolerance, names_of_part(options.names, options.whole_face),

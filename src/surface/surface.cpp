@@ -85,6 +85,18 @@ std::uint32_t Surface::gutter() const {
 std::size_t Surface::overlapping_texels() const {
   return internals(*this).overlapping_texels;
 }
+
+std::size_t Surface::faces_without_uv_area() const {
+  const surface::SurfaceData& data = internals(*this);
+  if (data.kind != AtlasKind::uv) return 0;
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < data.face_charts.size(); ++f)
+    if (data.face_charts[f] != kNone &&
+        atlas::is_sliver(data.corners[f], data.mesh.corner_uvs[f], data.resolution, data.rows))
+      ++count;
+  return count;
+}
+
 double Surface::max_stretch() const {
   return internals(*this).max_stretch;
 }

@@ -1,7 +1,9 @@
 // `sdm simplify`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sdm/bake_files.h>
 #include <sdm/hausdorff.h>
+#include <sdm/mesh_files.h>
 
 #include <nlohmann/json.hpp>
 
@@ -85,6 +87,87 @@ TEST_F(SimplifyRun, WritesLevelsOfDetailAndTheReport) {
   }
   EXPECT_THAT(done.out, HasSubstr("deviation  "));
   EXPECT_THAT(done.out, HasSubstr(" mm, of the collapses, no bound"));
+}
+
+// Regression: normals, colours, materials and names were lost.
+TEST_F(SimplifyRun, KeepsMaterialsColoursAndNames) {
+  mesh = torus(64, 48);
+  const std::size_t half = mesh.triangles.size() / 2;
+  MeshAttribute color{.name = "color", .components = 3, .values = {}, .rows = {}};
+  for (const Vec3& p : mesh.positions)
+    for (const double x : p) color.values.push_back(static_cast<float>((x + 3) / 6));
+  color.rows = std::make_shared<const std::vector<Triangle>>(mesh.triangles);
+  const std::vector<MeshAttribute> attributes{color};
+  std::vector<Material> materials(2);
+  materials[0].name = "brass";
+  materials[0].base_color_texture.texture = 0;
+  materials[1].name = "steel";
+  materials[1].metallic = 1;
+  const std::vector<TextureFile> textures{
+      {"dots", encode_png({.width = 2, .height = 1, .components = 3, .bytes = {255, 0, 0, 0, 0, 255}})}};
+  std::vector<std::uint32_t> face_materials(mesh.triangles.size(), 0);
+  std::fill_n(face_materials.begin(), half, 1u);
+  std::vector<FaceNames> names{{"object", {"wheel"}, std::vector<std::uint32_t>(mesh.triangles.size(), 0)}};
+  input = folder / "wheel.glb";
+  write_mesh(input, mesh,
+             {.attributes = attributes,
+              .materials = materials,
+              .textures = textures,
+              .face_materials = face_materials,
+              .names = names});
+  for (const std::string extension : {"glb", "obj"})
+    for (const std::vector<std::string>& target :
+         {std::vector<std::string>{"--triangles", "20%"}, {"--max-deviation", "0.05"}}) {
+      out = folder / ("low." + extension);
+      std::vector<std::string> arguments = target;
+      arguments.insert(arguments.end(), {"--lods", "1", "--json"});
+      const Outcome done = run(arguments);
+      ASSERT_EQ(done.code, 0) << done.err;
+      EXPECT_EQ(Json::parse(done.out)["notes"], Json::array());
+      for (const char* name : {"low.", "low_lod1."}) {
+        const MeshFile low = read_mesh_file(folder / (name + extension), {.attributes = true});
+        SCOPED_TRACE(name + extension);
+        EXPECT_THAT(low.notes, ::testing::IsEmpty());
+        ASSERT_EQ(low.materials.size(), 2u);
+        EXPECT_EQ(low.materials[1].metallic, 1);
+        ASSERT_EQ(low.textures.size(), 1u);
+        EXPECT_EQ(low.textures[0].bytes, textures[0].bytes);
+        EXPECT_EQ(low.names[0].names, std::vector<std::string>{"wheel"});
+        ASSERT_EQ(low.attributes.size(), 1u);
+        std::array<std::size_t, 2> counts{};
+        for (std::size_t f = 0; f < low.mesh.triangles.size(); ++f) {
+          ++counts[low.face_materials[f]];
+          for (int k = 0; k < 3; ++k)
+            for (std::size_t i = 0; i < 3; ++i)
+              EXPECT_NEAR(low.attributes[0]
+                              .values[low.attributes[0].components * (*low.attributes[0].rows)[f][k] + i],
+                          (low.mesh.positions[low.mesh.triangles[f][k]][i] + 3) / 6, 1e-5);
+        }
+        const auto more = static_cast<double>(std::max(counts[0], counts[1]));
+        EXPECT_LT(more, 0.7 * static_cast<double>(low.mesh.triangles.size()));
+      }
+    }
+  out = folder / "low.stl";
+  EXPECT_THAT(run({"--triangles", "20%"}).out,
+              HasSubstr("low.stl has no materials, which " + input + " has"));
+}
+
+// What simplify makes, bake takes: with the texture coordinates of the file, and without a note on them.
+TEST_F(SimplifyRun, BakeUsesTheTextureCoordinatesOfTheResult) {
+  const Mesh round = with_own_uvs(sphere(5), 1024);
+  input = folder / "round.ply";
+  write_ply(input, round);
+  for (const char* name : {"low.glb", "low.obj", "low.ply"})
+    for (const char* share : {"20%", "5%"}) {
+      out = folder / name;
+      ASSERT_EQ(run({"--triangles", share}).code, 0);
+      const Outcome baked = run_sdm({"bake", input, out, "-o", folder / "baked", "--channels", "position",
+                                     "--resolution", "256", "--no-page", "--json"});
+      ASSERT_EQ(baked.code, 0) << baked.err;
+      const Json json = Json::parse(baked.out);
+      EXPECT_EQ(json["atlas"]["kind"], "uv") << name << ' ' << share << json["notes"];
+      EXPECT_EQ(json["notes"], Json::array()) << name << ' ' << share;
+    }
 }
 
 TEST_F(SimplifyRun, SaysThatNothingKeepsTheLimit) {

@@ -11,45 +11,13 @@
 #include "core/memory.h"
 #include "io/file/atomic_file.h"
 #include "io/mesh/model/drawn_surface.h"
+#include "io/mesh/model/gltf_material.h"
 
 namespace sdm {
 
 using namespace io;
 
 namespace {
-
-const char* alpha_mode_name(AlphaMode mode) {
-  switch (mode) {
-    case AlphaMode::opaque:
-      break;
-    case AlphaMode::mask:
-      return "MASK";
-    case AlphaMode::blend:
-      return "BLEND";
-  }
-  return "OPAQUE";
-}
-
-template <class Factors>
-std::vector<double> numbers(const Factors& factors) {
-  std::vector<double> result;
-  for (const float factor : factors) result.push_back(std::clamp(double{factor}, 0.0, 1.0));
-  return result;
-}
-
-tinygltf::Material material_of(const Material& factors) {
-  tinygltf::Material material;
-  material.name = "baked";
-  material.doubleSided = true;  // so that open meshes have a back
-  material.alphaMode = alpha_mode_name(factors.alpha_mode);
-  if (factors.alpha_mode == AlphaMode::mask) material.alphaCutoff = factors.alpha_cutoff;
-  material.emissiveFactor = numbers(factors.emissive);
-  tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
-  surface.baseColorFactor = numbers(factors.base_color);
-  surface.metallicFactor = std::clamp(factors.metallic, 0.f, 1.f);
-  surface.roughnessFactor = std::clamp(factors.roughness, 0.f, 1.f);
-  return material;
-}
 
 // A texture contains its factor.
 void set_texture(tinygltf::Material& material, BakeChannel channel, int texture) {
@@ -114,7 +82,8 @@ void write_baked_glb(const std::filesystem::path& file, const Surface& surface,
   for (const BakedTexture& texture : textures) bytes += texture.png.size();
   glb.reserve(bytes);
   glb.model.meshes[0].primitives.push_back(primitive_of(glb, drawn, vertices));
-  tinygltf::Material material = material_of(options.material);
+  tinygltf::Material material = factors_of(options.material);
+  material.name = "baked";
   for (const BakedTexture& texture : textures)
     set_texture(material, texture.channel,
                 add_png(glb, texture.png, TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR));
