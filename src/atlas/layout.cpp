@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 
 #include "atlas/charts/face_geometry.h"
@@ -16,7 +15,6 @@
 #include "atlas/packing/fit.h"
 #include "atlas/packing/pack.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "atlas/packing/rasterise.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

@@ -1,7 +1,6 @@
 #include <sdm/bake.h>
 #include <sdm/error.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <new>
@@ -11,7 +10,6 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 
 namespace sdm {
 namespace {

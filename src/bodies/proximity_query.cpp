@@ -3,7 +3,6 @@
 
 #include <new>
 #include <string>
-#include <vector>
 
 #include "bodies/many/internal_contacts.h"
 #include "bodies/pair/pair_answers.h"

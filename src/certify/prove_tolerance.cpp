@@ -10,7 +10,6 @@
 #include <limits>
 #include <new>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "certify/hausdorff/largest_distance.h"

@@ -5,7 +5,6 @@
 
 #include <atomic>
 #include <mutex>
-#include <thread>
 #include <utility>
 
 #include "core/cancellation.h"

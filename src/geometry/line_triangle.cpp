@@ -7,7 +7,6 @@
 
 #include "geometry/exact_integer.h"
 #include "geometry/rounding.h"
-#include "geometry/vec.h"
 
 namespace sdm::core {
 namespace {

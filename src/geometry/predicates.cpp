@@ -5,7 +5,6 @@
 
 #include "core/numbers/double_double.h"
 #include "geometry/exact_integer.h"
-#include "geometry/vec.h"
 
 namespace sdm::core {
 namespace {

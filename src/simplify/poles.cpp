@@ -2,39 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include "geometry/vec.h"
+#include "core/disjoint_sets.h"
 #include "simplify/wedges.h"
 
 namespace sdm::simplify {
 namespace {
 
 constexpr std::uint32_t kFewest = 3;  // wedges of a pole
-
-/// Wedges that are one.
-class Classes {
- public:
-  explicit Classes(std::size_t count) : parent_(count), size_(count, 1) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-  std::uint32_t find(std::uint32_t w) {
-    while (parent_[w] != w) w = parent_[w] = parent_[parent_[w]];
-    return w;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a == b) return;
-    if (b < a) std::swap(a, b);
-    parent_[b] = a;
-    size_[a] += size_[b];
-  }
-  std::uint32_t size(std::uint32_t w) { return size_[find(w)]; }
-
- private:
-  std::vector<std::uint32_t> parent_, size_;
-};
 
 /// A side of a face that begins at a vertex with many wedges, or ends there.
 struct SideAtTip {
@@ -43,8 +18,8 @@ struct SideAtTip {
 };
 
 // Wedges of one vertex between which faces share an edge whose other end has one wedge.
-Classes fans(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& vertex,
-             const std::vector<bool>& is_tip) {
+DisjointSets fans(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& vertex,
+                  const std::vector<bool>& is_tip) {
   std::vector<SideAtTip> sides;
   for (const Triangle& t : triangles)
     for (int k = 0; k < 3; ++k) {
@@ -53,7 +28,7 @@ Classes fans(const std::vector<Triangle>& triangles, const std::vector<std::uint
       sides.push_back({t[(k + 2) % 3], t[k], false});
     }
   std::ranges::sort(sides, {}, [&](const SideAtTip& s) { return std::pair(s.other, vertex[s.tip]); });
-  Classes classes(vertex.size());
+  DisjointSets classes(vertex.size());
   for (std::size_t i = 1; i < sides.size(); ++i) {
     const SideAtTip &a = sides[i - 1], &b = sides[i];
     const bool is_same = a.other == b.other && vertex[a.tip] == vertex[b.tip];
@@ -94,10 +69,11 @@ void merge_poles(Wedges& wedges) {
   std::vector<bool> is_tip(count.size());
   for (std::size_t v = 0; v < count.size(); ++v) is_tip[v] = count[v] >= kFewest;
   if (std::ranges::count(is_tip, true) == 0) return;
-  Classes classes = fans(wedges.triangles, wedges.vertex, is_tip);
-  std::vector<std::uint32_t> pole(wedges.vertex.size(), kNone);
-  for (std::uint32_t w = 0; w < pole.size(); ++w)
-    if (classes.size(w) >= kFewest) pole[w] = classes.find(w);
+  DisjointSets classes = fans(wedges.triangles, wedges.vertex, is_tip);
+  std::vector<std::uint32_t> pole(wedges.vertex.size()), size(pole.size());
+  for (std::uint32_t w = 0; w < pole.size(); ++w) ++size[pole[w] = classes.find(w)];
+  for (std::uint32_t& p : pole)
+    if (size[p] < kFewest) p = kNone;
   Poles found;
   for (const Triangle& t : wedges.triangles)
     for (int k = 0; k < 3; ++k)

@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "mesh/topology.h"
 
 namespace sdm::atlas {

@@ -1,10 +1,8 @@
 #include "atlas/charts/normal_cone.h"
 
 #include <algorithm>
-#include <compare>
 
 #include "atlas/charts/tangent_frame.h"
-#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

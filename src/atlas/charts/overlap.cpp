@@ -7,7 +7,6 @@
 #include "atlas/charts/tangent_frame.h"
 #include "core/arrays/rows.h"
 #include "core/cancellation.h"
-#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <tuple>
 
-#include "geometry/vec.h"
-
 namespace sdm::atlas {
 namespace {
 

@@ -9,7 +9,6 @@
 #include "atlas/charts/overlap.h"
 #include "core/arrays/rows.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

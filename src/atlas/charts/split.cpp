@@ -1,12 +1,10 @@
 #include "atlas/charts/split.h"
 
 #include <algorithm>
-#include <compare>
 #include <queue>
 
 #include "atlas/charts/overlap.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

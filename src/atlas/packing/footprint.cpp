@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include "atlas/packing/rasterise.h"
 #include "core/scattered_order.h"
-#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

@@ -12,7 +12,6 @@
 #include "core/cancellation.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

@@ -7,7 +7,6 @@
 #include <new>
 #include <vector>
 
-#include "atlas/gutter.h"
 #include "baking/geometry/texel_walk.h"
 #include "closest/facing/facing_normals.h"
 #include "core/memory.h"

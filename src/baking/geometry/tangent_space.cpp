@@ -8,7 +8,6 @@
 #include <cmath>
 #include <memory>
 #include <new>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "closest/closest_points.h"
 #include "geometry/boxes.h"
-#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {

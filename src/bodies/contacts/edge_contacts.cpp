@@ -5,11 +5,9 @@
 #include <tuple>
 #include <utility>
 
-#include "closest/closest_points.h"
 #include "core/cancellation.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {

@@ -1,8 +1,6 @@
 #include "bodies/contacts/surface_point.h"
 
-#include "closest/closest_points.h"
 #include "geometry/rounding.h"
-#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
 namespace sdm::contacts {

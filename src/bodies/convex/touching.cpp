@@ -7,7 +7,6 @@
 
 #include "geometry/predicates.h"
 #include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
 
 namespace sdm::convex {
 namespace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "closest/closest_points.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
 

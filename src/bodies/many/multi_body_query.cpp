@@ -1,7 +1,6 @@
 #include <sdm/error.h>
 #include <sdm/multi_body_query.h>
 
-#include <algorithm>
 #include <memory>
 #include <new>
 #include <string>

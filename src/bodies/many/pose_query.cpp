@@ -12,7 +12,6 @@
 #include "bodies/many/pool.h"
 #include "bodies/pair/pair_answers.h"
 #include "bodies/shape/posed_body.h"
-#include "core/cancellation.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 

@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <tuple>
 
 #include "bodies/many/multi_body_impl.h"
 #include "core/parallel.h"

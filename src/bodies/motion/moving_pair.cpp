@@ -9,7 +9,6 @@
 #include "bodies/motion/safe_time.h"
 #include "core/cancellation.h"
 #include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
 
 namespace sdm::motion {
 namespace {

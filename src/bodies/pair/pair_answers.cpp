@@ -1,10 +1,7 @@
 #include "bodies/pair/pair_answers.h"
 
-#include <sdm/error.h>
-
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "bodies/pairs/collision.h"
 #include "core/nothing_found.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "geometry/rounding.h"
-#include "geometry/vec.h"
 
 namespace sdm::pairs {
 namespace {

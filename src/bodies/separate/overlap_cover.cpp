@@ -5,8 +5,6 @@
 #include <numeric>
 #include <optional>
 
-#include "closest/closest_points.h"
-
 namespace sdm::separate {
 namespace {
 

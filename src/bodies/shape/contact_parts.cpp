@@ -1,6 +1,5 @@
 #include "bodies/shape/contact_parts.h"
 
-#include "geometry/vec.h"
 #include "tree/fold.h"
 
 namespace sdm::shape {

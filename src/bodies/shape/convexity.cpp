@@ -5,11 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "closest/closest_points.h"
 #include "geometry/predicates.h"
 #include "geometry/rounding.h"
-#include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
 #include "tree/visit.h"
 
 namespace sdm::shape {

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "geometry/vec.h"
 #include "tree/visit.h"
 
 namespace sdm::shape {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "closest/closest_points.h"
 #include "geometry/vec.h"
 
 namespace sdm::shape {

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <span>
 
-#include "closest/closest_points.h"
 #include "geometry/point_triangle.h"
 #include "geometry/rounding.h"
 #include "search/mixed_bound.h"

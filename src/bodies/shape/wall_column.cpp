@@ -5,15 +5,11 @@
 #include <cstddef>
 #include <span>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "bodies/shape/passages.h"
-#include "closest/closest_points.h"
 #include "geometry/clip.h"
-#include "geometry/rounding.h"
 #include "geometry/unit_across.h"
-#include "geometry/vec.h"
 
 namespace sdm::shape {
 namespace {

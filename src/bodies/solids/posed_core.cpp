@@ -4,7 +4,6 @@
 
 #include "bodies/convex/support_search.h"
 #include "bodies/shape/extreme_vertex.h"
-#include "geometry/vec.h"
 
 namespace sdm::solids {
 namespace {

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "bodies/shape/extreme_vertex.h"
-#include "geometry/vec.h"
 
 namespace sdm::depth {
 

@@ -7,8 +7,6 @@
 
 #include "certify/hausdorff/nearest_face.h"
 #include "core/parallel.h"
-#include "geometry/rounding.h"
-#include "geometry/vec.h"
 
 namespace sdm::hausdorff {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "certify/hausdorff/nearest_face.h"
 #include "geometry/rounding.h"
-#include "geometry/vec.h"
 #include "search/mixed_bound.h"
 
 namespace sdm::hausdorff {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "geometry/rounding.h"
-#include "geometry/vec.h"
 
 namespace sdm::hausdorff {
 namespace {

@@ -1,15 +1,8 @@
 #include "certify/hausdorff/side.h"
 
-#include <algorithm>
 #include <cmath>
-#include <span>
-#include <vector>
 
-#include "geometry/rounding.h"
-#include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
-#include "inside/solid.h"
-#include "tree/visit.h"
 
 namespace sdm::hausdorff {
 

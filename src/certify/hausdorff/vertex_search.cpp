@@ -9,7 +9,6 @@
 #include "core/parallel.h"
 #include "geometry/rounding.h"
 #include "geometry/spatial_order.h"
-#include "geometry/vec.h"
 
 namespace sdm::hausdorff {
 namespace {

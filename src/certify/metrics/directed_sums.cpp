@@ -7,7 +7,6 @@
 #include "certify/metrics/directed_search.h"
 #include "core/cancellation.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 
 namespace sdm::metrics {
 namespace {

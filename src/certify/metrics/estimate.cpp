@@ -15,7 +15,6 @@
 #include "core/parallel.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 
 namespace sdm::metrics {
 namespace {

@@ -10,7 +10,6 @@
 #include "geometry/rounding.h"
 #include "geometry/spatial_order.h"
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 
 namespace sdm::metrics {
 namespace {

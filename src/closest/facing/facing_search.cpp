@@ -10,7 +10,6 @@
 #include "closest/exact.h"
 #include "closest/facing/normal_cones.h"
 #include "geometry/rounding.h"
-#include "geometry/vec.h"
 #include "tree/visit.h"
 
 namespace sdm::facing {

@@ -7,7 +7,6 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
-#include <atomic>
 #include <utility>
 
 #include "core/cancellation.h"
