@@ -43,9 +43,10 @@ class SurfaceData {
   [[nodiscard]] std::uint32_t texels() const { return resolution * rows; }
   [[nodiscard]] std::size_t faces_without_texel() const { return map_faces.size() - texels(); }
   [[nodiscard]] std::size_t owned_texels() const { return samples.size() - faces_without_texel(); }
-  /// The sample of a face that owns no texel, evenly distributed over consecutive faces: an additive sequence
-  /// of the powers of 1/1.3247…, the root of x³ = x + 1, with the unit square folded into the triangle.
-  [[nodiscard]] Vec3 own_point(std::uint32_t face) const {
+  /// The sample of a face that owns no texel, as weights of its vertices 1 and 2, evenly distributed over
+  /// consecutive faces: an additive sequence of the powers of 1/1.3247…, the root of x³ = x + 1, with the
+  /// unit square folded into the triangle.
+  [[nodiscard]] static Vec2 own_weights(std::uint32_t face) {
     double u = 0.7548776662466927 * (face + 0.5), v = 0.5698402909980532 * (face + 0.5);
     u -= std::floor(u);
     v -= std::floor(v);
@@ -53,10 +54,17 @@ class SurfaceData {
       u = 1 - u;
       v = 1 - v;
     }
+    return {u, v};
+  }
+  [[nodiscard]] Vec3 own_point(std::uint32_t face) const {
     const auto& [a, b, c] = mesh.triangles[face];
+    const auto [u, v] = own_weights(face);
     const Vec3& origin = mesh.positions[a];
     return origin + u * (mesh.positions[b] - origin) + v * (mesh.positions[c] - origin);
   }
+  /// texel_point() as weights (s, t), which do not depend on positions: vertex 0 + s (vertex 1 − vertex 0) +
+  /// t (vertex 2 − vertex 0). Off by at most 3e-8 of the sides.
+  [[nodiscard]] Vec2 texel_weights(std::uint32_t face, std::uint32_t texel) const;
   /// The surface point of the centre of a texel that the face owns, or the own point of one that owns none.
   [[nodiscard]] Vec3 texel_point(std::uint32_t face, std::uint32_t texel) const {
     if (texel >= texels()) return own_point(face);
