@@ -1,6 +1,7 @@
 // The gpu engine beside the cpu engine: what a map of the bunny to the armadillo takes, and what the search
-// counts, which holds without a graphics card. All figures but times are per texel. Verifies that each map
-// equals that of the reference engine to the bit.
+// counts, which holds without a graphics card; and the next frame of a map that is kept on the device, and
+// its statistics. All figures but times are per texel. Verifies that each map equals that of the reference
+// engine to the bit, or within its error if it is kept.
 //
 //   build/dev/bench/gpu [--device NAME] [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json
 //   FILE]
@@ -10,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -32,8 +34,18 @@ Outcome measure(const Trial& trial, const Surface& surface, const Sites& sites, 
   std::fprintf(stderr, "on %s\n", report.device.c_str());
   if (std::memcmp(ours.data(), expected.data(), ours.size() * sizeof(float)) != 0) return {};
 
-  const std::array contenders{Contender{[&] { (void)map_by(gpu); }, trial.threads},
-                              Contender{[&] { (void)map_by(cpu); }, trial.threads}};
+  GpuMap on_device(surface, sites, {.device = device});
+  const std::vector<float> kept = on_device.distances();
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const float exact = expected[surface.sample_texels()[i]];
+    if (!(std::abs(kept[i] - exact) <= on_device.error(kept[i]))) return {};
+  }
+
+  const std::array contenders{
+      Contender{[&] { (void)map_by(gpu); }, trial.threads},
+      Contender{[&] { (void)map_by(cpu); }, trial.threads},
+      Contender{[&] { on_device.compute(surface.mesh().positions, sites); }, trial.threads},
+      Contender{[&] { (void)on_device.statistics(0.1); }, trial.threads}};
   const auto times = take_turns(contenders, trial.repetitions, 0);
   const double texels = static_cast<double>(report.points), ms = median(times[0]);
   const auto each = [&](std::size_t count) { return static_cast<double>(count) / texels; };
@@ -49,7 +61,9 @@ Outcome measure(const Trial& trial, const Surface& surface, const Sites& sites, 
                      {"search_ms", report.search_ms},
                      {"finish_ms", report.finish_ms},
                      {"ms", ms},
-                     {"ratio", ms / median(times[1])}}}},
+                     {"ratio", ms / median(times[1])},
+                     {"kept_ms", median(times[2])},
+                     {"statistics_ms", median(times[3])}}}},
           .counts = {{"texels", texels}}};
 }
 

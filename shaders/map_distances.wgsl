@@ -1,15 +1,7 @@
 // The distances of a map, which stay on the device: of each point the least one of the faces in its list, or of all where the
-// list is incomplete. Behind shaders/nearest_first.wgsl, after shaders/closest_faces.wgsl.
+// list is incomplete. Behind shaders/nearest_first.wgsl and shaders/part.wgsl; runs after shaders/closest_faces.wgsl.
 
 @group(0) @binding(6) var<storage, read_write> distances: array<f32>;
-@group(0) @binding(7) var<uniform> part: Part;
-
-struct Part {
-  tiles: u32,
-  first: u32,          // the place of the first point in `distances`
-  count: u32,          // of the points
-  has_distances: u32,  // from other faces, if not 0
-}
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {

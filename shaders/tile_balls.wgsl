@@ -1,13 +1,12 @@
 // The ball around the 64 points of each tile and those around its quarters, and a face that is closest to the middle: an
-// invocation for each tile. Behind shaders/nearest_first.wgsl.
+// invocation for each tile. Behind shaders/nearest_first.wgsl and shaders/part.wgsl.
 
 @group(0) @binding(6) var<storage, read_write> tiles: array<Tile>;
-@group(0) @binding(7) var<uniform> part: vec4u;  // how many tiles there are
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
   let t = id.x;
-  if (t >= part.x) {
+  if (t >= part.tiles) {
     return;
   }
   // The middles of boxes; points that are skipped count nowhere.

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -124,10 +125,14 @@ class SDM_API GpuMap {
   GpuMap(GpuMap&&) noexcept;
   GpuMap& operator=(GpuMap&&) noexcept;
 
-  /// Computes the map anew, such as for the next frame of a refitted surface or refitted sites. Throws
-  /// sdm::Error if the device fails, has no memory left, or if a sample is too far from O2 for single
-  /// precision, by more than 7 times its size; Cancelled. There is no map afterwards then.
+  /// Computes the map anew, of any surface. Throws sdm::Error if the device fails, has no memory left, or if
+  /// the surface reaches too far from O2 for single precision, by more than 7 times its size; Cancelled.
+  /// There is no map afterwards then.
   void compute(const Surface& surface, const Sites& sites);
+  /// The next frame: the same for the last surface with its vertices at these positions, of which
+  /// Surface::refit() does not know. Only vertices are uploaded, and O2 if it has changed. Throws also if
+  /// their number is not that of its mesh.
+  void compute(std::span<const Vec3> positions, const Sites& sites);
 
   /// The number of samples: those of Surface::sample_texels().
   [[nodiscard]] std::size_t samples() const;

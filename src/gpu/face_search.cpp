@@ -30,10 +30,11 @@ struct PartOfMap {
 
 FaceSearch::FaceSearch(std::string_view wanted)
     : device_(wanted),
-      tile_balls_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kTileBallsWgsl})),
+      samples_(pipeline(device_, {kPartWgsl, kPlaceSamplesWgsl})),
+      tile_balls_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kPartWgsl, kTileBallsWgsl})),
       tiles_together_(pipeline(device_, {kFacesWgsl, kClosestTilesWgsl})),
       points_alone_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kClosestFacesWgsl})),
-      distances_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kMapDistancesWgsl})),
+      distances_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kPartWgsl, kMapDistancesWgsl})),
       part_(device_.buffer(sizeof(PartOfMap), Device::Use::uniform, "constants")) {}
 
 const SitesOnDevice& FaceSearch::place(const sites::SitesData& sites) {
@@ -123,21 +124,24 @@ void FaceSearch::find(const sites::SitesData& sites, std::span<const QueryPoint>
   });
 }
 
-void FaceSearch::measure(const sites::SitesData& sites, std::span<const QueryPoint> points, std::size_t count,
-                         const Buffer& distances, std::size_t first) {
+void FaceSearch::measure(const sites::SitesData& sites, const SamplesOnDevice& samples, std::size_t count,
+                         const Buffer& distances) {
   const SitesOnDevice& on_device = place(sites);
   SearchTimes times;
-  in_dispatches(points.size(), times, [&](std::size_t from, std::size_t size) {
+  in_dispatches((count + kTile - 1) / kTile * kTile, times, [&](std::size_t first, std::size_t size) {
     PartOfMap constants{.tiles = static_cast<std::uint32_t>(size / kTile),
-                        .first = static_cast<std::uint32_t>(first + from),
-                        .count = static_cast<std::uint32_t>(std::min(size, count - from))};
-    device_.write(points_, std::as_bytes(points.subspan(from, size)));
+                        .first = static_cast<std::uint32_t>(first),
+                        .count = static_cast<std::uint32_t>(std::min(size, count - first))};
+    const Device::Binding of_samples[] = {
+        {0, &samples.samples}, {1, &samples.positions}, {4, &points_}, {7, &part_}};
+    const BindGroup placing = device_.bind(samples_, of_samples);
     for (const SitesOnDevice::Part& part : on_device.parts) {
       device_.write(part_, std::as_bytes(std::span(&constants, 1)));
       search(on_device, part, size, [&](std::vector<Device::Step> steps) {
-        const BindGroup group =
+        const BindGroup measuring =
             bind(distances_, part, {{4, &points_}, {5, &results_}, {6, &distances}, {7, &part_}});
-        steps.push_back({&distances_, &group, constants.tiles});
+        steps.insert(steps.begin(), {&samples_, &placing, constants.tiles});
+        steps.push_back({&distances_, &measuring, constants.tiles});
         device_.run(steps);
       });
       constants.has_distances = 1;

@@ -48,6 +48,18 @@ struct QueryPoint {
   float within;
 };
 
+/// A sample, as in shaders/place_samples.wgsl.
+struct Sample {
+  std::uint32_t vertices[3];
+  float weights[2];  ///< of vertices 1 and 2; that of vertex 0 is what is left of 1
+};
+
+/// Samples on a device, and the vertices in the unit frame, of three numbers each.
+struct SamplesOnDevice {
+  const Buffer& samples;
+  const Buffer& positions;
+};
+
 /// What searches on a device took.
 struct SearchTimes {
   std::size_t dispatches = 0;
@@ -71,10 +83,9 @@ class FaceSearch {
   /// cancelled.
   void find(const sites::SitesData& sites, std::span<const QueryPoint> points, FaceLists& found,
             SearchTimes& times);
-  /// Writes the distances of the first `count` of the points in the unit frame to a buffer on the device, of
-  /// 4 bytes each, from `first` on. The rest fills the last tile.
-  void measure(const sites::SitesData& sites, std::span<const QueryPoint> points, std::size_t count,
-               const Buffer& distances, std::size_t first);
+  /// Writes the distances of `count` samples in the unit frame to a buffer on the device, of 4 bytes each.
+  void measure(const sites::SitesData& sites, const SamplesOnDevice& samples, std::size_t count,
+               const Buffer& distances);
 
  private:
   const SitesOnDevice& place(const sites::SitesData& sites);
@@ -92,7 +103,7 @@ class FaceSearch {
   static constexpr std::size_t kKept = 4;  // shapes
 
   Device device_;
-  Pipeline tile_balls_, tiles_together_, points_alone_, distances_;
+  Pipeline samples_, tile_balls_, tiles_together_, points_alone_, distances_;
   std::vector<std::unique_ptr<SitesOnDevice>> kept_;  // the last ones that were searched, the latest first
   Buffer part_, points_, results_, read_back_, tiles_;
   std::size_t room_ = 0;         // points of the buffers

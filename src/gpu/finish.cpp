@@ -10,9 +10,6 @@
 namespace sdm::gpu {
 namespace {
 
-// Farther than this in the unit frame, single precision does not select faces well.
-constexpr double kFar = 16;
-
 ClosestPoint closest_of(const sites::SitesData& sites, const Vec3& point, const FaceLists& found,
                         std::size_t place, double max_distance, FinishCounts& counts) {
   bool incomplete = false, alone = false;

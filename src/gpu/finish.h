@@ -8,6 +8,9 @@
 
 namespace sdm::gpu {
 
+/// Farther than this in the unit frame, single precision does not select faces well.
+inline constexpr double kFar = 16;
+
 /// Where the results of points came from.
 struct FinishCounts {
   std::size_t nodes = 0, tests = 0, candidates = 0, incomplete = 0, alone = 0;

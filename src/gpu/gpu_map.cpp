@@ -61,78 +61,108 @@ struct GpuMap::Impl {
         sum(search.device().pipeline(gpu::kMapStatisticsWgsl.bytes)),
         limits(search.device().buffer(sizeof(gpu::Limits), gpu::Device::Use::uniform, "constants")) {}
 
-  void compute(const Surface& surface, const Sites& sites);
-  void reserve(std::size_t count);
+  void set_samples(const Surface& surface);
+  void compute(std::span<const Vec3> at, const Sites& sites);
   [[nodiscard]] std::size_t size_of(std::size_t part) const {
     return std::min(gpu::kPart, count - gpu::kPart * part);
   }
-  void require_map() const {
-    if (count == 0) throw Error("there is no map on the device: computing it has failed");
+  // Of samples, or of their distances.
+  static void require(std::size_t present) {
+    if (present == 0) throw Error("there is no map on the device: computing it has failed");
   }
 
   gpu::FaceSearch search;
   gpu::Pipeline sum;
-  gpu::Buffer limits, sums, read_back;
-  std::vector<gpu::Buffer> parts;  // distances in the unit frame
-  std::size_t count = 0;
-  double scale = 1;  // of the unit frame
+  gpu::Buffer limits, sums, read_back, positions;
+  struct Part {
+    gpu::Buffer samples, distances;  // these in the unit frame
+  };
+  std::vector<Part> parts;
+  std::vector<std::uint8_t> used;  // whether a vertex belongs to the face of a sample
+  std::size_t samples = 0;         // that the parts have
+  std::size_t count = 0;           // the same if they have distances, or 0
+  double scale = 1;                // of the unit frame
   gpu::DistanceError error{};
 };
 
-void GpuMap::Impl::reserve(std::size_t samples) {
+void GpuMap::Impl::set_samples(const Surface& surface) {
   using Use = gpu::Device::Use;
   gpu::Device& device = search.device();
-  if (parts.empty()) {
-    sums = device.buffer(gpu::kPart / gpu::kSummed * sizeof(gpu::Sums), Use::write, "statistics");
-    read_back = device.buffer(gpu::kPart * sizeof(float), Use::read_back, "distances");
+  const surface::SurfaceData& o1 = internals(surface);
+  count = samples = 0;
+  sums.reset();
+  read_back.reset();
+  positions.reset();
+  parts.clear();
+  sums = device.buffer(gpu::kPart / gpu::kSummed * sizeof(gpu::Sums), Use::write, "statistics");
+  read_back = device.buffer(gpu::kPart * sizeof(float), Use::read_back, "distances");
+  positions = device.buffer(3 * sizeof(float) * o1.mesh.positions.size(), Use::read, "the vertices of O1");
+  used.assign(o1.mesh.positions.size(), 0);
+  std::vector<gpu::Sample> of_part;
+  for (std::size_t begin = 0; begin < o1.samples.size(); begin += gpu::kPart) {
+    of_part.resize(std::min(gpu::kPart, o1.samples.size() - begin));
+    parallel_for(of_part.size(), 4096, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const std::uint32_t face = o1.sample_faces[begin + i];
+        const auto& [a, b, c] = o1.mesh.triangles[face];
+        const Vec2 weights = o1.texel_weights(face, o1.samples[begin + i]);
+        of_part[i] = {{a, b, c}, {static_cast<float>(weights[0]), static_cast<float>(weights[1])}};
+      }
+    });
+    for (const gpu::Sample& sample : of_part)
+      for (const std::uint32_t vertex : sample.vertices) used[vertex] = 1;
+    parts.push_back({.samples = device.buffer(of_part.size() * sizeof(gpu::Sample), Use::read, "samples"),
+                     .distances = device.buffer(of_part.size() * sizeof(float), Use::write, "distances")});
+    device.write(parts.back().samples, std::as_bytes(std::span(of_part)));
   }
-  const std::size_t needed = (samples + gpu::kPart - 1) / gpu::kPart;
-  parts.resize(std::min(parts.size(), needed));
-  while (parts.size() < needed)
-    parts.push_back(device.buffer(gpu::kPart * sizeof(float), Use::write, "distances"));
+  samples = o1.samples.size();
 }
 
-void GpuMap::Impl::compute(const Surface& surface, const Sites& sites) {
+void GpuMap::Impl::compute(std::span<const Vec3> at, const Sites& sites) {
   const sites::SitesData& o2 = internals(sites);
-  const surface::SurfaceData& o1 = internals(surface);
-  const std::size_t samples = surface.sample_texels().size();
   count = 0;
-  reserve(samples);
+  require(samples);
+  if (at.size() != used.size())
+    throw Error("the map on the device has " + std::to_string(used.size()) + " vertices, not " +
+                std::to_string(at.size()));
+  std::vector<float> placed(3 * at.size());
   double outermost = 1;
-  for (std::size_t part = 0; part < parts.size(); ++part) {
-    const std::size_t begin = gpu::kPart * part, size = std::min(gpu::kPart, samples - begin);
-    constexpr std::size_t kTile = gpu::FaceSearch::kTile;
-    // What fills the last tile is skipped.
-    std::vector<gpu::QueryPoint> placed((size + kTile - 1) / kTile * kTile, {{}, -1});
-    parallel_for(size, 4096, [&](std::size_t first, std::size_t last) {
-      std::vector<Vec3> points(last - first);
-      o1.place_samples(begin + first, points);
-      gpu::place_points(o2, points, kInfinity, std::span(placed).subspan(first, points.size()));
-    });
-    for (const gpu::QueryPoint& point : std::span(placed).first(size)) {
-      if (point.within < 0)
+  for (std::size_t v = 0; v < at.size(); ++v) {
+    if (used[v] == 0) continue;
+    const Vec3 unit = o2.frame.to_unit(at[v]);
+    for (int k = 0; k < 3; ++k) {
+      if (!(std::abs(unit[k]) <= gpu::kFar))
         throw Error(
-            "a sample is too far from O2 for a map on the device, by more than 7 times its size: use an "
+            "O1 reaches too far from O2 for a map on the device, by more than 7 times its size: use an "
             "engine");
-      for (const float x : point.position) outermost = std::max<double>(outermost, std::abs(x));
+      outermost = std::max(outermost, std::abs(unit[k]));
+      placed[3 * v + k] = static_cast<float>(unit[k]);
     }
-    search.measure(o2, placed, size, parts[part], 0);
   }
-  error = gpu::distance_error(o2, outermost);
+  search.device().write(positions, std::as_bytes(std::span(placed)));
+  for (std::size_t part = 0; part < parts.size(); ++part)
+    search.measure(o2, {parts[part].samples, positions}, std::min(gpu::kPart, samples - gpu::kPart * part),
+                   parts[part].distances);
+  error = gpu::sample_error(o2, outermost);
   scale = o2.frame.scale;
   count = samples;
 }
 
 GpuMap::GpuMap(const Surface& surface, const Sites& sites, const GpuOptions& options)
     : impl_(std::make_unique<Impl>(options)) {
-  impl_->compute(surface, sites);
+  compute(surface, sites);
 }
 GpuMap::~GpuMap() = default;
 GpuMap::GpuMap(GpuMap&&) noexcept = default;
 GpuMap& GpuMap::operator=(GpuMap&&) noexcept = default;
 
 void GpuMap::compute(const Surface& surface, const Sites& sites) {
-  impl_->compute(surface, sites);
+  impl_->set_samples(surface);
+  impl_->compute(surface.mesh().positions, sites);
+}
+
+void GpuMap::compute(std::span<const Vec3> positions, const Sites& sites) {
+  impl_->compute(positions, sites);
 }
 
 std::size_t GpuMap::samples() const {
@@ -146,7 +176,7 @@ double GpuMap::error(double distance) const {
 GpuMapStatistics GpuMap::statistics(double tolerance) const {
   if (!(tolerance >= 0)) throw Error("the tolerance of a map must be a number that is not negative");
   Impl& map = *impl_;
-  map.require_map();
+  map.require(map.count);
   gpu::Device& device = map.search.device();
   const double unit_tolerance = tolerance * map.scale;
   const auto& [each, constant] = map.error;
@@ -161,7 +191,8 @@ GpuMapStatistics GpuMap::statistics(double tolerance) const {
                              .beyond = gpu::not_below((unit_tolerance + constant) / (1 - each)),
                              .padding = 0};
     device.write(map.limits, std::as_bytes(std::span(&limits, 1)));
-    const gpu::Device::Binding bindings[] = {{0, &map.limits}, {1, &map.parts[part]}, {2, &map.sums}};
+    const gpu::Device::Binding bindings[] = {
+        {0, &map.limits}, {1, &map.parts[part].distances}, {2, &map.sums}};
     const gpu::BindGroup group = device.bind(map.sum, bindings);
     const gpu::Device::Step steps[] = {{&map.sum, &group, static_cast<std::uint32_t>(sums.size())}};
     device.run(steps, map.sums, map.read_back, std::as_writable_bytes(std::span(sums)));
@@ -188,12 +219,12 @@ GpuMapStatistics GpuMap::statistics(double tolerance) const {
 
 std::vector<float> GpuMap::distances() const {
   Impl& map = *impl_;
-  map.require_map();
+  map.require(map.count);
   require_memory(map.count * sizeof(float), "the distances of a map");
   std::vector<float> all(map.count);
   for (std::size_t part = 0; part < map.parts.size(); ++part) {
     const std::span<float> of_part = std::span(all).subspan(gpu::kPart * part, map.size_of(part));
-    map.search.device().run({}, map.parts[part], map.read_back, std::as_writable_bytes(of_part));
+    map.search.device().run({}, map.parts[part].distances, map.read_back, std::as_writable_bytes(of_part));
   }
   const auto inverse = static_cast<float>(1 / map.scale);  // a power of two
   for (float& distance : all) distance *= inverse;

@@ -160,4 +160,11 @@ DistanceError distance_error(const sites::SitesData& sites, double largest_coord
                              kByRadius * static_cast<double>(sites.regions.largest_radius))};
 }
 
+DistanceError sample_error(const sites::SitesData& sites, double largest_coordinate) {
+  constexpr double kByCoordinateOfVertices = 1.7e-6;
+  DistanceError error = distance_error(sites, largest_coordinate);
+  error.constant += kByCoordinateOfVertices * largest_coordinate;
+  return error;
+}
+
 }  // namespace sdm::gpu

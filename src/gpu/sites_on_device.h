@@ -31,5 +31,7 @@ struct DistanceError {
   double each, constant;
 };
 [[nodiscard]] DistanceError distance_error(const sites::SitesData& sites, double largest_coordinate);
+/// The same for samples that the device has placed by vertices whose coordinates are at most this.
+[[nodiscard]] DistanceError sample_error(const sites::SitesData& sites, double largest_coordinate);
 
 }  // namespace sdm::gpu

@@ -38,6 +38,10 @@ void GpuMap::compute(const Surface&, const Sites&) {
   refuse();
 }
 
+void GpuMap::compute(std::span<const Vec3>, const Sites&) {
+  refuse();
+}
+
 std::size_t GpuMap::samples() const {
   refuse();
 }

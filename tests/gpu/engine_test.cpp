@@ -185,13 +185,25 @@ TEST(GpuEngine, BuffersBeyondTheLimitAreDivided) {
         });
     EXPECT_EQ(wrong, 0u) << bytes;
 
-    const gpu::Buffer distances =
-                          search.device().buffer(points.size() * sizeof(float), gpu::Device::Use::write, ""),
-                      read_back = search.device().buffer(points.size() * sizeof(float),
-                                                         gpu::Device::Use::read_back, "");
+    // Samples at vertices, of which each is one of the points.
+    gpu::Device& device = search.device();
+    std::vector<gpu::Sample> samples;
+    std::vector<float> positions;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      samples.push_back({{i, i, i}, {}});
+      for (const float x : placed[i].position) positions.push_back(x);
+    }
+    using Use = gpu::Device::Use;
+    const std::size_t size = points.size() * sizeof(float);
+    const gpu::Buffer distances = device.buffer(size, Use::write, ""),
+                      read_back = device.buffer(size, Use::read_back, ""),
+                      samples_there = device.buffer(samples.size() * sizeof(gpu::Sample), Use::read, ""),
+                      positions_there = device.buffer(3 * size, Use::read, "");
+    device.write(samples_there, std::as_bytes(std::span(samples)));
+    device.write(positions_there, std::as_bytes(std::span(positions)));
+    search.measure(o2, {samples_there, positions_there}, points.size(), distances);
     std::vector<float> on_device(points.size());
-    search.measure(o2, placed, points.size(), distances, 0);
-    search.device().run({}, distances, read_back, std::as_writable_bytes(std::span(on_device)));
+    device.run({}, distances, read_back, std::as_writable_bytes(std::span(on_device)));
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (placed[i].within < 0) continue;
       const auto& [x, y, z] = placed[i].position;

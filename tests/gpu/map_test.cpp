@@ -88,9 +88,9 @@ TEST(GpuMap, FollowsFrames) {
   for (int frame = 0; frame < 6; ++frame) {
     for (Vec3& p : o1.positions) p = p + Vec3{0.05, 0, 0};
     for (Vec3& p : o2.positions) p = 1.3 * p;
-    surface.refit(o1.positions);
     sites.refit(o2.positions);
-    map.compute(surface, sites);
+    map.compute(o1.positions, sites);
+    surface.refit(o1.positions);
     expect_map(map, expected_distances(surface, sites));
   }
 }
@@ -119,6 +119,14 @@ TEST(GpuMap, WhatItRefuses) {
   EXPECT_THAT(test::error_of([&] { return map.distances(); }), HasSubstr("no map"));
   map.compute(surface, near);
   EXPECT_GT(map.samples(), 0u);
+  EXPECT_THAT(test::error_of([&] { map.compute(std::vector<Vec3>(7), near); }),
+              HasSubstr("8 vertices, not 7"));
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(test::error_of([&] {
+                map.compute(std::vector<Vec3>(8, {0, kNan, 0}), near);
+              }),
+              HasSubstr("too far"));
+  EXPECT_EQ(map.samples(), 0u);
   EXPECT_THAT(test::error_of([&] { return GpuMap(surface, near, {.device = "no such device"}); }),
               HasSubstr("no such device"));
 }
