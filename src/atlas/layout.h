@@ -31,6 +31,14 @@ struct Layout {
 [[nodiscard]] std::array<Vec3, 2> affine_edges(const std::array<Vec2, 3>& corners,
                                                std::span<const Vec3> positions, const Triangle& triangle);
 
+/// The same for a face that has a chart, of which a needle without area has one too: along its longest side
+/// only.
+[[nodiscard]] std::array<Vec3, 2> moved_edges(const std::array<Vec2, 3>& corners,
+                                              std::span<const Vec3> positions, const Triangle& triangle);
+/// Whether a triangle in the atlas is so thin that rounding would move the points of its affine map by more
+/// than its height.
+[[nodiscard]] bool is_needle(const std::array<Vec2, 3>& corners);
+
 /// AtlasKind::charts and AtlasKind::triangles.
 [[nodiscard]] Layout chart_layout(const Mesh& mesh, const AtlasOptions& options);
 /// Charts of further faces for an atlas of `options`, at its scale, in free room; those of an atlas of kind

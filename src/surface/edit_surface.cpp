@@ -38,7 +38,7 @@ void move_maps(const SurfaceData& s, const Mesh& edited, const MeshEdit& edit,
     bool moved = false;
     for (int k = 0; k < 3; ++k) moved |= s.mesh.positions[from[k]] != edited.positions[to[k]];
     if (moved && s.face_charts[f] != kNone && !is_removed(to))
-      maps[f].edges = atlas::affine_edges(s.corners[f], edited.positions, to);
+      maps[f].edges = atlas::moved_edges(s.corners[f], edited.positions, to);
   };
   if (edit.moved_vertices.empty()) {
     for (const auto& reconnected : edit.reconnected_faces) follow(reconnected.face);

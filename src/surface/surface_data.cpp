@@ -91,7 +91,7 @@ void SurfaceData::refit(std::span<const Vec3> positions) {
     for (std::size_t f = begin; f < end; ++f) {
       const Triangle& t = mesh.triangles[f];
       const bool moved = std::ranges::any_of(t, [&](std::uint32_t v) { return positions[v] != current[v]; });
-      if (moved && face_charts[f] != kNone) maps[f].edges = atlas::affine_edges(corners[f], positions, t);
+      if (moved && face_charts[f] != kNone) maps[f].edges = atlas::moved_edges(corners[f], positions, t);
     }
   };
   intact_.change([&] {
@@ -109,6 +109,23 @@ void SurfaceData::add_own_points() {
   for (std::uint32_t face = 0; face < face_charts.size(); ++face)
     if (face_charts[face] != kNone && face_samples[face] == 0) map_faces.push_back(face);
   for (std::size_t i = texels(); i < map_faces.size(); ++i) face_samples[map_faces[i]] = 1;
+}
+
+Vec2 SurfaceData::texel_weights(std::uint32_t face, std::uint32_t texel) const {
+  if (texel >= texels()) return own_weights(face);
+  const auto& [p, q, r] = corners[face];
+  const Vec2 a = q - p, b = r - p, c = r - q;
+  const Vec2 d = Vec2{texel % resolution + 0.5, texel / resolution + 0.5} - p;
+  const double det = cross(a, b);
+  if (!atlas::is_needle(corners[face])) return {cross(d, b) / det, cross(a, d) / det};
+  // On the longest side. A chart without area owns a texel, too.
+  const double aa = dot(a, a), bb = dot(b, b), cc = dot(c, c), longest = std::max({aa, bb, cc});
+  if (longest == 0) return {};
+  const auto along = [](double t) { return std::clamp(t, 0.0, 1.0); };
+  if (longest == aa) return {along(dot(d, a) / aa), 0};
+  if (longest == bb) return {0, along(dot(d, b) / bb)};
+  const double t = along(dot(d - a, c) / cc);
+  return {1 - t, t};
 }
 
 void SurfaceData::place_samples(std::size_t first, std::span<Vec3> points) const {

@@ -160,7 +160,7 @@ TEST(GpuEngine, BuffersBeyondTheLimitAreDivided) {
   const Sites sites(test::load("armadillo.off", "fit"));
   const sites::SitesData& o2 = internals(sites);
   std::mt19937 random(1);
-  std::vector<Vec3> points = queries_for(sites.mesh(), 64 * gpu::FaceSearch::kTile, random);
+  std::vector<Vec3> points = queries_for(sites.mesh(), 24 * gpu::FaceSearch::kTile, random);
   const std::vector<ClosestPoint> expected =
       closest_points(sites, points, {.engine = make_engine("reference")});
   std::vector<gpu::QueryPoint> placed(points.size());

@@ -273,6 +273,19 @@ TEST(SurfaceRefit, MovesTexelsWithTheirFaces) {
   }
 }
 
+// Faces without area have charts, each of which owns a texel: its point was not a number after a refit.
+TEST(SurfaceRefit, MovesTexelsOfFacesWithoutArea) {
+  Mesh mesh = test::with_defects(test::load("blobby.off", "fit"));
+  Surface surface(mesh, {.resolution = 512});
+  const std::vector<Vec3> before = surface.sample_points();
+  for (Vec3& p : mesh.positions) p = 1.5 * p + Vec3{1, 2, 3};
+  surface.refit(mesh.positions);
+  const std::vector<Vec3> after = surface.sample_points();
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t i = 0; i < after.size(); ++i)
+    ASSERT_LE(norm(after[i] - (1.5 * before[i] + Vec3{1, 2, 3})), 1e-9) << i;
+}
+
 TEST(SurfaceRefit, RejectedPositionsChangeNothing) {
   Surface surface(test::load("cube.off"), {.resolution = 64});
   const std::vector<Vec3> before = surface.sample_points();
