@@ -148,8 +148,9 @@ Real largest_radius(const Point& p, const Point& n, const std::array<Point, 3>& 
   return lo;
 }
 
-// The ball and the ray of each texel, over all faces of a mesh of one solid that is oriented outwards.
-void expect_brute_force(const Mesh& mesh, double angle, std::uint32_t resolution) {
+// The ball and the ray of each texel, over all faces of its solid, which is oriented outwards; the faces from
+// `second` on are another solid.
+void expect_brute_force(const Mesh& mesh, double angle, std::uint32_t resolution, std::uint32_t second = 0) {
   const Measured map(mesh, resolution, angle);
   const double size = norm(bounds(mesh).upper - bounds(mesh).lower);
   std::vector<Vec3> normals;
@@ -166,10 +167,11 @@ void expect_brute_force(const Mesh& mesh, double angle, std::uint32_t resolution
     const std::uint32_t face = map.surface.map_faces()[texels[i]];
     const Vec3 at = map.surface.texel_point(texels[i]), n = -1.0 * normals[face];
     const Point p = point_of(at), inward = point_of(n);
+    const auto is_own = [&](std::size_t f) { return (f < second) == (face < second); };
     double ray = kInfinity, turn = 0;
     for (std::size_t f = 0; f < faces.size(); ++f) {
       const double speed = dot(normals[f], n);
-      if (!(speed > 1e-12)) continue;
+      if (!is_own(f) || !(speed > 1e-12)) continue;
       const double t = dot(mesh.positions[mesh.triangles[f][0]] - at, normals[f]) / speed;
       const Vec3 q = at + t * n;
       if (t >= -1e-12 && t < ray && squared_distance(point_of(q), faces[f]) < 1e-24 * size * size) {
@@ -180,7 +182,7 @@ void expect_brute_force(const Mesh& mesh, double angle, std::uint32_t resolution
     const double grazing = -std::cos((std::min(angle, 90.0) + 0.1) * std::numbers::pi / 180);
     Real radius = turn > grazing ? ray / 2 : 4 * size;
     for (std::size_t f = 0; f < faces.size(); ++f)
-      if (dot(normals[f], n) > -std::cos((angle + 0.1) * std::numbers::pi / 180))
+      if (is_own(f) && dot(normals[f], n) > -std::cos((angle + 0.1) * std::numbers::pi / 180))
         radius = std::min(radius, largest_radius(p, inward, faces[f], radius));
     ASSERT_NEAR(map.maps.ray.distance[texels[i]], ray, 1e-7 * size);
     ASSERT_NEAR(map.maps.ball.distance[texels[i]], static_cast<double>(2 * radius), 2e-7 * size);
@@ -204,6 +206,12 @@ TEST(Thickness, EqualsBruteForce) {
     expect_brute_force(test::ring(12), angle, 128);
     expect_brute_force(tube(12, 0.5, 1, 2), angle, 128);
   }
+}
+
+TEST(Thickness, OfSolidsThroughEachOtherIsTheirOwn) {
+  const Mesh first = bumpy(2, 1);
+  expect_brute_force(test::joined(first, bumpy(2, 2)), 90, 128,
+                     static_cast<std::uint32_t>(first.triangles.size()));
 }
 
 TEST(Thickness, MovesWithThePart) {

@@ -2,6 +2,7 @@
 #include <sdm/error.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <new>
 #include <vector>
 
@@ -41,18 +42,22 @@ std::vector<float> matched_thickness(const Surface& surface, const Sites& sites,
                                      ThicknessMethod method, const ThicknessOptions& options) try {
   require_matches(surface, sites, matches);
   const sites::SitesData& data = internals(sites);
-  const thickness::Walls walls(data, options.angle);
+  const thickness::Walls walls(data, method, options.angle);
   std::vector<float> values = baking::no_values(matches, 1, "the thickness of matches");
-  baking::for_each_texel(
-      surface, options.progress, "thickness", [&] { return thickness::WallSearch(walls); },
-      [&](std::uint32_t texel, thickness::WallSearch& search) {
-        const SurfacePoint point = matches.point(texel);
-        if (point.face == kNone || !walls.measures(point.face)) return;
-        const Vec3 from = baking::position_of(data.mesh, point);
-        const auto end =
-            method == ThicknessMethod::ray ? search.ray(point.face, from) : search.ball(point.face, from);
-        if (end.face != kNone) values[texel] = static_cast<float>(end.thickness);
-      });
+  baking::for_each_rows(surface, options.progress, "thickness", [&](std::uint32_t begin, std::uint32_t end) {
+    std::vector<std::uint32_t> texels;
+    std::vector<thickness::WallStart> starts;
+    for (std::uint32_t texel = begin; texel < end; ++texel) {
+      const SurfacePoint point = matches.point(texel);
+      if (point.face == kNone || !walls.measures(point.face)) continue;
+      texels.push_back(texel);
+      starts.push_back({point.face, baking::position_of(data.mesh, point)});
+    }
+    std::vector<thickness::WallEnd> ends(starts.size());
+    thickness::WallSearch(walls).measure(method, starts, ends);
+    for (std::size_t i = 0; i < texels.size(); ++i)
+      if (ends[i].face != kNone) values[texels[i]] = static_cast<float>(ends[i].thickness);
+  });
   return values;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the thickness of matches");

@@ -52,16 +52,25 @@ class TexelPlaces {
   BarycentricFrame frame_;
 };
 
+/// Calls body(begin, end) for ranges of the texels of whole rows, in parallel.
+template <class Body>
+void for_each_rows(const Surface& surface, const Progress& progress, std::string_view step,
+                   const Body& body) {
+  constexpr std::size_t kRowsOfTask = 8;
+  const std::size_t width = surface.resolution();
+  parallel_for(surface.rows(), kRowsOfTask, progress, step, [&](std::size_t begin, std::size_t end) {
+    body(static_cast<std::uint32_t>(begin * width), static_cast<std::uint32_t>(end * width));
+  });
+}
+
 /// Calls body(texel, state) for the texels of whole rows, in parallel; make_state() makes what one thread
 /// keeps.
 template <class MakeState, class Body>
 void for_each_texel(const Surface& surface, const Progress& progress, std::string_view step,
                     const MakeState& make_state, const Body& body) {
-  constexpr std::size_t kRowsOfTask = 8;
-  const std::size_t width = surface.resolution();
-  parallel_for(surface.rows(), kRowsOfTask, progress, step, [&](std::size_t begin, std::size_t end) {
+  for_each_rows(surface, progress, step, [&](std::uint32_t begin, std::uint32_t end) {
     auto state = make_state();
-    for (std::size_t i = begin * width; i < end * width; ++i) body(static_cast<std::uint32_t>(i), state);
+    for (std::uint32_t i = begin; i < end; ++i) body(i, state);
   });
 }
 

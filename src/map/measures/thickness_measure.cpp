@@ -10,6 +10,7 @@
 #include "closest/facing/outward_normals.h"
 #include "core/parallel.h"
 #include "geometry/line_triangle.h"
+#include "geometry/unit_across.h"
 #include "geometry/vec.h"
 #include "tree/fold.h"
 
@@ -27,7 +28,7 @@ double product_of_turn(double angle) {
 
 }  // namespace
 
-Walls::Walls(const sites::SitesData& sites, double angle)
+Walls::Walls(const sites::SitesData& sites, ThicknessMethod method, double angle)
     : sites_(sites), least_turn_(product_of_turn(angle)), ray_turn_(product_of_turn(std::min(angle, 90.0))) {
   check_options(ThicknessOptions{.angle = angle});
   if (!sites.closed) throw Error("a mesh that is open has no thickness, as it does not bound a solid");
@@ -46,7 +47,7 @@ Walls::Walls(const sites::SitesData& sites, double angle)
       largest = std::max({largest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
   back_ = 8 * std::numeric_limits<double>::epsilon() * largest;
   find_cavities();
-  arrange_normals();
+  if (method == ThicknessMethod::ball) arrange_normals();
 }
 
 // A cavity is oriented into itself, so that its volume is negative.
@@ -96,24 +97,56 @@ void Walls::arrange_normals() {
       normals_.of_leaf[leaf].set(
           i - leaves[leaf], {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])});
     }
+  normals_.leaves.resize(leaves.size() - 1);
+  constexpr std::size_t kGrain = 512;
+  parallel_for(normals_.leaves.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t leaf = begin; leaf < end; ++leaf)
+      normals_.leaves[leaf] =
+          walls_of_leaf(std::span(sites_.tree.items).subspan(leaves[leaf], leaves[leaf + 1] - leaves[leaf]));
+  });
+}
+
+LeafWalls Walls::walls_of_leaf(std::span<const std::uint32_t> faces) const {
+  Vec3 mean{};
+  Box normals;
+  for (const std::uint32_t f : faces) {
+    mean = mean + outward_[f];
+    extend(normals, outward_[f]);
+  }
+  mean = normalized(mean);
+  if (mean == Vec3{}) mean = {0, 0, 1};  // faces of two sides, or without an area
+  const Vec3 across = unit_across(mean);
+  const std::array axes{mean, across, cross(mean, across)};
+  LeafWalls box;
+  box.normals = tree::FloatBox::around(normals);
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t j = 0; j < 3; ++j) box.axis[k][j] = static_cast<float>(axes[k][j]);
+    // Of the rounded axis, as searches use it.
+    const Vec3 axis{box.axis[k][0], box.axis[k][1], box.axis[k][2]};
+    double least = kInfinity, most = -kInfinity;
+    for (const std::uint32_t f : faces)
+      for (const Vec3& corner : corners_of(sites_.mesh, f)) {
+        const double along = dot(axis, sites_.frame.to_unit(corner));
+        least = std::min(least, along);
+        most = std::max(most, along);
+      }
+    constexpr double kRounding = 1e-6;
+    box.lower[k] = static_cast<float>(least - kRounding);
+    box.upper[k] = static_cast<float>(most + kRounding);
+  }
+  return box;
 }
 
 bool Walls::measures(std::uint32_t face) const {
   return !sites_.topology.ignored(face) && outward_[face] != Vec3{};
 }
 
-bool Walls::same_solid(std::uint32_t face, std::uint32_t other) const {
-  const auto& component = sites_.orientation.component;
-  const std::uint32_t a = component[face], b = component[other];
-  return a == b || cavity_[a] != 0 || cavity_[b] != 0;
-}
-
-WallEnd WallSearch::ray(std::uint32_t face, const Vec3& point) {
-  const Vec3 n = walls_.inward(face);
+WallEnd WallSearch::ray(const WallStart& start) {
+  const Vec3 n = walls_.inward(start.face);
   const auto leaves_by = [&](std::size_t, std::uint32_t other) {
-    return dot(walls_.outward_[other], n) > kParallel && walls_.same_solid(face, other);
+    return dot(walls_.outward_[other], n) > kParallel && walls_.same_solid(start.face, other);
   };
-  Ray ray{.origin = point - walls_.back_ * n, .direction = n};
+  Ray ray{.origin = start.point - walls_.back_ * n, .direction = n};
   // Nothing behind the face that the ray before hit, if this one hits it too.
   if (hit_ != kNone && leaves_by(0, hit_))
     if (const auto known = line_meets_triangle(ray.origin, n, corners_of(walls_.sites_.mesh, hit_));
@@ -124,49 +157,37 @@ WallEnd WallSearch::ray(std::uint32_t face, const Vec3& point) {
   hit_ = hit.face;
   if (hit.face == kNone) return {};
   const double length = std::max(0.0, hit.t - walls_.back_);
-  return {length, point + length * n, hit.face};
+  return {length, start.point + length * n, hit.face};
 }
 
-struct WallSearch::Stops {
-  const Walls& walls;
-  std::uint32_t from;
-  Touching ball;
-  TouchedPoint least{};
-  std::uint32_t face = kNone;
-
-  // The first one by (radius, face), so that the order of the search does not matter.
-  void offer(const TouchedPoint& reached, std::uint32_t other) {
-    if (reached.radius < least.radius || (reached.radius == least.radius && face != kNone && other < face)) {
-      least = reached;
-      face = other;
-    }
+void WallSearch::measure(ThicknessMethod method, std::span<const WallStart> starts, std::span<WallEnd> ends) {
+  if (method == ThicknessMethod::ray) {
+    std::ranges::transform(starts, ends.begin(), [&](const WallStart& start) { return ray(start); });
+    return;
   }
-  void stop(std::uint32_t other) {
-    if (dot(walls.outward_[other], ball.n) > walls.least_turn_ && walls.same_solid(from, other))
-      offer(smallest_ball(ball, corners_of(walls.sites_.mesh, other)), other);
+  constexpr std::size_t kPacket = BallMemory::kPacket;
+  for (std::size_t i = 0; i < starts.size(); i += kPacket) {
+    const std::size_t count = std::min(kPacket, starts.size() - i);
+    balls(starts.subspan(i, count), ends.subspan(i, count));
   }
-};
+}
 
-WallEnd WallSearch::ball(std::uint32_t face, const Vec3& point) {
-  Stops stops{walls_, face, {point, walls_.inward(face)}};
-  // Otherwise the face that ends the ray stops the ball there by itself.
-  if (walls_.ray_turn_ < walls_.least_turn_)
-    if (const WallEnd end = ray(face, point);
-        end.face != kNone && dot(walls_.outward_[end.face], stops.ball.n) > walls_.ray_turn_)
-      stops.offer({end.thickness / 2, end.point}, end.face);
-  for (const std::uint32_t before : stopped_by_)
-    if (before != kNone) stops.stop(before);
-  const auto stop = [](void* data, std::uint32_t other) {
-    auto& by = *static_cast<Stops*>(data);
-    by.stop(other);
-    return by.least.radius;
-  };
-  for_each_near_wall(walls_.sites_, walls_.normals_, stops.ball, walls_.least_turn_, stops.least.radius,
-                     {stop, &stops}, scratch_.stack);
-  if (stops.face == kNone) return {};
-  if (std::ranges::find(stopped_by_, stops.face) == stopped_by_.end())
-    stopped_by_[next_++ % stopped_by_.size()] = stops.face;
-  return {2 * stops.least.radius, stops.least.point, stops.face};
+void WallSearch::balls(std::span<const WallStart> starts, std::span<WallEnd> ends) {
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    ends[i] = {};
+    // Otherwise the face that ends the ray stops the ball there by itself.
+    if (!(walls_.ray_turn_ < walls_.least_turn_)) continue;
+    const WallEnd end = ray(starts[i]);
+    if (end.face != kNone && dot(walls_.outward_[end.face], walls_.inward(starts[i].face)) > walls_.ray_turn_)
+      ends[i] = end;
+  }
+  find_ball_ends(walls_, starts, known_, ends, memory_);
+  // More points bound the search better, and cost more than they save from three packets on.
+  constexpr std::size_t kKnown = 2 * BallMemory::kPacket;
+  if (known_.size() > kKnown - BallMemory::kPacket)
+    known_.erase(known_.begin(), known_.end() - (kKnown - BallMemory::kPacket));
+  for (const WallEnd& end : ends)
+    if (end.face != kNone) known_.push_back(end);
 }
 
 }  // namespace sdm::thickness
@@ -186,19 +207,28 @@ class FaceWallSearch final : public map::FaceSearch {
   FaceWallSearch(const Walls& walls, ThicknessMethod method)
       : walls_(walls), method_(method), search_(walls) {}
 
-  void start(std::span<const map::Sample> samples) override { samples_ = samples; }
+  void start(std::span<const map::Sample> samples) override {
+    samples_ = samples;
+    starts_.clear();
+    numbers_.assign(samples.size(), kNone);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (!walls_.measures(samples[i].face)) continue;
+      numbers_[i] = static_cast<std::uint32_t>(starts_.size());
+      starts_.push_back({samples[i].face, samples[i].point});
+    }
+    ends_.resize(starts_.size());
+    search_.measure(method_, starts_, ends_);
+  }
   map::Value value(std::size_t i) override {
-    const map::Sample& sample = samples_[i];
-    if (!walls_.measures(sample.face)) return {};
-    const WallEnd end = method_ == ThicknessMethod::ray ? search_.ray(sample.face, sample.point)
-                                                        : search_.ball(sample.face, sample.point);
+    if (numbers_[i] == kNone) return {};
+    const WallEnd& end = ends_[numbers_[i]];
     if (end.face == kNone) return {};
     return {.closest = {.point = end.point,
                         .distance = end.thickness,
                         .site = end.face,
                         .type = SiteType::face,
                         .face = end.face},
-            .vector = end.point - sample.point};
+            .vector = end.point - samples_[i].point};
   }
 
  private:
@@ -206,12 +236,15 @@ class FaceWallSearch final : public map::FaceSearch {
   ThicknessMethod method_;
   WallSearch search_;
   std::span<const map::Sample> samples_;
+  std::vector<std::uint32_t> numbers_;  // of samples among those that are measured; kNone
+  std::vector<WallStart> starts_;       // of these
+  std::vector<WallEnd> ends_;
 };
 
 }  // namespace
 
 ThicknessMeasure::ThicknessMeasure(const Mesh& mesh, const Sites& sites, const ThicknessOptions& options)
-    : walls_(internals(checked(mesh, sites)), options.angle), method_(options.method) {
+    : walls_(internals(checked(mesh, sites)), options.method, options.angle), method_(options.method) {
   description.measured = measured_distance(options);
   description.sign.reason = "a thickness has no sign";
   progress = options.progress;

@@ -50,7 +50,7 @@ Vec3 point_in(const Corners& corners, std::size_t i) {
 std::vector<double> thickness::wall_lengths(const Sites& sites, std::size_t samples) try {
   const sites::SitesData& data = internals(sites);
   if (samples == 0 || !data.closed || !data.orientation.orientable) return {};
-  const thickness::Walls walls(data, ThicknessOptions().angle);
+  const thickness::Walls walls(data, ThicknessMethod::ray, ThicknessOptions().angle);
   const std::vector<double> sums = area_sums(data.mesh);
   const double step = sums.back() / static_cast<double>(samples);
   std::vector<double> lengths(samples, kInfinity);
@@ -61,7 +61,7 @@ std::vector<double> thickness::wall_lengths(const Sites& sites, std::size_t samp
       const auto found = std::ranges::upper_bound(sums, (static_cast<double>(i) + 0.5) * step);
       const auto face = static_cast<std::uint32_t>(std::min(found, sums.end() - 1) - sums.begin());
       if (!walls.measures(face)) continue;
-      lengths[i] = search.ray(face, point_in(corners_of(data.mesh, face), i)).thickness;
+      lengths[i] = search.ray({face, point_in(corners_of(data.mesh, face), i)}).thickness;
     }
   });
   std::ranges::sort(lengths);
