@@ -66,10 +66,30 @@ bool in_order(std::span<const Vec3> points, const Box& box) {
   return given <= kHardlyLarger * along_curve;
 }
 
+// The points, those outside of the box moved towards its centre onto its surface: what is far away is near to
+// each other if it is so by direction.
+std::vector<Vec3> projected(std::span<const Vec3> points, const Box& box) {
+  const Vec3 centre = 0.5 * (box.lower + box.upper);
+  const double reach = box.upper[0] - centre[0];
+  std::vector<Vec3> result(points.begin(), points.end());
+  for (Vec3& p : result) {
+    const Vec3 from = p - centre;
+    const double largest = std::max({std::abs(from[0]), std::abs(from[1]), std::abs(from[2])});
+    if (largest > reach && largest < kInfinity) p = centre + reach / largest * from;
+  }
+  return result;
+}
+
 Ordered order_of(std::span<const Vec3> points, const Box& box) {
   if (points.size() <= kPacketPoints || (points.size() >= kEnoughToSample && in_order(points, box)))
     return {given_order(points.size()), true};
-  return {morton_order(points, box), false};
+  const auto inside = [&](const Vec3& p) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!(p[k] >= box.lower[k] && p[k] <= box.upper[k])) return false;
+    return true;
+  };
+  if (std::ranges::all_of(points, inside)) return {morton_order(points, box), false};
+  return {morton_order(projected(points, box), box), false};
 }
 
 // Divides runs of an order as spatial_order() does: groups cost less if they are as small as can be.

@@ -134,8 +134,7 @@ class PointSearch {
       return exact_closest(
           sites_, query, max_distance_, [](uint32_t) { return true; },
           [&](uint32_t face) { return !faces_.excludes(number_, face); });
-    if (!(squared_norm(unit) <= FarSearch::kFarthest * FarSearch::kFarthest))
-      return exact_closest(sites_, query, max_distance_);
+    if (!(squared_norm(unit) <= kFarthest * kFarthest)) return exact_closest(sites_, query, max_distance_);
     if (lower_bound(sites_.tree.box(0), unit) > max_distance_ * sites_.frame.scale) return {};
     m_.candidates.clear();
     FarSearch search(frames_, unit, m_.candidates);
@@ -185,16 +184,18 @@ class PacketSearch {
     place(packet, count);
     limit();
     m_.candidates.clear();
-    tree::visit(sites_.wide, m_.open, *this);
+    if (used_ != 0) tree::visit(sites_.wide, m_.open, *this);
     settled_.compare({packet, count}, squared_limit_, m_.candidates, Settled::Equal::in_order);
-    const uint32_t alone = far_ | settled_.tied();
     work_.far += static_cast<size_t>(std::popcount(far_ & ((1u << count) - 1)));
+    const uint32_t together = far_together(packet, count), alone = (far_ & ~together) | settled_.tied();
     for (size_t i = 0; i < count; ++i) {
+      if ((together >> i & 1) != 0) continue;
       ClosestPoint& closest = found[order[i]];
       closest =
           (alone >> i & 1) != 0 ? alone_(packet[i], i, {last_, known_}) : settled_.closest(i, max_distance_);
       if (closest.type != SiteType::none) remember(i, closest);
     }
+    if (together != 0) search_from_afar({packet, count}, together, order, found);
   }
 
   // The closest points that are found from now on are near these.
@@ -269,6 +270,37 @@ class PacketSearch {
     }
     for (int k = 0; k < 3; ++k) centre_[k] = used_ != 0 ? 0.5f * (lo[k] + hi[k]) : 0;
     error_ = distance_error(most, sites_.regions.largest_radius);
+  }
+
+  // The far points that are searched together, as bits: those that single precision serves, if there are
+  // several, and that O2 may be near enough to.
+  HWY_NOINLINE uint32_t far_together(const Vec3* packet, size_t count) const {
+    if (!Faces::kAll || far_ == 0) return 0;
+    uint32_t together = 0;
+    for (size_t i = 0; i < count; ++i) {
+      if ((far_ >> i & 1) == 0) continue;
+      const Vec3 unit = sites_.frame.to_unit(packet[i]);
+      const bool near_enough = lower_bound(sites_.tree.box(0), unit) <= max_distance_ * sites_.frame.scale;
+      if (squared_norm(unit) <= kFarthest * kFarthest && near_enough) together |= 1u << i;
+    }
+    return std::popcount(together) > 1 ? together : 0;
+  }
+
+  // The results of exact_closest().
+  HWY_NOINLINE void search_from_afar(std::span<const Vec3> packet, uint32_t far,
+                                     std::span<const uint32_t> order, std::span<ClosestPoint> found) {
+    Vec3 unit[kSize];
+    for (size_t i = 0; i < packet.size(); ++i) unit[i] = sites_.frame.to_unit(packet[i]);
+    m_.candidates.clear();
+    FarPacketSearch search(frames_, unit, far, m_.candidates);
+    search.start_from({last_, known_});
+    tree::visit(sites_.wide, m_.open, search);
+    settled_.compare(packet, search.limits(), m_.candidates, Settled::Equal::by_name);
+    for (; far != 0; far &= far - 1) {
+      const auto i = static_cast<size_t>(std::countr_zero(far));
+      const ClosestPoint closest = found[order[i]] = settled_.closest(i, max_distance_);
+      if (closest.type != SiteType::none) remember(i, closest);
+    }
   }
 
   // The squared distances of points from one point.

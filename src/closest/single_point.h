@@ -74,7 +74,7 @@ void closest_of_packet(const sites::SitesData& sites, std::span<const Vec3> poin
 struct PacketWork {
   std::size_t leaves = 0;  ///< that were near to any point of their packets
   std::size_t pairs = 0;   ///< of a point and a leaf near to it
-  std::size_t far = 0;     ///< points many sizes of O2 away, which are searched one by one
+  std::size_t far = 0;     ///< points many sizes of O2 away, which are searched by themselves
 };
 
 /// Sets found[i] to closest_point(queries[i]) for each i of `order`; `face` may be another one of the same

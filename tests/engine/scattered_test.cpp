@@ -207,9 +207,13 @@ TEST_P(ScatteredPoints, ManySizesAway) {
                           away * norm(box.upper - box.lower) / norm(direction) * direction);
       }
     expect_least(sites, queries);
-    for (const Vec3& q : queries) {
+    const std::vector<ClosestPoint> in_packets = closest_points(sites, queries);
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      const Vec3& q = queries[i];
       const ClosestPoint found = closest_point(internals(sites), q, kAnywhere),
                          expected = first_of_all_faces(internals(sites), q);
+      ASSERT_EQ(in_packets[i].type, expected.type);
+      ASSERT_EQ(in_packets[i].site, expected.site);
       ASSERT_EQ(found.type, expected.type);
       ASSERT_EQ(found.site, expected.site);
       ASSERT_EQ(found.face, expected.face);
@@ -219,7 +223,7 @@ TEST_P(ScatteredPoints, ManySizesAway) {
   }
 }
 
-// Many of them are searched one by one, too, though no leaf is near to their packets.
+// Many of them are not searched in groups, though no leaf is near to their packets.
 TEST(Scattered, ManyPointsManySizesAway) {
   std::mt19937 random(13);
   const Sites sites(test::sphere(3));
@@ -230,6 +234,27 @@ TEST(Scattered, ManyPointsManySizesAway) {
     const ClosestPoint expected = first_of_all_faces(internals(sites), queries[i]);
     ASSERT_EQ(found[i].distance, expected.distance);
     ASSERT_EQ(found[i].site, expected.site);
+  }
+}
+
+// Packets in which some points are near, others many sizes away, and the farthest too far for single
+// precision.
+TEST(Scattered, NearAndFarPointsInOnePacket) {
+  std::mt19937 random(14);
+  const Mesh mesh = test::sphere(3);
+  const Sites sites(mesh);
+  std::vector<Vec3> queries;
+  for (const double away : {1.5, 60.0, 1e7, 100.0, 2.0, 1e4, 300.0})
+    for (int i = 0; i < 2; ++i)
+      queries.push_back(away * test::random_point({{0.2, 0.2, 0.2}, {1, 1, 1}}, random));
+  for (const double within : {kInfinity, 150.0}) {
+    const std::vector<ClosestPoint> found = closest_points(sites, queries, {.max_distance = within});
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      const ClosestPoint alone = closest_point(internals(sites), queries[i], within);
+      ASSERT_EQ(found[i].type, alone.type);
+      ASSERT_EQ(found[i].distance, alone.distance);
+      ASSERT_EQ(found[i].site, alone.site);
+    }
   }
 }
 

@@ -64,16 +64,17 @@ class BallSearch {
     find_reach();
   }
 
+  using Open = closest::SinglePointMemory::Open;
   static bool before(float first, float second) { return first < second; }
-  bool enter(const OpenWall& open) {
-    if (open.above == kNone) return true;
+  bool enter(const Open& open) {
+    if (open.above == nullptr) return true;
     if (!(open.bound <= squared_reach_)) return false;
     const Points d;
     const auto side = [&](const float(&rows)[3][tree::WideTree::kWidth]) HWY_ATTR {
       return Vec3Of<PointVec>{hn::Set(d, rows[0][open.slot]), hn::Set(d, rows[1][open.slot]),
                               hn::Set(d, rows[2][open.slot])};
     };
-    const tree::WideTree::Node& node = sites_.wide.nodes[open.above];
+    const tree::WideTree::Node& node = *open.above;
     const Vec3Of<PointVec> lo = side(node.lower), hi = side(node.upper);
     near_ = 0;
     for (size_t i = 0; i < kSize; i += hn::Lanes(d)) {
@@ -82,7 +83,7 @@ class BallSearch {
     }
     return near_ != 0;
   }
-  uint32_t bound(const OpenWall& open, const tree::WideTree::Node& node, float* squared) const {
+  uint32_t bound(const Open& open, const tree::WideTree::Node& node, float* squared) const {
     const uint32_t near = near_children(node, middle_, squared_reach_, squared);
     const Block d;
     const EightVectors &lo_turn = walls_.normals().lower[open.child],
@@ -100,7 +101,7 @@ class BallSearch {
     }
     return near & turning;
   }
-  void leaf(const OpenWall& open) {
+  void leaf(const Open& open) {
     const uint32_t leaf = open.leaf_number();
     const sites::FaceFrames& faces = frames_[leaf];
     const EightVectors& normals = walls_.normals().of_leaf[leaf];

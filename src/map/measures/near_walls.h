@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/triangle.h"
+#include "closest/single_point.h"
 #include "tree/aabb_tree.h"
 #include "tree/wide_tree.h"
 
@@ -54,24 +54,11 @@ struct WallEnd {
   std::uint32_t face = kNone;
 };
 
-/// A node or leaf whose turn has not come, by its place in the node above, where its box is.
-struct OpenWall {
-  std::uint32_t above = kNone, slot = 0, child = 0;  ///< above: kNone for the root
-  float bound = 0;
-
-  static OpenWall of(const OpenWall& parent, const tree::WideTree::Node& node, std::uint32_t slot,
-                     float bound) {
-    return {parent.child, slot, node.child[slot], bound};
-  }
-  [[nodiscard]] bool leaf() const { return tree::WideTree::is_leaf(child); }
-  [[nodiscard]] std::uint32_t leaf_number() const { return tree::WideTree::leaf_number(child); }
-};
-
 /// Memory of a search for balls, which only grows.
 struct BallMemory {
   static constexpr std::size_t kPacket = 16;  ///< balls that are searched together
 
-  std::vector<OpenWall> stack;
+  std::vector<closest::SinglePointMemory::Open> stack;
 };
 
 /// Sets the ends of the balls that start at up to a packet of samples; those that they have already are
