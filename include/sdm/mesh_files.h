@@ -95,7 +95,8 @@ struct MeshExtras {
   std::span<const TextureFile> textures{};
   std::span<const std::uint32_t> face_materials{};  ///< empty: no face has a material
   std::span<const FaceNames> names{};
-  /// Of OBJ: the MTL file in the same folder that has the materials. Empty: it is written, beside the file.
+  /// The name of the MTL file of an OBJ file in the same folder that has the materials. Empty: it is written,
+  /// beside the file.
   std::string library{};
 };
 

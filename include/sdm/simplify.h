@@ -35,8 +35,8 @@ struct Simplified {
   /// on spheres by latitude and longitude, a face has those of one of them. A face that the input does not
   /// have has an area in the texture, also rounded to float, and winds there as the others of its chart.
   Mesh mesh;
-  /// Of each face, the first face of the input of its region; empty if the input has none. Borders between
-  /// regions stay, as seams do.
+  /// The region of each face, by the first face of the input that is in it; empty if the input has no
+  /// regions. Borders between regions stay, as seams do.
   std::vector<std::uint32_t> source_faces{};
   /// The symmetric Hausdorff distance of the mesh and the input: no point of either one is farther than
   /// `upper` from the other one, and a point of one is `lower` from it. `value` is `lower`.

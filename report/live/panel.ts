@@ -152,7 +152,7 @@ export function showChoices({ choice, units, resolution }: Session, wanted = res
   set('resolution', String(wanted));
 }
 
-/// Of a factor between two units.
+/// A factor between two units as text.
 export function timesText(factor: number): string {
   const [sign, times] = factor > 1 ? ['×', factor] : ['÷', 1 / factor];
   return `${sign} ${Number(times.toPrecision(6))}`;

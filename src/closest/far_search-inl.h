@@ -33,7 +33,7 @@ namespace {
 // faces that are compared are, as a side may be 2 √3 long. Distances in double precision are off by 4e-7 at
 // most, where a face has a normal that is accurate to 1e-7. Together less than 6e-6.
 constexpr float kFarError = 1e-5F;
-// From here on, double precision does not resolve distances to faces either.
+// Beyond this, double precision does not resolve distances to faces either.
 constexpr double kFarthest = 1e6;
 
 // g.
@@ -206,8 +206,9 @@ class FarPacketSearch {
     }
     return near_ != 0;
   }
-  // In each axis, w x² − n x for the least weight w and the directions n between two is at least its least
-  // value in the box for one of these two, each at n / 2 w, or the end of the box nearest to it.
+  // A lower bound on the relative distance of the points of each box: in each axis, w x² − n x for the least
+  // weight w and the directions n between two is at least its least value in the box for one of these two,
+  // each at n / 2 w, or the end of the box nearest to it.
   uint32_t bound(const Open&, const tree::WideTree::Node& node, float* bounds) const {
     const Block d;
     const BlockVec w = hn::Set(d, least_weight_);

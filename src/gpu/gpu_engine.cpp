@@ -33,8 +33,8 @@ class GpuEngine final : public Engine {
 
   [[nodiscard]] const EngineInfo& info() const override { return kInfo; }
 
-  // In the largest blocks, which occupy a device, and all cores place and finish the points of each. While
-  // one is searched for, others are finished.
+  // Searches in the largest blocks, which occupy a device; all cores place and finish the points of each,
+  // while another one is searched.
   void map(const Surface& surface, const Sites& sites, const engine::EngineOptions& options,
            const engine::SampleSink& sink) const override {
     constexpr std::size_t kBlock = closest::kLargestBlock, kRange = 64 * sites::ClosestPacket::kSize;

@@ -66,7 +66,7 @@ struct GpuMap::Impl {
   [[nodiscard]] std::size_t size_of(std::size_t part) const {
     return std::min(gpu::kPart, count - gpu::kPart * part);
   }
-  // Of samples, or of their distances.
+  // Throws sdm::Error if there are no samples, or no distances.
   static void require(std::size_t present) {
     if (present == 0) throw Error("there is no map on the device: computing it has failed");
   }

@@ -68,7 +68,7 @@ Vec3 normal_of(const Wedges& wedges, const Triangle& t) {
   return cross(wedges.positions[wedges.vertex[t[1]]] - a, wedges.positions[wedges.vertex[t[2]]] - a);
 }
 
-// Of a face so low that rounding to float may change it, 0.
+// How a face winds in the texture: 1, −1, or 0 if it is so low that rounding to float may change it.
 int turn_in_texture(const Wedges& wedges, const Triangle& triangle) {
   constexpr double kLeastHeight = 0x1p-22;  // four times what rounding moves a coordinate in [0, 1]
   const std::array<Vec2, 3> uvs = uvs_of(wedges, triangle);

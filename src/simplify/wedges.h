@@ -22,8 +22,8 @@ struct Wedges {
   std::vector<std::uint32_t> regions;        ///< of each wedge, a face of the input in its region; or empty
   std::vector<std::array<float, 3>> points;  ///< of each wedge
   std::vector<Triangle> triangles;           ///< of wedges; none repeats a position
-  /// Of each wedge that has texture coordinates, how the faces of its chart, which are those that wedges
-  /// connect, wind in the texture: 1 or −1; 0: both ways, or none has an area there.
+  /// How the faces of the chart of each wedge that has texture coordinates wind in the texture; a chart is
+  /// what wedges connect: 1 or −1; 0: both ways, or none has an area there.
   std::vector<std::int8_t> turns;
   std::vector<Triangle> flat;  ///< those without an area in the texture; ascending
   double size = 1;             ///< the diagonal of the box

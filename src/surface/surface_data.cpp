@@ -118,7 +118,7 @@ Vec2 SurfaceData::texel_weights(std::uint32_t face, std::uint32_t texel) const {
   const Vec2 d = Vec2{texel % resolution + 0.5, texel / resolution + 0.5} - p;
   const double det = cross(a, b);
   if (!atlas::is_needle(corners[face])) return {cross(d, b) / det, cross(a, d) / det};
-  // On the longest side. A chart without area owns a texel, too.
+  // A chart without area owns a texel, too: the point on its longest side.
   const double aa = dot(a, a), bb = dot(b, b), cc = dot(c, c), longest = std::max({aa, bb, cc});
   if (longest == 0) return {};
   const auto along = [](double t) { return std::clamp(t, 0.0, 1.0); };

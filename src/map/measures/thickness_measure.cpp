@@ -121,7 +121,7 @@ LeafWalls Walls::walls_of_leaf(std::span<const std::uint32_t> faces) const {
   box.normals = tree::FloatBox::around(normals);
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t j = 0; j < 3; ++j) box.axis[k][j] = static_cast<float>(axes[k][j]);
-    // Of the rounded axis, as searches use it.
+    // The rounded axis, which searches use.
     const Vec3 axis{box.axis[k][0], box.axis[k][1], box.axis[k][2]};
     double least = kInfinity, most = -kInfinity;
     for (const std::uint32_t f : faces)

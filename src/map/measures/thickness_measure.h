@@ -20,7 +20,7 @@ namespace sdm::thickness {
 /// The walls of a solid: data that all searches share.
 class Walls {
  public:
-  /// For searches by this method; `angle` in degrees. Throws sdm::Error unless the mesh is closed and
+  /// Prepares searches by this method; `angle` in degrees. Throws sdm::Error unless the mesh is closed and
   /// orientable. Cost: linear, all cores.
   Walls(const sites::SitesData& sites, ThicknessMethod method, double angle);
 
