@@ -76,6 +76,11 @@ struct Detailed {
   const sdm::MeshAttribute* normals = nullptr;  ///< those of its file, or the smooth ones; null: not needed
 };
 
+bool bakes_directions(const BakeCommand& command) {
+  return command.request.channels &&
+         std::ranges::any_of(command.request.channels->geometry, sdm::is_direction);
+}
+
 /// The normals of HIGH that are baked and shown: those of its file, unless it was moved.
 void find_normals(const BakeCommand& command, const Input& high, Detailed& detailed) {
   const auto own = std::ranges::find(high.look.attributes, "normal", &sdm::MeshAttribute::name);
@@ -83,9 +88,7 @@ void find_normals(const BakeCommand& command, const Input& high, Detailed& detai
     detailed.normals = &*own;
     return;
   }
-  const bool are_baked =
-      command.request.channels && std::ranges::any_of(command.request.channels->geometry, sdm::is_direction);
-  if (!command.page && !are_baked) return;
+  if (!command.page && !bakes_directions(command)) return;
   detailed.smooth_normals = sdm::smooth_normals(high.mesh);
   detailed.normals = &*detailed.smooth_normals;
 }
@@ -106,7 +109,8 @@ sdm::TexelMatches match(const BakeCommand& command, Input& high, Input& low, Det
                                : sdm::kBakeChannels;
   const auto decode = [&] {
     try {
-      detailed.pictures = sdm::decode_textures(high.look.textures, look, channels, result.notes);
+      detailed.pictures =
+          sdm::decode_textures(high.look.textures, look, channels, result.notes, bakes_directions(command));
     } catch (const sdm::Cancelled&) {
       throw;
     } catch (const sdm::Error& error) {

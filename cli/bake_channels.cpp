@@ -89,7 +89,8 @@ class ChannelBaker {
   };
   /// The texels that samples make; samples that are not finite count as missing.
   [[nodiscard]] Filled filled(std::size_t components, std::vector<float> samples,
-                              sdm::SampleKind kind = sdm::SampleKind::numbers) const;
+                              sdm::SampleKind kind = sdm::SampleKind::numbers,
+                              const sdm::MeshAttribute* normals = nullptr) const;
 
   [[nodiscard]] std::vector<float> samples_of(GeometryChannel channel);
   void make_frames();
@@ -112,8 +113,10 @@ class ChannelBaker {
 };
 
 ChannelBaker::Filled ChannelBaker::filled(std::size_t components, std::vector<float> samples,
-                                          sdm::SampleKind kind) const {
-  sdm::TexelMeans means = sdm::mean_of_samples(grid_, components, samples, kind);
+                                          sdm::SampleKind kind, const sdm::MeshAttribute* normals) const {
+  sdm::TexelMeans means =
+      grid_.side == 1 ? sdm::mean_of_samples(grid_, components, samples, kind)
+                      : sdm::mean_of_samples(pair_.surface, grid_.side, components, samples, kind, normals);
   samples = {};
   sdm::fill_texels(texels_, components, means.values, pair_.command.request.gutter);
   return {std::move(means.values), std::move(means.coverage)};
@@ -182,6 +185,7 @@ std::vector<float> ChannelBaker::samples_of(GeometryChannel channel) {
   try {
     return sdm::bake_geometry(pair_.surface, pair_.sites, pair_.matches, channel,
                               {.normals = pair_.normals,
+                               .look = &pair_.look,
                                .drawn_normals = &result.normal_map.normals,
                                .drawn_tangents = &result.normal_map.tangents,
                                .occlusion = sdm::occlusion_options(command.request),
@@ -203,7 +207,8 @@ void ChannelBaker::bake(GeometryChannel channel) {
   if (sdm::is_number(channel)) return add_numbers(channel);
   const bool directions = sdm::is_direction(channel);
   const Filled values = filled(sdm::components_of(channel), samples_of(channel),
-                               directions ? sdm::SampleKind::directions : sdm::SampleKind::numbers);
+                               directions ? sdm::SampleKind::directions : sdm::SampleKind::numbers,
+                               channel == GeometryChannel::normal ? &result.normal_map.normals : nullptr);
   if (directions) return add_normals(channel, values.values);
   if (channel == GeometryChannel::ambient_occlusion) return add_occlusion(values.values);
   if (channel == GeometryChannel::position) return write_planes(channel, values);

@@ -69,6 +69,17 @@ enum class SampleKind : std::uint8_t {
                                                  std::span<const float> samples,
                                                  SampleKind kind = SampleKind::numbers);
 
+/// The same for samples of a surface, side · side for each texel, without mixing what does not belong
+/// together: of the samples of a texel that have values, those count that are in the chart of the face at its
+/// centre and, with `normals`, those that the model is drawn with, where these differ by up to 20° from that
+/// at the centre. That face is one of those that have a sample. Charts of texture coordinates may touch then,
+/// and normals in tangent space are not averaged over a fold, whose faces have other tangents. `coverage` is
+/// that of all samples. Also throws sdm::Error if the normals do not fit.
+[[nodiscard]] SDM_API TexelMeans mean_of_samples(const Surface& surface, std::uint32_t side,
+                                                 std::size_t components, std::span<const float> samples,
+                                                 SampleKind kind = SampleKind::numbers,
+                                                 const MeshAttribute* normals = nullptr);
+
 /// Returns the number that most samples of each texel have, the least one of several; kNone, which counts as
 /// none, for texels that have no other.
 [[nodiscard]] SDM_API std::vector<std::uint32_t> most_frequent_samples(
@@ -223,6 +234,9 @@ inline constexpr GeometryChannel kGeometryChannels[] = {
 struct GeometryOptions {
   /// Normals at the corners of O2's faces, for `normal` and `object_normal`; null: smooth_normals() of O2.
   const MeshAttribute* normals = nullptr;
+  /// Of O2, with the pictures of normal textures, which bend its normals in the tangent space of MikkTSpace;
+  /// null, or in builds without it: no texture does.
+  const MeshLook* look = nullptr;
   /// What the model of O1 is drawn with, for `normal`, which needs both.
   const MeshAttribute *drawn_normals = nullptr, *drawn_tangents = nullptr;
   /// Directions at the corners of O1's faces, for `displacement`; null: smooth_normals() of O1, so that
@@ -359,11 +373,13 @@ inline constexpr auto kOptions<BakeRequest> = std::tuple{
 /// Returns the normals of O2 at the matches, of length 1, in the coordinates of the meshes: three numbers a
 /// texel. `normals`: at the corners of O2's faces, those of its file or smooth_normals(), which with a crease
 /// of 0 are those of faces. Where Sites turns a face of a closed mesh outwards and the normals do not agree
-/// with that, they are turned too. Also throws if the normals do not fit O2.
+/// with that, they are turned too. `look`: as of GeometryOptions. Also throws if the normals or the look do
+/// not fit O2.
 [[nodiscard]] SDM_API std::vector<float> matched_normals(const Surface& surface, const Sites& sites,
                                                          const TexelMatches& matches,
                                                          const MeshAttribute& normals,
-                                                         const Progress& progress = {});
+                                                         const Progress& progress = {},
+                                                         const MeshLook* look = nullptr);
 
 /// Returns the matched points of O2: three numbers a texel.
 [[nodiscard]] SDM_API std::vector<float> matched_positions(const Surface& surface, const Sites& sites,

@@ -36,15 +36,16 @@ namespace sdm {
 /// those of its pixels, and if there is not enough memory. Cost: linear, all cores.
 [[nodiscard]] SDM_API std::vector<char> encode_png(const Image& image, bool srgb = true);
 
-/// decode_image() of the textures that these channels need of a look, whose pictures do not matter, for
-/// MeshLook::pictures; others become empty images, and so do damaged ones, with a line in `notes`. Throws
-/// sdm::Error if a face or a material refers to what does not exist, if these textures have more than 2^27
-/// pixels and 64 for each byte of their files, and if there is not enough memory. Cost: linear, all cores, a
-/// core for each picture.
+/// decode_image() of the textures that these channels, and `normals`, need of a look, whose pictures do not
+/// matter, for MeshLook::pictures; others become empty images, and so do damaged ones, with a line in
+/// `notes`. Throws sdm::Error if a face or a material refers to what does not exist, if these textures have
+/// more than 2^27 pixels and 64 for each byte of their files, and if there is not enough memory. Cost:
+/// linear, all cores, a core for each picture.
 [[nodiscard]] SDM_API std::vector<Image> decode_textures(std::span<const TextureFile> textures,
                                                          const MeshLook& look,
                                                          std::span<const BakeChannel> channels,
-                                                         std::vector<std::string>& notes);
+                                                         std::vector<std::string>& notes,
+                                                         bool normals = false);
 
 /// A channel as a picture: encode_png(to_image()) of it.
 struct BakedTexture {

@@ -59,7 +59,8 @@ void read_look(const std::filesystem::path& path, const BakeRequest& wanted, Loo
   notes = look.file.notes;
   const std::span<const BakeChannel> channels =
       wanted.channels ? std::span<const BakeChannel>(wanted.channels->look) : kBakeChannels;
-  look.pictures = decode_textures(look.file.textures, look.get(), channels, notes);
+  const bool normals = wanted.channels && std::ranges::any_of(wanted.channels->geometry, is_direction);
+  look.pictures = decode_textures(look.file.textures, look.get(), channels, notes, normals);
 }
 
 void check_look(const BakeRequest& wanted, const Look& look) {
@@ -89,7 +90,7 @@ std::vector<BakedChannel> baked_look(const Baking& of, const BakeRequest& wanted
                                          {.fill = single, .progress = of.geometry.progress});
   if (single) return baked;
   for (BakedChannel& channel : baked) {
-    channel.values = mean_of_samples(of.grid, channel.components, channel.values).values;
+    channel.values = mean_of_samples(of.surface, of.grid.side, channel.components, channel.values).values;
     channel.resolution = of.grid.texels();
     fill_texels(channel.resolution, channel.components, channel.values, of.gutter);
   }
@@ -108,8 +109,9 @@ BakedGeometry baked_geometry(const Baking& of, GeometryChannel channel) {
   if (is_number(channel)) return {.channel = channel, .numbers = baked_numbers(of, channel)};
   std::vector<float> values = bake_geometry(of.surface, of.sites, of.matches, channel, of.geometry);
   if (of.grid.side > 1)
-    values = mean_of_samples(of.grid, components_of(channel), values,
-                             is_direction(channel) ? SampleKind::directions : SampleKind::numbers)
+    values = mean_of_samples(of.surface, of.grid.side, components_of(channel), values,
+                             is_direction(channel) ? SampleKind::directions : SampleKind::numbers,
+                             channel == GeometryChannel::normal ? of.geometry.drawn_normals : nullptr)
                  .values;
   return {.channel = channel, .values = std::move(values)};
 }
@@ -165,6 +167,8 @@ std::unique_ptr<PyBaked> bake_look(const Look& look, BakeAtlas laid, const Atlas
   if (has(wanted, GeometryChannel::normal)) frames.emplace(laid.surface);
   GeometryOptions options;
   if (own != attributes.end()) options.normals = &*own;
+  const MeshLook shown = look.get();
+  if (shown.pictures.size() == look.file.textures.size()) options.look = &shown;
   if (frames) {
     options.drawn_normals = &frames->normals;
     options.drawn_tangents = &frames->tangents;

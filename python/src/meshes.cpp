@@ -51,6 +51,15 @@ PyMesh given_mesh(nb::handle mesh, nb::handle faces) {
   return {std::move(result)};
 }
 
+MeshExtras extras_to_write(const PyMesh& mesh) {
+  if (!mesh.extras) return {};
+  return {.attributes = mesh.extras->attributes,
+          .materials = mesh.extras->file->materials,
+          .textures = mesh.extras->file->textures,
+          .face_materials = mesh.extras->face_materials,
+          .names = mesh.extras->names};
+}
+
 Mesh mesh_of(nb::handle mesh, nb::handle faces) {
   return given_mesh(mesh, faces).mesh;
 }
@@ -58,6 +67,30 @@ Mesh mesh_of(nb::handle mesh, nb::handle faces) {
 void move(PyMesh& mesh, const Transform& map) {
   transform(mesh.mesh, map);
   mesh.deviation *= largest_stretch(map);
+}
+
+// A row for each corner of each face, as transfer() takes them.
+nb::object corner_values(const MeshAttribute& attribute) {
+  const std::size_t n = attribute.components;
+  std::vector<float> values(3 * attribute.rows->size() * n, std::numeric_limits<float>::quiet_NaN());
+  float* to = values.data();
+  for (const Triangle& rows : *attribute.rows)
+    for (const std::uint32_t row : rows) {
+      if (row != kNone) std::copy_n(&attribute.values[row * n], n, to);
+      to += n;
+    }
+  if (n == 1) return array_of<float>(std::move(values), {attribute.rows->size(), 3});
+  return array_of<float>(std::move(values), {attribute.rows->size(), 3, n});
+}
+
+// The name, with a number if it is there already: several arrays of a file may have one name, or names that
+// are no UTF-8 and therefore look the same.
+nb::object key_of(const std::string& name, const nb::dict& present) {
+  const nb::object plain =
+      nb::steal(PyUnicode_DecodeUTF8(name.data(), static_cast<Py_ssize_t>(name.size()), "replace"));
+  nb::object key = plain;
+  for (int i = 2; present.contains(key); ++i) key = nb::str("{}_{}").format(plain, i);
+  return key;
 }
 
 void bind_arrays(nb::class_<PyMesh>& type) {
@@ -106,6 +139,7 @@ void bind_arrays(nb::class_<PyMesh>& type) {
           "transformed",
           [](const PyMesh& self, nb::handle matrix) {
             auto moved = std::make_unique<PyMesh>(self);
+            moved->extras.reset();  // normals would not follow
             move(*moved, python::transform(matrix, "the transform"));
             return moved.release();
           },
@@ -121,39 +155,29 @@ array([2., 1., 1.]))")
           "save",
           [](const PyMesh& self, nb::handle file) {
             const std::filesystem::path name = path_of(file);
-            run(nb::none(), [&](const Progress&) { write_mesh(name, self.mesh); });
+            run(nb::none(), [&](const Progress&) { write_mesh(name, self.mesh, extras_to_write(self)); });
           },
           nb::arg("file").none(), nb::sig("def save(self, file: str | os.PathLike[str]) -> None"),
           R"(Writes the mesh in the format of the extension: .ply and .obj keep all digits, .stl and .glb
-single precision; .stl has no texture coordinates.)")
+single precision; .stl has no texture coordinates. Of the result of simplify() of a file, also what the format
+has of normals, colours, names and materials, with pictures; .obj has these in files beside it.)")
+      .def_prop_ro(
+          "attributes",
+          [](const PyMesh& self) {
+            nb::dict result;
+            if (self.extras)
+              for (const MeshAttribute& attribute : self.extras->attributes)
+                result[key_of(attribute.name, result)] = corner_values(attribute);
+            return result;
+          },
+          nb::sig("def attributes(self) -> dict[str, numpy.typing.NDArray[numpy.float32]]"),
+          "What the corners of faces have besides positions and texture coordinates, as of "
+          "read_attributes(): of "
+          "the result of simplify() of a file; otherwise empty.")
       .def("__repr__", [](const PyMesh& self) {
         return nb::str("sdm.Mesh({} vertices, {} faces)")
             .format(self.mesh.positions.size(), self.mesh.triangles.size());
       });
-}
-
-// A row for each corner of each face, as transfer() takes them.
-nb::object corner_values(const MeshAttribute& attribute) {
-  const std::size_t n = attribute.components;
-  std::vector<float> values(3 * attribute.rows->size() * n, std::numeric_limits<float>::quiet_NaN());
-  float* to = values.data();
-  for (const Triangle& rows : *attribute.rows)
-    for (const std::uint32_t row : rows) {
-      if (row != kNone) std::copy_n(&attribute.values[row * n], n, to);
-      to += n;
-    }
-  if (n == 1) return array_of<float>(std::move(values), {attribute.rows->size(), 3});
-  return array_of<float>(std::move(values), {attribute.rows->size(), 3, n});
-}
-
-// The name, with a number if it is there already: several arrays of a file may have one name, or names that
-// are no UTF-8 and therefore look the same.
-nb::object key_of(const std::string& name, const nb::dict& present) {
-  const nb::object plain =
-      nb::steal(PyUnicode_DecodeUTF8(name.data(), static_cast<Py_ssize_t>(name.size()), "replace"));
-  nb::object key = plain;
-  for (int i = 2; present.contains(key); ++i) key = nb::str("{}_{}").format(plain, i);
-  return key;
 }
 
 void bind_attributes(nb::module_& module) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <sdm/mesh_files.h>
 #include <sdm/sdm.h>
 
 #include <cstdint>
@@ -18,11 +19,23 @@ namespace nb = nanobind;
 
 using Positions = std::shared_ptr<const std::vector<Vec3>>;
 
+/// What a simplified mesh has besides its geometry.
+struct PyExtras {
+  std::vector<MeshAttribute> attributes;
+  std::vector<std::uint32_t> face_materials;
+  std::vector<FaceNames> names;
+  std::shared_ptr<const MeshFile> file;  ///< that has the materials and textures
+};
+
 /// A mesh, which does not change: arrays may refer to its memory.
 struct PyMesh {
   Mesh mesh;
-  double deviation = 0;  ///< how far it may be from the surface that is meant: of CAD
+  double deviation = 0;                      ///< how far it may be from the surface that is meant: of CAD
+  std::shared_ptr<const PyExtras> extras{};  ///< or null
 };
+
+/// Its extras as write_mesh() takes them.
+[[nodiscard]] MeshExtras extras_to_write(const PyMesh& mesh);
 
 /// Sites until they are edited. Results and arrays that refer to their faces and edges share this, and an
 /// edit leaves them what they refer to.

@@ -73,3 +73,29 @@ def test_errors():
         sdm.simplify(meshes.box(), triangles=1.5)
     with pytest.raises(sdm.Cancelled):
         sdm.simplify(meshes.sphere(), triangles=50, progress=lambda step, fraction: False)
+
+
+def test_what_a_file_has_besides_is_kept(tmp_path):
+    vertices, faces = (np.asarray(array) for array in meshes.sphere(steps=4))
+    lines = ["mtllib ball.mtl"]
+    for point in vertices:
+        lines.append("v {} {} {} {} {} {}".format(*point, *(0.5 + point / 2 / np.abs(vertices).max())))
+    below = vertices[faces][:, :, 2].mean(axis=1) < 0
+    for name, of_name in (("red", faces[below]), ("blue", faces[~below])):
+        lines += [f"usemtl {name}"] + ["f {} {} {}".format(*(1 + face)) for face in of_name]
+    (tmp_path / "ball.obj").write_text("\n".join(lines))
+    (tmp_path / "ball.mtl").write_text("newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\nPm 1\n")
+    coarse, _ = sdm.simplify(tmp_path / "ball.obj", triangles=200)
+    colors = coarse.attributes["color"]
+    assert colors.shape == (len(coarse.faces), 3, 3)
+    assert sdm.Mesh((vertices, faces)).attributes == {}
+    for name in ("low.glb", "low.obj"):
+        coarse.save(tmp_path / name)
+        np.testing.assert_allclose(
+            np.sort(sdm.read_attributes(tmp_path / name)["color"][..., :3].ravel()), np.sort(colors.ravel()), atol=1e-5
+        )
+    written = (tmp_path / "low.obj").read_text()
+    assert written.count("usemtl red") >= 1 and written.count("usemtl blue") >= 1
+    assert "Kd 1 0 0" in (tmp_path / "low.mtl").read_text()
+    # The border between the materials stays: both have about half of the faces.
+    assert 60 < written.split("usemtl blue")[0].count("\nf ") < 140

@@ -51,18 +51,18 @@ Value interpolated(const std::array<Value, 3>& corners, const Vec3& weights) {
 
 }  // namespace
 
-const TextureUse& texture_of(const Material& material, BakeChannel channel) {
+TextureUse Material::*texture_of(BakeChannel channel) {
   switch (channel) {
     case BakeChannel::base_color:
       break;
     case BakeChannel::metallic_roughness:
-      return material.metallic_roughness_texture;
+      return &Material::metallic_roughness_texture;
     case BakeChannel::occlusion:
-      return material.occlusion_texture;
+      return &Material::occlusion_texture;
     case BakeChannel::emissive:
-      return material.emissive_texture;
+      return &Material::emissive_texture;
   }
-  return material.base_color_texture;
+  return &Material::base_color_texture;
 }
 
 const MipChain* Pictures::prepare(const TextureUse& use, bool srgb) {
@@ -89,9 +89,19 @@ bool UvSet::read(std::uint32_t face, std::array<Vec2, 3>& uvs) const {
 
 ChannelLook::ChannelLook(const Mesh& m, const MeshLook& l, BakeChannel c, Pictures& pictures)
     : mesh(m), look(l), channel(c), components(components_of(c, l)) {
+  add_layers(texture_of(channel), is_color(channel), pictures);
+  if (channel == BakeChannel::base_color) vertex_colors = attribute_of(look, "color", 3, 4);
+}
+
+ChannelLook::ChannelLook(const Mesh& m, const MeshLook& l, TextureUse Material::*texture, Pictures& pictures)
+    : mesh(m), look(l), channel(BakeChannel::base_color), components(0) {
+  add_layers(texture, false, pictures);
+}
+
+void ChannelLook::add_layers(TextureUse Material::*texture, bool srgb, Pictures& pictures) {
   const auto add = [&](const Material& material) {
-    Layer& layer = layers.emplace_back(&material, nullptr, texture_of(material, channel));
-    layer.picture = pictures.prepare(layer.use, is_color(channel));
+    Layer& layer = layers.emplace_back(&material, nullptr, material.*texture);
+    layer.picture = pictures.prepare(layer.use, srgb);
     if (layer.picture == nullptr) return;
     if (layer.use.uv_set > 0 || mesh.corner_uvs.empty())
       layer.uvs.attribute = attribute_of(look, "uv" + std::to_string(layer.use.uv_set), 2, 2);
@@ -107,7 +117,6 @@ ChannelLook::ChannelLook(const Mesh& m, const MeshLook& l, BakeChannel c, Pictur
     } else
       layers.push_back({&material, nullptr, {}, {}});
   add(kPlain);
-  if (channel == BakeChannel::base_color) vertex_colors = attribute_of(look, "color", 3, 4);
 }
 
 void LookReader::read_face(std::uint32_t face) {
@@ -153,6 +162,13 @@ std::array<float, 4> LookReader::vertex_color(const SurfacePoint& point) const {
   return color;
 }
 
+std::optional<std::array<float, 4>> LookReader::texel(const SurfacePoint& point,
+                                                      const std::array<Vec3, 2>& sides) {
+  if (point.face != face_) read_face(point.face);
+  if (!textured_) return std::nullopt;
+  return texture(point, sides);
+}
+
 void LookReader::at(const SurfacePoint& point, const std::array<Vec3, 2>& sides, float* values) {
   if (point.face != face_) read_face(point.face);
   const std::array<float, 4> texel = textured_ ? texture(point, sides) : std::array<float, 4>{1, 1, 1, 1};
@@ -189,12 +205,15 @@ void require_fitting(const Mesh& mesh, const MeshLook& look) {
     throw Error("a mesh of " + std::to_string(faces) + " faces needs as many numbers of materials, not " +
                 std::to_string(look.face_materials.size()));
   require_materials(look);
-  for (const Material& material : look.materials)
-    for (const BakeChannel channel : kBakeChannels)
-      if (const std::uint32_t texture = texture_of(material, channel).texture;
-          texture != kNone && texture >= look.pictures.size())
-        throw Error("a material refers to picture " + std::to_string(texture) + " of " +
-                    std::to_string(look.pictures.size()));
+  const auto require_picture = [&](const TextureUse& use) {
+    if (use.texture != kNone && use.texture >= look.pictures.size())
+      throw Error("a material refers to picture " + std::to_string(use.texture) + " of " +
+                  std::to_string(look.pictures.size()));
+  };
+  for (const Material& material : look.materials) {
+    for (const BakeChannel channel : kBakeChannels) require_picture(material.*texture_of(channel));
+    require_picture(material.normal_texture);
+  }
   for (const Image& picture : look.pictures)
     if (const std::size_t bytes =
             std::size_t{picture.width} * picture.height * picture.components * (picture.bits == 16 ? 2 : 1);

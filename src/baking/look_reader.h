@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -49,6 +50,8 @@ struct ChannelLook {
 
   /// The look must fit the mesh; see require_fitting(). All must outlive this.
   ChannelLook(const Mesh& mesh, const MeshLook& look, BakeChannel channel, Pictures& pictures);
+  /// The textures of another kind, plain numbers, for LookReader::texel(). Of channels, there is none.
+  ChannelLook(const Mesh& mesh, const MeshLook& look, TextureUse Material::*texture, Pictures& pictures);
 
   [[nodiscard]] const Layer& layer_of(std::uint32_t face) const {
     const std::uint32_t number = look.face_materials.empty() ? kNone : look.face_materials[face];
@@ -61,6 +64,9 @@ struct ChannelLook {
   std::size_t components;
   std::vector<Layer> layers;
   const MeshAttribute* vertex_colors = nullptr;  ///< of base_color
+
+ private:
+  void add_layers(TextureUse Material::*texture, bool srgb, Pictures& pictures);
 };
 
 /// Reads a channel at points. Consecutive points often lie on the same face, whose data are kept: each thread
@@ -71,6 +77,9 @@ class LookReader {
 
   /// Sets the components of `values` at a point of a face, averaged over the parallelogram of the sides.
   void at(const SurfacePoint& point, const std::array<Vec3, 2>& sides, float* values);
+  /// The texture alone, red, green, blue and alpha; nothing where there is none.
+  [[nodiscard]] std::optional<std::array<float, 4>> texel(const SurfacePoint& point,
+                                                          const std::array<Vec3, 2>& sides);
 
  private:
   void read_face(std::uint32_t face);
@@ -87,7 +96,7 @@ class LookReader {
 };
 
 /// The texture of a channel.
-[[nodiscard]] const TextureUse& texture_of(const Material& material, BakeChannel channel);
+[[nodiscard]] TextureUse Material::*texture_of(BakeChannel channel);
 
 /// Throws sdm::Error if the look does not fit the mesh.
 void require_fitting(const Mesh& mesh, const MeshLook& look);

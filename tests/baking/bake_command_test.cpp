@@ -16,6 +16,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -279,6 +280,45 @@ TEST_F(BakeCommandTest, NormalMapsShadeTheCoarseMeshAsTheDetailedOne) {
   }
   EXPECT_EQ(compared, 128u);
   EXPECT_GT(sum / static_cast<double>(compared), 0.995);
+}
+
+// Regression: normal textures of HIGH were left out. On a mesh with the same texture coordinates, what is
+// baked is the texture itself.
+TEST_F(BakeCommandTest, NormalTexturesBendTheNormals) {
+  if (!has_tangents()) GTEST_SKIP() << "this build has no MikkTSpace";
+  constexpr std::uint32_t kSize = 64;
+  Image picture{.width = kSize, .height = kSize, .components = 3, .bytes = {}};
+  for (std::uint32_t y = 0; y < kSize; ++y)
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      const double turn = 2 * std::numbers::pi / kSize;
+      const Vec3 n = normalized(Vec3{0.4 * std::sin(turn * x), 0.3 * std::cos(2 * turn * y), 1});
+      for (const double c : n)
+        picture.bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * (c + 1) / 2)));
+    }
+  const Mesh mesh = torus(64, 48);
+  std::vector<Material> materials(1);
+  materials[0].normal_texture.texture = 0;
+  const std::vector<TextureFile> textures{{"bumps", encode_png(picture)}};
+  const std::vector<std::uint32_t> face_materials(mesh.triangles.size(), 0);
+  const std::string bumpy = folder / "bumpy.glb";
+  write_mesh(bumpy, mesh, {.materials = materials, .textures = textures, .face_materials = face_materials});
+  const std::string plain = folder / "plain.glb";
+  write_mesh(plain, mesh);
+  for (const char* samples : {"1", "4"}) {
+    const Outcome outcome = run_sdm({"bake", bumpy, plain, "-o", out, "--channels", "normal", "--resolution",
+                                     std::to_string(kSize), "--samples", samples, "--no-page", "--json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(Json::parse(outcome.out)["notes"], Json::array());
+    const Image baked = read_image(std::filesystem::path(out) / "normal.png");
+    ASSERT_EQ(baked.width, kSize);
+    double sum = 0;
+    for (std::size_t i = 0; i < picture.bytes.size(); ++i) {
+      const double error = std::abs(double{1} * baked.bytes[i] - picture.bytes[i]);
+      EXPECT_LE(error, 6) << i / 3 % kSize << ", " << i / 3 / kSize;
+      sum += error;
+    }
+    EXPECT_LT(sum / static_cast<double>(picture.bytes.size()), 1);
+  }
 }
 
 TEST_F(BakeCommandTest, UvsAreUsedIfTheyAreUsable) {

@@ -1,9 +1,12 @@
 // Several samples a texel.
 #include <gtest/gtest.h>
 #include <sdm/bake.h>
+#include <sdm/mesh_attributes.h>
+#include <sdm/surface.h>
 #include <sdm/types.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -49,6 +52,61 @@ TEST(Supersampling, MeansOfDirectionsHaveLengthOne) {
   const std::vector<float> opposite{half, half, 0, -half, -half, 0, kNothing, 0, 0, kNothing, 0, 0};
   const TexelMeans cancelled = mean_of_samples({2, 2}, 3, opposite, SampleKind::directions);
   EXPECT_EQ(std::vector(cancelled.values), (std::vector<float>{half, half, 0}));
+}
+
+/// Two squares that meet in the plane x = 0 at this angle, beside each other in the texture.
+Mesh folded(double angle) {
+  const double c = std::cos(angle / 2), s = std::sin(angle / 2);
+  Mesh mesh{.positions = {{0, 0, 0}, {0, 1, 0}, {-s, 0, -c}, {-s, 1, -c}, {s, 0, -c}, {s, 1, -c}},
+            .triangles = {{2, 0, 1}, {2, 1, 3}, {0, 4, 5}, {0, 5, 1}},
+            .corner_uvs = {}};
+  const std::array<Vec2, 6> uv{Vec2{0.51, 0}, {0.51, 1}, {0, 0}, {0, 1}, {1, 0}, {1, 1}};
+  for (const Triangle& t : mesh.triangles) mesh.corner_uvs.push_back({uv[t[0]], uv[t[1]], uv[t[2]]});
+  return mesh;
+}
+
+// Regression: normals in tangent space were averaged over folds of O1, whose sides have other tangents.
+TEST(Supersampling, TexelsAtAFoldHaveTheNormalOfTheirSide) {
+  for (const std::uint32_t side : {2u, 4u}) {
+    const Surface surface(folded(1.2), sample_layout({.kind = AtlasKind::uv, .resolution = 32}, side));
+    const MeshAttribute normals = smooth_normals(surface.mesh(), kDrawnCrease);
+    // What O2 has is upwards everywhere: in the tangent spaces of the two sides, opposite x.
+    std::vector<float> samples;
+    for (const std::uint32_t face : surface.texel_faces()) {
+      const float x = face < 2 ? 0.8f : -0.8f;
+      samples.insert(samples.end(), {x, 0, 0.6f});
+    }
+    const TexelMeans means = mean_of_samples(surface, side, 3, samples, SampleKind::directions, &normals);
+    for (std::size_t texel = 0; texel < 32 * 32; ++texel) {
+      const float x =
+          texel % 32 < 16 ? 0.8f : -0.8f;  // the fold is at 16.32 texels, before the centre at 16.5
+      EXPECT_NEAR(means.values[3 * texel], x, 1e-6) << texel;
+      EXPECT_EQ(means.coverage[texel], 1);
+    }
+    // Numbers of one chart are averaged over the fold, where the surface goes on.
+    double least = 1;
+    const TexelMeans of_numbers = mean_of_samples(surface, side, 3, samples);
+    for (std::size_t texel = 0; texel < 32 * 32; ++texel)
+      least = std::min(least, std::abs(double{of_numbers.values[3 * texel]}));
+    EXPECT_LT(least, 0.5);
+  }
+}
+
+// Charts that touch in the texture are parts of the surface that have nothing to do with each other.
+TEST(Supersampling, TexelsAreOfOneChart) {
+  Mesh mesh = folded(1.2);
+  for (std::size_t f = 0; f < 2; ++f)  // with a border between both: other vertices
+    for (std::uint32_t& v : mesh.triangles[f]) v += 6;
+  const std::vector<Vec3> copy = mesh.positions;
+  mesh.positions.insert(mesh.positions.end(), copy.begin(), copy.end());
+  const Surface surface(mesh, sample_layout({.kind = AtlasKind::uv, .resolution = 32}, 4));
+  ASSERT_EQ(surface.chart_count(), 2u);
+  std::vector<float> samples;
+  for (const std::uint32_t face : surface.texel_faces()) samples.push_back(face < 2 ? 1 : 5);
+  const TexelMeans means = mean_of_samples(surface, 4, 1, samples);
+  for (std::size_t texel = 0; texel < 32 * 32; ++texel)
+    EXPECT_EQ(means.values[texel], texel % 32 < 16 ? 1 : 5) << texel;
+  EXPECT_NE(error_of([&] { return mean_of_samples(surface, 4, 2, samples); }), "");
 }
 
 TEST(Supersampling, NumbersAreTheMostFrequentOnes) {

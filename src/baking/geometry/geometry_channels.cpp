@@ -14,7 +14,8 @@ std::vector<float> baked_normals(const Surface& surface, const Sites& sites, con
                                  const GeometryOptions& options) {
   std::optional<MeshAttribute> smooth;
   if (options.normals == nullptr) smooth = smooth_normals(sites.mesh());
-  return matched_normals(surface, sites, matches, smooth ? *smooth : *options.normals, options.progress);
+  return matched_normals(surface, sites, matches, smooth ? *smooth : *options.normals, options.progress,
+                         options.look);
 }
 
 std::vector<float> baked_displacements(const Surface& surface, const Sites& sites,

@@ -7,6 +7,7 @@
 #include <new>
 #include <vector>
 
+#include "baking/geometry/bent_normals.h"
 #include "baking/geometry/texel_walk.h"
 #include "closest/facing/facing_normals.h"
 #include "core/memory.h"
@@ -86,17 +87,22 @@ std::vector<float> matched_thickness(const Surface& surface, const Sites& sites,
 }
 
 std::vector<float> matched_normals(const Surface& surface, const Sites& sites, const TexelMatches& matches,
-                                   const MeshAttribute& normals, const Progress& progress) try {
+                                   const MeshAttribute& normals, const Progress& progress,
+                                   const MeshLook* look) try {
   require_matches(surface, sites, matches);
   const sites::SitesData& data = internals(sites);
   const map::CornerNormals corners(data.mesh, normals, "the other mesh");
+  if (look != nullptr) baking::require_fitting(data.mesh, *look);
+  const MeshLook plain;
+  const baking::NormalTextures textures(data.mesh, look != nullptr ? *look : plain, corners);
   std::vector<float> values = baking::no_values(matches, 3, "the normals of matches");
   baking::for_each_texel(
-      surface, progress, "normals", [] { return NoState(); },
-      [&](std::uint32_t texel, NoState&) {
+      surface, progress, "normals", [&] { return baking::NormalTextures::Reader(textures); },
+      [&](std::uint32_t texel, baking::NormalTextures::Reader& reader) {
         const SurfacePoint point = matches.point(texel);
         if (point.face == kNone) return;
-        const Vec3 normal = normalized(corners.at(point.face, point.barycentric));
+        const Vec3 normal = reader.at(point, surface.texel_edges(surface.texel_faces()[texel]),
+                                      corners.at(point.face, point.barycentric));
         store_vector(points_inwards(data, corners, point.face) ? -normal : normal, texel, values);
       });
   return values;

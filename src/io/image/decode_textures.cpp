@@ -36,16 +36,19 @@ void check_pixels(std::span<const TextureFile> textures, const std::set<std::uin
 }  // namespace
 
 std::vector<Image> decode_textures(std::span<const TextureFile> textures, const MeshLook& look,
-                                   std::span<const BakeChannel> channels,
-                                   std::vector<std::string>& notes) try {
+                                   std::span<const BakeChannel> channels, std::vector<std::string>& notes,
+                                   bool normals) try {
   for (const std::uint32_t material : look.face_materials)
     if (material != kNone && material >= look.materials.size())
       throw Error(fmt::format("a face refers to material {} of {}", material, look.materials.size()));
   std::set<std::uint32_t> needed;
-  for (const Material* material : baking::used_materials(look))
-    for (const BakeChannel channel : channels)
-      if (const std::uint32_t texture = baking::texture_of(*material, channel).texture; texture != kNone)
-        needed.insert(texture);
+  const auto need = [&](const TextureUse& use) {
+    if (use.texture != kNone) needed.insert(use.texture);
+  };
+  for (const Material* material : baking::used_materials(look)) {
+    for (const BakeChannel channel : channels) need(material->*baking::texture_of(channel));
+    if (normals) need(material->normal_texture);
+  }
   if (!needed.empty() && *needed.rbegin() >= textures.size())
     throw Error(fmt::format("a material refers to texture {} of {}", *needed.rbegin(), textures.size()));
   check_pixels(textures, needed);

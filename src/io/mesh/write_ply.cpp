@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "io/file/atomic_file.h"
 #include "io/file/little_endian.h"
-#include "io/mesh/model/split_vertices.h"
+#include "io/mesh/split_vertices.h"
 
 namespace sdm::io {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/mesh/model/split_vertices.h"
+#include "io/mesh/split_vertices.h"
 
 namespace sdm::io {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "io/mesh/model/glb_model.h"
 #include "io/mesh/model/gltf_material.h"
-#include "io/mesh/model/split_vertices.h"
+#include "io/mesh/split_vertices.h"
 
 namespace sdm::io {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/mesh/model/split_vertices.h"
+#include "io/mesh/split_vertices.h"
 
 #include <algorithm>
 #include <map>
