@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "closest/single_point.h"
 #include "geometry/boxes.h"
 #include "sites/closest_on_face.h"
 

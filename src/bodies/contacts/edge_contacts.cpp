@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "closest/single_point.h"
 #include "core/cancellation.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle_pair.h"

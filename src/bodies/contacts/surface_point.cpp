@@ -1,5 +1,6 @@
 #include "bodies/contacts/surface_point.h"
 
+#include "closest/single_point.h"
 #include "geometry/rounding.h"
 #include "sites/closest_on_face.h"
 

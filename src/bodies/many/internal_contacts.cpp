@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "closest/single_point.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
 

@@ -1,4 +1,5 @@
 #include "bodies/separate/overlap_cover.h"
+#include "closest/single_point.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "closest/single_point.h"
 #include "geometry/predicates.h"
 #include "geometry/rounding.h"
 #include "tree/visit.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "closest/single_point.h"
 #include "geometry/vec.h"
 
 namespace sdm::shape {

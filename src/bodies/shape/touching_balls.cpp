@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "closest/single_point.h"
 #include "geometry/point_triangle.h"
 #include "geometry/rounding.h"
 #include "search/mixed_bound.h"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bodies/shape/passages.h"
+#include "closest/single_point.h"
 #include "geometry/clip.h"
 #include "geometry/unit_across.h"
 

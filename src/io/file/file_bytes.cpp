@@ -10,6 +10,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/checksum.h"
 #include "core/memory.h"
 #include "io/file/error_prefix.h"
 #include "io/file/input_files.h"

@@ -6,7 +6,9 @@
 #include <memory>
 #include <string_view>
 
-#include "core/checksum.h"
+namespace sdm::core {
+class Checksum;
+}
 
 namespace sdm::io {
 
