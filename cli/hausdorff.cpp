@@ -138,10 +138,7 @@ std::string unmatched_lines(const HausdorffAnswer& answer) {
 std::string tolerance_line(const HausdorffVerdict& v, const HausdorffCommand& command, double guard,
                            const std::string& unit) {
   const std::string limit = number(*command.tolerance) + unit;
-  const std::string by = command.uncertainty > 0
-                             ? fmt::format(" by more than the uncertainty, {}{} ({})",
-                                           number(command.uncertainty, 2), unit, name_of(rule_of(command)))
-                             : std::string();
+  const std::string by = uncertainty_clause(command.uncertainty, unit);
   return fmt::format(
       "  tolerance  {}: {}\n", sdm::name_of(v.word()),
       v.unmatched                 ? "faces without a match have no distance"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "doubts.h"
 #include "format.h"
 #include "islands.h"
 #include "notes.h"
@@ -48,8 +49,9 @@ std::string tolerance_line(const PointsOutcome& outcome, const std::string& unit
       verdict.reason == sdm::VerdictReason::beyond_max_distance)
     return fmt::format("{}: {} % of the points have no value, as {}", word,
                        number(100 * without_value(outcome.found)), sdm::verdict_text(summary));
-  const std::string share = fmt::format("{}: {} % of the points are out of it", word,
-                                        number(100 * summary.exceeding_point_fraction));
+  const std::string share = fmt::format("{}: {} % of the points are out of it{}", word,
+                                        number(100 * summary.exceeding_point_fraction),
+                                        uncertainty_clause(summary.evidence.uncertainty, unit));
   const std::optional<sdm::Extreme> most = decisive_extreme(summary);
   if (!most) return share + "; no point has a value";
   return fmt::format("{}; {}{} at point {} {}", share, number(most->distance), unit,

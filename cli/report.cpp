@@ -4,6 +4,7 @@
 
 #include "bounds_text.h"
 #include "cad_options.h"
+#include "doubts.h"
 #include "exit_codes.h"
 #include "format.h"
 #include "group_tolerances.h"
@@ -92,7 +93,8 @@ std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
     return fmt::format("{}: {}", word, sdm::verdict_text(outcome.summary));
   const sdm::ToleranceShares& shares = verdict.shares;
   const std::string limits =
-      sdm::limits_text(verdict.tolerance, outcome.summary.units, outcome.summary.evidence.is_signed);
+      sdm::limits_text(verdict.tolerance, outcome.summary.units, outcome.summary.evidence.is_signed) +
+      uncertainty_clause(outcome.summary.evidence.uncertainty, unit);
   if (verdict.proof && verdict.proof->witness)
     return fmt::format("{}: {}: {}{} at {}", word,
                        verdict.by_facing.value_or(false) ? sdm::verdict_text(outcome.summary)

@@ -66,12 +66,14 @@ std::string limits_in_words(const ThicknessCommand& command) {
 
 /// The verdict as a clause: that of sdm::verdict_text(), but of the limits that were given.
 std::string verdict_in_words(const ThicknessCommand& command, const sdm::Summary& summary) {
+  const std::string by = uncertainty_clause(command.uncertainty, unit_suffix(summary.units));
   switch (summary.tolerance->verdict) {
     case sdm::Verdict::pass:
-      return fmt::format("every measured point has {}; between them, an estimate", limits_in_words(command));
+      return fmt::format("every measured point has {}{}; between them, an estimate", limits_in_words(command),
+                         by);
     case sdm::Verdict::fail:
       return summary.tolerance->reason == sdm::VerdictReason::exceeded
-                 ? fmt::format("a measured point does not have {}", limits_in_words(command))
+                 ? fmt::format("a measured point does not have {}{}", limits_in_words(command), by)
                  : sdm::verdict_text(summary);
     default:
       return fmt::format("a measured point is as close to the limit, {}, as a thickness is accurate, {}{}",

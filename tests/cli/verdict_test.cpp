@@ -348,13 +348,13 @@ TEST_F(Verdicts, StateTheUncertainty) {
   const auto text = [&](const char* tolerance) {
     return map(o1, o2, {"--tolerance", tolerance, "--uncertainty", "0.02", "--units", "mm"}).out;
   };
-  EXPECT_THAT(text("1"), HasSubstr("PASS: every point of the surface is within up to 1 mm, by more than the "
+  EXPECT_THAT(text("1"), HasSubstr("PASS: every point of the surface is within 1 mm, by more than the "
                                    "uncertainty, 0.02 mm (ISO 14253-1)"));
   EXPECT_THAT(text("0.4"),
-              HasSubstr("FAIL: a point is out of up to 0.4 mm by more than the uncertainty, 0.02 mm "
+              HasSubstr("FAIL: 100 % of the area is out of 0.4 mm by more than the uncertainty, 0.02 mm "
                         "(ISO 14253-1)"));
   EXPECT_THAT(text("0.51"),
-              HasSubstr("NOT DECIDED: all points are within up to 0.51 mm or out of it by less than "
+              HasSubstr("NOT DECIDED: all points are within 0.51 mm or out of it by less than "
                         "the guard band, 0.02 mm, which is the uncertainty (ISO 14253-1); one is "
                         "closer to a limit than that"));
   const Outcome nothing = map(o1, o2, {"--uncertainty", "0.02"});
