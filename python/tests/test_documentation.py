@@ -1,4 +1,4 @@
-"""Docstrings: every public name has one, and their examples run. The code of README.md and docs/python.md runs, too."""
+"""Docstrings: every public name has one, and their examples run. The code of docs/python.md runs, too."""
 
 import doctest
 import inspect
@@ -51,14 +51,14 @@ def blocks(page):
     return re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
-def test_pages(page, tmp_path, monkeypatch):
-    """The blocks of a page, one after the other, in a folder with the meshes that they name."""
+def test_page(tmp_path, monkeypatch):
+    """The blocks of the page, one after the other, in a folder with the meshes that they name."""
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     for name in ("bunny.obj", "horse.3ds"):
         shutil.copy(MESHES / name, tmp_path)
     monkeypatch.chdir(tmp_path)
+    page = "docs/python.md"
     found = blocks(page)
     assert found
     names = {}
@@ -87,7 +87,7 @@ def test_robotics_page():
 
 @pytest.mark.skipif("SDM_COMMAND" not in os.environ, reason="the command is not built")
 def test_the_picture_is_that_of_the_command(tmp_path):
-    """The README's program and ./demo draw the same picture."""
+    """The first program of docs/python.md and ./demo draw the same picture."""
     bunny, horse = MESHES / "bunny.obj", MESHES / "horse.3ds"
     options = ["--transform-o1", "fit", "--transform-o2", "fit,translate:0.8:0:0", "--write", "png", "--quiet"]
     subprocess.run([os.environ["SDM_COMMAND"], "map", bunny, horse, "-o", tmp_path / "out", *options], check=True)
