@@ -11,6 +11,7 @@
 #include "geometry/triangle.h"
 #include "simplify/certificate.h"
 #include "simplify/high_parts.h"
+#include "simplify/wedges.h"
 #include "sites/sites_data.h"
 
 namespace sdm::simplify {
@@ -46,22 +47,18 @@ constexpr int kMoreLevels = 4;
 
 // Rounds positions to float, and removes the faces whose corners then are at the same place.
 void round_positions(Simplified& simplified) {
-  Mesh rounded;
-  for (const Vec3& p : simplified.mesh.positions)
-    rounded.positions.push_back(
-        {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
-  const auto same = [&](std::uint32_t a, std::uint32_t b) {
-    return rounded.positions[a] == rounded.positions[b];
-  };
-  std::vector<std::uint32_t> faces;
-  for (std::size_t f = 0; f < simplified.mesh.triangles.size(); ++f) {
-    const Triangle& t = simplified.mesh.triangles[f];
+  Mesh& mesh = simplified.mesh;
+  for (Vec3& p : mesh.positions) p = rounded_to_float(p);
+  const auto same = [&](std::uint32_t a, std::uint32_t b) { return mesh.positions[a] == mesh.positions[b]; };
+  std::size_t left = 0;
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const Triangle t = mesh.triangles[f];
     if (same(t[0], t[1]) || same(t[1], t[2]) || same(t[2], t[0])) continue;
-    rounded.triangles.push_back(t);
-    faces.push_back(simplified.source_faces[f]);
+    mesh.triangles[left] = t;
+    simplified.source_faces[left++] = simplified.source_faces[f];
   }
-  simplified.mesh = std::move(rounded);
-  simplified.source_faces = std::move(faces);
+  mesh.triangles.resize(left);
+  simplified.source_faces.resize(left);
 }
 
 // Vertices of the result near which a point of either surface is farther than the limit from the other one,

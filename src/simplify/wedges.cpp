@@ -150,10 +150,8 @@ MeshOfWedges mesh_of(const Wedges& wedges, std::span<const Triangle> triangles, 
   for (std::size_t v = 0; v < place.size(); ++v) {
     if (place[v] == kNone) continue;
     place[v] = static_cast<std::uint32_t>(mesh.positions.size());
-    Vec3 p = wedges.positions[v];
-    if (single_precision)
-      for (double& x : p) x = static_cast<float>(x);
-    mesh.positions.push_back(p);
+    const Vec3& p = wedges.positions[v];
+    mesh.positions.push_back(single_precision ? rounded_to_float(p) : p);
   }
   mesh.triangles.reserve(triangles.size());
   const auto same = [&](std::uint32_t a, std::uint32_t b) { return mesh.positions[a] == mesh.positions[b]; };
@@ -169,6 +167,14 @@ MeshOfWedges mesh_of(const Wedges& wedges, std::span<const Triangle> triangles, 
     if (!wedges.uvs.empty()) mesh.corner_uvs.push_back(uvs_of(wedges, t));
   }
   return result;
+}
+
+Vec3 rounded_to_float(const Vec3& p) {
+  // GCC 12 with -O3 drops the conversions of two neighbouring coordinates to float and back, unless they are
+  // stored.
+  volatile float rounded[3];
+  for (int k = 0; k < 3; ++k) rounded[k] = static_cast<float>(p[k]);
+  return {rounded[0], rounded[1], rounded[2]};
 }
 
 }  // namespace sdm::simplify

@@ -45,4 +45,7 @@ struct MeshOfWedges {
 [[nodiscard]] MeshOfWedges mesh_of(const Wedges& wedges, std::span<const Triangle> triangles,
                                    bool single_precision);
 
+/// The point with coordinates rounded to float, as files in single precision have it.
+[[nodiscard]] Vec3 rounded_to_float(const Vec3& p);
+
 }  // namespace sdm::simplify

@@ -531,6 +531,9 @@ TEST(Simplifier, MeasuresWhatRoundingToFloatMoves) {
   expect_certificate(mesh, s);
   EXPECT_THAT(error_of([&] { return simplifier.to_deviation(1e-3, {.single_precision = true}); }),
               HasSubstr("rounded to float"));
+  for (const double limit : {0.1, 0.2, 0.5})  // of different numbers of vertices
+    for (const Vec3& p : simplifier.to_deviation(limit, {.single_precision = true}).mesh.positions)
+      for (const double x : p) EXPECT_EQ(x, static_cast<float>(x)) << limit;
 }
 
 // Once, a face whose corners became one when rounded counted as a point, which readers of the file do not
