@@ -103,12 +103,12 @@ struct MeshExtras {
 /// Writes a mesh in the format that the extension names. Files keep:
 ///  - .ply: what write_ply() writes; normals, and colours in 8 bits
 ///  - .obj: all digits; normals, colours, names of objects and groups; materials as NAME.mtl, with pictures
-///  as
-///    NAME_0.png and so on: colours, opacity, metal and roughness, normal maps
+///    as NAME_0.png and so on: colours, opacity, metal and roughness, normal maps
 ///  - .stl: positions, in single precision
 ///  - .glb: positions, texture coordinates of all sets, normals and colours in single precision, names of
 ///    objects, materials with their pictures
-/// Also throws sdm::Error for another extension, and if the extras do not belong to the faces of the mesh.
+/// Also throws sdm::Error for another extension, unless validate() accepts the mesh, and if the extras do not
+/// belong to its faces.
 SDM_API void write_mesh(const std::filesystem::path& file, const Mesh& mesh, const MeshExtras& extras = {});
 /// Whether write_mesh() rounds positions to float. Throws sdm::Error as it does for another extension.
 [[nodiscard]] SDM_API bool is_written_in_single_precision(const std::filesystem::path& file);

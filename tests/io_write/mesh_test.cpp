@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -239,6 +240,17 @@ TEST(WriteMesh, RefusesWhatBelongsToOtherFaces) {
   written = {};
   written.attributes[0].values.resize(12);
   expect_refused();
+  EXPECT_TRUE(folder.empty());
+}
+
+TEST(WriteMesh, RefusesInvalidMeshes) {
+  const TemporaryFolder folder;
+  Mesh without_vertex = cube(), infinite = cube();
+  without_vertex.triangles[0][1] = 8;
+  infinite.positions[0][0] = std::numeric_limits<double>::infinity();
+  for (const char* name : {"mesh.ply", "mesh.obj", "mesh.stl", "mesh.glb"})
+    for (const Mesh& mesh : {without_vertex, infinite, Mesh{}})
+      EXPECT_THROW(write_mesh(folder / name, mesh), Error) << name;
   EXPECT_TRUE(folder.empty());
 }
 

@@ -53,8 +53,9 @@ const WrittenFormat& written_format(const std::filesystem::path& file) {
   throw Error(file.string() + ": the extension of a mesh to write must be .ply, .obj, .stl or .glb");
 }
 
-/// Throws sdm::Error unless what is written belongs to the faces of the mesh.
+/// Throws sdm::Error unless the mesh is valid, and what is written belongs to its faces.
 void require_fitting(const Mesh& mesh, const MeshExtras& extras) {
+  validate(mesh);
   const std::size_t faces = mesh.triangles.size();
   bool fits = extras.face_materials.empty() || extras.face_materials.size() == faces;
   for (const std::uint32_t material : extras.face_materials)
