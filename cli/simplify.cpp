@@ -82,8 +82,7 @@ std::optional<std::string> note_on_level(const SimplifyCommand& command, std::si
                        number(*command.levels.max_deviation * std::ldexp(1, static_cast<int>(level))));
   return fmt::format(
       "{} has {} triangles, more than asked for: borders, seams, UVs and non-manifold edges permit no "
-      "further "
-      "collapse, or nothing with an area would be left",
+      "further collapse, or nothing with an area would be left",
       file, simplified.mesh.triangles.size());
 }
 

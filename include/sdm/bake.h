@@ -234,8 +234,8 @@ inline constexpr GeometryChannel kGeometryChannels[] = {
 struct GeometryOptions {
   /// Normals at the corners of O2's faces, for `normal` and `object_normal`; null: smooth_normals() of O2.
   const MeshAttribute* normals = nullptr;
-  /// Of O2, with the pictures of normal textures, which bend its normals in the tangent space of MikkTSpace;
-  /// null, or in builds without it: no texture does.
+  /// The materials of O2, with the pictures of normal textures, which bend its normals in the tangent space
+  /// of MikkTSpace. Null, or in builds without MikkTSpace: normal textures are ignored.
   const MeshLook* look = nullptr;
   /// What the model of O1 is drawn with, for `normal`, which needs both.
   const MeshAttribute *drawn_normals = nullptr, *drawn_tangents = nullptr;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <unordered_map>
 #include <utility>
 
+#include "core/disjoint_sets.h"
 #include "geometry/vec.h"
 
 namespace sdm::simplify {
@@ -42,7 +42,8 @@ class Edges {
   void remove(const Triangle& t) {
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      faces_.erase(key_of(a, b));
+      if (const auto at = faces_.find(key_of(a, b)); at != faces_.end() && at->second != kNone)
+        faces_.erase(at);  // an edge of several faces stays one: no flip crosses it
       --positions_[key_of(wedges_.vertex[a], wedges_.vertex[b])];
     }
   }
@@ -87,20 +88,16 @@ int turn_in_texture(const Wedges& wedges, const Triangle& triangle) {
 
 void find_turns(Wedges& wedges) {
   wedges.turns.resize(wedges.vertex.size());
-  std::vector<std::uint32_t> chart(wedges.vertex.size());
-  std::iota(chart.begin(), chart.end(), 0u);
-  const auto find = [&](std::uint32_t w) {
-    while (chart[w] != w) w = chart[w] = chart[chart[w]];
-    return w;
-  };
+  DisjointSets charts(wedges.vertex.size());
   for (const Triangle& t : wedges.triangles)
-    for (const std::uint32_t w : {t[1], t[2]}) chart[find(w)] = find(t[0]);
+    for (const std::uint32_t w : {t[1], t[2]}) charts.unite(t[0], w);
   constexpr int kBoth = 3;  // as bits: 1 of faces with a positive area, 2 with a negative one
-  std::vector<std::uint8_t> windings(chart.size());
+  std::vector<std::uint8_t> windings(wedges.vertex.size());
   for (const Triangle& t : wedges.triangles)
-    if (const int turn = turn_in_texture(wedges, t); turn != 0) windings[find(t[0])] |= turn > 0 ? 1 : 2;
-  for (std::uint32_t w = 0; w < chart.size(); ++w)
-    if (const int both = windings[find(w)]; both != kBoth)
+    if (const int turn = turn_in_texture(wedges, t); turn != 0)
+      windings[charts.find(t[0])] |= turn > 0 ? 1 : 2;
+  for (std::uint32_t w = 0; w < windings.size(); ++w)
+    if (const int both = windings[charts.find(w)]; both != kBoth)
       wedges.turns[w] = both == 1 ? 1 : both == 2 ? -1 : 0;
   for (const Triangle& t : wedges.triangles)
     if (turn_in_texture(wedges, t) == 0) wedges.flat.push_back(least_first(t));
