@@ -59,6 +59,10 @@ void add_options(CLI::App& app, MapCommand& c) {
   add_tolerance_option(app, c.picture.tolerance);
   add_tolerance_table_option(app, c.groups);
   add_uncertainty_option(app, c.uncertainty);
+  CLI::Option* fail_area =
+      add_declared_option(app, sdm::option_of(&sdm::SummaryOptions::fail_area), c.fail_area);
+  add_declared_option(app, sdm::option_of(&sdm::SummaryOptions::fail_share), c.fail_share)
+      ->excludes(fail_area);
   add_doubt_options(app, c.doubts);
   add_declared_option(app, sdm::option_of(&sdm::SummaryOptions::bands), c.bands);
 
@@ -73,6 +77,9 @@ void check_combination(const CLI::App& app, const MapCommand& c) {
   check_layout(c.layout.atlas);
   check_doubts(c.doubts, c.picture.tolerance);
   check_uncertainty(c.uncertainty, c.picture.tolerance.has_value() || !c.groups.file.empty());
+  for (const char* option : {"--fail-area", "--fail-share"})
+    if (app.count(option) > 0 && (!c.picture.tolerance || !c.groups.file.empty()))
+      throw CLI::ValidationError(option, "needs --tolerance, and excludes --tolerance-table");
   if (!std::ranges::is_sorted(c.bands, std::less_equal<>()))
     throw CLI::ValidationError("--bands", "the edges must increase");
   if (const auto& t = c.picture.tolerance;

@@ -47,6 +47,7 @@ struct MapCommand : PairFiles, RunOptions {
   sdm::PictureOptions picture;
   GroupTolerances groups;
   double uncertainty = 0;
+  std::optional<double> fail_area, fail_share;
   std::vector<double> bands;
   ReportFields fields;
   MapOutput output;

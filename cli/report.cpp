@@ -89,7 +89,7 @@ bool is_along(const sdm::Summary& summary) {
 std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
   const sdm::CertifiedVerdict& verdict = *outcome.summary.tolerance;
   const std::string word = sdm::name_of(verdict.verdict);
-  if (verdict.verdict != sdm::Verdict::fail)
+  if (verdict.verdict != sdm::Verdict::fail || verdict.by_places)
     return fmt::format("{}: {}", word, sdm::verdict_text(outcome.summary));
   const sdm::ToleranceShares& shares = verdict.shares;
   const std::string limits =

@@ -169,10 +169,12 @@ struct Summary {
 /// Options of summarize().
 struct SummaryOptions {
   std::string units{};
-  double max_distance = kInfinity;  ///< that of the map
-  double accuracy = 0;              ///< of the engine: engine_accuracy(); infinite if unknown
-  double guard = 0;                 ///< how far the meshes may be from the surfaces that are meant
-  double uncertainty = 0;           ///< Evidence::uncertainty
+  double max_distance = kInfinity;     ///< that of the map
+  double accuracy = 0;                 ///< of the engine: engine_accuracy(); infinite if unknown
+  double guard = 0;                    ///< how far the meshes may be from the surfaces that are meant
+  double uncertainty = 0;              ///< Evidence::uncertainty
+  std::optional<double> fail_area{};   ///< CertifyOptions::fail_area
+  std::optional<double> fail_share{};  ///< CertifyOptions::fail_share, of the area of `whole`
   std::optional<Tolerance> tolerance{};
   std::span<const GroupTolerance> table{};  ///< of groups of `names`, for the places
   Colormap colormap = Colormap::automatic;
@@ -216,7 +218,20 @@ inline constexpr auto kOptions<SummaryOptions> = std::tuple_cat(
                .text = kUncertaintyText,
                .range = {.least = 0},
                .unit = "length",
-               .value = "U"}});
+               .value = "U"},
+        Option{.name = "fail_area",
+               .member = &SummaryOptions::fail_area,
+               .text = "FAIL only where a connected place of at least this area is out of the tolerance: "
+                       "noise puts single points out of it. An estimate, by the areas of texels; without "
+                       "this, one point is enough.",
+               .range = kPositive,
+               .unit = "area",
+               .value = "A"},
+        Option{.name = "fail_share",
+               .member = &SummaryOptions::fail_share,
+               .text = "The same, by its share of the area of the surface, from 0 to 1.",
+               .range = {.least = 0, .most = 1, .above = true},
+               .value = "S"}});
 
 /// Sums up a map on `surface` of the distances to `sites`. `vertex_distances`: the distance at each vertex of
 /// surface.mesh(), NaN if it has no value. Throws sdm::Error if the map or the distances belong to another

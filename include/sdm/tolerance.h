@@ -101,13 +101,14 @@ enum class VerdictReason {
   nothing_measured,     ///< not decided: there are no samples
   thin_walls,           ///< not decided: the closest point may be on the other skin of a wall
   in_doubt,             ///< doubtful: see Doubt
+  small_places,         ///< pass: what is out of the tolerance is smaller than PlaceDecision::least
 };
 
 template <>
 inline constexpr std::array kWords<VerdictReason>{
-    "all within",       "exceeded",         "beyond max distance", "without match",
-    "between samples",  "within rounding",  "guard band",          "estimated signs",
-    "unknown accuracy", "nothing measured", "thin walls",          "in doubt"};
+    "all within",      "exceeded",   "beyond max distance", "without match",    "between samples",
+    "within rounding", "guard band", "estimated signs",     "unknown accuracy", "nothing measured",
+    "thin walls",      "in doubt",   "small places"};
 
 /// How the uncertainty of a measurement enters the verdict on it.
 enum class DecisionRule {

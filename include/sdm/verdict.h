@@ -24,6 +24,24 @@
 
 namespace sdm {
 
+/// A verdict by connected places, of which only those of some size make a failure: noise puts single samples
+/// out of a tolerance, and more of them the more samples there are. Areas are those of texels, so that all of
+/// this is an estimate.
+struct PlaceDecision {
+  double least = 0;     ///< the area of a place that makes a failure, in squared units of the mesh
+  double certain = 0;   ///< of the largest place out of the tolerance by more than accuracy and guard band
+  double possible = 0;  ///< of the largest place that is not within it by more than these
+};
+
+template <>
+inline constexpr std::tuple kFields<PlaceDecision>{
+    Field{"least", &PlaceDecision::least,
+          "The area that a connected place out of the tolerance needs for a 'fail', in squared units."},
+    Field{"certain", &PlaceDecision::certain,
+          "The area of the largest place that is out of it by more than the accuracy and the guard band."},
+    Field{"possible", &PlaceDecision::possible,
+          "The area of the largest place that is not within it by more than these."}};
+
 /// A verdict, with the proof that led to it.
 struct CertifiedVerdict : ToleranceVerdict {
   std::optional<ToleranceProof> proof{};  ///< where the samples of the map did not decide
@@ -31,6 +49,8 @@ struct CertifiedVerdict : ToleranceVerdict {
   /// nothing: whether distances to the faces of O2 that face the same way, within 90°, decide. The proof is
   /// of these.
   std::optional<bool> by_facing{};
+  /// Set with CertifyOptions::fail_area or fail_share, where these decide.
+  std::optional<PlaceDecision> by_places{};
 };
 
 /// What is known of every verdict.
@@ -49,6 +69,8 @@ struct CertifyOptions {
   double uncertainty = 0;              ///< Evidence::uncertainty
   std::optional<double> thin_walls{};  ///< those of O2, if they are known
   bool accept_doubts = false;          ///< doubt_of() the verdict leaves a pass one
+  std::optional<double> fail_area{};   ///< only a connected place of this area makes a failure
+  std::optional<double> fail_share{};  ///< the same, as a share of the surface's area; excludes fail_area
   Progress progress{};
 };
 
@@ -64,8 +86,15 @@ struct CertifyOptions {
 /// signs, their pass stays an estimate. Of other kinds, samples decide alone. Where distances are to the
 /// closest point and walls of O2 are thinner than twice the tolerance (thin_walls()), a pass needs the proof
 /// of DistanceKind::facing too, at 90°, which may make a failure of it; if that decides nothing, it is
-/// Verdict::doubtful, for the reason of doubt_of(). Errors as of both. Cost: that of check_tolerance() and,
-/// unless it decides, of the proof.
+/// Verdict::doubtful, for the reason of doubt_of().
+///
+/// With `fail_area` or `fail_share`, samples out of the tolerance, or without a value, do not decide alone
+/// (PlaceDecision): Verdict::fail if the largest place that is certainly out is of that area, Verdict::pass
+/// if the largest one that is possibly out is smaller, otherwise Verdict::not_decided; never certified.
+/// Places are those of find_places(). What signs, thin walls or an unknown accuracy leave open stays so.
+///
+/// Errors as of check_tolerance() and prove_tolerance(), and if both fail_area and fail_share are given.
+/// Cost: that of check_tolerance() and, unless it decides, of the proof.
 [[nodiscard]] SDM_API CertifiedVerdict certify_tolerance(const Surface& surface, const Sites& sites,
                                                          const DistanceMap& map,
                                                          std::span<const float> vertex_distances,

@@ -104,6 +104,8 @@ export interface SummaryTolerance {
   nearest_limit: 'lower' | 'upper';
   proof: SummaryProof | null;
   by_facing: boolean | null;
+  /** Areas, where the size of connected places decides. */
+  by_places: { least: number; certain: number; possible: number } | null;
 }
 
 export interface SummaryPart {

@@ -126,18 +126,22 @@ class DistanceMap(MapChannels, Texels):
         tolerance: "float | tuple[float, float]",
         *,
         uncertainty: float = 0,
+        fail_area: "float | None" = None,
+        fail_share: "float | None" = None,
         progress: "Progress | None" = None,
     ) -> ToleranceVerdict:
         """Returns whether the distances of all points of the surface are within a tolerance.
 
         tolerance: ±tolerance, in units of the meshes, or the least and the most distance. uncertainty: the expanded
-        uncertainty (k = 2) of the measurement, which the verdict keeps away from the limits as by ISO 14253-1. Raises Error as ``bounds`` does,
-        and for a tolerance that differs by the sign if the map is unsigned; Cancelled. Cost: one search per vertex.
+        uncertainty (k = 2) of the measurement, which the verdict keeps away from the limits as by ISO 14253-1.
+        fail_area: only a connected place of at least this area, in squared units, makes a 'fail', where otherwise one point
+        does; fail_share: the same, as a share of the area of the surface. Raises Error as ``bounds`` does,
+        for a tolerance that differs by the sign if the map is unsigned, and for both of fail_area and fail_share; Cancelled. Cost: one search per vertex.
 
         >>> sdm.map(sphere, box, resolution=64).check(2).verdict
         'pass'
         """
-        return self._core.check(tolerance, uncertainty, progress)
+        return self._core.check(tolerance, uncertainty, fail_area, fail_share, progress)
 
     def check_groups(
         self,

@@ -111,8 +111,11 @@ BoundedLength hausdorff(const PyMap& self, std::optional<double> precision, nb::
 }
 
 CertifiedVerdict check_tolerance(const PyMap& self, nb::handle tolerance, double uncertainty,
-                                 nb::handle progress) {
+                                 nb::handle fail_area, nb::handle fail_share, nb::handle progress) {
   require_uncertainty(uncertainty);
+  SummaryOptions asked;
+  if (!fail_area.is_none()) set_option(option_of(&SummaryOptions::fail_area), fail_area, asked);
+  if (!fail_share.is_none()) set_option(option_of(&SummaryOptions::fail_share), fail_share, asked);
   if (!self.thickness && !self.along) self.require_other_mesh();
   const Tolerance accepted = tolerance_of(tolerance, self.map.sign.method);
   const auto lock = self.use_surface();
@@ -125,6 +128,8 @@ CertifiedVerdict check_tolerance(const PyMap& self, nb::handle tolerance, double
                                     {.accuracy = self.accuracy(),
                                      .guard = self.guard(),
                                      .uncertainty = uncertainty,
+                                     .fail_area = asked.fail_area,
+                                     .fail_share = asked.fail_share,
                                      .tolerance = accepted})
                     .tolerance;
       return;
@@ -134,6 +139,8 @@ CertifiedVerdict check_tolerance(const PyMap& self, nb::handle tolerance, double
                                 .accuracy = self.accuracy(),
                                 .guard = self.guard(),
                                 .uncertainty = uncertainty,
+                                .fail_area = asked.fail_area,
+                                .fail_share = asked.fail_share,
                                 .progress = report});
   });
   return result;
@@ -176,6 +183,16 @@ void bind_verdict(nb::module_& module) {
       .def_prop_ro(
           "undecided_by", [](const V& self) { return self.proof ? self.proof->undecided_by : std::nullopt; },
           text_of_field<ToleranceProof>("undecided_by").c_str())
+      .def_prop_ro(
+          "by_places",
+          [](const V& self) -> std::optional<std::tuple<double, double, double>> {
+            if (!self.by_places) return std::nullopt;
+            return std::tuple(self.by_places->least, self.by_places->certain, self.by_places->possible);
+          },
+          "Where the size of connected places decides: the area that makes a 'fail', that of the largest "
+          "place that is "
+          "out of the tolerance for certain, and of the largest one that may be; estimates, in squared "
+          "units.")
       .def("__repr__", [](const V& self) {
         if (!self.largest) return nb::str("sdm.ToleranceVerdict({!r})").format(word_of(self.verdict));
         return nb::str("sdm.ToleranceVerdict({!r}, largest={:.6g})")
@@ -219,7 +236,7 @@ void bind_map_numbers(nb::module_& module, nb::class_<PyMap>& map) {
       .def("bounds", &bounds, nb::sig("def bounds(self) -> tuple[float, float, float, float]"))
       .def("hausdorff", &hausdorff, nb::arg("precision").none(), nb::arg("progress").none())
       .def("check", &check_tolerance, nb::arg("tolerance").none(), nb::arg("uncertainty"),
-           nb::arg("progress").none());
+           nb::arg("fail_area").none(), nb::arg("fail_share").none(), nb::arg("progress").none());
 }
 
 }  // namespace sdm::python

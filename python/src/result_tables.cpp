@@ -94,6 +94,7 @@ void bind_result_tables(nb::module_& module) {
                            table_of<ToleranceShares>("ToleranceShares"),
                            table_of<NextSteps>("NextSteps"),
                            table_of<ToleranceProof>("ToleranceProof"),
+                           table_of<PlaceDecision>("PlaceDecision"),
                            table_of<ToleranceWitness>("ToleranceWitness"),
                            table_of<Evidence>("Evidence"),
                            table_of<GroupVerdicts>("GroupVerdicts"),

@@ -29,6 +29,9 @@ inline constexpr auto kMembers<ToleranceProof> = std::tuple{
     &ToleranceProof::proof,        &ToleranceProof::witness,          &ToleranceProof::at_lower,
     &ToleranceProof::undecided_by, &ToleranceProof::depends_on_signs, &ToleranceProof::faces_without_match};
 template <>
+inline constexpr auto kMembers<PlaceDecision> =
+    std::tuple{&PlaceDecision::least, &PlaceDecision::certain, &PlaceDecision::possible};
+template <>
 inline constexpr auto kMembers<CertifiedVerdict> = std::tuple{&CertifiedVerdict::verdict,
                                                               &CertifiedVerdict::reason,
                                                               &CertifiedVerdict::decision_rule,
@@ -42,7 +45,8 @@ inline constexpr auto kMembers<CertifiedVerdict> = std::tuple{&CertifiedVerdict:
                                                               &CertifiedVerdict::exceeded_area_fraction,
                                                               &CertifiedVerdict::shares,
                                                               &CertifiedVerdict::proof,
-                                                              &CertifiedVerdict::by_facing};
+                                                              &CertifiedVerdict::by_facing,
+                                                              &CertifiedVerdict::by_places};
 template <>
 inline constexpr auto kMembers<GroupVerdicts> =
     std::tuple{&GroupVerdicts::groups, &GroupVerdicts::without_group, &GroupVerdicts::verdict};

@@ -164,6 +164,17 @@ def test_verdicts_keep_the_uncertainty_from_the_limits(tmp_path, distance, uncer
     assert pickle.loads(pickle.dumps(verdict)).decision_rule == rule
     groups = m.check_groups({"all": 1}, sdm.FaceNames("group", ["all"], [0, 0]), uncertainty=uncertainty)
     assert groups.verdict == expected
+    # The square is one place, of area 1, that is out for certain or may be.
+    by_places = m.check(1, uncertainty=uncertainty, fail_area=0.9)
+    assert by_places.verdict == expected
+    assert m.check(1, uncertainty=uncertainty, fail_share=1).verdict in (expected, "not decided")
+    large = m.check(1, uncertainty=uncertainty, fail_area=1.1)
+    assert large.verdict == "pass" and large.certified == (expected == "pass")
+    if expected != "pass":
+        assert large.by_places == pytest.approx((1.1, float(expected == "fail"), 1), rel=0.02)
+        assert pickle.loads(pickle.dumps(large)).by_places == large.by_places
+    with pytest.raises(sdm.Error, match="fail_area excludes fail_share"):
+        m.check(1, fail_area=1, fail_share=0.1)
     report = m.report(tolerance=1, uncertainty=uncertainty)
     assert (report["tolerance"]["verdict"].lower(), report["tolerance"]["decision_rule"]) == (expected, rule)
     assert report["evidence"]["uncertainty"] == report["evidence"]["guard"] == uncertainty

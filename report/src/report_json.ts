@@ -83,6 +83,7 @@ export interface Report {
     text?: string; ///< the verdict as a clause
     next?: { part: string; measurement: string }; ///< what follows from it; empty where nothing does
     by_facing?: boolean | null; ///< where walls are thin: faces that face the same way decide
+    by_places?: object | null; ///< connected places of some size decide
     proof?: { witness: { distance: number; point: Vec } | null; faces_without_match?: number } | null;
     exceeded_area_fraction?: number;
     exceeded_point_fraction?: number;

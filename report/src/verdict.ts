@@ -137,7 +137,7 @@ export function whatIf(report: Report, limits: Limits, outside: number): [string
     return [`With ${text}: `, '', 'The accuracy of this map is unknown, so no tolerance can be checked.'];
   const cloud = isCloud(report);
   const share =
-    verdict !== 'FAIL' || outside <= 0
+    outside <= 0 || (verdict !== 'FAIL' && !report.tolerance?.by_places)
       ? `No ${cloud ? 'point' : 'sample'} is out of it.`
       : cloud
         ? `${percent(outside)} of the points are out of it.`
@@ -148,7 +148,11 @@ export function whatIf(report: Report, limits: Limits, outside: number): [string
       : '';
   return given
     ? [`With ${text}: `, verdict, `. ${share}${open}`]
-    : ['Would be ', verdict, ` with ${text}. ${share}${open}`];
+    : [
+        'Would be ',
+        verdict,
+        ` with ${text}${report.tolerance?.by_places ? ' if single points decide' : ''}. ${share}${open}`,
+      ];
 }
 
 /// A clause as a sentence, with the minus sign that all numbers of the page have.
@@ -168,6 +172,7 @@ function unjudged(report: Report): string {
 function failure(report: Report): string {
   const unit = unitOf(report);
   const t = report.tolerance!;
+  if (t.by_places) return t.text ?? '';
   const outside = t.exceeded_area_fraction ?? t.exceeded_point_fraction ?? null;
   const whole = isCloud(report) ? 'points are' : 'area is';
   const faces = t.proof?.faces_without_match ?? 0;

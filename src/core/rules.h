@@ -310,10 +310,11 @@ inline double limits_form(double lower, double upper, bool is_signed) {
 
 /// The words of Verdict and VerdictReason, in their order.
 inline constexpr std::array<const char*, 4> kVerdictNames{"PASS", "FAIL", "NOT DECIDED", "DOUBTFUL"};
-inline constexpr std::array<const char*, 12> kReasonNames{
+inline constexpr std::array<const char*, 13> kReasonNames{
     "all within",       "exceeded",         "beyond max distance", "without match",
     "between samples",  "within rounding",  "guard band",          "estimated signs",
-    "unknown accuracy", "nothing measured", "thin walls",          "in doubt"};
+    "unknown accuracy", "nothing measured", "thin walls",          "in doubt",
+    "small places"};
 
 inline constexpr double kPass = 0.0;
 inline constexpr double kFail = 1.0;
@@ -331,6 +332,7 @@ inline constexpr double kUnknownAccuracy = 8.0;
 inline constexpr double kNothingMeasured = 9.0;
 inline constexpr double kThinWalls = 10.0;
 inline constexpr double kInDoubt = 11.0;
+inline constexpr double kSmallPlaces = 12.0;
 
 /// The lower limit, none where it cannot be exceeded as no distance is negative.
 inline double lower_of(double lower, bool is_signed) {
@@ -379,7 +381,7 @@ inline double reason_of(double lowest, double highest, double lower, double uppe
 }
 
 inline double verdict_of(double reason) {
-  if (reason == kAllWithin) return kPass;
+  if (reason == kAllWithin || reason == kSmallPlaces) return kPass;
   if (reason <= kWithoutMatch) return kFail;
   return reason == kInDoubt ? kDoubtful : kNotDecided;
 }

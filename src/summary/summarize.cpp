@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "map/measures/walls.h"
+#include "map/statistics/texel_areas.h"
 #include "summary/distribution.h"
 #include "summary/largest_distance.h"
 #include "summary/wall_note.h"
@@ -85,6 +86,20 @@ double guard_of(const SummaryOptions& options) {
   return options.guard + options.uncertainty;
 }
 
+/// Throws sdm::Error where places cannot decide although they were asked to.
+void check_places(const SummaryOptions& options, bool to_another_mesh) {
+  if (!options.fail_area && !options.fail_share) return;
+  if (!to_another_mesh) throw Error("fail_area and fail_share are for distances to another mesh");
+  if (!options.tolerance) throw Error("fail_area and fail_share need a tolerance");
+  if (options.fail_area && options.fail_share) throw Error("fail_area excludes fail_share");
+}
+
+/// The area that a place needs for a failure; a share is one of the whole mesh.
+std::optional<double> fail_area_of(const Surface& surface, const SummaryOptions& options) {
+  if (!options.fail_share) return options.fail_area;
+  return *options.fail_share * map::surface_area(options.whole ? *options.whole : surface.mesh());
+}
+
 Places places_of(const Surface& surface, const DistanceMap& map, std::span<const float> vertex_distances,
                  const DistanceStatistics& distance, const SummaryOptions& options) {
   const std::vector<FaceNames> names = names_of_part(options.names, options.whole_face);
@@ -125,6 +140,7 @@ LargestDistance largest_distance(const Summary& summary) {
 
 Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap& map,
                   std::span<const float> vertex_distances, const SummaryOptions& options) {
+  check_places(options, true);
   // What may throw comes first: built by GCC 12, members were destroyed twice where a later initializer
   // threw.
   const DistanceStatistics distance = statistics_of(surface, map, options);
@@ -163,6 +179,7 @@ Summary summarize(const Surface& surface, const Sites& sites, const DistanceMap&
                                           .uncertainty = options.uncertainty,
                                           .thin_walls = walls,
                                           .accept_doubts = options.accept_doubts,
+                                          .fail_area = fail_area_of(surface, options),
                                           .progress = options.progress});
   result.coverage = options.coverage;
   result.doubts = options.doubts;
@@ -204,6 +221,7 @@ Summary summarize_thickness(const Surface& surface, const DistanceMap& map, cons
 }
 
 Summary summarize_self(const Surface& surface, const DistanceMap& map, const SummaryOptions& options) {
+  check_places(options, false);
   const DistanceStatistics distance = statistics_of(surface, map, options);  // first, as in summarize()
   Summary result{.units = options.units,
                  .of_itself = true,

@@ -328,6 +328,51 @@ TEST_F(Verdicts, KeepTheUncertaintyAwayFromTheLimits) {
   }
 }
 
+// A plate at distance 0 with two raised squares beside it: of area 1 at 0.2, and of area 0.04 at 0.5.
+TEST_F(Verdicts, ByPlacesDependOnTheirArea) {
+  Mesh plate = square(3, 0);
+  plate = joined(plate, moved(square(1, 0.2), {4, 0, 0}));
+  plate = joined(plate, moved(square(0.2, 0.5), {-4, 0, 0}));
+  const double all = 9 + 1 + 0.04;
+  const std::string o1 = write_obj(folder / "o1.obj", plate),
+                    o2 = write_obj(folder / "o2.obj", square(20, 0));
+  struct Case {
+    std::string uncertainty;
+    double fail_area;
+    const char* verdict;
+    double certain, possible;
+  };
+  for (const auto& [uncertainty, fail_area, verdict, certain, possible] :
+       {Case{"0", 0.03, "FAIL", 1, 1}, Case{"0", 0.9, "FAIL", 1, 1}, Case{"0", 1.1, "PASS", 1, 1},
+        Case{"0.05", 0.9, "FAIL", 1, 1}, Case{"0.05", 1.1, "PASS", 1, 1}, Case{"0.15", 0.03, "FAIL", 0.04, 9},
+        Case{"0.15", 0.9, "NOT DECIDED", 0.04, 9}}) {
+    SCOPED_TRACE(fmt::format("{} ± {}", fail_area, uncertainty));
+    for (const auto& [option, least] :
+         {std::pair("--fail-area", fail_area), {"--fail-share", fail_area / all}}) {
+      const Outcome run = map(o1, o2,
+                              {"--tolerance", "0.1", "--uncertainty", uncertainty, option,
+                               fmt::format("{}", least), "--json", "--accept-doubts"});
+      const Json report = Json::parse(run.out, nullptr, false), &tolerance = report["tolerance"];
+      ASSERT_TRUE(tolerance.is_object()) << run.err;
+      EXPECT_EQ(tolerance["verdict"], verdict);
+      EXPECT_EQ(run.code, tolerance["verdict"] == "PASS" ? 0 : tolerance["verdict"] == "FAIL" ? 3 : 4);
+      EXPECT_EQ(tolerance["certified"], false);
+      EXPECT_NEAR(tolerance["by_places"]["least"], fail_area, 1e-9);
+      EXPECT_NEAR(tolerance["by_places"]["certain"], certain, 0.02 * certain);
+      EXPECT_NEAR(tolerance["by_places"]["possible"], possible, 0.02 * possible);
+    }
+  }
+  const Outcome pass = map(o1, o2, {"--tolerance", "0.1", "--fail-area", "2", "--units", "mm"});
+  EXPECT_THAT(pass.out, HasSubstr("tolerance PASS: no connected place of 2 mm² or more is out of ±0.1 mm"));
+  const Outcome strict = map(o1, o2, {"--tolerance", "0.6", "--fail-area", "2", "--json"});
+  EXPECT_EQ(Json::parse(strict.out)["tolerance"]["by_places"], nullptr) << "nothing is out of the tolerance";
+  for (const std::vector<std::string>& refused :
+       {std::vector<std::string>{"--fail-area", "1"},
+        {"--tolerance", "1", "--fail-area", "1", "--fail-share", "0.1"},
+        {"--tolerance", "1", "--fail-share", "1.5"}})
+    EXPECT_EQ(map(o1, o2, refused).code, 2);
+}
+
 TEST_F(Verdicts, OfWallsKeepTheUncertaintyAwayToo) {
   const std::string part = write_obj(folder / "part.obj", cube(1));  // walls of 2
   for (const auto& [least, uncertainty, code] : {std::tuple("1.95", "0", 0),

@@ -160,10 +160,13 @@ TEST(NextSteps, FollowFromEachReason) {
   for (std::size_t r = 0; r < kWords<VerdictReason>.size(); ++r) {
     CertifiedVerdict& verdict = summary.tolerance.emplace();
     verdict.reason = static_cast<VerdictReason>(r);
-    verdict.verdict = verdict.reason == VerdictReason::all_within      ? Verdict::pass
-                      : verdict.reason <= VerdictReason::without_match ? Verdict::fail
-                      : verdict.reason == VerdictReason::in_doubt      ? Verdict::doubtful
-                                                                       : Verdict::not_decided;
+    verdict.verdict =
+        verdict.reason == VerdictReason::all_within || verdict.reason == VerdictReason::small_places
+            ? Verdict::pass
+        : verdict.reason <= VerdictReason::without_match ? Verdict::fail
+        : verdict.reason == VerdictReason::in_doubt      ? Verdict::doubtful
+                                                         : Verdict::not_decided;
+    if (verdict.reason == VerdictReason::small_places) verdict.by_places.emplace();
     // Thin walls end as one of the others, and an accuracy that is unknown says nothing of the part.
     if (verdict.reason == VerdictReason::thin_walls || verdict.reason == VerdictReason::unknown_accuracy)
       continue;

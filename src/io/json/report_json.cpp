@@ -117,6 +117,7 @@ Json tolerance_json(const Summary& summary) {
   json["nearest_limit"] = verdict.nearest_is_lower ? "lower" : "upper";
   json["proof"] = verdict.proof ? to_json(*verdict.proof) : Json();
   json["by_facing"] = value_json(verdict.by_facing);
+  json["by_places"] = verdict.by_places ? fields_json(*verdict.by_places) : Json();
   return json;
 }
 

@@ -13,6 +13,7 @@
 
 #include "core/disjoint_sets.h"
 #include "core/memory.h"
+#include "map/places/largest_place.h"
 #include "map/places/place_limits.h"
 #include "map/statistics/texel_areas.h"
 
@@ -352,6 +353,23 @@ Places find_places(const Surface& surface, const DistanceMap& map, std::span<con
   rank_places(std::move(places), result);
   for (Place& place : result.largest) name_group(place, options.names);
   return result;
+} catch (const std::bad_alloc&) {
+  throw out_of_memory("the places of a map");
+}
+
+double map::largest_place(const Surface& surface, const DistanceMap& map,
+                          std::span<const float> vertex_distances, const Tolerance& tolerance,
+                          double accuracy) try {
+  const std::vector<double> texel_area = texel_areas(surface);
+  PlaceLimits limits(FaceTolerances(tolerance, {}, {}), accuracy, 0);
+  const Whole whole = whole_of(surface, map, vertex_distances, texel_area, limits);
+  if (tolerance.lower > tolerance.upper) return whole.area;
+  if (!limits.by_tolerance()) return 0;
+  PlaceSearch search(surface, map, vertex_distances, limits);
+  double largest = 0;
+  for (const Place& place : places_of(search, surface, map, vertex_distances, limits, texel_area))
+    largest = std::max(largest, place.area);
+  return largest;
 } catch (const std::bad_alloc&) {
   throw out_of_memory("the places of a map");
 }

@@ -53,9 +53,8 @@ double area_fraction_beyond(const Surface& surface, const DistanceMap& map, doub
 }
 
 double area_fraction_without_texels(const Surface& surface) {
-  double without = 0, all = 0;
-  for (std::uint32_t face = 0; face < surface.mesh().triangles.size(); ++face)
-    if (!is_removed(surface.mesh().triangles[face])) all += map::face_area(surface.mesh(), face);
+  const double all = map::surface_area(surface.mesh());
+  double without = 0;
   for (const std::uint32_t face : surface.map_faces().subspan(surface.texel_faces().size()))
     without += map::face_area(surface.mesh(), face);
   return all > 0 ? without / all : 0;

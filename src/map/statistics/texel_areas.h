@@ -20,6 +20,14 @@ namespace sdm::map {
   return 0.5 * norm(cross(b - a, c - a));
 }
 
+/// The area of all faces that are not removed. Cost: linear.
+[[nodiscard]] inline double surface_area(const Mesh& mesh) {
+  double area = 0;
+  for (std::uint32_t face = 0; face < mesh.triangles.size(); ++face)
+    if (!is_removed(mesh.triangles[face])) area += face_area(mesh, face);
+  return area;
+}
+
 /// The surface area of a sample of each face; all together add up to that of the mesh, but for faces without
 /// a sample, which have 0.
 ///

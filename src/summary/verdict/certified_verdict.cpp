@@ -1,3 +1,4 @@
+#include <sdm/error.h>
 #include <sdm/measure.h>
 #include <sdm/summary.h>
 #include <sdm/verdict.h>
@@ -8,6 +9,9 @@
 
 #include "certify/prove_tolerance.h"
 #include "closest/facing/facing_normals.h"
+#include "core/rules.h"
+#include "map/places/largest_place.h"
+#include "map/statistics/texel_areas.h"
 #include "summary/verdict/certify.h"
 #include "summary/verdict/evidence.h"
 
@@ -120,10 +124,32 @@ void summary::Certifier::decide_by_facing(CertifiedVerdict& verdict, const Faces
   verdict.by_facing = verdict.proof && verdict.proof->proof != Proof::undecided;
   if (*verdict.by_facing)
     static_cast<Judgement&>(verdict) = judge(verdict, *verdict.proof);
-  else if (!options_.accept_doubts) {
-    verdict.verdict = Verdict::doubtful;
-    verdict.reason = VerdictReason::in_doubt;
+  else
+    leave_in_doubt(verdict);
+}
+
+void summary::Certifier::leave_in_doubt(CertifiedVerdict& verdict) const {
+  verdict.by_facing = false;
+  if (options_.accept_doubts) return;
+  verdict.verdict = Verdict::doubtful;
+  verdict.reason = VerdictReason::in_doubt;
+}
+
+void summary::Certifier::decide_by_places(CertifiedVerdict& verdict, const PlaceDecision& places) {
+  verdict.by_places = places;
+  verdict.certified = false;
+  verdict.proof.reset();
+  verdict.deciding_bound.reset();
+  if (places.certain >= places.least) {
+    verdict.verdict = Verdict::fail;
+    if (verdict.reason > VerdictReason::without_match) verdict.reason = VerdictReason::exceeded;
+    return;
   }
+  const bool passes = places.possible < places.least;
+  verdict.verdict = passes ? Verdict::pass : Verdict::not_decided;
+  verdict.reason = passes ? VerdictReason::small_places : VerdictReason::guard_band;
+  if (passes && may_cross_walls(map_.measured.kind) && are_walls_thin(verdict.tolerance))
+    leave_in_doubt(verdict);
 }
 
 void summary::decide_thin_walls(CertifiedVerdict& verdict, const std::optional<Evidence>& by_facing,
@@ -161,16 +187,52 @@ CertifiedVerdict summary::Certifier::operator()(const ToleranceVerdict& verdict,
   return result;
 }
 
+namespace {
+
+/// Whether places decide: not where something else than the size of what is out leaves it open, or where the
+/// faces that face the same way fail, whose distances the map does not have.
+bool may_places_decide(const CertifiedVerdict& verdict) {
+  if (verdict.by_facing.value_or(false)) return verdict.verdict != Verdict::fail;
+  switch (verdict.reason) {
+    case VerdictReason::exceeded:
+    case VerdictReason::beyond_max_distance:
+    case VerdictReason::without_match:
+    case VerdictReason::between_samples:
+    case VerdictReason::within_rounding:
+    case VerdictReason::guard_band:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
 CertifiedVerdict certify_tolerance(const Surface& surface, const Sites& sites, const DistanceMap& map,
                                    std::span<const float> vertex_distances, const Tolerance& tolerance,
                                    const CertifyOptions& options) {
+  if (options.fail_area && options.fail_share) throw Error("fail_area excludes fail_share");
   Evidence evidence = evidence_of(surface, map, vertex_distances, options.error_bound, options.accuracy);
   evidence.guard = options.guard + options.uncertainty;
   evidence.uncertainty = options.uncertainty;
   ToleranceVerdict sampled = summary::check_evidence(surface, map, evidence, tolerance);
   summary::withhold_failures_by_missing_signs({&sampled, 1}, {}, surface, sites, map, vertex_distances,
                                               options.accuracy + evidence.guard);
-  return summary::Certifier(surface.mesh(), sites, map, options)(sampled);
+  summary::Certifier certifier(surface.mesh(), sites, map, options);
+  CertifiedVerdict verdict = certifier(sampled);
+  if ((!options.fail_area && !options.fail_share) || !may_places_decide(verdict)) return verdict;
+  const double error = options.accuracy + evidence.guard;
+  Tolerance limits = tolerance;
+  limits.lower = rules::lower_of(tolerance.lower, evidence.is_signed);
+  const auto largest = [&](const Tolerance& within, double accuracy) {
+    return map::largest_place(surface, map, vertex_distances, within, accuracy);
+  };
+  certifier.decide_by_places(
+      verdict, {.least = options.fail_area ? *options.fail_area
+                                           : *options.fail_share * map::surface_area(surface.mesh()),
+                .certain = largest(limits, error),
+                .possible = largest({limits.lower + error, limits.upper - error}, 0)});
+  return verdict;
 }
 
 std::optional<Doubt> doubt_of(const CertifiedVerdict& verdict) {

@@ -27,10 +27,14 @@ class Certifier {
   /// points needs the other proof. `faces`: of the group; all, if there is none.
   [[nodiscard]] CertifiedVerdict operator()(const ToleranceVerdict& verdict, const Faces& faces = {});
 
+  /// Replaces a verdict by that of the largest places. Where walls are thin, it leaves a pass in doubt.
+  void decide_by_places(CertifiedVerdict& verdict, const PlaceDecision& places);
+
  private:
   [[nodiscard]] std::optional<ToleranceProof> prove(const Tolerance& tolerance, std::optional<double> facing,
                                                     const hausdorff::Matching* matching, const Faces& faces);
   void decide_by_facing(CertifiedVerdict& verdict, const Faces& faces);
+  void leave_in_doubt(CertifiedVerdict& verdict) const;
   [[nodiscard]] Tolerance real_limits(const Tolerance& tolerance) const;
   [[nodiscard]] bool are_walls_thin(const Tolerance& tolerance);
   [[nodiscard]] const hausdorff::Matching& matching(double angle);

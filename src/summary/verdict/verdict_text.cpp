@@ -34,6 +34,24 @@ std::string rule_text(const Summary& summary, const char* by) {
          name_of(DecisionRule::iso_14253_1) + ")";
 }
 
+/// A verdict by places, that is not in doubt.
+std::string places_text(const Summary& summary, const std::string& limits) {
+  const auto area = [&](double value) {
+    return with_unit(value, summary.units.empty() ? "" : summary.units + "²", 3);
+  };
+  const auto [least, certain, possible] = *summary.tolerance->by_places;
+  const std::string out = "out of " + limits + (summary.evidence.complete ? "" : " or without a value");
+  if (summary.tolerance->verdict == Verdict::pass)
+    return "no connected place of " + area(least) + " or more is " + out +
+           rule_text(summary, ", nor closer to a limit than the uncertainty, ") +
+           (possible > 0 ? "; the largest has about " + area(possible) : "") + ", an estimate";
+  if (summary.tolerance->verdict == Verdict::fail)
+    return "a connected place of about " + area(certain) + " is " + out +
+           rule_text(summary, " by more than the uncertainty, ") + ", and " + area(least) + " make a failure";
+  return "a connected place of about " + area(possible) + " may be " + out + ", and " + area(least) +
+         " make a failure; the largest that is out for certain has about " + area(certain);
+}
+
 /// Why a verdict is open: no point is proven to be out of the limits.
 std::string open_text(const Summary& summary, const std::string& limits) {
   const CertifiedVerdict& verdict = *summary.tolerance;
@@ -102,6 +120,7 @@ NextSteps while_open(const Summary& summary) {
     case VerdictReason::guard_band: {
       std::string less;
       if (evidence.uncertainty > 0) less = "a measurement with a smaller uncertainty (--uncertainty)";
+      if (evidence.guard == 0) less = "a tolerance that is not equal to the distances of a face";
       if (evidence.guard > evidence.uncertainty)
         less += std::string(less.empty() ? "" : ", or ") + "finer triangles of CAD (--deflection)";
       return {
@@ -131,10 +150,12 @@ std::string verdict_text(const Summary& summary) {
   if (!summary.tolerance) return {};
   const CertifiedVerdict& verdict = *summary.tolerance;
   const std::string limits = limits_text(verdict.tolerance, summary.units, summary.evidence.is_signed);
+  if (verdict.by_places && verdict.verdict != Verdict::doubtful) return places_text(summary, limits);
   const bool samples_only = summary.evidence.samples_only && !verdict.certified;
-  const std::string all = std::string(summary.of_points ? "every point of the cloud"
-                                      : samples_only    ? "every measured point of the surface"
-                                                        : "every point of the surface") +
+  const std::string all = std::string(verdict.by_places   ? "every place of the size that makes a failure"
+                                      : summary.of_points ? "every point of the cloud"
+                                      : samples_only      ? "every measured point of the surface"
+                                                          : "every point of the surface") +
                           " is within " + limits +
                           (samples_only ? ", an estimate for those between them" : "");
   switch (verdict.verdict) {
@@ -164,6 +185,10 @@ NextSteps next_steps(const Summary& summary) {
   switch (verdict.verdict) {
     case Verdict::pass:
       if (summary.of_points) return {"It may be accepted where the cloud has points.", ""};
+      if (verdict.reason == VerdictReason::small_places)
+        return {
+            "It may be accepted by the rule of places: what is out of the limits is smaller than they allow.",
+            "Without --fail-area and --fail-share, one point that is out makes a failure."};
       if (verdict.certified) return {"It may be accepted: every point is within the limits.", ""};
       return {
           "It may be accepted as far as it was measured; between the measured points this is an estimate.",
