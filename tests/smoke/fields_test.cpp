@@ -82,7 +82,7 @@ TEST(Fields, EnumeratorsAreWords) {
   expect_words<DoubtReason>();
   expect_words<Certainty>();
   static_assert(kWords<DoubtReason>.size() == static_cast<std::size_t>(DoubtReason::thin_walls) + 1);
-  static_assert(kWords<VerdictReason>.size() == static_cast<std::size_t>(VerdictReason::in_doubt) + 1);
+  static_assert(kWords<VerdictReason>.size() == static_cast<std::size_t>(VerdictReason::small_places) + 1);
 }
 
 TEST(Fields, DoubtsAreReadAgain) {
