@@ -3,7 +3,6 @@
 #include <sdm/sdm.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>

@@ -2,7 +2,6 @@
 #include <sdm/mesh_files.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 

@@ -5,9 +5,7 @@
 #include <sdm/tolerance.h>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <vector>
 
 struct DoubtCommand {

@@ -19,7 +19,6 @@
 #include "report.h"
 #include "stopwatch.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>

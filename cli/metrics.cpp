@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "bounds_text.h"
 #include "common_options.h"

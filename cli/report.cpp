@@ -1,7 +1,5 @@
 #include "report.h"
 
-#include <cmath>
-
 #include "bounds_text.h"
 #include "cad_options.h"
 #include "doubts.h"

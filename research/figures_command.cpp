@@ -5,8 +5,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "cli/common_options.h"
 #include "cli/option_checks.h"

@@ -7,7 +7,6 @@
 #include <sdm/measure.h>
 #include <sdm/sdm.h>
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>

@@ -7,9 +7,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
-#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>

@@ -10,7 +10,6 @@
 #include <cctype>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "arrays.h"
 #include "fields.h"

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
-#include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 

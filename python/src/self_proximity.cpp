@@ -2,9 +2,6 @@
 #include <nanobind/stl/optional.h>
 #include <sdm/error.h>
 
-#include <limits>
-#include <optional>
-
 #include "options.h"
 #include "proximity.h"
 #include "signatures.h"

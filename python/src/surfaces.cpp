@@ -2,10 +2,8 @@
 #include <nanobind/stl/optional.h>
 #include <sdm/doubts.h>
 
-#include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "arrays.h"
 #include "fields.h"

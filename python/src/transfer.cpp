@@ -1,7 +1,6 @@
 // The compiled part of DistanceMap.transfer().
 #include <sdm/match.h>
 
-#include <cstddef>
 #include <string_view>
 #include <vector>
 

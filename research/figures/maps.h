@@ -6,7 +6,6 @@
 
 #include <array>
 #include <memory>
-#include <string>
 
 #include "research/figures/view.h"
 

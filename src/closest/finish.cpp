@@ -11,7 +11,6 @@
 #include "closest/closest_points.h"
 #include "core/nothing_found.h"
 #include "geometry/lanes/vec-inl.h"
-#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 
 HWY_BEFORE_NAMESPACE();

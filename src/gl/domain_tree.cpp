@@ -5,6 +5,7 @@
 
 #include "closest/closest_points.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 
 namespace sdm::gl {
 namespace {

@@ -1,6 +1,5 @@
 #include "gl/tile_tree.h"
 
-#include <algorithm>
 #include <numeric>
 #include <utility>
 

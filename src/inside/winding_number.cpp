@@ -11,6 +11,7 @@
 
 #include "core/cancellation.h"
 #include "geometry/affine.h"
+#include "geometry/vec.h"
 #include "inside/open_sides.h"
 #include "inside/solid.h"
 

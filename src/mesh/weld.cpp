@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/point_triangle.h"
+#include "geometry/vec.h"
 #include "mesh/topology.h"
 #include "tree/visit.h"
 

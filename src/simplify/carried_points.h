@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "geometry/point_triangle.h"
-#include "geometry/vec.h"
 #include "simplify/collapsing_mesh.h"
 
 namespace sdm::simplify {

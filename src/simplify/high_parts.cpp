@@ -1,7 +1,6 @@
 #include "simplify/high_parts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -14,7 +13,6 @@
 #include "geometry/clip.h"
 #include "geometry/rounding.h"
 #include "geometry/spatial_order.h"
-#include "geometry/vec.h"
 
 namespace sdm::simplify {
 namespace {

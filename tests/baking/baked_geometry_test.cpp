@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
 #include "support/owned_texels.h"

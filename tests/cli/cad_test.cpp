@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 #include "support/run_sdm.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"

@@ -5,7 +5,6 @@
 #include <sdm/mesh_edit.h>
 #include <sdm/statistics.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
@@ -13,7 +12,6 @@
 #include <vector>
 
 #include "cli/samples.h"
-#include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
 #include "support/run_sdm.h"

@@ -3,8 +3,6 @@
 #include <sdm/closest_points.h>
 #include <sdm/sites.h>
 
-#include <cstring>
-
 #include "edit/random_edits.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include <sdm/gpu.h>
-#include "geometry/vec.h"
 #include "gpu/face_search.h"
 #include "gpu/finish.h"
 #include "support/degenerate.h"

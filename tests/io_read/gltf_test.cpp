@@ -3,11 +3,9 @@
 #include <sdm/map_files.h>
 #include <sdm/mesh_files.h>
 
-#include <algorithm>
 #include <numbers>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "io_read/gltf_store.h"
 #include "io_read/writers.h"
 #include "support/error_of.h"

@@ -4,10 +4,8 @@
 #include <sdm/error.h>
 #include <sdm/mesh_files.h>
 
-#include <cmath>
 #include <fstream>
 #include <string>
-#include <vector>
 
 #include "io_read/gltf_store.h"
 #include "io_read/writers.h"

@@ -3,8 +3,6 @@
 
 #include <sdm/mesh.h>
 
-#include "geometry/vec.h"
-
 namespace sdm::test {
 
 /// The unit normal of a face; 0 without area.

@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/oracle.h"
 #include "support/owned_texels.h"

@@ -8,7 +8,6 @@
 #include <limits>
 #include <map>
 #include <random>
-#include <utility>
 #include <vector>
 
 #include "mesh/similarity.h"

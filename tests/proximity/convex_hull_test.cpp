@@ -4,7 +4,6 @@
 
 #include <random>
 #include <set>
-#include <vector>
 
 #include "geometry/predicates.h"
 #include "support/error_of.h"

@@ -9,7 +9,6 @@
 #include <set>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/allocations.h"
 #include "support/meshes.h"
 #include "support/shapes.h"

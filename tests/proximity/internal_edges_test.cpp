@@ -8,7 +8,6 @@
 #include <random>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "scenes/box_mesh.h"
 #include "support/meshes.h"
 #include "support/shapes.h"

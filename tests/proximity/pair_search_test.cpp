@@ -1,7 +1,6 @@
 // Properties of the closest points of any two surfaces.
 #include "bodies/pairs/pair_search.h"
 
-#include <gmock/gmock.h>
 #include <sdm/sdm.h>
 
 #include <cmath>

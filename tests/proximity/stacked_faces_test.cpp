@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <ctime>
 #include <random>
-#include <vector>
 
 #include "support/shapes.h"
 

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/samples.h"
-#include "geometry/vec.h"
 #include "gl/raster_report.h"
 #include "gl/support.h"
 #include "research/literal/literal_engine.h"

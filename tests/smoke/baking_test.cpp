@@ -6,16 +6,11 @@
 #include <sdm/sdm.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <memory>
-#include <optional>
-#include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "smoke/small_meshes.h"
 #include "support/oracle.h"
 #include "support/owned_texels.h"

@@ -4,7 +4,6 @@
 #include <sdm/sdm.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -14,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "smoke/small_meshes.h"
 #include "support/oracle.h"
 #include "support/shapes.h"

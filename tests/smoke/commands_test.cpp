@@ -7,7 +7,6 @@
 #include <sdm/sdm.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>

@@ -6,13 +6,11 @@
 #include <sdm/sdm.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <new>
-#include <optional>
 #include <random>
 #include <set>
 #include <span>
@@ -20,7 +18,6 @@
 #include <vector>
 
 #include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
 #include "smoke/small_meshes.h"
 #include "support/oracle.h"
 #include "support/pair_oracle.h"

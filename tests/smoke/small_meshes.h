@@ -4,11 +4,7 @@
 #include <sdm/map_files.h>
 #include <sdm/mesh.h>
 
-#include <cmath>
-#include <fstream>
 #include <random>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "support/points.h"

@@ -9,7 +9,6 @@
 #include <queue>
 
 #include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
 #include "support/oracle.h"
 
 namespace sdm::oracle {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
 #include "inside/face_sides.h"
 #include "sites/sites_data.h"
 

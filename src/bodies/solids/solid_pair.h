@@ -4,7 +4,6 @@
 #include <sdm/bounds.h>
 
 #include <optional>
-#include <vector>
 
 #include "bodies/solids/core_distance.h"
 #include "bodies/solids/mesh_distance.h"

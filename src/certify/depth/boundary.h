@@ -3,7 +3,6 @@
 
 #include <sdm/closest_points.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>

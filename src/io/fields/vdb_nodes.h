@@ -5,7 +5,6 @@
 #include <sdm/volume.h>
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 

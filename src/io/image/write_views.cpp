@@ -14,7 +14,6 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "io/image/pictures/canvas.h"
 #include "io/image/pictures/face_scales.h"
 #include "io/image/pictures/legend.h"

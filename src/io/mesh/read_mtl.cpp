@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "core/parse_number.h"
 #include "io/file/file_below.h"

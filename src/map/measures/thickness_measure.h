@@ -4,12 +4,10 @@
 #include <sdm/measure.h>
 #include <sdm/rays.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "map/measure.h"
 #include "map/measures/near_walls.h"
 #include "rays/trace.h"

@@ -5,7 +5,6 @@
 
 #include "atlas/charts/face_geometry.h"
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 
 namespace sdm::surface {
 

@@ -15,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "map/terrain.h"
 #include "support/shapes.h"
 

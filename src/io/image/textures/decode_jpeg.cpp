@@ -4,8 +4,6 @@
 #include <array>
 #include <csetjmp>
 #include <cstdio>
-#include <string>
-#include <vector>
 
 // Needs <cstdio> before it.
 #include <jerror.h>

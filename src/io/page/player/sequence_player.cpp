@@ -11,7 +11,6 @@
 
 #include "core/cancellation.h"
 #include "core/memory.h"
-#include "geometry/vec.h"
 #include "io/page/player/animated_model.h"
 #include "io/page/player/drawn_body.h"
 #include "io/page/player/player_page.h"

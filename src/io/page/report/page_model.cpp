@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
-#include <cmath>
 #include <numeric>
 #include <string>
 
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "io/image/pictures/atlas_picture.h"
 #include "io/mesh/model/model_vertices.h"
 #include "io/mesh/model/shading_normals.h"
