@@ -1,5 +1,4 @@
 // The gpu engine: its closest points are those of the reference engine, to the bit.
-#include "closest/engine.h"
 
 #include <gmock/gmock.h>
 #include <sdm/sdm.h>
@@ -19,7 +18,6 @@
 #include "support/error_of.h"
 #include "support/meshes.h"
 #include "support/points.h"
-#include "support/shapes.h"
 
 namespace sdm {
 namespace {

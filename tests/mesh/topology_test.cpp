@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "support/arrays.h"
 #include "support/shapes.h"
 
 namespace sdm {
