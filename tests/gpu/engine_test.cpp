@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <sdm/gpu.h>
+#include "closest/engine.h"  // IWYU pragma: keep, of shared pointers
 #include "gpu/face_search.h"
 #include "gpu/finish.h"
 #include "support/degenerate.h"
