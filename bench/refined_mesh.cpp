@@ -24,8 +24,8 @@ void write_refined(const Refinement& options) {
 }  // namespace
 
 void add_refine(CLI::App& program) {
-  CLI::App& app = *program.add_subcommand(
-      "refine", "Writes the mesh with each triangle divided into PARTS² triangles");
+  CLI::App& app =
+      *program.add_subcommand("refine", "Writes the mesh with each triangle divided into PARTS² triangles");
   const auto options = std::make_shared<Refinement>();
   app.add_option("IN", options->in)->required();
   app.add_option("OUT", options->out)->required();
