@@ -23,7 +23,6 @@
 
 #include "core/stopwatch.h"
 #include "fcl_crowd.h"
-#include "geometry/vec.h"
 #include "harness.h"
 #include "scenes/scene.h"
 #include "timing.h"

@@ -13,7 +13,6 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "harness.h"
 #include "research/fields/fields.h"
 #include "scenes.h"

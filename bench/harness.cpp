@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <exception>
 #include <regex>
-#include <thread>
 
 #include "report.h"
 

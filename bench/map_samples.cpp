@@ -1,9 +1,7 @@
 // Times one map, and writes its samples and distances for other libraries, for bench/peers.
-#include <sdm/execution.h>
 #include <sdm/sdm.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>

@@ -17,7 +17,6 @@
 
 #include "geometry/point_triangle.h"
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 #include "harness.h"
 #include "scenes.h"
 #include "timing.h"

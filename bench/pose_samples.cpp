@@ -3,7 +3,6 @@
 #include <sdm/sdm.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <random>
@@ -13,6 +12,7 @@
 
 #include "arrays.h"
 #include "core/stopwatch.h"
+#include "geometry/vec.h"
 #include "mesh/similarity.h"
 #include "poses.h"
 #include "refine_mesh.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bodies/pairs/pair_search.h"
+#include "geometry/vec.h"
 
 namespace sdm::bench {
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <map>
@@ -19,7 +18,6 @@
 #include "core/stopwatch.h"
 #include "embree_rays.h"
 #include "geometry/line_triangle.h"
-#include "geometry/vec.h"
 #include "harness.h"
 #include "rays/hemisphere_rays.h"
 #include "timing.h"

@@ -1,10 +1,7 @@
 #include "refine_mesh.h"
 
-#include <algorithm>
 #include <map>
 #include <random>
-
-#include "geometry/vec.h"
 
 namespace sdm::bench {
 namespace {

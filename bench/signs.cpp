@@ -15,7 +15,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "harness.h"
 #include "inside/angles/solid_angle.h"
 #include "point_sets.h"

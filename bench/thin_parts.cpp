@@ -1,16 +1,12 @@
 #include "thin_parts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <numbers>
-#include <span>
 #include <utility>
-
-#include "geometry/vec.h"
 
 namespace sdm::bench {
 namespace {

@@ -1,7 +1,6 @@
 // Timing of contenders that take turns, and statistics of times.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <span>
 #include <vector>

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <string_view>
 

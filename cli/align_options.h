@@ -4,7 +4,6 @@
 #include <sdm/align.h>
 
 #include <CLI/CLI.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -1,5 +1,6 @@
 #include "devices.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 #include <sdm/gl.h>
 #include <sdm/gpu.h>
@@ -12,9 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "format.h"
 #include "src/io/json/report_json.h"
 
 namespace {

@@ -6,7 +6,6 @@
 #include <sdm/mesh_files.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "declared_options.h"

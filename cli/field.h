@@ -5,8 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <nlohmann/json.hpp>
-#include <span>
 #include <string>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #include <sdm/mesh.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "format.h"

@@ -19,13 +19,12 @@
 #include "islands.h"
 #include "map_files.h"
 #include "notes.h"
-#include "option_checks.h"
 #include "output_folder.h"
 #include "points_report.h"
 #include "print.h"
 #include "progress_line.h"
-#include "scenes/placement.h"
-#include "stopwatch.h"
+#include "src/core/stopwatch.h"
+#include "src/io/mesh/placement.h"
 #include "weld.h"
 
 namespace {
@@ -115,7 +114,7 @@ Input load_reference(PointsCommand& command) {
 sdm::PointDistancesOptions measuring_options(const PointsCommand& command, const Input& o2) {
   return {.map = command.map,
           .along = command.along,
-          .placement = sdm::scenes::transform_of(sdm::scenes::parse_placement(command.transform_o1)),
+          .placement = sdm::io::transform_of(sdm::io::parse_placement(command.transform_o1)),
           .picture = command.picture,
           .text = command.text,
           .names = o2.names,
@@ -166,7 +165,7 @@ void judge_doubts(const PointsCommand& command, const sdm::PointDistancesOptions
 
 /// Returns the exit code.
 int run(PointsCommand command) {
-  Stopwatch total, watch;
+  sdm::Stopwatch total, watch;
   limit_threads(command.threads);
   OutputFolder out(command.out, {.command = "points", .planned = planned_files(command)});
   ProgressLine progress(command.quiet);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <sdm/error.h>
 
-#include <array>
 #include <fstream>
 #include <string>
 

@@ -1,23 +1,20 @@
 #include "report.h"
 
-#include <cmath>
-
 #include "bounds_text.h"
 #include "cad_options.h"
-#include "doubts.h"
 #include "exit_codes.h"
 #include "format.h"
 #include "group_tolerances.h"
 #include "notes.h"
 #include "places.h"
-#include "scenes/placement.h"
 #include "src/io/json/report_json.h"
+#include "src/io/mesh/placement.h"
 
 using Json = nlohmann::ordered_json;
 
 Input load_input(const std::string& role, const std::string& file, const std::string& transform,
                  const sdm::MeshFileOptions& options) {
-  const std::vector<sdm::scenes::PlacementStep> steps = sdm::scenes::parse_placement(transform);
+  const std::vector<sdm::io::PlacementStep> steps = sdm::io::parse_placement(transform);
   sdm::MeshFileOptions reading = options;
   reading.tessellation = before_placement(options.tessellation, steps);
   sdm::MeshFile read = sdm::read_mesh_file(file, reading);
@@ -33,8 +30,8 @@ Input load_input(const std::string& role, const std::string& file, const std::st
   if (const auto note = note_on_precision(file, input.mesh.positions, size_of(sdm::bounds(input.mesh))))
     input.notes.push_back(*note);
   if (input.tessellation)
-    input.deviation = placed_deviation(input.tessellation, sdm::scenes::without_fit(input.mesh, steps));
-  sdm::scenes::place(input.mesh, steps);
+    input.deviation = placed_deviation(input.tessellation, sdm::io::without_fit(input.mesh, steps));
+  sdm::io::place(input.mesh, steps);
   return input;
 }
 
@@ -94,7 +91,7 @@ std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
   const sdm::ToleranceShares& shares = verdict.shares;
   const std::string limits =
       sdm::limits_text(verdict.tolerance, outcome.summary.units, outcome.summary.evidence.is_signed) +
-      uncertainty_clause(outcome.summary.evidence.uncertainty, unit);
+      sdm::uncertainty_text(outcome.summary.evidence.uncertainty, outcome.summary.units);
   if (verdict.proof && verdict.proof->witness)
     return fmt::format("{}: {}: {}{} at {}", word,
                        verdict.by_facing.value_or(false) ? sdm::verdict_text(outcome.summary)

@@ -6,7 +6,6 @@
 #include <sdm/mesh_edit.h>
 #include <sdm/sdm.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>

@@ -1,7 +1,5 @@
 #include "sequence_options.h"
 
-#include <vector>
-
 #include "cad_options.h"
 #include "common_options.h"
 #include "declared_options.h"

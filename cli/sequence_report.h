@@ -5,7 +5,6 @@
 #include <sdm/io.h>
 #include <sdm/sdm.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>

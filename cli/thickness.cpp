@@ -17,8 +17,8 @@
 #include "part_map.h"
 #include "print.h"
 #include "progress_line.h"
+#include "src/core/stopwatch.h"
 #include "src/io/json/report_json.h"
-#include "unit_options.h"
 #include "weld.h"
 
 #include <limits>
@@ -66,7 +66,7 @@ std::string limits_in_words(const ThicknessCommand& command) {
 
 /// The verdict as a clause: that of sdm::verdict_text(), but of the limits that were given.
 std::string verdict_in_words(const ThicknessCommand& command, const sdm::Summary& summary) {
-  const std::string by = uncertainty_clause(command.uncertainty, unit_suffix(summary.units));
+  const std::string by = sdm::uncertainty_text(command.uncertainty, summary.units);
   switch (summary.tolerance->verdict) {
     case sdm::Verdict::pass:
       return fmt::format("every measured point has {}{}; between them, an estimate", limits_in_words(command),
@@ -196,7 +196,7 @@ std::string thickness_summary(const ThicknessCommand& command, const ThicknessRe
 }
 
 int run(ThicknessCommand command) {
-  Stopwatch total;
+  sdm::Stopwatch total;
   limit_threads(command.threads);
   OutputFolder out(command.out, {.command = "map", .planned = planned_files(command.files)});
   ProgressLine progress(command.quiet);

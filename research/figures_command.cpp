@@ -5,11 +5,8 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "cli/common_options.h"
-#include "cli/option_checks.h"
 #include "cli/output_folder.h"
 #include "cli/progress_line.h"
 #include "research/figures/reproduce.h"

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <map>
 
-#include "geometry/vec.h"
-
 namespace sdm::scenes {
 
 Mesh ball(const Vec3& centre, double radius, int cuts) {

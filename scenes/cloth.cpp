@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "geometry/vec.h"
 #include "scenes/contacts.h"
 
 namespace sdm::scenes {

@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "geometry/vec.h"
-
 namespace sdm::scenes {
 namespace {
 

@@ -5,7 +5,6 @@
 #include <unordered_map>
 
 #include "core/parallel.h"
-#include "geometry/vec.h"
 
 namespace sdm::scenes {
 namespace {

@@ -1,5 +1,4 @@
 // The scene `cloth`.
-#include "geometry/vec.h"
 #include "scenes/ball.h"
 #include "scenes/box_mesh.h"
 #include "scenes/cloth.h"

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "scenes/simulation.h"
 
 namespace sdm::scenes {

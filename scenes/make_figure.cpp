@@ -1,7 +1,6 @@
 // The scene `figure`: a man, 1 high, who walks on the spot in a box, facing −y.
 #include <numbers>
 
-#include "geometry/vec.h"
 #include "scenes/box_mesh.h"
 #include "scenes/level_set.h"
 #include "scenes/reduce_mesh.h"

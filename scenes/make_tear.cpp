@@ -1,7 +1,6 @@
 // The scene `tear`.
 #include <sdm/closest_points.h>
 
-#include "geometry/vec.h"
 #include "scenes/ball.h"
 #include "scenes/box_mesh.h"
 #include "scenes/cloth.h"

@@ -1,7 +1,10 @@
 // Rotations in three dimensions.
 #pragma once
 
-#include "geometry/vec.h"
+#include <sdm/types.h>
+
+#include <array>
+#include <cmath>
 
 namespace sdm::scenes {
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "geometry/vec.h"
 #include "scenes/cloth.h"
 
 namespace sdm::scenes {

@@ -1,6 +1,7 @@
 /// All of sdm except reading and writing files, which is in <sdm/io.h>.
 #pragma once
 
+// IWYU pragma: begin_exports
 #include <sdm/align.h>
 #include <sdm/bake.h>
 #include <sdm/bounds.h>
@@ -38,3 +39,4 @@
 #include <sdm/verdict.h>
 #include <sdm/version.h>
 #include <sdm/volume.h>
+// IWYU pragma: end_exports

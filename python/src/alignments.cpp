@@ -2,7 +2,6 @@
 #include <nanobind/stl/string.h>
 #include <sdm/doubts.h>
 
-#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>

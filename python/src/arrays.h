@@ -4,7 +4,6 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <sdm/map.h>
-#include <sdm/mesh.h>
 #include <sdm/mesh_edit.h>
 #include <sdm/types.h>
 
@@ -15,7 +14,6 @@
 #include <initializer_list>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 

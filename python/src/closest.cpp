@@ -5,7 +5,6 @@
 #include <sdm/sites.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "arrays.h"
 

@@ -4,9 +4,6 @@
 #include "objects.h"
 #include "stored.h"
 
-#include <string>
-#include <utility>
-
 namespace sdm::python {
 namespace {
 

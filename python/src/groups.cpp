@@ -8,8 +8,6 @@
 #include <sdm/mesh_files.h>
 #include <sdm/places.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <string>
 #include <utility>

@@ -5,10 +5,10 @@
 
 #include <array>
 #include <chrono>
-#include <optional>
 #include <string>
 #include <utility>
 
+#include "arrays.h"
 #include "groups.h"
 #include "options.h"
 #include "rays.h"

@@ -1,13 +1,12 @@
 // A map, with what it was computed from.
 #pragma once
 
+#include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
 #include <sdm/measure.h>
 #include <sdm/sdm.h>
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -15,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "arrays.h"
 #include "objects.h"
 
 namespace sdm::python {

@@ -7,9 +7,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
-#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -19,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "arrays.h"
 #include "map.h"
 #include "options.h"
 

@@ -10,13 +10,10 @@
 #include <cctype>
 #include <cmath>
 #include <optional>
-#include <utility>
 
-#include "arrays.h"
 #include "fields.h"
 #include "map.h"
 #include "options.h"
-#include "signatures.h"
 
 namespace sdm::python {
 namespace {

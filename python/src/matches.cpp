@@ -7,15 +7,13 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
-#include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "arrays.h"
 #include "map.h"
 #include "options.h"
 #include "run.h"
-#include "signatures.h"
 #include "stored.h"
 
 namespace sdm::python {

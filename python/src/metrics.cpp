@@ -5,10 +5,8 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "options.h"
-#include "proximity.h"
 #include "sites_in_use.h"
 
 namespace sdm::python {

@@ -4,7 +4,6 @@
 #include <nanobind/nanobind.h>
 #include <sdm/options.h>
 
-#include <optional>
 #include <string>
 #include <vector>
 

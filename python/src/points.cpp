@@ -4,9 +4,7 @@
 #include <sdm/error.h>
 #include <sdm/points.h>
 
-#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 #include <system_error>

@@ -1,8 +1,8 @@
 // Proximity of two bodies.
 #include "proximity.h"
 #include "fields.h"
+#include "objects.h"
 #include "options.h"
-#include "signatures.h"
 #include "stored.h"
 
 #include <nanobind/stl/optional.h>

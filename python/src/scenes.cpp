@@ -4,7 +4,6 @@
 #include <sdm/error.h>
 #include <sdm/map_files.h>
 
-#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>

@@ -2,9 +2,7 @@
 #include <nanobind/stl/optional.h>
 #include <sdm/error.h>
 
-#include <limits>
-#include <optional>
-
+#include "objects.h"
 #include "options.h"
 #include "proximity.h"
 #include "signatures.h"

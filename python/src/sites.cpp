@@ -2,9 +2,6 @@
 #include <sdm/error.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
 
 #include "arrays.h"
 #include "closest.h"

@@ -6,7 +6,6 @@
 
 #include <cstring>
 #include <type_traits>
-#include <typeinfo>
 #include <vector>
 
 namespace sdm::python {

@@ -2,7 +2,6 @@
 #include <sdm/error.h>
 #include <sdm/sampling_bound.h>
 
-#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>

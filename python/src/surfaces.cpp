@@ -2,12 +2,9 @@
 #include <nanobind/stl/optional.h>
 #include <sdm/doubts.h>
 
-#include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
-#include "arrays.h"
 #include "fields.h"
 #include "options.h"
 #include "signatures.h"

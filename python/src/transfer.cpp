@@ -1,10 +1,10 @@
 // The compiled part of DistanceMap.transfer().
 #include <sdm/match.h>
 
-#include <cstddef>
 #include <string_view>
 #include <vector>
 
+#include "arrays.h"
 #include "map.h"
 #include "run.h"
 

@@ -1,11 +1,11 @@
 // The innermost loop of the slice methods: distances along a row of a slice.
 #pragma once
 
+#include <sdm/types.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <vector>
-
-#include "geometry/vec.h"
 
 namespace sdm::fields {
 

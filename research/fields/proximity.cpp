@@ -9,7 +9,6 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 #include "research/fields/fields.h"
 #include "volume/interpolation.h"
 

@@ -1,6 +1,5 @@
 #include "research/fields/site_signs.h"
 
-#include <algorithm>
 #include <bit>
 
 #include "core/parallel.h"

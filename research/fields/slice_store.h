@@ -1,7 +1,6 @@
 // Drawing sites in slices, and storing drawn slices in a field.
 #pragma once
 
-#include <atomic>
 #include <cmath>
 
 #include "research/fields/draw_span.h"

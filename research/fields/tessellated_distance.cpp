@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/vec.h"
-
 namespace sdm::fields {
 namespace {
 

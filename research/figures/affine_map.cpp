@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "geometry/vec.h"
-
 namespace sdm::figures {
 
 AffineMap affine_map(const Surface& surface, std::uint32_t face) {

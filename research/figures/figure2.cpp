@@ -7,7 +7,6 @@
 #include <map>
 #include <optional>
 
-#include "geometry/vec.h"
 #include "research/figures/affine_map.h"
 #include "research/figures/charts/svg.h"
 #include "research/figures/figures.h"

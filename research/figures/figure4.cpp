@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 
-#include "geometry/vec.h"
 #include "research/figures/affine_map.h"
 #include "research/figures/charts/face_drawing.h"
 #include "research/figures/figures.h"

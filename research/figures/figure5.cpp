@@ -8,7 +8,6 @@
 #include <cmath>
 #include <functional>
 
-#include "geometry/vec.h"
 #include "research/figures/charts/chart.h"
 #include "research/figures/charts/face_drawing.h"
 #include "research/figures/figures.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "research/figures/charts/chart.h"
 #include "research/figures/figures.h"
 #include "research/figures/pieces.h"

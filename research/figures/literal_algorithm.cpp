@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <span>
 
-#include "geometry/vec.h"
 #include "gl/raster_report.h"
 #include "research/figures/charts/bars.h"
 #include "research/figures/corrections.h"

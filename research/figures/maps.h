@@ -1,12 +1,10 @@
 // Two bodies that carry maps to each other, and the error of maps.
 #pragma once
 
-#include <sdm/gl.h>
 #include <sdm/sdm.h>
 
 #include <array>
 #include <memory>
-#include <string>
 
 #include "research/figures/view.h"
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "geometry/vec.h"
 
 namespace sdm::figures {
 namespace {

@@ -3,8 +3,6 @@
 
 #include <sdm/surface.h>
 
-#include <vector>
-
 namespace sdm::figures {
 
 /// The largest distance from points of the faces to their nearest samples, by comparing all of them:

@@ -8,7 +8,6 @@
 #include <span>
 
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "gl/polygons/convex_polygon.h"
 #include "gl/polygons/site_region.h"
 #include "sites/sites_data.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/vec.h"
 #include "research/figures/random.h"
 
 namespace sdm::figures {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <string>
 
 #include "atlas/layout.h"
 #include "core/memory.h"

@@ -7,7 +7,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 #include "closest/site_lists-inl.h"

@@ -1,10 +1,10 @@
 // The pose of a mesh: an affine map of its points.
 #pragma once
 
+#include <sdm/types.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include "geometry/vec.h"
 
 namespace sdm::core {
 

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 
 namespace sdm::core {
 

@@ -11,7 +11,6 @@
 #include <limits>
 
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 
 namespace sdm::core {
 

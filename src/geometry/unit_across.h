@@ -1,9 +1,9 @@
 // A direction across another one.
 #pragma once
 
-#include <cmath>
+#include <sdm/types.h>
 
-#include "geometry/vec.h"
+#include <cmath>
 
 namespace sdm {
 

@@ -3,7 +3,6 @@
 #include <sdm/error.h>
 #include <sdm/types.h>
 
-#include <algorithm>
 #include <array>
 #include <utility>
 

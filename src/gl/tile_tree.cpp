@@ -1,10 +1,10 @@
 #include "gl/tile_tree.h"
 
-#include <algorithm>
 #include <numeric>
 #include <utility>
 
 #include "core/parallel.h"
+#include "geometry/unit_frame.h"
 #include "geometry/vec.h"
 
 namespace sdm::gl {

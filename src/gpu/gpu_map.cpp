@@ -7,12 +7,10 @@
 #include <limits>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "gpu/face_search.h"
 #include "gpu/finish.h"
 #include "gpu/shaders.h"

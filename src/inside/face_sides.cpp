@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/cancellation.h"
-#include "geometry/vec.h"
 #include "inside/near_faces.h"
 #include "inside/solid.h"
 

@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "geometry/rounding.h"
+#include "geometry/vec.h"
 #include "inside/face_pairs.h"
 #include "tree/visit.h"
 

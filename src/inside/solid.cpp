@@ -10,7 +10,6 @@
 #include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/rounding.h"
-#include "geometry/vec.h"
 #include "inside/solid_boundary.h"
 #include "tree/visit.h"
 

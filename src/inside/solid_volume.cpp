@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "inside/solid_boundary.h"
 #include "sites/sites_data.h"
 

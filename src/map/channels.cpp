@@ -8,7 +8,6 @@
 #include <type_traits>
 
 #include "core/memory.h"
-#include "geometry/vec.h"
 #include "map/transfer/closest_of_texels.h"
 
 namespace sdm {

@@ -7,7 +7,6 @@
 
 #include "closest/facing/facing_normals.h"
 #include "core/memory.h"
-#include "geometry/vec.h"
 #include "map/closest_measure.h"
 #include "sites/sites_data.h"
 

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
-#include <utility>
 
 #include "core/memory.h"
-#include "geometry/vec.h"
 
 namespace sdm {
 namespace {

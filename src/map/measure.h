@@ -8,7 +8,6 @@
 
 #include <array>
 #include <atomic>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>

@@ -15,7 +15,6 @@
 
 #include "core/memory.h"
 #include "geometry/predicates.h"
-#include "geometry/vec.h"
 
 namespace sdm {
 namespace {

@@ -7,7 +7,6 @@
 #include "core/cancellation.h"
 #include "core/disjoint_sets.h"
 #include "core/memory.h"
-#include "geometry/vec.h"
 #include "mesh/topology.h"
 
 namespace sdm {

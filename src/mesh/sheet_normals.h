@@ -4,7 +4,6 @@
 #include <sdm/mesh.h>
 #include <sdm/mesh_attributes.h>
 
-#include <array>
 #include <cstdint>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #include <sdm/types.h>
 
 #include <span>
-#include <vector>
 
 #include "core/arrays/rows.h"
 

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "core/memory.h"
-#include "geometry/vec.h"
 
 namespace sdm {
 namespace {

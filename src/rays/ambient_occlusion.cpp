@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
-#include <numeric>
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "rays/hemisphere_rays.h"
 #include "surface/surface_data.h"
 

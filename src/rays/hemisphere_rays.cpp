@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/vec.h"
-
 namespace sdm::rays {
 namespace {
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/vec.h"
-
 namespace sdm::rays {
 namespace {
 

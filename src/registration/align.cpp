@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/memory.h"
-#include "geometry/vec.h"
 #include "mesh/similarity.h"
 #include "mesh/validate.h"
 #include "registration/correspondences.h"

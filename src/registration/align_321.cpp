@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "mesh/similarity.h"
 #include "mesh/validate.h"
 

@@ -6,7 +6,6 @@
 #include "closest/blocks.h"
 #include "closest/closest_points.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "sites/sites_data.h"
 
 namespace sdm::registration {

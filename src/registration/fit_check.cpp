@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <new>
 #include <utility>
 #include <vector>
 
 #include "core/memory.h"
-#include "geometry/vec.h"
 #include "mesh/similarity.h"
 #include "registration/freedoms.h"
 #include "registration/point_to_plane.h"

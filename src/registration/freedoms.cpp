@@ -3,9 +3,7 @@
 #include <sdm/align.h>
 
 #include <cmath>
-#include <limits>
 
-#include "geometry/vec.h"
 #include "registration/point_to_plane.h"
 
 namespace sdm::registration {

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/vec.h"
-
 namespace sdm::registration {
 namespace {
 

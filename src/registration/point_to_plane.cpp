@@ -2,9 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
-
-#include "geometry/vec.h"
 
 namespace sdm::registration {
 bool has_weight(const Correspondences& pairs, std::size_t i, double cut) {

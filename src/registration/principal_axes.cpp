@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include "geometry/vec.h"
 #include "registration/eigen.h"
 
 namespace sdm::registration {

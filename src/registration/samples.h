@@ -3,7 +3,6 @@
 
 #include <sdm/mesh.h>
 
-#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>

@@ -1,7 +1,6 @@
 #include "search/mixed_bound.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <optional>
 
 namespace sdm::search {

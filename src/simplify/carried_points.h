@@ -1,16 +1,12 @@
 // Points of the input that the faces of a simplified mesh stand for.
 #pragma once
 
-#include <sdm/mesh.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "geometry/point_triangle.h"
-#include "geometry/vec.h"
 #include "simplify/collapsing_mesh.h"
 
 namespace sdm::simplify {

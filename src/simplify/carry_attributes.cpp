@@ -7,14 +7,11 @@
 #include <cmath>
 #include <map>
 #include <new>
-#include <string>
 #include <utility>
 
 #include "closest/facing/facing_normals.h"
 #include "core/memory.h"
-#include "core/parallel.h"
 #include "geometry/barycentric.h"
-#include "geometry/vec.h"
 
 namespace sdm {
 namespace {

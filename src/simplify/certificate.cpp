@@ -1,7 +1,6 @@
 #include "simplify/certificate.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "certify/hausdorff/largest_distance.h"
 #include "geometry/vec.h"

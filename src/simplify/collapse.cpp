@@ -3,7 +3,6 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "core/cancellation.h"

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "geometry/vec.h"
-
 namespace sdm::simplify {
 namespace {
 

@@ -1,7 +1,6 @@
 #include "simplify/high_parts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -10,11 +9,9 @@
 #include "certify/hausdorff/vertex_search.h"
 #include "closest/blocks.h"
 #include "closest/closest_points.h"
-#include "core/parallel.h"
 #include "geometry/clip.h"
 #include "geometry/rounding.h"
 #include "geometry/spatial_order.h"
-#include "geometry/vec.h"
 
 namespace sdm::simplify {
 namespace {

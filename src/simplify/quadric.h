@@ -1,10 +1,10 @@
 // Quadric errors: sums of weighted squared distances to planes (Garland and Heckbert 1997).
 #pragma once
 
-#include <array>
-#include <cmath>
+#include <sdm/types.h>
 
-#include "geometry/vec.h"
+#include <algorithm>
+#include <array>
 
 namespace sdm::simplify {
 

@@ -15,7 +15,6 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
-#include "geometry/vec.h"
 #include "simplify/certificate.h"
 #include "simplify/collapse.h"
 #include "simplify/free_placement.h"

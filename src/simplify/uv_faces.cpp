@@ -4,10 +4,8 @@
 #include <array>
 #include <cmath>
 #include <unordered_map>
-#include <utility>
 
 #include "core/disjoint_sets.h"
-#include "geometry/vec.h"
 
 namespace sdm::simplify {
 namespace {

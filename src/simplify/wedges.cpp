@@ -2,8 +2,6 @@
 
 #include <meshoptimizer.h>
 
-#include <utility>
-
 #include "geometry/vec.h"
 #include "simplify/uv_faces.h"
 

@@ -7,7 +7,6 @@
 #include <hwy/highway.h>
 
 #include <bit>
-#include <cstring>
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();

@@ -5,8 +5,6 @@
 
 #include <functional>
 
-#include "geometry/vec.h"
-
 namespace sdm::sites {
 
 /// Closest points of the first `count` of sixteen queries, as arrays that vector instructions can fill.

@@ -6,11 +6,8 @@
 // After foreach_target.h, which includes this file once for each set of instructions.
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <limits>
 #include <vector>
-
-#include "geometry/vec.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::sites::HWY_NAMESPACE {

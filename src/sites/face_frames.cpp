@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/vec.h"
-
 namespace sdm::sites {
 namespace {
 

@@ -4,7 +4,6 @@
 #include <sdm/execution.h>
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>

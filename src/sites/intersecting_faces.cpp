@@ -15,7 +15,6 @@
 #include "geometry/predicates.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
 #include "sites/hubs.h"
 #include "sites/sites_data.h"
 

@@ -1,8 +1,6 @@
 // The outward orientation of closed meshes.
 #pragma once
 
-#include <vector>
-
 #include "mesh/crossings/ray_parity.h"
 #include "mesh/topology.h"
 

@@ -1,7 +1,5 @@
 #include "sites/pseudonormals.h"
 
-#include "geometry/vec.h"
-
 namespace sdm::sites {
 
 Vec3 pseudonormal(const Pseudonormals& normals, const mesh::Topology& topology, const ClosestPoint& closest) {

@@ -5,9 +5,6 @@
 
 #include <sdm/sites.h>
 
-#include <span>
-#include <vector>
-
 #include "mesh/topology.h"
 
 namespace sdm::sites {

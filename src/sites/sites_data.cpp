@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "mesh/check_topology.h"
 #include "mesh/validate.h"
 #include "sites/check_numbers.h"

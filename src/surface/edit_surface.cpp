@@ -6,7 +6,6 @@
 #include "atlas/texel_owners.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "surface/sample_order.h"
 #include "surface/surface_data.h"
 

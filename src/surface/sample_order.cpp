@@ -11,7 +11,6 @@
 #include "core/parallel.h"
 #include "geometry/spatial_order.h"
 #include "geometry/unit_frame.h"
-#include "geometry/vec.h"
 #include "surface/surface_data.h"
 
 namespace sdm::surface {

@@ -5,7 +5,6 @@
 
 #include "core/cancellation.h"
 #include "core/memory.h"
-#include "geometry/vec.h"
 #include "surface/stored_atlas.h"
 #include "surface/surface_data.h"
 

@@ -10,7 +10,6 @@
 #include "atlas/packing/room.h"
 #include "core/intact.h"
 #include "core/lazy/kept.h"
-#include "geometry/vec.h"
 
 namespace sdm::mesh {
 struct SheetNormals;

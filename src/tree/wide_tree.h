@@ -1,11 +1,8 @@
 // An AABB tree collapsed to eight children per node, which vector instructions test together.
 #pragma once
 
-#include <sdm/types.h>
-
 #include <algorithm>
 #include <cstdint>
-#include <vector>
 
 #include "tree/aabb_tree.h"
 

@@ -11,6 +11,7 @@
 #include "core/cancellation.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "volume/grid.h"
 
 namespace sdm::volume {

@@ -1,14 +1,16 @@
 #include "volume/field_by_engine.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "closest/blocks.h"
 #include "core/cancellation.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "geometry/spatial_order.h"
+#include "geometry/vec.h"
+#include "inside/inside.h"
 #include "volume/field_arrays.h"
+#include "volume/field_writer.h"
 #include "volume/grid.h"
 
 namespace sdm::volume {

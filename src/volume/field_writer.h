@@ -3,8 +3,6 @@
 
 #include <sdm/volume.h>
 
-#include <span>
-
 #include "inside/inside.h"
 #include "sites/sites_data.h"
 

@@ -4,7 +4,6 @@
 #include <sdm/volume.h>
 
 #include "geometry/unit_frame.h"
-#include "geometry/vec.h"
 
 namespace sdm::volume {
 

@@ -9,6 +9,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 #include "volume/grid.h"
 
 namespace sdm {

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <random>
 
-#include "geometry/vec.h"
-
 namespace sdm {
 namespace {
 

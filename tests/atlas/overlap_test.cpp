@@ -5,8 +5,6 @@
 #include <random>
 #include <vector>
 
-#include "geometry/vec.h"
-
 namespace sdm::atlas {
 namespace {
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "atlas/invariants.h"
-#include "geometry/vec.h"
 #include "support/shapes.h"
 
 namespace sdm {

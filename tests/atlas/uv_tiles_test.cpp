@@ -8,7 +8,6 @@
 #include <random>
 
 #include "atlas/invariants.h"
-#include "geometry/vec.h"
 #include "support/owned_texels.h"
 #include "support/shapes.h"
 

@@ -10,7 +10,6 @@
 #include <memory>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/match_pairs.h"
 #include "support/owned_texels.h"
 

@@ -1,7 +1,6 @@
 // The geometry of O2 as textures of O1.
 #include <gtest/gtest.h>
 #include <sdm/bake.h>
-#include <sdm/error.h>
 #include <sdm/match.h>
 
 #include <algorithm>
@@ -12,9 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/error_of.h"
-#include "support/meshes.h"
 #include "support/owned_texels.h"
 #include "support/shapes.h"
 

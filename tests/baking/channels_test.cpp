@@ -21,7 +21,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/owned_texels.h"
 #include "support/run_sdm.h"
 #include "support/shapes.h"

@@ -8,7 +8,6 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/owned_texels.h"
 
 namespace sdm::test {

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/samples.h"
-#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/run_sdm.h"
 

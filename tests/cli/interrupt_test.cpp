@@ -1,6 +1,5 @@
 // Every command, interrupted at any moment of work that would go on for long: it ends soon, and leaves
 // nothing half-written.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 

@@ -1,11 +1,8 @@
 // `--ignore-islands` of `sdm map`: floating specks of a scan.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/error.h>
 #include <sdm/mesh_edit.h>
-#include <sdm/statistics.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
@@ -13,9 +10,7 @@
 #include <vector>
 
 #include "cli/samples.h"
-#include "geometry/vec.h"
 #include "support/error_of.h"
-#include "support/meshes.h"
 #include "support/run_sdm.h"
 #include "support/shapes.h"
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "cli/samples.h"
-#include "geometry/vec.h"
 #include "support/run_sdm.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"

@@ -14,11 +14,9 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <random>
 
 #include "cli/samples.h"
-#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 #include "support/error_of.h"
 #include "support/meshes.h"

@@ -1,6 +1,5 @@
 // Every command that writes files, killed at any moment or short of memory.
 #include <fcntl.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
 #include <unistd.h>

@@ -4,7 +4,6 @@
 #include <sdm/map_files.h>
 #include <sdm/volume.h>
 
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "cli/samples.h"

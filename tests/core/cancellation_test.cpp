@@ -1,7 +1,6 @@
 // Cancellation of calls that would go on for long.
 #include "core/cancellation.h"
 
-#include <gmock/gmock.h>
 #include <sdm/sdm.h>
 
 #include <atomic>

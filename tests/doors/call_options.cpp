@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
-#include <functional>
 #include <iostream>
 #include <map>
 #include <sstream>

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "edit/random_edits.h"
-#include "geometry/vec.h"
 #include "support/made_up_maps.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"

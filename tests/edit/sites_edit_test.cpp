@@ -3,12 +3,10 @@
 #include <sdm/closest_points.h>
 #include <sdm/sites.h>
 
-#include <cstring>
-
 #include "edit/random_edits.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
-#include "support/arrays.h"
+#include "support/arrays.h"  // IWYU pragma: keep, for EXPECT_EQ
 #include "support/oracle.h"
 #include "support/points.h"
 #include "support/shapes.h"

@@ -9,7 +9,6 @@
 
 #include "atlas/invariants.h"
 #include "edit/random_edits.h"
-#include "geometry/vec.h"
 #include "support/points.h"
 #include "support/shapes.h"
 #include "surface/surface_data.h"

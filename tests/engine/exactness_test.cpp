@@ -7,11 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <random>
 #include <span>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/engines.h"
 #include "support/error_of.h"
 #include "support/map_checks.h"

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 
-#include <cmath>
 #include <random>
 #include <vector>
 

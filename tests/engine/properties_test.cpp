@@ -6,7 +6,6 @@
 #include <random>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/engines.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"

@@ -12,10 +12,8 @@
 #include <tuple>
 #include <vector>
 
-#include "closest/scattered.h"
 #include "closest/single_point.h"
 #include "geometry/spatial_order.h"
-#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
 #include "support/degenerate.h"

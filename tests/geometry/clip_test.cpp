@@ -1,13 +1,12 @@
 #include "geometry/clip.h"
 
 #include <gtest/gtest.h>
+#include <sdm/types.h>
 
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <vector>
-
-#include "geometry/vec.h"
 
 namespace sdm {
 namespace {

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/vec.h"
 #include "gl/support.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"

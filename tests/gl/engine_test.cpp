@@ -2,7 +2,7 @@
 #include <atomic>
 #include <thread>
 
-#include "geometry/vec.h"
+#include "gl/scenes.h"
 #include "gl/support.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"

@@ -1,10 +1,8 @@
 #include "gl/scenes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <random>
 
-#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/points.h"
 #include "support/shapes.h"

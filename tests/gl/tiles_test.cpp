@@ -1,5 +1,6 @@
 // Tiles partition the owned texels; their domains and bounds are valid for every sample.
 #include "surface/tiles.h"
+#include "gl/face_domains.h"
 
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
@@ -10,11 +11,9 @@
 #include <set>
 #include <vector>
 
-#include "closest/engine.h"
 #include "gl/domain_tree.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
-#include "surface/surface_data.h"
 
 namespace sdm::gl {
 namespace {

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "sites/sites_data.h"
 #include "support/meshes.h"
 #include "support/shapes.h"

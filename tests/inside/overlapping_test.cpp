@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/engines.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"

@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "inside/angles/packet_angles.h"
 #include "inside/open_meshes.h"
 #include "inside/winding_number.h"

@@ -8,11 +8,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string>
 #include <thread>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "inside/angles/solid_angle.h"
 #include "inside/angles/solid_angles.h"
 #include "inside/open_meshes.h"

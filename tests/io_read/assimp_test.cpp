@@ -6,7 +6,6 @@
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
-#include <functional>
 #include <vector>
 
 #include "geometry/vec.h"

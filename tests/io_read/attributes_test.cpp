@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "io_read/gltf_store.h"
 #include "io_read/writers.h"
 #include "support/shapes.h"

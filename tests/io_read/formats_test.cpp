@@ -1,10 +1,8 @@
 // Round trips of every variant of every format.
 #include <gtest/gtest.h>
-#include <sdm/map_files.h>
 
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <vector>
 

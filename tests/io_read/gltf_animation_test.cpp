@@ -8,7 +8,6 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "io_read/gltf_store.h"
 #include "io_read/writers.h"
 #include "support/error_of.h"

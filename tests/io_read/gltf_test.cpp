@@ -1,16 +1,12 @@
 // What a glTF file adds to its triangles: instances, morph targets, skins and extensions.
 #include <gmock/gmock.h>
-#include <sdm/map_files.h>
 #include <sdm/mesh_files.h>
 
-#include <algorithm>
 #include <numbers>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "io_read/gltf_store.h"
 #include "io_read/writers.h"
-#include "support/error_of.h"
 #include "support/shapes.h"
 
 namespace sdm {

@@ -1,13 +1,10 @@
 // Materials and textures that mesh files refer to.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/error.h>
 #include <sdm/mesh_files.h>
 
-#include <cmath>
 #include <fstream>
 #include <string>
-#include <vector>
 
 #include "io_read/gltf_store.h"
 #include "io_read/writers.h"

@@ -5,7 +5,6 @@
 #include <sdm/points.h>
 #include <sdm/sites.h>
 
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <random>

@@ -6,8 +6,6 @@
 #include <numbers>
 #include <random>
 
-#include "geometry/vec.h"
-
 namespace sdm {
 namespace {
 

@@ -11,10 +11,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <set>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "io/page/player/sequence_player.h"
 #include "support/made_up_maps.h"
 #include "support/shapes.h"

@@ -6,13 +6,11 @@
 #include <sdm/mesh_files.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <memory>
 #include <numeric>
 
-#include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"

@@ -4,7 +4,6 @@
 #include <sdm/map_files.h>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "io_write/read_png.h"

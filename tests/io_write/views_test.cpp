@@ -15,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "io/image/pictures/face_scales.h"
 #include "io/image/views/render_view.h"
 #include "io/image/views/view_layout.h"

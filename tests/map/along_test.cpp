@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/shapes.h"
 

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/shapes.h"
 
 namespace sdm::test {

@@ -4,7 +4,6 @@
 #include <sdm/match.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -13,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "map/terrain.h"
 #include "support/error_of.h"
 #include "support/match_pairs.h"

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 #include "support/shapes.h"
 
 namespace sdm {

@@ -1,5 +1,4 @@
 // The places where a map deviates most.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/places.h>
@@ -10,7 +9,6 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/made_up_maps.h"
 #include "support/shapes.h"
 

@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "map/terrain.h"
 #include "support/error_of.h"
 #include "support/shapes.h"

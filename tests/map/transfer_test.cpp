@@ -1,6 +1,5 @@
 // Values of O2 at the closest points of texels.
 #include <gtest/gtest.h>
-#include <sdm/closest_points.h>
 #include <sdm/error.h>
 #include <sdm/match.h>
 
@@ -14,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/oracle.h"
 #include "support/owned_texels.h"

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 #include "map/statistics/texel_areas.h"
 #include "support/made_up_maps.h"
 #include "support/shapes.h"

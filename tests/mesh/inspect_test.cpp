@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 #include <sdm/mesh.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "support/shapes.h"

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <random>
 
-#include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/shapes.h"
 

@@ -8,11 +8,9 @@
 #include <limits>
 #include <map>
 #include <random>
-#include <utility>
 #include <vector>
 
 #include "mesh/similarity.h"
-#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::test {

@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
 #include "support/pair_oracle.h"

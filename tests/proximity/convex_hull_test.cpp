@@ -4,11 +4,9 @@
 
 #include <random>
 #include <set>
-#include <vector>
 
 #include "geometry/predicates.h"
 #include "support/error_of.h"
-#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::test {

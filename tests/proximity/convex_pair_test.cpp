@@ -1,7 +1,6 @@
 // Closest points and collisions of convex solids by their support functions, against the searches of trees.
 #include "bodies/convex/convex_pair.h"
 
-#include <gmock/gmock.h>
 #include <sdm/sdm.h>
 
 #include <algorithm>

@@ -9,9 +9,7 @@
 #include <set>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/allocations.h"
-#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::test {

@@ -4,16 +4,12 @@
 #include <sdm/sdm.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <random>
 #include <set>
-#include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "scenes/blocks.h"
 #include "support/oracle.h"
 #include "support/shapes.h"

@@ -3,12 +3,9 @@
 #include <sdm/sdm.h>
 
 #include <random>
-#include <vector>
 
 #include "certify/depth/face_distances.h"
-#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
-#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::depth {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 
-#include <algorithm>
 #include <array>
 #include <random>
 #include <set>

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bodies/pairs/pair_search.h"
+#include "geometry/vec.h"
 #include "poses.h"
 #include "proximity/crowd.h"
 #include "proximity/posed_pairs.h"

@@ -3,12 +3,10 @@
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <random>
-#include <span>
 #include <string>
 #include <vector>
 

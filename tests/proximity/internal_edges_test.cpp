@@ -8,9 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "scenes/box_mesh.h"
-#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::test {

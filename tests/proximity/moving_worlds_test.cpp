@@ -3,9 +3,6 @@
 #include <sdm/execution.h>
 #include <sdm/sdm.h>
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
 #include <random>
 #include <set>
 #include <vector>

@@ -9,7 +9,6 @@
 
 #include "bodies/pairs/near_faces.h"
 #include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
 #include "mesh/similarity.h"
 #include "support/meshes.h"
 #include "support/shapes.h"

@@ -1,13 +1,13 @@
 // Properties of the closest points of any two surfaces.
 #include "bodies/pairs/pair_search.h"
 
-#include <gmock/gmock.h>
 #include <sdm/sdm.h>
 
 #include <cmath>
 #include <random>
 #include <vector>
 
+#include "geometry/triangle_pair.h"
 #include "mesh/similarity.h"
 #include "poses.h"
 #include "support/allocations.h"

@@ -5,7 +5,6 @@
 #include <sdm/sdm.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <random>
@@ -14,10 +13,8 @@
 #include <vector>
 
 #include "bodies/pairs/collision.h"
-#include "geometry/vec.h"
 #include "mesh/similarity.h"
 #include "poses.h"
-#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::convex {

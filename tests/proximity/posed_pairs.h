@@ -11,7 +11,6 @@
 #include <string>
 
 #include "bodies/pairs/mesh_pair.h"
-#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
 #include "support/shapes.h"

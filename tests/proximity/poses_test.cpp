@@ -2,11 +2,10 @@
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 
-#include <algorithm>
-#include <cctype>
 #include <random>
 
 #include "bodies/pairs/pair_search.h"
+#include "geometry/vec.h"
 #include "poses.h"
 #include "proximity/posed_pairs.h"
 #include "support/map_checks.h"

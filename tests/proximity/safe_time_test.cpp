@@ -5,14 +5,12 @@
 #include <sdm/sdm.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <random>
 #include <span>
 #include <vector>
 
 #include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
 #include "support/shapes.h"
 
 namespace sdm::motion {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "bodies/separate/separating_contacts.h"
-#include "geometry/vec.h"
 #include "scenes/blocks.h"
 #include "support/allocations.h"
 #include "support/meshes.h"

@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <ctime>
 #include <random>
-#include <vector>
-
-#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {

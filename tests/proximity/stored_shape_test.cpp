@@ -27,7 +27,6 @@
 
 #include "bodies/shape/body.h"
 #include "core/checksum.h"
-#include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
 #include "support/shapes.h"

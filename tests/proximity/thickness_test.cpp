@@ -10,7 +10,6 @@
 #include <random>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/shapes.h"
 #include "support/thickness.h"

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "rays/hemisphere_rays.h"
 #include "support/error_of.h"
 #include "support/meshes.h"

@@ -6,7 +6,6 @@
 #include <random>
 
 #include "geometry/line_triangle.h"
-#include "geometry/vec.h"
 #include "support/every_case.h"
 #include "support/ray_oracle.h"
 

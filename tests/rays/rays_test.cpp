@@ -4,7 +4,6 @@
 #include <sdm/sdm.h>
 
 #include <cmath>
-#include <optional>
 #include <random>
 #include <vector>
 

@@ -7,12 +7,10 @@
 
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <fstream>
-#include <memory>
 #include <numbers>
 
-#include "geometry/vec.h"
+#include "report/page_browser.h"
 #include "report/page_fixture.h"
 #include "support/error_of.h"
 #include "support/shapes.h"

@@ -1,6 +1,5 @@
 // How the pages look and move: sizes, schemes, print, contrast, and pictures while something moves.
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/mesh_files.h>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,4 @@
 // The data of report.html that no other file has.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sdm/tolerance.h>
@@ -10,7 +9,6 @@
 #include <map>
 #include <random>
 
-#include "geometry/vec.h"
 #include "io/page/report/area_by_value.h"
 #include "io/page/report/face_walk.h"
 #include "io/page/report/fewer_vertices.h"

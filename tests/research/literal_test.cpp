@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/samples.h"
-#include "geometry/vec.h"
 #include "gl/raster_report.h"
+#include "gl/scenes.h"
 #include "gl/support.h"
 #include "research/literal/literal_engine.h"
 #include "research/run_sdm_paper.h"

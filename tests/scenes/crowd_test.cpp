@@ -3,7 +3,6 @@
 #include <sdm/closest_points.h>
 #include <sdm/multi_body_query.h>
 
-#include "geometry/vec.h"
 #include "scenes/scene.h"
 
 namespace sdm::scenes {

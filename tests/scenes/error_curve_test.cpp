@@ -8,7 +8,6 @@
 #include <random>
 
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "scenes/scene.h"
 #include "support/meshes.h"
 #include "support/oracle.h"

@@ -4,8 +4,6 @@
 
 #include <numbers>
 
-#include "geometry/vec.h"
-
 namespace sdm::scenes {
 namespace {
 

@@ -1,6 +1,5 @@
 #include "scenes/made_scan.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>
 

@@ -1,16 +1,13 @@
 // Tests of the parts of the simulations against their definitions.
 #include <gtest/gtest.h>
-#include <sdm/error.h>
 #include <sdm/map_files.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <set>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "scenes/box_mesh.h"
 #include "scenes/contacts.h"
 #include "scenes/reduce_mesh.h"

@@ -2,10 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
-#include "geometry/vec.h"
 #include "scenes/box_mesh.h"
 #include "scenes/resting_bodies.h"
 #include "support/every_case.h"

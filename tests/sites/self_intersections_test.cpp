@@ -10,7 +10,6 @@
 #include <random>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "sites/intersecting_faces.h"
 #include "sites/sites_data.h"
 #include "support/meshes.h"

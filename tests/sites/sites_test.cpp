@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "sites/sites_data.h"
 #include "support/shapes.h"
 

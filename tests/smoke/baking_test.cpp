@@ -1,21 +1,15 @@
 // Matches, transfer and baking: one small case for each, where the answer is known.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/bake_files.h>
 #include <sdm/mesh_attributes.h>
 #include <sdm/sdm.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <memory>
-#include <optional>
-#include <string>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "smoke/small_meshes.h"
 #include "support/oracle.h"
 #include "support/owned_texels.h"
@@ -232,7 +226,7 @@ TEST(SmokeBake, PicturesThatRepeatAreAveragedOverTexels) {
 TEST(SmokeBake, GeometryOfAnotherMeshIsThatOfItsPoints) {
   const Squares squares;
   const TexelMatches matches = match_texels(squares.surface, squares.sites, {.method = MatchMethod::ray});
-  const Mesh box = block({-2, -2, -0.4}, {2, 2, 0.1});  // O2 with a thickness, whose top is the square
+  const Mesh box = test::box({-2, -2, -0.4}, {2, 2, 0.1});  // O2 with a thickness, whose top is the square
   const Sites solid(box);
   const TexelMatches of_solid = match_texels(squares.surface, solid);
   const MeshAttribute normals = smooth_normals(squares.high), own = smooth_normals(squares.low);

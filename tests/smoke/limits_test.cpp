@@ -1,8 +1,6 @@
 // What small meshes of usual shape do not reach: many faces, thin walls, solids that just touch, and wrong
 // arguments.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/bake_files.h>
 #include <sdm/map_files.h>
 #include <sdm/sdm.h>
 
@@ -12,15 +10,11 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <random>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "smoke/small_meshes.h"
-#include "support/made_up_maps.h"
 #include "support/oracle.h"
 #include "support/shapes.h"
 

@@ -12,13 +12,11 @@
 #include <cstring>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <random>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "smoke/small_meshes.h"
 #include "support/made_up_maps.h"
 #include "support/map_checks.h"

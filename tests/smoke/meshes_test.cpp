@@ -5,14 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <limits>
-#include <optional>
 #include <random>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "smoke/small_meshes.h"
 #include "support/oracle.h"
 #include "support/pair_oracle.h"

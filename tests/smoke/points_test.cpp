@@ -1,5 +1,4 @@
 // Queries of points, rays and fields: one small case for each, against brute force or a closed form.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/closest_points.h>
 #include <sdm/sdm.h>
@@ -10,9 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <random>
-#include <string>
 #include <vector>
 
 #include "geometry/vec.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <random>
 
-#include "geometry/vec.h"
 #include "support/shapes.h"
 
 namespace sdm::test {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
 #include "support/shapes.h"

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "geometry/vec.h"
 #include "support/oracle.h"
 
 namespace sdm::test {

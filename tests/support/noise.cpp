@@ -6,8 +6,6 @@
 #include <random>
 #include <vector>
 
-#include "geometry/vec.h"
-
 namespace sdm::test {
 namespace {
 

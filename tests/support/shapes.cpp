@@ -4,7 +4,6 @@
 #include <map>
 #include <numbers>
 
-#include "geometry/vec.h"
 #include "support/points.h"
 
 namespace sdm::test {

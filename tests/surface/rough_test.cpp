@@ -12,7 +12,6 @@
 #include "atlas/charts/overlap.h"
 #include "atlas/charts/rough.h"
 #include "atlas/invariants.h"
-#include "geometry/vec.h"
 #include "support/noise.h"
 #include "support/points.h"
 #include "support/shapes.h"

@@ -1,5 +1,4 @@
 // The sampling bound against the nearest samples of random points of the surface.
-#include "geometry/vec.h"
 
 #include <gtest/gtest.h>
 #include <sdm/sampling_bound.h>

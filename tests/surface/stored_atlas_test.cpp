@@ -5,7 +5,6 @@
 #include <sdm/surface.h>
 
 #include <algorithm>
-#include <cstring>
 #include <vector>
 
 #include "support/error_of.h"

@@ -8,8 +8,9 @@
 #include <random>
 #include <utility>
 
+#include "geometry/unit_frame.h"
 #include "geometry/vec.h"
-#include "support/arrays.h"
+#include "support/arrays.h"  // IWYU pragma: keep, for EXPECT_EQ
 #include "tree/aabb_tree.h"
 #include "tree/fold.h"
 #include "tree/visit.h"

@@ -3,7 +3,6 @@
 
 #include <sdm/volume.h>
 
-#include <cmath>
 #include <random>
 #include <string>
 #include <vector>

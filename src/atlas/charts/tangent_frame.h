@@ -1,12 +1,12 @@
 // Planes and convex hulls in them.
 #pragma once
 
+#include <sdm/types.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
-
-#include "geometry/vec.h"
 
 namespace sdm::atlas {
 

@@ -1,12 +1,12 @@
 // Which texel centres lie in a triangle of the atlas.
 #pragma once
 
+#include <sdm/types.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-
-#include "geometry/vec.h"
 
 namespace sdm::atlas {
 

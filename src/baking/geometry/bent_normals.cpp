@@ -1,8 +1,5 @@
 #include "baking/geometry/bent_normals.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "baking/geometry/mikktspace/frames.h"
 #include "geometry/vec.h"
 

@@ -13,7 +13,6 @@
 #include "baking/geometry/texel_walk.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "map/transfer/corner_normals.h"
 
 namespace sdm {

@@ -4,6 +4,7 @@
 
 #include "core/cancellation.h"
 #include "core/parallel.h"
+#include "geometry/vec.h"
 
 namespace sdm::contacts {
 namespace {

@@ -3,11 +3,9 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "bodies/contacts/surface_point.h"
-#include "geometry/affine.h"
 #include "mesh/similarity.h"
 
 namespace sdm::contacts {

@@ -1,7 +1,6 @@
 // The points at which an edge is in contact with a mesh, between its ends.
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 

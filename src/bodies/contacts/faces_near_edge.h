@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "sites/sites_data.h"
 #include "tree/visit.h"
 

@@ -5,6 +5,7 @@
 
 #include "core/cancellation.h"
 #include "geometry/rounding.h"
+#include "geometry/vec.h"
 #include "tree/visit.h"
 
 namespace sdm::contacts {

@@ -4,7 +4,6 @@
 #include <span>
 
 #include "bodies/shape/body.h"
-#include "geometry/vec.h"
 
 namespace sdm::contacts {
 

@@ -8,6 +8,7 @@
 
 #include "geometry/predicates.h"
 #include "geometry/triangle.h"
+#include "geometry/vec.h"
 #include "inside/angles/solid_angle.h"
 
 namespace sdm::convex {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/arrays/rows.h"
-#include "geometry/vec.h"
 #include "sites/sites_data.h"
 
 namespace sdm::convex {

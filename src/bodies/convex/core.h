@@ -5,8 +5,6 @@
 
 #include <cstdint>
 
-#include "geometry/vec.h"
-
 namespace sdm::solids {
 
 enum class CoreKind : std::uint8_t {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <utility>
-#include <vector>
 
 #include "geometry/point_triangle.h"
 #include "geometry/unit_across.h"

@@ -11,7 +11,6 @@
 
 #include "bodies/convex/simplex_point.h"
 #include "bodies/convex/support_search.h"
-#include "geometry/vec.h"
 
 namespace sdm::convex {
 

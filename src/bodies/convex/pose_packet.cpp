@@ -12,7 +12,6 @@
 #include <string_view>
 
 #include "bodies/convex/pose_lanes-inl.h"
-#include "geometry/vec.h"
 
 #ifndef SDM_POSE_PACKET_ONCE
 #define SDM_POSE_PACKET_ONCE

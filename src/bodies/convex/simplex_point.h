@@ -1,12 +1,12 @@
 // Simplices of differences of vertices, and their points closest to the origin.
 #pragma once
 
+#include <sdm/types.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-
-#include "geometry/vec.h"
 
 namespace sdm::convex {
 

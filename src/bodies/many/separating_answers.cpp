@@ -1,5 +1,4 @@
 // The answers of MultiBodyQuery on how bodies leave each other.
-#include <array>
 #include <memory>
 #include <optional>
 #include <span>

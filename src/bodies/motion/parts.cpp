@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/vec.h"
 #include "registration/eigen.h"
 #include "tree/fold.h"
 

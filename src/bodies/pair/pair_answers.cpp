@@ -1,7 +1,6 @@
 #include "bodies/pair/pair_answers.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "bodies/pairs/collision.h"
 #include "core/nothing_found.h"

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <utility>
 
 #include "bodies/pairs/caps-inl.h"
 #include "bodies/pairs/cylinder_lanes-inl.h"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "bodies/separate/moved_pair.h"
-#include "geometry/vec.h"
 
 namespace sdm::separate {
 

@@ -1,5 +1,6 @@
 #include "bodies/separate/overlap_cover.h"
 #include "closest/single_point.h"
+#include "geometry/vec.h"
 
 #include <algorithm>
 #include <cmath>

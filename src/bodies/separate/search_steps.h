@@ -8,7 +8,6 @@
 #include "bodies/convex/convex_mesh.h"
 #include "bodies/separate/moved_pair.h"
 #include "bodies/shape/posed_body.h"
-#include "geometry/vec.h"
 
 namespace sdm::separate {
 

@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "bodies/convex/convex_mesh.h"
 #include "bodies/convex/core.h"

@@ -9,7 +9,6 @@
 
 #include "geometry/rounding.h"
 #include "geometry/unit_frame.h"
-#include "geometry/vec.h"
 #include "sites/regions.h"
 #include "tree/wide_tree.h"
 

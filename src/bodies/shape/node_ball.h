@@ -2,7 +2,6 @@
 #pragma once
 
 #include "geometry/rounding.h"
-#include "geometry/vec.h"
 #include "mesh/similarity.h"
 #include "sites/sites_data.h"
 #include "tree/visit.h"

@@ -14,7 +14,6 @@
 #include "bodies/shape/column_box.h"
 #include "bodies/shape/wall_column.h"
 #include "geometry/rounding.h"
-#include "geometry/vec.h"
 #include "sites/sites_data.h"
 #include "tree/visit.h"
 

@@ -3,11 +3,9 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <optional>
 
 #include "bodies/shape/node_ball.h"
-#include "geometry/triangle_pair.h"
 #include "inside/inside.h"
 
 namespace sdm::shape {

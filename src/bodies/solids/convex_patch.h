@@ -4,7 +4,6 @@
 #include <sdm/proximity_query.h>
 
 #include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -8,7 +8,6 @@
 
 #include "bodies/convex/simplex_point.h"
 #include "geometry/unit_across.h"
-#include "geometry/vec.h"
 
 namespace sdm::solids {
 namespace {

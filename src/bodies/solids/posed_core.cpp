@@ -1,7 +1,5 @@
 #include "bodies/solids/posed_core.h"
 
-#include <array>
-
 #include "bodies/convex/support_search.h"
 #include "bodies/shape/extreme_vertex.h"
 

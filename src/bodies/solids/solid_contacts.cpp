@@ -7,7 +7,6 @@
 #include "geometry/barycentric.h"
 #include "geometry/triangle_pair.h"
 #include "geometry/unit_across.h"
-#include "geometry/vec.h"
 
 namespace sdm::solids {
 namespace {

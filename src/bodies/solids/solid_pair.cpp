@@ -6,10 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "bodies/solids/core_distance.h"
+#include "bodies/solids/mesh_distance.h"
 #include "closest/single_point.h"
 #include "geometry/unit_across.h"
 #include "geometry/vec.h"
 #include "inside/inside.h"
+#include "inside/solid.h"
 
 namespace sdm::solids {
 namespace {

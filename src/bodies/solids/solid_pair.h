@@ -4,10 +4,8 @@
 #include <sdm/bounds.h>
 
 #include <optional>
-#include <vector>
 
-#include "bodies/solids/core_distance.h"
-#include "bodies/solids/mesh_distance.h"
+#include "bodies/convex/difference_hull.h"
 #include "bodies/solids/posed_core.h"
 
 namespace sdm::solids {

@@ -7,7 +7,6 @@
 
 #include "bodies/convex/support_search.h"
 #include "geometry/unit_across.h"
-#include "geometry/vec.h"
 #include "sites/sites_data.h"
 
 namespace sdm::solids {

@@ -10,7 +10,6 @@
 
 #include "closest/exact.h"
 #include "closest/facing/facing_search.h"
-#include "geometry/vec.h"
 
 namespace sdm::hausdorff {
 

@@ -1,7 +1,6 @@
 #include "certify/hausdorff/part_search.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "geometry/rounding.h"
 

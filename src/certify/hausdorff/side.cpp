@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "geometry/vec.h"
+#include "inside/sign.h"
+#include "inside/solid.h"
 
 namespace sdm::hausdorff {
 

@@ -5,12 +5,10 @@
 #include <sdm/execution.h>
 
 #include <algorithm>
-#include <span>
 #include <vector>
 
 #include "certify/hausdorff/nearest_face.h"
 #include "certify/hausdorff/side.h"
-#include "geometry/vec.h"
 #include "sites/sites_data.h"
 
 namespace sdm::hausdorff {

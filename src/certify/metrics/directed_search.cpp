@@ -3,7 +3,6 @@
 #include <sdm/error.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -13,7 +12,6 @@
 #include "core/parallel.h"
 #include "geometry/rounding.h"
 #include "geometry/spatial_order.h"
-#include "geometry/vec.h"
 
 namespace sdm::metrics {
 namespace {

@@ -5,11 +5,9 @@
 #include <sdm/mesh.h>
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 
 namespace sdm::metrics {
 

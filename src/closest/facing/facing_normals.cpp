@@ -3,7 +3,6 @@
 #include <sdm/mesh_edit.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 

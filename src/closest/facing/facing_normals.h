@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 #include "sites/sites_data.h"
 
 namespace sdm::facing {

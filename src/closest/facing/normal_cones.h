@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/lazy/kept.h"
-#include "geometry/vec.h"
 #include "sites/sites_data.h"
 #include "tree/aabb_tree.h"
 

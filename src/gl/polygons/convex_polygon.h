@@ -7,7 +7,6 @@
 #include <span>
 
 #include "geometry/clip.h"
-#include "geometry/vec.h"
 
 namespace sdm::gl {
 

@@ -4,7 +4,6 @@
 
 #include <sdm/types.h>
 
-#include "geometry/vec.h"
 #include "gl/polygons/convex_polygon.h"
 
 namespace sdm::gl {

@@ -1,7 +1,6 @@
 // A polygon to be drawn: the part of a domain inside a site's region, with the distance vector to the site.
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 

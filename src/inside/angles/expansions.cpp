@@ -8,7 +8,6 @@
 
 #include "core/cancellation.h"
 #include "geometry/rounding.h"
-#include "geometry/vec.h"
 
 namespace sdm::inside {
 namespace {

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/vec.h"
-
 namespace sdm::inside {
 
 /// A solid angle, and how far it may be from the true one.

@@ -4,7 +4,6 @@
 #include <sdm/types.h>
 
 #include <cstdint>
-#include <vector>
 
 #include "inside/angles/expansions.h"
 #include "inside/angles/solid_angle.h"

@@ -2,10 +2,7 @@
 // 8³ points.
 #pragma once
 
-#include <sdm/volume.h>
-
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 

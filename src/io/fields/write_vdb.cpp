@@ -4,8 +4,6 @@
 // of the command together (docs/dependencies.md); the tests read the files with it.
 #include <sdm/version.h>
 
-#include <bit>
-#include <functional>
 #include <limits>
 #include <string>
 

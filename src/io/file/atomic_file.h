@@ -1,7 +1,6 @@
 // Files that appear under their final name only when complete.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
 

@@ -4,7 +4,6 @@
 
 #include <new>
 #include <sstream>
-#include <string>
 
 #include "core/memory.h"
 #include "io/image/pictures/png.h"

@@ -1,12 +1,10 @@
 #include <sdm/error.h>
 #include <sdm/execution.h>
 #include <sdm/map_files.h>
-#include <sdm/summary.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <new>
 #include <numbers>
 #include <string>
@@ -14,7 +12,6 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "io/image/pictures/canvas.h"
 #include "io/image/pictures/face_scales.h"
 #include "io/image/pictures/legend.h"

@@ -2,7 +2,6 @@
 
 #include <sdm/version.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>

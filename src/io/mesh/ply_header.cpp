@@ -1,7 +1,6 @@
 #include "io/mesh/ply_header.h"
 
 #include <fmt/format.h>
-#include <algorithm>
 
 #include "io/file/text_scanner.h"
 

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
 #include "core/excerpt.h"
@@ -15,7 +14,6 @@
 #include "io/file/error_prefix.h"
 #include "io/file/file_bytes.h"
 #include "io/file/npy.h"
-#include "io/mesh/read_polygons.h"
 
 namespace sdm {
 

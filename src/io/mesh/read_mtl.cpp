@@ -8,12 +8,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "core/parse_number.h"
-#include "io/file/file_below.h"
 #include "io/file/text_scanner.h"
-#include "io/mesh/polygons/polygon_attributes.h"
 
 namespace sdm::io {
 namespace {

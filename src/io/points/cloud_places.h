@@ -3,7 +3,6 @@
 
 #include <sdm/points.h>
 
-#include <optional>
 #include <span>
 
 #include "io/points/measured_rows.h"

@@ -1,7 +1,6 @@
 #include "io/points/point_cells.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/disjoint_sets.h"

@@ -2,14 +2,11 @@
 #pragma once
 
 #include <sdm/measure.h>
-#include <sdm/rays.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "map/measure.h"
 #include "map/measures/near_walls.h"
 #include "rays/trace.h"

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <sdm/mesh_attributes.h>
-#include <sdm/places.h>
 #include <sdm/tolerance.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 #include "surface/surface_data.h"
 
 namespace sdm::map {

@@ -3,7 +3,6 @@
 #include <sdm/error.h>
 #include <sdm/mesh_edit.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 

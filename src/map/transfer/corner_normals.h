@@ -6,8 +6,6 @@
 
 #include <cstdint>
 
-#include "geometry/vec.h"
-
 namespace sdm::map {
 
 class CornerNormals {

@@ -3,7 +3,6 @@
 #include <sdm/match.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <new>
 #include <optional>
@@ -16,7 +15,6 @@
 #include "core/parallel.h"
 #include "geometry/barycentric.h"
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 #include "map/transfer/closest_of_texels.h"
 #include "map/transfer/corner_normals.h"
 #include "rays/trace.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "geometry/vec.h"
+#include "mesh/topology.h"
 
 namespace sdm::inside {
 namespace {

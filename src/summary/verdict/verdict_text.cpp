@@ -27,27 +27,21 @@ std::string guard_text(const Evidence& evidence) {
   return std::string(", which is the uncertainty and ") + deviation + rule;
 }
 
-/// What the uncertainty adds to a verdict that it leaves decided.
-std::string rule_text(const Summary& summary, const char* by) {
-  if (summary.evidence.uncertainty == 0) return {};
-  return std::string(by) + with_unit(summary.evidence.uncertainty, summary.units, 2) + " (" +
-         name_of(DecisionRule::iso_14253_1) + ")";
-}
-
 /// A verdict by places, that is not in doubt.
 std::string places_text(const Summary& summary, const std::string& limits) {
   const auto area = [&](double value) {
     return with_unit(value, summary.units.empty() ? "" : summary.units + "²", 3);
   };
   const auto [least, certain, possible] = *summary.tolerance->by_places;
+  const std::string by = uncertainty_text(summary.evidence.uncertainty, summary.units);
   const std::string out = "out of " + limits + (summary.evidence.complete ? "" : " or without a value");
   if (summary.tolerance->verdict == Verdict::pass)
     return "no connected place of " + area(least) + " or more is " + out +
-           rule_text(summary, ", nor closer to a limit than the uncertainty, ") +
-           (possible > 0 ? "; the largest has about " + area(possible) : "") + ", an estimate";
+           (possible > 0 ? "; the largest that is not within it" + by + " has about " + area(possible) : "") +
+           ", an estimate";
   if (summary.tolerance->verdict == Verdict::fail)
-    return "a connected place of about " + area(certain) + " is " + out +
-           rule_text(summary, " by more than the uncertainty, ") + ", and " + area(least) + " make a failure";
+    return "a connected place of about " + area(certain) + " is " + out + by + ", and " + area(least) +
+           " make a failure";
   return "a connected place of about " + area(possible) + " may be " + out + ", and " + area(least) +
          " make a failure; the largest that is out for certain has about " + area(certain);
 }
@@ -146,11 +140,18 @@ std::string limits_text(const Tolerance& tolerance, const std::string& units, bo
   return summary::limits_words(tolerance, is_signed, text) + (units.empty() ? "" : " " + units);
 }
 
+std::string uncertainty_text(double uncertainty, const std::string& units) {
+  if (uncertainty == 0) return {};
+  return " by more than the uncertainty, " + with_unit(uncertainty, units, 2) + " (" +
+         name_of(DecisionRule::iso_14253_1) + ")";
+}
+
 std::string verdict_text(const Summary& summary) {
   if (!summary.tolerance) return {};
   const CertifiedVerdict& verdict = *summary.tolerance;
   const std::string limits = limits_text(verdict.tolerance, summary.units, summary.evidence.is_signed);
   if (verdict.by_places && verdict.verdict != Verdict::doubtful) return places_text(summary, limits);
+  const std::string by = uncertainty_text(summary.evidence.uncertainty, summary.units);
   const bool samples_only = summary.evidence.samples_only && !verdict.certified;
   const std::string all = std::string(verdict.by_places   ? "every place of the size that makes a failure"
                                       : summary.of_points ? "every point of the cloud"
@@ -160,7 +161,7 @@ std::string verdict_text(const Summary& summary) {
                           (samples_only ? ", an estimate for those between them" : "");
   switch (verdict.verdict) {
     case Verdict::pass:
-      return all + rule_text(summary, ", by more than the uncertainty, ");
+      return all + (by.empty() ? "" : ",") + by;
     case Verdict::doubtful:
       return all + ", but " + summary.doubts.front().text + "; " + summary.doubts.front().remedy +
              ", or --accept-doubts";
@@ -171,8 +172,7 @@ std::string verdict_text(const Summary& summary) {
                    : "no face of the reference faces as a point does";
       if (verdict.reason == VerdictReason::beyond_max_distance)
         return "a point is farther than the maximum distance";
-      return "a point is out of " + limits + rule_text(summary, " by more than the uncertainty, ") +
-             (verdict.by_facing.value_or(false) ? kByFacing : "");
+      return "a point is out of " + limits + by + (verdict.by_facing.value_or(false) ? kByFacing : "");
     case Verdict::not_decided:
       break;
   }

@@ -9,7 +9,6 @@
 #include "core/atomic_extremes.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "surface/sampling_bound/face_cutter.h"
 #include "surface/sampling_bound/piece_assignment.h"
 

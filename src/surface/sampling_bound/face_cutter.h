@@ -8,11 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <span>
-#include <vector>
 
 #include "geometry/clip.h"
-#include "geometry/vec.h"
-#include "surface/sampling_bound/piece_assignment.h"
 #include "surface/sampling_bound/sample_tree.h"
 #include "surface/surface_data.h"
 

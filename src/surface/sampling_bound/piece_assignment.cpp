@@ -11,7 +11,6 @@
 
 #include "core/atomic_extremes.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "surface/sample_order.h"
 #include "surface/sampling_bound/face_cutter.h"
 #include "surface/sampling_bound/measure_pieces.h"

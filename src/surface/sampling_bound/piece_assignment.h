@@ -7,8 +7,6 @@
 #include <memory>
 #include <vector>
 
-#include "geometry/vec.h"
-#include "surface/sample_order.h"
 #include "surface/sampling_bound/measure_pieces.h"
 
 namespace sdm::surface {

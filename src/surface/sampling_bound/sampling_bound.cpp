@@ -13,7 +13,6 @@
 #include "core/memory.h"
 #include "core/numbers/number_text.h"
 #include "geometry/rounding.h"
-#include "geometry/vec.h"
 #include "surface/sampling_bound/piece_assignment.h"
 
 namespace sdm {

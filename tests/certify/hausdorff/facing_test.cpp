@@ -13,7 +13,6 @@
 
 #include "closest/facing/facing_search.h"
 #include "geometry/point_triangle.h"
-#include "geometry/vec.h"
 #include "sites/sites_data.h"
 #include "support/error_of.h"
 #include "support/meshes.h"

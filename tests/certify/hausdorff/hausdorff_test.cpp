@@ -10,7 +10,6 @@
 #include <numbers>
 #include <random>
 
-#include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/hausdorff_oracle.h"
 #include "support/meshes.h"

@@ -16,7 +16,6 @@
 #include <string>
 
 #include "certify/metrics/part.h"
-#include "geometry/vec.h"
 #include "support/error_of.h"
 #include "support/every_case.h"
 #include "support/meshes.h"

@@ -1,5 +1,4 @@
 // Proofs of tolerances, against dense samples whose signed distances CGAL computes.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/tolerance.h>
@@ -10,11 +9,9 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <random>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
 #include "support/shapes.h"

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <span>
-#include <vector>
 
 namespace sdm::baking {
 

@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
-
-#include "geometry/vec.h"
 
 namespace sdm::io {
 namespace {

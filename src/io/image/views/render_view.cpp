@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <optional>
 
-#include "geometry/vec.h"
 #include "io/image/pictures/canvas.h"
 #include "surface/surface_data.h"
 

@@ -4,7 +4,6 @@
 #include <sdm/error.h>
 #include <sdm/sites.h>
 
-#include <array>
 #include <memory>
 #include <span>
 

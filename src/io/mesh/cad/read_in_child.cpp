@@ -1,7 +1,6 @@
 #include "io/mesh/cad/read_in_child.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sdm/error.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -15,7 +14,6 @@
 #include <cmath>
 #include <csignal>
 #include <mutex>
-#include <type_traits>
 #include <utility>
 
 #include "core/cancellation.h"

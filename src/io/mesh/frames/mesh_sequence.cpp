@@ -2,7 +2,6 @@
 #include <sdm/error.h>
 #include <sdm/mesh_files.h>
 
-#include <cmath>
 #include <new>
 #include <optional>
 #include <utility>

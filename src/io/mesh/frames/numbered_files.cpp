@@ -4,7 +4,6 @@
 #include <sdm/error.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <numeric>
 #include <optional>

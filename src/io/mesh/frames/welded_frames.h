@@ -4,7 +4,6 @@
 #include <sdm/mesh.h>
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "geometry/vec.h"
-
 namespace sdm::io {
 
 using nlohmann::json;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "geometry/vec.h"
 #include "io/mesh/gltf/gltf_morph.h"
 
 namespace sdm::io {

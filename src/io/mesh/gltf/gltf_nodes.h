@@ -8,7 +8,6 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "io/mesh/gltf/document/gltf_document.h"
 
 namespace sdm::io {

@@ -4,8 +4,6 @@
 #include <array>
 #include <limits>
 
-#include "geometry/vec.h"
-
 namespace sdm::io {
 
 tinygltf::Primitive primitive_of(GlbModel& glb, const DrawnSurface& drawn, const ModelVertices& vertices) {

@@ -4,7 +4,6 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>

@@ -4,7 +4,6 @@
 #include <sdm/mesh_attributes.h>
 #include <sdm/surface.h>
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <new>
 #include <string>
-#include <vector>
 
 #include "core/memory.h"
 #include "io/file/atomic_file.h"

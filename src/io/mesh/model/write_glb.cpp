@@ -1,7 +1,6 @@
 #include "atlas/gutter.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "io/file/atomic_file.h"
 #include "io/image/pictures/atlas_picture.h"
 #include "io/image/pictures/color_scale.h"
@@ -21,7 +20,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <new>
 #include <sstream>
 #include <string>

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "core/memory.h"
-#include "geometry/vec.h"
 #include "io/file/atomic_file.h"
 #include "io/file/little_endian.h"
 #include "io/mesh/model/mesh_model.h"

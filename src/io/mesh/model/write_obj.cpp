@@ -1,10 +1,10 @@
 #include "io/mesh/model/write_obj.h"
 
 #include <fmt/format.h>
-#include <sdm/error.h>
 
 #include <algorithm>
 #include <iterator>
+#include <ostream>
 #include <set>
 #include <string>
 

@@ -4,7 +4,6 @@
 #include <sdm/mesh_files.h>
 
 #include <filesystem>
-#include <ostream>
 
 namespace sdm::io {
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "geometry/spatial_order.h"
-#include "geometry/vec.h"
 
 namespace sdm::io {
 namespace {

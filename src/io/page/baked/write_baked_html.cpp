@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/memory.h"
-#include "geometry/vec.h"
 #include "io/file/atomic_file.h"
 #include "io/mesh/model/model_vertices.h"
 #include "io/page/baked/detailed_model.h"

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/vec.h"
-
 namespace sdm::io {
 namespace {
 

@@ -1,7 +1,6 @@
 #include "io/page/player/sequence_player.h"
 
 #include <sdm/error.h>
-#include <sdm/execution.h>
 #include <sdm/map.h>
 
 #include <algorithm>
@@ -11,7 +10,6 @@
 
 #include "core/cancellation.h"
 #include "core/memory.h"
-#include "geometry/vec.h"
 #include "io/page/player/animated_model.h"
 #include "io/page/player/drawn_body.h"
 #include "io/page/player/player_page.h"

@@ -2,7 +2,6 @@
 
 #include <sdm/types.h>
 
-#include <algorithm>
 #include <numeric>
 
 namespace sdm::io {

@@ -1,16 +1,11 @@
 #include "io/page/report/page_model.h"
 
-#include <sdm/mesh_edit.h>
-
 #include <algorithm>
 #include <atomic>
-#include <bit>
-#include <cmath>
 #include <numeric>
 #include <string>
 
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "io/image/pictures/atlas_picture.h"
 #include "io/mesh/model/model_vertices.h"
 #include "io/mesh/model/shading_normals.h"

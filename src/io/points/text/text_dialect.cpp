@@ -4,7 +4,6 @@
 #include <sdm/error.h>
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "io/points/text/dialect_attempt.h"
