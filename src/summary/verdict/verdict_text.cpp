@@ -153,12 +153,13 @@ std::string verdict_text(const Summary& summary) {
   if (verdict.by_places && verdict.verdict != Verdict::doubtful) return places_text(summary, limits);
   const std::string by = uncertainty_text(summary.evidence.uncertainty, summary.units);
   const bool samples_only = summary.evidence.samples_only && !verdict.certified;
-  const std::string all = std::string(verdict.by_places   ? "every place of the size that makes a failure"
-                                      : summary.of_points ? "every point of the cloud"
-                                      : samples_only      ? "every measured point of the surface"
-                                                          : "every point of the surface") +
-                          " is within " + limits +
-                          (samples_only ? ", an estimate for those between them" : "");
+  const std::string all = verdict.by_places
+                              ? "no connected place of the size that makes a failure is out of " + limits
+                              : std::string(summary.of_points ? "every point of the cloud"
+                                            : samples_only    ? "every measured point of the surface"
+                                                              : "every point of the surface") +
+                                    " is within " + limits +
+                                    (samples_only ? ", an estimate for those between them" : "");
   switch (verdict.verdict) {
     case Verdict::pass:
       return all + (by.empty() ? "" : ",") + by;
