@@ -1,3 +1,6 @@
+#include <hwy/cache_control.h>
+
+#include <algorithm>
 #include <utility>
 
 #include "core/cancellation.h"
@@ -10,6 +13,8 @@ namespace sdm::sites {
 namespace {
 
 constexpr std::size_t kRegionGrain = 1024;  // faces
+constexpr std::size_t kAhead =
+    16;  // faces whose data is prefetched, as the tree's order is not that of the mesh
 
 // Whether the faces around the sites owned by a face form closed, consistently oriented fans.
 bool encloses(const RegionSource& s, const Regions& regions, std::size_t owner) {
@@ -28,92 +33,98 @@ bool encloses(const RegionSource& s, const Regions& regions, std::size_t owner) 
   return true;
 }
 
-// Assigns sites in the order of the faces and builds the topology indexed by region.
+// The sites of one kind, in the order in which faces meet them. Most are met several times, in no pattern
+// that a processor could predict, so nothing branches on whether one is new.
 class SiteOrder {
  public:
-  explicit SiteOrder(const RegionSource& source)
-      : s_(source),
-        edge_place_(source.topology.edges.size(), kNone),
-        vertex_place_(source.positions.size(), kNone) {
-    edges_.reserve(edge_place_.size());
-    vertices_.reserve(vertex_place_.size());
-  }
+  explicit SiteOrder(std::size_t count) : place_(count, kNone), sites_(count + 1) {}
 
-  void run(std::span<const std::uint32_t> faces, Regions& regions) {
-    std::vector<Regions::Owner> owners;
-    corners_.reserve(faces.size());
-    edge_faces_.reserve(edge_place_.size());
-    owners.reserve(faces.size() + 1);
-    Poll due(kRegionGrain);
-    for (const std::uint32_t face : faces) {
-      due();
-      owners.push_back(next_owner(face));
-      const Triangle& t = s_.triangles[face];
-      Triangle& corners = corners_.emplace_back();
-      for (int k = 0; k < 3; ++k) corners[k] = place_of(t[k], vertex_place_, vertices_);
-      for (int k = 0; k < 3; ++k) meet(s_.topology.face_edges[face][k], t, k);
-    }
-    owners.push_back(next_owner(kNone));
-    regions.owners = std::move(owners);
-    regions.places.corners = std::move(corners_);
-    regions.places.edges = std::move(edge_faces_);
+  /// The place of a site: a new one if it has not been met.
+  std::uint32_t meet(std::uint32_t site) {
+    const std::uint32_t place = std::min(place_[site], count_);
+    sites_[count_] = site;
+    count_ += place == count_;
+    return place_[site] = place;
   }
-
-  // The site at each region index.
-  [[nodiscard]] const std::vector<std::uint32_t>& edges() const { return edges_; }
-  [[nodiscard]] const std::vector<std::uint32_t>& vertices() const { return vertices_; }
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+  /// The site at each place.
+  [[nodiscard]] std::span<const std::uint32_t> sites() const { return {sites_.data(), count_}; }
 
  private:
-  [[nodiscard]] Regions::Owner next_owner(std::uint32_t face) const {
-    return {face, static_cast<std::uint32_t>(edges_.size()), static_cast<std::uint32_t>(vertices_.size())};
-  }
-
-  static std::uint32_t place_of(std::uint32_t site, std::vector<std::uint32_t>& places,
-                                std::vector<std::uint32_t>& sites) {
-    if (places[site] == kNone) {
-      places[site] = static_cast<std::uint32_t>(sites.size());
-      sites.push_back(site);
-    }
-    return places[site];
-  }
-
-  // Records that side k of the last face, t, is this edge.
-  void meet(std::uint32_t edge, const Triangle& t, int k) {
-    const auto face = static_cast<std::uint32_t>(corners_.size() - 1);
-    const Triangle& corners = corners_.back();
-    const std::uint32_t third = corners[(k + 2) % 3], place = place_of(edge, edge_place_, edges_);
-    if (place == edge_faces_.size()) {
-      const int from = mesh::runs_forward(t, k) ? k : (k + 1) % 3,
-                to = mesh::runs_forward(t, k) ? (k + 1) % 3 : k;
-      edge_faces_.push_back({{corners[from], corners[to], third, third}, {face, face}});
-    } else if (SitePlaces::Edge& met = edge_faces_[place]; met.faces[1] == met.faces[0]) {
-      met.corners[3] = third;
-      met.faces[1] = face;
-    }
-  }
-
-  const RegionSource& s_;
-  std::vector<std::uint32_t> edge_place_, vertex_place_;  // kNone: not assigned yet
-  std::vector<std::uint32_t> edges_, vertices_;
-  std::vector<Triangle> corners_;  // as those of places
-  std::vector<SitePlaces::Edge> edge_faces_;
+  std::vector<std::uint32_t> place_, sites_;
+  std::uint32_t count_ = 0;
 };
+
+void order_vertices(const RegionSource& s, std::span<const std::uint32_t> faces, Regions& regions,
+                    SiteOrder& vertices) {
+  Poll due(kRegionGrain);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    due();
+    regions.owners[i].face = faces[i];
+    if (i + kAhead < faces.size()) hwy::Prefetch(&s.triangles[faces[i + kAhead]]);
+    regions.owners[i].vertices = vertices.count();
+    for (int k = 0; k < 3; ++k) regions.places.corners[i][k] = vertices.meet(s.triangles[faces[i]][k]);
+  }
+  regions.owners.back().face = kNone;
+  regions.owners.back().vertices = vertices.count();
+}
+
+// As `faces` of each edge, which are kNone at first, stores 4i + k for the first two owners i of which it is
+// side k, or for the only one twice.
+void order_edges(const RegionSource& s, std::span<const std::uint32_t> faces, Regions& regions,
+                 SiteOrder& edges) {
+  Poll due(kRegionGrain);
+  for (std::uint32_t i = 0; i < faces.size(); ++i) {
+    due();
+    if (i + kAhead < faces.size()) hwy::Prefetch(&s.topology.face_edges[faces[i + kAhead]]);
+    regions.owners[i].edges = edges.count();
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      auto& [first, second] = regions.places.edges[edges.meet(s.topology.face_edges[faces[i]][k])].faces;
+      const std::uint32_t side = 4 * i + k, met_twice = first == second ? 0 : ~0u;
+      second = (second & met_twice) | (side & ~met_twice);
+      first = std::min(first, side);
+    }
+  }
+  regions.owners.back().edges = edges.count();
+}
+
+// Completes what order_edges() stored.
+void place_corners(Regions& regions, std::span<const std::uint32_t> vertices, std::size_t begin,
+                   std::size_t end) {
+  constexpr int kNext[] = {1, 2, 0, 1};
+  const std::span<const Triangle> corners = regions.places.corners;
+  for (std::size_t e = begin; e < end; ++e) {
+    SitePlaces::Edge& edge = regions.places.edges[e];
+    const auto [i, j] = std::array{edge.faces[0] / 4, edge.faces[1] / 4};
+    const std::uint32_t k = edge.faces[0] % 4, a = corners[i][k], b = corners[i][kNext[k]];
+    const bool forward = vertices[a] < vertices[b];
+    edge.corners[!forward] = a;
+    edge.corners[forward] = b;
+    edge.corners[2] = corners[i][kNext[k + 1]];
+    edge.corners[3] = corners[j][kNext[edge.faces[1] % 4 + 1]];
+    edge.faces = {i, j};
+  }
+}
 
 }  // namespace
 
 Regions build_regions(const RegionSource& s, const tree::AabbTree& tree) {
   Regions regions;
   SitePlaces& places = regions.places;
-  SiteOrder sites(s);
+  SiteOrder edge_order(s.topology.edges.size()), vertex_order(s.positions.size());
   const std::size_t faces = tree.items.size();
+  regions.owners.resize(faces + 1);
+  places.corners.resize(faces);
+  places.edges.assign(s.topology.edges.size(), {{}, {kNone, kNone}});
   parallel_invoke(
       [&] {
-        regions.faces.resize(faces);
-        regions.edges.resize(s.topology.edges.size());
+        order_edges(s, tree.items, regions, edge_order);
         regions.enclosed.resize(faces);
       },
       [&] {
-        sites.run(tree.items, regions);
+        order_vertices(s, tree.items, regions, vertex_order);
+        regions.faces.resize(faces);
+        regions.edges.resize(s.topology.edges.size());
         std::vector<std::uint32_t> leaves = leaf_nodes(tree);
         for (std::uint32_t& leaf : leaves)
           leaf = static_cast<std::uint32_t>(tree.items_of(leaf).data() - tree.items.data());
@@ -121,7 +132,10 @@ Regions build_regions(const RegionSource& s, const tree::AabbTree& tree) {
         leaves.shrink_to_fit();
         regions.leaves = std::move(leaves);
       });
-  const std::size_t vertices = sites.vertices().size();
+  parallel_for(places.edges.size(), kRegionGrain, [&](std::size_t begin, std::size_t end) {
+    place_corners(regions, vertex_order.sites(), begin, end);
+  });
+  const std::size_t vertices = vertex_order.count();
   CompressedRows<std::uint32_t> neighbours;  // of each vertex, by places
   parallel_invoke(
       [&] {
@@ -148,14 +162,14 @@ Regions build_regions(const RegionSource& s, const tree::AabbTree& tree) {
         regions.thin.resize(regions.bounds.size());
         places.neighbours.resize(vertices);
         for (std::size_t v = 0; v < vertices; ++v)
-          regions.vertices[v].vertex = regions.points[v].vertex = sites.vertices()[v];
+          regions.vertices[v].vertex = regions.points[v].vertex = vertex_order.sites()[v];
       });
   std::vector<Vec3> placed;
   place(regions, s.positions, placed);
   const bool closed = s.topology.closed();
   parallel_for(faces, kRegionGrain, [&](std::size_t begin, std::size_t end) {
     for (std::uint32_t e = regions.owners[begin].edges; e < regions.owners[end].edges; ++e)
-      regions.edges[e].edge = sites.edges()[e];
+      regions.edges[e].edge = edge_order.sites()[e];
     for (std::uint32_t v = regions.owners[begin].vertices; v < regions.owners[end].vertices; ++v)
       places.neighbours[v] = choose_cone_rays(placed, s.scale, v, neighbours.of(v));
     for (std::size_t i = begin; i < end; ++i)
