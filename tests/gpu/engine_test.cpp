@@ -57,10 +57,9 @@ std::vector<Vec3> queries_for(const Mesh& mesh, std::size_t count, std::mt19937&
   return queries;
 }
 
-void expect_reference(const Mesh& mesh, double max_distance, std::uint32_t seed) {
+void expect_reference(const Sites& sites, double max_distance, std::uint32_t seed) {
   std::mt19937 random(seed);
-  const Sites sites(mesh);
-  const std::vector<Vec3> points = queries_for(mesh, 20'000, random);
+  const std::vector<Vec3> points = queries_for(sites.mesh(), 20'000, random);
   const auto of = [&](const char* engine) {
     std::vector<ClosestPoint> found(points.size());
     make_engine(engine)->scattered(sites, points, {.max_distance = max_distance}, found);
@@ -78,15 +77,21 @@ void expect_reference(const Mesh& mesh, double max_distance, std::uint32_t seed)
 
 TEST(GpuEngine, ClosestPointsAreThoseOfTheReferenceEngine) {
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-  expect_reference(test::load("armadillo.off"), kAnywhere, 1);
-  expect_reference(test::load("elephant-with-holes.off"), kAnywhere, 2);
-  expect_reference(test::load("boeing.off"), 0.3, 3);
+  expect_reference(Sites(test::load("armadillo.off")), kAnywhere, 1);
+  expect_reference(Sites(test::load("elephant-with-holes.off")), kAnywhere, 2);
+  expect_reference(Sites(test::load("boeing.off")), 0.3, 3);
   for (std::uint32_t seed = 4; seed < 12; ++seed) {
     std::mt19937 random(seed);
     Mesh mesh = test::degenerate_soup(300, random);
     const double scale = std::pow(10.0, 3.0 * (seed % 5) - 6);
     for (Vec3& p : mesh.positions) p = scale * (p + Vec3{3, 0, -5});
-    expect_reference(mesh, seed % 2 == 0 ? kAnywhere : 0.2 * scale, seed);
+    Sites sites(mesh);
+    const double limit = seed % 2 == 0 ? kAnywhere : 0.2 * scale;
+    expect_reference(sites, limit, seed);
+    // Then frames of the faces that the device has computed.
+    for (Vec3& p : mesh.positions) p = {p[0], (seed % 3 == 0 ? 1e-3 : 1.1) * p[1], p[2] + 0.3 * p[0]};
+    sites.refit(mesh.positions);
+    expect_reference(sites, limit, seed);
   }
 }
 
@@ -201,14 +206,15 @@ TEST(GpuEngine, BuffersBeyondTheLimitAreDivided) {
                       positions_there = device.buffer(3 * size, Use::read, "");
     device.write(samples_there, std::as_bytes(std::span(samples)));
     device.write(positions_there, std::as_bytes(std::span(positions)));
-    search.measure(o2, {samples_there, positions_there}, points.size(), distances);
+    const gpu::SitesOnDevice& there = search.place(o2);
+    search.measure(there, {samples_there, positions_there}, points.size(), distances, {});
     std::vector<float> on_device(points.size());
     device.run({}, distances, read_back, std::as_writable_bytes(std::span(on_device)));
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (placed[i].within < 0) continue;
       const auto& [x, y, z] = placed[i].position;
       const gpu::DistanceError error =
-          gpu::distance_error(o2, std::max({std::abs(x), std::abs(y), std::abs(z)}));
+          gpu::distance_error(there.shape, std::max({std::abs(x), std::abs(y), std::abs(z)}));
       const double distance = expected[i].distance * o2.frame.scale;
       ASSERT_NEAR(on_device[i], distance, error.each * distance + error.constant) << i;
     }

@@ -89,7 +89,8 @@ constexpr std::size_t kUniformBytes = 16;
 WGPUBufferUsage usage(Device::Use use) {
   switch (use) {
     case Device::Use::uniform:
-      return WGPUBufferUsage_Uniform | WGPUBufferUsage_CopyDst;
+      return WGPUBufferUsage_Uniform | WGPUBufferUsage_Storage | WGPUBufferUsage_CopyDst |
+             WGPUBufferUsage_CopySrc;
     case Device::Use::read:
       return WGPUBufferUsage_Storage | WGPUBufferUsage_CopyDst;
     case Device::Use::write:
@@ -187,7 +188,9 @@ void Device::write(const Buffer& buffer, std::span<const std::byte> bytes) {
   wgpu().QueueWriteBuffer(queue_.get(), buffer.get(), 0, bytes.data(), bytes.size());
 }
 
-Pipeline Device::pipeline(std::string_view wgsl) {
+Pipeline Device::pipeline(std::initializer_list<EmbeddedFile> parts) {
+  std::string wgsl;
+  for (const EmbeddedFile& part : parts) wgsl += part.bytes;
   WGPUShaderSourceWGSL source{};
   source.chain.sType = WGPUSType_ShaderSourceWGSL;
   source.code = view(wgsl);
