@@ -5,10 +5,12 @@
 #include <sdm/sdm.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <random>
 #include <span>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -95,6 +97,32 @@ TEST(GpuEngine, ClosestPointsAreThoseOfTheReferenceEngine) {
   }
 }
 
+// Third corners that single precision places beyond the longest side, of needles in a plane. Then points
+// beyond its end are between the lines of two sides, and would be taken for points over the face.
+TEST(GpuEngine, RefitsOfNeedlesWithShortSides) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Mesh mesh = test::soup(100, random);
+  Sites sites(mesh);
+  const auto engine = make_engine("gpu");
+  (void)closest_points(sites, std::vector<Vec3>{{}}, {.engine = engine});
+  for (const double size : {3e-7, 1e-7, 5e-8, 2e-8}) {
+    std::vector<Vec3> points;
+    const auto any = [&] { return Vec3{unit(random), unit(random), unit(random)}; };
+    for (const Triangle& t : mesh.triangles) {
+      const Vec3 a = any(), b = any();
+      mesh.positions[t[0]] = a;
+      mesh.positions[t[1]] = b;
+      mesh.positions[t[2]] = b + size * any();
+      for (int k = 0; k < 100; ++k) points.push_back(b + (1 + unit(random)) * (b - a) + 1e-7 * any());
+    }
+    sites.refit(mesh.positions);
+    const auto found = closest_points(sites, points, {.engine = engine}),
+               expected = closest_points(sites, points, {.engine = make_engine("reference")});
+    for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(found[i].distance, expected[i].distance) << i;
+  }
+}
+
 TEST(GpuEngine, ManyFacesAtTheSameDistance) {
   // A point above the tip of a fan of more faces than a list has room for.
   Mesh fan;
@@ -113,6 +141,36 @@ TEST(GpuEngine, ManyFacesAtTheSameDistance) {
   EXPECT_EQ(found[0].site, 0u);
   EXPECT_EQ(found[0].distance, 1);
   EXPECT_EQ(gpu_report(*engine)->incomplete, 1u);
+}
+
+// Pairs of meshes in random places. SDM_TEXELS of them in tests/long.
+TEST(GpuEngine, RandomTexels) {
+  const char* const given = std::getenv("SDM_TEXELS");
+  const std::size_t wanted = given != nullptr ? std::stoull(given) : 10'000;
+  const std::vector<std::string> names{"cow.off",    "head.off",      "elephant-with-holes.off",
+                                       "boeing.off", "armadillo.off", "bunny.obj"};
+  const auto gpu = make_engine("gpu"), reference = make_engine("reference");
+  std::size_t done = 0;
+  for (std::uint32_t seed = 0; done < wanted; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const auto number = [&](double size) { return ":" + std::to_string(size * unit(random)); };
+    const auto mesh = [&] {
+      return test::load(names[random() % names.size()],
+                        "fit,rotate" + number(180) + number(180) + number(180) +
+                            ",scale:" + std::to_string(std::exp(unit(random))) + ",translate" + number(0.5) +
+                            number(0.5) + number(0.5));
+    };
+    const Surface surface(mesh(), {.resolution = given != nullptr ? 1024u : 96u});
+    const Sites sites(mesh());
+    const DistanceMap found = compute_map(surface, sites, {.engine = gpu}),
+                      expected = compute_map(surface, sites, {.engine = reference});
+    std::size_t different = 0;
+    for (const std::uint32_t t : surface.sample_texels())
+      different += found.distance[t] == expected.distance[t] && found.site[t] == expected.site[t] ? 0 : 1;
+    ASSERT_EQ(different, 0u) << seed;
+    done += surface.sample_texels().size();
+  }
 }
 
 TEST(GpuEngine, FollowsRefitsAndEdits) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/memory.h"
 #include "core/parse_number.h"
 
 namespace sdm::gpu {
@@ -134,6 +135,7 @@ struct Device::Faults {
 Device::Device(std::string_view wanted) : faults_(std::make_unique<Faults>()) {
   Found found = choose(wanted);
   name_ = std::move(found.device.name);
+  software_ = found.device.software;
   WGPULimits limits{};
   if (wgpu().AdapterGetLimits(found.adapter.get(), &limits) != WGPUStatus_Success)
     throw Error("the gpu engine: " + name_ + " does not report its limits");
@@ -176,6 +178,7 @@ Buffer Device::buffer(std::size_t bytes, Use use, std::string_view purpose) {
   if (bytes > most_bytes_)
     throw Error("the gpu engine needs a buffer of " + megabytes(bytes) + " for " + std::string(purpose) +
                 ", and " + name_ + " permits " + megabytes(most_bytes_) + ": use the cpu engine");
+  if (software_) require_memory(bytes, purpose);
   WGPUBufferDescriptor descriptor{};
   descriptor.usage = usage(use);
   descriptor.size = bytes;

@@ -77,6 +77,7 @@ class Device {
   std::string name_;
   std::unique_ptr<Faults> faults_;  // outlives the device, whose callbacks write there
   std::size_t most_bytes_ = 0;
+  bool software_ = false;  // its memory is that of the system
   struct DeviceReleaser {
     void operator()(WGPUDeviceImpl* device) const { wgpu().DeviceRelease(device); }
   };
