@@ -63,6 +63,7 @@ bool agree(const std::vector<float>& a, const std::vector<float>& b, double accu
 // The engine on OpenGL, or nothing where it has no device.
 std::shared_ptr<const Engine> gl_engine() {
   try {
+    (void)gl_devices();
     return make_engine("gl");
   } catch (const Error& error) {
     std::fprintf(stderr, "without gl: %s\n", error.what());

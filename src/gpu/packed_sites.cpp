@@ -160,12 +160,11 @@ PackedSites::PackedSites(const sites::SitesData& sites, std::uint32_t first_leaf
   }
 }
 
-ShapeErrors shape_errors(const sites::SitesData& sites) {
-  return {.each = 3e-6, .constant = kByRadius * static_cast<double>(sites.regions.largest_radius)};
-}
+ShapeErrors::ShapeErrors(const sites::SitesData& sites)
+    : ShapeErrors(3e-6, kByRadius * static_cast<double>(sites.regions.largest_radius)) {}
 
 ShapeErrors refitted_errors(const Errors& left) {
-  return {.each = 4e-6, .constant = left.constant};
+  return {4e-6, left.constant};
 }
 
 Errors errors_of(const ShapeErrors& shape) {

@@ -53,8 +53,11 @@ struct PackedSites {
 struct ShapeErrors {
   double each;      ///< of the distance
   double constant;  ///< twice that of the faces of the shape
+
+  ShapeErrors(double by_distance, double of_faces) : each(by_distance), constant(of_faces) {}
+  /// Of faces whose frames the processor has computed.
+  ShapeErrors(const sites::SitesData& sites);  // NOLINT(google-explicit-constructor)
 };
-[[nodiscard]] ShapeErrors shape_errors(const sites::SitesData& sites);
 /// Of faces whose frames a device has computed, which has left `constant`.
 [[nodiscard]] ShapeErrors refitted_errors(const Errors& left);
 /// What the shaders are given.

@@ -48,7 +48,7 @@ RefitPrograms::RefitPrograms(Device& device)
 SitesOnDevice::SitesOnDevice(Device& device, const sites::SitesData& sites)
     : shape_number(sites.shape_number),
       frame(sites.frame),
-      shape(shape_errors(sites)),
+      shape(sites),
       triangles_(sites.mesh.triangles.begin(), sites.mesh.triangles.end()),
       items_(sites.tree.items.begin(), sites.tree.items.end()),
       children_(children_of(sites.wide)),
@@ -116,7 +116,7 @@ void SitesOnDevice::refit(Device& device, const RefitPrograms& programs, std::sp
     read_back_ = device.buffer(sizeof(Errors), Use::read_back, "constants");
   }
   device.write(positions_, std::as_bytes(std::span(placed)));
-  Errors left = errors_of({});
+  Errors left = errors_of(ShapeErrors(0, 0));
   device.write(errors, std::as_bytes(std::span(&left, 1)));
 
   std::vector<BindGroup> groups;
