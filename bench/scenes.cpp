@@ -2,6 +2,7 @@
 
 #include <sdm/mesh_files.h>
 
+#include <cstdlib>
 #include <string>
 
 #include "io/mesh/placement.h"
@@ -10,8 +11,13 @@
 
 namespace sdm::bench {
 
+std::string mesh_file(std::string_view name) {
+  const char* const folder = std::getenv("SDM_MESHES");
+  return std::string(folder != nullptr ? folder : SDM_BENCH_MESHES) + "/" + std::string(name);
+}
+
 Mesh load(std::string_view name, std::string_view steps) {
-  Mesh mesh = read_mesh(std::string(SDM_BENCH_MESHES) + "/" + std::string(name));
+  Mesh mesh = read_mesh(mesh_file(name));
   io::place(mesh, io::parse_placement(steps));
   return mesh;
 }

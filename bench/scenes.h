@@ -3,11 +3,14 @@
 
 #include <sdm/mesh.h>
 
+#include <string>
 #include <string_view>
 #include <utility>
 
 namespace sdm::bench {
 
+/// The path of a mesh: in the folder SDM_MESHES, if it is set, or in that of the build.
+[[nodiscard]] std::string mesh_file(std::string_view name);
 /// Reads a mesh by its file name, and applies the steps of io::parse_placement.
 [[nodiscard]] Mesh load(std::string_view name, std::string_view steps = "");
 

@@ -44,7 +44,7 @@ struct Near {
 fn near_by(face: Face, c: vec3f, radius: f32, tile: Points) -> Near {
   let a = closest_of_face(face, c);
   let distance = length(c - a);
-  let slack = tile.error + 2e-6 * distance;
+  let slack = tile.error + 4e-6 * distance;
   return Near(a, min(distance + 2.0 * radius, tile.within + radius),
               distance * distance + 2.0 * slack * (distance + radius) + slack * slack);
 }

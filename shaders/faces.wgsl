@@ -14,7 +14,8 @@ struct Face {
   along_ac: vec4f,       // the direction of AB; that of AC along AB
   beside_ac: vec4f,      // the direction beside AB in the plane; that of AC beside AB
   normal_ac: vec4f,      // the normal; |AC|
-  bc: vec4f,             // the direction of BC along and beside AB; |BC|
+  bc: vec3f,             // the direction of BC along and beside AB; |BC|
+  number: u32,           // of the face, times 4; and which of its corners A is
 }
 
 struct Errors {
@@ -52,7 +53,7 @@ const kMost = 15u;     // faces in a list
 const kResult = 16u;   // numbers of a point: the head, then its list
 const kIncomplete = 16u;
 const kAlone = 32u;    // the points of the tile are searched for one by one
-const kFarther = 1.000006;
+const kFarther = 1.000008;
 const kHuge = 3e38;  // more than any square
 
 // Twice the error of a distance, but for a part in proportion to it.
@@ -91,27 +92,38 @@ fn squared_to_face(face: Face, p: vec3f) -> f32 {
   return h * h + select(beside, 0.0, over);
 }
 
-// The closest point of a face, or one that is nearly as close.
-fn closest_of_face(face: Face, p: vec3f) -> vec3f {
-  let r = p - face.origin_length.xyz;
+// The point of a face that is closest to a point of its plane, or one that is nearly as close, and the site it lies on: 0 to 2,
+// the corners A, B and C; 3 to 5, the sides AB, BC and CA; 6, the face.
+struct InPlane {
+  at: vec2f,  // along and beside AB
+  site: u32,
+}
+fn on_side(q: vec2f, start: vec2f, along: vec2f, length: f32, sites: vec3u) -> InPlane {
+  let t = clamp(dot(q - start, along), 0.0, length);
+  return InPlane(start + t * along, select(select(sites.z, sites.y, t >= length), sites.x, t <= 0.0));
+}
+fn nearer(a: InPlane, b: InPlane, q: vec2f) -> InPlane {
+  if (dot(q - b.at, q - b.at) < dot(q - a.at, q - a.at)) {
+    return b;
+  }
+  return a;
+}
+fn closest_in_plane(face: Face, q: vec2f) -> InPlane {
   let length = face.origin_length.w;
-  let q = vec2f(dot(r, face.along_ac.xyz), dot(r, face.beside_ac.xyz));
-  let b = vec2f(length, 0.0);
   let ac = vec2f(face.along_ac.w, face.beside_ac.w);
   let bc = face.bc.xy;
-  let on_ab = vec2f(clamp(q.x, 0.0, length), 0.0);
-  let on_ac = clamp(dot(q, ac), 0.0, face.normal_ac.w) * ac;
-  let on_bc = b + clamp(dot(q - b, bc), 0.0, face.bc.z) * bc;
-  var nearest = on_ab;
-  if (dot(q - on_ac, q - on_ac) < dot(q - nearest, q - nearest)) {
-    nearest = on_ac;
+  if (q.y > 0.0 && q.y * ac.x - q.x * ac.y < 0.0 && q.y * bc.x - (q.x - length) * bc.y > 0.0) {
+    return InPlane(q, 6u);
   }
-  if (dot(q - on_bc, q - on_bc) < dot(q - nearest, q - nearest)) {
-    nearest = on_bc;
-  }
-  let over = q.y > 0.0 && q.y * ac.x - q.x * ac.y < 0.0 && q.y * bc.x - (q.x - length) * bc.y > 0.0;
-  let in_plane = select(nearest, q, over);
-  return face.origin_length.xyz + in_plane.x * face.along_ac.xyz + in_plane.y * face.beside_ac.xyz;
+  let on_ab = on_side(q, vec2f(), vec2f(1.0, 0.0), length, vec3u(0u, 1u, 3u));
+  let on_ac = on_side(q, vec2f(), ac, face.normal_ac.w, vec3u(0u, 2u, 5u));
+  let on_bc = on_side(q, vec2f(length, 0.0), bc, face.bc.z, vec3u(1u, 2u, 4u));
+  return nearer(nearer(on_ab, on_ac, q), on_bc, q);
+}
+fn closest_of_face(face: Face, p: vec3f) -> vec3f {
+  let r = p - face.origin_length.xyz;
+  let closest = closest_in_plane(face, vec2f(dot(r, face.along_ac.xyz), dot(r, face.beside_ac.xyz))).at;
+  return face.origin_length.xyz + closest.x * face.along_ac.xyz + closest.y * face.beside_ac.xyz;
 }
 
 // The distance from a point to the farthest corner of a face.

@@ -9,6 +9,7 @@ var<private> count: u32;
 var<private> limit: f32;     // squared
 var<private> left_out: f32;  // the least squared distance of the faces that had no room in the list
 var<private> nearest: f32;   // the least of all
+var<private> nearest_face: u32;
 var<private> overflow: bool;
 var<private> visited: u32;
 var<private> tested: u32;
@@ -18,7 +19,10 @@ fn compare(face: u32, p: vec3f, error: f32) {
   if (distance > limit) {
     return;
   }
-  nearest = min(nearest, distance);
+  if (distance < nearest) {
+    nearest = distance;
+    nearest_face = face;
+  }
   let reach = farther(sqrt(distance), error);
   if (reach * reach < limit) {
     limit = reach * reach;
@@ -47,6 +51,7 @@ fn search_tree(p: vec3f, first: f32, error: f32) {
   count = 0u;
   left_out = kHuge;
   nearest = kHuge;
+  nearest_face = kUnused;
   overflow = false;
   visited = 0u;
   tested = 0u;

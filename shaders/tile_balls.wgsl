@@ -53,9 +53,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 
   let reach = farther(within + radius, error);
   search_tree(centre, reach * reach, 0.0);
-  var face = kUnused;
-  if (count > 0u) {
-    face = list[count - 1u];  // each has been nearer than all before, but for rounding
-  }
-  tiles[t].all = Points(centre, radius, face, error, within, (visited << 16u) | min(tested, 0xffffu));
+  tiles[t].all = Points(centre, radius, nearest_face, error, within, (visited << 16u) | min(tested, 0xffffu));
 }

@@ -55,10 +55,11 @@ inline constexpr auto kOptions<GpuOptions> =
 /// What a gpu engine did since it was made.
 struct GpuReport {
   std::string device;
-  std::uint64_t points = 0;      ///< that closest points were searched for
-  std::uint64_t nodes = 0;       ///< of the tree, visited on the device
-  std::uint64_t tests = 0;       ///< of a point and a face on the device
-  std::uint64_t candidates = 0;  ///< faces compared in double precision
+  std::string results = "read back (double)";  ///< where they are from, and their precision
+  std::uint64_t points = 0;                    ///< that closest points were searched for
+  std::uint64_t nodes = 0;                     ///< of the tree, visited on the device
+  std::uint64_t tests = 0;                     ///< of a point and a face on the device
+  std::uint64_t candidates = 0;                ///< faces compared in double precision
   /// Points with more candidates than there is room for, which are searched for in double precision.
   std::uint64_t incomplete = 0;
   std::uint64_t alone = 0;  ///< points that were not searched for with those beside them
@@ -69,6 +70,7 @@ struct GpuReport {
 template <>
 inline constexpr std::tuple kFields<GpuReport>{
     Field{"device", &GpuReport::device, "The device's name."},
+    Field{"results", &GpuReport::results, "Where the results are from, and their precision."},
     Field{"points", &GpuReport::points, "Points that closest points were searched for."},
     Field{"nodes", &GpuReport::nodes, "Nodes of the tree, visited on the device."},
     Field{"tests", &GpuReport::tests, "Tests of a point and a face on the device."},
@@ -96,6 +98,7 @@ struct GpuMapStatistics {
   std::uint64_t largest_at = 0;  ///< the first sample with the largest distance on the device
   double error = 0;              ///< that smallest, largest, mean and rms have at most
   std::uint64_t within = 0, beyond = 0;
+  std::string results{};  ///< "device (single precision, ± 2.1e-06)": where they are from, and `error`
 };
 
 template <>
@@ -111,16 +114,31 @@ inline constexpr std::tuple kFields<GpuMapStatistics>{
           "The error that the smallest, the largest, the mean and the rms distance have at most."},
     Field{"within", &GpuMapStatistics::within, "Samples that are certainly within the tolerance."},
     Field{"beyond", &GpuMapStatistics::beyond,
-          "Samples that are certainly beyond it. All others are nearer to it than their error."}};
+          "Samples that are certainly beyond it. All others are nearer to it than their error."},
+    Field{"results", &GpuMapStatistics::results, "Where the numbers are from, and their precision."}};
 
-/// The distances of a map in single precision, which stay on a device: unsigned, of each sample of a surface.
-/// Only what is asked for is read back. Each has a proven error (docs/design/gpu.md); for results to the last
-/// bit, compute a map by the gpu engine.
+/// Options of a GpuMap.
+struct GpuMapOptions {
+  std::string device{};  ///< as GpuOptions::device
+  bool closest = false;  ///< whether the map has closest points, too: 24 bytes for each sample on the device
+};
+
+/// The closest points of the samples of a GpuMap, as they are on the device.
+struct GpuMapClosest {
+  std::vector<Vec3f> vector;        ///< closest point of O2 − sample
+  std::vector<SiteType> site_type;  ///< of the site that it lies on
+  std::vector<std::uint32_t> site;  ///< index among those of its type
+  std::vector<std::uint32_t> face;  ///< that the site belongs to
+};
+
+/// A map in single precision that stays on a device: of each sample of a surface the distance, unsigned, and,
+/// if wanted, the closest point. Only what is asked for is read back. Each has a proven error
+/// (docs/design/gpu.md); for results to the last bit, compute a map by the gpu engine.
 class SDM_API GpuMap {
  public:
   /// Opens a device of its own, and computes the map. Throws sdm::Error as make_gpu_engine() does, and as
   /// compute() does.
-  GpuMap(const Surface& surface, const Sites& sites, const GpuOptions& options = {});
+  GpuMap(const Surface& surface, const Sites& sites, const GpuMapOptions& options = {});
   ~GpuMap();
   GpuMap(GpuMap&&) noexcept;
   GpuMap& operator=(GpuMap&&) noexcept;
@@ -130,19 +148,26 @@ class SDM_API GpuMap {
   /// There is no map afterwards then.
   void compute(const Surface& surface, const Sites& sites);
   /// The next frame: the same for the last surface with its vertices at these positions, of which
-  /// Surface::refit() does not know. Only vertices are uploaded, and O2 if it has changed. Throws also if
-  /// their number is not that of its mesh.
+  /// Surface::refit() does not know. Only vertices are uploaded, and of O2 if it has changed: its vertices
+  /// after Sites::refit(), all of it otherwise. Throws also if their number is not that of its mesh.
   void compute(std::span<const Vec3> positions, const Sites& sites);
+  /// The same for the last O2 with its vertices at these positions, of which its Sites need not know: its
+  /// tree is refitted on the device. Throws also if one of its faces is not finite.
+  void compute(std::span<const Vec3> positions, std::span<const Vec3> positions_o2);
 
   /// The number of samples: those of Surface::sample_texels().
   [[nodiscard]] std::size_t samples() const;
-  /// The error that a distance has at most which is this one on the device.
+  /// The error that a distance has at most which is this one on the device. A closest point lies within this
+  /// of its site, and the length of its vector is within four times this of the distance to O2.
   [[nodiscard]] double error(double distance) const;
   /// Sums the distances up on the device, and counts those within `tolerance` and beyond it. Throws
   /// sdm::Error if there is no map or the device fails.
   [[nodiscard]] GpuMapStatistics statistics(double tolerance = 0) const;
   /// Reads the distances back, in the order of Surface::sample_texels(). Throws as statistics() does.
   [[nodiscard]] std::vector<float> distances() const;
+  /// Reads the closest points back, in the same order. Where several faces are as close as another within the
+  /// errors, it is that of any of them. Throws as statistics() does, and if the map has none.
+  [[nodiscard]] GpuMapClosest closest() const;
 
  private:
   struct Impl;

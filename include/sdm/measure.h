@@ -54,7 +54,7 @@ struct AlongOptions {
 };
 
 inline constexpr std::array kAlongExcludes{ExcludedOption{"sign", "", "none exact winding side"},
-                                           ExcludedOption{"engine", "", "gl reference"},
+                                           ExcludedOption{"engine", "", "gl gpu reference"},
                                            ExcludedOption{"facing"}};
 
 template <>

@@ -153,7 +153,7 @@ other meshes, by generalised winding numbers, an estimate of insideness; 'side':
 estimate; 'automatic': exact where the mesh
 allows it, else none.
 gradients: whether the result has the derivatives of the distances.
-engine: 'cpu' or 'reference'; the site is closest to within 1e-6 of the diagonal of both, or to double
+engine: 'cpu', 'gpu' or 'reference'; the site is closest to within 1e-6 of the diagonal of both, or to double
 rounding. The distance is that to this site, in double precision. With 'cpu', too, the site is closest to
 double rounding, and does not depend on the other points, if these are fewer than 8,192.
 progress: called as progress(step, fraction), on this thread; False cancels.

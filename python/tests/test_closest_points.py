@@ -30,6 +30,16 @@ def test_against_brute_force(mesh):
     np.testing.assert_allclose(np.linalg.norm(found.point - POINTS, axis=1), found.distance, atol=1e-14)
 
 
+def test_gpu_equals_reference(mesh):
+    try:
+        found = sdm.closest_points(*mesh, POINTS, sign="automatic", engine="gpu")
+    except sdm.Error as error:
+        pytest.skip(str(error))
+    reference = sdm.closest_points(*mesh, POINTS, sign="automatic", engine="reference")
+    for name in ("distance", "point", "face"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(reference, name))
+
+
 def test_faces_and_weights_give_the_point(mesh):
     vertices, faces = mesh
     found = sdm.closest_points(vertices, faces, POINTS)

@@ -76,15 +76,14 @@ def test_values(distance_map):
     np.testing.assert_allclose(np.linalg.norm(vector, axis=1), expected, atol=accuracy)
 
 
-@pytest.mark.parametrize("engine", ["reference", "gl"])
+@pytest.mark.parametrize("engine", ["reference", "gl", "gpu"])
 def test_engines_agree(distance_map, engine):
-    if engine == "gl":
-        try:
-            other = sdm.map(meshes.sphere(), meshes.box(), resolution=256, engine="gl")
-        except sdm.Error as error:
-            pytest.skip(str(error))
-    else:
-        other = sdm.map(meshes.sphere(), meshes.box(), resolution=256, engine="reference")
+    try:
+        other = sdm.map(meshes.sphere(), meshes.box(), resolution=256, engine=engine)
+    except sdm.Error as error:
+        if engine == "reference":
+            raise
+        pytest.skip(str(error))
     np.testing.assert_array_equal(other.face, distance_map.face)
     np.testing.assert_allclose(other.distance, distance_map.distance, atol=other.bounds.accuracy + distance_map.bounds.accuracy)
 

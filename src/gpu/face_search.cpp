@@ -1,9 +1,9 @@
 #include "gpu/face_search.h"
 
 #include <algorithm>
-#include <string>
 
 #include "core/cancellation.h"
+#include "core/lazy/unique_number.h"
 #include "core/stopwatch.h"
 #include "gpu/shaders.h"
 
@@ -12,34 +12,30 @@ namespace {
 
 constexpr std::size_t kSmallest = 1024, kLargest = 1 << 20;  // points of a dispatch
 constexpr std::size_t kTile = FaceSearch::kTile;
-static_assert(sizeof(FaceList) == 64 && sizeof(QueryPoint) == 16);
 
-Pipeline pipeline(Device& device, std::initializer_list<EmbeddedFile> parts) {
-  std::string program;
-  for (const EmbeddedFile& part : parts) program += part.bytes;
-  return device.pipeline(program);
-}
-
-// As in the shaders.
-constexpr std::size_t kTileBytes = 96;
-struct PartOfMap {
-  std::uint32_t tiles = 0, first = 0, count = 0, has_distances = 0;
-};
+constexpr std::size_t kTileBytes = 96;  // as in shaders/faces.wgsl
 
 }  // namespace
 
 FaceSearch::FaceSearch(std::string_view wanted)
     : device_(wanted),
-      samples_(pipeline(device_, {kPartWgsl, kPlaceSamplesWgsl})),
-      tile_balls_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kPartWgsl, kTileBallsWgsl})),
-      tiles_together_(pipeline(device_, {kFacesWgsl, kClosestTilesWgsl})),
-      points_alone_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kClosestFacesWgsl})),
-      distances_(pipeline(device_, {kFacesWgsl, kNearestFirstWgsl, kPartWgsl, kMapDistancesWgsl})),
+      samples_(device_.pipeline({kPartWgsl, kPlaceSamplesWgsl})),
+      tile_balls_(device_.pipeline({kFacesWgsl, kNearestFirstWgsl, kPartWgsl, kTileBallsWgsl})),
+      tiles_together_(device_.pipeline({kFacesWgsl, kClosestTilesWgsl})),
+      points_alone_(device_.pipeline({kFacesWgsl, kNearestFirstWgsl, kClosestFacesWgsl})),
+      distances_(device_.pipeline({kFacesWgsl, kNearestFirstWgsl, kPartWgsl, kMapDistancesWgsl})),
       part_(device_.buffer(sizeof(PartOfMap), Device::Use::uniform, "constants")) {}
 
-const SitesOnDevice& FaceSearch::place(const sites::SitesData& sites) {
+SitesOnDevice& FaceSearch::place(const sites::SitesData& sites) {
   auto present =
       std::ranges::find(kept_, sites.shape_number, [](const auto& each) { return each->shape_number; });
+  if (present == kept_.end()) {
+    present = std::ranges::find_if(kept_, [&](const auto& each) { return each->has_tree_of(sites); });
+    if (present != kept_.end()) {
+      refit(**present, sites.mesh.positions, sites.frame);
+      (*present)->shape_number = sites.shape_number;
+    }
+  }
   if (present == kept_.end()) {
     // Memory of the one that was not used for longest comes first.
     if (kept_.size() == kKept) kept_.pop_back();
@@ -48,6 +44,12 @@ const SitesOnDevice& FaceSearch::place(const sites::SitesData& sites) {
   }
   std::rotate(kept_.begin(), present, present + 1);
   return *kept_.front();
+}
+
+void FaceSearch::refit(SitesOnDevice& sites, std::span<const Vec3> positions, const UnitFrame& moved) {
+  if (!refit_) refit_.emplace(device_);
+  sites.shape_number = unique_number();  // of no SitesData
+  sites.refit(device_, *refit_, positions, moved);
 }
 
 void FaceSearch::reserve(std::size_t points) {
@@ -124,24 +126,29 @@ void FaceSearch::find(const sites::SitesData& sites, std::span<const QueryPoint>
   });
 }
 
-void FaceSearch::measure(const sites::SitesData& sites, const SamplesOnDevice& samples, std::size_t count,
-                         const Buffer& distances) {
-  const SitesOnDevice& on_device = place(sites);
+void FaceSearch::measure(const SitesOnDevice& sites, const SamplesOnDevice& samples, std::size_t count,
+                         const Buffer& distances, const Buffer& closest) {
+  if (closest && !closest_)
+    closest_ = device_.pipeline({kFacesWgsl, kNearestFirstWgsl, kPartWgsl, kFaceSitesWgsl, kMapClosestWgsl});
   SearchTimes times;
   in_dispatches((count + kTile - 1) / kTile * kTile, times, [&](std::size_t first, std::size_t size) {
     PartOfMap constants{.tiles = static_cast<std::uint32_t>(size / kTile),
                         .first = static_cast<std::uint32_t>(first),
                         .count = static_cast<std::uint32_t>(std::min(size, count - first))};
-    const Device::Binding of_samples[] = {
-        {0, &samples.samples}, {1, &samples.positions}, {4, &points_}, {7, &part_}};
+    const Device::Binding at{4, &points_}, lists{5, &results_}, constants_at{7, &part_};
+    const Device::Binding of_samples[] = {{0, &samples.samples}, {1, &samples.positions}, at, constants_at};
     const BindGroup placing = device_.bind(samples_, of_samples);
-    for (const SitesOnDevice::Part& part : on_device.parts) {
+    for (const SitesOnDevice::Part& part : sites.parts) {
       device_.write(part_, std::as_bytes(std::span(&constants, 1)));
-      search(on_device, part, size, [&](std::vector<Device::Step> steps) {
-        const BindGroup measuring =
-            bind(distances_, part, {{4, &points_}, {5, &results_}, {6, &distances}, {7, &part_}});
+      search(sites, part, size, [&](std::vector<Device::Step> steps) {
+        const BindGroup measuring = bind(distances_, part, {at, lists, {6, &distances}, constants_at});
         steps.insert(steps.begin(), {&samples_, &placing, constants.tiles});
         steps.push_back({&distances_, &measuring, constants.tiles});
+        BindGroup closing;
+        if (closest) {
+          closing = bind(closest_, part, {at, lists, {6, &closest}, constants_at, {8, &part.face_sites}});
+          steps.push_back({&closest_, &closing, constants.tiles});
+        }
         device_.run(steps);
       });
       constants.has_distances = 1;

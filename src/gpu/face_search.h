@@ -4,47 +4,15 @@
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "gpu/face_lists.h"
 #include "gpu/sites_on_device.h"
 
 namespace sdm::gpu {
-
-/// The faces that may be closest to a point, as the device writes them.
-struct FaceList {
-  static constexpr std::uint32_t kMost = 15;
-
-  std::uint32_t head;
-  std::uint32_t number[kMost];  ///< of the faces, in the order of the leaves
-
-  [[nodiscard]] std::uint32_t count() const { return head & 15u; }
-  /// Whether there may be others: there was no room for them.
-  [[nodiscard]] bool incomplete() const { return (head & 16u) != 0; }
-  /// Whether it was searched for alone, as the points beside it are too far from each other.
-  [[nodiscard]] bool alone() const { return (head & 32u) != 0; }
-  [[nodiscard]] std::uint32_t nodes() const { return head >> 6 & 0xfffu; }  ///< visited, at most 4095
-  [[nodiscard]] std::uint32_t tests() const { return head >> 18; }          ///< faces compared, at most 16383
-};
-
-/// The lists of some points for each part of the sites (SitesOnDevice).
-struct FaceLists {
-  std::size_t points = 0;
-  std::vector<std::uint32_t> first;  ///< of the faces of each part
-  std::vector<FaceList> lists;       ///< those of all points for the first part, then for the next
-
-  [[nodiscard]] const FaceList& of(std::size_t part, std::size_t point) const {
-    return lists[points * part + point];
-  }
-};
-
-/// A point in the unit frame, and nothing farther than `within` is closest; negative if there is nothing to
-/// be found.
-struct QueryPoint {
-  float position[3];
-  float within;
-};
 
 /// A sample, as in shaders/place_samples.wgsl.
 struct Sample {
@@ -67,8 +35,7 @@ struct SearchTimes {
 
 class FaceSearch {
  public:
-  /// Points that are searched for together, if they are near each other.
-  static constexpr std::size_t kTile = 64;
+  static constexpr std::size_t kTile = gpu::kTilePoints;
 
   /// Opens a device as Device() does.
   explicit FaceSearch(std::string_view wanted);
@@ -81,12 +48,16 @@ class FaceSearch {
   /// cancelled.
   void find(const sites::SitesData& sites, std::span<const QueryPoint> points, FaceLists& found,
             SearchTimes& times);
-  /// Writes the distances of `count` samples in the unit frame to a buffer on the device, of 4 bytes each.
-  void measure(const sites::SitesData& sites, const SamplesOnDevice& samples, std::size_t count,
-               const Buffer& distances);
+  /// Sites on the device: uploaded, unless they are there; refitted, if their tree is there.
+  SitesOnDevice& place(const sites::SitesData& sites);
+  /// Moves the vertices of sites that place() has returned.
+  void refit(SitesOnDevice& sites, std::span<const Vec3> positions, const UnitFrame& moved);
+  /// Writes the distances of `count` samples in the unit frame to a buffer on the device, of 4 bytes each;
+  /// and, if wanted, their closest points, of 24 bytes each (shaders/map_closest.wgsl).
+  void measure(const SitesOnDevice& sites, const SamplesOnDevice& samples, std::size_t count,
+               const Buffer& distances, const Buffer& closest);
 
  private:
-  const SitesOnDevice& place(const sites::SitesData& sites);
   void reserve(std::size_t points);
   /// Calls search(first, count) for parts of so many points.
   template <class Search>
@@ -101,7 +72,9 @@ class FaceSearch {
   static constexpr std::size_t kKept = 4;  // shapes
 
   Device device_;
-  Pipeline samples_, tile_balls_, tiles_together_, points_alone_, distances_;
+  Pipeline samples_, tile_balls_, tiles_together_, points_alone_, distances_,
+      closest_;                                       // closest_: when first needed
+  std::optional<RefitPrograms> refit_;                // the same
   std::vector<std::unique_ptr<SitesOnDevice>> kept_;  // the last ones that were searched, the latest first
   Buffer part_, points_, results_, read_back_, tiles_;
   std::size_t room_ = 0;         // points of the buffers

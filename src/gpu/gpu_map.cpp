@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include "core/parallel.h"
 #include "gpu/face_search.h"
 #include "gpu/finish.h"
+#include "gpu/packed_sites.h"
 #include "gpu/shaders.h"
 #include "sites/sites_data.h"
 #include "surface/surface_data.h"
@@ -37,6 +39,13 @@ constexpr std::size_t kSummed = 1024;  // distances
 // A part of the map has a buffer of its own, which every device permits.
 constexpr std::size_t kPart = 1 << 20;  // samples
 
+// As in shaders/map_closest.wgsl.
+struct Closest {
+  Vec3f vector;
+  std::uint32_t face, kind, site;
+};
+static_assert(sizeof(Closest) == 24);
+
 // Relative to the largest distance: 12 sums follow each other, of which each is off by 2⁻²³ of itself.
 constexpr double kSumError = 2e-6;
 
@@ -54,26 +63,33 @@ float not_below(double x) {
 }  // namespace gpu
 
 struct GpuMap::Impl {
-  explicit Impl(const GpuOptions& options)
-      : search(options.device),
-        sum(search.device().pipeline(gpu::kMapStatisticsWgsl.bytes)),
+  explicit Impl(const GpuMapOptions& options)
+      : has_closest(options.closest),
+        search(options.device),
+        sum(search.device().pipeline({gpu::kMapStatisticsWgsl})),
         limits(search.device().buffer(sizeof(gpu::Limits), gpu::Device::Use::uniform, "constants")) {}
 
   void set_samples(const Surface& surface);
-  void compute(std::span<const Vec3> at, const Sites& sites);
+  void compute(std::span<const Vec3> at, const gpu::SitesOnDevice& sites);
   [[nodiscard]] std::size_t size_of(std::size_t part) const {
     return std::min(gpu::kPart, count - gpu::kPart * part);
   }
-  // Throws sdm::Error if there are no samples, or no distances.
-  static void require(std::size_t present) {
-    if (present == 0) throw Error("there is no map on the device: computing it has failed");
+  // There is no map until compute() has ended.
+  void begin() {
+    count = 0;
+    require(samples > 0);
+  }
+  static void require(bool present) {
+    if (!present) throw Error("there is no map on the device: computing it has failed");
   }
 
+  bool has_closest;
   gpu::FaceSearch search;
+  gpu::SitesOnDevice* o2 = nullptr;  // the last one, if it is there
   gpu::Pipeline sum;
   gpu::Buffer limits, sums, read_back, positions;
   struct Part {
-    gpu::Buffer samples, distances;  // these in the unit frame
+    gpu::Buffer samples, distances, closest;  // in the unit frame; the last if wanted
   };
   std::vector<Part> parts;
   std::vector<std::uint8_t> used;  // whether a vertex belongs to the face of a sample
@@ -93,7 +109,8 @@ void GpuMap::Impl::set_samples(const Surface& surface) {
   positions.reset();
   parts.clear();
   sums = device.buffer(gpu::kPart / gpu::kSummed * sizeof(gpu::Sums), Use::write, "statistics");
-  read_back = device.buffer(gpu::kPart * sizeof(float), Use::read_back, "distances");
+  read_back = device.buffer(gpu::kPart * (has_closest ? sizeof(gpu::Closest) : sizeof(float)), Use::read_back,
+                            "results");
   positions = device.buffer(3 * sizeof(float) * o1.mesh.positions.size(), Use::read, "the vertices of O1");
   used.assign(o1.mesh.positions.size(), 0);
   std::vector<gpu::Sample> of_part;
@@ -110,16 +127,17 @@ void GpuMap::Impl::set_samples(const Surface& surface) {
     for (const gpu::Sample& sample : of_part)
       for (const std::uint32_t vertex : sample.vertices) used[vertex] = 1;
     parts.push_back({.samples = device.buffer(of_part.size() * sizeof(gpu::Sample), Use::read, "samples"),
-                     .distances = device.buffer(of_part.size() * sizeof(float), Use::write, "distances")});
+                     .distances = device.buffer(of_part.size() * sizeof(float), Use::write, "distances"),
+                     .closest = {}});
+    if (has_closest)
+      parts.back().closest =
+          device.buffer(of_part.size() * sizeof(gpu::Closest), Use::write, "closest points");
     device.write(parts.back().samples, std::as_bytes(std::span(of_part)));
   }
   samples = o1.samples.size();
 }
 
-void GpuMap::Impl::compute(std::span<const Vec3> at, const Sites& sites) {
-  const sites::SitesData& o2 = internals(sites);
-  count = 0;
-  require(samples);
+void GpuMap::Impl::compute(std::span<const Vec3> at, const gpu::SitesOnDevice& sites) {
   if (at.size() != used.size())
     throw Error("the map on the device has " + std::to_string(used.size()) + " vertices, not " +
                 std::to_string(at.size()));
@@ -127,7 +145,7 @@ void GpuMap::Impl::compute(std::span<const Vec3> at, const Sites& sites) {
   double outermost = 1;
   for (std::size_t v = 0; v < at.size(); ++v) {
     if (used[v] == 0) continue;
-    const Vec3 unit = o2.frame.to_unit(at[v]);
+    const Vec3 unit = sites.frame.to_unit(at[v]);
     for (int k = 0; k < 3; ++k) {
       if (!(std::abs(unit[k]) <= gpu::kFar))
         throw Error(
@@ -139,14 +157,14 @@ void GpuMap::Impl::compute(std::span<const Vec3> at, const Sites& sites) {
   }
   search.device().write(positions, std::as_bytes(std::span(placed)));
   for (std::size_t part = 0; part < parts.size(); ++part)
-    search.measure(o2, {parts[part].samples, positions}, std::min(gpu::kPart, samples - gpu::kPart * part),
-                   parts[part].distances);
-  error = gpu::sample_error(o2, outermost);
-  scale = o2.frame.scale;
+    search.measure(sites, {parts[part].samples, positions}, std::min(gpu::kPart, samples - gpu::kPart * part),
+                   parts[part].distances, parts[part].closest);
+  error = gpu::sample_error(sites.shape, outermost);
+  scale = sites.frame.scale;
   count = samples;
 }
 
-GpuMap::GpuMap(const Surface& surface, const Sites& sites, const GpuOptions& options)
+GpuMap::GpuMap(const Surface& surface, const Sites& sites, const GpuMapOptions& options)
     : impl_(std::make_unique<Impl>(options)) {
   compute(surface, sites);
 }
@@ -156,11 +174,21 @@ GpuMap& GpuMap::operator=(GpuMap&&) noexcept = default;
 
 void GpuMap::compute(const Surface& surface, const Sites& sites) {
   impl_->set_samples(surface);
-  impl_->compute(surface.mesh().positions, sites);
+  compute(surface.mesh().positions, sites);
 }
 
 void GpuMap::compute(std::span<const Vec3> positions, const Sites& sites) {
-  impl_->compute(positions, sites);
+  impl_->begin();
+  impl_->o2 = nullptr;
+  impl_->o2 = &impl_->search.place(internals(sites));
+  impl_->compute(positions, *impl_->o2);
+}
+
+void GpuMap::compute(std::span<const Vec3> positions, std::span<const Vec3> positions_o2) {
+  impl_->begin();
+  Impl::require(impl_->o2 != nullptr);
+  impl_->search.refit(*impl_->o2, positions_o2, impl_->o2->frame_of(positions_o2));
+  impl_->compute(positions, *impl_->o2);
 }
 
 std::size_t GpuMap::samples() const {
@@ -174,7 +202,7 @@ double GpuMap::error(double distance) const {
 GpuMapStatistics GpuMap::statistics(double tolerance) const {
   if (!(tolerance >= 0)) throw Error("the tolerance of a map must be a number that is not negative");
   Impl& map = *impl_;
-  map.require(map.count);
+  map.require(map.count > 0);
   gpu::Device& device = map.search.device();
   const double unit_tolerance = tolerance * map.scale;
   const auto& [each, constant] = map.error;
@@ -212,12 +240,16 @@ GpuMapStatistics GpuMap::statistics(double tolerance) const {
   all.smallest /= map.scale;
   all.largest /= map.scale;
   all.error = error(all.largest) + gpu::kSumError * all.largest;
+  char label[64];
+  std::snprintf(label, sizeof label, "device (single precision, ± %.1e)",
+                1.05 * all.error);  // not rounded down
+  all.results = label;
   return all;
 }
 
 std::vector<float> GpuMap::distances() const {
   Impl& map = *impl_;
-  map.require(map.count);
+  map.require(map.count > 0);
   require_memory(map.count * sizeof(float), "the distances of a map");
   std::vector<float> all(map.count);
   for (std::size_t part = 0; part < map.parts.size(); ++part) {
@@ -226,6 +258,33 @@ std::vector<float> GpuMap::distances() const {
   }
   const auto inverse = static_cast<float>(1 / map.scale);  // a power of two
   for (float& distance : all) distance *= inverse;
+  return all;
+}
+
+GpuMapClosest GpuMap::closest() const {
+  Impl& map = *impl_;
+  map.require(map.count > 0);
+  if (!map.has_closest)
+    throw Error("the map on the device has no closest points: set GpuMapOptions::closest");
+  require_memory(map.count * 2 * sizeof(gpu::Closest), "the closest points of a map");
+  GpuMapClosest all;
+  all.vector.reserve(map.count);
+  all.site_type.reserve(map.count);
+  all.site.reserve(map.count);
+  all.face.reserve(map.count);
+  const auto inverse = static_cast<float>(1 / map.scale);  // a power of two
+  std::vector<gpu::Closest> of_part;
+  for (std::size_t part = 0; part < map.parts.size(); ++part) {
+    of_part.resize(map.size_of(part));
+    map.search.device().run({}, map.parts[part].closest, map.read_back,
+                            std::as_writable_bytes(std::span(of_part)));
+    for (const gpu::Closest& each : of_part) {
+      all.vector.push_back(inverse * each.vector);
+      all.site_type.push_back(static_cast<SiteType>(each.kind));
+      all.site.push_back(each.site);
+      all.face.push_back(each.face);
+    }
+  }
   return all;
 }
 

@@ -1,126 +1,18 @@
 #include "gpu/sites_on_device.h"
 
-#include <algorithm>
-#include <vector>
+#include <sdm/error.h>
 
-#include "core/memory.h"
-#include "geometry/triangle.h"
-#include "sites/face_frames.h"
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "geometry/vec.h"
+#include "gpu/shaders.h"
 
 namespace sdm::gpu {
 namespace {
-
-// As in shaders/faces.wgsl.
-struct ChildBox {
-  float lower[3];
-  std::uint32_t number;
-  float upper[3];
-  std::uint32_t padding;
-};
-struct Face {
-  float origin_length[4], along_ac[4], beside_ac[4], normal_ac[4], bc[4];
-};
-struct Errors {
-  float by_coordinate, constant, padding[2];
-};
-static_assert(sizeof(ChildBox) == 32 && sizeof(Face) == 80 && sizeof(Errors) == 16);
-
-// See docs/design/gpu.md: twice the error of a distance in single precision, of a point at the largest
-// coordinate m, is at most kByCoordinate m + kByRadius R, and a part of the distance that kFarther of the
-// shader contains.
-constexpr float kByCoordinate = 5e-7f, kByRadius = 1.4e-5f;
-
-// Some leaves that follow each other.
-struct LeafRange {
-  std::uint32_t first, end;
-};
-
-// A node has at least two children, but for those above the first and the last leaf.
-constexpr std::size_t kAbove = 2 * tree::kDeepest;
-constexpr std::size_t most_nodes(std::size_t leaves) {
-  return leaves + kAbove;
-}
-
-// The nodes above some leaves, with those of their children that have any of these below them. The number of
-// a child is kNone where there is none.
-class ChildBoxes {
- public:
-  ChildBoxes(const tree::WideTree& tree, LeafRange leaves) : tree_(tree), leaves_(leaves) {
-    boxes_.reserve(tree::WideTree::kWidth *
-                   std::min(tree.nodes.size(), most_nodes(leaves.end - leaves.first)));
-    add(0);
-  }
-
-  [[nodiscard]] std::span<const ChildBox> all() const { return boxes_; }
-
- private:
-  // Returns the number of the node here, or kNone if it has no child.
-  std::uint32_t add(std::uint32_t number) {
-    constexpr std::size_t kWidth = tree::WideTree::kWidth;
-    const tree::WideTree::Node& node = tree_.nodes[number];
-    const std::size_t place = boxes_.size();
-    boxes_.resize(place + kWidth, ChildBox{{}, kNone, {}, 0});
-    std::size_t count = 0;
-    for (std::uint32_t slot = 0; slot < node.count; ++slot) {
-      const std::uint32_t child = child_number(node.child[slot]);
-      if (child == kNone) continue;
-      ChildBox& box = boxes_[place + count++];
-      box.number = child;
-      for (int k = 0; k < 3; ++k) box.lower[k] = node.lower[k][slot], box.upper[k] = node.upper[k][slot];
-    }
-    if (count > 0) return static_cast<std::uint32_t>(place / kWidth);
-    boxes_.resize(place);
-    return kNone;
-  }
-  std::uint32_t child_number(std::uint32_t child) {
-    if (!tree::WideTree::is_leaf(child)) return add(child);
-    const std::uint32_t leaf = tree::WideTree::leaf_number(child);
-    return leaf >= leaves_.first && leaf < leaves_.end ? tree::WideTree::leaf(leaf - leaves_.first) : kNone;
-  }
-
-  const tree::WideTree& tree_;
-  LeafRange leaves_;
-  std::vector<ChildBox> boxes_;
-};
-
-// The leaves of the part that begins with a leaf: as many as have room in the buffers.
-LeafRange part_from(std::uint32_t first, std::span<const std::uint32_t> leaves, std::size_t most_bytes) {
-  const std::size_t nodes = most_bytes / (tree::WideTree::kWidth * sizeof(ChildBox));
-  const std::size_t most_leaves = nodes > kAbove ? nodes - kAbove : 1;
-  const std::size_t most_faces = most_bytes / sizeof(Face);
-  std::uint32_t end = first + 1;
-  while (end + 1 < leaves.size() && end - first < most_leaves &&
-         leaves[end + 1] - leaves[first] <= most_faces)
-    ++end;
-  return {first, end};
-}
-
-// The frames of `count` faces from `first` on, in the order of the leaves.
-std::vector<Face> face_frames(const sites::SitesData& sites, std::size_t first, std::size_t count) {
-  require_memory(count * sizeof(Face), "the faces of O2 for the gpu engine");
-  std::vector<Face> faces(count);
-  sites::FaceFrames frames;
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const auto [a, b, c] = corners_of(sites.mesh, sites.tree.items[first + i]);
-    frames.set(0, {sites.frame.to_unit(a), sites.frame.to_unit(b), sites.frame.to_unit(c)});
-    Face& face = faces[i];
-    for (int k = 0; k < 3; ++k) {
-      face.origin_length[k] = frames.origin[k][0];
-      face.along_ac[k] = frames.along[k][0];
-      face.beside_ac[k] = frames.beside[k][0];
-      face.normal_ac[k] = frames.normal[k][0];
-    }
-    face.origin_length[3] = frames.length[0];
-    face.along_ac[3] = frames.ac.along[0];
-    face.beside_ac[3] = frames.ac.beside[0];
-    face.normal_ac[3] = frames.ac.length[0];
-    face.bc[0] = frames.bc.along[0];
-    face.bc[1] = frames.bc.beside[0];
-    face.bc[2] = frames.bc.length[0];
-    face.bc[3] = 0;
-  }
-  return faces;
-}
 
 template <class Item>
 Buffer upload(Device& device, Device::Use use, std::span<const Item> items, std::string_view purpose) {
@@ -129,42 +21,126 @@ Buffer upload(Device& device, Device::Use use, std::span<const Item> items, std:
   return buffer;
 }
 
+SitesOnDevice::Level level(Device& device, std::uint32_t first, std::uint32_t count) {
+  const PartOfMap constants{.first = first, .count = count};
+  return {upload(device, Device::Use::uniform, std::span(&constants, 1), "constants"), count};
+}
+
+std::vector<std::uint32_t> children_of(const tree::WideTree& tree) {
+  std::vector<std::uint32_t> children;
+  children.reserve(tree.nodes.size() * tree::WideTree::kWidth);
+  for (const tree::WideTree::Node& node : tree.nodes)
+    children.insert(children.end(), node.child, node.child + tree::WideTree::kWidth);
+  return children;
+}
+
+// Programs take a share of the items each: the number of workgroups is limited.
+std::uint32_t workgroups_for(std::size_t items) {
+  return static_cast<std::uint32_t>(std::clamp<std::size_t>((items + 63) / 64, 1, 32768));
+}
+
 }  // namespace
 
+RefitPrograms::RefitPrograms(Device& device)
+    : faces(device.pipeline({kFacesWgsl, kPartWgsl, kFaceSitesWgsl, kRefitFacesWgsl})),
+      boxes(device.pipeline({kFacesWgsl, kPartWgsl, kFaceSitesWgsl, kRefitBoxesWgsl})) {}
+
 SitesOnDevice::SitesOnDevice(Device& device, const sites::SitesData& sites)
-    : shape_number(sites.shape_number) {
-  const Errors bounds{kByCoordinate, kByRadius * sites.regions.largest_radius, {}};
-  errors = upload(device, Device::Use::uniform, std::span(&bounds, 1), "constants");
-  const std::span<const std::uint32_t> all(sites.regions.leaves);
-  require_memory(sites.wide.nodes.size() * tree::WideTree::kWidth * sizeof(ChildBox),
-                 "the tree of O2 for the gpu engine");
-  for (LeafRange range{0, 0}; range.end + 1 < all.size();) {
-    range = part_from(range.end, all, device.most_bytes());
-    const std::uint32_t first = all[range.first];
-    std::vector<std::uint32_t> leaves(all.begin() + range.first, all.begin() + range.end + 1);
-    for (std::uint32_t& leaf : leaves) leaf -= first;
-    using Use = Device::Use;
-    const ChildBoxes boxes(sites.wide, range);
-    const std::vector<Face> faces = face_frames(sites, first, leaves.back());
-    parts.push_back(
-        {.first = first,
-         .boxes = upload(device, Use::read, boxes.all(), "the tree of O2"),
-         .leaves = upload(device, Use::read, std::span<const std::uint32_t>(leaves), "the leaves of O2"),
-         .faces = upload(device, Use::read, std::span<const Face>(faces), "the faces of O2")});
+    : shape_number(sites.shape_number),
+      frame(sites.frame),
+      shape(sites),
+      triangles_(sites.mesh.triangles.begin(), sites.mesh.triangles.end()),
+      items_(sites.tree.items.begin(), sites.tree.items.end()),
+      children_(children_of(sites.wide)),
+      used_(sites.mesh.positions.size(), 0) {
+  for (const std::uint32_t face : items_)
+    for (const std::uint32_t v : triangles_[face]) used_[v] = 1;
+  using Use = Device::Use;
+  const Errors bounds = errors_of(shape);
+  errors = upload(device, Use::uniform, std::span(&bounds, 1), "constants");
+  for (std::uint32_t leaf = 0; leaf != kNone;) {
+    const PackedSites packed(sites, leaf, device.most_bytes());
+    const auto faces = static_cast<std::uint32_t>(packed.faces.size());
+    Part& part = parts.emplace_back(
+        Part{.first = packed.first,
+             .boxes = upload(device, Use::read, std::span(packed.boxes), "the tree of O2"),
+             .leaves = upload(device, Use::read, std::span(packed.leaves), "the leaves of O2"),
+             .faces = upload(device, Use::read, std::span(packed.faces), "the faces of O2"),
+             .face_sites = upload(device, Use::read, std::span(packed.face_sites), "the sites of O2"),
+             .nodes = upload(device, Use::read, std::span(packed.nodes), "the levels of the tree of O2"),
+             .all_faces = level(device, 0, faces),
+             .levels = {}});
+    std::uint32_t first = 0;
+    for (const std::uint32_t count : packed.level_counts) {
+      part.levels.push_back(level(device, first, count));
+      first += count;
+    }
+    leaf = packed.end_leaf;
   }
 }
 
-DistanceError distance_error(const sites::SitesData& sites, double largest_coordinate) {
-  return {.each = 3e-6,
-          .constant = 0.5 * (kByCoordinate * std::max(largest_coordinate, 1.0) +
-                             kByRadius * static_cast<double>(sites.regions.largest_radius))};
+bool SitesOnDevice::has_tree_of(const sites::SitesData& sites) const {
+  constexpr std::size_t kWidth = tree::WideTree::kWidth;
+  if (!std::ranges::equal(triangles_, sites.mesh.triangles) ||
+      !std::ranges::equal(items_, sites.tree.items) || children_.size() != kWidth * sites.wide.nodes.size())
+    return false;
+  for (std::size_t n = 0; n < sites.wide.nodes.size(); ++n)
+    if (!std::equal(children_.begin() + kWidth * n, children_.begin() + kWidth * (n + 1),
+                    sites.wide.nodes[n].child))
+      return false;
+  return true;
 }
 
-DistanceError sample_error(const sites::SitesData& sites, double largest_coordinate) {
-  constexpr double kByCoordinateOfVertices = 1.7e-6;
-  DistanceError error = distance_error(sites, largest_coordinate);
-  error.constant += kByCoordinateOfVertices * largest_coordinate;
-  return error;
+UnitFrame SitesOnDevice::frame_of(std::span<const Vec3> positions) const {
+  if (positions.size() != used_.size())
+    throw Error("O2 has " + std::to_string(used_.size()) + " vertices, not " +
+                std::to_string(positions.size()));
+  Box box;
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    if (used_[v] != 0) extend(box, positions[v]);
+  return UnitFrame::of(box);
+}
+
+void SitesOnDevice::refit(Device& device, const RefitPrograms& programs, std::span<const Vec3> positions,
+                          const UnitFrame& moved) {
+  using Use = Device::Use;
+  std::vector<float> placed(3 * positions.size());
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (used_[v] == 0) continue;
+    const Vec3 unit = moved.to_unit(positions[v]);
+    if (!finite(unit)) throw Error("vertex " + std::to_string(v) + " of O2 is not finite");
+    for (int k = 0; k < 3; ++k) placed[3 * v + k] = static_cast<float>(unit[k]);
+  }
+  if (!positions_) {
+    positions_ = device.buffer(placed.size() * sizeof(float), Use::read, "the vertices of O2");
+    read_back_ = device.buffer(sizeof(Errors), Use::read_back, "constants");
+  }
+  device.write(positions_, std::as_bytes(std::span(placed)));
+  Errors left = errors_of(ShapeErrors(0, 0));
+  device.write(errors, std::as_bytes(std::span(&left, 1)));
+
+  std::vector<BindGroup> groups;
+  std::vector<Device::Step> steps;
+  const auto add = [&](const Pipeline& program, std::size_t items,
+                       std::span<const Device::Binding> bindings) {
+    groups.push_back(device.bind(program, bindings));
+    steps.push_back({&program, nullptr, workgroups_for(items)});
+  };
+  for (const Part& part : parts) {
+    const Device::Binding sites{8, &part.face_sites}, vertices{9, &positions_};
+    const Device::Binding of_faces[] = {
+        {0, &errors}, {6, &part.faces}, {7, &part.all_faces.constants}, sites, vertices};
+    add(programs.faces, part.all_faces.nodes, of_faces);
+    for (const Level& each : part.levels) {
+      const Device::Binding of_boxes[] = {
+          {2, &part.leaves}, {5, &part.nodes}, {6, &part.boxes}, {7, &each.constants}, sites, vertices};
+      add(programs.boxes, std::size_t{8} * each.nodes, of_boxes);
+    }
+  }
+  for (std::size_t i = 0; i < steps.size(); ++i) steps[i].group = &groups[i];
+  device.run(steps, errors, read_back_, std::as_writable_bytes(std::span(&left, 1)));
+  frame = moved;
+  shape = refitted_errors(left);
 }
 
 }  // namespace sdm::gpu

@@ -27,7 +27,7 @@ std::optional<GpuReport> gpu_report(const Engine&) {
 
 struct GpuMap::Impl {};
 
-GpuMap::GpuMap(const Surface&, const Sites&, const GpuOptions&) {
+GpuMap::GpuMap(const Surface&, const Sites&, const GpuMapOptions&) {
   refuse();
 }
 GpuMap::~GpuMap() = default;
@@ -39,6 +39,10 @@ void GpuMap::compute(const Surface&, const Sites&) {
 }
 
 void GpuMap::compute(std::span<const Vec3>, const Sites&) {
+  refuse();
+}
+
+void GpuMap::compute(std::span<const Vec3>, std::span<const Vec3>) {
   refuse();
 }
 
@@ -55,6 +59,10 @@ GpuMapStatistics GpuMap::statistics(double) const {
 }
 
 std::vector<float> GpuMap::distances() const {
+  refuse();
+}
+
+GpuMapClosest GpuMap::closest() const {
   refuse();
 }
 

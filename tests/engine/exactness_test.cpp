@@ -12,6 +12,7 @@
 
 #include "support/engines.h"
 #include "support/error_of.h"
+#include "support/gpu_closest.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"
 #include "support/oracle.h"
@@ -67,7 +68,7 @@ void expect_map_on_device(const Surface& surface, const Sites& sites, std::span<
     EXPECT_THAT(test::error_of([&] { return GpuMap(surface, sites); }), HasSubstr("too far"));
     return;
   }
-  const GpuMap map(surface, sites);
+  const GpuMap map(surface, sites, {.closest = true});
   const std::vector<float> found = map.distances();
   ASSERT_EQ(found.size(), expected.size());
   std::size_t wrong = 0;
@@ -77,6 +78,7 @@ void expect_map_on_device(const Surface& surface, const Sites& sites, std::span<
     sum += expected[i];
   }
   EXPECT_EQ(wrong, 0u);
+  EXPECT_EQ(test::wrong_closest(map, sites, sites.mesh(), surface.sample_points(), expected), 0u);
   const double tolerance = expected[expected.size() / 2];
   const auto within = static_cast<std::uint64_t>(
       std::ranges::count_if(expected, [&](double distance) { return distance <= tolerance; }));

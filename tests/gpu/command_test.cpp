@@ -26,6 +26,7 @@ TEST_F(GpuCommand, ReportsTheDeviceAndTheCounts) {
     const Json report = Json::parse(run.out);
     EXPECT_EQ(report["engine"], "gpu");
     EXPECT_EQ(report["gpu"]["device"], name);
+    EXPECT_EQ(report["gpu"]["results"], "read back (double)");
     EXPECT_GE(report["gpu"]["points"], report["texels_with_value"]);
     EXPECT_GT(report["gpu"]["tests"], 0);
     EXPECT_EQ(report["gpu"]["incomplete"], 0);
@@ -41,6 +42,14 @@ TEST_F(GpuCommand, UnknownDevicesFail) {
     EXPECT_THAT(run.err, HasSubstr(gpu_devices()[0].name));
     EXPECT_FALSE(std::filesystem::exists(out));
   }
+}
+
+// What does not ask an engine says so.
+TEST_F(GpuCommand, MeasuresWithoutAnEngineRefuseIt) {
+  const Outcome run = run_sdm(map({"--engine", "gpu", "--along", "0,0,1"}));
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("--along excludes --engine gpu"));
+  EXPECT_FALSE(std::filesystem::exists(out));
 }
 
 }  // namespace

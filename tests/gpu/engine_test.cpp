@@ -4,10 +4,12 @@
 #include <sdm/sdm.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <random>
 #include <span>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -55,10 +57,9 @@ std::vector<Vec3> queries_for(const Mesh& mesh, std::size_t count, std::mt19937&
   return queries;
 }
 
-void expect_reference(const Mesh& mesh, double max_distance, std::uint32_t seed) {
+void expect_reference(const Sites& sites, double max_distance, std::uint32_t seed) {
   std::mt19937 random(seed);
-  const Sites sites(mesh);
-  const std::vector<Vec3> points = queries_for(mesh, 20'000, random);
+  const std::vector<Vec3> points = queries_for(sites.mesh(), 20'000, random);
   const auto of = [&](const char* engine) {
     std::vector<ClosestPoint> found(points.size());
     make_engine(engine)->scattered(sites, points, {.max_distance = max_distance}, found);
@@ -76,15 +77,47 @@ void expect_reference(const Mesh& mesh, double max_distance, std::uint32_t seed)
 
 TEST(GpuEngine, ClosestPointsAreThoseOfTheReferenceEngine) {
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-  expect_reference(test::load("armadillo.off"), kAnywhere, 1);
-  expect_reference(test::load("elephant-with-holes.off"), kAnywhere, 2);
-  expect_reference(test::load("boeing.off"), 0.3, 3);
+  expect_reference(Sites(test::load("armadillo.off")), kAnywhere, 1);
+  expect_reference(Sites(test::load("elephant-with-holes.off")), kAnywhere, 2);
+  expect_reference(Sites(test::load("boeing.off")), 0.3, 3);
   for (std::uint32_t seed = 4; seed < 12; ++seed) {
     std::mt19937 random(seed);
     Mesh mesh = test::degenerate_soup(300, random);
     const double scale = std::pow(10.0, 3.0 * (seed % 5) - 6);
     for (Vec3& p : mesh.positions) p = scale * (p + Vec3{3, 0, -5});
-    expect_reference(mesh, seed % 2 == 0 ? kAnywhere : 0.2 * scale, seed);
+    Sites sites(mesh);
+    const double limit = seed % 2 == 0 ? kAnywhere : 0.2 * scale;
+    expect_reference(sites, limit, seed);
+    // Then frames of the faces that the device has computed.
+    for (Vec3& p : mesh.positions) p = {p[0], (seed % 3 == 0 ? 1e-3 : 1.1) * p[1], p[2] + 0.3 * p[0]};
+    sites.refit(mesh.positions);
+    expect_reference(sites, limit, seed);
+  }
+}
+
+// Third corners that single precision places beyond the longest side, of needles in a plane. Then points
+// beyond its end are between the lines of two sides, and would be taken for points over the face.
+TEST(GpuEngine, RefitsOfNeedlesWithShortSides) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Mesh mesh = test::soup(100, random);
+  Sites sites(mesh);
+  const auto engine = make_engine("gpu");
+  (void)closest_points(sites, std::vector<Vec3>{{}}, {.engine = engine});
+  for (const double size : {3e-7, 1e-7, 5e-8, 2e-8}) {
+    std::vector<Vec3> points;
+    const auto any = [&] { return Vec3{unit(random), unit(random), unit(random)}; };
+    for (const Triangle& t : mesh.triangles) {
+      const Vec3 a = any(), b = any();
+      mesh.positions[t[0]] = a;
+      mesh.positions[t[1]] = b;
+      mesh.positions[t[2]] = b + size * any();
+      for (int k = 0; k < 100; ++k) points.push_back(b + (1 + unit(random)) * (b - a) + 1e-7 * any());
+    }
+    sites.refit(mesh.positions);
+    const auto found = closest_points(sites, points, {.engine = engine}),
+               expected = closest_points(sites, points, {.engine = make_engine("reference")});
+    for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(found[i].distance, expected[i].distance) << i;
   }
 }
 
@@ -106,6 +139,36 @@ TEST(GpuEngine, ManyFacesAtTheSameDistance) {
   EXPECT_EQ(found[0].site, 0u);
   EXPECT_EQ(found[0].distance, 1);
   EXPECT_EQ(gpu_report(*engine)->incomplete, 1u);
+}
+
+// Pairs of meshes in random places. SDM_TEXELS of them in tests/long.
+TEST(GpuEngine, RandomTexels) {
+  const char* const given = std::getenv("SDM_TEXELS");
+  const std::size_t wanted = given != nullptr ? std::stoull(given) : 10'000;
+  const std::vector<std::string> names{"cow.off",    "head.off",      "elephant-with-holes.off",
+                                       "boeing.off", "armadillo.off", "bunny.obj"};
+  const auto gpu = make_engine("gpu"), reference = make_engine("reference");
+  std::size_t done = 0;
+  for (std::uint32_t seed = 0; done < wanted; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const auto number = [&](double size) { return ":" + std::to_string(size * unit(random)); };
+    const auto mesh = [&] {
+      return test::load(names[random() % names.size()],
+                        "fit,rotate" + number(180) + number(180) + number(180) +
+                            ",scale:" + std::to_string(std::exp(unit(random))) + ",translate" + number(0.5) +
+                            number(0.5) + number(0.5));
+    };
+    const Surface surface(mesh(), {.resolution = given != nullptr ? 1024u : 96u});
+    const Sites sites(mesh());
+    const DistanceMap found = compute_map(surface, sites, {.engine = gpu}),
+                      expected = compute_map(surface, sites, {.engine = reference});
+    std::size_t different = 0;
+    for (const std::uint32_t t : surface.sample_texels())
+      different += found.distance[t] == expected.distance[t] && found.site[t] == expected.site[t] ? 0 : 1;
+    ASSERT_EQ(different, 0u) << seed;
+    done += surface.sample_texels().size();
+  }
 }
 
 TEST(GpuEngine, FollowsRefitsAndEdits) {
@@ -199,14 +262,15 @@ TEST(GpuEngine, BuffersBeyondTheLimitAreDivided) {
                       positions_there = device.buffer(3 * size, Use::read, "");
     device.write(samples_there, std::as_bytes(std::span(samples)));
     device.write(positions_there, std::as_bytes(std::span(positions)));
-    search.measure(o2, {samples_there, positions_there}, points.size(), distances);
+    const gpu::SitesOnDevice& there = search.place(o2);
+    search.measure(there, {samples_there, positions_there}, points.size(), distances, {});
     std::vector<float> on_device(points.size());
     device.run({}, distances, read_back, std::as_writable_bytes(std::span(on_device)));
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (placed[i].within < 0) continue;
       const auto& [x, y, z] = placed[i].position;
       const gpu::DistanceError error =
-          gpu::distance_error(o2, std::max({std::abs(x), std::abs(y), std::abs(z)}));
+          gpu::distance_error(there.shape, std::max({std::abs(x), std::abs(y), std::abs(z)}));
       const double distance = expected[i].distance * o2.frame.scale;
       ASSERT_NEAR(on_device[i], distance, error.each * distance + error.constant) << i;
     }

@@ -2,12 +2,15 @@
 
 #include <sdm/mesh_files.h>
 
+#include <cstdlib>
+
 #include "io/mesh/placement.h"
 
 namespace sdm::test {
 
 std::string mesh_file(const std::string& name) {
-  return SDM_TEST_MESHES "/" + name;
+  const char* const folder = std::getenv("SDM_MESHES");
+  return (folder != nullptr ? folder : SDM_TEST_MESHES) + ("/" + name);
 }
 
 Mesh load(const std::string& name, std::string_view steps) {

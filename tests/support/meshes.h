@@ -9,7 +9,7 @@
 
 namespace sdm::test {
 
-/// The path of an installed mesh.
+/// The path of an installed mesh: in the folder SDM_MESHES, if it is set, or in that of the build.
 [[nodiscard]] std::string mesh_file(const std::string& name);
 /// An installed mesh, placed by the steps of io::parse_placement.
 [[nodiscard]] Mesh load(const std::string& name, std::string_view steps = "");

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/memory.h"
 #include "core/parse_number.h"
 
 namespace sdm::gpu {
@@ -89,7 +90,8 @@ constexpr std::size_t kUniformBytes = 16;
 WGPUBufferUsage usage(Device::Use use) {
   switch (use) {
     case Device::Use::uniform:
-      return WGPUBufferUsage_Uniform | WGPUBufferUsage_CopyDst;
+      return WGPUBufferUsage_Uniform | WGPUBufferUsage_Storage | WGPUBufferUsage_CopyDst |
+             WGPUBufferUsage_CopySrc;
     case Device::Use::read:
       return WGPUBufferUsage_Storage | WGPUBufferUsage_CopyDst;
     case Device::Use::write:
@@ -133,6 +135,7 @@ struct Device::Faults {
 Device::Device(std::string_view wanted) : faults_(std::make_unique<Faults>()) {
   Found found = choose(wanted);
   name_ = std::move(found.device.name);
+  software_ = found.device.software;
   WGPULimits limits{};
   if (wgpu().AdapterGetLimits(found.adapter.get(), &limits) != WGPUStatus_Success)
     throw Error("the gpu engine: " + name_ + " does not report its limits");
@@ -175,6 +178,7 @@ Buffer Device::buffer(std::size_t bytes, Use use, std::string_view purpose) {
   if (bytes > most_bytes_)
     throw Error("the gpu engine needs a buffer of " + megabytes(bytes) + " for " + std::string(purpose) +
                 ", and " + name_ + " permits " + megabytes(most_bytes_) + ": use the cpu engine");
+  if (software_) require_memory(bytes, purpose);
   WGPUBufferDescriptor descriptor{};
   descriptor.usage = usage(use);
   descriptor.size = bytes;
@@ -187,7 +191,9 @@ void Device::write(const Buffer& buffer, std::span<const std::byte> bytes) {
   wgpu().QueueWriteBuffer(queue_.get(), buffer.get(), 0, bytes.data(), bytes.size());
 }
 
-Pipeline Device::pipeline(std::string_view wgsl) {
+Pipeline Device::pipeline(std::initializer_list<EmbeddedFile> parts) {
+  std::string wgsl;
+  for (const EmbeddedFile& part : parts) wgsl += part.bytes;
   WGPUShaderSourceWGSL source{};
   source.chain.sType = WGPUSType_ShaderSourceWGSL;
   source.code = view(wgsl);

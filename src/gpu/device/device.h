@@ -5,12 +5,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/embedded_file.h"
 #include "gpu/device/wgpu_library.h"
 
 namespace sdm::gpu {
@@ -32,14 +34,15 @@ class Device {
   /// The largest buffer that a program can read or write.
   [[nodiscard]] std::size_t most_bytes() const { return most_bytes_; }
 
+  /// Programs can write what is `uniform`, too.
   enum class Use { uniform, read, write, read_back };
   /// Throws sdm::Error if there is not that much memory on the device, or a buffer may not be so large.
   [[nodiscard]] Buffer buffer(std::size_t bytes, Use use, std::string_view purpose);
   /// Writes before whatever runs next.
   void write(const Buffer& buffer, std::span<const std::byte> bytes);
 
-  /// The entry point "main" of a source in WGSL.
-  [[nodiscard]] Pipeline pipeline(std::string_view wgsl);
+  /// The entry point "main" of a source in WGSL, of parts that follow each other.
+  [[nodiscard]] Pipeline pipeline(std::initializer_list<EmbeddedFile> parts);
   struct Binding {
     std::uint32_t number;
     const Buffer* buffer;
@@ -74,6 +77,7 @@ class Device {
   std::string name_;
   std::unique_ptr<Faults> faults_;  // outlives the device, whose callbacks write there
   std::size_t most_bytes_ = 0;
+  bool software_ = false;  // its memory is that of the system
   struct DeviceReleaser {
     void operator()(WGPUDeviceImpl* device) const { wgpu().DeviceRelease(device); }
   };
