@@ -82,7 +82,7 @@ class PairAnswers {
   [[nodiscard]] const BoundedLength& separation();
   [[nodiscard]] bool colliding();
   /// How far apart the bodies of a solid pair are; see solids::are_solid_pair().
-  [[nodiscard]] const solids::Relation& relation();
+  [[nodiscard]] const solids::Relation& relation() { return solid().relation(); }
   /// The diagonal of the box of both; of a half-space and another body, that of the other one.
   [[nodiscard]] double size() const;
   [[nodiscard]] const std::optional<BoundedLength>& penetration_depth();
@@ -91,6 +91,7 @@ class PairAnswers {
   [[nodiscard]] std::span<const Contact> contacts_within(double margin);
 
  private:
+  [[nodiscard]] solids::SolidPair& solid();
   [[nodiscard]] pairs::MeshPair meshes() const;
   [[nodiscard]] bool boxes_or_balls_apart(double distance) const;
   /// The search for two convex solids; nothing for other bodies.
@@ -116,7 +117,7 @@ class PairAnswers {
 
   bool solid_pair_ = false;
   convex::ExitWorkspace exit_workspace_;
-  std::optional<solids::Relation> relation_;
+  std::optional<solids::SolidPair> solid_;  // made when it is needed
   solids::SolidContacts solid_contacts_;
 
   KnownAnswers known_;

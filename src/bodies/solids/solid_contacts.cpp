@@ -27,8 +27,9 @@ SurfacePoint surface_point(const shape::PosedBody& body, std::uint32_t face, con
 }  // namespace
 
 std::span<const Contact> SolidContacts::find(const shape::PosedBody& o1, const shape::PosedBody& o2,
-                                             const SolidPair& pair, const Relation& relation, double margin) {
+                                             SolidPair& pair, double margin) {
   contacts_.clear();
+  const Relation& relation = pair.relation();
   const double size = pair.size();
   const std::array bodies{&o1, &o2};
   if (relation.signed_distance && !(relation.gap <= margin)) return {};

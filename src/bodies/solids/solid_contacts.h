@@ -20,7 +20,7 @@ class SolidContacts {
  public:
   /// Returns the contacts whose depth is at least minus the margin; the span is valid until the next call.
   [[nodiscard]] std::span<const Contact> find(const shape::PosedBody& o1, const shape::PosedBody& o2,
-                                              const SolidPair& pair, const Relation& relation, double margin);
+                                              SolidPair& pair, double margin);
 
  private:
   void add_single(const shape::PosedBody& o1, const shape::PosedBody& o2, const Relation& relation);
