@@ -59,7 +59,7 @@ bool PairAnswers::colliding() {
 }
 
 solids::SolidPair& PairAnswers::solid() {
-  if (!solid_) solid_.emplace(*bodies_[0], *bodies_[1], exit_workspace_);
+  if (!solid_) solid_.emplace(*bodies_[0], *bodies_[1], solid_workspace_);
   return *solid_;
 }
 
@@ -160,7 +160,6 @@ bool PairAnswers::take_separation(double bound) {
   const solids::SurfaceDistance& found = solid().surfaces();
   if (!(found.lower <= bound)) return false;
   known_.intersecting = found.upper == 0;
-  known_.closest_faces = solid().colliding() ? kNoFaces : relation().faces;
   BoundedLength separation;
   separation.value = separation.upper = found.upper;
   separation.lower = found.lower;

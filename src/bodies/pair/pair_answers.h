@@ -80,6 +80,8 @@ class PairAnswers {
   [[nodiscard]] const KnownAnswers& known() const { return known_; }
 
   [[nodiscard]] const BoundedLength& separation();
+  /// The faces of the closest points, once the separation is known.
+  [[nodiscard]] FacePair closest_faces() { return solid_pair_ ? solid().faces() : known_.closest_faces; }
   [[nodiscard]] bool colliding();
   /// How far apart the bodies of a solid pair are; see solids::are_solid_pair().
   [[nodiscard]] const solids::Relation& relation() { return solid().relation(); }
@@ -116,7 +118,7 @@ class PairAnswers {
   depth::DepthSearch depth_search_;
 
   bool solid_pair_ = false;
-  convex::ExitWorkspace exit_workspace_;
+  solids::SolidWorkspace solid_workspace_;
   std::optional<solids::SolidPair> solid_;  // made when it is needed
   solids::SolidContacts solid_contacts_;
 

@@ -118,6 +118,10 @@ CoreDistance core_gap(const PosedCore& a, const PosedCore& b) {
 // The axis is a rectangle in the half-plane of the point: above and beside it by `along` and `aside`.
 CoreDistance point_to_axis(const Vec3& point, const PosedCore& axis) {
   const Vec3 from = point - axis.centre();
+  if (axis.point())
+    if (const double distance = norm(from); distance > 0)
+      return {
+          .distance = distance, .normal = (1 / distance) * from, .point1 = point, .point2 = axis.centre()};
   const double height = dot(from, axis.axis());
   const Vec3 up = height < 0 ? -axis.axis() : axis.axis();
   const Vec3 beside = from - height * axis.axis();

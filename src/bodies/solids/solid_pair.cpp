@@ -42,10 +42,8 @@ void for_extreme_points(const PosedCore& core, const Visit& visit) {
   }
 }
 
-// `vertex`: of the convex mesh, at that point, if it is known.
-std::uint32_t face_at(const shape::PosedBody& body, const Vec3& p, std::uint32_t vertex = kNone) {
+std::uint32_t face_at(const shape::PosedBody& body, const Vec3& p) {
   if (!body.body().has_mesh()) return kNone;
-  if (vertex != kNone) return body.body().convex_solid()->first_face[vertex];
   const sites::SitesData& sites = internals(body.body().sites());
   const ClosestPoint closest = closest::closest_point(sites, inverse(body.pose().map)(p), kInfinity);
   return closest.type == SiteType::none ? kNone : sites.face_of(closest.type, closest.site);
@@ -61,7 +59,7 @@ BoundedLength bounded(double lower, double upper, double size) {
 
 }  // namespace
 
-SolidPair::SolidPair(const shape::PosedBody& o1, const shape::PosedBody& o2, convex::ExitWorkspace& workspace)
+SolidPair::SolidPair(const shape::PosedBody& o1, const shape::PosedBody& o2, SolidWorkspace& workspace)
     : bodies_{&o1, &o2}, cores_{PosedCore(o1), PosedCore(o2)}, workspace_(workspace) {
   if (o1.body().half_space() && o2.body().half_space())
     throw Error(
@@ -98,6 +96,16 @@ bool SolidPair::colliding() {
   return relation().colliding;
 }
 
+std::array<std::uint32_t, 2> SolidPair::faces() {
+  const Relation& found = relation();
+  std::array<std::uint32_t, 2> faces{kNone, kNone};
+  for (const int body : {0, 1})
+    faces[body] = convex(body) || half_space(1 - body)
+                      ? face_at(*bodies_[body], body == 0 ? found.point1 : found.point2)
+                      : nearest_face_;
+  return faces;
+}
+
 const SurfaceDistance& SolidPair::surfaces() {
   if (!surfaces_) surfaces_ = between_surfaces();
   return *surfaces_;
@@ -117,8 +125,7 @@ SurfaceDistance SolidPair::between_surfaces() {
 Relation SolidPair::of_half_space(int half_space) {
   const PosedCore &space = cores_[half_space], &other = cores_[1 - half_space];
   const Vec3& n = space.normal();
-  std::uint32_t vertex = kNone;
-  const Vec3 lowest = other.support(-n, vertex);
+  const Vec3 lowest = other.support(-n);
   Relation relation;
   relation.gap = dot(n, lowest) - space.offset() - other.radius();
   relation.normal = half_space == 1 ? n : -n;
@@ -128,7 +135,6 @@ Relation SolidPair::of_half_space(int half_space) {
   relation.point1 = points[0];
   relation.point2 = points[1];
   relation.colliding = relation.gap <= 0;
-  relation.faces[1 - half_space] = face_at(*bodies_[1 - half_space], lowest, vertex);
   return relation;
 }
 
@@ -149,7 +155,7 @@ SurfaceDistance SolidPair::beside_half_space(int half_space) const {
 }
 
 Relation SolidPair::of_convex() {
-  const CoreDistance cores = core_distance(cores_[0], cores_[1], size_, quick(), workspace_);
+  const CoreDistance cores = core_distance(cores_[0], cores_[1], size_, quick(), workspace_.exit);
   const double radius1 = cores_[0].radius(), radius2 = cores_[1].radius();
   Relation relation;
   relation.gap = cores.distance - (radius1 + radius2);
@@ -158,7 +164,6 @@ Relation SolidPair::of_convex() {
   relation.point1 = cores.point1 - radius1 * cores.normal;
   relation.point2 = cores.point2 + radius2 * cores.normal;
   relation.colliding = relation.gap <= 0;
-  relation.faces = {face_at(*bodies_[0], relation.point1), face_at(*bodies_[1], relation.point2)};
   return relation;
 }
 
@@ -177,7 +182,7 @@ double SolidPair::distance_to(int body, const Vec3& p) {
           std::max(highest, dot(mesh->normals[face], local - faces.positions[faces.triangles[face][0]]));
     if (highest <= 0) return posed.pose().scale * highest;
   }
-  return core_distance(PosedCore(p), core, size_, workspace_).distance;
+  return core_distance(PosedCore(p), core, size_, workspace_.exit).distance;
 }
 
 // Whether the core of a body with one radius certainly has a point outside of the other core with another
@@ -230,7 +235,7 @@ Relation SolidPair::of_mesh(int mesh) {
   relation.error = nearest.error;
   relation.gap = (inside ? -d : d) - radius;
   relation.colliding = inside || d <= radius;
-  relation.faces[mesh] = nearest.face;
+  nearest_face_ = nearest.face;
   std::array<Vec3, 2> points;
   points[mesh] = nearest.point1;
   points[1 - mesh] = nearest.point2 + (inside ? -radius : radius) * nearest.normal;
@@ -261,7 +266,8 @@ double SolidPair::between_parts(int mesh) {
   const sites::SitesData& sites = internals(body.body().sites());
   const std::span<const std::uint32_t> part_of = sites.orientation.component;
   const double radius = cores_[1 - mesh].radius();
-  std::vector<double> farthest(sites.orientation.first_face.size(), -kInfinity);
+  std::vector<double>& farthest = workspace_.farthest;
+  farthest.assign(sites.orientation.first_face.size(), -kInfinity);
   for (std::size_t face = 0; face < part_of.size(); ++face) {
     if (part_of[face] == kNone) continue;
     double& most = farthest[part_of[face]];
@@ -272,9 +278,8 @@ double SolidPair::between_parts(int mesh) {
   for (const double most : farthest)
     if (most <= radius) least = std::min(least, radius - most);
   if (least == kInfinity) return 0;
-  std::vector<FaceDistance> near;
-  faces_within(body, cores_[1 - mesh], radius + least, near);
-  for (const FaceDistance& face : near) {
+  faces_within(body, cores_[1 - mesh], radius + least, workspace_.near);
+  for (const FaceDistance& face : workspace_.near) {
     if (part_of[face.face] == kNone || farthest[part_of[face.face]] <= radius) continue;
     least = std::max(0.0, std::min(least, face.distance - radius));
   }

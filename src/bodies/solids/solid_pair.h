@@ -22,13 +22,19 @@ struct Relation {
   double error = 0;         ///< of the gap
   Vec3 normal{};            ///< of length 1: moving O1 along it separates it from O2; 0 if unknown
   Vec3 point1{}, point2{};  ///< on both surfaces, point1 − point2 = gap · normal, if the normal is known
-  std::array<std::uint32_t, 2> faces{kNone, kNone};
 };
 
 /// The distance of the surfaces: bounds, and points at that distance, if known.
 struct SurfaceDistance {
   double lower = 0, upper = 0;
   std::optional<std::array<Vec3, 2>> closest{};
+};
+
+/// Memory that pairs reuse; results do not depend on it.
+struct SolidWorkspace {
+  convex::ExitWorkspace exit;
+  std::vector<double> farthest;    ///< of each part of a mesh
+  std::vector<FaceDistance> near;  ///< faces
 };
 
 /// Two bodies in their poses, which must outlive this object; not both half-spaces, which throw sdm::Error.
@@ -39,12 +45,14 @@ struct SurfaceDistance {
 /// once, here.
 class SolidPair {
  public:
-  SolidPair(const shape::PosedBody& o1, const shape::PosedBody& o2, convex::ExitWorkspace& workspace);
+  SolidPair(const shape::PosedBody& o1, const shape::PosedBody& o2, SolidWorkspace& workspace);
 
   /// relation().colliding, mostly in less time.
   [[nodiscard]] bool colliding();
   [[nodiscard]] const Relation& relation();
   [[nodiscard]] const SurfaceDistance& surfaces();
+  /// The faces of relation().point1 and point2; kNone where a body has none.
+  [[nodiscard]] std::array<std::uint32_t, 2> faces();
   /// The penetration depth of bodies that collide.
   [[nodiscard]] BoundedLength depth();
   /// The diagonal of the box of both; of a half-space and another one, that of the other one.
@@ -75,11 +83,12 @@ class SolidPair {
 
   std::array<const shape::PosedBody*, 2> bodies_;
   std::array<PosedCore, 2> cores_;
-  convex::ExitWorkspace& workspace_;
+  SolidWorkspace& workspace_;
   double size_ = 0;
   std::optional<QuickDistance> quick_;  // of the cores of two convex bodies
   std::optional<Relation> relation_;
   std::optional<SurfaceDistance> surfaces_;
+  std::uint32_t nearest_face_ = kNone;  // of a mesh that is not convex, with its relation
 };
 
 /// Whether bodies are compared by a SolidPair.
