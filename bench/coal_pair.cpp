@@ -24,11 +24,11 @@ std::pair<std::shared_ptr<std::vector<coal::Vec3s>>, std::shared_ptr<std::vector
   return {points, triangles};
 }
 
-coal::Transform3s transform_of(const Affine& pose) {
+coal::Transform3s transform_of(const Transform& pose) {
   coal::Matrix3s rotation;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) rotation(i, j) = pose.rows[i][j];
-  return {rotation, vector_of(pose.offset)};
+  return {rotation, vector_of({pose.rows[0][3], pose.rows[1][3], pose.rows[2][3]})};
 }
 
 }  // namespace
@@ -82,9 +82,9 @@ struct CoalPair::Impl {
   }
 };
 
-CoalPair::CoalPair(CoalShape o1, CoalShape o2, const std::vector<Affine>& poses, bool warm)
+CoalPair::CoalPair(CoalShape o1, CoalShape o2, const std::vector<Transform>& poses, bool warm)
     : impl_(std::make_unique<Impl>(o1, o2)) {
-  for (const Affine& pose : poses) impl_->poses.push_back(transform_of(pose));
+  for (const Transform& pose : poses) impl_->poses.push_back(transform_of(pose));
   if (!warm) return;
   for (coal::QueryRequest* request : std::initializer_list<coal::QueryRequest*>{
            &impl_->unsigned_distance, &impl_->signed_distance, &impl_->any})

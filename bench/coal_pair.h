@@ -2,11 +2,10 @@
 #pragma once
 
 #include <sdm/mesh.h>
+#include <sdm/mesh_edit.h>
 
 #include <memory>
 #include <vector>
-
-#include "geometry/affine.h"
 
 namespace coal {
 class CollisionGeometry;
@@ -30,7 +29,7 @@ using CoalShape = std::shared_ptr<const coal::CollisionGeometry>;
 class CoalPair {
  public:
   /// `warm`: a search starts from what the query before it left.
-  CoalPair(CoalShape o1, CoalShape o2, const std::vector<Affine>& poses, bool warm);
+  CoalPair(CoalShape o1, CoalShape o2, const std::vector<Transform>& poses, bool warm);
   ~CoalPair();
 
   /// The distance, with closest points; where the shapes overlap, at most 0.
