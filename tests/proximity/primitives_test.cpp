@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "support/allocations.h"
+#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm {
@@ -526,6 +528,36 @@ TEST(Primitives, AmongManyBodies) {
   }
 }
 
+TEST(Primitives, AllocateNothingAfterTheFirstFrames) {
+  const ThreadLimit alone(1);
+  Random random(13);
+  const std::vector<Shape> shapes{Shape::half_space({0, 0, 1}),
+                                  Shape::sphere(0.5),
+                                  Shape::capsule(0.4, 1),
+                                  Shape::cylinder(0.5, 1),
+                                  Shape::box({1, 1, 1}).with_margin(0.1),
+                                  Shape(test::torus(24, 12))};
+  MultiBodyQuery bodies(shapes, {.contact_margin = 0.05});
+  std::vector<std::vector<Transform>> frames;
+  for (int frame = 0; frame < 10; ++frame) {
+    frames.emplace_back(1);
+    while (frames.back().size() < shapes.size()) frames.back().push_back(random.pose(0.8));
+  }
+  const auto run = [&] {
+    const std::size_t before = test::allocations();
+    for (const std::vector<Transform>& poses : frames) {
+      bodies.set_poses(poses);
+      (void)bodies.separations();
+      (void)bodies.penetration_depths();
+      (void)bodies.contacts();
+    }
+    return test::allocations() - before;
+  };
+  run();
+  run();
+  EXPECT_EQ(run(), 0u);
+}
+
 TEST(Primitives, AsPartsOfCompounds) {
   // A dumbbell on a floor.
   const std::vector<BodyPart> dumbbell{
@@ -545,8 +577,61 @@ TEST(Primitives, AsPartsOfCompounds) {
   for (const PairContacts& pair : bodies.contacts()) contacts += pair.contacts.size();
   EXPECT_EQ(contacts, 2u);
   EXPECT_THROW(MultiBodyQuery(std::vector<std::vector<BodyPart>>{
-                   {{Shape::half_space({0, 0, 1}), {}}, {Shape::sphere(1), {}}}}),
+                   {{Shape::half_space({0, 0, 1}), {}}, {Shape::half_space({1, 0, 0}), {}}}}),
                Error);
+}
+
+// A floor with a step, as one body and as two.
+TEST(Primitives, HalfSpaceAsAPart) {
+  Random random(11);
+  const Shape floor = Shape::half_space({0, 0, 1}), step = Shape::box({2, 2, 1}), ball = Shape::sphere(0.5);
+  const Transform on_floor = Transform::translation({0, 0, 0.5});
+  const std::vector<BodyPart> stair{{floor, {}}, {step, on_floor}};
+  MultiBodyQuery together(std::vector<std::vector<BodyPart>>{stair, {{ball, {}}}});
+  MultiBodyQuery apart(std::vector<Shape>{floor, step, ball});
+  int collisions = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Transform at = random.pose(1), to = random.pose(1.5);
+    together.set_poses(std::vector{at, to});
+    apart.set_poses(std::vector{at, at * on_floor, to});
+    apart.exclude_pair(0, 1);
+    const auto least = std::ranges::min(apart.separations(), {},
+                                        [](const PairSeparation& pair) { return pair.separation.value; });
+    ASSERT_EQ(together.separations().size(), 1u);
+    EXPECT_NEAR(together.separations()[0].separation.value, least.separation.value, kTolerance);
+    EXPECT_EQ(together.colliding().size(), apart.colliding().empty() ? 0u : 1u);
+    if (together.colliding().empty()) continue;
+    ++collisions;
+    ASSERT_EQ(together.separating_translations().size(), 1u);
+    const Vec3 out = together.separating_translations()[0].separating_translation.translation;
+    apart.set_pose(2, Transform::translation(-out) * to);
+    EXPECT_TRUE(apart.colliding().empty());
+  }
+  EXPECT_GT(collisions, 10);
+  // The floor rises to the ball, and turns about the middle of the step.
+  const std::vector<Motion> motions{
+      {{}, Transform::translation({0, 0, 1})},
+      {Transform::translation({3, 0, 1.1}), Transform::translation({3, 0, 1.1})}};
+  const std::vector<PairTimeOfContact> found = together.time_of_contact(motions, 1e-6);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].time_of_contact.time, 0.6, 1e-5);
+  // Bodies with a half-space each are no pair.
+  EXPECT_TRUE(MultiBodyQuery(std::vector<std::vector<BodyPart>>{stair, stair}).separations().empty());
+}
+
+// A circle of ways out is equally short.
+TEST(Primitives, CylindersWithOneAxis) {
+  Random random(12);
+  for (int i = 0; i < 100; ++i) {
+    const double r = random(0.2, 1), s = random(0.2, 1), l = random(0.5, 2), m = random(0.5, 2);
+    const double height = random(-1.5, 1.5), tilt = i % 2 == 0 ? 0 : 1e-9;
+    const Transform common = random.pose(1);
+    const Transform turned = Transform::quaternion({1, tilt, 0, 0});
+    ProximityQuery q = query(Shape::cylinder(r, l), common, Shape::cylinder(s, m),
+                             common * Transform::translation({0, 0, height}) * turned);
+    const double above = std::abs(height) - (l + m) / 2;
+    expect_distance(q, std::max(above, -(r + s)), 1e-8);
+  }
 }
 
 TEST(Primitives, ManyPoses) {

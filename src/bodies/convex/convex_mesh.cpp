@@ -130,16 +130,17 @@ void set_planes(ConvexMesh& convex, const Mesh& mesh) {
   convex.planes = std::move(planes);
 }
 
-// Sets the coordinates in single precision.
-void set_coordinates(ConvexMesh& convex) {
-  const std::size_t count = convex.points.size();
+// The coordinates of vertices in single precision: number(i) is that of vertex i.
+template <class Number>
+std::array<std::vector<float>, 3> coordinates(const ConvexMesh& convex, std::size_t count,
+                                              const Number& number) {
   const std::size_t padded = (count + ConvexMesh::kBlock - 1) / ConvexMesh::kBlock * ConvexMesh::kBlock;
-  for (int k = 0; k < 3; ++k) {
-    convex.along[k].resize(padded);
+  std::array<std::vector<float>, 3> along;
+  for (int k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < padded; ++i)
-      convex.along[k][i] =
-          static_cast<float>((convex.points[std::min(i, count - 1)][k] - convex.centre[k]) / convex.size);
-  }
+      along[k].push_back(static_cast<float>(
+          (convex.points[number(std::min(i, count - 1))][k] - convex.centre[k]) / convex.size));
+  return along;
 }
 
 // Let a be a unit vector at a vertex v, and let all neighbours w be lower along it, −a·(w − v) ≥ s. If none
@@ -166,6 +167,23 @@ void set_climbing(ConvexMesh& convex) {
   if (convex.points.size() <= kFew) return;
   const double sharpness = least_sharpness(convex) - convex.least_climb;
   convex.climbs = sharpness > 0 && 2 * convex.least_climb / sharpness * convex.size < convex.height_error;
+}
+
+// The vertices that are farthest along directions spread over the sphere (a Fibonacci lattice), of meshes of
+// which comparing all takes longer than climbing from the nearest of these.
+void set_coarse(ConvexMesh& convex) {
+  constexpr std::size_t kMany = 512, kDirections = 64;
+  if (!convex.climbs || convex.points.size() < kMany) return;
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / kDirections, r = std::sqrt(1 - z * z);
+    const double turn = 2 * std::numbers::pi * static_cast<double>(i) / std::numbers::phi;
+    const Vec3 u{r * std::cos(turn), r * std::sin(turn), z};
+    const auto farthest =
+        std::ranges::max_element(convex.points, {}, [&](const Vec3& p) { return dot(u, p); });
+    convex.coarse_vertex.push_back(static_cast<std::uint32_t>(farthest - convex.points.begin()));
+  }
+  convex.coarse = coordinates(convex, convex.coarse_vertex.size(),
+                              [&](std::size_t i) { return convex.coarse_vertex[i]; });
 }
 
 }  // namespace
@@ -195,8 +213,9 @@ std::unique_ptr<const ConvexMesh> recognise(const sites::SitesData& sites) {
   convex->inner_radius = (1 - kDoubleRounding) * radius - kDoubleRounding * norm(convex->centre);
   set_vertices(*convex, sites);
   set_planes(*convex, mesh);
-  set_coordinates(*convex);
+  convex->along = coordinates(*convex, convex->points.size(), [](std::size_t i) { return i; });
   set_climbing(*convex);
+  set_coarse(*convex);
   return convex;
 }
 

@@ -43,6 +43,10 @@ struct ConvexMesh {
   double height_error = 0;                ///< of the height of a vertex that is farthest along a unit vector
   bool climbs = false;     ///< whether farthest vertices are found by neighbours, too, with that error
   double least_climb = 0;  ///< heights of neighbours that differ by less are equal
+  /// Of large meshes that climb, some vertices to begin at, as in `along`, and their numbers; otherwise
+  /// empty.
+  std::array<std::vector<float>, 3> coarse;
+  std::vector<std::uint32_t> coarse_vertex;
 };
 
 /// Whether the mesh is the boundary of a convex solid, which is decided exactly: closed, oriented

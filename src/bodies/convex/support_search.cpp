@@ -18,12 +18,13 @@ namespace sdm::convex::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-// A vertex that is farthest along u, up to the height error: all are compared.
-HWY_INLINE std::uint32_t nearly_farthest_vertex(const ConvexMesh& mesh, const Vec3& u) {
+// The vertex that is farthest along u, in single precision, of the first `size`.
+HWY_INLINE std::uint32_t highest(const std::array<std::vector<float>, 3>& along, std::size_t size,
+                                 const Vec3& u) {
   const hn::CappedTag<float, ConvexMesh::kBlock> d;
   const hn::RebindToSigned<decltype(d)> di;
-  const std::size_t lanes = hn::Lanes(d), count = (mesh.points.size() + lanes - 1) / lanes * lanes;
-  const float *x = mesh.along[0].data(), *y = mesh.along[1].data(), *z = mesh.along[2].data();
+  const std::size_t lanes = hn::Lanes(d), count = (size + lanes - 1) / lanes * lanes;
+  const float *x = along[0].data(), *y = along[1].data(), *z = along[2].data();
   const auto ux = hn::Set(d, static_cast<float>(u[0])), uy = hn::Set(d, static_cast<float>(u[1])),
              uz = hn::Set(d, static_cast<float>(u[2]));
   auto best = hn::Set(d, -std::numeric_limits<float>::infinity());
@@ -44,7 +45,7 @@ HWY_INLINE std::uint32_t nearly_farthest_vertex(const ConvexMesh& mesh, const Ve
     hn::Store(best_at, di, found);
     lane = static_cast<std::uint32_t>(found[lane]);
   }
-  return std::min(lane, static_cast<std::uint32_t>(mesh.points.size() - 1));
+  return std::min(lane, static_cast<std::uint32_t>(size - 1));
 }
 
 // Hill climbing: from a vertex to a neighbour that is higher by more than `least`, until there is none.
@@ -63,6 +64,13 @@ HWY_INLINE std::uint32_t climb(const ConvexMesh& mesh, const Vec3& u, std::uint3
   }
 }
 
+// A vertex that is farthest along u, up to the height error.
+HWY_INLINE std::uint32_t nearly_farthest_vertex(const ConvexMesh& mesh, const Vec3& u) {
+  if (mesh.coarse_vertex.empty()) return highest(mesh.along, mesh.points.size(), u);
+  const std::uint32_t nearest = highest(mesh.coarse, mesh.coarse_vertex.size(), u);
+  return climb(mesh, u, mesh.coarse_vertex[nearest], mesh.least_climb);
+}
+
 class SupportSearch {
  public:
   SupportSearch(const SupportRequest& request, Simplex& simplex) : r_(request), known_(simplex) {
@@ -74,7 +82,7 @@ class SupportSearch {
   }
 
   Relation run() {
-    begin();
+    if (begin()) return Relation::overlap;
     constexpr int kMostSteps = 40;
     for (int step = 0; step < kMostSteps; ++step) {
       const double squared = squared_norm(v_);
@@ -85,7 +93,7 @@ class SupportSearch {
       if (along - error_ > r_.beyond) return keep(Relation::apart);
       if (known(p) || along > length - kConverged * length - kNoise * size_) return keep(Relation::near);
       simplex_.add(p);
-      if (!simplex_.reduce(v_)) return encloses_origin() ? Relation::overlap : keep_nearest_face();
+      if (!simplex_.reduce(v_)) return encloses_origin() ? keep(Relation::overlap) : keep_nearest_face();
     }
     return keep(Relation::unknown);
   }
@@ -109,12 +117,16 @@ class SupportSearch {
     return climb(mesh, u, simplex_.points[simplex_.count - 1].vertices[side], mesh.least_climb);
   }
 
-  // The simplex of a similar pose is a better start than the centres, unless the poses differ much.
-  void begin() {
+  // The simplex of a similar pose is a better start than the centres, unless the poses differ much. Returns
+  // whether it still encloses the origin.
+  bool begin() {
     const Vec3 between = r_.o1.centre - r_.pose(r_.o2.centre);
-    if (known_.count > 0 && similar(known_.away, between) && begin_with_known() && similar(v_, between)) {
-      last_u_ = (-1 / norm(v_)) * v_;
-      return;
+    if (known_.count > 0 && (known_.count == 4 || similar(known_.away, between)) && take_known()) {
+      if (simplex_.count == 4 && encloses_origin()) return true;
+      if (simplex_.reduce(v_) && similar(v_, between)) {
+        last_u_ = (-1 / norm(v_)) * v_;
+        return false;
+      }
     }
     simplex_.count = 0;
     v_ = between;
@@ -122,6 +134,7 @@ class SupportSearch {
     const double length = norm(v_);
     simplex_.add(support((-1 / length) * v_));
     v_ = simplex_.points[0].w;
+    return false;
   }
 
   static bool similar(const Vec3& a, const Vec3& b) {
@@ -129,13 +142,13 @@ class SupportSearch {
     const double along = dot(a, b);
     return along > 0 && along * along > kSimilar * kSimilar * squared_norm(a) * squared_norm(b);
   }
-  bool begin_with_known() {
+  bool take_known() {
     for (std::uint32_t i = 0; i < known_.count; ++i) {
       const auto& [v1, v2] = known_.vertices[i];
       if (v1 >= r_.o1.points.size() || v2 >= r_.o2.points.size()) return false;
       simplex_.add(point_of(v1, v2));
     }
-    return simplex_.reduce(v_);
+    return true;
   }
 
   bool known(const SimplexPoint& p) const {

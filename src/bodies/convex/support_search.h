@@ -9,10 +9,11 @@
 
 namespace sdm::convex {
 
-/// The vertices of O1 and of O2 between which the closest points are.
+/// The vertices of O1 and of O2 between which the closest points are; of bodies that overlap, four
+/// differences around the origin.
 struct Simplex {
   std::uint32_t count = 0;
-  std::array<std::array<std::uint32_t, 2>, 3> vertices{};
+  std::array<std::array<std::uint32_t, 2>, 4> vertices{};
   Vec3 away{};  ///< the unit vector from the closest point of O2 to that of O1, in the frame of O1
 };
 
@@ -38,7 +39,7 @@ struct SupportRequest {
 
 /// Gilbert, Johnson & Keerthi 1988: the point closest to the origin of simplices of differences x1 − x2, each
 /// extended by the vertices that are farthest in its direction. `simplex`: that of a similar pose, or none;
-/// it receives the last one, unless the bodies overlap. Cost: some steps, each that of comparing all vertices
+/// it receives the last one. Cost: some steps, each that of comparing all vertices
 /// of both.
 [[nodiscard]] Relation search_by_supports(const SupportRequest& request, Simplex& simplex);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -67,17 +68,23 @@ BodyParts::BodyParts(std::vector<std::vector<BodyPart>> bodies, std::vector<Shap
     place.compound = parts.size() > 1 || (!parts.empty() && !is_identity(parts[0].pose));
     on_behalf_of(body, [&] {
       if (parts.empty()) throw Error("a body without a shape; give it one part or more");
+      std::optional<Vec3> of_half_space;
       for (BodyPart& part : parts) {
         shape::PosedBody posed(part.shape);
         posed.set_pose(part.pose);
         if (!place.compound) continue;
-        if (posed.body().half_space())
-          throw Error("a half-space as a part of a compound; make it a body of its own");
-        if (posed.body().rounded())
+        if (posed.body().half_space()) {
+          if (of_half_space)
+            throw Error(
+                "two half-spaces in a compound, which bodies may be unable to leave; make each a body");
+          of_half_space = posed.pose().map.offset;
+        } else if (posed.body().rounded())
           extend(place.box, posed.box());
         else
           extend_by_mesh(place.box, posed.body().sites().mesh(), posed.pose().map);
       }
+      if (of_half_space && place.compound && !(place.box.lower[0] <= place.box.upper[0]))
+        extend(place.box, *of_half_space);
     });
     for (BodyPart& part : parts) {
       shapes.push_back(std::move(part.shape));
@@ -124,7 +131,7 @@ std::vector<motion::DividedMotion> BodyParts::divided(std::span<const shape::Pos
       for (std::uint32_t part = begin(body); part < end(body); ++part) {
         const Affine to_part = inverse(mesh::Similarity::of(local_[part]).map);
         divided.push_back(
-            of_body.of_part(local_[part], around(to_part(centre(whole)), parts[part].body().box())));
+            of_body.of_part(local_[part], around(to_part(centre(whole)), parts[part].body().turning_box())));
       }
     });
   return divided;

@@ -63,7 +63,10 @@ struct MultiBodyQuery::Impl {
     for (Shape& shape : shapes) posed.emplace_back(std::move(shape));
     for (std::uint32_t part = 0; part < posed.size(); ++part) {
       if (parts.any_compound()) posed[part].set_pose(parts.pose_of(part, {}));
-      if (posed[part].body().half_space()) near.change_filter().set_half_space(part);
+      const std::uint32_t body = parts.body_of()[part];
+      if (posed[part].body().half_space())
+        for (std::uint32_t other = parts.begin(body); other < parts.end(body); ++other)
+          near.change_filter().set_half_space(other);
     }
   }
 

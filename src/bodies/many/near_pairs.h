@@ -29,7 +29,7 @@ class PairFilter {
   void exclude(const Sweep::Pair& pair);
   void include(const Sweep::Pair& pair);
 
-  /// A half-space and another one are no pair.
+  /// A part of a body with a half-space and one of another such body are no pair.
   void set_half_space(std::uint32_t part) { half_space_[part] = 1; }
 
   [[nodiscard]] bool operator()(std::uint32_t a, std::uint32_t b) const;

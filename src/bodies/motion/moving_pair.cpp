@@ -205,7 +205,7 @@ void MovingPair::set_time(double time) {
 
 TimeOfContact MovingPair::found(double time) {
   const BoundedLength& separation = answers_.separation();
-  TimeOfContact found{.time = time, .separation = separation.value, .faces = answers_.known().closest_faces};
+  TimeOfContact found{.time = time, .separation = separation.value, .faces = answers_.closest_faces()};
   if (separation.witness) found.witness = *separation.witness;
   if (separation.value > 0 && separation.witness)
     found.normal = normalized(found.witness[0] - found.witness[1]);

@@ -30,7 +30,7 @@ void PairAnswers::begin(const shape::PosedBody& o1, const shape::PosedBody& o2, 
 void PairAnswers::set_bodies(const shape::PosedBody& o1, const shape::PosedBody& o2) {
   bodies_ = {&o1, &o2};
   contacts_.reset();
-  relation_.reset();
+  solid_.reset();
   solid_pair_ = solids::are_solid_pair(o1, o2);
   to_other_[1] = between(o2.pose(), o1.pose());
   first_to_other_known_ = false;
@@ -57,13 +57,13 @@ bool PairAnswers::colliding() {
   return *known_.colliding;
 }
 
-const solids::Relation& PairAnswers::relation() {
-  if (!relation_) relation_ = solids::SolidPair(*bodies_[0], *bodies_[1], exit_workspace_).relation();
-  return *relation_;
+solids::SolidPair& PairAnswers::solid() {
+  if (!solid_) solid_.emplace(*bodies_[0], *bodies_[1], solid_workspace_);
+  return *solid_;
 }
 
 bool PairAnswers::find_collision() {
-  if (solid_pair_) return relation().colliding;
+  if (solid_pair_) return solid().colliding();
   const pairs::MeshPair pair = meshes();
   if (!known_.intersecting)
     if (std::optional<convex::ConvexPair> convex = convex_pair(pair))
@@ -84,10 +84,7 @@ std::span<const Contact> PairAnswers::contacts() {
 std::span<const Contact> PairAnswers::contacts_within(double margin) {
   contacts_.reset();
   if (!within(margin)) return {};
-  if (solid_pair_) {
-    const solids::SolidPair pair(*bodies_[0], *bodies_[1], exit_workspace_);
-    return solid_contacts_.find(*bodies_[0], *bodies_[1], pair, relation(), margin);
-  }
+  if (solid_pair_) return solid_contacts_.find(*bodies_[0], *bodies_[1], solid(), margin);
   return contact_finder_.find(bodies_, meshes(), to_other(), margin, precision());
 }
 
@@ -105,6 +102,8 @@ bool PairAnswers::surfaces_within(double distance) {
 }
 
 bool PairAnswers::within(double distance) {
+  // Of solids that collide, the distance of the surfaces takes longer.
+  if (solid_pair_ && colliding()) return true;
   return surfaces_within(distance) || colliding();
 }
 
@@ -157,13 +156,12 @@ bool PairAnswers::find_closest(double bound) {
 
 // Takes the separation of a solid pair, if it is at most `bound`.
 bool PairAnswers::take_separation(double bound) {
-  const solids::Relation& found = relation();
-  if (!(found.surface_lower <= bound)) return false;
-  known_.intersecting = found.surface_upper == 0;
-  known_.closest_faces = found.faces;
+  const solids::SurfaceDistance& found = solid().surfaces();
+  if (!(found.lower <= bound)) return false;
+  known_.intersecting = found.upper == 0;
   BoundedLength separation;
-  separation.value = separation.upper = found.surface_upper;
-  separation.lower = found.surface_lower;
+  separation.value = separation.upper = found.upper;
+  separation.lower = found.lower;
   const bool exact = separation.upper - separation.lower <= precision();
   separation.certainty = exact ? Certainty::exact : Certainty::bounded;
   separation.witness = found.closest;
@@ -192,7 +190,7 @@ bool PairAnswers::surfaces_intersect() {
 std::optional<BoundedLength> PairAnswers::depth() {
   if (!bodies_[0]->body().solid() && !bodies_[1]->body().solid()) return {};
   if (!colliding()) return BoundedLength{{.certainty = Certainty::exact}};
-  if (solid_pair_) return solids::SolidPair(*bodies_[0], *bodies_[1], exit_workspace_).depth(relation());
+  if (solid_pair_) return solid().depth();
   // The diagonals of the bodies' own boxes: a box in space around a turned body is larger.
   const auto size = [&](int body) {
     return bodies_[body]->pose().scale * diagonal(bodies_[body]->body().box());

@@ -81,9 +81,11 @@ class PairAnswers {
   [[nodiscard]] const KnownAnswers& known() const { return known_; }
 
   [[nodiscard]] const BoundedLength& separation();
+  /// The faces of the closest points, once the separation is known.
+  [[nodiscard]] FacePair closest_faces() { return solid_pair_ ? solid().faces() : known_.closest_faces; }
   [[nodiscard]] bool colliding();
   /// How far apart the bodies of a solid pair are; see solids::are_solid_pair().
-  [[nodiscard]] const solids::Relation& relation();
+  [[nodiscard]] const solids::Relation& relation() { return solid().relation(); }
   /// The diagonal of the box of both; of a half-space and another body, that of the other one.
   [[nodiscard]] double size() const;
   [[nodiscard]] const std::optional<BoundedLength>& penetration_depth();
@@ -92,6 +94,7 @@ class PairAnswers {
   [[nodiscard]] std::span<const Contact> contacts_within(double margin);
 
  private:
+  [[nodiscard]] solids::SolidPair& solid();
   [[nodiscard]] pairs::MeshPair meshes() const;
   [[nodiscard]] bool boxes_or_balls_apart(double distance) const;
   /// The search for two convex solids; nothing for other bodies.
@@ -116,8 +119,8 @@ class PairAnswers {
   depth::DepthSearch depth_search_;
 
   bool solid_pair_ = false;
-  convex::ExitWorkspace exit_workspace_;
-  std::optional<solids::Relation> relation_;
+  solids::SolidWorkspace solid_workspace_;
+  std::optional<solids::SolidPair> solid_;  // made when it is needed
   solids::SolidContacts solid_contacts_;
 
   KnownAnswers known_;

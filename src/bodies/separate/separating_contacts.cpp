@@ -91,7 +91,7 @@ std::optional<Contact> SeparatingContacts::exit_after(const std::array<shape::Po
                                                       const SeparatingTranslation& out, double max_distance) {
   if (!apart_.surfaces_within(max_distance)) return {};
   const std::array<Vec3, 2>& closest = *apart_.separation().witness;
-  return exit_contact(bodies, apart_.known().closest_faces, closest, out.translation);
+  return exit_contact(bodies, apart_.closest_faces(), closest, out.translation);
 }
 
 // The patch of convex solids, whose deepest contact is the one of the closest points after the translation;

@@ -23,8 +23,8 @@ Box check_posed(const mesh::Similarity& pose, const Body& body) {
 }
 
 PosedBody::Placed PosedBody::checked_pose(const Transform& pose) const {
-  Placed result{.pose = mesh::Similarity::of(pose)};
-  result.box = check_posed(result.pose, body());
+  const mesh::Similarity checked = mesh::Similarity::of(pose);
+  const Placed result{.pose = checked, .box = check_posed(checked, body())};
   if (!(result.pose.scale * diagonal(body().box()) > mesh::kMinSize))
     throw Error("the pose makes it smaller than 1e-30, too small for the computation; scale it up");
   return result;

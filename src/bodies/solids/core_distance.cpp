@@ -18,6 +18,7 @@ constexpr double kClosest = 1e-13;  // of the coordinates: closest points are fo
 constexpr double kReliable =
     1e-9;  // of the size: a distance with a larger error may be one of cores that overlap
 constexpr double kTouching = 1e-12;  // of the size: a distance whose direction is not reliable
+constexpr double kMostTilt = 5e-8;   // of the size: what axes that are parallel may be turned by
 
 // The points of both cores that belong to the points of a simplex.
 class Pairs {
@@ -96,7 +97,7 @@ CoreDistance core_gap(const PosedCore& a, const PosedCore& b) {
     const Vec3 last = v;
     simplex.add(next);
     const bool encloses = !simplex.reduce(v);
-    if (encloses && lower <= kRounding * scale && simplex.depth_of_origin() > 0) return {};
+    if (encloses && lower <= kRounding * scale && simplex.depth_of_origin() > 0) return {.overlapping = true};
     const double now = encloses ? distance : norm(v);
     if (now <= kRounding * scale) return {};
     if (!(now < distance)) {  // by rounding, nothing closer is found
@@ -116,6 +117,10 @@ CoreDistance core_gap(const PosedCore& a, const PosedCore& b) {
 // The axis is a rectangle in the half-plane of the point: above and beside it by `along` and `aside`.
 CoreDistance point_to_axis(const Vec3& point, const PosedCore& axis) {
   const Vec3 from = point - axis.centre();
+  if (axis.point())
+    if (const double distance = norm(from); distance > 0)
+      return {
+          .distance = distance, .normal = (1 / distance) * from, .point1 = point, .point2 = axis.centre()};
   const double height = dot(from, axis.axis());
   const Vec3 up = height < 0 ? -axis.axis() : axis.axis();
   const Vec3 beside = from - height * axis.axis();
@@ -139,51 +144,115 @@ CoreDistance point_to_axis(const Vec3& point, const PosedCore& axis) {
 
 namespace {
 
-// The point of a segment that is closest to an axis: the distance is convex along the segment.
+// Of O2 from O1 for that of O1 from O2.
+void swap_cores(CoreDistance& found) {
+  found.normal = -found.normal;
+  std::swap(found.point1, found.point2);
+}
+
+// The point of a segment that is closest to an axis. The signed distance is convex along the segment: it is
+// least between a point where it falls and one where it grows, and no less than where their tangents meet.
 CoreDistance segment_to_axis(const PosedCore& segment, const PosedCore& axis) {
-  const auto at = [&](double t) { return point_to_axis(segment.centre() + t * segment.half(), axis); };
-  double low = -1, high = 1;
-  for (int step = 0; step < 100; ++step) {
-    const double third = (high - low) / 3;
-    if (at(low + third).distance < at(high - third).distance)
-      high -= third;
-    else
-      low += third;
+  struct At : CoreDistance {
+    double t, slope;
+  };
+  const auto at = [&](double t) {
+    At found{point_to_axis(segment.centre() + t * segment.half(), axis), t, 0};
+    found.slope = dot(found.normal, segment.half());
+    return found;
+  };
+  constexpr int kMostTries = 100;
+  At low = at(-1), high = at(1);
+  if (low.slope >= 0) return low;
+  if (high.slope <= 0) return high;
+  double before = 2 * (high.t - low.t);  // the interval two tries ago
+  double last = before;
+  for (int i = 0; i < kMostTries; ++i) {
+    const At& best = low.distance < high.distance ? low : high;
+    const double meet =
+        (high.distance - low.distance + low.slope * low.t - high.slope * high.t) / (low.slope - high.slope);
+    const double least = low.distance + low.slope * (meet - low.t);
+    const double length = high.t - low.t;
+    if (best.distance - least <= kRounding * (std::abs(best.distance) + norm(segment.half()))) break;
+    const double t = 2 * length > before || !(meet > low.t && meet < high.t) ? low.t + 0.5 * length : meet;
+    before = std::exchange(last, length);
+    if (!(t > low.t && t < high.t)) break;
+    (at(t).slope < 0 ? low : high) = at(t);
   }
-  return at(0.5 * (low + high));
+  return low.distance < high.distance ? low : high;
+}
+
+// Two axes with the same direction: their difference is one about it. As large as that changes the second by
+// `tilt`, at most, it changes the distance.
+CoreDistance parallel_axes(const PosedCore& a, const PosedCore& b) {
+  const double half_a = norm(a.half()), half_b = norm(b.half());
+  const PosedCore sum(b.centre(), a.axis(), half_a + half_b, a.disc() + b.disc());
+  CoreDistance found = point_to_axis(a.centre(), sum);
+  // A point of the sum is one of each, in parts.
+  const Vec3 from = found.point2 - b.centre();
+  const double along = dot(from, a.axis());
+  const Vec3 beside = from - along * a.axis();
+  const double disc = a.disc() + b.disc(), half = half_a + half_b;
+  found.point2 = b.centre() + (half > 0 ? half_b / half * along : 0.0) * a.axis() +
+                 (disc > 0 ? b.disc() / disc : 0.0) * beside;
+  found.point1 = found.point2 + found.distance * found.normal;
+  return found;
+}
+
+// How far the points of b move if it is turned until its axis is that of a.
+double tilt_of(const PosedCore& a, const PosedCore& b) {
+  return norm(cross(a.axis(), b.axis())) * (norm(b.half()) + b.disc());
 }
 
 }  // namespace
 
+QuickDistance quick_distance(const PosedCore& a, const PosedCore& b, double size) {
+  const bool axes = a.kind() == CoreKind::axis && b.kind() == CoreKind::axis;
+  if (a.point() && axes) return {point_to_axis(a.centre(), b), true};
+  if (b.point() && axes) {
+    QuickDistance found{point_to_axis(b.centre(), a), true};
+    swap_cores(found);
+    return found;
+  }
+  if (axes && a.disc() + b.disc() > 0)
+    if (const double tilt = std::min(tilt_of(a, b), tilt_of(b, a)); tilt <= kMostTilt * size) {
+      QuickDistance found{parallel_axes(a, b), true};
+      found.error = tilt;
+      // The direction is reliable as far as the distance is.
+      if (found.distance < 0 || tilt <= kClosest * size) return found;
+    }
+  QuickDistance found;
+  if (a.thin() && axes && b.disc() > 0) {
+    static_cast<CoreDistance&>(found) = segment_to_axis(a, b);
+    found.overlapping = found.distance < -kTouching * size;
+  } else if (b.thin() && axes && a.disc() > 0) {
+    static_cast<CoreDistance&>(found) = segment_to_axis(b, a);
+    swap_cores(found);
+    found.overlapping = found.distance < -kTouching * size;
+  } else {
+    static_cast<CoreDistance&>(found) = core_gap(a, b);
+  }
+  found.known = found.distance > kTouching * size && found.error <= kReliable * size;
+  if (found.known || !a.thin() || !b.thin()) return found;
+  // Both segments touch, to rounding. The points are closest ones of both segments.
+  found.known = true;
+  found.normal = normal_of_crossing(a, b);
+  if (found.distance == 0) {
+    const CoreDistance beside = core_gap(a.moved(size * found.normal), b);
+    found.point1 = found.point2 = beside.point2;
+  }
+  return found;
+}
+
 CoreDistance core_distance(const PosedCore& a, const PosedCore& b, double size,
                            convex::ExitWorkspace& workspace) {
-  if (a.point() && b.kind() == CoreKind::axis) return point_to_axis(a.centre(), b);
-  if (b.point() && a.kind() == CoreKind::axis) {
-    CoreDistance found = point_to_axis(b.centre(), a);
-    found.normal = -found.normal;
-    std::swap(found.point1, found.point2);
-    return found;
-  }
-  CoreDistance found;
-  if (a.thin() && b.kind() == CoreKind::axis && b.disc() > 0) {
-    found = segment_to_axis(a, b);
-  } else if (b.thin() && a.kind() == CoreKind::axis && a.disc() > 0) {
-    found = segment_to_axis(b, a);
-    found.normal = -found.normal;
-    std::swap(found.point1, found.point2);
-  } else {
-    found = core_gap(a, b);
-  }
-  if (found.distance > kTouching * size && found.error <= kReliable * size) return found;
-  if (a.thin() && b.thin()) {
-    // Both segments touch, to rounding. The points are closest ones of both segments.
-    found.normal = normal_of_crossing(a, b);
-    if (found.distance == 0) {
-      const CoreDistance beside = core_gap(a.moved(size * found.normal), b);
-      found.point1 = found.point2 = beside.point2;
-    }
-    return found;
-  }
+  return core_distance(a, b, size, quick_distance(a, b, size), workspace);
+}
+
+CoreDistance core_distance(const PosedCore& a, const PosedCore& b, double size, const QuickDistance& quick,
+                           convex::ExitWorkspace& workspace) {
+  CoreDistance found = quick;
+  if (quick.known) return found;
   const convex::ConvexExit exit = convex::exit_of_hulls(
       [&](const Vec3& u, const std::array<std::uint32_t, 2>& near) {
         convex::SimplexPoint point{near, {}};

@@ -14,6 +14,9 @@ class PosedCore {
   explicit PosedCore(const shape::PosedBody& body);
   /// The core that is a point.
   explicit PosedCore(const Vec3& point) : kind_(CoreKind::axis), centre_(point) {}
+  /// A core of that axis, of length 1, without a radius.
+  PosedCore(const Vec3& centre, const Vec3& axis, double half_length, double disc)
+      : kind_(CoreKind::axis), centre_(centre), half_(half_length * axis), axis_(axis), disc_(disc) {}
   /// A triangle, without a radius.
   PosedCore(const Vec3& a, const Vec3& b, const Vec3& c) : corners_{a, b, c}, triangle_(true) {}
 

@@ -26,33 +26,34 @@ SurfacePoint surface_point(const shape::PosedBody& body, std::uint32_t face, con
 }  // namespace
 
 std::span<const Contact> SolidContacts::find(const shape::PosedBody& o1, const shape::PosedBody& o2,
-                                             const SolidPair& pair, const Relation& relation, double margin) {
+                                             SolidPair& pair, double margin) {
   contacts_.clear();
+  const Relation& relation = pair.relation();
   const double size = pair.size();
   const std::array bodies{&o1, &o2};
   if (relation.signed_distance && !(relation.gap <= margin)) return {};
   if (o1.body().has_support() && o2.body().has_support()) {
     for (const Contact& c : patch_.find(o1, o2, relation.normal, -relation.gap, size, kSame * size))
       if (c.depth >= -margin) contacts_.push_back(c);
-    if (contacts_.empty()) add_single(o1, o2, relation);
+    if (contacts_.empty()) add_single(o1, o2, pair);
   } else {
     const int mesh = o1.body().has_support() ? 1 : 0;
     const PosedCore core(*bodies[1 - mesh]);
     if (core.kind() == CoreKind::half_space)
       add_hull_of_vertices(*bodies[mesh], core, mesh, margin, size);
     else
-      add_closest_faces(*bodies[mesh], core, mesh, relation, margin, size);
+      add_closest_faces(*bodies[mesh], core, mesh, pair, margin);
   }
   order_.sort(contacts_, kSame * size);
   return contacts_;
 }
 
-void SolidContacts::add_single(const shape::PosedBody& o1, const shape::PosedBody& o2,
-                               const Relation& relation) {
+void SolidContacts::add_single(const shape::PosedBody& o1, const shape::PosedBody& o2, SolidPair& pair) {
+  const Relation& relation = pair.relation();
+  const std::array<std::uint32_t, 2> faces = pair.faces();
   Contact contact{.point1 = relation.point1, .point2 = relation.point2, .normal = relation.normal + Vec3{}};
   contact.depth = -relation.gap;
-  contact.on = {surface_point(o1, relation.faces[0], contact.point1),
-                surface_point(o2, relation.faces[1], contact.point2)};
+  contact.on = {surface_point(o1, faces[0], contact.point1), surface_point(o2, faces[1], contact.point2)};
   contacts_.push_back(contact);
 }
 
@@ -68,15 +69,12 @@ void SolidContacts::add(const Vec3& on_mesh, std::uint32_t face, const shape::Po
 
 void SolidContacts::add_hull_of_vertices(const shape::PosedBody& mesh, const PosedCore& space, int mesh_side,
                                          double margin, double size) {
-  struct Corner {
-    Vec2 at{};
-    double depth = 0;
-    std::uint32_t vertex = 0;
-  };
   const sites::SitesData& sites = internals(mesh.body().sites());
   const Vec3& n = space.normal();
   const Vec3 x = unit_across(n), y = cross(n, x);
-  std::vector<Corner> places, hull;
+  std::vector<Corner>&places = places_, &hull = hull_;
+  places.clear();
+  hull.clear();
   for (std::uint32_t v = 0; v < sites.mesh.positions.size(); ++v) {
     if (sites.vertex_faces.of(v).empty()) continue;
     const Vec3 p = mesh.pose().map(sites.mesh.positions[v]);
@@ -111,12 +109,14 @@ void SolidContacts::add_hull_of_vertices(const shape::PosedBody& mesh, const Pos
 }
 
 void SolidContacts::add_closest_faces(const shape::PosedBody& mesh, const PosedCore& core, int mesh_side,
-                                      const Relation& relation, double margin, double size) {
+                                      SolidPair& pair, double margin) {
+  const Relation& relation = pair.relation();
+  const double size = pair.size();
   const bool outside = relation.normal != Vec3{} && relation.gap > -core.radius();
   if (relation.normal != Vec3{} && !outside) {
     // The core is inside: the way out.
     const Vec3 normal = mesh_side == 0 ? relation.normal : -relation.normal;
-    add(mesh_side == 0 ? relation.point1 : relation.point2, relation.faces[mesh_side], mesh,
+    add(mesh_side == 0 ? relation.point1 : relation.point2, pair.faces()[mesh_side], mesh,
         mesh_side == 0 ? relation.point2 : relation.point1, normal, -relation.gap, mesh_side, 0);
     return;
   }

@@ -21,23 +21,31 @@ class SolidContacts {
  public:
   /// Returns the contacts whose depth is at least minus the margin; the span is valid until the next call.
   [[nodiscard]] std::span<const Contact> find(const shape::PosedBody& o1, const shape::PosedBody& o2,
-                                              const SolidPair& pair, const Relation& relation, double margin);
+                                              SolidPair& pair, double margin);
 
  private:
-  void add_single(const shape::PosedBody& o1, const shape::PosedBody& o2, const Relation& relation);
+  void add_single(const shape::PosedBody& o1, const shape::PosedBody& o2, SolidPair& pair);
   void add_hull_of_vertices(const shape::PosedBody& mesh, const PosedCore& space, int mesh_side,
                             double margin, double size);
-  void add_closest_faces(const shape::PosedBody& mesh, const PosedCore& core, int mesh_side,
-                         const Relation& relation, double margin, double size);
+  void add_closest_faces(const shape::PosedBody& mesh, const PosedCore& core, int mesh_side, SolidPair& pair,
+                         double margin);
   void add_from(const PosedCore& at, std::uint64_t id, const shape::PosedBody& mesh, const PosedCore& core,
                 int mesh_side, double margin, double size);
   void add(const Vec3& on_mesh, std::uint32_t face, const shape::PosedBody& mesh, const Vec3& on_solid,
            const Vec3& normal, double depth, int mesh_side, std::uint64_t id);
 
+  // A vertex of a mesh below a half-space, seen along its normal.
+  struct Corner {
+    Vec2 at{};
+    double depth = 0;
+    std::uint32_t vertex = 0;
+  };
+
   ConvexPatch patch_;
   contacts::ContactOrder order_;
   std::vector<Contact> contacts_;
   std::vector<FaceDistance> near_;
+  std::vector<Corner> places_, hull_;
 };
 
 }  // namespace sdm::solids

@@ -62,7 +62,7 @@ BoundedLength bounded(double lower, double upper, double size) {
 
 }  // namespace
 
-SolidPair::SolidPair(const shape::PosedBody& o1, const shape::PosedBody& o2, convex::ExitWorkspace& workspace)
+SolidPair::SolidPair(const shape::PosedBody& o1, const shape::PosedBody& o2, SolidWorkspace& workspace)
     : bodies_{&o1, &o2}, cores_{PosedCore(o1), PosedCore(o2)}, workspace_(workspace) {
   if (o1.body().half_space() && o2.body().half_space())
     throw Error(
@@ -76,19 +76,59 @@ SolidPair::SolidPair(const shape::PosedBody& o1, const shape::PosedBody& o2, con
   }
 }
 
-Relation SolidPair::relation() {
+const Relation& SolidPair::relation() {
+  if (!relation_)
+    relation_ = half_space(0)   ? of_half_space(0)
+                : half_space(1) ? of_half_space(1)
+                : !convex(0)    ? of_mesh(0)
+                : !convex(1)    ? of_mesh(1)
+                                : of_convex();
+  return *relation_;
+}
+
+const QuickDistance& SolidPair::quick() {
+  if (!quick_) quick_ = quick_distance(cores_[0], cores_[1], size_);
+  return *quick_;
+}
+
+bool SolidPair::colliding() {
+  if (!relation_ && both_convex()) {
+    if (quick().overlapping) return true;
+    if (quick().known) return quick().distance - (cores_[0].radius() + cores_[1].radius()) <= 0;
+  }
+  return relation().colliding;
+}
+
+std::array<std::uint32_t, 2> SolidPair::faces() {
+  const Relation& found = relation();
+  std::array<std::uint32_t, 2> faces{kNone, kNone};
   for (const int body : {0, 1})
-    if (bodies_[body]->body().half_space()) return of_half_space(body);
+    faces[body] = convex(body) || half_space(1 - body)
+                      ? face_at(*bodies_[body], body == 0 ? found.point1 : found.point2)
+                      : nearest_face_;
+  return faces;
+}
+
+const SurfaceDistance& SolidPair::surfaces() {
+  if (!surfaces_) surfaces_ = between_surfaces();
+  return *surfaces_;
+}
+
+SurfaceDistance SolidPair::between_surfaces() {
   for (const int body : {0, 1})
-    if (!convex(body)) return of_mesh(body);
-  return of_convex();
+    if (half_space(body)) return beside_half_space(body);
+  for (const int body : {0, 1})
+    if (!convex(body)) return beside_mesh(body);
+  if (colliding()) return of_nested();
+  const Relation& found = relation();
+  return {std::max(0.0, found.gap - found.error), found.gap, std::array{found.point1, found.point2}};
 }
 
 // The height of the lowest point of the other body is the signed distance.
 Relation SolidPair::of_half_space(int half_space) {
   const PosedCore &space = cores_[half_space], &other = cores_[1 - half_space];
   const Vec3& n = space.normal();
-  const Vec3 lowest = other.support(-n), highest = other.support(n);
+  const Vec3 lowest = other.support(-n);
   Relation relation;
   relation.gap = dot(n, lowest) - space.offset() - other.radius();
   relation.normal = half_space == 1 ? n : -n;
@@ -98,24 +138,27 @@ Relation SolidPair::of_half_space(int half_space) {
   relation.point1 = points[0];
   relation.point2 = points[1];
   relation.colliding = relation.gap <= 0;
-  relation.faces[1 - half_space] = face_at(*bodies_[1 - half_space], lowest);
-  const double top = dot(n, highest) - space.offset() + other.radius();
-  double surfaces = 0;
-  if (relation.gap > 0) {
-    surfaces = relation.gap;
-    relation.closest = points;
-  } else if (top < 0) {
-    surfaces = -top;
-    points[1 - half_space] = highest + other.radius() * n;
-    points[half_space] = points[1 - half_space] - top * n;
-    relation.closest = points;
-  }
-  relation.surface_lower = relation.surface_upper = surfaces;
   return relation;
 }
 
+SurfaceDistance SolidPair::beside_half_space(int half_space) const {
+  const PosedCore &space = cores_[half_space], &other = cores_[1 - half_space];
+  const Vec3& n = space.normal();
+  const auto at = [&](const Vec3& p, double height) {
+    std::array<Vec3, 2> points;
+    points[1 - half_space] = p;
+    points[half_space] = p - height * n;
+    return SurfaceDistance{std::abs(height), std::abs(height), points};
+  };
+  const Vec3 lowest = other.support(-n) - other.radius() * n;
+  if (const double bottom = dot(n, lowest) - space.offset(); bottom > 0) return at(lowest, bottom);
+  const Vec3 highest = other.support(n) + other.radius() * n;
+  if (const double top = dot(n, highest) - space.offset(); top < 0) return at(highest, top);
+  return {};
+}
+
 Relation SolidPair::of_convex() {
-  const CoreDistance cores = core_distance(cores_[0], cores_[1], size_, workspace_);
+  const CoreDistance cores = core_distance(cores_[0], cores_[1], size_, quick(), workspace_.exit);
   const double radius1 = cores_[0].radius(), radius2 = cores_[1].radius();
   Relation relation;
   relation.gap = cores.distance - (radius1 + radius2);
@@ -124,14 +167,6 @@ Relation SolidPair::of_convex() {
   relation.point1 = cores.point1 - radius1 * cores.normal;
   relation.point2 = cores.point2 + radius2 * cores.normal;
   relation.colliding = relation.gap <= 0;
-  relation.faces = {face_at(*bodies_[0], relation.point1), face_at(*bodies_[1], relation.point2)};
-  if (!relation.colliding) {
-    relation.surface_lower = std::max(0.0, relation.gap - relation.error);
-    relation.surface_upper = relation.gap;
-    relation.closest = {relation.point1, relation.point2};
-  } else {
-    find_nesting(relation);
-  }
   return relation;
 }
 
@@ -139,7 +174,33 @@ Relation SolidPair::of_convex() {
 double SolidPair::distance_to(int body, const Vec3& p) {
   const PosedCore& core = cores_[body];
   if (core.kind() == CoreKind::axis) return point_to_axis(p, core).distance;
-  return core_distance(PosedCore(p), core, size_, workspace_).distance;
+  // Inside of all planes, it is that of the nearest one.
+  if (const convex::ConvexMesh* mesh = core.convex()) {
+    const shape::PosedBody& posed = core.body();
+    const Vec3 local = inverse(posed.pose().map)(p);
+    const Mesh& faces = internals(posed.body().sites()).mesh;
+    double highest = -kInfinity;
+    for (std::size_t face = 0; face < mesh->normals.size() && highest <= 0; ++face)
+      highest =
+          std::max(highest, dot(mesh->normals[face], local - faces.positions[faces.triangles[face][0]]));
+    if (highest <= 0) return posed.pose().scale * highest;
+  }
+  return core_distance(PosedCore(p), core, size_, workspace_.exit).distance;
+}
+
+// Whether the core of a body with one radius certainly has a point outside of the other core with another
+// one.
+bool SolidPair::extends_beyond(int body, double radius, int from, double from_radius) const {
+  const PosedCore &core = cores_[body], &other = cores_[from];
+  const Vec3 between = core.centre() - other.centre();
+  constexpr double kRounding = 1e-12;  // of the size
+  const auto beyond = [&](const Vec3& u) {
+    return dot(u, core.support(u) - other.support(u)) + radius - from_radius > kRounding * size_;
+  };
+  if (between != Vec3{} && beyond(normalized(between))) return true;
+  for (const Vec3& axis : {core.axis(), other.axis(), unit_across(other.axis())})
+    if (beyond(axis) || beyond(-axis)) return true;
+  return false;
 }
 
 // Bounds on the largest distance of a point of a convex body from the core of the other one: that of a vertex
@@ -155,15 +216,14 @@ std::array<double, 2> SolidPair::farthest_of(int body, int from) {
 }
 
 // Surfaces of two convex bodies that overlap have a point in common unless one body contains the other.
-void SolidPair::find_nesting(Relation& relation) {
+SurfaceDistance SolidPair::of_nested() {
   for (const int inner : {0, 1}) {
-    const auto [least, most] = farthest_of(inner, 1 - inner);
     const double radius = cores_[1 - inner].radius();
-    if (least > radius) continue;
-    relation.surface_lower = std::max(0.0, radius - most);
-    relation.surface_upper = radius - least;
-    return;
+    if (extends_beyond(inner, cores_[inner].radius(), 1 - inner, radius)) continue;
+    const auto [least, most] = farthest_of(inner, 1 - inner);
+    if (least <= radius) return {std::max(0.0, radius - most), radius - least, {}};
   }
+  return {};
 }
 
 Relation SolidPair::of_mesh(int mesh) {
@@ -178,22 +238,28 @@ Relation SolidPair::of_mesh(int mesh) {
   relation.error = nearest.error;
   relation.gap = (inside ? -d : d) - radius;
   relation.colliding = inside || d <= radius;
-  relation.faces[mesh] = nearest.face;
+  nearest_face_ = nearest.face;
   std::array<Vec3, 2> points;
   points[mesh] = nearest.point1;
   points[1 - mesh] = nearest.point2 + (inside ? -radius : radius) * nearest.normal;
   relation.point1 = points[0];
   relation.point2 = points[1];
   relation.normal = ((mesh == 0) == inside ? -1 : 1) * nearest.normal;
-  if (d >= radius && d > 0) {
-    relation.surface_lower = std::max(0.0, d - nearest.error - radius);
-    relation.surface_upper = d - radius;
-    points[1 - mesh] = nearest.point2 + radius * nearest.normal;
-    relation.closest = points;
-  } else {
-    relation.surface_lower = relation.surface_upper = between_parts(mesh);
-  }
   return relation;
+}
+
+SurfaceDistance SolidPair::beside_mesh(int mesh) {
+  const Relation& found = relation();
+  const double radius = cores_[1 - mesh].radius();
+  const bool inside = found.gap < -radius;  // the core
+  const double d = inside ? -found.gap - radius : found.gap + radius;
+  if (!(d >= radius && d > 0)) {
+    const double between = between_parts(mesh);
+    return {between, between, {}};
+  }
+  std::array points{found.point1, found.point2};
+  if (inside) points[1 - mesh] += (mesh == 0 ? -2 * radius : 2 * radius) * found.normal;
+  return {std::max(0.0, d - found.error - radius), d - radius, points};
 }
 
 // The distance of the surface of a mesh, of which a point is in the other body, from that of the other body.
@@ -203,7 +269,8 @@ double SolidPair::between_parts(int mesh) {
   const sites::SitesData& sites = internals(body.body().sites());
   const std::span<const std::uint32_t> part_of = sites.orientation.component;
   const double radius = cores_[1 - mesh].radius();
-  std::vector<double> farthest(sites.orientation.first_face.size(), -kInfinity);
+  std::vector<double>& farthest = workspace_.farthest;
+  farthest.assign(sites.orientation.first_face.size(), -kInfinity);
   for (std::size_t face = 0; face < part_of.size(); ++face) {
     if (part_of[face] == kNone) continue;
     double& most = farthest[part_of[face]];
@@ -214,23 +281,23 @@ double SolidPair::between_parts(int mesh) {
   for (const double most : farthest)
     if (most <= radius) least = std::min(least, radius - most);
   if (least == kInfinity) return 0;
-  std::vector<FaceDistance> near;
-  faces_within(body, cores_[1 - mesh], radius + least, near);
-  for (const FaceDistance& face : near) {
+  faces_within(body, cores_[1 - mesh], radius + least, workspace_.near);
+  for (const FaceDistance& face : workspace_.near) {
     if (part_of[face.face] == kNone || farthest[part_of[face.face]] <= radius) continue;
     least = std::max(0.0, std::min(least, face.distance - radius));
   }
   return least;
 }
 
-BoundedLength SolidPair::depth(const Relation& relation) {
+BoundedLength SolidPair::depth() {
+  const Relation& relation = this->relation();
   for (const int body : {0, 1})
-    if (!relation.signed_distance && !convex(body)) return depth_of_mesh(body, relation);
+    if (!relation.signed_distance && !convex(body)) return depth_of_mesh(body);
   const double exit = -relation.gap;
   // Below a half-space, the lowest point is the deepest; no point of the plane is deeper in the other body.
   BoundedNumber depth{.lower = exit, .upper = exit};
   if (!bodies_[0]->body().half_space() && !bodies_[1]->body().half_space()) {
-    const BoundedNumber first = depth_into(0, relation), second = depth_into(1, relation);
+    const BoundedNumber first = depth_into(0), second = depth_into(1);
     depth.lower = std::max(first.lower, second.lower);
     depth.upper = std::max(first.upper, second.upper);
   }
@@ -242,16 +309,17 @@ BoundedLength SolidPair::depth(const Relation& relation) {
 // The depth of the surface S of the other body, A, in this one, with the core K and the radius r. If K is not
 // in A, or is in it as a whole, it is r − dist(S, K). Otherwise S divides K: the depth is r if K has no
 // inside.
-BoundedNumber SolidPair::depth_into(int outer, const Relation& relation) {
+BoundedNumber SolidPair::depth_into(int outer) {
   const PosedCore &core = cores_[outer], &other = cores_[1 - outer];
+  const Relation& relation = this->relation();
   const double exit = -relation.gap;
-  const double between = core_distance(core, other, size_, workspace_).distance;
+  const double between = relation.gap + core.radius() + other.radius();
   if (between >= other.radius() && between > 0) return {.lower = exit, .upper = exit + relation.error};
-  const auto [least, most] = farthest_of(outer, 1 - outer);
-  const double beyond = other.radius() + core.radius();  // farthest_of() has the radius of this body, too
-  if (least < beyond) {
-    const double lower = core.radius() - (beyond - least), upper = core.radius() - (beyond - most);
-    if (most <= beyond) return {.lower = lower, .upper = upper};
+  if (!extends_beyond(outer, 0, 1 - outer, other.radius())) {
+    const auto [least, most] = farthest_of(outer, 1 - outer);
+    const double beyond = other.radius() + core.radius();  // farthest_of() has the radius of this body, too
+    if (most <= beyond)
+      return {.lower = core.radius() - (beyond - least), .upper = core.radius() - (beyond - most)};
   }
   if (core.thin()) return {.lower = core.radius(), .upper = core.radius()};
   // A point of S along the exit, and others; no point is deeper than the exit.
@@ -270,7 +338,8 @@ BoundedNumber SolidPair::depth_into(int outer, const Relation& relation) {
 // A. The surface of A is r − d deep in the other body. A way from a point of the other surface to the nearest
 // one of K is r long. If K is outside A, at least d of it are, too: the point is no deeper in A than r − d.
 // Otherwise it is no deeper than r and the depth of a point of K.
-BoundedLength SolidPair::depth_of_mesh(int mesh, const Relation& relation) {
+BoundedLength SolidPair::depth_of_mesh(int mesh) {
+  const Relation& relation = this->relation();
   const PosedCore& core = cores_[1 - mesh];
   const shape::PosedBody& body = *bodies_[mesh];
   const sites::SitesData& sites = internals(body.body().sites());
