@@ -133,8 +133,8 @@ uint32_t on_vertex(const sites::SitesData& sites, uint32_t vertex, Packet& p, ui
     for (const std::uint32_t face : sites.vertex_faces.of(vertex)) {
       const Triangle& t = sites.mesh.triangles[face];
       const int corner = t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2;
-      for (int k = 1; k <= last; ++k)
-        most = hn::Max(most, dot(from, splat(sites.mesh.positions[t[(corner + k) % 3]] - point)));
+      for (int k = corner + 1; k <= corner + last; ++k)
+        most = hn::Max(most, dot(from, splat(sites.mesh.positions[t[k < 3 ? k : k - 3]] - point)));
     }
     return hn::Le(most, hn::Zero(d));
   });

@@ -233,21 +233,65 @@ class PacketSearch {
     const uint32_t compared = near_ & counted.points();
     work_.leaves += 1;
     work_.pairs += static_cast<size_t>(std::popcount(compared));
-    bool reduced = false;
-    for (uint32_t near = compared; near != 0; near &= near - 1) {
+    find_distances(faces, counted, compared);
+    const uint32_t nearer = reduce_limits();
+    for (uint32_t near = nearer & compared; near != 0; near &= near - 1) {
       const auto i = static_cast<uint32_t>(std::countr_zero(near));
-      const float point[3] = {point_[0][i], point_[1][i], point_[2][i]};
-      reduced |= compare_faces(
-          faces, point, error_, squared_limit_[i],
-          [&](size_t first, BlockMask mask) HWY_ATTR { return counted.kept(i, first, mask); },
-          [&](float squared, size_t lane) {
-            m_.candidates.push_back({squared, faces.face[lane], open.leaf_number(), i});
-          });
+      for (uint32_t lanes = within_limit(i); lanes != 0; lanes &= lanes - 1) {
+        const auto lane = static_cast<uint32_t>(std::countr_zero(lanes));
+        m_.candidates.push_back({squared_[i][lane], faces.face[lane], open.leaf_number(), i});
+      }
     }
-    if (reduced) find_max_distance();
   }
 
  private:
+  // Compares the faces of a leaf with the points: as compare_faces(), but in three steps for all of the
+  // points, none of which waits for the limit of one point. First, the distances of those faces that are
+  // within the limits.
+  template <class Leaf>
+  HWY_INLINE void find_distances(const sites::FaceFrames& faces, const Leaf& counted, uint32_t points) {
+    const Block d;
+    std::fill_n(least_, kSize, std::numeric_limits<float>::infinity());
+    for (; points != 0; points &= points - 1) {
+      const auto i = static_cast<size_t>(std::countr_zero(points));
+      const float point[3] = {point_[0][i], point_[1][i], point_[2][i]};
+      BlockVec least = hn::Inf(d);
+      for (size_t first = 0; first < SiteBlock::kWidth; first += hn::Lanes(d)) {
+        const BlockVec squared = squared_to_faces(faces, first, point);
+        const auto near = hn::Le(squared, hn::Set(d, squared_limit_[i]));  // false in unused lanes
+        const BlockVec counting = hn::IfThenElse(counted.kept(i, first, near), squared, hn::Inf(d));
+        hn::Store(counting, d, squared_[i] + first);
+        least = hn::Min(least, counting);
+      }
+      least_[i] = hn::GetLane(hn::MinOfLanes(d, least));
+    }
+  }
+
+  // Reduces the limits by the least distances; returns the points that have any.
+  HWY_INLINE uint32_t reduce_limits() {
+    const Points d;
+    uint32_t nearer = 0, reduced = 0;
+    for (size_t i = 0; i < kSize; i += hn::Lanes(d)) {
+      const PointVec least = hn::Load(d, least_ + i), before = hn::Load(d, squared_limit_ + i);
+      const PointVec limit = hn::MulAdd(hn::Sqrt(least), hn::Set(d, kFarther), hn::Set(d, error_));
+      const PointVec squared = hn::Mul(limit, limit);
+      nearer |= bits_of(d, hn::Lt(least, hn::Inf(d))) << i;
+      reduced |= bits_of(d, hn::Lt(squared, before)) << i;
+      hn::Store(hn::Min(squared, before), d, squared_limit_ + i);
+    }
+    if (reduced != 0) find_max_distance();
+    return nearer;
+  }
+
+  // The faces of a leaf that are within the limit of a point, as bits.
+  HWY_INLINE uint32_t within_limit(size_t point) const {
+    const Block d;
+    uint32_t lanes = 0;
+    for (size_t i = 0; i < SiteBlock::kWidth; i += hn::Lanes(d))
+      lanes |= bits_of(d, hn::Le(hn::Load(d, squared_[point] + i), hn::Set(d, squared_limit_[point]))) << i;
+    return lanes;
+  }
+
   // Maps the points into the unit frame. Points that are far away or beyond `count` are near nothing.
   void place(const Vec3* packet, size_t count) {
     far_ = used_ = 0;
@@ -367,6 +411,8 @@ class PacketSearch {
   alignas(64) float point_[3][kSize];       // in the unit frame
   alignas(64) float squared_limit_[kSize];  // nothing beyond this is closest
   alignas(64) float from_centre_[kSize];
+  alignas(64) float squared_[kSize][SiteBlock::kWidth];  // of the faces of a leaf
+  alignas(64) float least_[kSize];                       // of these
   float centre_[3], squared_max_distance_, error_;
   uint32_t used_, far_, near_;  // points, as bits
   float last_[kSize][3];        // closest points found before

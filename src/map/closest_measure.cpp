@@ -12,8 +12,11 @@ ClosestMeasure::ClosestMeasure(const Surface& surface, const Sites& sites, const
   }
   description_.sign = choose_sign(sites, options);
   description_.measured = measured_distance(options);
-  inside_.emplace(internals(sites), description_.sign.method,
-                  engine_accuracy(engine_->info(), surface.mesh(), sites.mesh()));
+  const SignMethod method = description_.sign.method;
+  // Unsigned maps do without a pass over all faces.
+  const double error =
+      method == SignMethod::none ? 0 : engine_accuracy(engine_->info(), surface.mesh(), sites.mesh());
+  inside_.emplace(internals(sites), method, error);
 }
 
 void ClosestMeasure::store(std::size_t first, std::span<const Vec3> points,
