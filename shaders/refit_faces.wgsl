@@ -74,8 +74,7 @@ fn frame_of(corner: array<vec3f, 3>, number: u32) -> Face {
   }
   let y = direction_beside(x, c);
   let z = unit(cross(x, y));
-  // C is never beyond the longest side, where points between the lines of AB and AC would be taken for points over the face.
-  let in_plane = vec2f(clamp(dot(c, x), 0.0, length), max(dot(c, y), 0.0));
+  let in_plane = vec2f(dot(c, x), dot(c, y));
   let ac = side(in_plane);
   return Face(vec4f(a, length), vec4f(x, ac.x), vec4f(y, ac.y), vec4f(z, ac.z), side(in_plane - vec2f(length, 0.0)),
               (number & ~3u) | first);

@@ -95,8 +95,8 @@ TEST(GpuEngine, ClosestPointsAreThoseOfTheReferenceEngine) {
   }
 }
 
-// Third corners that single precision places beyond the longest side, of needles in a plane. Then points
-// beyond its end are between the lines of two sides, and would be taken for points over the face.
+// Third corners that single precision may place beyond an end of the longest side, and points beyond that
+// end.
 TEST(GpuEngine, RefitsOfNeedlesWithShortSides) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-1, 1);
