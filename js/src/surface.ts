@@ -3,6 +3,8 @@ import { type Bytes } from './bytes.js';
 import { coordinates, corners } from './geometry.js';
 import type * as declared from './declared.js';
 import { declaredOptions } from './given.js';
+import { mapOnGpu } from './gpu_map.js';
+import { type GpuSearch } from './gpu_search.js';
 import { type MapOptions, type MeasureArguments, measureArguments } from './measures.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
@@ -133,6 +135,8 @@ export class DistanceMap extends Owned {
   /** Of what was computed last. */
   sign: SignMethod = 'automatic';
   signReason = '';
+  /** By which it was computed: the values are those of the processor with `cpu`, to the errors that both have. */
+  engine: 'cpu' | 'gpu' = 'cpu';
   private measure: MeasureArguments = measureArguments({});
 
   /** @internal */
@@ -174,11 +178,24 @@ export class DistanceMap extends Owned {
     return this.module.call<MapValues>('sdm_map_samples', values);
   }
 
+  /** @internal As compute(), by a device. `poll` is told the fraction that is done, and throws to end the call. */
+  async computeOn(
+    gpu: GpuSearch,
+    { progress: _, ...options }: MapOptions,
+    poll: (done: number) => void,
+  ): Promise<void> {
+    const measure = measureArguments(options);
+    const [lines, numbers] = measure;
+    const given = { addresses: this.addresses(), ...this.sampleCounts(), options: [lines, numbers] as const };
+    Object.assign(this, await mapOnGpu(gpu, this.module, given, poll));
+    [this.measure, this.engine] = [measure, 'gpu'];
+  }
+
   private computeBy(name: string, { progress, ...options }: MapOptions, range: number[]): void {
     const measure = measureArguments(options);
     const values = [...this.addresses(), ...measure, ...range];
     Object.assign(this, this.module.call<{ sign: SignMethod; signReason: string }>(name, values, progress));
-    this.measure = measure;
+    [this.measure, this.engine] = [measure, 'cpu'];
   }
 
   /** Distances, negative inside; NaN of texels without a value. */

@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::size_t kSmallest = 1024, kLargest = 1 << 20;  // points of a dispatch
 constexpr std::size_t kTile = FaceSearch::kTile;
-static_assert(sizeof(FaceList) == 64 && sizeof(QueryPoint) == 16);
 
 Pipeline pipeline(Device& device, std::initializer_list<EmbeddedFile> parts) {
   std::string program;

@@ -3,8 +3,9 @@
 
 #include <span>
 
-#include "gpu/face_search.h"
+#include "gpu/face_lists.h"
 #include "sites/closest_packet.h"
+#include "sites/sites_data.h"
 
 namespace sdm::gpu {
 

@@ -25,13 +25,4 @@ struct SitesOnDevice {
   std::vector<Part> parts;
 };
 
-/// The error of a distance that a device has computed, in the unit frame: at most `each` of itself, and
-/// `constant`, of a point whose coordinates are at most this. See docs/design/gpu.md.
-struct DistanceError {
-  double each, constant;
-};
-[[nodiscard]] DistanceError distance_error(const sites::SitesData& sites, double largest_coordinate);
-/// The same for samples that the device has placed by vertices whose coordinates are at most this.
-[[nodiscard]] DistanceError sample_error(const sites::SitesData& sites, double largest_coordinate);
-
 }  // namespace sdm::gpu
