@@ -3,7 +3,7 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-const kNames = ['faces', 'nearest_first', 'part', 'tile_balls', 'closest_tiles', 'closest_faces', 'place_samples', 'map_distances'];
+const kNames = ['faces', 'nearest_first', 'part', 'tile_balls', 'closest_tiles', 'closest_faces'];
 
 const [from, to] = process.argv.slice(2);
 const short = (text) => text.replace(/\s*\/\/.*/g, '').replace(/\n\s+/g, '\n').trimStart();

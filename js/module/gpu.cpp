@@ -12,7 +12,6 @@
 
 #include "core/parallel.h"
 #include "gpu/finish.h"
-#include "gpu/packed_samples.h"
 #include "gpu/packed_sites.h"
 #include "map/closest_measure.h"
 #include "module/all_measures.h"
@@ -80,33 +79,6 @@ Result* gpu_points(const Surface* surface, const Sites* sites, const char* lines
   return guarded([&](Result& result) {
     const MapOptions options = options_of(*surface, {lines, bytes, numbers});
     result.put("points", placed_points(*sites, points_of(*surface, {first, count}), options.max_distance));
-  });
-}
-
-/// What a map on a device needs: all samples, with the sample of each texel (kNone: none); and the vertices
-/// in the unit frame of the sites, with its scale and the error of a distance there.
-SDM_EXPORT(sdm_gpu_samples) Result* gpu_samples(const Surface* surface) {
-  return guarded([&](Result& result) {
-    const surface::SurfaceData& data = internals(*surface);
-    std::vector<std::uint32_t> of_texels(data.texels(), kNone);
-    for (std::uint32_t i = 0; i < data.owned_texels(); ++i) of_texels[data.samples[i]] = i;
-    result.put("samples", gpu::packed_samples(data, 0, data.samples.size()));
-    result.put("of_texels", std::move(of_texels));
-  });
-}
-SDM_EXPORT(sdm_gpu_vertices) Result* gpu_vertices(const Surface* surface, const Sites* sites) {
-  return guarded([&](Result& result) {
-    const surface::SurfaceData& data = internals(*surface);
-    std::vector<std::uint8_t> used(data.mesh.positions.size());
-    for (const std::uint32_t face : data.sample_faces)
-      for (const std::uint32_t vertex : data.mesh.triangles[face]) used[vertex] = 1;
-    gpu::PackedVertices vertices = gpu::packed_vertices(internals(*sites).frame, data.mesh.positions, used);
-    const auto [each, constant] = gpu::sample_error(internals(*sites), vertices.outermost);
-    const double scale = internals(*sites).frame.scale;
-    result.put("positions", std::move(vertices.positions));
-    result.put("scale", scale);
-    result.put("error/each", each);
-    result.put("error/constant", constant / scale);
   });
 }
 

@@ -1,6 +1,7 @@
 // Which engine computes a map of a worker: the processor, or a GPU.
 import { wordNumber } from './bytes.js';
 import { GpuDevice } from './gpu_device.js';
+import { mapOnGpu } from './gpu_map.js';
 import { GpuSearch } from './gpu_search.js';
 import { type MapOptions } from './measures.js';
 import { type Module } from './module.js';
@@ -49,7 +50,10 @@ export class Engines {
     const began = performance.now();
     try {
       if (engine === 'cpu') await byProcessor();
-      else await map.computeOn(await this.opened(), options, poll);
+      else {
+        const gpu = await this.opened();
+        await map.computeOn(options, (given) => mapOnGpu(gpu, given, poll));
+      }
     } catch (error) {
       if (engine === 'cpu' || (error instanceof SdmError && error.kind === 'cancelled')) throw error;
       this.close();

@@ -3,8 +3,7 @@ import { type Bytes } from './bytes.js';
 import { coordinates, corners } from './geometry.js';
 import type * as declared from './declared.js';
 import { declaredOptions } from './given.js';
-import { mapOnGpu } from './gpu_map.js';
-import { type GpuSearch } from './gpu_search.js';
+import { type MapOnGpu } from './gpu_map.js';
 import { type MapOptions, type MeasureArguments, measureArguments } from './measures.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
@@ -178,16 +177,14 @@ export class DistanceMap extends Owned {
     return this.module.call<MapValues>('sdm_map_samples', values);
   }
 
-  /** @internal As compute(), by a device. `poll` is told the fraction that is done, and throws to end the call. */
+  /** @internal As compute(), by a device: `compute` has the module compute the values. */
   async computeOn(
-    gpu: GpuSearch,
     { progress: _, ...options }: MapOptions,
-    poll: (done: number) => void,
+    compute: (map: MapOnGpu) => Promise<{ sign: SignMethod; signReason: string }>,
   ): Promise<void> {
     const measure = measureArguments(options);
-    const [lines, numbers] = measure;
-    const given = { addresses: this.addresses(), ...this.sampleCounts(), options: [lines, numbers] as const };
-    Object.assign(this, await mapOnGpu(gpu, this.module, given, poll));
+    const given = { module: this.module, addresses: this.addresses(), options: measure };
+    Object.assign(this, await compute({ ...given, ...this.sampleCounts() }));
     [this.measure, this.engine] = [measure, 'gpu'];
   }
 

@@ -15,6 +15,12 @@
 
 namespace sdm::gpu {
 
+/// A sample, as in shaders/place_samples.wgsl.
+struct Sample {
+  std::uint32_t vertices[3];
+  float weights[2];  ///< of vertices 1 and 2; that of vertex 0 is what is left of 1
+};
+
 /// Samples on a device, and the vertices in the unit frame, of three numbers each.
 struct SamplesOnDevice {
   const Buffer& samples;

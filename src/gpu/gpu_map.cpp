@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "core/memory.h"
+#include "core/parallel.h"
+#include "geometry/vec.h"
 #include "gpu/face_search.h"
-#include "gpu/packed_samples.h"
+#include "gpu/finish.h"
 #include "gpu/packed_sites.h"
 #include "gpu/shaders.h"
 #include "sites/sites_data.h"
@@ -97,9 +99,17 @@ void GpuMap::Impl::set_samples(const Surface& surface) {
   read_back = device.buffer(gpu::kPart * sizeof(float), Use::read_back, "distances");
   positions = device.buffer(3 * sizeof(float) * o1.mesh.positions.size(), Use::read, "the vertices of O1");
   used.assign(o1.mesh.positions.size(), 0);
+  std::vector<gpu::Sample> of_part;
   for (std::size_t begin = 0; begin < o1.samples.size(); begin += gpu::kPart) {
-    const std::vector<gpu::Sample> of_part =
-        gpu::packed_samples(o1, begin, std::min(gpu::kPart, o1.samples.size() - begin));
+    of_part.resize(std::min(gpu::kPart, o1.samples.size() - begin));
+    parallel_for(of_part.size(), 4096, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const std::uint32_t face = o1.sample_faces[begin + i];
+        const auto& [a, b, c] = o1.mesh.triangles[face];
+        const Vec2 weights = o1.texel_weights(face, o1.samples[begin + i]);
+        of_part[i] = {{a, b, c}, {static_cast<float>(weights[0]), static_cast<float>(weights[1])}};
+      }
+    });
     for (const gpu::Sample& sample : of_part)
       for (const std::uint32_t vertex : sample.vertices) used[vertex] = 1;
     parts.push_back({.samples = device.buffer(of_part.size() * sizeof(gpu::Sample), Use::read, "samples"),
@@ -116,12 +126,25 @@ void GpuMap::Impl::compute(std::span<const Vec3> at, const Sites& sites) {
   if (at.size() != used.size())
     throw Error("the map on the device has " + std::to_string(used.size()) + " vertices, not " +
                 std::to_string(at.size()));
-  const gpu::PackedVertices placed = gpu::packed_vertices(o2.frame, at, used);
-  search.device().write(positions, std::as_bytes(std::span(placed.positions)));
+  std::vector<float> placed(3 * at.size());
+  double outermost = 1;
+  for (std::size_t v = 0; v < at.size(); ++v) {
+    if (used[v] == 0) continue;
+    const Vec3 unit = o2.frame.to_unit(at[v]);
+    for (int k = 0; k < 3; ++k) {
+      if (!(std::abs(unit[k]) <= gpu::kFar))
+        throw Error(
+            "O1 reaches too far from O2 for a map on the device, by more than 7 times its size: use an "
+            "engine");
+      outermost = std::max(outermost, std::abs(unit[k]));
+      placed[3 * v + k] = static_cast<float>(unit[k]);
+    }
+  }
+  search.device().write(positions, std::as_bytes(std::span(placed)));
   for (std::size_t part = 0; part < parts.size(); ++part)
     search.measure(o2, {parts[part].samples, positions}, std::min(gpu::kPart, samples - gpu::kPart * part),
                    parts[part].distances);
-  error = gpu::sample_error(o2, placed.outermost);
+  error = gpu::sample_error(o2, outermost);
   scale = o2.frame.scale;
   count = samples;
 }

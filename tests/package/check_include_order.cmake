@@ -149,7 +149,7 @@ set(readers_of_nodes
   bodies/motion/parts.h             # nodes are divided into faces too, by time
   map/measures/self_measure.cpp  # marks the nodes whose faces are all excluded
   map/measures/thickness_measure.cpp  # bounds the normals below each child of a node
-  gpu/sites_on_device.cpp        # copies the boxes of all nodes
+  gpu/packed_sites.cpp        # copies the boxes of all nodes
   inside/angles/expansions.cpp  # computes an expansion for each child of a node
   inside/angles/far_field-inl.h  # one search for several points, eight children at a time
   inside/angles/solid_angles.cpp  # nodes whose errors are too large are opened again
