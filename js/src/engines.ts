@@ -8,12 +8,6 @@ import { type Module } from './module.js';
 import { type DistanceMap } from './surface.js';
 import { SdmError } from './types.js';
 
-/**
- * What computes a map: the processor (`cpu`, the default), a GPU by WebGPU (`gpu`), or the one of them that has taken less time for a
- * sample in the same worker (`auto`): first the processor, then a GPU once it is ready, unless it is emulated or has failed.
- */
-export type EngineChoice = 'auto' | 'cpu' | 'gpu';
-
 const kLeastSamples = 32768; // below, `auto` leaves it to the processor: latencies would count
 
 /** Why the engine gpu does not have this; undefined: it does. */

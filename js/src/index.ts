@@ -55,7 +55,6 @@ export type {
   SignedDistances,
   Sites,
 } from './sites.js';
-export type { EngineChoice } from './engines.js';
 export type { MapOptions } from './measures.js';
 export type { Atlas, DistanceMap, Surface, SurfaceOptions } from './surface.js';
 export type { CallOptions } from './connection.js';

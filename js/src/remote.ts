@@ -1,7 +1,6 @@
 // Objects in a worker: sites, surfaces, maps and pairs.
 import { type Bytes } from './bytes.js';
 import { type CallOptions, type Connection, type Made, type Options, Remote } from './connection.js';
-import { type EngineChoice } from './engines.js';
 import { type JudgedOptions, type ReportOptions, type SummaryOptions } from './report.js';
 import { type JudgedSummary, type MapSummary } from './summary.js';
 import { type Contacts } from './pair.js';
@@ -20,6 +19,7 @@ import { type Atlas } from './surface.js';
 import { type TransferOptions } from './transfer.js';
 import {
   type BoundedLength,
+  type EngineChoice,
   type MapStatistics,
   type MapValues,
   type Points,

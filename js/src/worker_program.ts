@@ -1,6 +1,6 @@
 // worker.js: the program of workers. It is bundled into one file without imports, so that it can come from a Blob; it is that of
 // createWorker() and that of the threads of a module.
-import { type EngineChoice, Engines } from './engines.js';
+import { Engines } from './engines.js';
 import { Sdm } from './library.js';
 import { textOf } from './load.js';
 import { type MapOptions, preparesMuch } from './measures.js';
@@ -18,7 +18,7 @@ import { wordNumber } from './bytes.js';
 import { Owned } from './owned.js';
 import { DistanceMap } from './surface.js';
 import { runThread } from './threads.js';
-import { type Progress, SdmError } from './types.js';
+import { type EngineChoice, type Progress, SdmError } from './types.js';
 
 const kProgressMilliseconds = 30;
 const kPartMilliseconds = 40;
