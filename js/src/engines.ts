@@ -26,7 +26,7 @@ export class Engines {
   private gpu: Promise<GpuSearch> | undefined;
   /** Milliseconds that the last map took for a sample. */
   private readonly cost = { cpu: NaN, gpu: NaN };
-  /** Whether `auto` may take the GPU. */
+  /** Whether there is a device that is no processor. */
   private usable = false;
 
   constructor(private readonly module: Module) {}
@@ -41,11 +41,12 @@ export class Engines {
   ): Promise<void> {
     const { samples } = map.sampleCounts();
     const engine = this.chosen(choice, options, samples);
-    const began = performance.now();
+    let began = performance.now();
     try {
       if (engine === 'cpu') await byProcessor();
       else {
         const gpu = await this.opened();
+        began = performance.now();
         await map.computeOn(options, (given) => mapOnGpu(gpu, given, poll));
       }
     } catch (error) {
@@ -53,8 +54,10 @@ export class Engines {
       this.close();
       if (choice !== 'auto') throw error;
       await byProcessor();
+      return;
     }
-    this.cost[engine] = (performance.now() - began) / samples;
+    if (samples >= kLeastSamples && !refusal(this.module, options as object))
+      this.cost[engine] = (performance.now() - began) / samples;
   }
 
   private chosen(choice: unknown, options: object, samples: number): 'cpu' | 'gpu' {
@@ -66,19 +69,19 @@ export class Engines {
       if (refused) throw new SdmError('input', `the engine gpu ${refused}`);
       return samples > 0 ? 'gpu' : 'cpu';
     }
-    if (refused || samples < kLeastSamples) return 'cpu';
+    if (refused || samples < kLeastSamples || this.cost.gpu === Infinity) return 'cpu';
     // Nobody waits for it to be opened.
-    if (!this.gpu)
-      void this.opened().then(
-        ({ device }) => (this.usable = !device.software),
-        () => {},
-      );
+    this.opened().catch(() => {});
     const { cpu, gpu } = this.cost;
     return this.usable && cpu > 0 && !(gpu >= cpu) ? 'gpu' : 'cpu';
   }
 
   private opened(): Promise<GpuSearch> {
-    this.gpu ??= GpuDevice.open().then((device) => GpuSearch.on(device));
+    this.gpu ??= GpuDevice.open().then(async (device) => {
+      const search = await GpuSearch.on(device);
+      this.usable = !device.software;
+      return search;
+    });
     return this.gpu;
   }
 

@@ -31,7 +31,7 @@ export async function mapOnGpu(
   const onGpu = await gpu.place(module, sites);
   const most = Math.max(grain, Math.min(kMostPoints, gpu.device.mostBytes / kListBytes));
   let signs: { sign: SignMethod; signReason: string } | undefined;
-  let step = Math.max(grain, Math.min(kFirstPoints, most));
+  let step = grain * Math.max(1, Math.floor(Math.min(kFirstPoints, most) / grain));
   for (let first = 0; !signs || first < samples; ) {
     poll(first / samples);
     const count = Math.min(step, samples - first);
@@ -44,7 +44,7 @@ export async function mapOnGpu(
     signs = module.call('sdm_gpu_finish', [map, ...given, ...found]);
     first += count;
     if (took < kShortMilliseconds && 2 * step <= most) step *= 2;
-    else if (took > kLongMilliseconds && step >= 2 * grain && step > 1024) step /= 2;
+    else if (took > kLongMilliseconds) step = grain * Math.max(1, Math.floor(step / grain / 2));
   }
   return signs;
 }
