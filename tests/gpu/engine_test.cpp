@@ -15,8 +15,8 @@
 #include <sdm/gpu.h>
 #include "geometry/vec.h"
 #include "gpu/face_search.h"
-#include "gpu/packed_sites.h"
 #include "gpu/finish.h"
+#include "gpu/packed_sites.h"
 #include "support/degenerate.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
