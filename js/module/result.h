@@ -57,7 +57,7 @@ class Result {
       add_line(name, shape_of(value));
     }
   }
-  /// An array of numbers, of arrays of numbers or of enumerators.
+  /// An array of numbers, of arrays of numbers, of enumerators, or of structs as bytes.
   template <class T>
   void put(std::string_view name, std::vector<T> values) {
     auto kept = std::make_shared<std::vector<T>>(std::move(values));
@@ -121,11 +121,13 @@ class Result {
       return std::to_string(value.size()) + (inner == "number" ? "" : "x" + inner);
     }
   }
-  /// Such as "f64" of points, or "u8".
+  /// Such as "f64" of points, or "u8", also of structs.
   template <class T>
   static std::string element_of() {
     if constexpr (requires { typename T::value_type; })
       return element_of<typename T::value_type>();
+    else if constexpr (std::is_class_v<T>)
+      return "u8";
     else
       return (std::is_floating_point_v<T> ? "f" : "u") + std::to_string(8 * sizeof(T));
   }

@@ -58,7 +58,7 @@ export type {
 export type { MapOptions } from './measures.js';
 export type { Atlas, DistanceMap, Surface, SurfaceOptions } from './surface.js';
 export type { CallOptions } from './connection.js';
-export type { WorkerMap, WorkerPair, WorkerSites, WorkerSurface } from './remote.js';
+export type { WorkerMap, WorkerMapOptions, WorkerPair, WorkerSites, WorkerSurface } from './remote.js';
 export type { WorkerAnimation, WorkerLook, WorkerMatches } from './remote_looks.js';
 export type { SdmWorker } from './sdm_worker.js';
 export type { TransferOptions } from './transfer.js';

@@ -19,11 +19,15 @@ import { type Atlas } from './surface.js';
 import { type TransferOptions } from './transfer.js';
 import {
   type BoundedLength,
+  type EngineChoice,
   type MapStatistics,
   type MapValues,
   type Points,
   type SignMethod,
 } from './types.js';
+
+/** Those of MapOptions, with the engine. */
+export type WorkerMapOptions = Options<MapOptions> & { engine?: EngineChoice | undefined };
 
 /** Sites in a worker. */
 export class WorkerSites extends Remote {
@@ -72,7 +76,7 @@ export class WorkerSurface extends Remote {
     return this.call('sampleCounts', []);
   }
   /** The surface distance map. It stays in the worker, until its arrays() are asked for. */
-  async map(sites: WorkerSites, options?: Options<MapOptions>): Promise<WorkerMap> {
+  async map(sites: WorkerSites, options?: WorkerMapOptions): Promise<WorkerMap> {
     return new WorkerMap(this.connection, await this.call('map', [sites], options), this, sites);
   }
   /** A map without values, for computeSamples(). */
@@ -90,6 +94,7 @@ export class WorkerMap extends Remote {
   /** Of what was computed last. */
   sign: SignMethod;
   signReason: string;
+  engine: 'cpu' | 'gpu';
 
   /** @internal Keeps the surface and the sites from being collected before it. */
   constructor(
@@ -102,13 +107,14 @@ export class WorkerMap extends Remote {
     const { fields } = made;
     [this.resolution, this.rows] = [fields['resolution'] as number, fields['rows'] as number];
     [this.sign, this.signReason] = [fields['sign'] as SignMethod, fields['signReason'] as string];
+    this.engine = fields['engine'] as 'cpu' | 'gpu';
   }
   /** Copies of the arrays that are named, as of DistanceMap. */
   arrays<Name extends ArrayName>(...names: Name[]): Promise<Pick<MapValues, Name>> {
     return this.call('arrays', names);
   }
   /** Computes it again, after refit() of the surface or the sites; takes no more memory. */
-  async update(options?: Options<MapOptions>): Promise<void> {
+  async update(options?: WorkerMapOptions): Promise<void> {
     Object.assign(this, await this.call('update', [], options));
   }
   /** As of DistanceMap. Returns what `sign` and `signReason` then are. */

@@ -3,6 +3,7 @@ import { type Bytes } from './bytes.js';
 import { coordinates, corners } from './geometry.js';
 import type * as declared from './declared.js';
 import { declaredOptions } from './given.js';
+import { type MapOnGpu } from './gpu_map.js';
 import { type MapOptions, type MeasureArguments, measureArguments } from './measures.js';
 import { type Module } from './module.js';
 import { Owned } from './owned.js';
@@ -133,6 +134,8 @@ export class DistanceMap extends Owned {
   /** Of what was computed last. */
   sign: SignMethod = 'automatic';
   signReason = '';
+  /** By which it was computed: the values are those of the processor with `cpu`, to the errors that both have. */
+  engine: 'cpu' | 'gpu' = 'cpu';
   private measure: MeasureArguments = measureArguments({});
 
   /** @internal */
@@ -174,11 +177,22 @@ export class DistanceMap extends Owned {
     return this.module.call<MapValues>('sdm_map_samples', values);
   }
 
+  /** @internal As compute(), by a device: `compute` has the module compute the values. */
+  async computeOn(
+    { progress: _, ...options }: MapOptions,
+    compute: (map: MapOnGpu) => Promise<{ sign: SignMethod; signReason: string }>,
+  ): Promise<void> {
+    const measure = measureArguments(options);
+    const given = { module: this.module, addresses: this.addresses(), options: measure };
+    Object.assign(this, await compute({ ...given, ...this.sampleCounts() }));
+    [this.measure, this.engine] = [measure, 'gpu'];
+  }
+
   private computeBy(name: string, { progress, ...options }: MapOptions, range: number[]): void {
     const measure = measureArguments(options);
     const values = [...this.addresses(), ...measure, ...range];
     Object.assign(this, this.module.call<{ sign: SignMethod; signReason: string }>(name, values, progress));
-    this.measure = measure;
+    [this.measure, this.engine] = [measure, 'cpu'];
   }
 
   /** Distances, negative inside; NaN of texels without a value. */

@@ -60,3 +60,9 @@ export interface MapValues {
   /** 0: a vertex, 1: an edge, 2: a face, 255: no value. */
   siteTypes: Uint8Array;
 }
+
+/**
+ * What computes a map: the processor (`cpu`, the default), a GPU by WebGPU (`gpu`), or the one of them that has taken less time for a
+ * sample in the same worker (`auto`): first the processor, then a GPU once it is ready, unless it is emulated or has failed.
+ */
+export type EngineChoice = 'auto' | 'cpu' | 'gpu';

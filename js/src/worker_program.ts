@@ -1,5 +1,6 @@
 // worker.js: the program of workers. It is bundled into one file without imports, so that it can come from a Blob; it is that of
 // createWorker() and that of the threads of a module.
+import { Engines } from './engines.js';
 import { Sdm } from './library.js';
 import { textOf } from './load.js';
 import { type MapOptions, preparesMuch } from './measures.js';
@@ -17,7 +18,7 @@ import { wordNumber } from './bytes.js';
 import { Owned } from './owned.js';
 import { DistanceMap } from './surface.js';
 import { runThread } from './threads.js';
-import { type Progress, SdmError } from './types.js';
+import { type EngineChoice, type Progress, SdmError } from './types.js';
 
 const kProgressMilliseconds = 30;
 const kPartMilliseconds = 40;
@@ -50,12 +51,15 @@ class Server {
   private readonly queue: Call[] = [];
   private readonly cancelled = new Set<number>();
   private running = false;
+  private readonly engines: Engines;
 
   constructor(
     private readonly port: Port,
     private readonly library: Sdm,
     private readonly flags: Uint8Array | undefined,
-  ) {}
+  ) {
+    this.engines = new Engines(library.module);
+  }
 
   receive(request: Request): void {
     if ('call' in request) {
@@ -175,10 +179,21 @@ class Server {
   }
 
   /** Where no other thread can set a flag, the samples are computed in parts, between which the message to cancel is received. */
-  private async update(map: DistanceMap, call: Call, options: MapOptions): Promise<object> {
-    if (this.flags || !call.cancellable || preparesMuch(options)) map.compute(options);
-    else await this.inParts(map, call, options);
-    return { sign: map.sign, signReason: map.signReason };
+  private async update(
+    map: DistanceMap,
+    call: Call,
+    { engine, ...options }: MapOptions & { engine?: EngineChoice },
+  ): Promise<object> {
+    const poll = (done: number) => {
+      if (options.progress?.('map', done) === false || this.cancelled.has(call.id))
+        throw new SdmError('cancelled', 'cancelled');
+    };
+    await this.engines.compute(map, engine, options, poll, () =>
+      this.flags || !call.cancellable || preparesMuch(options)
+        ? map.compute(options)
+        : this.inParts(map, call, options),
+    );
+    return { sign: map.sign, signReason: map.signReason, engine: map.engine };
   }
 
   /** Parts are short, so that a call that was aborted ends soon on machines of any speed, but not so short that they cost much. */

@@ -5,6 +5,7 @@ import type {
   MatchOptions,
   SdmWorker,
   WorkerMap,
+  WorkerMapOptions,
   WorkerMatches,
   WorkerPair,
   WorkerSites,
@@ -129,8 +130,8 @@ export class Engine {
     }
   }
 
-  private get matching(): { facing?: number } {
-    return this.facing === undefined ? {} : { facing: this.facing };
+  private get matching(): WorkerMapOptions {
+    return { engine: 'auto', facing: this.facing };
   }
 
   /// Lays out the fine atlas; null if that is the coarse one.

@@ -17,6 +17,7 @@
 #include "closest/engine.h"  // IWYU pragma: keep, of shared pointers
 #include "gpu/face_search.h"
 #include "gpu/finish.h"
+#include "gpu/packed_sites.h"
 #include "support/degenerate.h"
 #include "support/error_of.h"
 #include "support/meshes.h"

@@ -2,14 +2,14 @@
 // (without it, memory cannot be shared). SDM_PACKAGE: the folder of the package; SDM_REFERENCE: that of js_reference's files;
 // SDM_NODE_PACKAGES: that with playwright-core, esbuild and three.
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
-import { createServer } from 'node:http';
+import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
-import { dirname, extname, join, normalize } from 'node:path';
+import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { launched } from './chromium.mjs';
+import { served } from './server.mjs';
 import { ball } from './shapes.mjs';
 
 const { SDM_PACKAGE, SDM_REFERENCE, SDM_NODE_PACKAGES } = process.env;
@@ -28,19 +28,6 @@ after(async () => {
 });
 
 const reference = () => Object.fromEntries(readdirSync(SDM_REFERENCE).map((name) => [name, readFileSync(join(SDM_REFERENCE, name)).toString('base64')]));
-const types = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.wasm': 'application/wasm' };
-
-/** Serves the package and the folder of tests. */
-function serve(headers) {
-  const server = createServer((request, response) => {
-    const path = normalize(new URL(request.url, 'http://localhost').pathname);
-    const file = path.startsWith('/package/') ? join(SDM_PACKAGE, path.slice(9)) : join(here, path);
-    if (!statSync(file, { throwIfNoEntry: false })?.isFile()) return response.writeHead(404, headers).end();
-    response.writeHead(200, { 'content-type': types[extname(file)] ?? 'text/plain', ...headers }).end(readFileSync(file));
-  });
-  return new Promise((resolve) => server.listen(0, '127.0.0.1', () => resolve(server)));
-}
-
 /** A page with everything in it, as it opens from a disk. */
 async function filePage() {
   const { outputFiles } = await build({
@@ -80,7 +67,7 @@ test('from a file', { timeout: 800000 }, async (t) => runChecks(t, await filePag
 
 for (const isolated of [false, true])
   test(`from a server, ${isolated ? 'isolated' : 'not isolated'}`, { timeout: 800000 }, async (t) => {
-    const server = await serve(isolated ? { 'cross-origin-opener-policy': 'same-origin', 'cross-origin-embedder-policy': 'require-corp' } : {});
+    const server = await served(isolated ? { 'cross-origin-opener-policy': 'same-origin', 'cross-origin-embedder-policy': 'require-corp' } : {});
     try {
       await runChecks(t, `http://127.0.0.1:${server.address().port}/page.html`, { isolated, script: '/nowhere.js' });
     } finally {

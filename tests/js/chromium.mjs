@@ -4,9 +4,10 @@ import { existsSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { delimiter, join } from 'node:path';
 
-export function launched() {
+/** `others`: further switches. */
+export function launched(others = []) {
   const executablePath = process.env.PATH.split(delimiter).map((path) => join(path, 'chromium-headless-shell')).find(existsSync);
   assert(executablePath, 'chromium-headless-shell is needed for this test (Debian package of that name)');
   const { chromium } = createRequire(process.env.SDM_NODE_PACKAGES + '/')('playwright-core');
-  return chromium.launch({ executablePath, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] });
+  return chromium.launch({ executablePath, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', ...others] });
 }

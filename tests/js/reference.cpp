@@ -161,6 +161,7 @@ std::string write_pair(const Files& files, Pair pair, unsigned number) {
   files.write(name + ".distances", std::span(map.distance).first(map.texels()));
   files.write(name + ".vectors", map.vector);
 
+  write_values(files, name + ".reference", compute_map(surface, sites, {.engine = make_engine("reference")}));
   write_values(files, name + ".along", compute_map(surface, sites, AlongOptions{}));
   write_values(files, name + ".upwards", compute_map(surface, sites, AlongOptions{.direction = kUpwards}));
   const std::string of_itself = write_measures_of_itself(files, name, pair.o1);
