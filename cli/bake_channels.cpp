@@ -92,6 +92,7 @@ class ChannelBaker {
                               const sdm::MeshAttribute* normals = nullptr) const;
 
   [[nodiscard]] std::vector<float> samples_of(GeometryChannel channel);
+  [[nodiscard]] std::vector<float> occlusion_samples();
   void make_frames();
   void write_file(const std::string& name, const std::vector<char>& bytes);
   void add_normals(GeometryChannel channel, const std::vector<float>& normals);
@@ -170,9 +171,28 @@ void ChannelBaker::make_frames() {
   map.tangents = sdm::tangents(pair_.surface, map.normals);
 }
 
+/// Reports the error of a sample, the root of the mean square.
+std::vector<float> ChannelBaker::occlusion_samples() {
+  sdm::AmbientOcclusionOptions options = sdm::occlusion_options(pair_.command.request);
+  options.progress = pair_.command.request.progress;
+  sdm::OcclusionEstimate estimate =
+      sdm::matched_occlusion(pair_.surface, pair_.sites, pair_.matches, options);
+  double squares = 0, count = 0;
+  for (const float error : estimate.standard_errors) {
+    if (!std::isfinite(error)) continue;
+    squares += double{error} * error;
+    ++count;
+  }
+  Json& report = result.report[std::string(sdm::name_of(GeometryChannel::ambient_occlusion))];
+  report["certainty"] = "estimate";
+  report["standard_error"] = count > 0 ? Json(std::sqrt(squares / count)) : Json();
+  return std::move(estimate.values);
+}
+
 std::vector<float> ChannelBaker::samples_of(GeometryChannel channel) {
   const BakeCommand& command = pair_.command;
   if (channel == GeometryChannel::normal) make_frames();
+  if (channel == GeometryChannel::ambient_occlusion) return occlusion_samples();
   const auto& attributes = pair_.high.look.attributes;
   const auto own = std::ranges::find(attributes, "normal", &sdm::MeshAttribute::name);
   const bool has_own = own != attributes.end(), moved = !command.transform_high.empty();

@@ -69,6 +69,19 @@ def srgb(light: float) -> float:
     return light * 12.92 if light <= 0.0031308 else 1.055 * light ** (1 / 2.4) - 0.055
 
 
+def metal_color(diffuse: tuple, specular: list) -> tuple:
+    """The base colour of KHR_materials_pbrSpecularGlossiness: metal m solves
+    m² r + m (brightness of diffuse (1 - max) / (1 - r) + brightness of specular - 2 r) + r - brightness of specular = 0
+    with r = 0.04, what others reflect."""
+    r, rest = 0.04, 1 - max(specular)
+    bright = [math.sqrt(0.299 * c[0] ** 2 + 0.587 * c[1] ** 2 + 0.114 * c[2] ** 2) for c in (diffuse, specular)]
+    b, c = bright[0] * rest / (1 - r) + bright[1] - 2 * r, r - bright[1]
+    m = 0.0 if bright[1] < r else min(1.0, max(0.0, (math.sqrt(b * b - 4 * r * c) - b) / (2 * r)))
+    scattered = [d * rest / (1 - r) / max(1 - m, 1e-6) for d in diffuse]
+    reflected = [(s - r * (1 - m)) / max(m, 1e-6) for s in specular]
+    return tuple(min(1.0, max(0.0, a + m * m * (e - a))) for a, e in zip(scattered, reflected))
+
+
 class Picture:
     def __init__(self, dice: random.Random) -> None:
         self.halves = [tuple(dice.randrange(256) for _ in range(3)) for _ in range(2)]
@@ -307,7 +320,11 @@ class Gltf(Case):
             if (picture := dice.random() < 0.3):
                 extension["specularGlossinessTexture"] = {"index": 0}
             item["extensions"] = {"KHR_materials_pbrSpecularGlossiness": extension}
-            if not core:
+            if "diffuseTexture" not in extension and not picture:
+                extension["specularFactor"] = specular = [round(dice.random() ** 2, 3) for _ in range(3)]
+                if not core:
+                    m["factor"] = metal_color(m["factor"], specular)
+            elif not core:
                 unread = "the picture of specular colour and glossiness of" if picture else "the specular colour of"
                 self.glossy.setdefault(unread, []).append(name)
         self.materials.append(m)

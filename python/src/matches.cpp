@@ -181,7 +181,7 @@ void bind_matched_geometry(nb::class_<PyMatches>& type) {
             set_options(given, options);
             return self.values(1, fill, progress, [&](const Progress& report) {
               options.progress = report;
-              return matched_occlusion(self.on->surface, self.to->sites, self.matches, options);
+              return matched_occlusion(self.on->surface, self.to->sites, self.matches, options).values;
             });
           },
           nb::arg("options"), nb::arg("fill"), nb::arg("progress").none(),

@@ -51,6 +51,19 @@ void cosine_hemisphere(const Vec3& normal, std::uint64_t seed, std::uint64_t ind
   }
 }
 
+void uniform_hemisphere(std::uint64_t seed, std::span<Vec3> directions) {
+  const std::uint64_t random = next(seed);
+  for (std::uint32_t i = 0; i < directions.size(); ++i) {
+    std::uint32_t second = 0;
+    for (std::uint32_t bits = i, column = 1u << 31; bits != 0; bits >>= 1, column ^= column >> 1)
+      if ((bits & 1) != 0) second ^= column;
+    const double height = fraction(reversed(i) ^ static_cast<std::uint32_t>(random));
+    const double angle = 2 * std::numbers::pi * fraction(second ^ static_cast<std::uint32_t>(random >> 32));
+    const double radius = std::sqrt(1 - height * height);
+    directions[i] = {radius * std::cos(angle), radius * std::sin(angle), height};
+  }
+}
+
 void HemisphereRays::resize(std::size_t count) {
   directions_.resize(count);
   rays_.resize(count);

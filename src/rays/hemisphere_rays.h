@@ -19,6 +19,11 @@ namespace sdm::rays {
 void cosine_hemisphere(const Vec3& normal, std::uint64_t seed, std::uint64_t index,
                        std::span<Vec3> directions);
 
+/// Sets `directions` to unit vectors with z ≥ 0, of which every part of the hemisphere has the same density:
+/// a Sobol sequence (I. M. Sobol, 1967), shifted at random. Each aligned run of 2^k contains one of all
+/// elementary intervals of that size. The shift depends on the seed.
+void uniform_hemisphere(std::uint64_t seed, std::span<Vec3> directions);
+
 /// Working memory for the rays of one sample at a time.
 class HemisphereRays {
  public:

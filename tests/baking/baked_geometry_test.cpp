@@ -2,15 +2,21 @@
 #include <gtest/gtest.h>
 #include <sdm/bake.h>
 #include <sdm/match.h>
+#include <sdm/rays.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
+#include "baking/geometry/texel_walk.h"
+#include "closest/facing/facing_normals.h"
+#include "geometry/vec.h"
+#include "rays/hemisphere_rays.h"
 #include "support/error_of.h"
 #include "support/owned_texels.h"
 #include "support/shapes.h"
@@ -196,7 +202,7 @@ TEST(BakedGeometry, OcclusionAndThicknessAreThoseOfTheMatchedPoint) {
   const Surface floor(square(1.9, 0.01), {.resolution = 64});
   const Sites sites(corner);
   const TexelMatches matches = match_texels(floor, sites);
-  const auto visible = matched_occlusion(floor, sites, matches, {.rays = 256});
+  const auto visible = matched_occlusion(floor, sites, matches, {.rays = 256}).values;
   double near = 0, far = 0;
   std::size_t of_near = 0, of_far = 0;
   for (const std::uint32_t texel : test::owned_texels(floor)) {
@@ -227,6 +233,81 @@ TEST(BakedGeometry, OcclusionAndThicknessAreThoseOfTheMatchedPoint) {
   }
   EXPECT_NE(error_of([&] { (void)matched_occlusion(floor, sites, matches, {.rays = 0}); }), "");
   EXPECT_NE(error_of([&] { (void)matched_thickness(floor, sites, matches, ThicknessMethod::ray); }), "");
+}
+
+/// The estimate for a texel by rays that are traced alone.
+double occlusion_by_single_rays(const Sites& sites, const SurfacePoint& point,
+                                const AmbientOcclusionOptions& options) {
+  std::vector<Vec3> directions(options.rays);
+  rays::uniform_hemisphere(options.seed, directions);
+  const Vec3 normal = facing::outward_normal(internals(sites), point.face);
+  const double above = 1e-6 * diagonal(bounds(sites.mesh()));
+  const Vec3 origin = baking::position_of(sites.mesh(), point) + above * normal;
+  double cosines = 0, free = 0;
+  for (const Vec3& direction : directions) {
+    const double cosine = dot(normal, direction);
+    const Ray ray{origin, cosine < 0 ? -direction : direction, 0, options.max_distance};
+    cosines += std::abs(cosine);
+    if (occluded(sites, std::array{ray})[0] == 0) free += std::abs(cosine);
+  }
+  return free / cosines;
+}
+
+// Rays of neighbouring texels are traced together, in single precision where that decides, and those from
+// outside a solid without the faces that they leave: all as if each ray were alone.
+TEST(BakedGeometry, OcclusionIsThatOfSingleRays) {
+  std::mt19937 random(1);
+  const Mesh meshes[] = {
+      torus(24, 12),                                                 // a solid
+      joined(torus(24, 12), moved(torus(24, 12), {0.3, 0.1, 0.2})),  // solids in each other
+      flipped(sphere(2)),
+      height_field(12),
+      soup(60, random),
+      needles(1e-9)};
+  for (std::size_t i = 0; i < std::size(meshes); ++i) {
+    SCOPED_TRACE(i);
+    const Surface surface(meshes[i], {.resolution = 48});
+    const Sites sites(meshes[i]);
+    const TexelMatches matches = match_texels(surface, sites);
+    for (const double most : {kInfinity, 0.3}) {
+      const AmbientOcclusionOptions options{.rays = 12, .max_distance = most, .seed = i};
+      const std::vector<float> values = matched_occlusion(surface, sites, matches, options).values;
+      std::size_t partly = 0;
+      for (const std::uint32_t texel : owned_texels(surface)) {
+        const SurfacePoint point = matches.point(texel);
+        if (facing::outward_normal(internals(sites), point.face) == Vec3{}) continue;
+        ASSERT_NEAR(values[texel], occlusion_by_single_rays(sites, point, options), 1e-5) << texel;
+        partly += values[texel] > 0 && values[texel] < 1;
+      }
+      if (i < 2) {
+        EXPECT_GT(partly, 15U);
+      }
+    }
+  }
+}
+
+TEST(BakedGeometry, OcclusionIsWithinItsStandardError) {
+  const Mesh meshes[] = {joined(torus(24, 12), moved(torus(24, 12), {0.9, 0, 0.6})),
+                         joined(square(4, -1), cube(0.7)), height_field(16)};
+  for (const Mesh& mesh : meshes) {
+    const Surface surface(mesh, {.resolution = 48});
+    const Sites sites(mesh);
+    const TexelMatches matches = match_texels(surface, sites);
+    const std::vector<float> truth = matched_occlusion(surface, sites, matches, {.rays = 4096}).values;
+    for (const std::uint32_t rays : {16U, 64U, 100U}) {
+      double error = 0, stated = 0;
+      for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+        const OcclusionEstimate some =
+            matched_occlusion(surface, sites, matches, {.rays = rays, .seed = seed});
+        for (const std::uint32_t texel : owned_texels(surface)) {
+          error += std::pow(some.values[texel] - truth[texel], 2);
+          stated += std::pow(some.standard_errors[texel], 2);
+        }
+      }
+      EXPECT_LT(error, stated) << rays;
+      EXPECT_GT(error, stated / 25) << rays;
+    }
+  }
 }
 
 TEST(BakedGeometry, FreeTexelsAreFilledAndUnmatchedOnesAreNot) {

@@ -14,6 +14,7 @@ namespace sdm::test {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::FloatNear;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -113,6 +114,9 @@ TEST_F(ObjWithMaterials, PicturesOfOpacityAndPicturesInPlaceOfColoursAreNoted) {
   EXPECT_THAT(notes("map_Kd t.png\nKd 0.5 0.5 0.5\n"), ElementsAre(kReplaced));
   EXPECT_THAT(notes("Kd 1 1 1\nmap_Kd t.png\n"), IsEmpty());
   EXPECT_THAT(notes("map_Pr t.png\n"), ElementsAre(HasSubstr("map_Pr of the material m is left out")));
+  EXPECT_THAT(notes("map_Pr -imfchan g t.png\nmap_Pm -imfchan b t.png\n"), IsEmpty());
+  EXPECT_THAT(notes("map_Pr -imfchan b t.png\nmap_Pm -imfchan b t.png\n"),
+              ElementsAre(HasSubstr("map_Pr of the material m"), HasSubstr("map_Pm of the material m")));
   // Regression: one note named the first material only.
   EXPECT_THAT(notes("Kd 1 0 0\nmap_Kd t.png\nnewmtl n\nmap_Kd t.png\nKd 0 0 0\n"),
               ElementsAre("Kd of the materials m, n is left out: the picture of map_Kd replaces it"));
@@ -280,18 +284,26 @@ TEST(GltfMaterials, AreTheirFactorsTexturesAndPlaces) {
 }
 
 // Regression: the material was white.
-TEST(GltfMaterials, SpecularAndGlossyOnesHaveTheirDiffuseColour) {
+TEST(GltfMaterials, SpecularAndGlossyOnesBecomeMetallicAndRough) {
   const GltfWithMaterials gltf;
   const std::string images =
       R"(,"textures":[{"source":0}],"images":[{"mimeType":"image/png","bufferView":)" + gltf.picture + "}]";
   const std::string glossy =
       R"("extensions":{"KHR_materials_pbrSpecularGlossiness":{"diffuseFactor":[0.5,1,1,0.5],"glossinessFactor":0.75)";
-  const MeshFile file = gltf.read(glossy + "}}", images);
+  // What reflects 4 % is no metal, and scatters all that it does not reflect.
+  const MeshFile file = gltf.read(glossy + R"(,"specularFactor":[0.04,0.04,0.04]}})", images);
   const Material& m = file.materials.at(0);
-  EXPECT_THAT(m.base_color, ElementsAre(0.5f, 1, 1, 0.5f));
-  EXPECT_EQ(m.metallic, 0);
+  EXPECT_THAT(m.base_color,
+              ElementsAre(FloatNear(0.5f, 1e-4f), FloatNear(1, 1e-4f), FloatNear(1, 1e-4f), 0.5f));
+  EXPECT_NEAR(m.metallic, 0, 1e-5);
   EXPECT_FLOAT_EQ(m.roughness, 0.25f);
-  EXPECT_THAT(file.notes, ElementsAre(HasSubstr("the specular colour of the material 0 is left out")));
+  EXPECT_THAT(file.notes, IsEmpty());
+  // A colour that is reflected whole, as by default, is a metal.
+  const MeshFile metal = gltf.read(glossy + R"(,"specularFactor":[1,0.5,0.25]}})", images);
+  EXPECT_NEAR(metal.materials.at(0).metallic, 1, 1e-4);
+  EXPECT_THAT(metal.materials.at(0).base_color,
+              ElementsAre(FloatNear(1, 1e-4f), FloatNear(0.5f, 1e-4f), FloatNear(0.25f, 1e-4f), 0.5f));
+  EXPECT_NEAR(gltf.read(glossy + "}}", images).materials.at(0).metallic, 1, 1e-4);
   const MeshFile textured = gltf.read(
       glossy + R"(,"diffuseTexture":{"index":0},"specularGlossinessTexture":{"index":0}}})", images);
   EXPECT_EQ(textured.materials.at(0).base_color_texture.texture, 0u);

@@ -158,6 +158,7 @@ set(readers_of_nodes
   bodies/pairs/near_faces.cpp           # bounds the children of a pair, and marks those below a node
   bodies/pairs/pair_search.cpp          # bounds the children of a pair
   bodies/pairs/separating_axis.cpp      # the boxes below the root
+  rays/parallel_rays.cpp         # rays from many points have no order of nodes
   rays/trace.cpp                 # segments in a box begin at the nodes that meet it
   bodies/shape/body.cpp                 # the boxes below the root
   bodies/shape/wall_thickness.cpp       # keeps a bound for each node, found on first use

@@ -234,7 +234,8 @@ TEST(SmokeBake, GeometryOfAnotherMeshIsThatOfItsPoints) {
   const std::vector<float> up = matched_normals(squares.surface, squares.sites, matches, normals),
                            places = matched_positions(squares.surface, squares.sites, matches),
                            heights = matched_displacements(squares.surface, squares.sites, matches, own),
-                           open = matched_occlusion(squares.surface, squares.sites, matches, {.rays = 9}),
+                           open =
+                               matched_occlusion(squares.surface, squares.sites, matches, {.rays = 9}).values,
                            thick = matched_thickness(squares.surface, solid, of_solid, ThicknessMethod::ray),
                            ball = matched_thickness(squares.surface, solid, of_solid, ThicknessMethod::ball);
   const std::vector<std::uint32_t> numbers =

@@ -86,7 +86,7 @@ std::vector<float> bake_geometry(const Surface& surface, const Sites& sites, con
     case GeometryChannel::position:
       return matched_positions(surface, sites, matches, options.progress);
     case GeometryChannel::ambient_occlusion:
-      return matched_occlusion(surface, sites, matches, occlusion);
+      return matched_occlusion(surface, sites, matches, occlusion).values;
     case GeometryChannel::thickness:
       return matched_thickness(surface, sites, matches, options.method, thickness);
     case GeometryChannel::face:

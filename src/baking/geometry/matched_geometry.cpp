@@ -15,7 +15,6 @@
 #include "map/measures/thickness_measure.h"
 #include "map/transfer/corner_normals.h"
 #include "map/transfer/fill_texels.h"
-#include "rays/hemisphere_rays.h"
 #include "sites/sites_data.h"
 
 namespace sdm {
@@ -37,29 +36,6 @@ bool points_inwards(const sites::SitesData& data, const map::CornerNormals& norm
 }
 
 }  // namespace
-
-std::vector<float> matched_occlusion(const Surface& surface, const Sites& sites, const TexelMatches& matches,
-                                     const AmbientOcclusionOptions& options) try {
-  require_matches(surface, sites, matches);
-  check_options(options);
-  constexpr double kAbove = 1e-6;  // of the diagonal: more than the rounding of points
-  const sites::SitesData& data = internals(sites);
-  const double above = kAbove * diagonal(bounds(data.mesh));
-  std::vector<float> values = baking::no_values(matches, 1, "the ambient occlusion of matches");
-  baking::for_each_texel(
-      surface, options.progress, "ambient occlusion", [&] { return rays::HemisphereRays(options.rays); },
-      [&](std::uint32_t texel, rays::HemisphereRays& rays) {
-        const SurfacePoint point = matches.point(texel);
-        if (point.face == kNone) return;
-        const Vec3 normal = facing::outward_normal(data, point.face);
-        if (normal == Vec3{}) return;
-        const Ray first{baking::position_of(data.mesh, point) + above * normal, {}, 0, options.max_distance};
-        values[texel] = rays.visibility(data, first, normal, options.seed, texel);
-      });
-  return values;
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("the ambient occlusion of matches");
-}
 
 std::vector<float> matched_thickness(const Surface& surface, const Sites& sites, const TexelMatches& matches,
                                      ThicknessMethod method, const ThicknessOptions& options) try {

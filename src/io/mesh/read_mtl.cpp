@@ -34,13 +34,19 @@ struct Unread {
 };
 constexpr Unread kUnread[] = {{"map_d", "opacity is read as a number (d), or as the alpha of map_Kd"},
                               {"map_Tr", "opacity is read as a number (Tr), or as the alpha of map_Kd"},
-                              {"map_Pr", "roughness is read as a number (Pr)"},
-                              {"map_Pm", "metal is read as a number (Pm)"},
                               {"map_Bump", "heights are not read, only normals (norm)"},
                               {"map_bump", "heights are not read, only normals (norm)"},
                               {"bump", "heights are not read, only normals (norm)"},
                               {"disp", "displacements are not read"},
                               {"decal", "decals are not read"}};
+
+// A picture of one number of a material, in one of its channels.
+struct ChannelUse {
+  TextureUse use{};
+  std::string channel{};  // of -imfchan
+};
+constexpr const char* kOnlyTogether =
+    "pictures of roughness and metal are read where both are in one, in green and blue (-imfchan g, b)";
 
 class MtlReader {
  public:
@@ -61,13 +67,29 @@ class MtlReader {
           leave_out("a statement", fault.what());
         }
     }
+    end();
   }
 
  private:
   void begin() {
+    end();
     materials_.list.emplace_back().name = words_of_line();
     diffuse_.reset();
     emitted_.reset();
+  }
+  // Joins what the pictures of roughness and metal of the last material are.
+  void end() {
+    if (materials_.list.empty()) return;
+    Material& material = materials_.list.back();
+    if (roughness_.use.texture != kNone && roughness_.use == metal_.use && roughness_.channel == "g" &&
+        metal_.channel == "b") {
+      material.metallic_roughness_texture = roughness_.use;
+      material.roughness = material.metallic = 1;
+    } else {
+      if (roughness_.use.texture != kNone) leave_out("map_Pr", kOnlyTogether);
+      if (metal_.use.texture != kNone) leave_out("map_Pm", kOnlyTogether);
+    }
+    roughness_ = metal_ = {};
   }
   void read_statement(Material& material) {
     if (in_.accept("Kd")) {
@@ -95,6 +117,10 @@ class MtlReader {
         material.emissive = {1, 1, 1};
         (void)is_replaced("Ke", "map_Ke", emitted_, material.emissive_texture);
       }
+    } else if (in_.accept("map_Pr")) {
+      read_channel("map_Pr", roughness_);
+    } else if (in_.accept("map_Pm")) {
+      read_channel("map_Pm", metal_);
     } else if (in_.accept("norm")) {
       read_texture("norm", material.normal_texture);
     } else {
@@ -152,11 +178,16 @@ class MtlReader {
       return false;
     }
   }
+  void read_channel(const char* statement, ChannelUse& read) {
+    read = {};
+    if (read_texture(statement, read.use)) read.channel = channel_;
+  }
   void leave_out(std::string_view statement, std::string_view fault) {
     materials_.leave_out(statement, materials_.list.back().name, fault);
   }
 
   std::string options_and_name(TextureUse& use) {
+    channel_.clear();
     while (in_.more_on_line()) {
       TextScanner after = in_;
       const std::string_view word = after.word();
@@ -164,8 +195,9 @@ class MtlReader {
       if (option == std::end(kPictureOptions)) return std::string(in_.rest_of_line());
       in_ = after;
       if (!option->numbers) {
-        if (in_.more_on_line() && in_.word() == "on" && option->name == "-clamp")
-          use.wrap = {TextureWrap::clamp, TextureWrap::clamp};
+        const std::string_view value = in_.more_on_line() ? in_.word() : "";
+        if (option->name == "-clamp" && value == "on") use.wrap = {TextureWrap::clamp, TextureWrap::clamp};
+        if (option->name == "-imfchan") channel_ = value;
         continue;
       }
       for (std::size_t i = 0; i < option->arguments; ++i) {
@@ -190,6 +222,8 @@ class MtlReader {
   TextScanner in_;
   const std::filesystem::path& folder_;
   PolygonMaterials& materials_;
+  ChannelUse roughness_, metal_;                           // of the last material
+  std::string channel_;                                    // of the last picture
   std::optional<std::array<float, 3>> diffuse_, emitted_;  // Kd and Ke of the last material
 };
 

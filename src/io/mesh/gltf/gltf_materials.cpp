@@ -103,7 +103,7 @@ class MaterialReader {
   }
 
  private:
-  // The model before metals: of its two colours, that of light which is scattered is the base colour.
+  // The model before metals, of light that is scattered and of light that is reflected.
   void read_glossy(const json& surface, Material& material) {
     if (!surface.is_object()) return;
     material.base_color = numbers_of<4>(surface, "diffuseFactor", {1, 1, 1, 1});
@@ -111,10 +111,36 @@ class MaterialReader {
     material.metallic = 0;
     material.roughness = 1 - std::clamp(number_of(surface, "glossinessFactor", 1), 0.f, 1.f);
     const bool picture = surface.contains("specularGlossinessTexture");
+    if (!picture && !surface.contains("diffuseTexture"))
+      return set_metal(numbers_of<3>(surface, "specularFactor", {1, 1, 1}), material);
     materials_.leave_out(
         picture ? "the picture of specular colour and glossiness" : "the specular colour", name_,
-        "of KHR_materials_pbrSpecularGlossiness, the diffuse colour and the glossiness factor "
+        "of KHR_materials_pbrSpecularGlossiness with pictures, the diffuse colour and the glossiness factor "
         "are read");
+  }
+
+  // From diffuse and specular colours to a base colour and metal, as the extension's example converts them:
+  // metal solves for the brightness of both colours, where what is not metal reflects 4 %.
+  static void set_metal(const std::array<float, 3>& specular, Material& material) {
+    constexpr float kReflected = 0.04f, kLeast = 1e-6f;
+    const auto brightness = [](float r, float g, float b) {
+      return std::sqrt(0.299f * r * r + 0.587f * g * g + 0.114f * b * b);
+    };
+    const auto& d = material.base_color;
+    const float scattered = 1 - std::clamp(std::ranges::max(specular), 0.f, 1.f);
+    const float reflection = brightness(specular[0], specular[1], specular[2]);
+    if (reflection > kReflected) {
+      const float b =
+          brightness(d[0], d[1], d[2]) * scattered / (1 - kReflected) + reflection - 2 * kReflected;
+      const float root = std::sqrt(std::max(0.f, b * b + 4 * kReflected * (reflection - kReflected)));
+      material.metallic = std::clamp((root - b) / (2 * kReflected), 0.f, 1.f);
+    }
+    const float metal = material.metallic, share = metal * metal;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float of_diffuse = d[k] * scattered / (1 - kReflected) / std::max(1 - metal, kLeast),
+                  of_specular = (specular[k] - kReflected * (1 - metal)) / std::max(metal, kLeast);
+      material.base_color[k] = std::clamp(of_diffuse + share * (of_specular - of_diffuse), 0.f, 1.f);
+    }
   }
 
   TextureUse use(const json& owner, const char* name) {

@@ -90,6 +90,8 @@ void write_library(const std::filesystem::path& file, const MeshExtras& extras) 
         text.add("Ke {} {} {}\n", in_srgb(m.emissive[0]), in_srgb(m.emissive[1]), in_srgb(m.emissive[2]));
       use("map_Kd", m.base_color_texture);
       use("map_Ke", m.emissive_texture);
+      use("map_Pr -imfchan g", m.metallic_roughness_texture);
+      use("map_Pm -imfchan b", m.metallic_roughness_texture);
       use("norm", m.normal_texture);
     }
   }
