@@ -157,8 +157,8 @@ TEST(SmokePairs, TheWayOutOfBodiesThatAreNotConvexIsVerified) {
 
 TEST(SmokePairs, ABoxOnAPlateHasContactsAtItsCorners) {
   const Mesh box = test::box({-0.5, -0.4, 0}, {0.5, 0.4, 0.6});
-  for (const Mesh& plate : {box({-3, -3, -1}, {3, 3, 0}), weld(grid_block({-3, -3, -1}, {3, 3, 0}, 7)).mesh,
-                            grid_square(6, 0, 9)}) {
+  for (const Mesh& plate : {test::box({-3, -3, -1}, {3, 3, 0}),
+                            weld(grid_block({-3, -3, -1}, {3, 3, 0}, 7)).mesh, grid_square(6, 0, 9)}) {
     ProximityQuery query(box, plate, {.contact_margin = 0.02});
     for (const double height : {-0.01, 0.01}) {
       query.set_pose(0, Transform::translation({0.13, 0.22, height}));
@@ -343,7 +343,7 @@ TEST(SmokeMotion, CubesMeetWhenTheirFacesDo) {
   const Motion above{.from = Transform::translation({5, 0, 2}),
                      .to = Transform::translation({-5, 0, 2}) * Transform::rotation({120, 40, 10})};
   EXPECT_FALSE(time_of_contact(box, rest, box, above, 1e-6).contact);
-  const Shape rod(box({-3, -0.05, -0.05}, {3, 0.05, 0.05}));
+  const Shape rod(test::box({-3, -0.05, -0.05}, {3, 0.05, 0.05}));
   const Motion turn{.from = Transform::translation({0, 2, 0}),
                     .to = Transform::translation({0, 2, 0}) * Transform::rotation({0, 0, 90})};
   const TimeOfContact turned = time_of_contact(rod, turn, box, rest, 1e-5);
