@@ -18,14 +18,14 @@ struct Refinement {
 
 void write_refined(const Refinement& options) {
   const auto& [in, out, parts] = options;
-  write_ply(out, refine_mesh(read_mesh(in), parts, 0.1));
+  write_mesh(out, refine_mesh(read_mesh(in), parts, 0.1));
 }
 
 }  // namespace
 
 void add_refine(CLI::App& program) {
-  CLI::App& app = *program.add_subcommand(
-      "refine", "Writes the mesh as PLY with each triangle divided into PARTS² triangles");
+  CLI::App& app =
+      *program.add_subcommand("refine", "Writes the mesh with each triangle divided into PARTS² triangles");
   const auto options = std::make_shared<Refinement>();
   app.add_option("IN", options->in)->required();
   app.add_option("OUT", options->out)->required();

@@ -1,13 +1,11 @@
 #include "doubts.h"
 
-#include <fmt/format.h>
 #include <sdm/summary.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "declared_options.h"
-#include "format.h"
 #include "option_checks.h"
 
 void add_accept_doubts(CLI::App& app, bool& accept, const char* text) {
@@ -22,12 +20,6 @@ void add_uncertainty_option(CLI::App& app, double& uncertainty) {
 void check_uncertainty(double uncertainty, bool judged) {
   if (uncertainty > 0 && !judged)
     throw CLI::ValidationError("--uncertainty", "needs limits, which it keeps away from");
-}
-
-std::string uncertainty_clause(double uncertainty, const std::string& unit) {
-  if (uncertainty == 0) return {};
-  return fmt::format(" by more than the uncertainty, {}{} ({})", number(uncertainty, 2), unit,
-                     sdm::name_of(sdm::DecisionRule::iso_14253_1));
 }
 
 void add_doubt_options(CLI::App& app, DoubtCommand& command) {

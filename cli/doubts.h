@@ -21,9 +21,6 @@ void add_accept_doubts(CLI::App& app, bool& accept, const char* text = nullptr);
 void add_uncertainty_option(CLI::App& app, double& uncertainty);
 /// Throws CLI::ValidationError for an uncertainty where nothing is `judged`.
 void check_uncertainty(double uncertainty, bool judged);
-/// What a FAIL or a PASS adds to its limits: " by more than the uncertainty, 0.02 mm (ISO 14253-1)"; empty
-/// without one. `unit`: with the space before it.
-[[nodiscard]] std::string uncertainty_clause(double uncertainty, const std::string& unit);
 
 /// Adds --accept-doubts, --min-coverage and --reach.
 void add_doubt_options(CLI::App& app, DoubtCommand& command);

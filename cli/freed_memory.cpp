@@ -1,6 +1,6 @@
 #include "freed_memory.h"
 
-#include <cstdlib>
+#include <cstdlib>  // IWYU pragma: keep, for __GLIBC__
 #include <limits>
 
 #ifdef __GLIBC__

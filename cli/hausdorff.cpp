@@ -138,7 +138,7 @@ std::string unmatched_lines(const HausdorffAnswer& answer) {
 std::string tolerance_line(const HausdorffVerdict& v, const HausdorffCommand& command, double guard,
                            const std::string& unit) {
   const std::string limit = number(*command.tolerance) + unit;
-  const std::string by = uncertainty_clause(command.uncertainty, unit);
+  const std::string by = sdm::uncertainty_text(command.uncertainty, command.units);
   return fmt::format(
       "  tolerance  {}: {}\n", sdm::name_of(v.word()),
       v.unmatched                 ? "faces without a match have no distance"

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cassert>
+#include <cassert>  // IWYU pragma: keep, for __assert_fail()
 #include <cstdlib>
 #include <exception>
 #include <initializer_list>

@@ -51,7 +51,7 @@ std::string tolerance_line(const PointsOutcome& outcome, const std::string& unit
                        number(100 * without_value(outcome.found)), sdm::verdict_text(summary));
   const std::string share = fmt::format("{}: {} % of the points are out of it{}", word,
                                         number(100 * summary.exceeding_point_fraction),
-                                        uncertainty_clause(summary.evidence.uncertainty, unit));
+                                        sdm::uncertainty_text(summary.evidence.uncertainty, summary.units));
   const std::optional<sdm::Extreme> most = decisive_extreme(summary);
   if (!most) return share + "; no point has a value";
   return fmt::format("{}; {}{} at point {} {}", share, number(most->distance), unit,

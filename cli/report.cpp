@@ -92,7 +92,7 @@ std::string tolerance_line(const Outcome& outcome, const std::string& unit) {
   const sdm::ToleranceShares& shares = verdict.shares;
   const std::string limits =
       sdm::limits_text(verdict.tolerance, outcome.summary.units, outcome.summary.evidence.is_signed) +
-      uncertainty_clause(outcome.summary.evidence.uncertainty, unit);
+      sdm::uncertainty_text(outcome.summary.evidence.uncertainty, outcome.summary.units);
   if (verdict.proof && verdict.proof->witness)
     return fmt::format("{}: {}: {}{} at {}", word,
                        verdict.by_facing.value_or(false) ? sdm::verdict_text(outcome.summary)

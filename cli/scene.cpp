@@ -46,14 +46,14 @@ class Recorder {
   Recorder(const Scene::Body& body, const fs::path& folder, bool numbered) : folder_(folder / body.name) {
     if (!body.moves) {
       sequence_ = body.name + ".ply";
-      sdm::write_ply(folder / sequence_, body.mesh);
+      sdm::write_mesh(folder / sequence_, body.mesh);
     } else if (numbered || body.tears) {
       sequence_ = body.name;
       fs::create_directory(folder_);  // fails once the staging folder is gone
       numbered_ = true;
     } else {
       sequence_ = body.name + ".ply+" + body.name + ".npy";
-      sdm::write_ply(folder / (body.name + ".ply"), body.mesh);
+      sdm::write_mesh(folder / (body.name + ".ply"), body.mesh);
       writer_ =
           std::make_unique<sdm::SequenceWriter>(folder / (body.name + ".npy"), body.mesh.positions.size());
     }
@@ -62,7 +62,7 @@ class Recorder {
   void add(const sdm::Mesh& mesh, int frame) {
     if (writer_) writer_->add(mesh.positions);
     if (!numbered_) return;
-    sdm::write_ply(folder_ / fmt::format("{:05}.ply", frame), mesh);
+    sdm::write_mesh(folder_ / fmt::format("{:05}.ply", frame), mesh);
   }
   void commit() {
     if (writer_) writer_->commit();

@@ -44,8 +44,8 @@ void write_made_scan(const std::filesystem::path& part, std::size_t triangles,
     } catch (const sdm::Error& error) {
       throw sdm::Error(part.string() + ": " + error.what());
     }
-    sdm::write_ply(out.staging() / "part.ply", mesh);
-    sdm::write_ply(out.staging() / "scan.ply", scan.mesh);
+    sdm::write_mesh(out.staging() / "part.ply", mesh);
+    sdm::write_mesh(out.staging() / "scan.ply", scan.mesh);
     write_text(out.staging() / "scan.xyz", cloud_text(scan.mesh.positions));
     write_text(out.staging() / "scene.json", describe(part, scan).dump(2) + '\n');
   });

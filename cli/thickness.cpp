@@ -66,7 +66,7 @@ std::string limits_in_words(const ThicknessCommand& command) {
 
 /// The verdict as a clause: that of sdm::verdict_text(), but of the limits that were given.
 std::string verdict_in_words(const ThicknessCommand& command, const sdm::Summary& summary) {
-  const std::string by = uncertainty_clause(command.uncertainty, unit_suffix(summary.units));
+  const std::string by = sdm::uncertainty_text(command.uncertainty, summary.units);
   switch (summary.tolerance->verdict) {
     case sdm::Verdict::pass:
       return fmt::format("every measured point has {}{}; between them, an estimate", limits_in_words(command),

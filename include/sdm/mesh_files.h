@@ -84,10 +84,6 @@ struct MeshFileOptions {
 /// throws sdm::Error for numbers that are not finite, and for a singular matrix.
 [[nodiscard]] SDM_API Transform read_matrix(const std::filesystem::path& file);
 
-/// Writes the positions, in double precision, the triangles and, if the mesh has them, the texture
-/// coordinates of corners as binary PLY; read_mesh returns them bit-identical.
-SDM_API void write_ply(const std::filesystem::path& file, const Mesh& mesh);
-
 /// What write_mesh() writes besides positions and texture coordinates: of a MeshFile its arrays.
 struct MeshExtras {
   std::span<const MeshAttribute> attributes{};
@@ -101,7 +97,8 @@ struct MeshExtras {
 };
 
 /// Writes a mesh in the format that the extension names. Files keep:
-///  - .ply: what write_ply() writes; normals, and colours in 8 bits
+///  - .ply: positions and texture coordinates of corners in double precision, which read_mesh returns
+///    bit-identical; normals, and colours in 8 bits
 ///  - .obj: all digits; normals, colours, names of objects and groups; materials as NAME.mtl, with pictures
 ///    as NAME_0.png and so on: colours, opacity, metal and roughness, normal maps
 ///  - .stl: positions, in single precision
@@ -213,8 +210,7 @@ class SDM_API MeshSequence {
 };
 
 /// Writes positions frame by frame to an NPY file of shape (T, V, 3), float32. The complete file appears at
-/// commit(); without it, no file appears. Together with a mesh file (see write_ply) it can be read by
-/// MeshSequence.
+/// commit(); without it, no file appears. Together with a mesh file it can be read by MeshSequence.
 class SDM_API SequenceWriter {
  public:
   /// Throws if the file cannot be written.

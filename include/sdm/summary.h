@@ -289,6 +289,9 @@ SDM_API void withhold_pass(Summary& summary, bool accept_doubts);
 /// The tolerance in words, such as "±0.1 mm", which is "0.1 mm" if distances have no sign, or "at most 2 mm".
 [[nodiscard]] SDM_API std::string limits_text(const Tolerance& tolerance, const std::string& units,
                                               bool is_signed);
+/// What a PASS or a FAIL adds to its limits: " by more than the uncertainty, 0.02 mm (ISO 14253-1)". Empty
+/// for 0.
+[[nodiscard]] SDM_API std::string uncertainty_text(double uncertainty, const std::string& units);
 /// The verdict as a clause, without its word and without a place: what all outputs say of a verdict that is
 /// not decided or doubtful. Empty without a tolerance.
 [[nodiscard]] SDM_API std::string verdict_text(const Summary& summary);

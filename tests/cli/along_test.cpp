@@ -23,8 +23,8 @@ using Json = nlohmann::json;
 class AlongOption : public ::testing::Test {
  protected:
   AlongOption() {
-    write_ply(before, height_field(8));
-    write_ply(after, moved(height_field(8), {0, 0, -0.25}));
+    write_mesh(before, height_field(8));
+    write_mesh(after, moved(height_field(8), {0, 0, -0.25}));
   }
   [[nodiscard]] Outcome run(std::vector<std::string> more = {}) const {
     std::vector<std::string> arguments{"map", after, before, "-o", out, "--resolution", "64"};
@@ -60,9 +60,9 @@ TEST_F(AlongOption, IsJudgedByItsSamplesWithSigns) {
   const std::string small = folder / "small.ply";
   Mesh mesh = read_mesh(after);
   for (Vec3& p : mesh.positions) p = {0.9 * p[0], 0.9 * p[1], -3};
-  write_ply(small, mesh);
+  write_mesh(small, mesh);
   for (Vec3& p : mesh.positions) p = {p[0] / 0.9, p[1] / 0.9, -2.75};
-  write_ply(before, mesh);
+  write_mesh(before, mesh);
   const auto judged = [&](const std::string& tolerance) {
     return run_sdm({"map", small, before, "-o", out, "--resolution", "64", "--along", "0,0,2", "--tolerance",
                     tolerance});
@@ -77,7 +77,7 @@ TEST_F(AlongOption, IsJudgedByItsSamplesWithSigns) {
 
 TEST_F(AlongOption, SaysBehindAndNamesTheLine) {
   EXPECT_THAT(run({"--along", "0,0,1"}).out, HasSubstr("is behind (negative)"));
-  write_ply(after, flipped(read_mesh(after)));
+  write_mesh(after, flipped(read_mesh(after)));
   const Outcome turned = run({"--along", "0,0,1", "--tolerance", "0.1"});
   EXPECT_EQ(turned.code, 3);
   EXPECT_THAT(turned.out, HasSubstr("no texel has such a face on its line"));

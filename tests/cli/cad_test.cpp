@@ -50,7 +50,7 @@ TEST(CadCommand, InfoSaysWhatWasTessellated) {
 TEST(CadCommand, MapToAPartHasItsTessellationAndANote) {
   const TemporaryFolder folder;
   const std::string scan = folder / "scan.ply", out = folder / "out";
-  write_ply(scan, read_mesh(cad_part("tube.step")));
+  write_mesh(scan, read_mesh(cad_part("tube.step")));
   const nlohmann::json report = cad_json({"map", scan, cad_part("tube.step"), "-o", out, "--resolution", "64",
                                           "--write", "none", "--tolerance", "0.1"});
   EXPECT_EQ(report["tolerance"]["verdict"], "PASS");
@@ -66,7 +66,7 @@ TEST(CadCommand, UnitsOfAPartAreMillimetres) {
   const std::string scan = folder / "scan.ply", out = folder / "out";
   Mesh mesh = read_mesh(cad_part("assembly.step"));
   for (Vec3& p : mesh.positions) p = (1 / 25.4) * p;
-  write_ply(scan, mesh);
+  write_mesh(scan, mesh);
   const nlohmann::json report =
       cad_json({"map", scan, cad_part("assembly.step"), "-o", out, "--resolution", "64", "--write", "none",
                 "--units-o1", "in", "--tolerance", "0.001"});
@@ -81,7 +81,7 @@ TEST(CadCommand, FacesHaveTolerancesOfTheirOwn) {
   Mesh mesh = read_mesh(cad_part("assembly.step"));
   for (Vec3& p : mesh.positions)
     if (p[2] > 12 && p[2] < 13) p[2] += 0.3;
-  write_ply(scan, mesh);
+  write_mesh(scan, mesh);
   std::ofstream(table) << "group,lower,upper\nplate (2),-0.01,0.01\ndatum A,-0.1,0.1\n";
   const nlohmann::json report =
       cad_json({"map", cad_part("assembly.step"), scan, "-o", folder / "out", "--resolution", "64", "--write",
@@ -102,7 +102,7 @@ TEST(CadCommand, FaultsAreOneSentence) {
   EXPECT_THAT(none.out, IsEmpty());
   EXPECT_THAT(none.err, HasSubstr("line.step: has no faces\n"));
   const std::string mesh = folder / "box.ply";
-  write_ply(mesh, read_mesh(cad_part("box.step")));
+  write_mesh(mesh, read_mesh(cad_part("box.step")));
   const Outcome unused = run_sdm({"info", mesh, "--deflection", "0.1"});
   EXPECT_EQ(unused.code, 2);
   EXPECT_THAT(unused.err, HasSubstr("applies to STEP and IGES"));
@@ -210,9 +210,9 @@ TEST(CadCommand, FramesKeepTheirDistanceFromTheLimits) {
   Vec3& dented =
       *std::ranges::max_element(scan.positions, {}, [&](const Vec3& p) { return -norm(p - place); });
   std::erase_if(scan.triangles, [&](const Triangle& t) { return norm(scan.positions[t[0]] - dented) > 1; });
-  write_ply(folder / "perfect.ply", scan);
+  write_mesh(folder / "perfect.ply", scan);
   dented = (9.91 / norm(place)) * place;
-  write_ply(folder / "dented.ply", scan);
+  write_mesh(folder / "dented.ply", scan);
   const auto run = [&](const char* name, const char* tolerance, std::vector<std::string> more = {}) {
     more.insert(more.begin(), {"sequence", folder / name, ball, "-o", folder / "out", "--resolution", "64",
                                "--no-temporal", "--tolerance", tolerance});
@@ -240,7 +240,7 @@ TEST(CadCommand, FramesKeepTheirDistanceFromTheLimits) {
 // Options that change nothing are refused.
 TEST(CadCommand, ASequenceWithoutCadHasNoDeflection) {
   const TemporaryFolder folder;
-  write_ply(folder / "cube.ply", cube());
+  write_mesh(folder / "cube.ply", cube());
   const std::string mesh = folder / "cube.ply";
   const auto run = [&](const char* option, const char* value) {
     return run_sdm({"sequence", mesh, mesh, "-o", folder / "out", option, value});

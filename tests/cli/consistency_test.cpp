@@ -27,8 +27,8 @@ struct Consistency : ::testing::Test {
   std::string small = folder / "small.ply", two = folder / "two.ply", out = folder / "out";
 
   Consistency() {
-    write_ply(small, box({0.4, 0.45, 0.45}, {0.45, 0.5, 0.5}));
-    write_ply(two, joined(box({0, 0, 0}, {1, 1, 1}), box({0.5, 0.25, 0.25}, {1.5, 0.75, 0.75})));
+    write_mesh(small, box({0.4, 0.45, 0.45}, {0.45, 0.5, 0.5}));
+    write_mesh(two, joined(box({0, 0, 0}, {1, 1, 1}), box({0.5, 0.25, 0.25}, {1.5, 0.75, 0.75})));
   }
   [[nodiscard]] Json json(std::vector<std::string> arguments) const {
     arguments.emplace_back("--json");
@@ -106,7 +106,7 @@ TEST_F(Consistency, InfoWritesIntoTheCurrentFolder) {
 // Regression: a vertex that no number showed decided the verdict.
 TEST_F(Consistency, TheVerdictIsThatOfTheExtremesShown) {
   const std::string o1 = folder / "o1.ply";
-  write_ply(o1, moved(sphere(2), {4, 0, 0}));
+  write_mesh(o1, moved(sphere(2), {4, 0, 0}));
   const std::vector<std::string> map{"map", o1, small, "-o", out, "--resolution", "32"};
   const Json report = json(map);
   EXPECT_EQ(report["extremes"]["max"]["at"], "vertex");
@@ -151,7 +151,7 @@ TEST_F(Consistency, CloudsAreJudgedByTheRuleOfTheLibrary) {
 // Regression: rounding errors exceeded a tolerance of 0.
 TEST_F(Consistency, AMeshIsWithinAnyToleranceOfItself) {
   const std::string ball = folder / "ball.ply";
-  write_ply(ball, placed(sphere(4), "rotate:10:20:30"));
+  write_mesh(ball, placed(sphere(4), "rotate:10:20:30"));
   for (const std::string& mesh : {two, ball}) {
     const Json report = json({"map", mesh, mesh, "-o", out, "--tolerance", "0"});
     EXPECT_EQ(report["tolerance"]["within"], true);

@@ -49,7 +49,7 @@ struct InputFiles : ::testing::Test {
   /// A small solid as PLY, whatever the name is.
   std::string mesh(const fs::path& file, double size = 0.9) const {
     fs::create_directories(file.parent_path());
-    write_ply(file, cube(size));
+    write_mesh(file, cube(size));
     return file;
   }
   void text(const fs::path& file, const std::string& words) const { std::ofstream(file) << words; }
@@ -391,7 +391,7 @@ class Collisions {
     fs::create_directories(file.parent_path());
     const fs::path elsewhere = folder_ / fmt::format("{}.ply", ++count_);
     const std::size_t kind = roll(4);
-    write_ply(kind < 2 ? file : elsewhere, cube(0.8 + 0.01 * static_cast<double>(count_)));
+    write_mesh(kind < 2 ? file : elsewhere, cube(0.8 + 0.01 * static_cast<double>(count_)));
     if (kind == 2) fs::create_hard_link(elsewhere, file);
     if (kind == 3) fs::create_symlink(elsewhere, file);
     // The staging folder of a killed run is not the user's, but a file in it that is named remains.
@@ -404,8 +404,8 @@ class Collisions {
   /// Leaves results, and perhaps takes them for inputs.
   void run_earlier(bool used) {
     const fs::path one = folder_ / "first.ply", other = folder_ / "second.ply";
-    write_ply(one, cube(0.9));
-    write_ply(other, cube(1));
+    write_mesh(one, cube(0.9));
+    write_mesh(other, cube(1));
     const std::vector<Arguments> runs{
         {"map", one, other, "-o", d_, "--resolution", "16", "--write", "glb,ply"},
         {"points", one, other, "-o", d_, "--write", "ply"},

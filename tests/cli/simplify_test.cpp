@@ -156,7 +156,7 @@ TEST_F(SimplifyRun, KeepsMaterialsColoursAndNames) {
 TEST_F(SimplifyRun, BakeUsesTheTextureCoordinatesOfTheResult) {
   const Mesh round = with_own_uvs(sphere(5), 1024);
   input = folder / "round.ply";
-  write_ply(input, round);
+  write_mesh(input, round);
   for (const char* name : {"low.glb", "low.obj", "low.ply"})
     for (const char* share : {"20%", "5%"}) {
       out = folder / name;

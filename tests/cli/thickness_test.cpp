@@ -30,8 +30,8 @@ class ThicknessCommandTest : public ::testing::Test {
  protected:
   ThicknessCommandTest() {
     for (Vec3& p : plate.positions) p = {3 * p[0], 2 * p[1], 0.25 * p[2]};
-    write_ply(part, plate);
-    write_ply(open, taken_apart(plate, 1e-6));
+    write_mesh(part, plate);
+    write_mesh(open, taken_apart(plate, 1e-6));
   }
   [[nodiscard]] Outcome run(const std::string& file, std::vector<std::string> more = {}) const {
     std::vector<std::string> arguments{"thickness", file, "-o", out, "--resolution", "64"};
@@ -155,7 +155,7 @@ TEST_F(ThicknessCommandTest, NamesWhatClosesAnOpenPart) {
   outcome = run(open, {"--weld", "auto", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NEAR(Json::parse(outcome.out)["distance"]["min"], 0.5, 1e-4);
-  write_ply(open, height_field(8));
+  write_mesh(open, height_field(8));
   outcome = run(open);
   EXPECT_EQ(outcome.code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("close its holes"));
@@ -194,7 +194,7 @@ TEST_F(ThicknessCommandTest, ConnectedSolidsAreNotCalledOpen) {
       for (std::uint32_t w = 0; w < count; ++w)
         if (two.positions[v] == two.positions[w]) v = w;
   const std::string file = folder / "two.ply";
-  write_ply(file, two);
+  write_mesh(file, two);
   const Outcome outcome = run(file);
   EXPECT_EQ(outcome.code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("4 edges of this one have more than two faces"));

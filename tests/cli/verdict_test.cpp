@@ -106,7 +106,7 @@ TEST_F(Verdicts, AUnitIsMistakenInPlaceToo) {
   const std::string o1 = folder / "scan.ply", o2 = write_obj(folder / "part.obj", part);
   for (const auto& [factor, unit] : kUnits) {
     SCOPED_TRACE(unit);
-    write_ply(o1, placed(part, fmt::format("scale:{}", 1 / factor)));
+    write_mesh(o1, placed(part, fmt::format("scale:{}", 1 / factor)));
     for (const char* command : {"map", "points"}) {
       SCOPED_TRACE(command);
       std::vector<std::string> arguments{command, o1, o2, "-o", out, "--tolerance", "12"};
@@ -299,7 +299,7 @@ TEST_F(Verdicts, NotDecidedSaysByHowMuch) {
 // Two parallel squares: the distance is known, and with it the verdict by each rule.
 TEST_F(Verdicts, KeepTheUncertaintyAwayFromTheLimits) {
   const std::string o1 = write_obj(folder / "o1.obj", square(1, 0));
-  write_ply(folder / "cloud.ply", square(1, 0));
+  write_mesh(folder / "cloud.ply", square(1, 0));
   for (const double d : {0.3, 0.8, 0.95, 1.05, 1.2, 3.0}) {
     const std::string o2 = write_obj(folder / "o2.obj", square(2, d));
     for (const double uncertainty : {0.0, 0.02, 0.1, 0.25}) {

@@ -19,8 +19,8 @@ using test::run_sdm;
 class WeldOption : public testing::Test {
  protected:
   WeldOption() {
-    write_ply(open, test::taken_apart(test::cube(), 1e-6));
-    write_ply(part, test::cube(0.99));
+    write_mesh(open, test::taken_apart(test::cube(), 1e-6));
+    write_mesh(part, test::cube(0.99));
   }
 
   static nlohmann::json run(std::vector<std::string> arguments, int code) {
@@ -68,7 +68,7 @@ TEST_F(WeldOption, IsAdvisedWhereItHelps) {
 
   // A mesh that is open by more than rounding.
   const std::string sheet = folder / "sheet.ply";
-  write_ply(sheet, test::height_field(8));
+  write_mesh(sheet, test::height_field(8));
   const test::Outcome of_sheet =
       run_sdm({"map", part, sheet, "-o", out, "--resolution", "64", "--write", "none"});
   EXPECT_EQ(of_sheet.code, 0) << of_sheet.err;

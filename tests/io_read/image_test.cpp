@@ -9,7 +9,7 @@
 #include <zlib.h>
 
 #include <cstdint>
-#include <cstdio>
+#include <cstdio>  // IWYU pragma: keep, jpeglib.h needs it
 #include <cstdlib>
 #include <random>
 #include <string>

@@ -114,7 +114,7 @@ TEST_F(Topology, ATearKeepsAllFaces) {
     if (i > 0) scene.advance();
     if (i < 35) continue;
     meshes.push_back(scene.bodies()[0].mesh);
-    write_ply(file(static_cast<std::size_t>(i), ".ply"), meshes.back());
+    write_mesh(file(static_cast<std::size_t>(i), ".ply"), meshes.back());
   }
   MeshSequence frames = sequence();
   ASSERT_EQ(frames.frame_count(), 20u);

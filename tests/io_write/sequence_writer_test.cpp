@@ -16,14 +16,14 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(WritePly, RoundTripKeepsEveryBit) {
+TEST(WriteMesh, PlyKeepsEveryBit) {
   const TemporaryFolder folder;
   const Mesh mesh = ring(12, 0.1, {1.0 / 3, 1e-30, 1e3});
-  write_ply(folder / "torus.ply", mesh);
+  write_mesh(folder / "torus.ply", mesh);
   const Mesh read = read_mesh(folder / "torus.ply");
   EXPECT_EQ(read.triangles, mesh.triangles);
   EXPECT_EQ(read.positions, mesh.positions);
-  EXPECT_THROW(write_ply(folder / "no" / "torus.ply", mesh), Error);
+  EXPECT_THROW(write_mesh(folder / "no" / "torus.ply", mesh), Error);
 }
 
 TEST(WriteNpy, HasOneNumberPerTexel) {
@@ -46,7 +46,7 @@ struct Motion : ::testing::Test {
 };
 
 TEST_F(Motion, FramesRoundTripInSinglePrecision) {
-  write_ply(folder / "torus.ply", mesh);
+  write_mesh(folder / "torus.ply", mesh);
   SequenceWriter writer(file, mesh.positions.size());
   for (int t = 0; t < 12; ++t) {
     for (Vec3& p : mesh.positions) p[0] *= 1.1;

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 #include <string>
 #include <vector>
 
-#include "core/memory.h"
-#include "io/file/atomic_file.h"
 #include "io/file/little_endian.h"
 #include "io/mesh/split_vertices.h"
 
@@ -63,15 +60,3 @@ void write_ply(std::ostream& out, const Mesh& mesh, const MeshExtras& extras) {
 }
 
 }  // namespace sdm::io
-
-namespace sdm {
-
-void write_ply(const std::filesystem::path& file, const Mesh& mesh) try {
-  io::AtomicFile out(file);
-  io::write_ply(out.stream(), mesh, {});
-  out.commit();
-} catch (const std::bad_alloc&) {
-  throw out_of_memory("writing " + file.string());
-}
-
-}  // namespace sdm

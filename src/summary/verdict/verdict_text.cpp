@@ -27,13 +27,6 @@ std::string guard_text(const Evidence& evidence) {
   return std::string(", which is the uncertainty and ") + deviation + rule;
 }
 
-/// What the uncertainty adds to a verdict that it leaves decided.
-std::string rule_text(const Summary& summary, const char* by) {
-  if (summary.evidence.uncertainty == 0) return {};
-  return std::string(by) + with_unit(summary.evidence.uncertainty, summary.units, 2) + " (" +
-         name_of(DecisionRule::iso_14253_1) + ")";
-}
-
 /// Why a verdict is open: no point is proven to be out of the limits.
 std::string open_text(const Summary& summary, const std::string& limits) {
   const CertifiedVerdict& verdict = *summary.tolerance;
@@ -127,10 +120,17 @@ std::string limits_text(const Tolerance& tolerance, const std::string& units, bo
   return summary::limits_words(tolerance, is_signed, text) + (units.empty() ? "" : " " + units);
 }
 
+std::string uncertainty_text(double uncertainty, const std::string& units) {
+  if (uncertainty == 0) return {};
+  return " by more than the uncertainty, " + with_unit(uncertainty, units, 2) + " (" +
+         name_of(DecisionRule::iso_14253_1) + ")";
+}
+
 std::string verdict_text(const Summary& summary) {
   if (!summary.tolerance) return {};
   const CertifiedVerdict& verdict = *summary.tolerance;
   const std::string limits = limits_text(verdict.tolerance, summary.units, summary.evidence.is_signed);
+  const std::string by = uncertainty_text(summary.evidence.uncertainty, summary.units);
   const bool samples_only = summary.evidence.samples_only && !verdict.certified;
   const std::string all = std::string(summary.of_points ? "every point of the cloud"
                                       : samples_only    ? "every measured point of the surface"
@@ -139,7 +139,7 @@ std::string verdict_text(const Summary& summary) {
                           (samples_only ? ", an estimate for those between them" : "");
   switch (verdict.verdict) {
     case Verdict::pass:
-      return all + rule_text(summary, ", by more than the uncertainty, ");
+      return all + (by.empty() ? "" : ",") + by;
     case Verdict::doubtful:
       return all + ", but " + summary.doubts.front().text + "; " + summary.doubts.front().remedy +
              ", or --accept-doubts";
@@ -150,8 +150,7 @@ std::string verdict_text(const Summary& summary) {
                    : "no face of the reference faces as a point does";
       if (verdict.reason == VerdictReason::beyond_max_distance)
         return "a point is farther than the maximum distance";
-      return "a point is out of " + limits + rule_text(summary, " by more than the uncertainty, ") +
-             (verdict.by_facing.value_or(false) ? kByFacing : "");
+      return "a point is out of " + limits + by + (verdict.by_facing.value_or(false) ? kByFacing : "");
     case Verdict::not_decided:
       break;
   }

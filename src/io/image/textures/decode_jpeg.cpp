@@ -3,9 +3,8 @@
 
 #include <array>
 #include <csetjmp>
-#include <cstdio>
+#include <cstdio>  // IWYU pragma: keep, jpeglib.h needs it
 
-// Needs <cstdio> before it.
 #include <jerror.h>
 #include <jpeglib.h>
 
