@@ -11,8 +11,8 @@
 #include <functional>
 
 #include "format.h"
+#include "src/core/stopwatch.h"
 #include "src/io/json/report_json.h"
-#include "stopwatch.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -53,7 +53,7 @@ sdm::AlignOptions options_of(const AlignCommand& command, const Input& o2, const
 
 AlignOutcome timed(const Input& o2, const AlignCommand& command, const sdm::Progress& progress,
                    const AlignCalls& calls) {
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   const sdm::AlignOptions options = options_of(command, o2, progress);
   try {
     AlignOutcome outcome{calls.align(options), command, size_of(sdm::bounds(o2.mesh))};

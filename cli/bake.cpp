@@ -21,7 +21,7 @@
 #include "output_folder.h"
 #include "print.h"
 #include "progress_line.h"
-#include "stopwatch.h"
+#include "src/core/stopwatch.h"
 #include "unit_options.h"
 
 namespace {
@@ -147,7 +147,7 @@ sdm::BakedModelOptions model_options(const BakeCommand& command, const BakeResul
 /// Bakes, and writes all files into `folder`. Returns the report.
 Json bake_into(const BakeCommand& command, Input& high, Input& low, const std::filesystem::path& folder,
                ProgressLine& progress, BakeResult& result) {
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   Detailed detailed;
   const sdm::TexelMatches matches = match(command, high, low, detailed, result);
   result.time.match = watch.lap();
@@ -198,7 +198,7 @@ void check_request(const sdm::BakeRequest& request) try {
 }
 
 void run_baking(BakeCommand command) {
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   limit_threads(command.threads);
   OutputFolder out(command.out, {.command = "bake", .planned = planned_files(command)});
   ProgressLine progress(command.quiet);

@@ -22,8 +22,8 @@
 #include "print.h"
 #include "progress_line.h"
 #include "report.h"
+#include "src/core/stopwatch.h"
 #include "src/io/json/report_json.h"
-#include "stopwatch.h"
 #include "unit_options.h"
 
 namespace {
@@ -146,7 +146,7 @@ void run(BodiesCommand command) {
   command.atlas.progress = progress.callback();
 
   progress.step("import");
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   std::vector<sdm::Transform> poses;
   if (!command.poses.empty()) poses = read_poses(command.poses, command.files.size());
   std::vector<Input> inputs;

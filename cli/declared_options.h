@@ -30,7 +30,7 @@ struct OptionText {
 template <class Struct, class Value>
 CLI::Option* add_declared_option(CLI::App& app, const sdm::Option<Struct, Value>& option, Value& target,
                                  const OptionText& said = {}) {
-  constexpr std::string_view kNothing = "automatic";
+  static constexpr std::string_view kNothing = "automatic";
   sdm::OptionInfo info = sdm::info_of(option);
   const bool is_optional_word = info.optional && info.type == "word";
   if (info.type != "direction") info.default_value = sdm::OptionForm<Value>::text(target);

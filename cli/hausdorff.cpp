@@ -21,8 +21,8 @@
 #include "print.h"
 #include "progress_line.h"
 #include "report.h"
+#include "src/core/stopwatch.h"
 #include "src/io/json/report_json.h"
-#include "stopwatch.h"
 #include "unit_options.h"
 
 namespace {
@@ -202,7 +202,7 @@ int run(const HausdorffCommand& command) {
   PairFiles files = command;
   if (command.tolerance) files.tessellation.at_most = deflection_for(*command.tolerance);
   const InputPair pair = load_pair(files, {.inspects = command.json});
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   std::vector<sdm::Sites> sites;  // of the meshes that distances are measured to: O2, or both
   if (command.both) sites.emplace_back(pair.o1.mesh);
   sites.emplace_back(pair.o2.mesh);

@@ -8,7 +8,7 @@
 #include "cad_options.h"
 #include "common_options.h"
 #include "format.h"
-#include "stopwatch.h"
+#include "src/core/stopwatch.h"
 #include "weld.h"
 
 void add_pair_arguments(CLI::App& app, PairFiles& files, const std::array<std::string, 2>& descriptions) {
@@ -27,7 +27,7 @@ void add_pair_reading(CLI::App& app, PairFiles& files) {
 }
 
 InputPair load_pair(const PairFiles& files, const PairReading& reading) {
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   InputPair pair;
   const auto load = [&](Input& input, const char* role, const std::string& file, const std::string& transform,
                         bool vertices) {

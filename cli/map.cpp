@@ -17,7 +17,7 @@
 #include "print.h"
 #include "progress_line.h"
 #include "report.h"
-#include "stopwatch.h"
+#include "src/core/stopwatch.h"
 
 #include <filesystem>
 #include <memory>
@@ -100,7 +100,7 @@ std::string text_of(const MapCommand& command, const std::vector<MeshMaps>& mesh
 
 /// Returns the exit code.
 int run(MapCommand command) {
-  Stopwatch total;
+  sdm::Stopwatch total;
   limit_threads(command.threads);
   OutputFolder out(command.output.folder, {.command = "map", .planned = planned_files(command)});
   ProgressLine progress(command.quiet);

@@ -13,8 +13,8 @@
 #include "islands.h"
 #include "map_files.h"
 #include "notes.h"
+#include "src/core/stopwatch.h"
 #include "src/io/json/report_json.h"
-#include "stopwatch.h"
 #include "weld.h"
 
 using Json = nlohmann::ordered_json;
@@ -181,7 +181,7 @@ Json report_of(const MapTask& task, const AtlasPart& part, const ComputedMap& co
 ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
   const MapCommand& command = task.command;
   const sdm::Mesh& mesh = part.mesh ? *part.mesh : task.on.mesh;
-  Stopwatch total;
+  sdm::Stopwatch total;
   ComputedMap computed;
   std::unique_ptr<sdm::Surface>& surface = computed.surface;
   Outcome& outcome = computed.outcome;
@@ -189,13 +189,13 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
 
   sdm::run_concurrently({
       [&] {
-        Stopwatch watch;
+        sdm::Stopwatch watch;
         surface = std::make_unique<sdm::Surface>(
             cached_surface(mesh, atlas_options(command, mesh), command.layout.cache));
         outcome.time.atlas = watch.lap();
       },
       [&] {
-        Stopwatch watch;
+        sdm::Stopwatch watch;
         if (!task.sites) task.sites = std::make_unique<sdm::Sites>(task.to.mesh);
         outcome.time.sites = watch.lap();
         // The atlas leaves a core idle meanwhile. Without an inside, the answer decides nothing.
@@ -213,7 +213,7 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
   if (!command.along)
     check_sign(task.command.picture.tolerance, sdm::choose_sign(*task.sites, task.command.map), task.to);
 
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   computed.map = sdm::compute_map(*surface, *task.sites, measure_of(command, command.map.progress));
   const sdm::DistanceMap& map = computed.map;
   outcome.time.map = watch.lap();
@@ -235,7 +235,7 @@ ComputedMap compute_part(MapTask& task, const AtlasPart& part) {
 MapResult write_part(const MapTask& task, const AtlasPart& part, const ComputedMap& computed,
                      const std::filesystem::path& folder) {
   const MapCommand& command = task.command;
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   MapResult result{.outcome = computed.outcome};
   Outcome& outcome = result.outcome;
   write_files(task, part, computed, folder, outcome);

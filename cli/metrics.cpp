@@ -19,8 +19,8 @@
 #include "option_checks.h"
 #include "print.h"
 #include "progress_line.h"
+#include "src/core/stopwatch.h"
 #include "src/io/json/report_json.h"
-#include "stopwatch.h"
 #include "unit_options.h"
 
 namespace {
@@ -136,7 +136,7 @@ int run(const MetricsCommand& command) {
   ProgressLine progress(command.quiet);
   progress.step("import");
   const InputPair pair = load_pair(command, {.inspects = command.json});
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   MetricsAnswer answer = decide_metrics(pair, command, progress.callback());
   answer.notes = notes_on(pair.o1, pair.o2);
   if (auto note = note_on_unit(command.units)) answer.notes.push_back(std::move(*note));

@@ -1,11 +1,11 @@
 #include "part_file.h"
 
 #include "cad_options.h"
-#include "stopwatch.h"
+#include "src/core/stopwatch.h"
 #include "weld.h"
 
 LoadedPart load_part(const PartFile& part, bool vertices) {
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   Input input = load_input("mesh", part.file, part.transform, {vertices, part.tessellation});
   check_deflection(part.tessellation, {&input});
   if (part.weld) weld(input, *part.weld);

@@ -16,7 +16,7 @@
 #include "part_file.h"
 #include "report.h"
 #include "report_fields.h"
-#include "stopwatch.h"
+#include "src/core/stopwatch.h"
 
 /// The options of every such command.
 struct PartMapCommand : RunOptions {
@@ -39,7 +39,7 @@ struct PartMap {
   /// Makes the atlas.
   PartMap(const Input& input, double import_ms, const sdm::AtlasOptions& atlas);
   const Input& input;
-  Stopwatch total, watch;  ///< of all, of the step
+  sdm::Stopwatch total, watch;  ///< of all, of the step
   sdm::Surface surface;
   sdm::DistanceMap map{};
   std::vector<float> at_vertices{};

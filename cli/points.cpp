@@ -25,7 +25,7 @@
 #include "print.h"
 #include "progress_line.h"
 #include "scenes/placement.h"
-#include "stopwatch.h"
+#include "src/core/stopwatch.h"
 #include "weld.h"
 
 namespace {
@@ -166,7 +166,7 @@ void judge_doubts(const PointsCommand& command, const sdm::PointDistancesOptions
 
 /// Returns the exit code.
 int run(PointsCommand command) {
-  Stopwatch total, watch;
+  sdm::Stopwatch total, watch;
   limit_threads(command.threads);
   OutputFolder out(command.out, {.command = "points", .planned = planned_files(command)});
   ProgressLine progress(command.quiet);

@@ -17,8 +17,8 @@
 #include "print.h"
 #include "progress_line.h"
 #include "proximity_report.h"
+#include "src/core/stopwatch.h"
 #include "src/io/json/report_json.h"
-#include "stopwatch.h"
 #include "unit_options.h"
 
 namespace {
@@ -36,7 +36,7 @@ void run(const PairCommand& command, const AlignCommand& align) {
   Notes all_notes = notes_on(pair.o1, pair.o2);
   if (auto note = note_on_unit(command.units)) all_notes.push_back(std::move(*note));
   if (aligned) std::ranges::copy(notes(*aligned), std::back_inserter(all_notes));
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   sdm::ProximityQuery query(pair.o1.mesh, pair.o2.mesh, command.options);
   const double build_ms = watch.lap();
   progress.step("queries");

@@ -7,7 +7,7 @@
 
 #include "doubts.h"
 #include "interrupts.h"
-#include "stopwatch.h"
+#include "src/core/stopwatch.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -45,7 +45,7 @@ FrameLoop::End FrameLoop::process() {
   if (checkpoint_.resumes()) adopt_finished();
   const std::size_t kept = checkpoint_.finished();
   try {
-    Stopwatch watch;
+    sdm::Stopwatch watch;
     double seconds = 0;
     bool usable = true;
     for (std::size_t i = kept; i < count_ && usable; ++i) {
@@ -110,7 +110,7 @@ bool FrameLoop::use(std::size_t index) {
     if (!command_.keep_going && checkpoint_.finished() == 0) throw;  // there is nothing to keep
     return skip(index, error.what());
   }
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   pair_.bound_errors(frame);
   frame.time.error = watch.lap();
   answer_queries(frame, pair_.query());

@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "stopwatch.h"
+#include "src/core/stopwatch.h"
 
 namespace {
 
@@ -30,7 +30,7 @@ bool MovingPair::has_history() const {
 }
 
 void MovingPair::move(Frame& frame) {
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   std::array<std::span<const sdm::Vec3>, 2> positions;
   hash_ = {};
   for (int b = 0; b < 2; ++b) {

@@ -28,8 +28,8 @@
 #include "print.h"
 #include "progress_line.h"
 #include "report.h"
+#include "src/core/stopwatch.h"
 #include "src/io/json/report_json.h"
-#include "stopwatch.h"
 #include "unit_options.h"
 #include "weld.h"
 
@@ -138,7 +138,7 @@ void carry(SimplifyOutcome& outcome, const sdm::Progress& progress) {
 }
 
 SimplifyOutcome simplify_mesh(const SimplifyCommand& command, const sdm::Progress& progress) {
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   SimplifyOutcome outcome;
   outcome.input =
       load_input("mesh", command.mesh, "", {.tessellation = command.tessellation, .attributes = true});
@@ -270,7 +270,7 @@ void run(const SimplifyCommand& command) {
   out.fill([&] {
     outcome = simplify_mesh(command, progress.callback());
     progress.step("output");
-    Stopwatch watch;
+    sdm::Stopwatch watch;
     write_levels(command, outcome, out.staging());
     outcome.output_ms = watch.lap();
     if (!command.report.empty()) write_report(command, outcome, out);

@@ -15,8 +15,8 @@
 #include "print.h"
 #include "progress_line.h"
 #include "report.h"
+#include "src/core/stopwatch.h"
 #include "src/io/json/report_json.h"
-#include "stopwatch.h"
 
 namespace {
 
@@ -51,7 +51,7 @@ std::string summary(const FieldCommand& command, const Input& o2, const VolumeOu
 }
 
 VolumeOutcome compute(const FieldCommand& command, Input& o2, const sdm::Progress& progress) {
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   VolumeOutcome outcome;
   o2 = load_input("o2", command.o2, command.transform_o2);
   if (auto note = note_on_unit(command.units)) o2.notes.push_back(std::move(*note));
@@ -77,7 +77,7 @@ void run(const FieldCommand& command) {
   out.fill([&] {
     outcome = compute(command, o2, progress.callback());
     progress.step("output");
-    Stopwatch watch;
+    sdm::Stopwatch watch;
     sdm::write_field(out.staging() / command.out.filename(), outcome.field);
     outcome.output_ms = watch.lap();
   });

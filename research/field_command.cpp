@@ -21,8 +21,8 @@
 #include "cli/print.h"
 #include "cli/progress_line.h"
 #include "cli/report.h"
-#include "cli/stopwatch.h"
 #include "research/fields/fields.h"
+#include "src/core/stopwatch.h"
 #include "src/io/json/report_json.h"
 
 namespace {
@@ -111,7 +111,7 @@ std::string summary(const Command& command, const Outcome& outcome) {
 }
 
 Outcome compute(const Command& command, Input& o2, const sdm::Progress& progress) {
-  Stopwatch watch;
+  sdm::Stopwatch watch;
   Outcome outcome;
   o2 = load_input("o2", command.o2, command.transform_o2);
   Input o1;
@@ -153,7 +153,7 @@ void run(const Command& command) {
     outcome = compute(command, o2, progress.callback());
     if (!out) return;
     progress.step("output");
-    Stopwatch watch;
+    sdm::Stopwatch watch;
     sdm::write_field(out->staging() / command.out.filename(), outcome.field);
     outcome.output_ms = watch.lap();
   };

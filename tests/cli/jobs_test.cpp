@@ -72,26 +72,11 @@ TEST_F(Jobs, TwentyGoodPartsPassAndTwentyDefectsFail) {
   EXPECT_GE(bounded, 3);
 }
 
-/// 30 × 30 and as thick as this, below z = 0.
-Mesh sheet(double thickness) {
-  Mesh mesh = cube(1);
-  for (Vec3& p : mesh.positions) p = {10 + 15 * p[0], 10 + 15 * p[1], thickness * (p[2] - 1) / 2};
-  return mesh;
-}
-
-/// A scan of the upper side, with a dent of this depth about (10, 10).
-Mesh dented(double depth) {
-  return terrain(40, [depth](double x, double y) {
-    const double u = std::max(0.0, 1 - (std::pow(x - 10, 2) + std::pow(y - 10, 2)) / 16);
-    return -depth * u * u;
-  });
-}
-
 struct Dents : Jobs {
   [[nodiscard]] Outcome judge(double thickness, double depth, std::vector<std::string> more) const {
     more.insert(more.end(), {"--tolerance", "0.6", "--write", "csv", "--resolution", "128"});
-    return map(write_obj(folder / "scan.obj", dented(depth)),
-               write_obj(folder / "sheet.obj", sheet(thickness)), more);
+    return map(write_obj(folder / "scan.obj", dented(40, depth)),
+               write_obj(folder / "sheet.obj", thick_plate(thickness)), more);
   }
 };
 

@@ -3,6 +3,11 @@
 
 #include <sdm/mesh.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "support/shapes.h"
+
 namespace sdm::test {
 
 /// The unit normal of a face; 0 without area.
@@ -26,6 +31,21 @@ template <class Height>
       mesh.triangles.push_back({a, a + 1, b + 1});
       mesh.triangles.push_back({a, b + 1, b});
     }
+  return mesh;
+}
+
+/// A scan of the upper side of thick_plate(), with a dent of this depth about (10, 10).
+[[nodiscard]] inline Mesh dented(int n, double depth) {
+  return terrain(n, [depth](double x, double y) {
+    const double u = std::max(0.0, 1 - (std::pow(x - 10, 2) + std::pow(y - 10, 2)) / 16);
+    return -depth * u * u;
+  });
+}
+
+/// A closed plate over [−5, 25]², with its upper side at 0.
+[[nodiscard]] inline Mesh thick_plate(double thickness) {
+  Mesh mesh = cube(1);
+  for (Vec3& p : mesh.positions) p = {10 + 15 * p[0], 10 + 15 * p[1], thickness * (p[2] - 1) / 2};
   return mesh;
 }
 

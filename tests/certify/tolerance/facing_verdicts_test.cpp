@@ -23,21 +23,6 @@ namespace {
 
 constexpr double kAccuracy = 1e-5;
 
-/// A plate over [−5, 25]², closed, with its upper side at 0.
-Mesh thick_plate(double thickness) {
-  Mesh mesh = cube(1);
-  for (Vec3& p : mesh.positions) p = {10 + 15 * p[0], 10 + 15 * p[1], thickness * (p[2] - 1) / 2};
-  return mesh;
-}
-
-/// A scan of the upper side, with a dent of this depth.
-Mesh dented(double depth) {
-  return terrain(24, [depth](double x, double y) {
-    const double u = std::max(0.0, 1 - (std::pow(x - 10, 2) + std::pow(y - 10, 2)) / 16);
-    return -depth * u * u;
-  });
-}
-
 /// A flat scan with a folded face, which is so small in its texture that no texel is on it; its corners are
 /// those of a face that is not folded.
 Mesh folded() {
@@ -79,7 +64,7 @@ struct Judged {
 TEST(FacingVerdicts, APassIsProven) {
   for (const double thickness : {0.5, 1.0, 3.0}) {
     SCOPED_TRACE(thickness);
-    const Judged dent(dented(0.79), thick_plate(thickness));
+    const Judged dent(dented(24, 0.79), thick_plate(thickness));
     const CertifiedVerdict passes = dent.verdict(0.8), fails = dent.verdict(0.78);
     EXPECT_EQ(passes.verdict, Verdict::pass);
     EXPECT_TRUE(passes.certified);
@@ -98,7 +83,7 @@ TEST(FacingVerdicts, APassIsProven) {
 }
 
 TEST(FacingVerdicts, WhatDependsOnSignsIsAnEstimate) {
-  const Judged dent(dented(0.79), thick_plate(1));
+  const Judged dent(dented(24, 0.79), thick_plate(1));
   const CertifiedVerdict verdict = dent.verdict({-0.8, 0.1});
   EXPECT_EQ(verdict.verdict, Verdict::pass);
   EXPECT_EQ(verdict.reason, VerdictReason::all_within);
@@ -204,7 +189,7 @@ TEST(Verdicts, SayWhyAProofDecidedNothing) {
 }
 
 TEST(FacingVerdicts, GroupsAreProven) {
-  const Judged dent(dented(0.79), thick_plate(1));
+  const Judged dent(dented(24, 0.79), thick_plate(1));
   FaceNames names{.kind = "group", .names = {"rim", "dent"}, .of_face = {}};
   for (const Triangle& t : dent.scan.triangles)
     names.of_face.push_back(std::ranges::any_of(t, [&](auto v) { return dent.scan.positions[v][2] < 0; }));
@@ -234,7 +219,7 @@ TEST(FacingVerdicts, GroupsAreProven) {
 
 // Of several maps, a pass is proven if that of each is.
 TEST(FacingVerdicts, SeveralMapsAreProvenTogether) {
-  const Judged dent(dented(0.79), thick_plate(1)), flat(dented(0), thick_plate(1));
+  const Judged dent(dented(24, 0.79), thick_plate(1)), flat(dented(24, 0), thick_plate(1));
   const auto together = [&](const Tolerance& tolerance) {
     CombinedSummary all;
     for (const Judged* part : {&flat, &dent})
