@@ -14,11 +14,11 @@
 
 #include "harness.h"
 #include "heap.h"
+#include "io/mesh/placement.h"
 #include "map_task.h"
 #include "refine_mesh.h"
 #include "scenes.h"
 #include "scenes/letters.h"
-#include "scenes/placement.h"
 #include "scenes/reduce_mesh.h"
 #include "timing.h"
 
@@ -66,7 +66,7 @@ Outcome bunny_to_armadillo(const Trial& trial, std::uint32_t resolution, const c
 /// The paper's E and G, which overlap partially.
 std::array<Mesh, 2> letter_meshes() {
   std::array result{scenes::letter_e(), scenes::letter_g()};
-  scenes::place(result[1], scenes::parse_placement("rotate:10:30:5,translate:0.35:0.1:0.1"));
+  io::place(result[1], io::parse_placement("rotate:10:30:5,translate:0.35:0.1:0.1"));
   return result;
 }
 

@@ -4,15 +4,15 @@
 
 #include <string>
 
+#include "io/mesh/placement.h"
 #include "scenes/box_mesh.h"
-#include "scenes/placement.h"
 #include "scenes/reduce_mesh.h"
 
 namespace sdm::bench {
 
 Mesh load(std::string_view name, std::string_view steps) {
   Mesh mesh = read_mesh(std::string(SDM_BENCH_MESHES) + "/" + std::string(name));
-  scenes::place(mesh, scenes::parse_placement(steps));
+  io::place(mesh, io::parse_placement(steps));
   return mesh;
 }
 

@@ -8,7 +8,7 @@
 
 namespace sdm::bench {
 
-/// Reads a mesh by its file name, and applies the steps of scenes::parse_placement.
+/// Reads a mesh by its file name, and applies the steps of io::parse_placement.
 [[nodiscard]] Mesh load(std::string_view name, std::string_view steps = "");
 
 /// A figure as in the paper's Figure 1: a standing man, 1 high, with the z axis up; CGAL's man.off reduced to

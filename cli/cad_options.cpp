@@ -40,11 +40,11 @@ std::optional<double> deflection_for(const std::optional<sdm::Tolerance>& tolera
 }
 
 sdm::TessellationOptions before_placement(sdm::TessellationOptions options,
-                                          const std::vector<sdm::scenes::PlacementStep>& steps) {
+                                          const std::vector<sdm::io::PlacementStep>& steps) {
   if (!options.at_most) return options;
   const bool fits = std::ranges::any_of(
-      steps, [](const auto& step) { return step.kind == sdm::scenes::PlacementStep::Kind::fit; });
-  const double stretch = fits ? 0 : sdm::largest_stretch(sdm::scenes::transform_of(steps));
+      steps, [](const auto& step) { return step.kind == sdm::io::PlacementStep::Kind::fit; });
+  const double stretch = fits ? 0 : sdm::largest_stretch(sdm::io::transform_of(steps));
   if (stretch > 0)
     *options.at_most /= stretch;
   else
@@ -53,9 +53,9 @@ sdm::TessellationOptions before_placement(sdm::TessellationOptions options,
 }
 
 double placed_deviation(const std::optional<sdm::Tessellation>& tessellation,
-                        const std::vector<sdm::scenes::PlacementStep>& steps) {
+                        const std::vector<sdm::io::PlacementStep>& steps) {
   if (!tessellation) return 0;
-  return tessellation->largest_deviation * sdm::largest_stretch(sdm::scenes::transform_of(steps));
+  return tessellation->largest_deviation * sdm::largest_stretch(sdm::io::transform_of(steps));
 }
 
 std::vector<std::pair<const char*, std::string>> rows_of(const sdm::Tessellation& t) {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "report.h"
-#include "scenes/placement.h"
+#include "src/io/mesh/placement.h"
 
 /// Adds --deflection.
 void add_deflection_option(CLI::App& app, sdm::TessellationOptions& options);
@@ -32,10 +32,10 @@ void check_deflection(const sdm::TessellationOptions& options, bool some_are_cad
 /// The options for a file that is placed by these steps: their limit on the deflection is one on the mesh as
 /// it is placed. What `fit` scales is not known before.
 [[nodiscard]] sdm::TessellationOptions before_placement(sdm::TessellationOptions options,
-                                                        const std::vector<sdm::scenes::PlacementStep>& steps);
+                                                        const std::vector<sdm::io::PlacementStep>& steps);
 /// How far a mesh that is placed by these steps, without `fit`, may be from its surface: 0 unless it is CAD.
 [[nodiscard]] double placed_deviation(const std::optional<sdm::Tessellation>& tessellation,
-                                      const std::vector<sdm::scenes::PlacementStep>& steps);
+                                      const std::vector<sdm::io::PlacementStep>& steps);
 
 /// What `sdm info` prints: names and values.
 [[nodiscard]] std::vector<std::pair<const char*, std::string>> rows_of(const sdm::Tessellation& tessellation);

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "format.h"
-#include "scenes/placement.h"
 #include "src/core/parse_number.h"
+#include "src/io/mesh/placement.h"
 
 std::optional<std::int64_t> parse_whole_number(std::string_view text) {
   return sdm::core::parse_number<std::int64_t>(text);
@@ -33,7 +33,7 @@ std::optional<std::vector<double>> parse_row(std::string_view text) {
 }
 
 std::string check_transform(const std::string& text) try {
-  (void)sdm::scenes::parse_placement(text);
+  (void)sdm::io::parse_placement(text);
   return {};
 } catch (const sdm::Error& error) {
   return error.what();

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-/// Checks steps for sdm::scenes::parse_placement; returns an error message, or an empty string.
+/// Checks steps for sdm::io::parse_placement; returns an error message, or an empty string.
 [[nodiscard]] std::string check_transform(const std::string& text);
 
 /// Reads all of a text as a finite number in base 10, with at most one sign; nothing if it is none.

@@ -24,8 +24,8 @@
 #include "points_report.h"
 #include "print.h"
 #include "progress_line.h"
-#include "scenes/placement.h"
 #include "src/core/stopwatch.h"
+#include "src/io/mesh/placement.h"
 #include "weld.h"
 
 namespace {
@@ -115,7 +115,7 @@ Input load_reference(PointsCommand& command) {
 sdm::PointDistancesOptions measuring_options(const PointsCommand& command, const Input& o2) {
   return {.map = command.map,
           .along = command.along,
-          .placement = sdm::scenes::transform_of(sdm::scenes::parse_placement(command.transform_o1)),
+          .placement = sdm::io::transform_of(sdm::io::parse_placement(command.transform_o1)),
           .picture = command.picture,
           .text = command.text,
           .names = o2.names,

@@ -8,14 +8,14 @@
 #include "group_tolerances.h"
 #include "notes.h"
 #include "places.h"
-#include "scenes/placement.h"
 #include "src/io/json/report_json.h"
+#include "src/io/mesh/placement.h"
 
 using Json = nlohmann::ordered_json;
 
 Input load_input(const std::string& role, const std::string& file, const std::string& transform,
                  const sdm::MeshFileOptions& options) {
-  const std::vector<sdm::scenes::PlacementStep> steps = sdm::scenes::parse_placement(transform);
+  const std::vector<sdm::io::PlacementStep> steps = sdm::io::parse_placement(transform);
   sdm::MeshFileOptions reading = options;
   reading.tessellation = before_placement(options.tessellation, steps);
   sdm::MeshFile read = sdm::read_mesh_file(file, reading);
@@ -31,8 +31,8 @@ Input load_input(const std::string& role, const std::string& file, const std::st
   if (const auto note = note_on_precision(file, input.mesh.positions, size_of(sdm::bounds(input.mesh))))
     input.notes.push_back(*note);
   if (input.tessellation)
-    input.deviation = placed_deviation(input.tessellation, sdm::scenes::without_fit(input.mesh, steps));
-  sdm::scenes::place(input.mesh, steps);
+    input.deviation = placed_deviation(input.tessellation, sdm::io::without_fit(input.mesh, steps));
+  sdm::io::place(input.mesh, steps);
   return input;
 }
 

@@ -9,7 +9,7 @@
 namespace {
 
 sdm::SequenceOptions before_placement(sdm::SequenceOptions options,
-                                      const std::vector<sdm::scenes::PlacementStep>& steps) {
+                                      const std::vector<sdm::io::PlacementStep>& steps) {
   options.tessellation = ::before_placement(options.tessellation, steps);
   return options;
 }
@@ -19,20 +19,20 @@ sdm::SequenceOptions before_placement(sdm::SequenceOptions options,
 Body::Body(const std::string& input, const std::string& steps, const sdm::SequenceOptions& options)
     : input_(input),
       changes_(options.allow_topology),
-      sequence_(input, before_placement(options, sdm::scenes::parse_placement(steps))),
-      steps_(sdm::scenes::without_fit(sequence_.mesh(), sdm::scenes::parse_placement(steps))) {}
+      sequence_(input, before_placement(options, sdm::io::parse_placement(steps))),
+      steps_(sdm::io::without_fit(sequence_.mesh(), sdm::io::parse_placement(steps))) {}
 
 void Body::read(std::size_t frame) {
   const std::span<const sdm::Vec3> read = sequence_.positions(frame);
   replaced_ = behind_ || sequence_.change().replaced;
   behind_ |= !sequence_.change().none();
   placed_.assign(read.begin(), read.end());
-  sdm::scenes::place(placed_, steps_);
+  sdm::io::place(placed_, steps_);
 }
 
 sdm::Mesh Body::mesh() const {
   sdm::Mesh mesh = sequence_.mesh();
-  sdm::scenes::place(mesh, steps_);
+  sdm::io::place(mesh, steps_);
   return mesh;
 }
 

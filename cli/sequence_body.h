@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/placement.h"
+#include "src/io/mesh/placement.h"
 
 class Body {
  public:
@@ -46,7 +46,7 @@ class Body {
   bool behind_ = false;    // a change of the topology was read that nothing has followed
   bool replaced_ = false;  // by the frame that was read last
   sdm::MeshSequence sequence_;
-  std::vector<sdm::scenes::PlacementStep> steps_;
+  std::vector<sdm::io::PlacementStep> steps_;
   std::vector<sdm::Vec3> placed_;
 };
 

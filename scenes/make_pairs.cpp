@@ -1,7 +1,7 @@
 // The scenes `letters` and `bunnies`: pairs of soft bodies.
+#include "io/mesh/placement.h"
 #include "scenes/bunny.h"
 #include "scenes/letters.h"
-#include "scenes/placement.h"
 #include "scenes/reduce_mesh.h"
 #include "scenes/soft_pair.h"
 
@@ -24,7 +24,7 @@ std::unique_ptr<Simulation> collide(std::vector<Scene::Body>& bodies, const Soft
 }
 
 Mesh placed(Mesh mesh, const char* steps) {
-  place(mesh, parse_placement(steps));
+  io::place(mesh, io::parse_placement(steps));
   return mesh;
 }
 

@@ -5,12 +5,12 @@
 #include <bit>
 
 #include "gl/raster_report.h"
+#include "io/mesh/placement.h"
 #include "research/figures/figures.h"
 #include "research/figures/maps.h"
 #include "research/figures/pieces.h"
 #include "research/figures/timing.h"
 #include "scenes/bunny.h"
-#include "scenes/placement.h"
 #include "scenes/reduce_mesh.h"
 
 namespace sdm::figures {
@@ -26,10 +26,10 @@ std::vector<Case> cases(Run& run) {
   const scenes::Scene scene(scenes::SceneKind::figure);
   const Mesh &figure = scene.bodies()[0].mesh, &box = scene.bodies()[1].mesh;
   Mesh bunny = scenes::read_bunny(run.mesh);
-  scenes::place(bunny, scenes::parse_placement("fit"));
+  io::place(bunny, io::parse_placement("fit"));
   bunny = scenes::reduce_mesh(bunny, run.choose(10000u, 2000u));
   Mesh other = bunny;
-  scenes::place(other, scenes::parse_placement("rotate:0:90:0,translate:1.1:0:0"));
+  io::place(other, io::parse_placement("rotate:0:90:0,translate:1.1:0:0"));
   std::vector<Case> result{{"letters", "letter E to letter G", e, g},
                            {"box_to_figure", "box to figure", box, figure}};
   result.push_back(

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/mesh/placement.h"
 #include "research/figures/charts/chart.h"
 #include "research/figures/figures.h"
 #include "research/figures/maps.h"
 #include "research/figures/pieces.h"
 #include "research/figures/timing.h"
 #include "scenes/bunny.h"
-#include "scenes/placement.h"
 #include "scenes/reduce_mesh.h"
 
 namespace sdm::figures {
@@ -21,7 +21,7 @@ Figure polygon_count(Run& run) {
       run.quick ? std::vector<std::size_t>{1000, 2000, 4000}
                 : std::vector<std::size_t>{1000, 2000, 5000, 10000, 20000, 50000};
   Mesh bunny = scenes::read_bunny(run.mesh);
-  scenes::place(bunny, scenes::parse_placement("fit"));
+  io::place(bunny, io::parse_placement("fit"));
   std::vector<double> polygons, cpu, gl;
   std::vector<std::vector<std::string>> rows;
   Json measured = Json::array();
@@ -30,7 +30,7 @@ Figure polygon_count(Run& run) {
     run.step("polygon_count");
     const Mesh o1 = scenes::reduce_mesh(bunny, count);
     Mesh o2 = o1;
-    scenes::place(o2, scenes::parse_placement("rotate:0:90:0,translate:1.1:0:0"));
+    io::place(o2, io::parse_placement("rotate:0:90:0,translate:1.1:0:0"));
     Pair pair({o1, o2}, resolution);
     std::vector<std::function<void()>> work{[&] { pair.compute(); }};
     if (run.gl) work.emplace_back([&] { pair.compute(run.gl); });

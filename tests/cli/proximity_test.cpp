@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/samples.h"
-#include "scenes/placement.h"
+#include "io/mesh/placement.h"
 #include "support/run_sdm.h"
 #include "support/shapes.h"
 
@@ -72,7 +72,7 @@ TEST_F(ProximityCommand, AsksTheTrianglesThemselves) {
     ASSERT_EQ(run.code, 0) << run.err;
     const Json json = Json::parse(run.out);
     Mesh second = read_mesh(o2);
-    scenes::place(second, scenes::parse_placement(placement));
+    io::place(second, io::parse_placement(placement));
     ProximityQuery query(read_mesh(o1), second);
     EXPECT_EQ(json["separation"]["kind"], "exact");
     EXPECT_EQ(json["separation"]["value"], query.separation().value);

@@ -2,7 +2,7 @@
 
 #include <sdm/mesh_files.h>
 
-#include "scenes/placement.h"
+#include "io/mesh/placement.h"
 
 namespace sdm::test {
 
@@ -15,7 +15,7 @@ Mesh load(const std::string& name, std::string_view steps) {
 }
 
 Mesh placed(Mesh mesh, std::string_view steps) {
-  scenes::place(mesh, scenes::parse_placement(steps));
+  io::place(mesh, io::parse_placement(steps));
   return mesh;
 }
 

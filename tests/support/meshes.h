@@ -11,7 +11,7 @@ namespace sdm::test {
 
 /// The path of an installed mesh.
 [[nodiscard]] std::string mesh_file(const std::string& name);
-/// An installed mesh, placed by the steps of scenes::parse_placement.
+/// An installed mesh, placed by the steps of io::parse_placement.
 [[nodiscard]] Mesh load(const std::string& name, std::string_view steps = "");
 
 [[nodiscard]] Mesh placed(Mesh mesh, std::string_view steps);

@@ -4,11 +4,11 @@
 #include <fstream>
 
 #include "geometry/vec.h"
-#include "scenes/placement.h"
+#include "io/mesh/placement.h"
 #include "support/shapes.h"
 #include "support/temporary_folder.h"
 
-namespace sdm::scenes {
+namespace sdm::io {
 namespace {
 
 using ::testing::HasSubstr;
@@ -164,4 +164,4 @@ TEST(ParsePlacement, ErrorNamesTheInvalidStep) {
 }
 
 }  // namespace
-}  // namespace sdm::scenes
+}  // namespace sdm::io

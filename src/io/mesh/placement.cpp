@@ -1,4 +1,4 @@
-#include "scenes/placement.h"
+#include "io/mesh/placement.h"
 
 #include <sdm/error.h>
 #include <sdm/mesh_files.h>
@@ -11,7 +11,7 @@
 
 #include "geometry/vec.h"
 
-namespace sdm::scenes {
+namespace sdm::io {
 namespace {
 
 [[noreturn]] void fail(std::string_view step, const std::string& fault) {
@@ -208,4 +208,4 @@ std::vector<PlacementStep> without_fit(Mesh mesh, const std::vector<PlacementSte
   return result;
 }
 
-}  // namespace sdm::scenes
+}  // namespace sdm::io

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace sdm::scenes {
+namespace sdm::io {
 
 /// One step of a placement.
 struct PlacementStep {
@@ -45,4 +45,4 @@ void place(std::span<Vec3> points, const std::vector<PlacementStep>& steps);
 /// its matrix, so that all frames of a sequence are placed like the first. Throws as place does.
 [[nodiscard]] std::vector<PlacementStep> without_fit(Mesh mesh, const std::vector<PlacementStep>& steps);
 
-}  // namespace sdm::scenes
+}  // namespace sdm::io
