@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "closest/point_group.h"
+#include "closest/work_counts.h"
 #include "geometry/vec.h"
 
 namespace sdm::bench {

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "closest/work_counts.h"
 #include "embree_map.h"
 #include "timing.h"
 

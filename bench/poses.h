@@ -1,10 +1,12 @@
 // Placements of one mesh relative to another.
 #pragma once
 
+#include <sdm/sites.h>
+
 #include <random>
 #include <vector>
 
-#include "bodies/pairs/mesh_pair.h"
+#include "geometry/affine.h"
 
 namespace sdm::bench {
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <sdm/bake.h>
 #include <sdm/bake_files.h>
-#include <sdm/execution.h>
 
 #include <algorithm>
 #include <array>

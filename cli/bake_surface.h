@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "bake_options.h"
 #include "report.h"
 
 struct BakeSurface {

@@ -1,5 +1,6 @@
 #include "devices.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 #include <sdm/gl.h>
 #include <sdm/gpu.h>
@@ -13,7 +14,6 @@
 #include <string>
 #include <string_view>
 
-#include "format.h"
 #include "src/io/json/report_json.h"
 
 namespace {

@@ -6,6 +6,7 @@
 
 #include "common_options.h"
 #include "declared_options.h"
+#include "islands.h"
 
 #include <algorithm>
 #include <cmath>

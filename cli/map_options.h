@@ -10,12 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "alignment.h"
+#include "align_options.h"
 #include "common_options.h"
 #include "doubts.h"
 #include "group_tolerances.h"
 #include "input_pair.h"
-#include "islands.h"
 #include "map_files.h"
 #include "report_fields.h"
 #include "unit_options.h"

@@ -2,7 +2,6 @@
 // lines `note` of every command's text, and the array `notes` of its JSON.
 #pragma once
 
-#include <sdm/mesh.h>
 #include <sdm/mesh_edit.h>
 
 #include <optional>

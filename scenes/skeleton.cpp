@@ -1,5 +1,7 @@
 #include "scenes/skeleton.h"
 
+#include <algorithm>
+
 namespace sdm::scenes {
 namespace {
 

@@ -1,8 +1,6 @@
 // An articulated figure: a tree of bones with joints, and a skin around them.
 #pragma once
 
-#include <sdm/mesh.h>
-
 #include <span>
 #include <vector>
 

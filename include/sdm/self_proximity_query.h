@@ -4,7 +4,6 @@
 #pragma once
 
 #include <sdm/bounds.h>
-#include <sdm/execution.h>
 #include <sdm/measure.h>
 #include <sdm/mesh.h>
 #include <sdm/proximity_query.h>

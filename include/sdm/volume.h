@@ -5,7 +5,6 @@
 
 #include <sdm/bounds.h>
 #include <sdm/execution.h>
-#include <sdm/mesh.h>
 #include <sdm/names.h>
 #include <sdm/options.h>
 #include <sdm/sites.h>

@@ -4,7 +4,6 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <sdm/map.h>
-#include <sdm/mesh.h>
 #include <sdm/mesh_edit.h>
 #include <sdm/types.h>
 

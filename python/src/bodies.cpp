@@ -6,6 +6,7 @@
 #include <string>
 
 #include "arrays.h"
+#include "objects.h"
 #include "options.h"
 #include "proximity.h"
 #include "values.h"

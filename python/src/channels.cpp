@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 
+#include "arrays.h"
 #include "map.h"
 
 namespace sdm::python {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "objects.h"
 #include "proximity.h"
 
 namespace sdm::python {

@@ -7,8 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "objects.h"
-
 namespace sdm::python {
 
 /// The tolerances of a dict of names, or of a file.

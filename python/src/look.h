@@ -2,7 +2,8 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
-#include <sdm/bake_files.h>
+#include <sdm/bake.h>
+#include <sdm/mesh_files.h>
 
 #include <vector>
 

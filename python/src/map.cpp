@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "arrays.h"
 #include "groups.h"
 #include "options.h"
 #include "rays.h"

@@ -3,7 +3,6 @@
 
 #include <nanobind/stl/string.h>
 #include <sdm/error.h>
-#include <sdm/io.h>
 #include <sdm/measure.h>
 #include <sdm/sdm.h>
 
@@ -14,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "arrays.h"
 #include "objects.h"
 
 namespace sdm::python {

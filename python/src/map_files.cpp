@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "arrays.h"
 #include "map.h"
 #include "options.h"
 

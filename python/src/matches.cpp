@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "arrays.h"
 #include "map.h"
 #include "options.h"
 #include "run.h"

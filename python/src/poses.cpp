@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "objects.h"
 #include "options.h"
 #include "proximity.h"
 #include "stored.h"

@@ -1,6 +1,7 @@
 // Proximity of two bodies.
 #include "proximity.h"
 #include "fields.h"
+#include "objects.h"
 #include "options.h"
 #include "signatures.h"
 #include "stored.h"

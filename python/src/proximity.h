@@ -11,7 +11,7 @@
 
 #include "arrays.h"
 #include "fields.h"
-#include "objects.h"
+#include "run.h"
 
 namespace sdm::python {
 

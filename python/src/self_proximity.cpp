@@ -2,6 +2,7 @@
 #include <nanobind/stl/optional.h>
 #include <sdm/error.h>
 
+#include "objects.h"
 #include "options.h"
 #include "proximity.h"
 #include "signatures.h"

@@ -2,7 +2,6 @@
 #include <sdm/error.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "arrays.h"
 #include "closest.h"

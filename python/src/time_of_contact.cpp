@@ -2,6 +2,7 @@
 #include <nanobind/stl/optional.h>
 #include <sdm/proximity_query.h>
 
+#include "objects.h"
 #include "proximity.h"
 #include "signatures.h"
 #include "values.h"

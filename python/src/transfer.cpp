@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "arrays.h"
 #include "map.h"
 #include "run.h"
 

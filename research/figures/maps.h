@@ -1,7 +1,6 @@
 // Two bodies that carry maps to each other, and the error of maps.
 #pragma once
 
-#include <sdm/gl.h>
 #include <sdm/sdm.h>
 
 #include <array>

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "io/mesh/placement.h"
 #include "research/figures/charts/chart.h"

@@ -1,7 +1,8 @@
 // The pairs of a site and a face for which Algorithm 1 draws a polygon.
 #pragma once
 
-#include <sdm/map.h>
+#include <sdm/sites.h>
+#include <sdm/surface.h>
 
 #include <cstdint>
 #include <vector>

@@ -3,7 +3,6 @@
 
 #include <span>
 
-#include "closest/single_point.h"
 #include "sites/closest_packet.h"
 #include "sites/sites_data.h"
 

@@ -6,7 +6,6 @@
 
 #include "closest/point_group.h"
 #include "closest/site_lists.h"
-#include "sites/sites_data.h"
 #include "tree/visit.h"
 
 namespace sdm::closest {

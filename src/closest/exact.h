@@ -6,7 +6,6 @@
 #include <span>
 #include <tuple>
 
-#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 #include "sites/sites_data.h"
 #include "tree/visit.h"

@@ -9,6 +9,9 @@
 #include <bit>
 
 #include "closest/closest_points.h"
+#include "closest/point_group.h"
+#include "closest/single_point.h"
+#include "closest/site_lists.h"
 #include "core/nothing_found.h"
 #include "geometry/lanes/vec-inl.h"
 #include "sites/closest_on_face.h"

@@ -3,7 +3,6 @@
 
 #include <span>
 
-#include "closest/descent.h"
 #include "sites/closest_packet.h"
 #include "sites/sites_data.h"
 

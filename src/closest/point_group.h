@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/unit_frame.h"
 #include "tree/aabb_tree.h"
 
 namespace sdm::closest {

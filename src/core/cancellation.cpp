@@ -1,6 +1,7 @@
 #include "core/cancellation.h"
 
 #include <sdm/error.h>
+#include <sdm/execution.h>
 
 namespace sdm {
 namespace core {

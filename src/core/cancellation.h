@@ -2,8 +2,6 @@
 // some 20 ms polls by itself.
 #pragma once
 
-#include <sdm/execution.h>
-
 #include <atomic>
 #include <cstdint>
 

@@ -3,7 +3,6 @@
 
 #include <span>
 
-#include "closest/engine.h"
 #include "gl/draw_winners.h"
 
 namespace sdm::gl {

@@ -1,11 +1,14 @@
 #include "gl/domain_tree.h"
 
+#include <sdm/gl.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "closest/closest_points.h"
 #include "core/parallel.h"
 #include "geometry/vec.h"
+#include "gl/face_domains.h"
 
 namespace sdm::gl {
 namespace {

@@ -1,11 +1,8 @@
 // The AABB tree of O1's domains, with an upper bound on distances at every node (the paper's 4.2).
 #pragma once
 
-#include <sdm/map.h>
-
 #include <vector>
 
-#include "gl/face_domains.h"
 #include "gl/tile_tree.h"
 #include "sites/sites_data.h"
 #include "tree/fold.h"

@@ -1,8 +1,6 @@
 // The paper's Algorithm 1: the polygons of all sites, drawn into the atlas of O1 with a depth test.
 #pragma once
 
-#include <sdm/gl.h>
-
 #include <vector>
 
 #include "gl/map_drawing.h"

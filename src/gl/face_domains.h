@@ -5,9 +5,9 @@
 #include <sdm/gl.h>
 #include <sdm/surface.h>
 
+#include "geometry/unit_frame.h"
 #include "gl/polygons/planar_domain.h"
 #include "surface/tiles.h"
-#include "tree/aabb_tree.h"
 
 namespace sdm::gl {
 

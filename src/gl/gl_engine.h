@@ -1,7 +1,7 @@
 // The gl engine: surface distance maps by rasterisation with OpenGL.
 #pragma once
 
-#include <sdm/gl.h>
+#include <sdm/engine.h>
 
 namespace sdm::gl {
 

@@ -1,8 +1,6 @@
 // Finds which sites of O2 meet which domains of O1: by distance bounds, then oriented boxes, then clipping.
 #pragma once
 
-#include <sdm/gl.h>
-
 #include <cstdint>
 #include <vector>
 
@@ -10,7 +8,6 @@
 #include "gl/polygons/oriented_box.h"
 #include "gl/polygons/planar_domain.h"
 #include "gl/polygons/site_region.h"
-#include "gl/raster_report.h"
 #include "tree/visit.h"
 
 namespace sdm::gl {

@@ -1,8 +1,6 @@
 // Draws all pairs of the sites of O2 and a block of domains, in batches of bounded size.
 #pragma once
 
-#include <sdm/gl.h>
-
 #include <algorithm>
 #include <functional>
 #include <span>

@@ -1,8 +1,6 @@
 // Draws the sites' polygons on planar domains; the depth test keeps the closest site at each texel.
 #pragma once
 
-#include <sdm/gl.h>
-
 #include <cstdint>
 #include <memory>
 #include <span>

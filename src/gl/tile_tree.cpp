@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "geometry/unit_frame.h"
 #include "geometry/vec.h"
 
 namespace sdm::gl {

@@ -1,8 +1,6 @@
 // The search on a device: the faces that may be closest to each of many points.
 #pragma once
 
-#include <sdm/types.h>
-
 #include <cstdint>
 #include <initializer_list>
 #include <memory>

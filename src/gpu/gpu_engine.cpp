@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "closest/blocks.h"
+#include "closest/engine.h"
 #include "core/lazy/device_pool.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"

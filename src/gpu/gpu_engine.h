@@ -2,9 +2,7 @@
 // processor. Its options and report are public (sdm/gpu.h).
 #pragma once
 
-#include <sdm/gpu.h>
-
-#include "closest/engine.h"
+#include <sdm/engine.h>
 
 namespace sdm::gpu {
 

@@ -9,7 +9,6 @@
 #include <span>
 
 #include "inside/sign.h"
-#include "inside/solid.h"
 #include "sites/closest_packet.h"
 #include "sites/sites_data.h"
 

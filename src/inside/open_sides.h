@@ -1,7 +1,6 @@
 // Open meshes: their boundary, the faces that close them, and the winding numbers beside their faces.
 #pragma once
 
-#include <sdm/closest_points.h>
 #include <sdm/types.h>
 
 #include <atomic>

@@ -7,6 +7,7 @@
 #include "geometry/clip.h"
 #include "geometry/point_triangle.h"
 #include "geometry/vec.h"
+#include "inside/near_faces.h"
 #include "inside/solid.h"
 #include "search/branch_and_bound.h"
 

@@ -9,9 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "core/arrays/rows.h"
 #include "inside/face_sides.h"
-#include "inside/near_faces.h"
 
 namespace sdm::inside {
 

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/cancellation.h"
-#include "geometry/affine.h"
 #include "geometry/vec.h"
 #include "inside/open_sides.h"
 #include "inside/solid.h"

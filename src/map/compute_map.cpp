@@ -8,7 +8,6 @@
 #include "core/memory.h"
 #include "core/numbers/number_text.h"
 #include "map/closest_measure.h"
-#include "surface/surface_data.h"
 
 namespace sdm {
 

@@ -6,7 +6,6 @@
 
 #include "core/arrays/rows.h"
 #include "core/parallel.h"
-#include "geometry/triangle.h"
 #include "geometry/vec.h"
 #include "surface/tiles.h"
 

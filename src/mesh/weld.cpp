@@ -1,9 +1,7 @@
 // Boundary edges are matched in pairs, the closest ones first, and the vertices at their ends are united.
-#include <sdm/error.h>
 #include <sdm/mesh_edit.h>
 
 #include <algorithm>
-#include <cmath>
 #include <new>
 #include <numeric>
 #include <tuple>
@@ -12,6 +10,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/point_triangle.h"
+#include "geometry/unit_frame.h"
 #include "geometry/vec.h"
 #include "mesh/topology.h"
 #include "tree/visit.h"

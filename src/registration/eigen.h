@@ -7,8 +7,6 @@
 
 #include <sdm/types.h>
 
-#include "geometry/affine.h"
-
 namespace sdm::registration {
 
 /// A small rigid motion about a centre: the rotation vector times the radius of gyration, then the

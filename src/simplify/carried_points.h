@@ -1,8 +1,6 @@
 // Points of the input that the faces of a simplified mesh stand for.
 #pragma once
 
-#include <sdm/mesh.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <span>

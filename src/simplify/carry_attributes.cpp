@@ -11,7 +11,6 @@
 
 #include "closest/facing/facing_normals.h"
 #include "core/memory.h"
-#include "core/parallel.h"
 #include "geometry/barycentric.h"
 
 namespace sdm {

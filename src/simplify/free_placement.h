@@ -1,7 +1,6 @@
 // Simplification with vertices that are placed freely, to a certified deviation.
 #pragma once
 
-#include <sdm/execution.h>
 #include <sdm/simplify.h>
 #include <sdm/sites.h>
 

@@ -9,7 +9,6 @@
 #include "certify/hausdorff/vertex_search.h"
 #include "closest/blocks.h"
 #include "closest/closest_points.h"
-#include "core/parallel.h"
 #include "geometry/clip.h"
 #include "geometry/rounding.h"
 #include "geometry/spatial_order.h"

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "geometry/unit_frame.h"
 #include "sites/regions.h"
 #include "tree/aabb_tree.h"
 

@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "geometry/triangle.h"
-#include "mesh/topology.h"
 #include "tree/visit_pairs.h"
 
 namespace sdm::sites {

@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/unit_frame.h"
 #include "mesh/topology.h"
 #include "sites/pseudonormals.h"
 #include "tree/aabb_tree.h"

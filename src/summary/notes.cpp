@@ -1,5 +1,4 @@
 #include <sdm/measure.h>
-#include <sdm/statistics.h>
 #include <sdm/summary.h>
 
 #include <algorithm>

@@ -1,7 +1,8 @@
 // The note on thin walls, of lengths that are known.
 #pragma once
 
-#include <sdm/summary.h>
+#include <sdm/mesh_attributes.h>
+#include <sdm/tolerance.h>
 
 #include <optional>
 #include <span>

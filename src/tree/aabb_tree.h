@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/arrays/array.h"
-#include "geometry/unit_frame.h"
 
 namespace sdm::tree {
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "tree/fold.h"
 
 namespace sdm::tree {
 namespace {

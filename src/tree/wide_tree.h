@@ -1,8 +1,6 @@
 // An AABB tree collapsed to eight children per node, which vector instructions test together.
 #pragma once
 
-#include <sdm/types.h>
-
 #include <algorithm>
 #include <cstdint>
 

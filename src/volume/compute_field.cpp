@@ -1,4 +1,3 @@
-#include <sdm/error.h>
 #include <sdm/volume.h>
 
 #include <algorithm>

@@ -8,7 +8,9 @@
 #include "core/stopwatch.h"
 #include "geometry/spatial_order.h"
 #include "geometry/vec.h"
+#include "inside/inside.h"
 #include "volume/field_arrays.h"
+#include "volume/field_writer.h"
 #include "volume/grid.h"
 
 namespace sdm::volume {

@@ -4,7 +4,6 @@
 #include <sdm/volume.h>
 
 #include "closest/engine.h"
-#include "volume/field_writer.h"
 
 namespace sdm::volume {
 

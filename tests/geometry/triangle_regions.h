@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "geometry/point_triangle.h"
-#include "support/points.h"
 
 namespace sdm::test {
 

@@ -1,5 +1,6 @@
 // Every texel of every map by rasterisation against the reference engine.
 #include "gl/raster_report.h"
+#include "gl/scenes.h"
 #include "gl/support.h"
 #include "support/map_checks.h"
 #include "support/oracle.h"

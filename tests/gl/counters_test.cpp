@@ -1,5 +1,6 @@
 // The options of <sdm/gl.h> change the counters of the report, but no bit of the map.
 #include "gl/raster_report.h"
+#include "gl/scenes.h"
 #include "gl/support.h"
 #include "support/map_checks.h"
 #include "support/points.h"

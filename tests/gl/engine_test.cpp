@@ -2,6 +2,7 @@
 #include <atomic>
 #include <thread>
 
+#include "gl/scenes.h"
 #include "gl/support.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"

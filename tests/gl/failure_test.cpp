@@ -1,5 +1,6 @@
 // Errors of the gl engine and their messages.
 #include <gmock/gmock.h>
+#include <sdm/closest_points.h>
 
 #include "closest/engine.h"
 #include "core/platform.h"

@@ -1,11 +1,13 @@
 // Maps of the gl engine, and the invariants of a map and its report.
 #pragma once
 
+#include <gtest/gtest.h>
+#include <sdm/map.h>
+
 #include <limits>
 #include <memory>
 
 #include "gl/raster_report.h"
-#include "gl/scenes.h"
 
 namespace sdm::test {
 

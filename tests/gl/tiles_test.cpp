@@ -1,5 +1,6 @@
 // Tiles partition the owned texels; their domains and bounds are valid for every sample.
 #include "surface/tiles.h"
+#include "gl/face_domains.h"
 
 #include <gtest/gtest.h>
 #include <sdm/sdm.h>

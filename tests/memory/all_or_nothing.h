@@ -4,13 +4,12 @@
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/execution.h>
-#include <sdm/mesh_edit.h>
+#include <sdm/mesh.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
-#include <memory>
 #include <new>
 #include <optional>
 #include <thread>

@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "geometry/triangle_pair.h"
 #include "mesh/similarity.h"
 #include "poses.h"
 #include "support/allocations.h"

@@ -10,6 +10,7 @@
 #include <set>
 #include <vector>
 
+#include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 #include "support/map_checks.h"
 #include "support/meshes.h"

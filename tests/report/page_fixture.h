@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "cli/samples.h"
-#include "report/page_browser.h"
 #include "report/shared_runs.h"
 #include "support/run_sdm.h"
 #include "support/shapes.h"

@@ -1,7 +1,6 @@
 // Small meshes whose numbers of faces are no multiples of what the library works on at once.
 #pragma once
 
-#include <sdm/map_files.h>
 #include <sdm/mesh.h>
 
 #include <random>

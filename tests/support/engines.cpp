@@ -1,5 +1,7 @@
 #include "support/engines.h"
 
+#include <sdm/engine.h>
+
 #include <ostream>
 
 namespace sdm::test {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <sdm/engine.h>
 
 #include <string>
 #include <vector>

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "geometry/triangle_pair.h"
+#include "geometry/triangle.h"
 
 namespace sdm::oracle {
 

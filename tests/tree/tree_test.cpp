@@ -8,6 +8,7 @@
 #include <random>
 #include <utility>
 
+#include "geometry/unit_frame.h"
 #include "geometry/vec.h"
 #include "support/arrays.h"
 #include "tree/aabb_tree.h"

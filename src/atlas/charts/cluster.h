@@ -1,8 +1,6 @@
 // Clusters of adjacent faces with similar normals.
 #pragma once
 
-#include <sdm/execution.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <optional>

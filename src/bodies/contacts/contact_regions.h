@@ -5,9 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "bodies/contacts/surface_point.h"
 #include "bodies/pairs/near_faces.h"
-#include "bodies/shape/posed_body.h"
+#include "bodies/shape/body.h"
 #include "tree/visit.h"
 
 namespace sdm::contacts {

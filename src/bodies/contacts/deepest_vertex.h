@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "bodies/contacts/surface_point.h"
-#include "geometry/affine.h"
 #include "mesh/similarity.h"
 
 namespace sdm::contacts {

@@ -11,7 +11,6 @@
 
 #include "bodies/motion/divided_motion.h"
 #include "bodies/shape/posed_body.h"
-#include "core/cancellation.h"
 
 namespace sdm::bodies {
 

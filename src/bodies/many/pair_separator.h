@@ -1,8 +1,6 @@
 // How two bodies of a world leave each other: all their parts, and with the bodies beside them.
 #pragma once
 
-#include <sdm/multi_body_query.h>
-
 #include <cstdint>
 #include <optional>
 #include <span>

@@ -9,6 +9,7 @@
 
 #include "bodies/contacts/contact_finder.h"
 #include "bodies/convex/convex_pair.h"
+#include "bodies/convex/difference_hull.h"
 #include "bodies/pairs/pair_search.h"
 #include "bodies/shape/posed_body.h"
 #include "bodies/solids/solid_contacts.h"

@@ -14,6 +14,7 @@
 #include "bodies/pairs/pair_search.h"
 #include "core/cancellation.h"
 #include "geometry/lanes/triangle_pair-inl.h"
+#include "geometry/triangle_pair.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sdm::pairs::HWY_NAMESPACE {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "inside/solid.h"
+
 namespace sdm::pairs {
 namespace {
 

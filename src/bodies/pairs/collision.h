@@ -2,7 +2,6 @@
 #pragma once
 
 #include "bodies/pairs/pair_search.h"
-#include "inside/inside.h"
 
 namespace sdm::pairs {
 

@@ -6,7 +6,6 @@
 #include <array>
 
 #include "geometry/affine.h"
-#include "geometry/triangle_pair.h"
 #include "sites/bounding_cylinders.h"
 #include "sites/sites_data.h"
 

@@ -8,6 +8,7 @@
 
 #include "bodies/pairs/face_lanes-inl.h"
 #include "core/parallel.h"
+#include "geometry/triangle_pair.h"
 #include "tree/visit_pairs.h"
 
 HWY_BEFORE_NAMESPACE();

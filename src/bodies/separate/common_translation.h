@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "bodies/pair/pair_answers.h"
-#include "bodies/separate/separating_translation.h"
 #include "bodies/shape/posed_body.h"
 
 namespace sdm::separate {

@@ -1,10 +1,12 @@
 // The parts of a surface that have one contact each.
 #pragma once
 
+#include <sdm/types.h>
+
 #include <cstdint>
 #include <vector>
 
-#include "sites/sites_data.h"
+#include "tree/aabb_tree.h"
 
 namespace sdm::shape {
 

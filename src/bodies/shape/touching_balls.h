@@ -1,7 +1,6 @@
 // The balls inside a solid that touch a part of its surface.
 #pragma once
 
-#include "geometry/triangle_pair.h"
 #include "inside/face_sides.h"
 #include "sites/sites_data.h"
 

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "bodies/shape/node_ball.h"
-#include "geometry/triangle_pair.h"
 #include "inside/inside.h"
 
 namespace sdm::shape {

@@ -9,7 +9,6 @@
 
 #include "bodies/shape/node_ball.h"
 #include "bodies/shape/touching_balls.h"
-#include "geometry/triangle_pair.h"
 #include "inside/inside.h"
 #include "sites/sites_data.h"
 #include "tree/visit.h"

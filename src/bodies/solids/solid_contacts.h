@@ -8,6 +8,7 @@
 
 #include "bodies/contacts/contact_patches.h"
 #include "bodies/solids/convex_patch.h"
+#include "bodies/solids/mesh_distance.h"
 #include "bodies/solids/solid_pair.h"
 
 namespace sdm::solids {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "bodies/solids/core_distance.h"
+#include "bodies/solids/mesh_distance.h"
 #include "closest/single_point.h"
 #include "geometry/unit_across.h"
 #include "geometry/vec.h"

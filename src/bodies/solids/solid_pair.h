@@ -5,8 +5,7 @@
 
 #include <optional>
 
-#include "bodies/solids/core_distance.h"
-#include "bodies/solids/mesh_distance.h"
+#include "bodies/convex/difference_hull.h"
 #include "bodies/solids/posed_core.h"
 
 namespace sdm::solids {

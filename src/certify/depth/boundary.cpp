@@ -8,6 +8,7 @@
 #include "geometry/point_triangle.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle.h"
+#include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 #include "tree/visit.h"
 

@@ -1,8 +1,6 @@
 // The boundary of a solid: its parts, those that a search has found, and the distance b(p) from p to it.
 #pragma once
 
-#include <sdm/closest_points.h>
-
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -10,7 +8,6 @@
 #include <vector>
 
 #include "bodies/shape/body.h"
-#include "geometry/triangle_pair.h"
 #include "search/mixed_bound.h"
 #include "sites/sites_data.h"
 

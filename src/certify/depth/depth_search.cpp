@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "closest/closest_points.h"
+#include "closest/single_point.h"
 #include "geometry/rounding.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"

@@ -8,7 +8,6 @@
 
 #include "bodies/shape/node_ball.h"
 #include "certify/depth/boundary.h"
-#include "geometry/triangle_pair.h"
 #include "mesh/similarity.h"
 #include "sites/sites_data.h"
 

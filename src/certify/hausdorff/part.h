@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "geometry/triangle.h"
-#include "geometry/triangle_pair.h"
 #include "sites/sites_data.h"
 
 namespace sdm::hausdorff {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "geometry/vec.h"
+#include "inside/sign.h"
 
 namespace sdm::hausdorff {
 

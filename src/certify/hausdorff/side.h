@@ -2,7 +2,7 @@
 #pragma once
 
 #include "geometry/triangle.h"
-#include "inside/sign.h"
+#include "inside/open_sides.h"
 #include "sites/sites_data.h"
 
 namespace sdm::hausdorff {

@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "certify/metrics/surface_points.h"
 #include "sites/sites_data.h"
 
 namespace sdm::metrics {

@@ -1,5 +1,7 @@
 // The table of engines.
 #include <sdm/error.h>
+#include <sdm/gl.h>
+#include <sdm/gpu.h>
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,7 @@
 #include "core/arrays/stored_arrays.h"
 
+#include <sdm/error.h>
+
 #include <algorithm>
 #include <bit>
 #include <string>

@@ -8,8 +8,6 @@
 // checksum is that of the checksums of its parts, so that all cores compute it.
 #pragma once
 
-#include <sdm/error.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>

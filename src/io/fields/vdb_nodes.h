@@ -2,8 +2,6 @@
 // 8³ points.
 #pragma once
 
-#include <sdm/volume.h>
-
 #include <array>
 #include <cstdint>
 #include <vector>

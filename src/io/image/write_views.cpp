@@ -1,12 +1,10 @@
 #include <sdm/error.h>
 #include <sdm/execution.h>
 #include <sdm/map_files.h>
-#include <sdm/summary.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <new>
 #include <numbers>
 #include <string>

@@ -14,7 +14,6 @@
 #include "io/file/error_prefix.h"
 #include "io/file/file_bytes.h"
 #include "io/file/npy.h"
-#include "io/mesh/read_polygons.h"
 
 namespace sdm {
 

@@ -10,9 +10,7 @@
 #include <optional>
 
 #include "core/parse_number.h"
-#include "io/file/file_below.h"
 #include "io/file/text_scanner.h"
-#include "io/mesh/polygons/polygon_attributes.h"
 
 namespace sdm::io {
 namespace {

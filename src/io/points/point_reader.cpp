@@ -7,7 +7,6 @@
 #include "core/intact.h"
 #include "geometry/vec.h"
 #include "io/file/error_prefix.h"
-#include "io/mesh/read_polygons.h"
 #include "io/points/cloud_file.h"
 
 namespace sdm {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <sdm/measure.h>
-#include <sdm/rays.h>
 
 #include <cstdint>
 #include <span>

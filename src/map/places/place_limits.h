@@ -2,7 +2,6 @@
 #pragma once
 
 #include <sdm/mesh_attributes.h>
-#include <sdm/places.h>
 #include <sdm/tolerance.h>
 
 #include <algorithm>

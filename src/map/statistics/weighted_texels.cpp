@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "map/statistics/texel_areas.h"
-#include "surface/surface_data.h"
 
 namespace sdm::map {
 namespace {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "mesh/topology.h"
+
 namespace sdm::inside {
 namespace {
 

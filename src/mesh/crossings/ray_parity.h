@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "mesh/topology.h"
+#include "geometry/unit_frame.h"
 #include "tree/visit.h"
 
 namespace sdm::inside {

@@ -5,6 +5,7 @@
 
 #include "atlas/charts/face_geometry.h"
 #include "geometry/triangle.h"
+#include "surface/sampling_bound/piece_assignment.h"
 
 namespace sdm::surface {
 

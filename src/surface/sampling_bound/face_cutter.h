@@ -10,7 +10,6 @@
 #include <span>
 
 #include "geometry/clip.h"
-#include "surface/sampling_bound/piece_assignment.h"
 #include "surface/sampling_bound/sample_tree.h"
 #include "surface/surface_data.h"
 

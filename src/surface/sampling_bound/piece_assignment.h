@@ -7,7 +7,6 @@
 #include <memory>
 #include <vector>
 
-#include "surface/sample_order.h"
 #include "surface/sampling_bound/measure_pieces.h"
 
 namespace sdm::surface {

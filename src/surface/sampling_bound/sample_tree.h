@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "geometry/unit_frame.h"
 #include "surface/surface_data.h"
 #include "tree/aabb_tree.h"
 

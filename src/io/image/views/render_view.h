@@ -1,7 +1,6 @@
 // A shaded picture of O1, coloured by distance, with O2 as a ghost.
 #pragma once
 
-#include <sdm/map.h>
 #include <sdm/surface.h>
 
 #include <span>

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "io/file/file_below.h"
 #include "io/mesh/gltf/document/gltf_buffers.h"
 #include "io/mesh/gltf/document/gltf_extensions.h"
 

@@ -1,7 +1,6 @@
 #include "io/mesh/model/write_obj.h"
 
 #include <fmt/format.h>
-#include <sdm/error.h>
 
 #include <algorithm>
 #include <iterator>

@@ -1,8 +1,5 @@
 #include "io/page/player/player_page.h"
 
-#include <sdm/error.h>
-#include <sdm/summary.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>

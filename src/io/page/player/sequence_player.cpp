@@ -1,7 +1,6 @@
 #include "io/page/player/sequence_player.h"
 
 #include <sdm/error.h>
-#include <sdm/execution.h>
 #include <sdm/map.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // The triangles of a page in an order in which numbers at their vertices can be guessed from those before.
 #pragma once
 
-#include <sdm/mesh.h>
+#include <sdm/types.h>
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,5 @@
 #include "io/page/report/page_model.h"
 
-#include <sdm/mesh_edit.h>
-
 #include <algorithm>
 #include <atomic>
 #include <numeric>

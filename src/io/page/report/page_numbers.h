@@ -1,8 +1,7 @@
 // Distances, positions and normals as the whole numbers of packed arrays.
 #pragma once
 
-#include <sdm/mesh.h>
-
+#include <sdm/types.h>
 #include <algorithm>
 #include <bit>
 #include <cmath>

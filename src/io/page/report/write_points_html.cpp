@@ -1,4 +1,3 @@
-#include <sdm/error.h>
 #include <sdm/points.h>
 
 #include <algorithm>

@@ -11,7 +11,6 @@
 #include "core/excerpt.h"
 #include "io/file/byte_scanner.h"
 #include "io/mesh/gltf/document/gltf_document.h"
-#include "io/mesh/gltf/document/gltf_extensions.h"
 
 namespace sdm::io {
 namespace {
