@@ -17,7 +17,6 @@
 #include <string>
 #include <vector>
 
-#include "bodies/shape/body.h"
 #include "bodies/shape/posed_body.h"
 #include "geometry/vec.h"
 #include "harness.h"

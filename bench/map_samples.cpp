@@ -1,5 +1,4 @@
 // Times one map, and writes its samples and distances for other libraries, for bench/peers.
-#include <sdm/execution.h>
 #include <sdm/sdm.h>
 
 #include <CLI/CLI.hpp>

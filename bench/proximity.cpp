@@ -9,7 +9,6 @@
 // contact.
 //
 //   build/dev/bench/proximity [--list] [--filter REGEX] [--repetitions N] [--threads N] [--json FILE]
-#include <sdm/execution.h>
 #include <sdm/proximity_query.h>
 
 #include <algorithm>

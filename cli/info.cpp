@@ -1,7 +1,6 @@
 #include "info.h"
 
 #include <fmt/format.h>
-#include <sdm/map_files.h>
 #include <sdm/mesh.h>
 #include <sdm/mesh_files.h>
 #include <sdm/sites.h>

@@ -10,7 +10,6 @@
 
 #include "atlas_cache.h"
 #include "format.h"
-#include "islands.h"
 #include "map_files.h"
 #include "notes.h"
 #include "src/core/stopwatch.h"

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "notes.h"
-#include "option_checks.h"
 #include "src/io/json/report_json.h"
 #include "unit_options.h"
 

@@ -19,7 +19,6 @@
 #include "islands.h"
 #include "map_files.h"
 #include "notes.h"
-#include "option_checks.h"
 #include "output_folder.h"
 #include "points_report.h"
 #include "print.h"

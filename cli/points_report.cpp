@@ -2,9 +2,7 @@
 
 #include <algorithm>
 
-#include "doubts.h"
 #include "format.h"
-#include "islands.h"
 #include "notes.h"
 #include "places.h"
 #include "src/io/json/report_json.h"

@@ -2,7 +2,6 @@
 
 #include "bounds_text.h"
 #include "cad_options.h"
-#include "doubts.h"
 #include "exit_codes.h"
 #include "format.h"
 #include "group_tolerances.h"

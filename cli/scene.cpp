@@ -1,12 +1,12 @@
 #include "scene.h"
 
 #include "common_options.h"
-#include "format.h"
 #include "option_checks.h"
 #include "output_folder.h"
 #include "progress_line.h"
 #include "scene_scan.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 #include <sdm/execution.h>
 #include <sdm/mesh_files.h>

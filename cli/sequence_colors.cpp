@@ -1,7 +1,6 @@
 #include "sequence_colors.h"
 
 #include <sdm/error.h>
-#include <sdm/execution.h>
 #include <sdm/sites.h>
 
 #include <algorithm>

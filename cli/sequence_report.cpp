@@ -7,7 +7,6 @@
 #include <initializer_list>
 #include <limits>
 
-#include "doubts.h"
 #include "format.h"
 #include "notes.h"
 #include "report.h"

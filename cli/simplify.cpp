@@ -20,7 +20,6 @@
 #include "cad_options.h"
 #include "common_options.h"
 #include "declared_options.h"
-#include "exit_codes.h"
 #include "format.h"
 #include "notes.h"
 #include "option_checks.h"

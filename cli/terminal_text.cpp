@@ -1,6 +1,6 @@
 #include "terminal_text.h"
 
-#include <sdm/summary.h>
+#include <sdm/tolerance.h>
 #include <unistd.h>
 
 #include <algorithm>

@@ -18,7 +18,6 @@
 #include "print.h"
 #include "progress_line.h"
 #include "src/io/json/report_json.h"
-#include "unit_options.h"
 #include "weld.h"
 
 #include <limits>

@@ -7,7 +7,6 @@
 #include <memory>
 
 #include "cli/common_options.h"
-#include "cli/option_checks.h"
 #include "cli/output_folder.h"
 #include "cli/progress_line.h"
 #include "research/figures/reproduce.h"

@@ -1,5 +1,4 @@
 // The program sdm-paper. Exit codes: 0 success, 1 failure, 2 invalid usage.
-#include <sdm/error.h>
 
 #include <CLI/CLI.hpp>
 #include <exception>

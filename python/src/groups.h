@@ -2,12 +2,16 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <sdm/mesh_attributes.h>
+#include <sdm/sites.h>
 #include <sdm/tolerance.h>
 
 #include <span>
 #include <vector>
 
 namespace sdm::python {
+
+namespace nb = nanobind;
 
 /// The tolerances of a dict of names, or of a file.
 [[nodiscard]] std::vector<GroupTolerance> table_of(nb::handle table, SignMethod sign);

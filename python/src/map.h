@@ -1,6 +1,7 @@
 // A map, with what it was computed from.
 #pragma once
 
+#include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 #include <sdm/error.h>
 #include <sdm/measure.h>

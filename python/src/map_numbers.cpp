@@ -11,11 +11,9 @@
 #include <cmath>
 #include <optional>
 
-#include "arrays.h"
 #include "fields.h"
 #include "map.h"
 #include "options.h"
-#include "signatures.h"
 
 namespace sdm::python {
 namespace {

@@ -14,7 +14,6 @@
 #include "map.h"
 #include "options.h"
 #include "run.h"
-#include "signatures.h"
 #include "stored.h"
 
 namespace sdm::python {

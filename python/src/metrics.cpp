@@ -7,7 +7,6 @@
 #include <string>
 
 #include "options.h"
-#include "proximity.h"
 #include "sites_in_use.h"
 
 namespace sdm::python {

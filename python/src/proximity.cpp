@@ -3,7 +3,6 @@
 #include "fields.h"
 #include "objects.h"
 #include "options.h"
-#include "signatures.h"
 #include "stored.h"
 
 #include <nanobind/stl/optional.h>

@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "arrays.h"
 #include "fields.h"
 #include "options.h"
 #include "signatures.h"

@@ -4,7 +4,6 @@
 
 #include "objects.h"
 #include "proximity.h"
-#include "signatures.h"
 #include "values.h"
 
 namespace sdm::python {

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 
-#include "core/arrays/rows.h"
 #include "core/parallel.h"
 #include "research/fields/draw_span.h"
 #include "research/fields/drawn_sites.h"

@@ -7,7 +7,6 @@
 #include "gl/raster_report.h"
 #include "io/mesh/placement.h"
 #include "research/figures/figures.h"
-#include "research/figures/maps.h"
 #include "research/figures/pieces.h"
 #include "research/figures/timing.h"
 #include "scenes/bunny.h"

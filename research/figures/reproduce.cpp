@@ -1,6 +1,5 @@
 #include "research/figures/reproduce.h"
 
-#include <sdm/error.h>
 #include <sdm/gl.h>
 #include <sdm/version.h>
 

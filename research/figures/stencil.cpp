@@ -7,7 +7,6 @@
 #include "gl/stencil_cache.h"
 #include "research/figures/charts/chart.h"
 #include "research/figures/figures.h"
-#include "research/figures/maps.h"
 #include "research/figures/pieces.h"
 #include "research/figures/site_pairs.h"
 #include "research/figures/timing.h"

@@ -25,6 +25,7 @@
 #include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 #include "inside/inside.h"
+#include "inside/solid.h"
 #include "mesh/validate.h"
 #include "sites/sites_data.h"
 #include "tree/visit.h"

@@ -1,7 +1,6 @@
 // The geometry of O2 as textures of O1.
 #include <gtest/gtest.h>
 #include <sdm/bake.h>
-#include <sdm/error.h>
 #include <sdm/match.h>
 
 #include <algorithm>
@@ -13,7 +12,6 @@
 #include <vector>
 
 #include "support/error_of.h"
-#include "support/meshes.h"
 #include "support/owned_texels.h"
 #include "support/shapes.h"
 

@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/mesh_edit.h>
 #include <sdm/mesh_files.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/error.h>
 #include <sdm/map_files.h>
 #include <sdm/mesh_attributes.h>
 #include <sdm/tolerance.h>

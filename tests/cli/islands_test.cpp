@@ -1,9 +1,7 @@
 // `--ignore-islands` of `sdm map`: floating specks of a scan.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/error.h>
 #include <sdm/mesh_edit.h>
-#include <sdm/statistics.h>
 
 #include <nlohmann/json.hpp>
 #include <random>
@@ -13,7 +11,6 @@
 
 #include "cli/samples.h"
 #include "support/error_of.h"
-#include "support/meshes.h"
 #include "support/run_sdm.h"
 #include "support/shapes.h"
 

@@ -8,7 +8,6 @@
 #include "cli/samples.h"
 #include "io/mesh/placement.h"
 #include "support/run_sdm.h"
-#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {

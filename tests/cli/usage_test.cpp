@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/map_files.h>
 #include <sdm/version.h>
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include "edit/random_edits.h"
 #include "geometry/vec.h"
 #include "sites/sites_data.h"
-#include "support/arrays.h"
+#include "support/arrays.h"  // IWYU pragma: keep, for EXPECT_EQ
 #include "support/oracle.h"
 #include "support/points.h"
 #include "support/shapes.h"

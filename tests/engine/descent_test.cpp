@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "closest/finish.h"
+#include "closest/point_group.h"
 #include "closest/reference/reference_engine.h"
+#include "closest/site_lists.h"
 #include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 #include "sites/sites_data.h"

@@ -12,7 +12,6 @@
 #include <tuple>
 #include <vector>
 
-#include "closest/scattered.h"
 #include "closest/single_point.h"
 #include "geometry/spatial_order.h"
 #include "sites/closest_on_face.h"

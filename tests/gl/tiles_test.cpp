@@ -11,11 +11,9 @@
 #include <set>
 #include <vector>
 
-#include "closest/engine.h"
 #include "gl/domain_tree.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
-#include "surface/surface_data.h"
 
 namespace sdm::gl {
 namespace {

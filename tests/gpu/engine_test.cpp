@@ -1,5 +1,4 @@
 // The gpu engine: its closest points are those of the reference engine, to the bit.
-#include "closest/engine.h"
 
 #include <gmock/gmock.h>
 #include <sdm/sdm.h>
@@ -13,13 +12,13 @@
 #include <vector>
 
 #include <sdm/gpu.h>
+#include "closest/engine.h"  // IWYU pragma: keep, of shared pointers
 #include "gpu/face_search.h"
 #include "gpu/finish.h"
 #include "support/degenerate.h"
 #include "support/error_of.h"
 #include "support/meshes.h"
 #include "support/points.h"
-#include "support/shapes.h"
 
 namespace sdm {
 namespace {

@@ -1,6 +1,5 @@
 // Round trips of every variant of every format.
 #include <gtest/gtest.h>
-#include <sdm/map_files.h>
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,5 @@
 // What a glTF file adds to its triangles: instances, morph targets, skins and extensions.
 #include <gmock/gmock.h>
-#include <sdm/map_files.h>
 #include <sdm/mesh_files.h>
 
 #include <numbers>
@@ -8,7 +7,6 @@
 
 #include "io_read/gltf_store.h"
 #include "io_read/writers.h"
-#include "support/error_of.h"
 #include "support/shapes.h"
 
 namespace sdm {

@@ -1,7 +1,6 @@
 // Materials and textures that mesh files refer to.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/error.h>
 #include <sdm/mesh_files.h>
 
 #include <fstream>

@@ -1,6 +1,5 @@
 // Matrices from files.
 #include <gmock/gmock.h>
-#include <sdm/error.h>
 #include <sdm/mesh_files.h>
 
 #include <bit>

@@ -1,9 +1,7 @@
-
 #include <gtest/gtest.h>
 #include <sdm/error.h>
 #include <sdm/mesh_attributes.h>
 #include <sdm/statistics.h>
-#include <sdm/summary.h>
 #include <sdm/tolerance.h>
 
 #include <algorithm>

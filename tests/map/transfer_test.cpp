@@ -1,6 +1,5 @@
 // Values of O2 at the closest points of texels.
 #include <gtest/gtest.h>
-#include <sdm/closest_points.h>
 #include <sdm/error.h>
 #include <sdm/match.h>
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "support/arrays.h"
+#include "support/arrays.h"  // IWYU pragma: keep, for EXPECT_EQ
 #include "support/shapes.h"
 
 namespace sdm {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "geometry/boxes.h"
-#include "geometry/triangle_pair.h"
+#include "geometry/triangle.h"
 #include "geometry/vec.h"
 #include "support/oracle.h"
 #include "support/shapes.h"

@@ -7,7 +7,6 @@
 
 #include "geometry/predicates.h"
 #include "support/error_of.h"
-#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::test {

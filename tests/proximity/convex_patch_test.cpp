@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "support/allocations.h"
-#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::test {

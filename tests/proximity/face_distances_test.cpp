@@ -6,7 +6,6 @@
 
 #include "certify/depth/face_distances.h"
 #include "sites/closest_on_face.h"
-#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::depth {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "scenes/box_mesh.h"
-#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::test {

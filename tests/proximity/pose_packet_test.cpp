@@ -15,7 +15,6 @@
 #include "bodies/pairs/collision.h"
 #include "mesh/similarity.h"
 #include "poses.h"
-#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::convex {

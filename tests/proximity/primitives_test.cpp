@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "geometry/vec.h"
-#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm {

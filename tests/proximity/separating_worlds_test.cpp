@@ -15,7 +15,6 @@
 #include "scenes/blocks.h"
 #include "scenes/box_mesh.h"
 #include "scenes/rigid_world.h"
-#include "support/meshes.h"
 #include "support/shapes.h"
 
 namespace sdm::test {

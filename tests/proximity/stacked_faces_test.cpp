@@ -6,8 +6,6 @@
 #include <ctime>
 #include <random>
 
-#include "support/shapes.h"
-
 namespace sdm::test {
 namespace {
 

@@ -6,6 +6,7 @@
 
 #include "cli/samples.h"
 #include "gl/raster_report.h"
+#include "gl/scenes.h"
 #include "gl/support.h"
 #include "research/literal/literal_engine.h"
 #include "research/run_sdm_paper.h"

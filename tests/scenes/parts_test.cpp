@@ -1,6 +1,5 @@
 // Tests of the parts of the simulations against their definitions.
 #include <gtest/gtest.h>
-#include <sdm/error.h>
 #include <sdm/map_files.h>
 
 #include <cmath>

@@ -1,7 +1,6 @@
 // Matches, transfer and baking: one small case for each, where the answer is known.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sdm/bake_files.h>
 #include <sdm/mesh_attributes.h>
 #include <sdm/sdm.h>
 

@@ -1,7 +1,6 @@
 // What small meshes of usual shape do not reach: many faces, thin walls, solids that just touch, and wrong
 // arguments.
 #include <gtest/gtest.h>
-#include <sdm/bake_files.h>
 #include <sdm/map_files.h>
 #include <sdm/sdm.h>
 
@@ -16,7 +15,6 @@
 #include <vector>
 
 #include "smoke/small_meshes.h"
-#include "support/made_up_maps.h"
 #include "support/oracle.h"
 #include "support/shapes.h"
 

@@ -21,7 +21,7 @@ bool allocation_fails() {
 
 }  // namespace
 
-#include "support/replaced_new.h"  // which calls it
+#include "support/replaced_new.h"  // IWYU pragma: keep, calls allocation_fails()
 
 namespace sdm::test {
 

@@ -29,4 +29,4 @@ const struct Teller {
 
 }  // namespace
 
-#include "support/replaced_new.h"  // which calls allocation_fails()
+#include "support/replaced_new.h"  // IWYU pragma: keep, calls allocation_fails()

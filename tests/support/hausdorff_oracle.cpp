@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <queue>
 
-#include "geometry/triangle_pair.h"
+#include "geometry/triangle.h"
 #include "support/oracle.h"
 
 namespace sdm::oracle {

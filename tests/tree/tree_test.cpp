@@ -10,7 +10,7 @@
 
 #include "geometry/unit_frame.h"
 #include "geometry/vec.h"
-#include "support/arrays.h"
+#include "support/arrays.h"  // IWYU pragma: keep, for EXPECT_EQ
 #include "tree/aabb_tree.h"
 #include "tree/fold.h"
 #include "tree/visit.h"

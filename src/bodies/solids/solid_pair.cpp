@@ -12,6 +12,7 @@
 #include "geometry/unit_across.h"
 #include "geometry/vec.h"
 #include "inside/inside.h"
+#include "inside/solid.h"
 
 namespace sdm::solids {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "geometry/vec.h"
 #include "inside/sign.h"
+#include "inside/solid.h"
 
 namespace sdm::hausdorff {
 

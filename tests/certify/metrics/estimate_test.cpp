@@ -1,7 +1,6 @@
 // Estimates of measures from random points: limits of small samples that are tabulated, uniform points, and
 // how often intervals contain what is known.
 #include <gtest/gtest.h>
-#include <sdm/error.h>
 #include <sdm/execution.h>
 #include <sdm/metrics.h>
 
@@ -13,7 +12,6 @@
 
 #include "certify/metrics/intervals.h"
 #include "certify/metrics/surface_points.h"
-#include "support/meshes.h"
 #include "support/points.h"
 #include "support/shapes.h"
 
