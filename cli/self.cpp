@@ -14,6 +14,7 @@
 #include "part_map.h"
 #include "print.h"
 #include "progress_line.h"
+#include "src/core/stopwatch.h"
 #include "src/io/json/report_json.h"
 #include "unit_options.h"
 
@@ -81,7 +82,7 @@ std::string self_summary(const SelfCommand& command, const Json& report) {
 }
 
 void run(SelfCommand command) {
-  Stopwatch total;
+  sdm::Stopwatch total;
   limit_threads(command.threads);
   OutputFolder out(command.out, {.command = "map", .planned = planned_files(command.files)});
   ProgressLine progress(command.quiet);

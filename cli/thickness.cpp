@@ -17,6 +17,7 @@
 #include "part_map.h"
 #include "print.h"
 #include "progress_line.h"
+#include "src/core/stopwatch.h"
 #include "src/io/json/report_json.h"
 #include "weld.h"
 
@@ -195,7 +196,7 @@ std::string thickness_summary(const ThicknessCommand& command, const ThicknessRe
 }
 
 int run(ThicknessCommand command) {
-  Stopwatch total;
+  sdm::Stopwatch total;
   limit_threads(command.threads);
   OutputFolder out(command.out, {.command = "map", .planned = planned_files(command.files)});
   ProgressLine progress(command.quiet);
