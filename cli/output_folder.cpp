@@ -3,8 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sdm/error.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -15,10 +13,7 @@
 #include <exception>
 #include <fstream>
 #include <functional>
-#include <memory>
 #include <new>
-#include <optional>
-#include <random>
 #include <set>
 #include <string>
 #include <string_view>
@@ -30,6 +25,7 @@
 
 #include "interrupts.h"
 #include "patience.h"
+#include "staging_folder.h"
 
 namespace fs = std::filesystem;
 
@@ -39,125 +35,6 @@ namespace {
 // is refused to it.
 fs::path joined(const fs::path& folder, const fs::path& file) {
   return folder.native() + fs::path::preferred_separator + file.native();
-}
-
-[[noreturn]] void fail(const fs::path& path, const std::string& fault) {
-  throw sdm::Error(
-      fmt::format("cannot write to {}: {}; choose another folder with -o", path.string(), fault));
-}
-
-void create_folder(const fs::path& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error) fail(path, error.message());
-}
-
-// A staging folder: its name begins with kPrefix, it contains the empty file kMarker, created first, and the
-// files of the run below kFiles. Without the marker, a folder of that name is sdm's only while it is empty,
-// and has the mode with which it is created: a process can be killed between the two.
-constexpr const char* kPrefix = ".sdm-part-";
-constexpr const char* kMarker = ".sdm-staging";
-constexpr const char* kFiles = "files";
-constexpr mode_t kMode = S_ISVTX | S_IRWXU;
-
-bool is_staging(const fs::path& folder) {
-  struct stat info {};
-  if (!folder.filename().string().starts_with(kPrefix) || lstat(folder.c_str(), &info) != 0 ||
-      !S_ISDIR(info.st_mode))
-    return false;
-  constexpr mode_t kAllModes = 07777;
-  const bool created = (info.st_mode & kAllModes) == kMode;
-  return lstat((folder / kMarker).c_str(), &info) == 0 ? S_ISREG(info.st_mode) : created;
-}
-
-// A lock on a folder, which the system releases when its process ends, however it ends. Processes on
-// other machines and in other containers see it too, which is not true of the number of the process.
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& folder)
-      : file_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)),
-        error_(file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) == 0 ? 0 : errno) {}
-  ~FolderLock() {
-    if (file_ >= 0) close(file_);
-  }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
-  [[nodiscard]] bool held() const { return error_ == 0; }
-  /// Another process holds it.
-  [[nodiscard]] bool busy() const { return error_ == EWOULDBLOCK || error_ == EINTR; }
-
- private:
-  int file_, error_;
-};
-
-// Files are moved by one run at a time: each takes a lock on the output folder first, which leaves no file
-// behind and ends with its process. Where the file system has no locks (some network file systems), or the
-// folder cannot be read, runs do not wait for each other.
-std::unique_ptr<const FolderLock> turn_to_move(const fs::path& folder) {
-  using Clock = std::chrono::steady_clock;
-  constexpr auto kStep = std::chrono::milliseconds(5), kAfterInterrupt = std::chrono::milliseconds(300);
-  constexpr auto kMost = std::chrono::seconds(60);  // moving takes milliseconds: the other one is suspended
-  const auto start = Clock::now();
-  for (std::optional<Clock::time_point> interrupted;; std::this_thread::sleep_for(kStep)) {
-    auto lock = std::make_unique<const FolderLock>(folder);
-    if (!lock->busy()) return lock;
-    if (!interrupted && Interrupts::received()) interrupted = Clock::now();
-    if (interrupted && Clock::now() - *interrupted > kAfterInterrupt) throw sdm::Cancelled();
-    if (Clock::now() - start > kMost)
-      fail(folder, fmt::format("another run has been moving files there for {} s", kMost.count()));
-  }
-}
-
-// Only what sdm has put there. The marker goes last, as what has none remains.
-void remove_staging(const fs::path& staging) {
-  std::error_code ignored;
-  if (fs::remove_all(staging / kFiles, ignored); fs::exists(staging / kFiles, ignored)) return;
-  fs::remove(staging / kMarker, ignored);
-  fs::remove(staging, ignored);
-}
-
-// Removes the staging folders of processes that were killed. Where the file system has no locks they remain.
-void remove_abandoned(const fs::path& folder) {
-  std::error_code error;
-  std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (is_staging(entry.path()) && !is_among_arguments(entry.path())) found.push_back(entry.path());
-  for (const fs::path& staging : found)
-    if (const FolderLock lock(staging); lock.held()) remove_staging(staging);
-}
-
-/// Creates a staging folder with a name of its own, and locks it. The lock is held until it is destroyed.
-std::pair<fs::path, std::shared_ptr<const void>> make_staging(const fs::path& folder) {
-  // Where others do the same: a run that failed removes the folder that it made, if nothing is in it yet; and
-  // a staging folder may be taken for abandoned until it is locked.
-  constexpr int kAttempts = 100;
-  std::random_device random;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    create_folder(folder);
-    fs::path path = folder / fmt::format("{}{:08x}", kPrefix, random());
-    std::string marker = (path / kMarker).string();
-    if (mkdir(path.c_str(), kMode) != 0) {
-      if (errno == ENOENT || errno == EEXIST) continue;
-      fail(folder, std::generic_category().message(errno));
-    }
-    try {
-      auto lock = std::make_shared<const FolderLock>(path);
-      const int file =
-          lock->busy() ? -1 : open(marker.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-      const int error = errno;
-      if (file >= 0) {
-        close(file);
-        return {std::move(path), std::move(lock)};
-      }
-      if (!lock->busy() && error != ENOENT) fail(folder, std::generic_category().message(error));
-    } catch (...) {  // for lack of memory or space
-      unlink(marker.c_str());
-      rmdir(path.c_str());
-      throw;
-    }
-  }
-  fail(folder, "other processes keep removing files there");
 }
 
 /// Files that show that results are complete, or that they can be completed.
@@ -180,7 +57,7 @@ bool concludes(const std::string& file) {
 }
 
 void require_writable(const fs::path& file) {
-  if (fs::is_directory(file)) fail(file, "a folder with the name of an output file exists");
+  if (fs::is_directory(file)) cannot_write(file, "a folder with the name of an output file exists");
   if (const auto input = input_at(file)) refuse_to_write(file, *input);
 }
 
@@ -208,7 +85,7 @@ OutputFolder::OutputFolder(const fs::path& folder, OutputFiles files)
   existing_ = folder_;
   while (!fs::exists(existing_, ignored) && existing_.has_relative_path())
     existing_ = existing_.parent_path();
-  if (!fs::is_directory(existing_, ignored)) fail(existing_, "it is not a folder");
+  if (!fs::is_directory(existing_, ignored)) cannot_write(existing_, "it is not a folder");
   if (existing_ == folder_) {
     plan();
     remove_abandoned(folder_);
@@ -280,14 +157,14 @@ void OutputFolder::fill(const std::function<void()>& work, const std::function<v
 
 fs::path OutputFolder::staging(const fs::path& subfolder) {
   const Interrupts::Protected whole;
-  fs::path path = staging_ / kFiles / subfolder;
+  fs::path path = staging_ / kStagedFiles / subfolder;
   create_folder(path);
   return path;
 }
 
 std::string OutputFolder::with_final_path(std::string message) const {
   const std::string hidden =
-      fmt::format("{}{}/{}", fs::path::preferred_separator, staging_.filename().string(), kFiles);
+      fmt::format("{}{}/{}", fs::path::preferred_separator, staging_.filename().string(), kStagedFiles);
   for (std::size_t at; (at = message.find(hidden)) != std::string::npos;) message.erase(at, hidden.size());
   return message;
 }
@@ -440,7 +317,7 @@ void OutputFolder::move_into_place(const fs::path& from, const fs::path& to) con
   require_writable(to);
   std::error_code failure;
   fs::rename(from, to, failure);
-  if (failure) fail(to, failure.message());
+  if (failure) cannot_write(to, failure.message());
 }
 
 // Files that were changed are the user's.
