@@ -104,7 +104,7 @@ struct PySurface {
 [[nodiscard]] std::shared_ptr<const Engine> engine_of(const char* name);
 template <Worded Enum>
 [[nodiscard]] Enum enum_of(const std::string& argument, std::string_view word) {
-  if (const auto value = value_of<Enum>(word)) return *value;
+  if (const auto value = sdm::value_of<Enum>(word)) return *value;
   std::string all;
   for (const char* known : kWords<Enum>) all += (all.empty() ? "" : ", ") + std::string(known);
   throw Error(argument + " must be one of " + all + ", not '" + std::string(word) + "'");

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "report/page_browser.h"
 #include "report/page_fixture.h"
 #include "support/shapes.h"
 

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "report/page_browser.h"
 #include "report/page_fixture.h"
 #include "support/error_of.h"
 #include "support/shapes.h"

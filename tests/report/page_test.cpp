@@ -20,6 +20,7 @@
 #include "cli/samples.h"
 #include "io/page/player/sequence_player.h"
 #include "io/page/report/page_channels.h"
+#include "report/page_browser.h"
 #include "report/page_fixture.h"
 #include "support/made_up_maps.h"
 #include "support/run_sdm.h"

@@ -11,6 +11,7 @@
 
 #include "io/image/pictures/color_scale.h"
 #include "io/image/pictures/legend.h"
+#include "report/page_browser.h"
 #include "report/page_fixture.h"
 #include "support/shapes.h"
 

@@ -17,7 +17,7 @@ namespace {
 
 /// A block with rings on two sides: no motion and no mirror maps it to itself.
 Mesh lopsided() {
-  const Mesh body = block({-3, -1.5, -1}, {3, 1.5, 1});
+  const Mesh body = box({-3, -1.5, -1}, {3, 1.5, 1});
   return joined(joined(body, ring(7, 1.2, {1.5, 0.2, 1.1})), ring(5, 0.5, {-2.5, 1.4, 0.3}));
 }
 
@@ -81,7 +81,7 @@ TEST(SmokeAlign, LockedFreedomsStayAndRegionsAlone) {
   EXPECT_FALSE(parse_freedoms("xq"));
 
   // Only the block counts; the rings of O1 are elsewhere.
-  const Mesh body = block({-3, -1.5, -1}, {3, 1.5, 1});
+  const Mesh body = box({-3, -1.5, -1}, {3, 1.5, 1});
   const Mesh other = joined(moved(body, {0.02, -0.03, 0.04}), ring(12, 1.2, {1.5, 0.2, 1.4}));
   AlignRegion region;
   region.faces.assign(mesh.triangles.size(), 0);

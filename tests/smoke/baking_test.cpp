@@ -226,7 +226,7 @@ TEST(SmokeBake, PicturesThatRepeatAreAveragedOverTexels) {
 TEST(SmokeBake, GeometryOfAnotherMeshIsThatOfItsPoints) {
   const Squares squares;
   const TexelMatches matches = match_texels(squares.surface, squares.sites, {.method = MatchMethod::ray});
-  const Mesh box = block({-2, -2, -0.4}, {2, 2, 0.1});  // O2 with a thickness, whose top is the square
+  const Mesh box = test::box({-2, -2, -0.4}, {2, 2, 0.1});  // O2 with a thickness, whose top is the square
   const Sites solid(box);
   const TexelMatches of_solid = match_texels(squares.surface, solid);
   const MeshAttribute normals = smooth_normals(squares.high), own = smooth_normals(squares.low);

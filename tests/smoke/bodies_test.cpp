@@ -189,8 +189,8 @@ TEST(SmokeBodies, CompoundsAnswerForAllOfTheirParts) {
 
 // Boxes on a floor of tiles, which are bodies of their own: no contact pushes to a side.
 TEST(SmokeBodies, TilesOfAFloorDoNotCatchABox) {
-  std::vector<Shape> shapes{Shape(block({-0.6, -0.6, 0}, {0.6, 0.6, 0.6}))};
-  for (int i = 0; i < 3; ++i) shapes.emplace_back(block({1.0 * i, 0, -1}, {i + 1.0, 3, 0}));
+  std::vector<Shape> shapes{Shape(box({-0.6, -0.6, 0}, {0.6, 0.6, 0.6}))};
+  for (int i = 0; i < 3; ++i) shapes.emplace_back(box({1.0 * i, 0, -1}, {i + 1.0, 3, 0}));
   MultiBodyQuery world(shapes, {.contact_margin = 0.02, .ignore_internal_edges = true});
   for (std::size_t i = 1; i < 4; ++i) world.set_filter(i, {.fixed = true});
   for (int step = 0; step < 4; ++step) {

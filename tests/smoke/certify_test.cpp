@@ -378,11 +378,11 @@ TEST(SmokeSummary, HasVerdictNotesAndNumbers) {
   EXPECT_TRUE(note_on_sizes(small, large));
   EXPECT_TRUE(note_on_places(small, far));
   EXPECT_EQ(notes_on(small, small).size(), 0u);
-  EXPECT_TRUE(note_on_walls(Sites(block({-3, -3, 0}, {3, 3, 0.1})), Tolerance(0.2), "mm"));
+  EXPECT_TRUE(note_on_walls(Sites(box({-3, -3, 0}, {3, 3, 0.1})), Tolerance(0.2), "mm"));
   const std::vector<FaceNames> of_block{
       {.kind = "group", .names = {"all"}, .of_face = std::vector<std::uint32_t>(12)}};
   const std::vector<GroupTolerance> wide{{.group = "all", .tolerance = 0.2}};
-  EXPECT_TRUE(note_on_walls(Sites(block({-3, -3, 0}, {3, 3, 0.1})), std::nullopt, of_block, wide, "mm"));
+  EXPECT_TRUE(note_on_walls(Sites(box({-3, -3, 0}, {3, 3, 0.1})), std::nullopt, of_block, wide, "mm"));
   EXPECT_EQ(*metres_per("in"), 0.0254);
   EXPECT_EQ(metres_per("\u00b5m"), metres_per("um"));
   EXPECT_EQ(metres_per("\u03bcm"), metres_per("um"));

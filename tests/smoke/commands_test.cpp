@@ -153,7 +153,7 @@ TEST_F(SmokeCommands, SequenceFollowsAMotion) {
 }
 
 TEST_F(SmokeCommands, SelfAndThicknessFindAPlateAsThickAsItIs) {
-  const std::string plate = file_of("plate.ply", block({-3, -2, 0}, {3, 2, 0.25}));
+  const std::string plate = file_of("plate.ply", box({-3, -2, 0}, {3, 2, 0.25}));
   EXPECT_NEAR(json_of({"thickness", plate, "-o", out, "--resolution", "45"})["distance"]["min"], 0.25, 1e-5);
   const std::string sheets = file_of("sheets.ply", joined(grid_square(1, 0, 3), grid_square(1, 0.3, 3)));
   const auto self = json_of({"self", sheets, "-o", out, "--resolution", "45", "--rings", "6"});

@@ -156,9 +156,9 @@ TEST(SmokePairs, TheWayOutOfBodiesThatAreNotConvexIsVerified) {
 }
 
 TEST(SmokePairs, ABoxOnAPlateHasContactsAtItsCorners) {
-  const Mesh box = block({-0.5, -0.4, 0}, {0.5, 0.4, 0.6});
-  for (const Mesh& plate : {block({-3, -3, -1}, {3, 3, 0}), weld(grid_block({-3, -3, -1}, {3, 3, 0}, 7)).mesh,
-                            grid_square(6, 0, 9)}) {
+  const Mesh box = test::box({-0.5, -0.4, 0}, {0.5, 0.4, 0.6});
+  for (const Mesh& plate : {test::box({-3, -3, -1}, {3, 3, 0}),
+                            weld(grid_block({-3, -3, -1}, {3, 3, 0}, 7)).mesh, grid_square(6, 0, 9)}) {
     ProximityQuery query(box, plate, {.contact_margin = 0.02});
     for (const double height : {-0.01, 0.01}) {
       query.set_pose(0, Transform::translation({0.13, 0.22, height}));
@@ -183,7 +183,7 @@ TEST(SmokePairs, ABoxOnAPlateHasContactsAtItsCorners) {
 
 // Two bodies that touch in two places have two patches; beams that cross have contacts where edges cross.
 TEST(SmokePairs, ContactsArePatchesOfConnectedParts) {
-  const Mesh posts = joined(block({-1, -0.1, -1}, {-0.8, 0.1, 0}), block({0.8, -0.1, -1}, {1, 0.1, 0}));
+  const Mesh posts = joined(box({-1, -0.1, -1}, {-0.8, 0.1, 0}), box({0.8, -0.1, -1}, {1, 0.1, 0}));
   ProximityQuery plank(weld(grid_block({-1.5, -0.05, 0}, {1.5, 0.05, 0.1}, 15)).mesh, posts,
                        {.contact_margin = 0.001});
   plank.set_pose(0, Transform::translation({0, 0, -0.0005}));
@@ -191,7 +191,7 @@ TEST(SmokePairs, ContactsArePatchesOfConnectedParts) {
   for (const Contact& c : plank.contacts()) patches.insert(c.patch);
   EXPECT_EQ(patches.size(), 2u);
 
-  ProximityQuery beams(block({-2, -0.1, 0}, {2, 0.1, 0.2}), block({-0.1, -2, -0.2}, {0.1, 2, 0}));
+  ProximityQuery beams(box({-2, -0.1, 0}, {2, 0.1, 0.2}), box({-0.1, -2, -0.2}, {0.1, 2, 0}));
   beams.set_pose(0, Transform::translation({0, 0, -0.01}));
   ASSERT_GE(beams.contacts().size(), 4u);
   for (const Contact& c : beams.contacts()) {
@@ -221,7 +221,7 @@ TEST(SmokePairs, ContactsOfSmoothBodiesAreNoDeeperThanTheBodies) {
 }
 
 TEST(SmokePairs, ABoxIsNotCaughtByTheTrianglesThatItSlidesOver) {
-  const Mesh box = block({-0.6, -0.6, 0}, {0.6, 0.6, 0.6}), floor = grid_square(8, 0, 8);
+  const Mesh box = test::box({-0.6, -0.6, 0}, {0.6, 0.6, 0.6}), floor = grid_square(8, 0, 8);
   ProximityQuery query(box, floor, {.contact_margin = 0.02, .ignore_internal_edges = true});
   for (int step = 0; step < 5; ++step) {
     query.set_pose(0,
@@ -343,7 +343,7 @@ TEST(SmokeMotion, CubesMeetWhenTheirFacesDo) {
   const Motion above{.from = Transform::translation({5, 0, 2}),
                      .to = Transform::translation({-5, 0, 2}) * Transform::rotation({120, 40, 10})};
   EXPECT_FALSE(time_of_contact(box, rest, box, above, 1e-6).contact);
-  const Shape rod(block({-3, -0.05, -0.05}, {3, 0.05, 0.05}));
+  const Shape rod(test::box({-3, -0.05, -0.05}, {3, 0.05, 0.05}));
   const Motion turn{.from = Transform::translation({0, 2, 0}),
                     .to = Transform::translation({0, 2, 0}) * Transform::rotation({0, 0, 90})};
   const TimeOfContact turned = time_of_contact(rod, turn, box, rest, 1e-5);

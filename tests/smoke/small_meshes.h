@@ -18,15 +18,7 @@ inline Mesh first_faces(Mesh mesh, std::size_t count) {
   return mesh;
 }
 
-/// A closed box of twelve faces.
-inline Mesh block(const Vec3& lo, const Vec3& hi) {
-  Mesh mesh = cube();
-  for (Vec3& p : mesh.positions)
-    for (std::size_t k = 0; k < 3; ++k) p[k] = p[k] < 0 ? lo[k] : hi[k];
-  return mesh;
-}
-
-/// The same box with each side a grid of n² squares, and faces that share vertices within a side only.
+/// A closed box with each side a grid of n² squares, and faces that share vertices within a side only.
 inline Mesh grid_block(const Vec3& lo, const Vec3& hi, int n) {
   Mesh mesh;
   for (std::size_t axis = 0; axis < 3; ++axis)
