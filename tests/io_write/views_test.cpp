@@ -11,6 +11,7 @@
 #include <functional>
 #include <iterator>
 #include <random>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,7 +64,7 @@ TEST(DepthBuffer, FindsTheNearestFaceOfEverySample) {
         continue;
       }
       ASSERT_NEAR(depth_seen, nearest - 0.5, 1e-4) << row << ' ' << column;
-      const Vec3 weights = buffer.point(column, row, mesh.triangles[face]).weights;
+      const Vec3 weights = buffer.point({column + 0.5, row + 0.5}, mesh.triangles[face]).weights;
       double depth = 0;
       for (int k = 0; k < 3; ++k) depth += weights[k] * mesh.positions[mesh.triangles[face][k]][2];
       ASSERT_NEAR(depth, nearest, 1e-4);
@@ -226,6 +227,32 @@ TEST(Views, ShowTheOtherMeshPaleAndMarkVisiblePlaces) {
   EXPECT_GT(redness(veiled.picture.pixels[50 * 100 + 55]), 60);  // O1 behind the veil
   EXPECT_LT(redness(veiled.picture.pixels[50 * 100 + 55]), redness(at(55)));
   EXPECT_THAT(veiled.visible, ::testing::ElementsAre(true, false));
+}
+
+// Where colours of neighbours differ, a pixel has the mean of its samples; elsewhere, one colour will do.
+TEST(Views, SmoothTheEdgesOfColours) {
+  const CubeScene cube_scene;
+  const DistanceMap step = map_of(cube_scene.surface, [](const Vec3& p) { return p[0] < 0.3 ? -1 : 1; });
+  const FaceScales scales({.map = Colormap::diverging, .lower = -1, .upper = 1}, {});
+  const ViewScene scene{.surface = &cube_scene.surface,
+                        .normals = &shading_normals(cube_scene.surface),
+                        .distances = std::span(step.distance).first(step.texels()),
+                        .vertex_distances = cube_scene.vertices,
+                        .of_faces = &scales};
+  const Vec3 right{std::cos(0.3), std::sin(0.3), 0}, up{-std::sin(0.3), std::cos(0.3), 0};
+  const Picture picture =
+      render_view(scene, {.right = right, .up = up, .scale = 40, .width = 100, .height = 100}, {}).picture;
+  const auto at = [&](std::size_t x, std::size_t y) { return redness(picture.pixels[y * 100 + x]); };
+  const double blue = at(40, 50), red = at(75, 50);
+  int between = 0;
+  for (std::size_t y = 30; y < 70; ++y)
+    for (std::size_t x = 40; x < 80; ++x) {
+      EXPECT_GE(at(x, y), blue - 1);
+      EXPECT_LE(at(x, y), red + 1);
+      between += at(x, y) > blue + 20 && at(x, y) < red - 20 ? 1 : 0;
+    }
+  EXPECT_GT(between, 20);
+  EXPECT_LT(between, 120);
 }
 
 // On a cube inside a cube: the pictures differ by nothing but the mark of the largest distance.

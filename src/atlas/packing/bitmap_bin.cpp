@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 namespace sdm::atlas {
 namespace {
 
 constexpr std::uint64_t kFull = ~std::uint64_t{0};
 
+// Bits shift ... shift + 63 of two words; shift < 64.
+inline std::uint64_t shifted(const std::uint64_t* words, std::size_t shift) {
+  return words[0] >> shift | words[1] << 1 << (63 - shift);
+}
 // Bits x ... x + 63.
 inline std::uint64_t load(const std::uint64_t* words, std::size_t x) {
-  const std::size_t word = x / 64, shift = x % 64;
-  return words[word] >> shift | words[word + 1] << 1 << (63 - shift);
+  return shifted(words + x / 64, x % 64);
 }
 
 // Words per row. All bits of the last two are set, so that load may read past the end.
@@ -21,6 +25,21 @@ std::size_t words_per_row(std::uint32_t width) {
 
 std::uint32_t level_of(std::uint32_t length) {
   return static_cast<std::uint32_t>(std::bit_width(length)) - 1;
+}
+
+// How many positions from that of `free` on have a row whose longest free span is too short for the longest
+// run that the stamp has there.
+std::uint32_t hopeless_rows(std::span<const std::uint32_t> runs, const std::uint32_t* free) {
+  // Signs of differences, several rows at a time. Lengths are below 2^31.
+  std::uint32_t signs = 0;
+  for (std::size_t r = 0; r < runs.size(); ++r) signs |= free[r] - runs[r];
+  if (signs >> 31 == 0) return 0;
+  std::size_t full = runs.size() - 1;  // the last row that is too full
+  while (free[full] >= runs[full]) --full;
+  // Farther down, it meets the rows above in the stamp.
+  std::size_t above = full;
+  while (above > 0 && free[full] < runs[above - 1]) --above;
+  return static_cast<std::uint32_t>(full - above + 1);
 }
 
 }  // namespace
@@ -58,13 +77,18 @@ std::optional<BitmapBin::Spot> BitmapBin::first_fit(const Stamp& stamp, std::uin
   if (stamp.width > width_ || stamp.height > height_) return std::nullopt;
   end_y = std::min(end_y, height_ - stamp.height + 1);
   std::vector<std::uint64_t> blocked((width_ - stamp.width) / 64 + 1);
-  for (std::uint32_t y = first_y; y < end_y; ++y) {
-    const bool hopeless = std::any_of(stamp.runs.begin(), stamp.runs.end(),
-                                      [&](const Run& r) { return longest_[y + r.row] < r.length; });
-    if (hopeless) continue;
+  std::vector<std::uint32_t> longest_runs(stamp.height, 0);  // of each row
+  for (const Run& run : stamp.runs) longest_runs[run.row] = std::max(longest_runs[run.row], run.length);
+  for (std::uint32_t y = first_y; y < end_y;) {
+    if (const std::uint32_t rows = hopeless_rows(longest_runs, &longest_[y]); rows > 0) {
+      y += rows;
+      continue;
+    }
     if (const auto x = fit_in_row(stamp, y, blocked)) return Spot{*x, y};
-    for (std::uint32_t r = y; r < y + stamp.height; ++r)
-      if (stale_[r]) update_longest(r);
+    if (std::memchr(&stale_[y], 1, stamp.height) != nullptr)
+      for (std::uint32_t r = y; r < y + stamp.height; ++r)
+        if (stale_[r]) update_longest(r);
+    ++y;
   }
   return std::nullopt;
 }
@@ -79,8 +103,10 @@ std::optional<std::uint32_t> BitmapBin::fit_in_row(const Stamp& stamp, std::uint
     const std::uint32_t level = level_of(run.length);
     const std::uint64_t* words = row(level, y + run.row);
     const std::size_t second = run.begin + run.length - std::bit_floor(std::size_t{run.length});
+    const std::uint64_t *a = words + run.begin / 64, *b = words + second / 64;
+    const std::size_t shift_a = run.begin % 64, shift_b = second % 64;
     for (std::size_t i = first; i < last; ++i)
-      blocked[i] |= load(words, 64 * i + run.begin) | load(words, 64 * i + second);
+      blocked[i] |= shifted(a + i, shift_a) | shifted(b + i, shift_b);
     while (first < last && blocked[first] == kFull) ++first;
     while (first < last && blocked[last - 1] == kFull) --last;
     if (first == last) return std::nullopt;

@@ -10,6 +10,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstring>
+#include <memory>
 #include <new>
 
 #include "core/parallel.h"
@@ -103,9 +104,10 @@ class ExrFile {
 
 // What OpenEXR's ZIP compresses: all even bytes of the values, then all odd ones, each as its difference from
 // the byte before, plus 128.
-std::vector<std::uint8_t> differences(std::span<const std::uint32_t> values) {
+std::unique_ptr<std::uint8_t[]> differences(std::span<const std::uint32_t> values) {
   const std::size_t half = 2 * values.size();
-  std::vector<std::uint8_t> split(2 * half), result(2 * half);
+  const auto split = std::make_unique_for_overwrite<std::uint8_t[]>(2 * half);
+  auto result = std::make_unique_for_overwrite<std::uint8_t[]>(2 * half);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto value = std::bit_cast<std::array<std::uint8_t, 4>>(values[i]);
     split[2 * i] = value[0];
@@ -114,14 +116,14 @@ std::vector<std::uint8_t> differences(std::span<const std::uint32_t> values) {
     split[half + 2 * i + 1] = value[3];
   }
   result[0] = split[0];
-  for (std::size_t i = 1; i < split.size(); ++i)
+  for (std::size_t i = 1; i < 2 * half; ++i)
     result[i] = static_cast<std::uint8_t>(split[i] - split[i - 1] + 128);
   return result;
 }
 
 // A chunk as it is stored: compressed, or as it is if it would not get smaller.
 std::vector<std::uint8_t> packed(std::span<const std::uint32_t> values) {
-  std::vector<std::uint8_t> bytes = zlib_compressed(differences(values));
+  std::vector<std::uint8_t> bytes = zlib_compressed({differences(values).get(), values.size_bytes()});
   if (bytes.empty()) {
     bytes.resize(values.size_bytes());
     std::memcpy(bytes.data(), values.data(), bytes.size());
@@ -138,10 +140,9 @@ void write_planes(const std::filesystem::path& file, std::uint32_t columns, std:
   const auto chunk = [&](std::uint32_t first_row) {
     const std::uint32_t count = std::min(kRowsPerChunk, rows - first_row);
     const std::size_t of_row = planes.size() * columns;
-    std::vector<std::uint32_t> values(of_row * count);
-    for (std::uint32_t y = 0; y < count; ++y)
-      read(first_row + y, std::span(values).subspan(y * of_row, of_row));
-    return packed(values);
+    const auto values = std::make_unique_for_overwrite<std::uint32_t[]>(of_row * count);
+    for (std::uint32_t y = 0; y < count; ++y) read(first_row + y, {&values[y * of_row], of_row});
+    return packed({values.get(), of_row * count});
   };
   // Groups of chunks, so that memory does not grow with the number of rows.
   constexpr std::uint32_t kGroup = 16;

@@ -13,12 +13,8 @@ AtlasPicture::AtlasPicture(const Surface& surface, std::uint32_t largest)
   height_ = (rows_ + step_ - 1) / step_;
 }
 
-std::uint32_t AtlasPicture::texel(std::uint32_t x, std::uint32_t y) const {
+std::uint32_t AtlasPicture::texel_of_square(std::uint32_t x, std::uint32_t y) const {
   const auto index = [this](std::size_t column, std::size_t row) { return row * resolution_ + column; };
-  if (step_ == 1) {
-    const std::size_t texel = index(x, y);
-    return owners_[texel] == kNone ? kNone : static_cast<std::uint32_t>(texel);
-  }
   const std::uint32_t left = x * step_, top = y * step_;
   const std::uint32_t right = std::min(resolution_, left + step_), bottom = std::min(rows_, top + step_);
   const std::size_t middle = index((left + right) / 2, (top + bottom) / 2);

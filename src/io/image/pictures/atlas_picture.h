@@ -20,9 +20,15 @@ class AtlasPicture {
   [[nodiscard]] std::uint32_t step() const { return step_; }
   /// The texel that a pixel shows: the one in the middle of its square if a face owns it, otherwise another
   /// one of the square; kNone if no face owns any.
-  [[nodiscard]] std::uint32_t texel(std::uint32_t x, std::uint32_t y) const;
+  [[nodiscard]] std::uint32_t texel(std::uint32_t x, std::uint32_t y) const {
+    if (step_ > 1) return texel_of_square(x, y);
+    const std::uint32_t texel = y * resolution_ + x;
+    return owners_[texel] == kNone ? kNone : texel;
+  }
 
  private:
+  [[nodiscard]] std::uint32_t texel_of_square(std::uint32_t x, std::uint32_t y) const;
+
   std::span<const std::uint32_t> owners_;  // of texels
   std::uint32_t resolution_, rows_;        // of the atlas
   std::uint32_t step_ = 1, width_ = 0, height_ = 0;

@@ -138,7 +138,7 @@ void DepthBuffer::draw(std::uint32_t face, const Triangle& triangle, const Exten
     const std::uint32_t end = sample_from(std::max(extent.begin, std::min(extent.end, to)));
     const double depth_of_row = at + by_y * y;
     while (column < end) {
-      std::uint32_t& tile = tile_at_[this->tile(column, row)];
+      std::uint32_t& tile = tile_at_[place_of_tile(column, row)];
       if (tile == kEmpty) {
         tile = static_cast<std::uint32_t>(tiles_.size());
         tiles_.emplace_back();
@@ -160,9 +160,7 @@ double DepthBuffer::doubled_area(const Triangle& triangle) const {
   return cross(flat(corners_[triangle[1]]) - p, flat(corners_[triangle[2]]) - p);
 }
 
-DepthBuffer::Point DepthBuffer::point(std::uint32_t column, std::uint32_t row,
-                                      const Triangle& triangle) const {
-  const Vec2 at{column + 0.5, row + 0.5};
+DepthBuffer::Point DepthBuffer::point(const Vec2& at, const Triangle& triangle) const {
   const Vec2 p = flat(corners_[triangle[0]]);
   const Vec2 a = flat(corners_[triangle[1]]) - p, b = flat(corners_[triangle[2]]) - p, x = at - p;
   const double area = cross(a, b);

@@ -47,17 +47,19 @@ class DepthBuffer {
   [[nodiscard]] std::uint32_t width() const { return width_; }  ///< samples
   [[nodiscard]] std::uint32_t height() const { return height_; }
   [[nodiscard]] const Seen& seen(std::uint32_t column, std::uint32_t row) const {
-    return tiles_[tile_at_[tile(column, row)]][in_tile(column, row)];
+    return tile(column, row)[in_tile(column, row)];
   }
-  /// Whether no face is seen in the whole tile of a sample.
-  [[nodiscard]] bool is_empty_tile(std::uint32_t column, std::uint32_t row) const {
-    return tile_at_[tile(column, row)] == kEmpty;
+  /// The samples of the tile that contains a sample, in rows.
+  using Tile = std::array<Seen, std::size_t{kTile} * kTile>;
+  [[nodiscard]] const Tile& tile(std::uint32_t column, std::uint32_t row) const {
+    return tiles_[tile_at_[place_of_tile(column, row)]];
   }
-  /// The point of a face at a sample.
-  [[nodiscard]] Point point(std::uint32_t column, std::uint32_t row, const Triangle& triangle) const;
+  /// Whether no face is seen in any sample of a tile.
+  [[nodiscard]] bool is_empty(const Tile& tile) const { return &tile == &tiles_[kEmpty]; }
+  /// The point of a face at a place, in samples.
+  [[nodiscard]] Point point(const Vec2& at, const Triangle& triangle) const;
 
  private:
-  using Tile = std::array<Seen, std::size_t{kTile} * kTile>;
   static constexpr std::uint32_t kEmpty = 0;  // the tile of which nothing is seen
 
   /// The samples around a face, and the limits of its depth.
@@ -67,7 +69,7 @@ class DepthBuffer {
     double farthest, nearest;
   };
 
-  [[nodiscard]] std::size_t tile(std::uint32_t column, std::uint32_t row) const {
+  [[nodiscard]] std::size_t place_of_tile(std::uint32_t column, std::uint32_t row) const {
     return std::size_t{row / kTile} * tiles_across_ + column / kTile;
   }
   [[nodiscard]] static std::size_t in_tile(std::uint32_t column, std::uint32_t row) {
