@@ -29,11 +29,12 @@ namespace sdm {
 struct Simplified {
   /// Faces wind as those of the input. Its vertices are vertices of the input, in their order, if a number of
   /// triangles is asked for, if they are to be kept (SimplifyOptions::keep_vertices), if the input has
-  /// texture coordinates or over 400,000 triangles, or if over 5 % of its vertices are not on a manifold;
-  /// otherwise they are placed freely. Texture coordinates are those of the vertices that are left, seams
-  /// stay seams. At a pole, a vertex at which three faces or more have texture coordinates of their own, as
-  /// on spheres by latitude and longitude, a face has those of one of them. A face that the input does not
-  /// have has an area in the texture, also rounded to float, and winds there as the others of its chart.
+  /// texture coordinates, or if over 5 % of its vertices are not on a manifold; otherwise they are placed
+  /// freely, and most of them where the input has over 400,000 triangles. Texture coordinates are those of
+  /// the vertices that are left, seams stay seams. At a pole, a vertex at which three faces or more have
+  /// texture coordinates of their own, as on spheres by latitude and longitude, a face has those of one of
+  /// them. A face that the input does not have has an area in the texture, also rounded to float, and winds
+  /// there as the others of its chart.
   Mesh mesh;
   /// The region of each face, by the first face of the input that is in it; empty if the input has no
   /// regions. Borders between regions stay, as seams do.
@@ -107,8 +108,8 @@ inline constexpr auto kOptions<LevelsOptions> = std::tuple{
            .member = &LevelsOptions::keep_vertices,
            .text =
                "The vertices of the result are vertices of the mesh. They are so in any case with a number "
-               "of triangles, and where the mesh has texture coordinates or over 400,000 triangles; without "
-               "this, a deviation places them freely, which leaves fewer triangles."}};
+               "of triangles, and where the mesh has texture coordinates; without this, a deviation places "
+               "them freely, which leaves fewer triangles."}};
 
 /// What the calls so far have cost. Phases that run beside each other count twice.
 struct SimplifyReport {

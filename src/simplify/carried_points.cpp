@@ -1,7 +1,10 @@
 #include "simplify/carried_points.h"
 
+#include <sdm/closest_points.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sdm::simplify {
 namespace {
@@ -19,22 +22,40 @@ double parallelogram(const Corners& t) {
 
 }  // namespace
 
-CarriedPoints::CarriedPoints(std::span<const Vec3> positions, std::span<const Triangle> triangles)
-    : first_(triangles.size(), kNone) {
-  std::vector<bool> has_face(positions.size());
+// The middle of an edge is always a sample if edges of the input cross those of a mesh that is as fine.
+CarriedPoints::CarriedPoints(const Mesh& input) {
+  add_all(input, input.triangles.size(), 2);
+}
+
+CarriedPoints::CarriedPoints(const Mesh& input, const Sites& carriers) {
+  add_all(input, carriers.mesh().triangles.size(), 1);
+  first_.assign(carriers.mesh().triangles.size(), kNone);
+  const std::vector<ClosestPoint> closest = closest_points(carriers, points_);
+  double squares = 0;
+  for (std::uint32_t i = 0; i < points_.size(); ++i) {
+    next_[i] = std::exchange(first_[closest[i].face], i);
+    squares += closest[i].distance * closest[i].distance;
+  }
+  first_distance_ = std::sqrt(squares / static_cast<double>(points_.size()));
+}
+
+void CarriedPoints::add_all(const Mesh& input, std::size_t carriers, double least_steps) {
+  const std::vector<Triangle>& triangles = input.triangles;
+  first_.assign(triangles.size(), kNone);
+  std::vector<bool> has_face(input.positions.size());
   double area = 0;
   for (std::uint32_t f = 0; f < triangles.size(); ++f) {
     for (const std::uint32_t v : triangles[f]) {
-      if (!has_face[v]) add(positions[v], f);
+      if (!has_face[v]) add(input.positions[v], f);
       has_face[v] = true;
     }
-    area += parallelogram(corners_of(positions, triangles[f]));
+    area += parallelogram(corners_of(input, f));
   }
   // Points as far from each other as in an even mesh of as many faces, or of so many.
   constexpr double kLeastFaces = 20'000;
-  const double spacing = 1.5 * std::sqrt(area / std::max(kLeastFaces, static_cast<double>(triangles.size())));
+  const double spacing = 1.5 * std::sqrt(area / std::max(kLeastFaces, static_cast<double>(carriers)));
   for (std::uint32_t f = 0; f < triangles.size(); ++f)
-    add_between(corners_of(positions, triangles[f]), triangles[f], f, spacing);
+    add_between(corners_of(input, f), triangles[f], f, spacing, least_steps);
 }
 
 void CarriedPoints::add(const Vec3& p, std::uint32_t face) {
@@ -44,14 +65,13 @@ void CarriedPoints::add(const Vec3& p, std::uint32_t face) {
   source_.push_back(face);
 }
 
-void CarriedPoints::add_between(const Corners& corners, const Triangle& t, std::uint32_t face,
-                                double spacing) {
+void CarriedPoints::add_between(const Corners& corners, const Triangle& t, std::uint32_t face, double spacing,
+                                double least_steps) {
   constexpr double kMost = 64;  // on a side
   for (int k = 0; k < 3; ++k) {
     if (t[k] > t[(k + 1) % 3]) continue;  // the other face at this side has its points
     const Vec3 side = corners[(k + 1) % 3] - corners[k];
-    // The middle is always a sample, as edges of the input cross those of a mesh that is as fine.
-    const double steps = std::clamp(std::floor(norm(side) / spacing), 2.0, kMost);
+    const double steps = std::clamp(std::floor(norm(side) / spacing), least_steps, kMost);
     for (double i = 1; i < steps; ++i) add(corners[k] + (i / steps) * side, face);
   }
   const double steps = std::min(kMost, std::floor(std::sqrt(parallelogram(corners)) / spacing));

@@ -1,6 +1,9 @@
 // Points of the input that the faces of a simplified mesh stand for.
 #pragma once
 
+#include <sdm/mesh.h>
+#include <sdm/sites.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -37,7 +40,12 @@ struct NearTriangle : TriangleSides {
 class CarriedPoints {
  public:
   /// Each face of the input carries points of its own. Cost: linear.
-  CarriedPoints(std::span<const Vec3> positions, std::span<const Triangle> triangles);
+  explicit CarriedPoints(const Mesh& input);
+  /// Faces of a mesh with fewer of them carry the points that are closest to them. Cost: a search for each.
+  CarriedPoints(const Mesh& input, const Sites& carriers);
+
+  /// The root of the mean squared distance of all points to the faces that carried them at first.
+  [[nodiscard]] double first_distance() const { return first_distance_; }
 
   /// The largest distance of the points of faces around an edge to the nearest of the faces that are to
   /// replace these; where one is larger than `enough`, others are left out. If it is larger than `allowed`,
@@ -71,7 +79,9 @@ class CarriedPoints {
   };
 
   void add(const Vec3& p, std::uint32_t face);
-  void add_between(const Corners& corners, const Triangle& t, std::uint32_t face, double spacing);
+  void add_all(const Mesh& input, std::size_t carriers, double least_steps);
+  void add_between(const Corners& corners, const Triangle& t, std::uint32_t face, double spacing,
+                   double least_steps);
 
   std::vector<Vec3> points_;
   std::vector<std::uint32_t> source_;  // the face of the input
@@ -80,7 +90,8 @@ class CarriedPoints {
   std::vector<NearTriangle> near_;
   std::vector<std::uint32_t> faces_;
   std::vector<Found> found_;
-  double farthest_ = 0;                                // of these, squared
+  double farthest_ = 0;  // of these, squared
+  double first_distance_ = 0;
   std::vector<std::uint32_t> first_sample_, carried_;  // of each moved face
 };
 

@@ -52,16 +52,20 @@ bool CollapseSequence::Later::operator()(const Edge& a, const Edge& b) const {
   return a.rung > b.rung;
 }
 
-CollapseSequence::CollapseSequence(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                                   const sites::SitesData& sites, double size)
-    : mesh_(positions, triangles),
-      points_(positions, triangles),
-      sites_(sites),
+CollapseSequence::CollapseSequence(const Mesh& start, const Sites& input, double size)
+    : mesh_(start),
+      points_(&start == &input.mesh() ? CarriedPoints(start) : CarriedPoints(input.mesh(), Sites(start))),
+      sites_(internals(input)),
       ladder_(size),
-      middle_(centre(bounds(sites.mesh))),
-      quadrics_(positions.size()),
-      moves_(positions.size()),
-      last_(positions.size(), kNone) {
+      middle_(centre(bounds(input.mesh()))),
+      faces_(start.triangles.size()),
+      quadrics_(start.positions.size()),
+      moves_(start.positions.size()),
+      last_(start.positions.size(), kNone) {
+  // What the points are from the start at first is no reason to try a collapse again and again.
+  constexpr double kOfFirst = 2;
+  rung_ = ladder_.above(kOfFirst * points_.first_distance());
+  const std::vector<Triangle>& triangles = start.triangles;
   add_planes();
   for (std::uint32_t f = 0; f < triangles.size(); ++f)
     for (int k = 0; k < 3; ++k) {
@@ -69,7 +73,7 @@ CollapseSequence::CollapseSequence(std::span<const Vec3> positions, std::span<co
       // An edge has a face in which it ascends unless it is a border, or faces are turned.
       if (u < v) push(u, v);
     }
-  for (std::uint32_t u = 0; u < positions.size(); ++u)
+  for (std::uint32_t u = 0; u < start.positions.size(); ++u)
     for (const std::uint32_t v : mesh_.neighbours(u)) {
       if (v < u) continue;
       const auto ascends = [&](std::uint32_t f) {
@@ -81,7 +85,7 @@ CollapseSequence::CollapseSequence(std::span<const Vec3> positions, std::span<co
 }
 
 void CollapseSequence::add_planes() {
-  for (std::uint32_t f = 0; mesh_.size() > 0 && f < sites_.mesh.triangles.size(); ++f) {
+  for (std::uint32_t f = 0; f < faces_; ++f) {
     const Corners c = mesh_.corners(f);
     const Vec3 normal = cross(c[1] - c[0], c[2] - c[0]);
     const double area = norm(normal) / 2;
@@ -138,6 +142,7 @@ void CollapseSequence::push(const Edge& edge) {
 }
 
 void CollapseSequence::advance(int rung) {
+  if (rung < rung_) return;
   Poll poll(64);
   for (;;) {
     if (ready_.empty()) {
@@ -232,14 +237,15 @@ std::span<const CollapseOfEdge> CollapseSequence::up_to(int rung) const {
 std::size_t CollapseSequence::faces_after(int rung) const {
   if (rung >= rung_) return mesh_.size();
   const auto end = std::ranges::upper_bound(ends_, rung, {}, &End::rung);
-  return end == ends_.begin() ? sites_.mesh.triangles.size() : std::prev(end)->faces;
+  return end == ends_.begin() ? faces_ : std::prev(end)->faces;
 }
 
-CollapsedMesh after_collapses(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                              std::span<const CollapseOfEdge> collapses, const std::vector<bool>& held) {
-  CollapsingMesh mesh(positions, triangles);
-  std::vector<std::uint32_t> last(positions.size(), kNone);
-  std::vector<bool> gone(positions.size());
+CollapsedMesh after_collapses(const Mesh& start, std::span<const CollapseOfEdge> collapses,
+                              const std::vector<bool>& held) {
+  CollapsingMesh mesh(start);
+  const std::vector<Triangle>& triangles = start.triangles;
+  std::vector<std::uint32_t> last(start.positions.size(), kNone);
+  std::vector<bool> gone(last.size());
   std::vector<MovedFace> moved;
   for (std::uint32_t i = 0; i < collapses.size(); ++i) {
     const CollapseOfEdge& c = collapses[i];
@@ -252,7 +258,7 @@ CollapsedMesh after_collapses(std::span<const Vec3> positions, std::span<const T
     last[c.u] = i;
     gone[c.v] = true;
   }
-  std::vector<bool> used(positions.size());
+  std::vector<bool> used(last.size());
   for (std::uint32_t f = 0; f < triangles.size(); ++f)
     if (mesh.is_left(f))
       for (const std::uint32_t v : mesh.triangle(f)) used[v] = true;

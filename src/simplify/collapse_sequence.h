@@ -48,9 +48,9 @@ struct CollapseOfEdge {
 /// As these are samples, a deviation may be larger: a certificate is needed.
 class CollapseSequence {
  public:
-  /// The sites are those of the mesh. All must outlive this object.
-  CollapseSequence(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                   const sites::SitesData& sites, double size);
+  /// Begins with the input, the mesh of the sites, or with another mesh that it was simplified to. The sites
+  /// must outlive this object.
+  CollapseSequence(const Mesh& start, const Sites& input, double size);
 
   /// Whether the surface is a manifold, up to few vertices.
   [[nodiscard]] bool is_possible() const;
@@ -91,9 +91,10 @@ class CollapseSequence {
 
   CollapsingMesh mesh_;
   CarriedPoints points_;
-  const sites::SitesData& sites_;
+  const sites::SitesData& sites_;  // of the input
   Ladder ladder_;
-  Vec3 middle_;  // quadrics are relative to it
+  Vec3 middle_;        // quadrics are relative to it
+  std::size_t faces_;  // at first
   std::vector<Quadric> quadrics_;
   std::vector<std::uint32_t> moves_, last_;  // of vertices
   std::priority_queue<Edge, std::vector<Edge>, Costlier> ready_;
@@ -117,9 +118,7 @@ struct CollapsedMesh {
   std::vector<std::uint32_t> last;
   std::vector<std::uint32_t> faces;  ///< of each face, its number before
 };
-[[nodiscard]] CollapsedMesh after_collapses(std::span<const Vec3> positions,
-                                            std::span<const Triangle> triangles,
-                                            std::span<const CollapseOfEdge> collapses,
+[[nodiscard]] CollapsedMesh after_collapses(const Mesh& start, std::span<const CollapseOfEdge> collapses,
                                             const std::vector<bool>& held);
 
 }  // namespace sdm::simplify

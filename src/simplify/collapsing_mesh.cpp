@@ -26,14 +26,14 @@ bool turns(const Corners& before, const Corners& after) {
 
 }  // namespace
 
-CollapsingMesh::CollapsingMesh(std::span<const Vec3> positions, std::span<const Triangle> triangles)
-    : positions_(positions.begin(), positions.end()),
-      triangles_(triangles.begin(), triangles.end()),
-      faces_of_(positions.size()),
-      fixed_(positions.size()),
-      left_(triangles.size()),
-      shared_(positions.size()) {
-  std::vector<std::uint32_t> degree(positions.size());
+CollapsingMesh::CollapsingMesh(const Mesh& mesh)
+    : positions_(mesh.positions),
+      triangles_(mesh.triangles),
+      faces_of_(positions_.size()),
+      fixed_(positions_.size()),
+      left_(triangles_.size()),
+      shared_(positions_.size()) {
+  std::vector<std::uint32_t> degree(positions_.size());
   for (const Triangle& t : triangles_)
     for (const std::uint32_t v : t) ++degree[v];
   for (std::size_t v = 0; v < degree.size(); ++v) faces_of_[v].reserve(degree[v]);

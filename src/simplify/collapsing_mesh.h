@@ -23,7 +23,7 @@ struct MovedFace {
 class CollapsingMesh {
  public:
   /// No face repeats a vertex. Cost: linear.
-  CollapsingMesh(std::span<const Vec3> positions, std::span<const Triangle> triangles);
+  explicit CollapsingMesh(const Mesh& mesh);
 
   [[nodiscard]] const Vec3& position(std::uint32_t v) const { return positions_[v]; }
   [[nodiscard]] std::span<const std::uint32_t> faces_of(std::uint32_t v) const { return faces_of_[v]; }

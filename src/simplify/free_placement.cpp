@@ -83,13 +83,8 @@ std::vector<std::uint32_t> far_places(const Sites& input, const Mesh& result, do
 
 }  // namespace
 
-FreePlacement::FreePlacement(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                             const Sites& sites, double size)
-    : positions_(positions),
-      triangles_(triangles),
-      sites_(sites),
-      ladder_(size),
-      sequence_(positions, triangles, internals(sites), size) {}
+FreePlacement::FreePlacement(const Mesh& start, const Sites& input, double size)
+    : start_(start), input_(input), ladder_(size), sequence_(start, input, size) {}
 
 Simplified FreePlacement::to_deviation(double limit, const SimplifyOptions& options, SimplifyReport& report) {
   Stopwatch watch;
@@ -97,7 +92,7 @@ Simplified FreePlacement::to_deviation(double limit, const SimplifyOptions& opti
   sequence_.advance(highest);
   report.collapse_ms += watch.lap();
   Simplified best;
-  std::size_t fewest = triangles_.size();
+  std::size_t fewest = start_.triangles.size();
   for (int rung = highest; rung >= Ladder::kLowest && sequence_.faces_after(rung) < fewest; --rung) {
     Simplified found = first_within(limit, rung, fewest, options, report);
     if (found.mesh.triangles.empty()) continue;
@@ -116,25 +111,35 @@ Simplified FreePlacement::first_within(double limit, int rung, std::size_t fewer
   std::vector<bool> held;
   for (int mendings = 0, levels = 1;; ++mendings, levels *= kMoreLevels) {
     Stopwatch watch;
-    CollapsedMesh collapsed = after_collapses(positions_, triangles_, collapses, held);
+    CollapsedMesh collapsed = after_collapses(start_, collapses, held);
     Simplified result{.mesh = collapsed.mesh, .source_faces = collapsed.faces, .estimate = expected.estimate};
     if (options.single_precision) round_positions(result);
     report.collapse_ms += watch.lap();
     if (result.mesh.triangles.empty() || result.mesh.triangles.size() >= fewer_than) return {};
-    result.deviation = deviation_of_input(sites_, result.mesh, expected, options.progress);
-    if (result.deviation.upper <= limit)
-      result.deviation =
-          with_deviation_of_result(result.deviation, sites_, result.mesh, expected, options.progress);
-    ++report.candidates;
-    report.deviation_ms += watch.lap();
-    if (result.deviation.upper <= limit) return result;
+    if (!is_far_at_known(result.mesh, limit)) {
+      result.deviation = deviation_of_input(input_, result.mesh, expected, options.progress);
+      if (result.deviation.lower > limit) far_.push_back((*result.deviation.witness)[0]);
+      if (result.deviation.upper <= limit)
+        result.deviation =
+            with_deviation_of_result(result.deviation, input_, result.mesh, expected, options.progress);
+      ++report.candidates;
+      report.deviation_ms += watch.lap();
+      if (result.deviation.upper <= limit) return result;
+    }
     if (mendings == kMostMendings) return {};
     const std::vector<std::uint32_t> far =
-        far_places(sites_, result.mesh, ladder_.length(rung + 1), options.progress);
+        far_places(input_, result.mesh, ladder_.length(rung + 1), options.progress);
     report.deviation_ms += watch.lap();
     held.resize(collapses.size());
     hold_back(collapsed, far, levels, collapses, held);
   }
+}
+
+bool FreePlacement::is_far_at_known(const Mesh& result, double limit) const {
+  if (far_.empty()) return false;
+  const Sites sites(result);
+  return std::ranges::any_of(
+      far_, [&](const Vec3& p) { return hausdorff::nearest_face(internals(sites), p, kNone).lower > limit; });
 }
 
 // Undoes the last collapses of these vertices: `levels` of the tree of collapses that made each of them.

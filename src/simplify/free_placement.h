@@ -18,27 +18,29 @@ namespace sdm::simplify {
 /// limit. None of these meshes depends on the limit: a larger one never leaves more faces.
 class FreePlacement {
  public:
-  /// The faces have no texture coordinates, and the sites are theirs. All must outlive this object.
-  FreePlacement(std::span<const Vec3> positions, std::span<const Triangle> triangles, const Sites& sites,
-                double size);
+  /// Begins with the input, the mesh of the sites, or with another mesh that it was simplified to. Both must
+  /// outlive this object.
+  FreePlacement(const Mesh& start, const Sites& input, double size);
 
   /// Whether the surface is a manifold, up to few vertices: it is not simplified otherwise.
   [[nodiscard]] bool is_possible() const { return sequence_.is_possible(); }
-  /// Returns the mesh, which of the given faces each of its faces was, and its deviation; no faces: none with
+  /// Returns the mesh, which face of the start each of its faces was, and its deviation; no faces: none with
   /// fewer of them is found.
   [[nodiscard]] Simplified to_deviation(double limit, const SimplifyOptions& options, SimplifyReport& report);
 
  private:
   [[nodiscard]] Simplified first_within(double limit, int rung, std::size_t fewer_than,
                                         const SimplifyOptions& options, SimplifyReport& report);
+  /// Whether a point that was too far from another result is farther than the limit from this one.
+  [[nodiscard]] bool is_far_at_known(const Mesh& result, double limit) const;
   void hold_back(const CollapsedMesh& mesh, const std::vector<std::uint32_t>& vertices, int levels,
                  std::span<const CollapseOfEdge> collapses, std::vector<bool>& held) const;
 
-  std::span<const Vec3> positions_;
-  std::span<const Triangle> triangles_;
-  const Sites& sites_;
+  const Mesh& start_;
+  const Sites& input_;
   Ladder ladder_;
   CollapseSequence sequence_;
+  std::vector<Vec3> far_;  // points of the input at which results were too far from it
 };
 
 }  // namespace sdm::simplify

@@ -43,6 +43,10 @@ constexpr double kSafeError = 0.1;
 constexpr int kMostFailures = 4;
 constexpr double kMostError = 100;  // relative to the size: nothing else is left to collapse
 
+// A mesh of more triangles than the first number is halved again and again, to at most the second one, before
+// there are steps of that ladder or vertices are placed freely.
+constexpr std::size_t kLarge = 400'000, kHalved = 100'000;
+
 bool has_area(const Mesh& mesh) {
   return std::ranges::any_of(mesh.triangles, [&](const Triangle& t) {
     const Vec3& a = mesh.positions[t[0]];
@@ -112,6 +116,8 @@ class Simplifier::State {
   void measure(Step& step, const SimplifyOptions& options);
   /// Nothing where vertices are to be kept, or no mesh with fewer triangles is found.
   std::optional<Simplified> freely_placed(double limit, const SimplifyOptions& options);
+  /// The start, and meshes of half of the triangles of the one before, down to kHalved.
+  std::vector<Step> halved(const Wedges& wedges, const Step& start, const SimplifyOptions& options);
   /// Steps of the ladder, each made from the one before, up to where the limit is exceeded.
   std::vector<Step> coarser(const Wedges& wedges, const Step& start, double limit,
                             const SimplifyOptions& options);
@@ -124,6 +130,7 @@ class Simplifier::State {
   Mesh mesh_;  // until there are sites
   Wedges wedges_;
   std::optional<Sites> sites_;
+  Simplified start_;  // of free_; no triangles: the input
   std::optional<FreePlacement> free_;
   SimplifyReport report_;
 };
@@ -237,6 +244,21 @@ Simplifier::State::Step Simplifier::State::next_step(const Wedges& wedges, const
   return {};
 }
 
+std::vector<Simplifier::State::Step> Simplifier::State::halved(const Wedges& wedges, const Step& start,
+                                                               const SimplifyOptions& options) {
+  std::vector<Step> steps{start};
+  while (steps.back().triangles.size() > kHalved) {
+    const Step& from = steps.back();
+    Step step = collapsed(wedges, from, {from.triangles.size() / 2, kMostError * wedges.size}, options);
+    if (static_cast<double>(step.triangles.size()) >
+            (1 - kWorthwhile) * static_cast<double>(from.triangles.size()) ||
+        step.triangles.empty())
+      break;
+    steps.push_back(std::move(step));
+  }
+  return steps;
+}
+
 // The mesh that is the result for a limit is the last one on the way that keeps it. The way is the same for
 // all limits, and the part of it that is looked at grows with the limit, as does the set of meshes that keep
 // it: a larger limit never leaves more triangles.
@@ -245,7 +267,14 @@ std::vector<Simplifier::State::Step> Simplifier::State::coarser(const Wedges& we
                                                                 const SimplifyOptions& options) {
   std::vector<Step> steps;
   double error = kFirstError * wedges_.size;
-  std::size_t kept = 0;  // steps up to the last one that may keep the limit
+  if (start.triangles.size() > kLarge) {
+    steps = halved(wedges, start, options);
+    if (steps.size() > 1) error = kLarger * (steps.back().estimate - steps[steps.size() - 2].estimate);
+    steps.erase(steps.begin());
+    // Vertices are placed freely from the last of these on: no limit that it exceeds has fewer triangles.
+    if (free_ && free_->is_possible() && !options.keep_vertices) return steps;
+  }
+  std::size_t kept = steps.size();  // steps up to the last one that may keep the limit
   for (int failures = 0; failures < kMostFailures;) {
     Step step = next_step(wedges, steps.empty() ? start : steps.back(), error, options);
     if (step.triangles.empty()) break;
@@ -263,23 +292,35 @@ std::vector<Simplifier::State::Step> Simplifier::State::coarser(const Wedges& we
 }
 
 std::optional<Simplified> Simplifier::State::freely_placed(double limit, const SimplifyOptions& options) {
-  // A larger mesh takes minutes, where meshoptimizer's collapses take seconds.
-  constexpr std::size_t kMostTriangles = 400'000;
   const bool has_seams = !wedges_.uvs.empty() || wedges_.vertex.size() > wedges_.positions.size();
-  if (options.keep_vertices || has_seams || wedges_.triangles.size() > kMostTriangles) return {};
-  make_sites();
+  if (options.keep_vertices || has_seams) return {};
   if (!free_) {
+    if (wedges_.triangles.size() > kLarge) {
+      Step start;
+      start.triangles = wedges_.triangles;
+      start = halved(wedges_, start, {.progress = options.progress}).back();
+      start_ = std::move(static_cast<Simplified&>(start));
+    }
+    make_sites();
     Stopwatch watch;
-    free_.emplace(wedges_.positions, wedges_.triangles, *sites_, wedges_.size);
+    free_.emplace(start_.mesh.triangles.empty() ? sites_->mesh() : start_.mesh, *sites_, wedges_.size);
     report_.collapse_ms += watch.lap();
   }
   if (!free_->is_possible()) return {};
+  if (!start_.mesh.triangles.empty()) {
+    double& upper = start_.deviation.upper;
+    if (!(upper > 0 && upper <= limit))
+      upper = deviation_of_input(*sites_, start_.mesh, {limit, start_.estimate}, options.progress).upper;
+    if (upper > limit) return {};
+  }
   Simplified result = free_->to_deviation(limit, options, report_);
   if (result.mesh.triangles.empty() || !has_area(result.mesh)) return {};
   if (options.from != nullptr && result.mesh.triangles.size() > options.from->mesh.triangles.size())
     return {};
   for (std::uint32_t& face : result.source_faces)
-    if (!wedges_.regions.empty()) face = wedges_.regions[wedges_.triangles[face][0]];
+    if (!wedges_.regions.empty())
+      face = start_.source_faces.empty() ? wedges_.regions[wedges_.triangles[face][0]]
+                                         : start_.source_faces[face];
   if (wedges_.regions.empty()) result.source_faces.clear();
   return result;
 }

@@ -90,6 +90,14 @@ FirstParts first_parts(const Mesh& a, const sites::SitesData& b, std::span<const
       for (int i = 0; i < 3; ++i) corner[i] = vertices[t[i]];
       if (std::ranges::any_of(corner, [](const VertexDistance& d) { return d.face == kNone; })) continue;
       FirstParts& block = found[f / kBlock];
+      // The distance to one face is convex.
+      if (corner[0].face == corner[1].face && corner[1].face == corner[2].face) {
+        const double upper = std::max({corner[0].upper, corner[1].upper, corner[2].upper});
+        if (upper <= lower) {
+          block.settled = std::max(block.settled, upper);
+          continue;
+        }
+      }
       FacePart part{.at = corners_of(a, static_cast<std::uint32_t>(f)),
                     .face = static_cast<std::uint32_t>(f)};
       bound_face(b, corner, lower, part);
