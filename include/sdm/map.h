@@ -180,12 +180,16 @@ struct SampleRange {
 /// Computes the values of some samples and stores them; the others keep theirs. Once
 /// this was called for ranges that cover all samples, in any order, with the same arguments otherwise, the
 /// arrays and the sign of the map are those of compute_map() to the bit; beyond_max_distance and
-/// without_match count the samples of this range. Throws sdm::Error as compute_map() does, if `map` has
-/// another size than the atlas, for ranges other than those of sample_range_grain(), and for engines that
-/// compute whole maps only. Cost: as compute_map(), by the samples of the range, and with options.facing
-/// linear in the faces of the surface.
+/// without_match count the samples of this range (see count_missing()). Throws sdm::Error as compute_map()
+/// does, if `map` has another size than the atlas, for ranges other than those of sample_range_grain(), and
+/// for engines that compute whole maps only. Cost: as compute_map(), by the samples of the range, and with
+/// options.facing linear in the faces of the surface.
 SDM_API void compute_samples(const Surface& surface, const Sites& sites, const MapOptions& options,
                              const SampleRange& range, DistanceMap& map);
+
+/// Counts beyond_max_distance and without_match of a map that was computed in ranges, in any order, as
+/// compute_map() has them. Cost: linear.
+SDM_API void count_missing(const Surface& surface, DistanceMap& map);
 
 /// Returns the distance from each vertex of `mesh` to O2, NaN beyond options.max_distance; signed as by
 /// compute_map with the same options. With options.facing, each face around a vertex has a distance there, by

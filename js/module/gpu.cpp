@@ -100,9 +100,6 @@ Result* gpu_finish(DistanceMap* map, const Surface* surface, const Sites* sites,
         .first = {parts, parts + part_count},
         .lists = {lists, lists + part_count * placed.size()},
     };
-    // Those of the ranges before.
-    const std::size_t beyond = first == 0 ? 0 : map->beyond_max_distance;
-    const std::size_t without_match = first == 0 ? 0 : map->without_match;
     map::TexelStore texels(*map, measure.description(), surface->sample_texels(), range);
     constexpr std::size_t kGrain = 64 * sites::ClosestPacket::kSize;
     parallel_for((count + kGrain - 1) / kGrain, 1, [&](std::size_t begin, std::size_t end) {
@@ -115,8 +112,6 @@ Result* gpu_finish(DistanceMap* map, const Surface* surface, const Sites* sites,
                   });
     });
     texels.finish();
-    map->beyond_max_distance += beyond;
-    map->without_match += without_match;
     result.put("sign", map->sign.method);
     result.put("sign_reason", map->sign.reason);
   });

@@ -112,11 +112,12 @@ struct Draft {
 }  // namespace
 
 SDM_EXPORT(sdm_map_summary)
-Result* map_summary(const DistanceMap* map, const Surface* surface, const Sites* sites, const char* lines,
+Result* map_summary(DistanceMap* map, const Surface* surface, const Sites* sites, const char* lines,
                     std::uint32_t bytes, const double* numbers, const double* rest, std::uint32_t vertices,
                     const char* asked_lines, std::uint32_t asked_bytes, const double* asked_numbers,
                     const char* files, std::uint32_t files_size) {
   return guarded([&](Result& result) {
+    count_missing(*surface, *map);  // it may have been computed in ranges
     const auto [options, limit] =
         read_all_options<SummaryOptions, MapLimit>({asked_lines, asked_bytes, asked_numbers});
     const Asked asked{*map,
@@ -132,11 +133,12 @@ Result* map_summary(const DistanceMap* map, const Surface* surface, const Sites*
 
 /// The draft, the lengths of the planes of its arrays, and these planes.
 SDM_EXPORT(sdm_new_report)
-Result* new_report(const DistanceMap* map, const Surface* surface, const Sites* sites, const char* lines,
+Result* new_report(DistanceMap* map, const Surface* surface, const Sites* sites, const char* lines,
                    std::uint32_t bytes, const double* numbers, const double* rest, std::uint32_t vertices,
                    const char* asked_lines, std::uint32_t asked_bytes, const double* asked_numbers,
                    const char* files, std::uint32_t files_size) {
   return guarded([&](Result& result) {
+    count_missing(*surface, *map);  // it may have been computed in ranges
     const auto [options, limit, page] =
         read_all_options<SummaryOptions, MapLimit, PageOptions>({asked_lines, asked_bytes, asked_numbers});
     auto [at_vertices, json] = report_of({*map,

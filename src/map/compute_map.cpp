@@ -1,6 +1,7 @@
 #include <sdm/error.h>
 #include <sdm/map.h>
 
+#include <cmath>
 #include <new>
 #include <string>
 
@@ -92,6 +93,17 @@ void compute_samples(const Surface& surface, const Sites& sites, const MapOption
   texels.finish();
 } catch (const std::bad_alloc&) {
   throw out_of_memory("a map");
+}
+
+void count_missing(const Surface& surface, DistanceMap& map) {
+  std::size_t missing = 0;
+  map.without_match = 0;
+  for (const std::uint32_t texel : surface.sample_texels()) {
+    if (std::isfinite(map.distance[texel])) continue;
+    ++missing;
+    if (!map.unmatched.empty()) map.without_match += map.unmatched[texel];
+  }
+  map.beyond_max_distance = missing - map.without_match;
 }
 
 }  // namespace sdm

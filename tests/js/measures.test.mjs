@@ -71,11 +71,13 @@ test('distances along lines are those of the lines', () => {
 
 test('ranges of samples are the map', () => {
   const { positions, indices } = ball(40), on = new sdm.Surface(positions, indices, { resolution: 200 }), of = new sdm.Sites(positions, indices);
-  for (const options of [{ measure: 'self', rings: 3, maxDistance: 0.4 }, { measure: 'thickness', angle: 45 }, { along: 'normal' }]) {
+  for (const options of [{ measure: 'self', rings: 3, maxDistance: 0.4 }, { measure: 'thickness', angle: 45 }, { along: 'normal' }, { along: 'normal', maxDistance: 0.01 }]) {
     const whole = on.map(of, options), parts = on.emptyMap(of), { samples, grain } = on.sampleCounts();
     for (let first = 0; first < samples; first += 3 * grain) parts.computeSamples(first, Math.min(3 * grain, samples - first), options);
     for (const name of ['distances', 'vectors', 'sitesOfTexels', 'siteTypes']) assert.deepEqual(parts[name], whole[name], name);
     assert.deepEqual(parts.statistics(), whole.statistics());
+    const [{ tool: _, ...summed }, { tool: __, ...known }] = [parts.summary(), whole.summary()];
+    assert.deepEqual(summed, known); // with the samples beyond the maximum distance
   }
 });
 
