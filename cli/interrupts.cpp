@@ -6,7 +6,7 @@
 
 #include <array>
 #include <atomic>
-#include <chrono>
+#include <chrono>  // IWYU pragma: keep, for its literals
 #include <csignal>
 #include <ctime>
 #include <string_view>

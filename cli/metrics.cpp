@@ -16,7 +16,6 @@
 #include "input_pair.h"
 #include "metric_conditions.h"
 #include "notes.h"
-#include "option_checks.h"
 #include "print.h"
 #include "progress_line.h"
 #include "src/core/stopwatch.h"

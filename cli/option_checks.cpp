@@ -1,11 +1,11 @@
 #include "option_checks.h"
 
+#include <fmt/format.h>
 #include <sdm/error.h>
 
 #include <cmath>
 #include <string_view>
 
-#include "format.h"
 #include "src/core/parse_number.h"
 #include "src/io/mesh/placement.h"
 

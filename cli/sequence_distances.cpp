@@ -1,7 +1,6 @@
 #include "sequence_distances.h"
 
 #include <fmt/format.h>
-#include <sdm/summary.h>
 
 #include <cmath>
 #include <limits>

@@ -9,7 +9,6 @@
 #include <array>
 #include <utility>
 
-#include "arrays.h"
 #include "closest.h"
 #include "map.h"
 #include "objects.h"

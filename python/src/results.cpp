@@ -1,6 +1,5 @@
 // Pickling and copying of results that are values of the library: their members are listed here.
 #include <sdm/doubts.h>
-#include <sdm/map_files.h>
 #include <sdm/mesh_edit.h>
 #include <sdm/places.h>
 #include <sdm/points.h>

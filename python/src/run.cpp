@@ -1,10 +1,11 @@
 #include "run.h"
 
 #include <pthread.h>
+#include <sdm/error.h>
 #include <sdm/execution.h>
 
 #include <atomic>
-#include <chrono>
+#include <chrono>  // IWYU pragma: keep, for its literals
 #include <condition_variable>
 #include <exception>
 #include <optional>

@@ -2,13 +2,11 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
-#include <sdm/error.h>
 #include <sdm/execution.h>
 
 #include <atomic>
 #include <functional>
 #include <mutex>
-#include <new>
 #include <optional>
 #include <shared_mutex>
 #include <type_traits>

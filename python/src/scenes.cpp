@@ -2,7 +2,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 #include <sdm/error.h>
-#include <sdm/map_files.h>
 
 #include <string>
 #include <utility>

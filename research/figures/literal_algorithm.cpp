@@ -1,5 +1,6 @@
 // Algorithm 1 as it is printed, beside the corrected one: what each correction contributes, and costs.
 #include <fmt/format.h>
+#include <sdm/closest_points.h>
 
 #include <algorithm>
 #include <span>
@@ -8,9 +9,9 @@
 #include "research/figures/charts/bars.h"
 #include "research/figures/corrections.h"
 #include "research/figures/figures.h"
-#include "research/figures/maps.h"
 #include "research/figures/pieces.h"
 #include "research/figures/timing.h"
+#include "research/figures/view.h"
 #include "research/literal/literal_engine.h"
 
 namespace sdm::figures {

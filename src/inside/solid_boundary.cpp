@@ -6,7 +6,6 @@
 #include "core/parallel.h"
 #include "geometry/clip.h"
 #include "geometry/point_triangle.h"
-#include "geometry/vec.h"
 #include "inside/near_faces.h"
 #include "inside/solid.h"
 #include "search/branch_and_bound.h"

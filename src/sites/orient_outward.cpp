@@ -8,7 +8,6 @@
 #include "core/cancellation.h"
 #include "core/parallel.h"
 #include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
 #include "sites/intersecting_faces.h"
 #include "tree/fold.h"
 

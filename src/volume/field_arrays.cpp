@@ -1,7 +1,5 @@
 #include "volume/field_arrays.h"
 
-#include <sdm/error.h>
-
 #include <algorithm>
 #include <atomic>
 #include <limits>

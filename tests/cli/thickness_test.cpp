@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sdm/io.h>
-#include <sdm/measure.h>
 #include <sdm/sdm.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Points inside solids, by the winding number.
 #include "inside/solid.h"
+#include "geometry/vec.h"
 
 #include <gtest/gtest.h>
 #include <sdm/closest_points.h>

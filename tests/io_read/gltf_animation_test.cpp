@@ -1,6 +1,5 @@
 // Animations of nodes and skins in glTF files, compared with closed forms.
 #include <gmock/gmock.h>
-#include <sdm/error.h>
 #include <sdm/mesh_files.h>
 
 #include <cmath>
@@ -11,7 +10,6 @@
 #include "io_read/gltf_store.h"
 #include "io_read/writers.h"
 #include "support/error_of.h"
-#include "support/shapes.h"
 
 namespace sdm {
 namespace {

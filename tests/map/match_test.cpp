@@ -1,6 +1,5 @@
 // Matches of texels: the point of O2 that belongs to each.
 #include <gtest/gtest.h>
-#include <sdm/error.h>
 #include <sdm/match.h>
 
 #include <algorithm>

@@ -4,7 +4,6 @@
 #include <sdm/map.h>
 #include <sdm/measure.h>
 #include <sdm/places.h>
-#include <sdm/self_proximity_query.h>
 #include <sdm/statistics.h>
 #include <sdm/surface.h>
 #include <sdm/tolerance.h>

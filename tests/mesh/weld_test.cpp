@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <sdm/error.h>
 #include <sdm/execution.h>
 #include <sdm/mesh.h>
 #include <sdm/mesh_edit.h>

@@ -12,7 +12,6 @@
 
 #include "scenes/blocks.h"
 #include "support/oracle.h"
-#include "support/shapes.h"
 
 namespace sdm::test {
 namespace {

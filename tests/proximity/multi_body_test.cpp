@@ -15,7 +15,6 @@
 #include "proximity/crowd.h"
 #include "support/allocations.h"
 #include "support/map_checks.h"
-#include "support/meshes.h"
 #include "support/pair_oracle.h"
 #include "support/points.h"
 #include "support/shapes.h"

@@ -13,7 +13,6 @@
 #include "geometry/point_triangle.h"
 #include "geometry/rounding.h"
 #include "geometry/triangle.h"
-#include "geometry/vec.h"
 
 namespace sdm::shape {
 namespace {

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "geometry/rounding.h"
-#include "geometry/vec.h"
 #include "tree/visit.h"
 
 namespace sdm::hausdorff {

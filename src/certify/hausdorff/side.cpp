@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "geometry/rounding.h"
+#include "geometry/triangle_pair.h"
 #include "geometry/vec.h"
 #include "inside/sign.h"
 #include "inside/solid.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <tuple>
 
-#include "geometry/vec.h"
 #include "sites/closest_on_face.h"
 #include "tree/visit.h"
 

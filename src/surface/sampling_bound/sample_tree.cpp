@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "core/parallel.h"
-#include "geometry/vec.h"
 #include "tree/visit.h"
 
 namespace sdm::surface {
