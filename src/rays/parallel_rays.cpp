@@ -15,6 +15,7 @@
 #include "geometry/line_triangle.h"
 #include "geometry/triangle.h"
 #include "geometry/unit_across.h"
+#include "geometry/vec.h"
 #include "rays/unit_ray.h"
 
 #ifndef SDM_PARALLEL_RAYS_ONCE

@@ -8,6 +8,8 @@
 #include <span>
 
 #include "geometry/point_triangle.h"
+#include "geometry/triangle.h"
+#include "geometry/vec.h"
 #include "sites/sites_data.h"
 
 namespace sdm::test {
