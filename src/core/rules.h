@@ -311,10 +311,9 @@ inline double limits_form(double lower, double upper, bool is_signed) {
 /// The words of Verdict and VerdictReason, in their order.
 inline constexpr std::array<const char*, 4> kVerdictNames{"PASS", "FAIL", "NOT DECIDED", "DOUBTFUL"};
 inline constexpr std::array<const char*, 13> kReasonNames{
-    "all within",       "exceeded",         "beyond max distance", "without match",
-    "between samples",  "within rounding",  "guard band",          "estimated signs",
-    "unknown accuracy", "nothing measured", "thin walls",          "in doubt",
-    "small places"};
+    "all within",      "exceeded",   "beyond max distance", "without match",    "between samples",
+    "within rounding", "guard band", "estimated signs",     "unknown accuracy", "nothing measured",
+    "thin walls",      "in doubt",   "small places"};
 
 inline constexpr double kPass = 0.0;
 inline constexpr double kFail = 1.0;
