@@ -40,6 +40,13 @@ std::map<std::string, std::string> all_in(const fs::path& folder) {
   return files;
 }
 
+/// Writes a mesh as PLY, whatever the name of the file is.
+void write_as_ply(const fs::path& file, const Mesh& mesh) {
+  const TemporaryFolder folder;
+  write_mesh(folder / "mesh.ply", mesh);
+  fs::copy_file(folder / "mesh.ply", file, fs::copy_options::overwrite_existing);
+}
+
 struct InputFiles : ::testing::Test {
   TemporaryFolder folder;
   fs::path d = folder / "d";
@@ -49,7 +56,7 @@ struct InputFiles : ::testing::Test {
   /// A small solid as PLY, whatever the name is.
   std::string mesh(const fs::path& file, double size = 0.9) const {
     fs::create_directories(file.parent_path());
-    write_mesh(file, cube(size));
+    write_as_ply(file, cube(size));
     return file;
   }
   void text(const fs::path& file, const std::string& words) const { std::ofstream(file) << words; }
@@ -391,7 +398,7 @@ class Collisions {
     fs::create_directories(file.parent_path());
     const fs::path elsewhere = folder_ / fmt::format("{}.ply", ++count_);
     const std::size_t kind = roll(4);
-    write_mesh(kind < 2 ? file : elsewhere, cube(0.8 + 0.01 * static_cast<double>(count_)));
+    write_as_ply(kind < 2 ? file : elsewhere, cube(0.8 + 0.01 * static_cast<double>(count_)));
     if (kind == 2) fs::create_hard_link(elsewhere, file);
     if (kind == 3) fs::create_symlink(elsewhere, file);
     // The staging folder of a killed run is not the user's, but a file in it that is named remains.
