@@ -186,6 +186,7 @@ void bind_verdict(nb::module_& module) {
             if (!self.by_places) return std::nullopt;
             return std::tuple(self.by_places->least, self.by_places->certain, self.by_places->possible);
           },
+          nb::sig("def by_places(self) -> tuple[float, float, float] | None"),
           "Where the size of connected places decides: the area that makes a 'fail', that of the largest "
           "place that is "
           "out of the tolerance for certain, and of the largest one that may be; estimates, in squared "

@@ -140,12 +140,14 @@ void summary::Certifier::decide_by_places(CertifiedVerdict& verdict, const Place
   verdict.certified = false;
   verdict.proof.reset();
   verdict.deciding_bound.reset();
-  if (places.certain >= places.least) {
+  // Areas are rounded: with a share of 1, all of a surface is enough.
+  const double least = (1 - 1e-6) * places.least;
+  if (places.certain >= least) {
     verdict.verdict = Verdict::fail;
     if (verdict.reason > VerdictReason::without_match) verdict.reason = VerdictReason::exceeded;
     return;
   }
-  const bool passes = places.possible < places.least;
+  const bool passes = places.possible < least;
   verdict.verdict = passes ? Verdict::pass : Verdict::not_decided;
   verdict.reason = passes ? VerdictReason::small_places : VerdictReason::guard_band;
   if (passes && may_cross_walls(map_.measured.kind) && are_walls_thin(verdict.tolerance))
