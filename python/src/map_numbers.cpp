@@ -182,9 +182,9 @@ void bind_verdict(nb::module_& module) {
           text_of_field<ToleranceProof>("undecided_by").c_str())
       .def_prop_ro(
           "by_places",
-          [](const V& self) -> std::optional<std::tuple<double, double, double>> {
-            if (!self.by_places) return std::nullopt;
-            return std::tuple(self.by_places->least, self.by_places->certain, self.by_places->possible);
+          [](const V& self) -> nb::object {
+            if (!self.by_places) return nb::none();
+            return nb::make_tuple(self.by_places->least, self.by_places->certain, self.by_places->possible);
           },
           nb::sig("def by_places(self) -> tuple[float, float, float] | None"),
           "Where the size of connected places decides: the area that makes a 'fail', that of the largest "
