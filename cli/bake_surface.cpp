@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "format.h"
+#include "notes.h"
 
 namespace {
 

@@ -21,6 +21,8 @@ function howSure(report: Report, verdict: Verdict): Sure | null {
   );
   const certified = of.filter((t) => t.certified).length;
   const cloud = isCloud(report);
+  if (tolerance?.by_places && (verdict === 'PASS' || verdict === 'FAIL'))
+    return ['an estimate', 'the areas of connected places are those of their samples.'];
   switch (verdict) {
     case 'FAIL':
       // Points of a cloud without a group fail by their number.

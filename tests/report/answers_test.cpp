@@ -29,6 +29,10 @@ TEST_F(Page, StatesHowSureItIs) {
   EXPECT_TRUE(passes("isSure", page(), {"FAIL", "proven"}));
   map({"--resolution", "64", "--tolerance", "3"});
   EXPECT_TRUE(passes("isSure", page(), {"PASS", "proven"}));
+  map({"--resolution", "64", "--tolerance", "2.3", "--fail-area", "1e-3"});
+  EXPECT_TRUE(passes("isSure", page(), {"FAIL", "an estimate", "connected places"}));
+  map({"--resolution", "64", "--tolerance", "2.3", "--fail-share", "1"});
+  EXPECT_TRUE(passes("isSure", page(), {"PASS", "an estimate", "connected places"}));
   const Outcome walls = run_sdm({"thickness", o1, "-o", out, "--resolution", "64", "--min", "0.1"});
   ASSERT_EQ(walls.code, 0) << walls.err;
   EXPECT_TRUE(passes("isSure", page(), {"PASS", "an estimate"}));
