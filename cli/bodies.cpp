@@ -13,7 +13,6 @@
 #include "bodies_report.h"
 #include "common_options.h"
 #include "declared_options.h"
-#include "format.h"
 #include "map_files.h"
 #include "notes.h"
 #include "option_checks.h"

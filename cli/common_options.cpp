@@ -3,7 +3,6 @@
 #include <sdm/execution.h>
 #include <sdm/gl.h>
 #include <sdm/gpu.h>
-#include <sdm/map.h>
 
 #include <algorithm>
 #include <vector>

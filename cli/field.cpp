@@ -11,7 +11,6 @@
 #include "declared_options.h"
 #include "format.h"
 #include "option_checks.h"
-#include "report.h"
 #include "unit_options.h"
 
 namespace {

@@ -9,14 +9,12 @@
 #include "declared_options.h"
 #include "format.h"
 #include "notes.h"
-#include "option_checks.h"
 #include "output_folder.h"
 #include "part_map.h"
 #include "print.h"
 #include "progress_line.h"
 #include "src/core/stopwatch.h"
 #include "src/io/json/report_json.h"
-#include "unit_options.h"
 
 #include <memory>
 

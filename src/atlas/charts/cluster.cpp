@@ -13,7 +13,6 @@
 #include "core/parallel.h"
 #include "core/scattered_order.h"
 #include "geometry/unit_frame.h"
-#include "geometry/vec.h"
 
 namespace sdm::atlas {
 namespace {

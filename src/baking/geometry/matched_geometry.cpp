@@ -11,7 +11,6 @@
 #include "baking/geometry/texel_walk.h"
 #include "closest/facing/facing_normals.h"
 #include "core/memory.h"
-#include "geometry/vec.h"
 #include "map/measures/thickness_measure.h"
 #include "map/transfer/corner_normals.h"
 #include "map/transfer/fill_texels.h"

@@ -1,5 +1,4 @@
 #include <sdm/bake.h>
-#include <sdm/error.h>
 
 #include <algorithm>
 #include <array>

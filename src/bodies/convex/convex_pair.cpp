@@ -7,7 +7,6 @@
 #include "bodies/convex/touching.h"
 #include "geometry/predicates.h"
 #include "geometry/triangle_pair.h"
-#include "geometry/vec.h"
 
 // The proof of a result. Let u be the unit vector from the closest point of O1 to that of O2, d their
 // distance, and r a bound on rounding errors. Heights are along u for O1, along −u for O2.

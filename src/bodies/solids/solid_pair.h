@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "bodies/convex/difference_hull.h"
+#include "bodies/solids/core_distance.h"
+#include "bodies/solids/mesh_distance.h"
 #include "bodies/solids/posed_core.h"
 
 namespace sdm::solids {

@@ -4,8 +4,10 @@
 #include <sdm/error.h>
 
 #include <cerrno>
+// IWYU pragma: begin_keep: of systems without mmap()
 #include <fstream>
 #include <new>
+// IWYU pragma: end_keep
 #include <system_error>
 
 #include "io/file/file_bytes.h"

@@ -14,7 +14,6 @@
 #include <sdm/error.h>
 #include <sdm/execution.h>
 #include <sdm/map_files.h>
-#include <sdm/version.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
