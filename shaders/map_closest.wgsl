@@ -19,47 +19,28 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   if (i >= part.count) {
     return;
   }
-  let p = points[i].xyz;
-  let head = results[i * kResult];
-  let listed = head & 15u;
-  var least = kHuge;
-  var number = kUnused;
-  for (var k = 1u; k <= listed; k += 1u) {
-    let face = results[i * kResult + k];
-    let square = squared_to_face(faces[face], p);
-    if (square < least) {
-      least = square;
-      number = face;
-    }
-  }
-  if ((head & kIncomplete) != 0u) {
-    search_tree(p, least, 0.0);
-    if (nearest < least) {
-      least = nearest;
-      number = nearest_face;
-    }
-  }
-  if (number == kUnused) {
+  search_listed(i);
+  if (nearest_face == kUnused) {
     return;
   }
   let place = part.first + i;
   if (part.has_distances != 0u) {
     let before = vec3f(all_closest[place].x, all_closest[place].y, all_closest[place].z);
-    if (dot(before, before) <= least) {
+    if (dot(before, before) <= nearest) {
       return;
     }
   }
-  let face = faces[number];
-  let r = p - face.origin_length.xyz;
+  let face = faces[nearest_face];
+  let r = points[i].xyz - face.origin_length.xyz;
   let closest = closest_in_plane(face, vec2f(dot(r, face.along_ac.xyz), dot(r, face.beside_ac.xyz)));
   let v = closest.at.x * face.along_ac.xyz + closest.at.y * face.beside_ac.xyz - r;
   let of_mesh = face.number >> 2u;
   let corner = (closest.site + (face.number & 3u)) % 3u;
   var site = of_mesh;
   if (closest.site < 3u) {
-    site = face_sites[number].vertices[corner];
+    site = face_sites[nearest_face].vertices[corner];
   } else if (closest.site < 6u) {
-    site = face_sites[number].edges[corner];
+    site = face_sites[nearest_face].edges[corner];
   }
   all_closest[place] = Closest(v.x, v.y, v.z, of_mesh, closest.site / 3u, site);
 }

@@ -9,18 +9,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   if (i >= part.count) {
     return;
   }
-  let p = points[i].xyz;
-  let head = results[i * kResult];
-  let listed = head & 15u;
-  var least = kHuge;
-  for (var k = 1u; k <= listed; k += 1u) {
-    least = min(least, squared_to_face(faces[results[i * kResult + k]], p));
-  }
-  if ((head & kIncomplete) != 0u) {
-    search_tree(p, least, 0.0);
-    least = min(least, nearest);
-  }
-  let distance = sqrt(least);
+  search_listed(i);
+  let distance = sqrt(nearest);
   let place = part.first + i;
   distances[place] = min(distance, select(kHuge, distances[place], part.has_distances != 0u));
 }

@@ -98,3 +98,27 @@ fn search_tree(p: vec3f, first: f32, error: f32) {
     }
   }
 }
+
+// Sets `nearest` and `nearest_face`: of the list that is stored for a point, or of all faces where it is incomplete.
+fn search_listed(i: u32) {
+  let p = points[i].xyz;
+  let head = results[i * kResult];
+  var least = kHuge;
+  var number = kUnused;
+  for (var k = 1u; k <= (head & 15u); k += 1u) {
+    let face = results[i * kResult + k];
+    let square = squared_to_face(faces[face], p);
+    if (square < least) {
+      least = square;
+      number = face;
+    }
+  }
+  if ((head & kIncomplete) != 0u) {
+    search_tree(p, least, 0.0);
+    if (nearest < least) {
+      return;
+    }
+  }
+  nearest = least;
+  nearest_face = number;
+}

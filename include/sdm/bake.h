@@ -399,8 +399,8 @@ inline constexpr auto kOptions<BakeRequest> = std::tuple{
 struct OcclusionEstimate {
   std::vector<float> values;  ///< from 0 to 1; NaN for texels without a point
   /// The standard error of each value, NaN for a single ray: as if eight groups of the directions were
-  /// independent, which they are not, as each fills what the others leave free. So errors are smaller on
-  /// average, by a third or more. 0 where the rays of all groups agree.
+  /// independent, which they are not, as each fills what the others leave free. So errors are mostly
+  /// smaller. 0 where the rays of all groups agree.
   std::vector<float> standard_errors;
 };
 

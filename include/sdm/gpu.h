@@ -123,16 +123,6 @@ struct GpuMapOptions {
   bool closest = false;  ///< whether the map has closest points, too: 24 bytes for each sample on the device
 };
 
-template <>
-inline constexpr auto kOptions<GpuMapOptions> =
-    std::tuple{Option{.name = "device",
-                      .member = &GpuMapOptions::device,
-                      .text = "The device, by its number in `sdm devices` or part of its name.",
-                      .value = "NAME"},
-               Option{.name = "closest",
-                      .member = &GpuMapOptions::closest,
-                      .text = "Whether the map has the closest points, too, with their sites and faces."}};
-
 /// The closest points of the samples of a GpuMap, as they are on the device.
 struct GpuMapClosest {
   std::vector<Vec3f> vector;        ///< closest point of O2 − sample

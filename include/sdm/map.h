@@ -188,7 +188,7 @@ SDM_API void compute_samples(const Surface& surface, const Sites& sites, const M
                              const SampleRange& range, DistanceMap& map);
 
 /// Counts beyond_max_distance and without_match of a map that was computed in ranges, in any order, as
-/// compute_map() has them. Cost: linear.
+/// compute_map() has them. Throws sdm::Error if it belongs to another surface. Cost: linear.
 SDM_API void count_missing(const Surface& surface, DistanceMap& map);
 
 /// Returns the distance from each vertex of `mesh` to O2, NaN beyond options.max_distance; signed as by

@@ -69,7 +69,7 @@ struct CertifyOptions {
   double uncertainty = 0;              ///< Evidence::uncertainty
   std::optional<double> thin_walls{};  ///< those of O2, if they are known
   bool accept_doubts = false;          ///< doubt_of() the verdict leaves a pass one
-  std::optional<double> fail_area{};   ///< only a connected place of this area makes a failure
+  std::optional<double> fail_area{};   ///< in squared units: a failure needs a connected place of this area
   std::optional<double> fail_share{};  ///< the same, as a share of the surface's area; excludes fail_area
   Progress progress{};
 };

@@ -96,6 +96,7 @@ void compute_samples(const Surface& surface, const Sites& sites, const MapOption
 }
 
 void count_missing(const Surface& surface, DistanceMap& map) {
+  if (map.distance.size() != surface.map_faces().size()) throw Error("the map belongs to another surface");
   std::size_t missing = 0;
   map.without_match = 0;
   for (const std::uint32_t texel : surface.sample_texels()) {

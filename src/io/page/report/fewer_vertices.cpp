@@ -8,16 +8,10 @@
 
 #include "core/cancellation.h"
 #include "geometry/vec.h"
+#include "map/statistics/texel_areas.h"
 
 namespace sdm::io {
 namespace {
-
-double area(const Mesh& mesh) {
-  double sum = 0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    sum += norm(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a])) / 2;
-  return sum;
-}
 
 // The vertex that stands for each vertex.
 std::vector<std::uint32_t> clustered(const Mesh& mesh, std::span<const float> distances, double cell) {
@@ -72,7 +66,7 @@ std::vector<Triangle> remaining(const Mesh& mesh, std::span<const std::uint32_t>
 
 FewerVertices fewer_vertices(const Mesh& mesh, std::span<const float> distances, std::size_t most) {
   // About two triangles for each cell that a surface crosses.
-  double cell = std::sqrt(2 * area(mesh) / static_cast<double>(std::max<std::size_t>(most, 1)));
+  double cell = std::sqrt(2 * map::surface_area(mesh) / static_cast<double>(std::max<std::size_t>(most, 1)));
   if (!(cell > 0)) cell = diagonal(bounds(mesh));
   std::vector<Triangle> triangles;
   do {
