@@ -84,6 +84,9 @@ TEST(MapSamples, OfFacingFacesAreTheMapToTheBit) {
     }
     EXPECT_TRUE(bits(parts) == bits(whole));
     EXPECT_EQ(without_match, whole.without_match);
+    count_missing(surface, parts);
+    EXPECT_EQ(parts.without_match, whole.without_match);
+    EXPECT_EQ(parts.beyond_max_distance, whole.beyond_max_distance);
     EXPECT_EQ(parts.measured.facing, 60);
     EXPECT_EQ(parts.sign.method, SignMethod::side);
   }
@@ -113,6 +116,9 @@ TEST(MapSamples, OfOtherMeasuresAreTheMapToTheBit) {
     EXPECT_TRUE(bits(parts) == bits(whole)) << measure.index();
     EXPECT_EQ(beyond, whole.beyond_max_distance);
     EXPECT_EQ(without_match, whole.without_match);
+    count_missing(surface, parts);
+    EXPECT_EQ(parts.without_match, whole.without_match);
+    EXPECT_EQ(parts.beyond_max_distance, whole.beyond_max_distance);
     EXPECT_EQ(parts.measured.kind, whole.measured.kind);
     EXPECT_THROW(compute_samples_of_measure(surface, sites, measure, {1, 1}, parts), Error);
   }
@@ -146,6 +152,7 @@ TEST(MapSamples, RefuseWhatTheyCannotDo) {
   EXPECT_THAT(fault({}, {SIZE_MAX - grain + 1, grain}, map), HasSubstr("must begin and end at multiples of"));
   EXPECT_THAT(fault({}, {0, grain}, of_other), HasSubstr("belongs to another surface"));
   EXPECT_EQ(fault({}, {0, samples}, map), "");
+  EXPECT_THROW(count_missing(surface, of_other), Error);
 }
 
 }  // namespace
